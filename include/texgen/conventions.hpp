@@ -1,0 +1,108 @@
+#pragma once
+
+// Floor 0: what the numbers mean. Every convention is said once, here, and carried by the values that depend on it.
+
+#include <glm/vec2.hpp>
+
+namespace texgen {
+
+enum class DepthRange { negative_one_to_one, zero_to_one };  // NDC depth of the near and of the far plane
+enum class NdcY { up, down };
+enum class TextureOrigin { bottom_left, top_left };  // the corner of the picture that (s, t) = (0, 0) addresses
+
+// Three independent choices of a graphics API. There is no default: the caller says which one the numbers follow.
+struct Conventions {
+    DepthRange depth;
+    NdcY ndc_y;
+    TextureOrigin origin;
+
+    friend constexpr bool operator==(const Conventions&, const Conventions&) = default;
+};
+
+inline constexpr Conventions opengl{DepthRange::negative_one_to_one, NdcY::up, TextureOrigin::bottom_left};
+inline constexpr Conventions direct3d{DepthRange::zero_to_one, NdcY::up, TextureOrigin::top_left};
+inline constexpr Conventions metal{DepthRange::zero_to_one, NdcY::up, TextureOrigin::top_left};
+inline constexpr Conventions vulkan{DepthRange::zero_to_one, NdcY::down, TextureOrigin::top_left};
+
+// What r holds after the division: unit is depth in [0, 1] as Everitt's matrix has it, ndc leaves the projector's own
+// depth alone as SGI's recipe does.
+enum class DepthMapping { unit, ndc };
+
+// The closed rectangle of texture coordinates that the slide covers. min() is the corner that TextureOrigin addresses.
+// A rectangle with min() > max() in a component, or with a NaN, contains no point, so nothing is lit in it.
+class TextureRegion {
+public:
+    constexpr const glm::dvec2& min() const noexcept { return min_; }
+    constexpr const glm::dvec2& max() const noexcept { return max_; }
+
+    friend constexpr bool operator==(const TextureRegion& a, const TextureRegion& b) noexcept {
+        return a.min_.x == b.min_.x && a.min_.y == b.min_.y && a.max_.x == b.max_.x && a.max_.y == b.max_.y;
+    }
+
+    friend constexpr TextureRegion whole_texture() noexcept;
+    friend constexpr TextureRegion rectangle_texture(double width, double height) noexcept;
+    friend constexpr TextureRegion atlas_tile(glm::dvec2 min, glm::dvec2 max) noexcept;
+
+private:
+    constexpr TextureRegion(glm::dvec2 min, glm::dvec2 max) noexcept : min_(min), max_(max) {}
+
+    glm::dvec2 min_;
+    glm::dvec2 max_;
+};
+
+// [0, 1] x [0, 1].
+constexpr TextureRegion whole_texture() noexcept { return {glm::dvec2(0.0, 0.0), glm::dvec2(1.0, 1.0)}; }
+
+// [0, width] x [0, height] in texels, as GL_TEXTURE_RECTANGLE addresses its image.
+constexpr TextureRegion rectangle_texture(double width, double height) noexcept {
+    return {glm::dvec2(0.0, 0.0), glm::dvec2(width, height)};
+}
+
+// A tile of a larger texture, in the units of that texture.
+constexpr TextureRegion atlas_tile(glm::dvec2 min, glm::dvec2 max) noexcept { return {min, max}; }
+
+// An angle that knows its unit: made by radians() or degrees() only, so that a bare number does not convert.
+class Angle {
+public:
+    constexpr double in_radians() const noexcept { return radians_; }
+    constexpr double in_degrees() const noexcept { return radians_ * (180.0 / 3.14159265358979323846); }
+
+    friend constexpr bool operator==(const Angle& a, const Angle& b) noexcept { return a.radians_ == b.radians_; }
+
+    friend constexpr Angle radians(double) noexcept;
+    friend constexpr Angle degrees(double) noexcept;
+
+private:
+    explicit constexpr Angle(double value) noexcept : radians_(value) {}
+
+    double radians_;
+};
+
+constexpr Angle radians(double value) noexcept { return Angle(value); }
+constexpr Angle degrees(double value) noexcept { return Angle(value * (3.14159265358979323846 / 180.0)); }
+
+// The dial: the largest |error| that the caller accepts in s and in t, in the units of the region; in r the same
+// relative to max(1, |r|). The rounding of the nearest float is always allowed: |error| <= max(value, 1/2 ulp).
+// A value that is not positive (zero, negative, NaN) means exact.
+struct Tolerance {
+    double value;
+};
+
+inline constexpr Tolerance exact{0.0};
+
+namespace detail {
+
+// The error that a kernel may make: 0 for exact, and never so much that a float could leave its range.
+constexpr double accepted(Tolerance tolerance) noexcept {
+    return tolerance.value > 0.0 ? (tolerance.value < 0x1p100 ? tolerance.value : 0x1p100) : 0.0;
+}
+
+}  // namespace detail
+
+// A fraction of a texel of a texture of that size, for a region of one unit (a rectangle texture's unit is the texel:
+// Tolerance{fraction}). Exact where the size is not positive, or is so small that the quotient is no number.
+constexpr Tolerance texels(double fraction, double texture_size) noexcept {
+    return texture_size > 0.0 && fraction < texture_size * 1e300 ? Tolerance{fraction / texture_size} : exact;
+}
+
+}  // namespace texgen

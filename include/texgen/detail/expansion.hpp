@@ -1,0 +1,60 @@
+#pragma once
+
+// Exact sums of doubles, for what double arithmetic cannot decide: the sign of q where its terms cancel, and a quotient
+// that lies next to the middle of two floats.
+
+#include <array>
+#include <cstddef>
+
+#include "rounding.hpp"
+
+namespace texgen::detail {
+
+// The exact value of a sum, kept as at most Capacity doubles that do not overlap, smallest first.
+// Exact while no product leaves 2^-960 .. 2^1000, which products of five floats cannot.
+// Source: Shewchuk, Adaptive Precision Floating-Point Arithmetic, Grow-Expansion and Scale-Expansion.
+template <std::size_t Capacity>
+class Expansion {
+public:
+    void add(double term) noexcept {
+        double carry = term;
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < count_; ++i) {
+            const DoubleDouble sum = two_sum(carry, terms_[i]);
+            carry = sum.high;
+            if (sum.low != 0.0) terms_[kept++] = sum.low;
+        }
+        if (carry != 0.0) terms_[kept++] = carry;
+        count_ = kept;
+    }
+
+    void add_product(double a, double b) noexcept {
+        const DoubleDouble product = two_product(a, b);
+        add(product.low);
+        add(product.high);
+    }
+
+    template <std::size_t OtherCapacity>
+    void add_scaled(const Expansion<OtherCapacity>& other, double factor) noexcept {
+        for (std::size_t i = 0; i < other.count(); ++i) add_product(other.term(i), factor);
+    }
+
+    std::size_t count() const noexcept { return count_; }
+    double term(std::size_t i) const noexcept { return terms_[i]; }
+
+    // Within a few ulp of the value: the terms do not overlap.
+    double estimate() const noexcept {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < count_; ++i) sum += terms_[i];
+        return sum;
+    }
+
+    // -1, 0 or 1, exactly.
+    int sign() const noexcept { return count_ == 0 ? 0 : terms_[count_ - 1] > 0.0 ? 1 : -1; }
+
+private:
+    std::array<double, Capacity> terms_{};
+    std::size_t count_ = 0;
+};
+
+}  // namespace texgen::detail

@@ -1,0 +1,209 @@
+#pragma once
+
+// The inverse of a 4x4 with a certificate. A determinant says nothing about singularity (it has a scale), the residual
+// does: if norm(I - A X) < 1 for any X at all, A is regular, and A^-1 is as near to X as the residual is small.
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include <glm/mat4x4.hpp>
+
+#include "rounding.hpp"
+
+namespace texgen::detail {
+
+inline bool is_finite(double value) noexcept { return std::fabs(value) <= 1.7976931348623157e308; }
+
+inline bool is_finite(const glm::dmat4& matrix) noexcept {
+    for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 4; ++row)
+            if (!is_finite(matrix[column][row])) return false;
+    return true;
+}
+
+class CertifiedInverse {
+public:
+    // The matrix is first scaled by powers of two, B = R A C, so that rows and columns are near 1: this is exact and
+    // makes every later decision independent of uniform and of diagonal scale. X ~ B^-1 is one elimination and two
+    // steps of refinement with a doubled residual.
+    explicit CertifiedInverse(const glm::dmat4& matrix) noexcept;
+
+    // Whether beta() < 1. False for what is not finite.
+    bool regular() const noexcept { return beta_ < 1.0; }
+
+    // norm(I - B X) + 5 u norm(|X| |B|) for the X of the elimination: below 1 proves that A is regular. For an exactly
+    // singular A it is at least 1 for every X: with y B = 0, y (I - B X) = y.
+    double beta() const noexcept { return beta_; }
+
+    // A^-1 = C X R; each element within a few ulp of its exact value while the condition of B stays below 1e8.
+    glm::dmat4 matrix() const noexcept;
+
+    // row A^-1, solved and refined by itself: the product of row and a rounded inverse could cancel.
+    glm::dvec4 solve_row(const glm::dvec4& row) const noexcept;
+
+private:
+    using Square = std::array<std::array<double, 4>, 4>;  // [row][column]
+
+    static DoubleDouble dot(const double* row, const Square& matrix, int column, double start) noexcept {
+        DoubleDouble sum{start, 0.0};
+        for (std::size_t k = 0; k < 4; ++k)
+            sum = add_product(sum, -row[k], matrix[k][static_cast<std::size_t>(column)]);
+        return sum;
+    }
+
+    bool equilibrate() noexcept;
+    bool eliminate() noexcept;
+    void refine() noexcept;
+    double certificate() const noexcept;
+
+    Square scaled_{};                       // B
+    Square inverse_{};                      // X
+    std::array<int, 4> row_exponent_{};     // R = diag(2^row_exponent)
+    std::array<int, 4> column_exponent_{};  // C = diag(2^column_exponent)
+    double beta_ = HUGE_VAL;
+};
+
+inline CertifiedInverse::CertifiedInverse(const glm::dmat4& matrix) noexcept {
+    for (int row = 0; row < 4; ++row) {
+        for (int column = 0; column < 4; ++column) {
+            const double element = matrix[column][row];
+            if (!is_finite(element)) return;
+            scaled_[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)] = element;
+        }
+    }
+    if (!equilibrate() || !eliminate()) return;
+    beta_ = certificate();
+    if (!regular()) return;
+    refine();
+    refine();
+}
+
+inline bool CertifiedInverse::equilibrate() noexcept {
+    for (int pass = 0; pass < 3; ++pass) {
+        for (std::size_t i = 0; i < 4; ++i) {
+            double row_largest = 0.0;
+            for (std::size_t k = 0; k < 4; ++k) row_largest = std::fmax(row_largest, std::fabs(scaled_[i][k]));
+            if (row_largest == 0.0) return false;
+            const int row_shift = -std::ilogb(row_largest);
+            for (std::size_t k = 0; k < 4; ++k) scaled_[i][k] = std::scalbn(scaled_[i][k], row_shift);
+            row_exponent_[i] += row_shift;
+        }
+        for (std::size_t k = 0; k < 4; ++k) {
+            double column_largest = 0.0;
+            for (std::size_t i = 0; i < 4; ++i) column_largest = std::fmax(column_largest, std::fabs(scaled_[i][k]));
+            if (column_largest == 0.0) return false;
+            const int column_shift = -std::ilogb(column_largest);
+            for (std::size_t i = 0; i < 4; ++i) scaled_[i][k] = std::scalbn(scaled_[i][k], column_shift);
+            column_exponent_[k] += column_shift;
+        }
+    }
+    return true;
+}
+
+// Gauss-Jordan with partial pivoting.
+inline bool CertifiedInverse::eliminate() noexcept {
+    Square left = scaled_;
+    Square& right = inverse_;
+    for (std::size_t i = 0; i < 4; ++i) right[i][i] = 1.0;
+    for (std::size_t column = 0; column < 4; ++column) {
+        std::size_t pivot = column;
+        for (std::size_t row = column + 1; row < 4; ++row)
+            if (std::fabs(left[row][column]) > std::fabs(left[pivot][column])) pivot = row;
+        if (left[pivot][column] == 0.0) return false;
+        std::swap(left[pivot], left[column]);
+        std::swap(right[pivot], right[column]);
+        const double reciprocal = 1.0 / left[column][column];
+        for (std::size_t k = 0; k < 4; ++k) {
+            left[column][k] *= reciprocal;
+            right[column][k] *= reciprocal;
+        }
+        for (std::size_t row = 0; row < 4; ++row) {
+            if (row == column) continue;
+            const double factor = left[row][column];
+            for (std::size_t k = 0; k < 4; ++k) {
+                left[row][k] -= factor * left[column][k];
+                right[row][k] -= factor * right[column][k];
+            }
+        }
+    }
+    return true;
+}
+
+inline double CertifiedInverse::certificate() const noexcept {
+    double residual_norm = 0.0;
+    double product_norm = 0.0;
+    for (std::size_t i = 0; i < 4; ++i) {
+        double residual = 0.0;
+        double product = 0.0;
+        for (std::size_t j = 0; j < 4; ++j) {
+            residual += std::fabs(dot(scaled_[i].data(), inverse_, static_cast<int>(j), i == j ? 1.0 : 0.0).high);
+            for (std::size_t k = 0; k < 4; ++k) product += std::fabs(inverse_[i][k]) * std::fabs(scaled_[k][j]);
+        }
+        // Written so that a NaN stays: std::fmax would drop it.
+        residual_norm = residual <= residual_norm ? residual_norm : residual;
+        product_norm = product <= product_norm ? product_norm : product;
+    }
+    return residual_norm + 5.0 * unit_roundoff_double * product_norm;
+}
+
+// X <- X + X (I - B X).
+inline void CertifiedInverse::refine() noexcept {
+    Square residual;
+    for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t j = 0; j < 4; ++j)
+            residual[i][j] = dot(scaled_[i].data(), inverse_, static_cast<int>(j), i == j ? 1.0 : 0.0).high;
+    const Square before = inverse_;
+    for (std::size_t i = 0; i < 4; ++i) {
+        for (std::size_t j = 0; j < 4; ++j) {
+            double correction = 0.0;
+            for (std::size_t k = 0; k < 4; ++k) correction += before[i][k] * residual[k][j];
+            inverse_[i][j] = before[i][j] + correction;
+        }
+    }
+}
+
+inline glm::dmat4 CertifiedInverse::matrix() const noexcept {
+    glm::dmat4 result(0.0);
+    for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t j = 0; j < 4; ++j)
+            result[static_cast<int>(j)][static_cast<int>(i)] =
+                std::scalbn(inverse_[i][j], column_exponent_[i] + row_exponent_[j]);
+    return result;
+}
+
+inline glm::dvec4 CertifiedInverse::solve_row(const glm::dvec4& row) const noexcept {
+    // y A = row with B = R A C is (y R^-1) B = row C.
+    std::array<double, 4> target{};
+    for (std::size_t k = 0; k < 4; ++k) target[k] = std::scalbn(row[static_cast<int>(k)], column_exponent_[k]);
+    std::array<double, 4> solution{};
+    std::array<double, 4> residual = target;
+    for (int pass = 0; pass < 3; ++pass) {
+        for (std::size_t j = 0; j < 4; ++j)
+            for (std::size_t k = 0; k < 4; ++k) solution[j] += residual[k] * inverse_[k][j];
+        for (std::size_t j = 0; j < 4; ++j)
+            residual[j] = dot(solution.data(), scaled_, static_cast<int>(j), target[j]).high;
+    }
+    glm::dvec4 result(0.0);
+    for (std::size_t j = 0; j < 4; ++j) result[static_cast<int>(j)] = std::scalbn(solution[j], row_exponent_[j]);
+    return result;
+}
+
+// How far the 3x3 part is from orthonormal, and the last row from (0, 0, 0, 1): the largest deviation.
+inline double distance_from_rigid(const glm::dmat4& m) noexcept {
+    double distance = 0.0;
+    const auto include = [&distance](double deviation) {
+        const double size = std::fabs(deviation);
+        distance = size <= distance ? distance : size;
+    };
+    for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j <= i; ++j)
+            include(m[i][0] * m[j][0] + m[i][1] * m[j][1] + m[i][2] * m[j][2] - (i == j ? 1.0 : 0.0));
+        include(m[i][3]);
+    }
+    include(m[3][3] - 1.0);
+    return distance;
+}
+
+}  // namespace texgen::detail

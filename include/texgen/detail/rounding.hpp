@@ -1,0 +1,62 @@
+#pragma once
+
+// Rounding: the unit roundoffs, gamma(n), and the error-free transformations. Every bound of the library is computed
+// from these, where the rounding happens.
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+namespace texgen::detail {
+
+inline constexpr double unit_roundoff_float = 0x1p-24;
+inline constexpr double unit_roundoff_double = 0x1p-53;
+
+// The smaller and the larger of two, b where one is a NaN. Unlike std::fmin and std::fmax these are one instruction.
+constexpr double smaller(double a, double b) noexcept { return a < b ? a : b; }
+constexpr double larger(double a, double b) noexcept { return a > b ? a : b; }
+
+// A power of two within a factor 2 of 1 / value, for a value that is normal and below 2^1022.
+inline double reciprocal_power_of_two(double value) noexcept {
+    const std::uint64_t biased_exponent = std::bit_cast<std::uint64_t>(value) >> 52 & 0x7ff;
+    return std::bit_cast<double>((2046 - biased_exponent) << 52 & 0x7ff0000000000000);
+}
+
+// The relative error of n roundings in sequence is at most gamma(n) = n u / (1 - n u). Source: Higham, Accuracy and
+// Stability of Numerical Algorithms, lemma 3.1.
+constexpr double gamma(int n) noexcept { return n * unit_roundoff_double / (1.0 - n * unit_roundoff_double); }
+
+// An unevaluated sum; high is the sum rounded to double.
+struct DoubleDouble {
+    double high, low;
+};
+
+// Exactly a + b, for any order of magnitudes. Source: Knuth, TAOCP 2, 4.2.2 theorem B.
+inline DoubleDouble two_sum(double a, double b) noexcept {
+    const double sum = a + b;
+    const double b_part = sum - a;
+    return {sum, (a - (sum - b_part)) + (b - b_part)};
+}
+
+// Exactly a * b where neither the product nor its last bit leaves the range of double.
+inline DoubleDouble two_product(double a, double b) noexcept {
+    const double product = a * b;
+    return {product, std::fma(a, b, -product)};
+}
+
+// a + b c within 2^-104 (|a| + |b c|).
+inline DoubleDouble add_product(DoubleDouble a, double b, double c) noexcept {
+    const DoubleDouble product = two_product(b, c);
+    const DoubleDouble sum = two_sum(a.high, product.high);
+    const double low = sum.low + (a.low + product.low);
+    const double high = sum.high + low;
+    return {high, low - (high - sum.high)};
+}
+
+// a b - c d within 1.5 double ulp. Source: Kahan; Jeannerod, Louvet, Muller, Math. Comp. 82 (2013).
+inline double difference_of_products(double a, double b, double c, double d) noexcept {
+    const double cd = c * d;
+    return std::fma(a, b, -cd) + std::fma(-c, d, cd);
+}
+
+}  // namespace texgen::detail

@@ -1,0 +1,92 @@
+#pragma once
+
+// Floor 1: a 4x4 matrix that knows the two spaces it joins.
+
+#include <optional>
+
+#include <glm/mat4x4.hpp>
+
+#include "detail/assert.hpp"
+#include "detail/inverse.hpp"
+#include "detail/rounding.hpp"
+#include "detail/widen.hpp"
+
+namespace texgen {
+
+// The spaces. They are names only and stay incomplete.
+struct Object;
+struct World;
+struct Eye;
+struct ProjectorEye;
+struct ProjectorClip;
+struct Texture;
+
+// Guarantee: holds its matrix in double unchanged; rounded() rounds each element once; no allocation, noexcept.
+// Shape: column vectors, v_to = matrix() * v_from. There is no default: a Transform was always given a value.
+// Bad input: NaN and infinity are kept as they are. An element beyond the largest float rounds to infinity.
+template <class To, class From>
+class Transform {
+public:
+    explicit Transform(const glm::mat4& matrix) noexcept : matrix_(detail::widened(matrix)) {}
+    explicit Transform(const glm::dmat4& matrix) noexcept : matrix_(matrix) {}
+
+    const glm::dmat4& matrix() const noexcept { return matrix_; }
+    glm::mat4 rounded() const noexcept { return glm::mat4(matrix_); }
+
+private:
+    glm::dmat4 matrix_;
+};
+
+// Composition, from right to left: A from B times B from C is A from C.
+template <class A, class B, class C>
+Transform<A, C> operator*(const Transform<A, B>& a_from_b, const Transform<B, C>& b_from_c) noexcept {
+    return Transform<A, C>(a_from_b.matrix() * b_from_c.matrix());
+}
+
+// The roles, named as the papers name them; the type says destination from source.
+using ModelMatrix = Transform<World, Object>;                        // M
+using ViewMatrix = Transform<Eye, World>;                            // V_e
+using ModelviewMatrix = Transform<Eye, Object>;                      // V_e M
+using CameraPose = Transform<World, Eye>;                            // V_e^-1
+using ProjectorView = Transform<ProjectorEye, World>;                // V_p
+using ProjectorProjection = Transform<ProjectorClip, ProjectorEye>;  // P_p
+using ProjectorMatrix = Transform<ProjectorClip, World>;             // P_p V_p
+using ScaleBias = Transform<Texture, ProjectorClip>;                 // S
+using ObjectTexgen = Transform<Texture, Object>;                     // T_o
+using EyeTexgen = Transform<Texture, Eye>;                           // T_e
+using WorldTexgen = Transform<Texture, World>;                       // S P_p V_p
+
+// Guarantee: where it answers, each element of X = A^-1 is within 2 double ulp of the largest of its terms in X A X, while
+// the condition of A (rows and columns scaled) stays below 1e8; the answer is certified by its residual, never by the
+// size of a determinant, so any uniform scale is regular. An affine A has an exactly affine X. No allocation, noexcept.
+// Bad input: empty for a matrix that is singular to working precision, is not finite, or whose inverse overflows.
+// Source: see detail/inverse.hpp.
+template <class To, class From>
+std::optional<Transform<From, To>> inverse(const Transform<To, From>& transform) noexcept {
+    const detail::CertifiedInverse inverse(transform.matrix());
+    if (!inverse.regular()) return std::nullopt;
+    const Transform<From, To> result(inverse.matrix());
+    return detail::is_finite(result.matrix()) ? std::optional(result) : std::nullopt;
+}
+
+// Guarantee: exact transposition of the rotation; the translation -R^T t within 1 double ulp of its exact value for that
+// rotation, while its terms do not cancel below 2^-50 of the largest. No allocation, noexcept.
+// Precondition, asserted to 1e-3: the transform is rigid (an orthonormal rotation and a translation).
+// Use it where a camera or a projector is posed without scale: it loses nothing, at any distance from the origin.
+template <class To, class From>
+Transform<From, To> inverse_rigid(const Transform<To, From>& transform) noexcept {
+    const glm::dmat4& m = transform.matrix();
+    TEXGEN_ASSERT(!(detail::distance_from_rigid(m) > 1e-3));
+    glm::dmat4 result(1.0);
+    for (int column = 0; column < 3; ++column) {
+        detail::DoubleDouble translation{0.0, 0.0};
+        for (int row = 0; row < 3; ++row) {
+            result[column][row] = m[row][column];
+            translation = detail::add_product(translation, -m[column][row], m[3][row]);
+        }
+        result[3][column] = translation.high;
+    }
+    return Transform<From, To>(result);
+}
+
+}  // namespace texgen
