@@ -1,0 +1,93 @@
+#pragma once
+
+// Floor 3: the texgen matrices. Object linear T_o = S P_p V_p M, eye linear T_e = S P_p V_p V_e^-1, and the eye planes
+// that glTexGen stores. All are composed in double, nearest spaces first, and rounded once by whoever needs floats: far
+// from the origin the large translations of V_p and of M (or V_e^-1) cancel in one another before anything else.
+
+#include <array>
+#include <optional>
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec4.hpp>
+
+#include "conventions.hpp"
+#include "detail/inverse.hpp"
+#include "projector.hpp"
+#include "scale_bias.hpp"
+#include "transform.hpp"
+
+namespace texgen {
+
+namespace detail {
+
+inline Transform<Texture, ProjectorEye> texture_from_projector_eye(const Projector& projector,
+                                                                   const TextureRegion& region,
+                                                                   DepthMapping depth) noexcept {
+    return scale_bias(projector.conventions, region, depth) * projector.projection;
+}
+
+}  // namespace detail
+
+// Guarantee: S P_p V_p in double, 12 roundings a term at most; no allocation, noexcept.
+// Shape: world points to homogeneous (s, t, r, q) in the units of the region; q > 0 in front of the projector.
+// Bad input: NaN and infinity of the projector stay in the elements that they reach.
+// Source: Everitt, Projective Texture Mapping, (3) with M = I.
+inline WorldTexgen texture_from_world(const Projector& projector, TextureRegion region = whole_texture(),
+                                      DepthMapping depth = DepthMapping::unit) noexcept {
+    return detail::texture_from_projector_eye(projector, region, depth) * projector.view;
+}
+
+// Guarantee: T_o = S P_p V_p M in double. Rounded to float it is within 0.002 texel of a 4096 texture, at any distance
+// up to 1e7 from the origin, for a slide that the object is near to; no allocation, noexcept.
+// Shape: object points to homogeneous (s, t, r, q). It must be made anew whenever M, V_p or P_p changes.
+// Bad input: as texture_from_world().
+// Source: Everitt, Projective Texture Mapping, (3).
+inline ObjectTexgen object_linear(const Projector& projector, const ModelMatrix& world_from_object,
+                                  TextureRegion region = whole_texture(),
+                                  DepthMapping depth = DepthMapping::unit) noexcept {
+    return detail::texture_from_projector_eye(projector, region, depth) * (projector.view * world_from_object);
+}
+
+// Guarantee: T_e = S P_p V_p V_e^-1 in double, as accurate as object_linear(); no allocation, noexcept.
+// Shape: the camera's eye points to homogeneous (s, t, r, q); one matrix serves every object of the frame.
+// Bad input: as texture_from_world(). The camera is given as its pose, V_e^-1: no inverse is taken here.
+// Source: Everitt, Projective Texture Mapping, (4).
+inline EyeTexgen eye_linear(const Projector& projector, const CameraPose& world_from_eye,
+                            TextureRegion region = whole_texture(), DepthMapping depth = DepthMapping::unit) noexcept {
+    return detail::texture_from_projector_eye(projector, region, depth) * (projector.view * world_from_eye);
+}
+
+// Guarantee: what OpenGL stores when the rows of `planes` are given to glTexGen under that MODELVIEW: each row p becomes
+// p M^-1, solved and refined, so that rounded to float it is within 0.54 ulp of its largest component while the
+// condition of M (rows and columns scaled) stays below 1e8; no allocation, noexcept.
+// Shape: planes over the space that M takes to the eye. The rows of S P_p V_p under MODELVIEW = V_e give T_e.
+// Bad input: empty where M is singular to working precision, or a plane, M or a result is not finite.
+// Source: OpenGL compatibility specification, "Generating Texture Coordinates": p' = p M^-1, M current at the time of
+// the call.
+template <class Space>
+std::optional<EyeTexgen> eye_planes_as_stored(const Transform<Texture, Space>& planes,
+                                              const Transform<Eye, Space>& modelview) noexcept {
+    const detail::CertifiedInverse inverse(modelview.matrix());
+    if (!inverse.regular()) return std::nullopt;
+    glm::dmat4 stored(0.0);
+    for (int row = 0; row < 4; ++row) {
+        glm::dvec4 plane(0.0);
+        for (int column = 0; column < 4; ++column) plane[column] = planes.matrix()[column][row];
+        plane = inverse.solve_row(plane);
+        for (int column = 0; column < 4; ++column) stored[column][row] = plane[column];
+    }
+    if (!detail::is_finite(stored)) return std::nullopt;
+    return EyeTexgen(stored);
+}
+
+// The rows S, T, R, Q, each element rounded once: what glTexGenfv or a shader is given.
+template <class Space>
+std::array<glm::vec4, 4> planes(const Transform<Texture, Space>& transform) noexcept {
+    const glm::mat4 m = transform.rounded();
+    std::array<glm::vec4, 4> rows;
+    for (int row = 0; row < 4; ++row)
+        rows[static_cast<std::size_t>(row)] = {m[0][row], m[1][row], m[2][row], m[3][row]};
+    return rows;
+}
+
+}  // namespace texgen

@@ -1,0 +1,243 @@
+#pragma once
+
+// Floor 2: the projector P_p V_p. A right-handed eye space that looks down -z, as OpenGL's; the conventions decide the
+// rest: where near and far land, and which way y points in NDC.
+
+#include <cmath>
+#include <optional>
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+
+#include "conventions.hpp"
+#include "detail/inverse.hpp"
+#include "detail/rounding.hpp"
+#include "transform.hpp"
+
+namespace texgen {
+
+// z_near and z_far are distances in front of the eye, in the units of the world. z_far may be infinite.
+// reversed_depth maps near to 1 and far to the other end of the range, so that r = 1 at near.
+struct PerspectiveLens {
+    Angle fovy;  // the full vertical angle, between 0 and 180 degrees, both excluded
+    double aspect;
+    double z_near, z_far;
+    bool reversed_depth = false;
+};
+
+// The rectangle is that of the near plane. left > right or bottom > top mirrors the picture, as in OpenGL.
+struct FrustumLens {
+    double left, right, bottom, top, z_near, z_far;
+};
+
+// z_near and z_far may have any sign; left > right or bottom > top mirrors the picture, as in OpenGL.
+struct OrthographicLens {
+    double left, right, bottom, top, z_near, z_far;
+};
+
+struct Aim {
+    glm::dvec3 position, target, up;
+};
+
+namespace detail {
+
+// Row z of a perspective matrix: clip z = scale * z_eye + offset, clip w = -z_eye.
+struct DepthRow {
+    double scale, offset;
+};
+
+// Written with halves so that neither far + near nor near * far can overflow; far - near is exact where they are close.
+inline DepthRow perspective_depth(double z_near, double z_far, bool reversed, DepthRange range) noexcept {
+    const bool infinite = !is_finite(z_far);
+    const double half_difference = 0.5 * z_far - 0.5 * z_near;
+    if (range == DepthRange::negative_one_to_one) {
+        const double scale = infinite ? 1.0 : (0.5 * z_far + 0.5 * z_near) / half_difference;
+        const double offset = z_near * (infinite ? 2.0 : z_far / half_difference);
+        return reversed ? DepthRow{scale, offset} : DepthRow{-scale, -offset};
+    }
+    const double far_ratio = infinite ? 1.0 : 0.5 * z_far / half_difference;    // far / (far - near)
+    const double near_ratio = infinite ? 0.0 : 0.5 * z_near / half_difference;  // near / (far - near)
+    return reversed ? DepthRow{near_ratio, z_near * far_ratio} : DepthRow{-far_ratio, -z_near * far_ratio};
+}
+
+inline std::optional<ProjectorProjection> checked_projection(glm::dmat4 matrix, Conventions conventions) noexcept {
+    if (conventions.ndc_y == NdcY::down) {
+        for (int column = 0; column < 4; ++column) matrix[column][1] = -matrix[column][1];
+    }
+    const bool usable = is_finite(matrix) && matrix[0][0] != 0.0 && matrix[1][1] != 0.0;
+    return usable ? std::optional(ProjectorProjection(matrix)) : std::nullopt;
+}
+
+inline int largest_exponent(const glm::dvec3& v) noexcept {
+    return std::ilogb(std::fmax(std::fabs(v.x), std::fmax(std::fabs(v.y), std::fabs(v.z))));
+}
+
+// v times a power of two, so that its largest component is in [1, 2); empty for zero and for what is not finite.
+inline std::optional<glm::dvec3> scaled_near_one(const glm::dvec3& v) noexcept {
+    if (!is_finite(v.x) || !is_finite(v.y) || !is_finite(v.z)) return std::nullopt;
+    if (v.x == 0.0 && v.y == 0.0 && v.z == 0.0) return std::nullopt;
+    const int exponent = largest_exponent(v);
+    return glm::dvec3(std::scalbn(v.x, -exponent), std::scalbn(v.y, -exponent), std::scalbn(v.z, -exponent));
+}
+
+inline double length(const glm::dvec3& v) noexcept { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }
+
+inline glm::dvec3 cross(const glm::dvec3& a, const glm::dvec3& b) noexcept {
+    return {difference_of_products(a.y, b.z, a.z, b.y), difference_of_products(a.z, b.x, a.x, b.z),
+            difference_of_products(a.x, b.y, a.y, b.x)};
+}
+
+// a . b, summed in doubled precision: far from the origin its terms cancel.
+inline double dot(const glm::dvec3& a, const glm::dvec3& b) noexcept {
+    DoubleDouble sum{0.0, 0.0};
+    for (int i = 0; i < 3; ++i) sum = add_product(sum, a[i], b[i]);
+    return sum.high;
+}
+
+}  // namespace detail
+
+// Guarantee: each element within 4 double ulp for any lens in range, 0.1 to 179.99 degrees and far/near to 1e9 and
+// beyond; no allocation, noexcept. For OpenGL's conventions, with f = cot(fovy / 2):
+//
+//     | f/aspect  0            0                     0           |
+//     |    0      f            0                     0           |
+//     |    0      0  (far + near)/(near - far)  2 far near/(near - far) |
+//     |    0      0           -1                     0           |
+//
+// zero_to_one has far/(near - far) and far near/(near - far) in row z; y down negates row y.
+// Shape: projector eye space (looking down -z) to projector clip space.
+// Bad input: empty unless 0 < fovy < 180 degrees, aspect > 0 and finite, 0 < z_near < z_far, z_near finite, and every
+// element is finite.
+// Source: Everitt, Projective Texture Mapping, P_p in (3); OpenGL 2.1 specification, 2.11 (gluPerspective's lens).
+inline std::optional<ProjectorProjection> perspective(const PerspectiveLens& lens, Conventions conventions) noexcept {
+    const double half_angle = 0.5 * lens.fovy.in_radians();
+    if (!(half_angle > 0.0 && half_angle < 0.5 * 3.14159265358979323846)) return std::nullopt;
+    if (!(lens.aspect > 0.0 && detail::is_finite(lens.aspect))) return std::nullopt;
+    if (!(lens.z_near > 0.0 && lens.z_near < lens.z_far)) return std::nullopt;
+    // cos / sin and not 1 / tan: two correctly rounded functions and one division, at any angle.
+    const double focal_length = std::cos(half_angle) / std::sin(half_angle);
+    const detail::DepthRow depth =
+        detail::perspective_depth(lens.z_near, lens.z_far, lens.reversed_depth, conventions.depth);
+    glm::dmat4 matrix(0.0);
+    matrix[0][0] = focal_length / lens.aspect;
+    matrix[1][1] = focal_length;
+    matrix[2][2] = depth.scale;
+    matrix[3][2] = depth.offset;
+    matrix[2][3] = -1.0;
+    return detail::checked_projection(matrix, conventions);
+}
+
+// Guarantee, shape: as perspective(); the off-axis terms (right + left)/(right - left) and (top + bottom)/(top - bottom)
+// stand in column z.
+// Bad input: empty unless all fields are finite, left != right, bottom != top, and 0 < z_near < z_far.
+// Source: OpenGL 2.1 specification, 2.11.2 (glFrustum).
+inline std::optional<ProjectorProjection> frustum(const FrustumLens& lens, Conventions conventions) noexcept {
+    if (!(lens.z_near > 0.0 && lens.z_near < lens.z_far && detail::is_finite(lens.z_far))) return std::nullopt;
+    const double half_width = 0.5 * lens.right - 0.5 * lens.left;
+    const double half_height = 0.5 * lens.top - 0.5 * lens.bottom;
+    const detail::DepthRow depth = detail::perspective_depth(lens.z_near, lens.z_far, false, conventions.depth);
+    glm::dmat4 matrix(0.0);
+    matrix[0][0] = lens.z_near / half_width;
+    matrix[1][1] = lens.z_near / half_height;
+    matrix[2][0] = (0.5 * lens.right + 0.5 * lens.left) / half_width;
+    matrix[2][1] = (0.5 * lens.top + 0.5 * lens.bottom) / half_height;
+    matrix[2][2] = depth.scale;
+    matrix[3][2] = depth.offset;
+    matrix[2][3] = -1.0;
+    return detail::checked_projection(matrix, conventions);
+}
+
+// Guarantee, shape: as perspective(); the last row is (0, 0, 0, 1), so q = 1 and the slide falls in parallel rays.
+// Bad input: empty unless all fields are finite, left != right, bottom != top, and z_near < z_far.
+// Source: OpenGL 2.1 specification, 2.11.2 (glOrtho).
+inline std::optional<ProjectorProjection> orthographic(const OrthographicLens& lens, Conventions conventions) noexcept {
+    if (!(lens.z_near < lens.z_far && detail::is_finite(lens.z_near) && detail::is_finite(lens.z_far)))
+        return std::nullopt;
+    const double half_width = 0.5 * lens.right - 0.5 * lens.left;
+    const double half_height = 0.5 * lens.top - 0.5 * lens.bottom;
+    const double half_depth = 0.5 * lens.z_far - 0.5 * lens.z_near;
+    const bool zero_to_one = conventions.depth == DepthRange::zero_to_one;
+    glm::dmat4 matrix(0.0);
+    matrix[0][0] = 1.0 / half_width;
+    matrix[1][1] = 1.0 / half_height;
+    matrix[2][2] = (zero_to_one ? -0.5 : -1.0) / half_depth;
+    matrix[3][0] = -(0.5 * lens.right + 0.5 * lens.left) / half_width;
+    matrix[3][1] = -(0.5 * lens.top + 0.5 * lens.bottom) / half_height;
+    matrix[3][2] = -(zero_to_one ? 0.5 * lens.z_near : 0.5 * lens.z_far + 0.5 * lens.z_near) / half_depth;
+    matrix[3][3] = 1.0;
+    return detail::checked_projection(matrix, conventions);
+}
+
+// Guarantee: the rotation's rows are orthonormal within 4 double ulp, with `up` as near to the view as 2^-98 rad; the
+// translation -R position is within 1 ulp of its exact value for the rotation that is returned, at any distance from
+// the origin. No allocation, noexcept.
+// Shape: world to projector eye space; the position goes to 0, the target onto the negative z axis, up has x = 0.
+// Bad input: empty where target equals position, up is zero or parallel to the view, or a number is not finite.
+// Source: Everitt, Projective Texture Mapping, V_p in (3); OpenGL utility library, gluLookAt.
+inline std::optional<ProjectorView> look_at(const Aim& aim) noexcept {
+    const auto forward = detail::scaled_near_one(aim.target - aim.position);
+    const auto up = detail::scaled_near_one(aim.up);
+    if (!forward || !up) return std::nullopt;
+    // The rounding of target - position, in the same scale: where up is nearly parallel it would turn the picture.
+    glm::dvec3 rounding(0.0);
+    const int exponent = detail::largest_exponent(aim.target - aim.position);
+    for (int i = 0; i < 3; ++i)
+        rounding[i] = std::scalbn(detail::two_sum(aim.target[i], -aim.position[i]).low, -exponent);
+    const glm::dvec3 sideways = detail::cross(*forward, *up) + detail::cross(rounding, *up);
+    if (!(detail::length(sideways) > 0x1p-98)) return std::nullopt;
+    const auto side_direction = detail::scaled_near_one(sideways);
+    if (!side_direction) return std::nullopt;
+
+    const glm::dvec3 side = *side_direction / detail::length(*side_direction);
+    const glm::dvec3 back = -*forward / detail::length(*forward);
+    const glm::dvec3 upright = detail::cross(back, side);
+    glm::dmat4 matrix(1.0);
+    for (int i = 0; i < 3; ++i) {
+        matrix[i][0] = side[i];
+        matrix[i][1] = upright[i];
+        matrix[i][2] = back[i];
+    }
+    matrix[3][0] = -detail::dot(side, aim.position);
+    matrix[3][1] = -detail::dot(upright, aim.position);
+    matrix[3][2] = -detail::dot(back, aim.position);
+    if (!detail::is_finite(matrix)) return std::nullopt;
+    return ProjectorView(matrix);
+}
+
+// A slide projector: where its light goes, and the conventions of its numbers.
+struct Projector {
+    ProjectorProjection projection;
+    ProjectorView view;
+    Conventions conventions;
+
+    ProjectorMatrix matrix() const noexcept { return projection * view; }  // P_p V_p
+};
+
+namespace detail {
+
+inline std::optional<Projector> assemble(const std::optional<ProjectorProjection>& projection,
+                                         const std::optional<ProjectorView>& view, Conventions conventions) noexcept {
+    if (!projection || !view) return std::nullopt;
+    return Projector{*projection, *view, conventions};
+}
+
+}  // namespace detail
+
+// A projector from a lens and an aim: empty where either is. Guarantees as perspective(), frustum(), orthographic() and
+// look_at().
+inline std::optional<Projector> make_projector(const PerspectiveLens& lens, const Aim& aim,
+                                               Conventions conventions) noexcept {
+    return detail::assemble(perspective(lens, conventions), look_at(aim), conventions);
+}
+
+inline std::optional<Projector> make_projector(const FrustumLens& lens, const Aim& aim,
+                                               Conventions conventions) noexcept {
+    return detail::assemble(frustum(lens, conventions), look_at(aim), conventions);
+}
+
+inline std::optional<Projector> make_projector(const OrthographicLens& lens, const Aim& aim,
+                                               Conventions conventions) noexcept {
+    return detail::assemble(orthographic(lens, conventions), look_at(aim), conventions);
+}
+
+}  // namespace texgen
