@@ -1,0 +1,283 @@
+#pragma once
+
+// Which vectors the inner loops run on. The only file with #if on instruction sets or compilers.
+//
+// With GCC or Clang the kernels are written on the vectors of the language, and compiled once for the instruction set of
+// the flags and, on x86-64, once more for AVX2 and for AVX-512; the machine decides which runs. Macros of the user:
+//   TEXGEN_SCALAR       plain loops, as for every other compiler
+//   TEXGEN_NO_DISPATCH  only the instruction set of the flags
+
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <utility>
+
+#include "rounding.hpp"
+
+namespace texgen::detail {
+
+// A linear function over a rectangle of fragments: base at its first fragment.
+struct Ramp {
+    double base, dx, dy;
+};
+
+// numerator[k] / q over a rectangle; out[k] for k < numerators, and lit (or null) from the
+// closed region. Rows of the outputs are pitch apart.
+struct TileJob {
+    int numerators;
+    int width, height;
+    int chunk;  // fragments of a row that share a polynomial or a float base
+    Ramp numerator[2];
+    Ramp q;
+    bool q_is_constant;
+    double quotient_error[2];   // for divide_nearest
+    double numerator_error[2];  // for the polynomials, as what follows
+    double q_error;
+    double least_q;  // below it no certificate holds
+    double tolerance;
+    float* out[2];
+    std::ptrdiff_t pitch[2];
+    float* lit;
+    std::ptrdiff_t lit_pitch;
+    float min[2], max[2];  // the region
+
+    // The job is done, checked and resumed in units of about 64 fragments: a part of a row, or several short rows.
+    // After the last unit comes an empty one.
+    struct Unit {
+        int x_begin, x_end, y_begin, y_end;
+    };
+
+    static constexpr int unit_size = 64;
+
+    Unit unit_at(int x, int y) const noexcept {
+        const int rows = width >= unit_size ? 1 : unit_size / width;
+        return {x, x + unit_size < width ? x + unit_size : width, y, y + rows < height ? y + rows : height};
+    }
+    Unit unit_after(const Unit& unit) const noexcept {
+        return unit.x_end < width ? unit_at(unit.x_end, unit.y_begin) : unit_at(0, unit.y_end);
+    }
+    bool is_done(const Unit& unit) const noexcept { return unit.y_begin >= height; }
+};
+
+// A linear form of points (x, y, z, 1).
+struct PointForm {
+    double x, y, z, w;
+};
+
+// The number of points, and of values along a segment, that a kernel does is a multiple of point_quantum.
+inline constexpr std::size_t point_quantum = 16;
+inline constexpr std::size_t nearest_block = 64;
+inline constexpr std::size_t float_block = 256;
+
+// One or two divided coordinates in arrays, and their mask.
+struct DividedOutput {
+    std::size_t count;
+    int numerators;
+    bool pairs;  // both coordinates follow one another from out[0] on; else there is an array for each
+    float* out[2];
+    float* lit;            // or null
+    float min[2], max[2];  // the region
+};
+
+// numerator[k] / q at points.
+struct PointJob : DividedOutput {
+    bool triples;  // x, y, z follow one another from `x` on; else there are three arrays
+    const float* x;
+    const float* y;
+    const float* z;
+    PointForm numerator[2];
+    PointForm q;
+    double tolerance;  // for divide_points_float
+
+    void advance(std::size_t points) noexcept {
+        x += triples ? 3 * points : points;
+        y += points;
+        z += points;
+    }
+};
+
+// numerator[k] / q along a segment: values at alpha = 0 and at alpha = 1.
+struct SegmentJob : DividedOutput {
+    const float* alpha;
+    double a[2], b[2];
+    double q_a, q_b;
+    bool in_front;  // all of it, well enough that quotient_error bounds the error in double of every value
+    double quotient_error[2];
+
+    void advance(std::size_t values) noexcept { alpha += values; }
+};
+
+// The forms themselves, rounded to float. An output is null or an array; or all go to `quads`, four after one another.
+struct GenerateJob {
+    std::size_t count;
+    bool triples;
+    const float* x;
+    const float* y;
+    const float* z;
+    PointForm form[4];
+    float* out[4];
+    float* quads;
+};
+
+struct Kernels {
+    TileJob::Unit (*divide_nearest)(const TileJob&, TileJob::Unit first) noexcept;
+    void (*divide)(const TileJob&) noexcept;
+    void (*divide_float)(const TileJob&) noexcept;
+    TileJob::Unit (*quadratic)(const TileJob&, TileJob::Unit first) noexcept;
+    TileJob::Unit (*affine)(const TileJob&, TileJob::Unit first) noexcept;
+    // The first point from `first` on of a block with a doubtful value, or the count; blocks end at multiples of nearest_block.
+    std::size_t (*divide_points_nearest)(const PointJob&, std::size_t first) noexcept;
+    // The same for a block of float_block points that is not inside the tolerance.
+    std::size_t (*divide_points_float)(const PointJob&, std::size_t first) noexcept;
+    void (*generate_points)(const GenerateJob&) noexcept;
+    std::size_t (*divide_segment_nearest)(const SegmentJob&, std::size_t first) noexcept;
+    void (*divide_segment_float)(const SegmentJob&) noexcept;
+};
+
+}  // namespace texgen::detail
+
+// TEXGEN_BUILD names what the flags decide. Every function that reaches the kernels stands in an inline namespace of that
+// name, so that translation units with different flags link, each with its own kernels.
+#if defined(TEXGEN_SCALAR) || !(defined(__GNUC__) || defined(__clang__))
+
+#define TEXGEN_BUILD build_scalar
+#define TEXGEN_INLINE inline
+#define TEXGEN_ISA scalar
+#include "loops.inc.hpp"
+
+#include "kernels.inc.hpp"
+#undef TEXGEN_ISA
+#undef TEXGEN_INLINE
+
+namespace texgen::detail {
+inline namespace TEXGEN_BUILD {
+inline const Kernels& chosen_kernels() noexcept { return scalar::kernels; }
+}  // namespace TEXGEN_BUILD
+}  // namespace texgen::detail
+
+#else
+
+#if defined(__AVX512F__) && defined(__AVX512VL__) && defined(__AVX512DQ__) && defined(__AVX512BW__)
+#define TEXGEN_FLAGS(name) name##avx512
+#define TEXGEN_LANE_BYTES 64
+#elif defined(__AVX2__) && defined(__FMA__)
+#define TEXGEN_FLAGS(name) name##avx2
+#define TEXGEN_LANE_BYTES 32
+#elif defined(__AVX__) && defined(__FMA__)
+#define TEXGEN_FLAGS(name) name##avx_fma
+#define TEXGEN_LANE_BYTES 32
+#elif defined(__AVX__)
+#define TEXGEN_FLAGS(name) name##avx
+#define TEXGEN_LANE_BYTES 32
+#elif defined(__SSE4_1__)
+#define TEXGEN_FLAGS(name) name##sse4
+#define TEXGEN_LANE_BYTES 16
+#elif defined(__aarch64__)
+#define TEXGEN_FLAGS(name) name##neon
+#define TEXGEN_LANE_BYTES 16
+#else
+#define TEXGEN_FLAGS(name) name##base
+#define TEXGEN_LANE_BYTES 16
+#endif
+
+#define TEXGEN_INLINE [[gnu::always_inline]] inline
+
+// GCC 12 converts eight floats the generic way in two halves.
+#ifdef __clang__
+#define TEXGEN_EIGHT_DOUBLES(values) __builtin_convertvector(values, Doubles)
+#else
+#define TEXGEN_EIGHT_DOUBLES(values) __builtin_ia32_cvtps2pd512_mask(values, Doubles{}, char{-1}, 4)
+#endif
+
+// Vector arguments never cross a call that is not inlined, so their calling convention does not matter.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wpsabi"
+
+#define TEXGEN_ISA TEXGEN_FLAGS(flags_)
+#include "vectors.inc.hpp"
+
+#include "kernels.inc.hpp"
+#undef TEXGEN_ISA
+#undef TEXGEN_LANE_BYTES
+
+#if defined(__x86_64__) && !defined(TEXGEN_NO_DISPATCH) && !defined(__AVX512F__)
+
+#define TEXGEN_BUILD TEXGEN_FLAGS(build_dispatched_)
+
+#define TEXGEN_ISA avx512
+#define TEXGEN_LANE_BYTES 64
+#ifdef __clang__
+#pragma clang attribute push(__attribute__((target("avx512f,avx512vl,avx512dq,avx512bw,avx2,fma"))), \
+                             apply_to = function)
+#else
+#pragma GCC push_options
+#pragma GCC target("avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,prefer-vector-width=512")
+#endif
+#include "vectors.inc.hpp"
+
+#include "kernels.inc.hpp"
+#ifdef __clang__
+#pragma clang attribute pop
+#else
+#pragma GCC pop_options
+#endif
+#undef TEXGEN_ISA
+#undef TEXGEN_LANE_BYTES
+
+#define TEXGEN_ISA avx2
+#define TEXGEN_LANE_BYTES 32
+#ifdef __clang__
+#pragma clang attribute push(__attribute__((target("avx2,fma"))), apply_to = function)
+#else
+#pragma GCC push_options
+#pragma GCC target("avx2,fma")
+#endif
+#include "vectors.inc.hpp"
+
+#include "kernels.inc.hpp"
+#ifdef __clang__
+#pragma clang attribute pop
+#else
+#pragma GCC pop_options
+#endif
+#undef TEXGEN_ISA
+#undef TEXGEN_LANE_BYTES
+
+namespace texgen::detail {
+inline namespace TEXGEN_BUILD {
+
+inline const Kernels& choose_kernels() noexcept {
+    __builtin_cpu_init();
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq") &&
+        __builtin_cpu_supports("avx512bw"))
+        return avx512::kernels;
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return avx2::kernels;
+    return TEXGEN_FLAGS(flags_)::kernels;
+}
+
+inline const Kernels& chosen_kernels() noexcept {
+    static const Kernels& chosen = choose_kernels();
+    return chosen;
+}
+
+}  // namespace TEXGEN_BUILD
+}  // namespace texgen::detail
+
+#else
+
+#define TEXGEN_BUILD TEXGEN_FLAGS(build_)
+
+namespace texgen::detail {
+inline namespace TEXGEN_BUILD {
+inline const Kernels& chosen_kernels() noexcept { return TEXGEN_FLAGS(flags_)::kernels; }
+}  // namespace TEXGEN_BUILD
+}  // namespace texgen::detail
+
+#endif
+
+#pragma GCC diagnostic pop
+#undef TEXGEN_EIGHT_DOUBLES
+#undef TEXGEN_INLINE
+
+#endif

@@ -1,0 +1,172 @@
+// The plain-loop twin of vectors.inc.hpp, for compilers without vectors in the language. Included by lanes.hpp.
+
+namespace texgen::detail::TEXGEN_ISA {
+
+inline constexpr int lanes = 8;  // of Doubles, and of the Floats that they round to
+inline constexpr int wide_lanes = 8;
+
+template <class T>
+struct Lanes {
+    using Element = T;
+
+    T lane[lanes];
+
+    template <class Operation>
+    static Lanes of(const Operation& operation) noexcept {
+        Lanes result;
+        for (int i = 0; i < lanes; ++i) result.lane[i] = operation(i);
+        return result;
+    }
+
+    Lanes& operator+=(T b) noexcept { return *this = *this + b; }
+    Lanes& operator|=(const Lanes& b) noexcept {
+        return *this = of([&](int i) { return lane[i] | b.lane[i]; });
+    }
+
+    friend Lanes operator+(const Lanes& a, const Lanes& b) noexcept {
+        return of([&](int i) { return a.lane[i] + b.lane[i]; });
+    }
+    friend Lanes operator-(const Lanes& a, const Lanes& b) noexcept {
+        return of([&](int i) { return a.lane[i] - b.lane[i]; });
+    }
+    friend Lanes operator+(const Lanes& a, T b) noexcept {
+        return of([&](int i) { return a.lane[i] + b; });
+    }
+    friend Lanes operator-(const Lanes& a, T b) noexcept {
+        return of([&](int i) { return a.lane[i] - b; });
+    }
+    friend Lanes operator*(const Lanes& a, T b) noexcept {
+        return of([&](int i) { return a.lane[i] * b; });
+    }
+    friend Lanes operator*(const Lanes& a, const Lanes& b) noexcept {
+        return of([&](int i) { return a.lane[i] * b.lane[i]; });
+    }
+    friend Lanes operator*(T a, const Lanes& b) noexcept { return b * a; }
+    friend Lanes operator+(T a, const Lanes& b) noexcept { return b + a; }
+    friend Lanes operator-(T a, const Lanes& b) noexcept {
+        return of([&](int i) { return a - b.lane[i]; });
+    }
+    friend Lanes operator/(T a, const Lanes& b) noexcept {
+        return of([&](int i) { return a / b.lane[i]; });
+    }
+    friend Lanes operator&(const Lanes& a, const Lanes& b) noexcept {
+        return of([&](int i) { return a.lane[i] & b.lane[i]; });
+    }
+    friend Lanes operator|(const Lanes& a, const Lanes& b) noexcept {
+        return of([&](int i) { return a.lane[i] | b.lane[i]; });
+    }
+    Lanes operator~() const noexcept {
+        return of([&](int i) { return ~lane[i]; });
+    }
+    friend Lanes operator^(const Lanes& a, const Lanes& b) noexcept {
+        return of([&](int i) { return a.lane[i] ^ b.lane[i]; });
+    }
+};
+
+using Doubles = Lanes<double>;
+using Floats = Lanes<float>;
+using Words = Lanes<int>;
+using WideFloats = Floats;
+using WideWords = Words;
+
+template <class Vector>
+TEXGEN_INLINE Vector indices() noexcept {
+    return Vector::of([](int i) { return static_cast<typename Vector::Element>(i); });
+}
+
+TEXGEN_INLINE Floats to_floats(const Doubles& values) noexcept {
+    return Floats::of([&](int i) { return static_cast<float>(values.lane[i]); });
+}
+
+TEXGEN_INLINE Words bits(const Floats& values) noexcept {
+    return Words::of([&](int i) { return std::bit_cast<int>(values.lane[i]); });
+}
+
+TEXGEN_INLINE Doubles to_doubles(const Floats& values) noexcept {
+    return Doubles::of([&](int i) { return static_cast<double>(values.lane[i]); });
+}
+
+using LongWords = Words;
+TEXGEN_INLINE LongWords greater(const Doubles& a, double b) noexcept {
+    return LongWords::of([&](int i) { return a.lane[i] > b ? -1 : 0; });
+}
+TEXGEN_INLINE Doubles where(const LongWords& mask, const Doubles& values) noexcept {
+    return Doubles::of([&](int i) { return mask.lane[i] != 0 ? values.lane[i] : 0.0; });
+}
+TEXGEN_INLINE Words narrow(const LongWords& mask) noexcept { return mask; }
+
+TEXGEN_INLINE WideWords magnitude_bits(const WideFloats& a) noexcept {
+    return WideWords::of([&](int i) { return std::bit_cast<int>(a.lane[i]) & 0x7fffffff; });
+}
+TEXGEN_INLINE WideWords signed_bits(const WideFloats& a) noexcept {
+    return WideWords::of([&](int i) { return std::bit_cast<int>(a.lane[i]); });
+}
+TEXGEN_INLINE WideWords minimum(const WideWords& a, const WideWords& b) noexcept {
+    return WideWords::of([&](int i) { return a.lane[i] < b.lane[i] ? a.lane[i] : b.lane[i]; });
+}
+TEXGEN_INLINE WideWords maximum(const WideWords& a, const WideWords& b) noexcept {
+    return WideWords::of([&](int i) { return a.lane[i] > b.lane[i] ? a.lane[i] : b.lane[i]; });
+}
+TEXGEN_INLINE int largest_lane(const WideWords& a) noexcept {
+    int largest = a.lane[0];
+    for (int i = 1; i < wide_lanes; ++i) largest = largest < a.lane[i] ? a.lane[i] : largest;
+    return largest;
+}
+
+TEXGEN_INLINE Doubles minimum(const Doubles& a, const Doubles& b) noexcept {
+    return Doubles::of([&](int i) { return a.lane[i] < b.lane[i] ? a.lane[i] : b.lane[i]; });
+}
+TEXGEN_INLINE Doubles maximum(const Doubles& a, const Doubles& b) noexcept {
+    return Doubles::of([&](int i) { return a.lane[i] > b.lane[i] ? a.lane[i] : b.lane[i]; });
+}
+TEXGEN_INLINE Doubles magnitude(const Doubles& a) noexcept {
+    return Doubles::of([&](int i) { return a.lane[i] < 0.0 ? -a.lane[i] : a.lane[i]; });
+}
+
+template <class Vector>
+TEXGEN_INLINE Vector load(const void* from) noexcept {
+    Vector values;
+    std::memcpy(values.lane, from, sizeof values.lane);
+    return values;
+}
+template <class Vector>
+TEXGEN_INLINE void store(void* to, const Vector& values) noexcept {
+    std::memcpy(to, values.lane, sizeof values.lane);
+}
+
+TEXGEN_INLINE Words inside(const Floats& values, float min, float max) noexcept {
+    return Words::of([&](int i) { return values.lane[i] >= min && values.lane[i] <= max ? -1 : 0; });
+}
+
+TEXGEN_INLINE Floats one_where(const Words& mask) noexcept {
+    return Floats::of([&](int i) { return mask.lane[i] != 0 ? 1.0f : 0.0f; });
+}
+
+TEXGEN_INLINE void load_triples(const float* from, Floats& x, Floats& y, Floats& z) noexcept {
+    x = Floats::of([&](int i) { return from[3 * i]; });
+    y = Floats::of([&](int i) { return from[3 * i + 1]; });
+    z = Floats::of([&](int i) { return from[3 * i + 2]; });
+}
+TEXGEN_INLINE void store_pairs(float* to, const Floats& a, const Floats& b) noexcept {
+    for (int i = 0; i < lanes; ++i) {
+        to[2 * i] = a.lane[i];
+        to[2 * i + 1] = b.lane[i];
+    }
+}
+
+TEXGEN_INLINE void store_quads(float* to, const Floats& a, const Floats& b, const Floats& c, const Floats& d) noexcept {
+    for (int i = 0; i < lanes; ++i) {
+        to[4 * i] = a.lane[i];
+        to[4 * i + 1] = b.lane[i];
+        to[4 * i + 2] = c.lane[i];
+        to[4 * i + 3] = d.lane[i];
+    }
+}
+
+TEXGEN_INLINE bool any(const Words& mask) noexcept {
+    int all = 0;
+    for (int i = 0; i < lanes; ++i) all |= mask.lane[i];
+    return all != 0;
+}
+
+}  // namespace texgen::detail::TEXGEN_ISA

@@ -1,0 +1,115 @@
+#pragma once
+
+// The nearest float to a quotient. A value and a bound on its error decide it almost always; where the bound straddles
+// the middle of two floats, the exact sums do. So the exact tier means the nearest float, and its bits depend on
+// neither compiler, flags, instruction set nor place in the batch.
+
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include "../conventions.hpp"
+#include "expansion.hpp"
+#include "rounding.hpp"
+
+namespace texgen::detail {
+
+// Whether every real number within `error` of `value` rounds to one float; then that float is the nearest of them all.
+// Source: Ziv, Fast evaluation of elementary mathematical functions with correctly rounded last bit, ACM TOMS 17 (1991).
+inline bool rounds_alone(double value, double error) noexcept {
+    const auto low = std::bit_cast<std::uint32_t>(static_cast<float>(value - error));
+    const auto high = std::bit_cast<std::uint32_t>(static_cast<float>(value + error));
+    return low == high;
+}
+
+// The float nearest to numerator / denominator, ties to even; infinity beyond the range. denominator > 0.
+template <std::size_t N, std::size_t D>
+float nearest_quotient(const Expansion<N>& numerator, const Expansion<D>& denominator) noexcept {
+    if (numerator.sign() == 0) return 0.0f;
+    const double quotient = numerator.estimate() / denominator.estimate();
+    if (!(std::fabs(quotient) < 0x1p129)) return static_cast<float>(quotient);
+    const double error = 0x1p-48 * std::fabs(quotient);
+    const auto low = static_cast<float>(quotient - error);
+    const auto high = static_cast<float>(quotient + error);
+    if (low == high) return low;
+    // Two neighbours are left. Their middle is a double (beyond the largest float stands 2^128), and the sign of
+    // numerator - middle * denominator decides.
+    const auto unbounded = [](float value) {
+        return std::fabs(value) < std::numeric_limits<float>::infinity() ? static_cast<double>(value)
+                                                                         : std::copysign(0x1p128, value);
+    };
+    const double middle = 0.5 * unbounded(low) + 0.5 * unbounded(high);
+    Expansion<N + 2 * D> remainder;
+    for (std::size_t i = 0; i < numerator.count(); ++i) remainder.add(numerator.term(i));
+    remainder.add_scaled(denominator, -middle);
+    if (remainder.sign() < 0) return low;
+    if (remainder.sign() > 0) return high;
+    return static_cast<float>(middle);
+}
+
+// A double and a bound on its distance from the number that it stands for.
+struct Bounded {
+    double value, error;
+};
+
+// -1, 0 or 1: the sign of the number that `bounded` stands for, from exact() where the bound leaves it open.
+// What is not finite is in front of nothing: -1.
+template <class Exact>
+int certain_sign(const Bounded& bounded, const Exact& exact) noexcept {
+    if (bounded.value > bounded.error) return 1;
+    if (!(std::fabs(bounded.value) <= bounded.error && bounded.error < 0x1p1000)) return -1;
+    return exact().sign();
+}
+
+// The float nearest to s / q, q > 0. With s = s^ + a, q = q^ + b, |a| <= ds, |b| <= dq < q^:
+// |s/q - s^/q^| = |a - b s^/q^| / q <= (ds + dq |s^/q^|) / (q^ - dq), and 4 u more cover the arithmetic here.
+template <class ExactS, class ExactQ>
+float certain_quotient(const Bounded& s, const Bounded& q, const ExactS& exact_s, const ExactQ& exact_q) noexcept {
+    const double quotient = s.value / q.value;
+    if (!(s.error < 0x1p1000 && q.error < 0x1p1000)) return static_cast<float>(quotient);  // not finite
+    const double error = 1.0001 * (s.error + q.error * std::fabs(quotient)) / (q.value - q.error) +
+                         4.0 * unit_roundoff_double * std::fabs(quotient);
+    if (q.value > q.error && rounds_alone(quotient, error)) return static_cast<float>(quotient);
+    return nearest_quotient(exact_s(), exact_q());
+}
+
+// Whether (s, t) is inside the closed region of these floats. A NaN is not.
+inline bool is_inside(float s, float t, const float (&min)[2], const float (&max)[2]) noexcept {
+    return s >= min[0] && s <= max[0] && t >= min[1] && t <= max[1];
+}
+
+// The closed region in floats: a float is inside the region exactly when it is inside these.
+class LitTest {
+public:
+    explicit LitTest(const TextureRegion& region) noexcept
+        : min_{float_at_least(region.min().x), float_at_least(region.min().y)},
+          max_{-float_at_least(-region.max().x), -float_at_least(-region.max().y)} {}
+
+    float operator()(float s, float t) const noexcept { return is_inside(s, t, min_, max_) ? 1.0f : 0.0f; }
+
+    // The bounds of s (0) and of t (1).
+    double min(std::size_t coordinate) const noexcept { return static_cast<double>(min_[coordinate]); }
+    double max(std::size_t coordinate) const noexcept { return static_cast<double>(max_[coordinate]); }
+
+    // The same as the kernels take them.
+    void copy_to(float (&min)[2], float (&max)[2]) const noexcept {
+        for (std::size_t k = 0; k < 2; ++k) {
+            min[k] = min_[k];
+            max[k] = max_[k];
+        }
+    }
+
+private:
+    static float float_at_least(double bound) noexcept {
+        const auto nearest = static_cast<float>(bound);
+        if (!(static_cast<double>(nearest) < bound)) return nearest;
+        return std::nextafter(nearest, std::numeric_limits<float>::infinity());
+    }
+
+    float min_[2];
+    float max_[2];
+};
+
+}  // namespace texgen::detail

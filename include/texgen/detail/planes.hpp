@@ -1,0 +1,174 @@
+#pragma once
+
+// A triangle as linear functions of the window: s, t, r, q times a common positive factor.
+//
+// With c_i = f_i w_j w_k and E_i the window's edge function of the side opposite vertex i, the perspective-correct
+// f = (sum E_i f_i / w_i) / (sum E_i / w_i) (OpenGL compatibility specification, polygon rasterization) has the
+// numerator F = sum E_i c_i, up to a factor that s, t, r and q share. So s/q = S/Q, and neither 1/w nor the area is
+// ever formed.
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
+
+#include "../primitives.hpp"
+#include "lanes.hpp"
+#include "nearest.hpp"
+#include "rounding.hpp"
+#include "widen.hpp"
+
+namespace texgen::detail {
+
+// A rectangle of fragments inside the one that the caller asked for. Wide enough for any int plus any int.
+struct Tile {
+    std::int64_t x, y;
+    int width, height;
+};
+
+// F(p) = base + (p - a) . (dx, dy), about the first vertex: far from the origin of the window nothing cancels that does
+// not cancel in the triangle itself. `magnitude` is the same with the absolute values of all terms: it bounds the
+// rounding errors.
+struct Plane {
+    Ramp value;
+    Ramp magnitude;
+
+    bool is_constant() const noexcept { return value.dx == 0.0 && value.dy == 0.0; }
+};
+
+class TrianglePlanes {
+public:
+    // Empty where a number is not finite, a clip_w is not positive, or the area is zero (decided exactly).
+    static std::optional<TrianglePlanes> of(const Triangle& triangle) noexcept {
+        const TrianglePlanes planes(triangle);
+        return is_usable(triangle.a) && is_usable(triangle.b) && is_usable(triangle.c) && planes.orientation_ != 0
+                   ? std::optional(planes)
+                   : std::nullopt;
+    }
+
+    // The plane of one coordinate, 0 to 3 for s, t, r, q.
+    Plane plane(int coordinate) const noexcept {
+        const auto corner = [&](const WindowVertex& vertex, double weight) {
+            return widened(vertex.strq[coordinate]) * weight;
+        };
+        const double a = corner(triangle_.a, weight_[0]);
+        const double b = corner(triangle_.b, weight_[1]);
+        const double c = corner(triangle_.c, weight_[2]);
+        const double b_minus_a = b - a;
+        const double c_minus_a = c - a;
+        const double b_and_a = std::fabs(b) + std::fabs(a);
+        const double c_and_a = std::fabs(c) + std::fabs(a);
+        return {{a * area_, b_minus_a * to_c_.y - c_minus_a * to_b_.y, c_minus_a * to_b_.x - b_minus_a * to_c_.x},
+                {std::fabs(a) * (std::fabs(to_b_.x * to_c_.y) + std::fabs(to_b_.y * to_c_.x)),
+                 b_and_a * std::fabs(to_c_.y) + c_and_a * std::fabs(to_b_.y),
+                 c_and_a * std::fabs(to_b_.x) + b_and_a * std::fabs(to_c_.x)}};
+    }
+
+    // F at fragment (tile.x + i, tile.y + j) as a function of i and j.
+    Ramp ramp(const Plane& plane, const Tile& tile) const noexcept {
+        const glm::dvec2 p = from_a(tile);
+        return {plane.value.base + (p.x * plane.value.dx + p.y * plane.value.dy), plane.value.dx, plane.value.dy};
+    }
+
+    // A bound on the error of ramp() at every fragment of the tile, its index applied in any order. With u = 2^-53 the
+    // c_i carry 2 u, a difference of points 1 u, the gradients 6 u of their magnitude and the base 8 u; multiplying by
+    // p - a adds 2 u, by the index 1 u, and the sums 4 u: 20 u of the magnitude cover them.
+    double error(const Plane& plane, const Tile& tile) const noexcept {
+        const glm::dvec2 p = from_a(tile);
+        return gamma(20) * (plane.magnitude.base + (std::fabs(p.x) + tile.width) * plane.magnitude.dx +
+                            (std::fabs(p.y) + tile.height) * plane.magnitude.dy);
+    }
+
+    // F at one fragment.
+    Bounded at(const Plane& plane, std::int64_t x, std::int64_t y) const noexcept {
+        const Tile fragment{x, y, 1, 1};
+        return {ramp(plane, fragment).base, error(plane, fragment)};
+    }
+
+    // F at one fragment, exactly.
+    using Exact = Expansion<144>;
+    Exact exactly_at(int coordinate, std::int64_t x, std::int64_t y) const noexcept {
+        const glm::dvec2 p(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5);
+        const auto& [a, b, c] = triangle_;
+        Exact sum;
+        add_corner(sum, p, a.strq[coordinate], b, c);
+        add_corner(sum, p, b.strq[coordinate], c, a);
+        add_corner(sum, p, c.strq[coordinate], a, b);
+        return sum;
+    }
+
+private:
+    explicit TrianglePlanes(const Triangle& triangle) noexcept
+        : triangle_(triangle), a_(window(triangle.a)), to_b_(window(triangle.b) - a_), to_c_(window(triangle.c) - a_) {
+        const double left = to_b_.x * to_c_.y;
+        const double right = to_b_.y * to_c_.x;
+        const Bounded area{left - right, gamma(4) * (std::fabs(left) + std::fabs(right))};
+        orientation_ = std::fabs(area.value) > area.error ? (area.value > 0.0 ? 1 : -1) : exact_area().sign();
+        area_ = area.value;
+        const double a = orientation_ * widened(triangle.a.clip_w);
+        const double b = widened(triangle.b.clip_w);
+        const double c = widened(triangle.c.clip_w);
+        weight_[0] = orientation_ * (b * c);
+        weight_[1] = a * c;
+        weight_[2] = a * b;
+        // The common factor is free: with this one F is about as large as its f, and products of several stay in range.
+        const double largest_weight =
+            larger(larger(std::fabs(weight_[0]), std::fabs(weight_[1])), std::fabs(weight_[2]));
+        const double factor = reciprocal_power_of_two((std::fabs(left) + std::fabs(right)) * largest_weight);
+        for (double& weight : weight_) weight *= factor;
+    }
+
+    static glm::dvec2 window(const WindowVertex& vertex) noexcept {
+        return {widened(vertex.window.x), widened(vertex.window.y)};
+    }
+
+    static bool is_usable(const WindowVertex& vertex) noexcept {
+        constexpr float largest = std::numeric_limits<float>::max();
+        const auto is_finite = [](float value) { return std::fabs(value) <= largest; };
+        return is_finite(vertex.window.x) && is_finite(vertex.window.y) && vertex.clip_w > 0.0f &&
+               vertex.clip_w <= largest && is_finite(vertex.strq.x) && is_finite(vertex.strq.y) &&
+               is_finite(vertex.strq.z) && is_finite(vertex.strq.w);
+    }
+
+    // (b - a) x (c - a), every product of two floats being exact in double.
+    Expansion<6> exact_area() const noexcept {
+        const glm::dvec2 a = window(triangle_.a);
+        const glm::dvec2 b = window(triangle_.b);
+        const glm::dvec2 c = window(triangle_.c);
+        Expansion<6> sum;
+        for (const double term : {a.x * b.y, -a.y * b.x, b.x * c.y, -b.y * c.x, c.x * a.y, -c.y * a.x}) sum.add(term);
+        return sum;
+    }
+
+    // Adds f w_j w_k E, E the edge function of vertices j and k at p.
+    void add_corner(Exact& sum, const glm::dvec2& p, float f, const WindowVertex& j, const WindowVertex& k) const {
+        const glm::dvec2 first = window(j);
+        const glm::dvec2 second = window(k);
+        Expansion<10> edge;
+        edge.add(first.x * second.y);
+        edge.add(-first.y * second.x);
+        edge.add_product(p.x, first.y);
+        edge.add_product(-p.x, second.y);
+        edge.add_product(p.y, second.x);
+        edge.add_product(-p.y, first.x);
+        Expansion<20> weighted;
+        weighted.add_scaled(edge, orientation_ * (widened(j.clip_w) * widened(k.clip_w)));
+        sum.add_scaled(weighted, widened(f));
+    }
+
+    glm::dvec2 from_a(const Tile& tile) const noexcept {
+        return {(static_cast<double>(tile.x) + 0.5) - a_.x, (static_cast<double>(tile.y) + 0.5) - a_.y};
+    }
+
+    Triangle triangle_;
+    glm::dvec2 a_, to_b_, to_c_;
+    int orientation_;
+    double area_;       // twice the signed area
+    double weight_[3];  // w_j w_k times a common factor, with the sign of the orientation
+};
+
+}  // namespace texgen::detail

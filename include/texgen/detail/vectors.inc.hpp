@@ -1,0 +1,149 @@
+// Vectors as GCC and Clang have them in the language. Included by lanes.hpp once per instruction set; the plain-loop
+// twin of this file is loops.inc.hpp.
+
+namespace texgen::detail::TEXGEN_ISA {
+
+inline constexpr int lanes = TEXGEN_LANE_BYTES / 8;  // of Doubles, and of the Floats that they round to
+inline constexpr int wide_lanes = TEXGEN_LANE_BYTES / 4;
+
+using Doubles [[gnu::vector_size(TEXGEN_LANE_BYTES)]] = double;
+using Floats [[gnu::vector_size(TEXGEN_LANE_BYTES / 2)]] = float;
+using Words [[gnu::vector_size(TEXGEN_LANE_BYTES / 2)]] = int;  // the bits of Floats, and masks for them
+using WideFloats [[gnu::vector_size(TEXGEN_LANE_BYTES)]] = float;
+using WideWords [[gnu::vector_size(TEXGEN_LANE_BYTES)]] = int;
+
+template <class Vector>
+TEXGEN_INLINE Vector indices() noexcept {
+    Vector result{};
+    for (int i = 0; i < static_cast<int>(sizeof result / sizeof result[0]); ++i) result[i] = static_cast<float>(i);
+    return result;
+}
+
+TEXGEN_INLINE Floats to_floats(const Doubles& values) noexcept { return __builtin_convertvector(values, Floats); }
+TEXGEN_INLINE Words bits(const Floats& values) noexcept { return __builtin_bit_cast(Words, values); }
+
+TEXGEN_INLINE Doubles to_doubles(const Floats& values) noexcept {
+#if TEXGEN_LANE_BYTES == 64
+    return TEXGEN_EIGHT_DOUBLES(values);
+#else
+    return __builtin_convertvector(values, Doubles);
+#endif
+}
+
+// Masks of Doubles are 64 bits wide.
+using LongWords [[gnu::vector_size(TEXGEN_LANE_BYTES)]] = long long;
+TEXGEN_INLINE LongWords greater(const Doubles& a, double b) noexcept { return a > b; }
+TEXGEN_INLINE Doubles where(const LongWords& mask, const Doubles& values) noexcept {
+    return __builtin_bit_cast(Doubles, mask & __builtin_bit_cast(LongWords, values));
+}
+TEXGEN_INLINE Words narrow(const LongWords& mask) noexcept { return __builtin_convertvector(mask, Words); }
+
+// The bits of |a|, in the order of |a|; a NaN is beyond infinity, so that a largest magnitude keeps it.
+TEXGEN_INLINE WideWords magnitude_bits(const WideFloats& a) noexcept {
+    return __builtin_bit_cast(WideWords, a) & 0x7fffffff;
+}
+TEXGEN_INLINE WideWords signed_bits(const WideFloats& a) noexcept { return __builtin_bit_cast(WideWords, a); }
+TEXGEN_INLINE WideWords minimum(const WideWords& a, const WideWords& b) noexcept { return a < b ? a : b; }
+TEXGEN_INLINE WideWords maximum(const WideWords& a, const WideWords& b) noexcept { return a > b ? a : b; }
+
+template <int Distance, int... Lane>
+TEXGEN_INLINE WideWords rotated(const WideWords& a, std::integer_sequence<int, Lane...>) noexcept {
+    return __builtin_shufflevector(a, a, ((Lane + Distance) % wide_lanes)...);
+}
+template <int Distance = wide_lanes / 2>
+TEXGEN_INLINE int largest_lane(const WideWords& a) noexcept {
+    if constexpr (Distance == 0)
+        return a[0];
+    else
+        return largest_lane<Distance / 2>(
+            maximum(a, rotated<Distance>(a, std::make_integer_sequence<int, wide_lanes>())));
+}
+
+TEXGEN_INLINE Doubles minimum(const Doubles& a, const Doubles& b) noexcept { return a < b ? a : b; }
+TEXGEN_INLINE Doubles maximum(const Doubles& a, const Doubles& b) noexcept { return a > b ? a : b; }
+TEXGEN_INLINE Doubles magnitude(const Doubles& a) noexcept { return maximum(a, -a); }
+
+template <class Vector>
+TEXGEN_INLINE Vector load(const void* from) noexcept {
+    Vector values;
+    __builtin_memcpy(&values, from, sizeof values);
+    return values;
+}
+template <class Vector>
+TEXGEN_INLINE void store(void* to, const Vector& values) noexcept {
+    __builtin_memcpy(to, &values, sizeof values);
+}
+
+// A mask: all ones where it holds, else zero.
+TEXGEN_INLINE Words inside(const Floats& values, float min, float max) noexcept {
+    return (values >= min) & (values <= max);
+}
+TEXGEN_INLINE WideWords inside(const WideFloats& values, float min, float max) noexcept {
+    return (values >= min) & (values <= max);
+}
+
+TEXGEN_INLINE Floats one_where(const Words& mask) noexcept {
+    return __builtin_bit_cast(Floats, mask & std::bit_cast<int>(1.0f));
+}
+TEXGEN_INLINE WideFloats one_where(const WideWords& mask) noexcept {
+    return __builtin_bit_cast(WideFloats, mask & std::bit_cast<int>(1.0f));
+}
+
+// Element 3 i + Component, for every lane i, of the three vectors that follow one another at `from`.
+template <int Component, class Vector, int... Lane>
+TEXGEN_INLINE Vector every_third(const Vector& a, const Vector& b, const Vector& c,
+                                 std::integer_sequence<int, Lane...>) noexcept {
+    constexpr int n = sizeof...(Lane);
+    const Vector ab = __builtin_shufflevector(a, b, (3 * Lane + Component < 2 * n ? 3 * Lane + Component : 0)...);
+    return __builtin_shufflevector(ab, c, (3 * Lane + Component < 2 * n ? Lane : 3 * Lane + Component - n)...);
+}
+template <class Vector>
+TEXGEN_INLINE void load_triples(const float* from, Vector& x, Vector& y, Vector& z) noexcept {
+    constexpr int n = static_cast<int>(sizeof(Vector) / sizeof(float));
+    const auto a = load<Vector>(from);
+    const auto b = load<Vector>(from + n);
+    const auto c = load<Vector>(from + 2 * n);
+    x = every_third<0>(a, b, c, std::make_integer_sequence<int, n>());
+    y = every_third<1>(a, b, c, std::make_integer_sequence<int, n>());
+    z = every_third<2>(a, b, c, std::make_integer_sequence<int, n>());
+}
+
+// Lane i of both vectors in turn.
+template <int First, class Vector, int... Lane>
+TEXGEN_INLINE Vector zipped(const Vector& a, const Vector& b, std::integer_sequence<int, Lane...>) noexcept {
+    constexpr int n = sizeof...(Lane);
+    return __builtin_shufflevector(a, b, (First + Lane / 2 + Lane % 2 * n)...);
+}
+template <class Vector>
+TEXGEN_INLINE void store_pairs(float* to, const Vector& a, const Vector& b) noexcept {
+    constexpr int n = static_cast<int>(sizeof(Vector) / sizeof(float));
+    store(to, zipped<0>(a, b, std::make_integer_sequence<int, n>()));
+    store(to + n, zipped<n / 2>(a, b, std::make_integer_sequence<int, n>()));
+}
+
+// Lane i of all four in turn.
+template <class Vector>
+TEXGEN_INLINE void store_quads(float* to, const Vector& a, const Vector& b, const Vector& c, const Vector& d) noexcept {
+    constexpr int n = static_cast<int>(sizeof(Vector) / sizeof(float));
+    using Lanes = std::make_integer_sequence<int, n>;
+    const Vector ac_low = zipped<0>(a, c, Lanes());
+    const Vector ac_high = zipped<n / 2>(a, c, Lanes());
+    const Vector bd_low = zipped<0>(b, d, Lanes());
+    const Vector bd_high = zipped<n / 2>(b, d, Lanes());
+    store_pairs(to, ac_low, bd_low);
+    store_pairs(to + 2 * n, ac_high, bd_high);
+}
+
+TEXGEN_INLINE bool any(const Words& mask) noexcept {
+#if TEXGEN_LANE_BYTES == 64
+    using Quadwords [[gnu::vector_size(32)]] = long long;
+    const auto quadwords = __builtin_bit_cast(Quadwords, mask);
+    return !__builtin_ia32_ptestz256(quadwords, quadwords);
+#else
+    int all = mask[0];
+    for (int i = 1; i < lanes; ++i) all |= mask[i];
+    return all != 0;
+#endif
+}
+
+}  // namespace texgen::detail::TEXGEN_ISA
