@@ -1,0 +1,690 @@
+#pragma once
+
+// Floor 7: (s, t, r) over segments and over the fragments of triangles: interpolate s, t, r, q perspective-correctly,
+// then divide by q, per fragment.
+//
+// The dial has three tiers. All begin with the homogeneous values at the corners of the rectangle, which decide whether
+// anything is lit at all (Work::nothing).
+//
+//   exact      divide in double and round to float with a certificate; a value whose error bound straddles the middle
+//              of two floats is decided exactly. Where q changes sign the rectangle is cut until its parts are on one
+//              side. Always the nearest float.                                              shade_nearest()
+//   polynomial along chunks of 32 to 256 fragments of a row, the line or the parabola through the exact values at the
+//              ends (and the middle), certified chunk by chunk.                             shade_polynomial()
+//   division   where a chunk's certificate fails: in float if its bound fits, else in double, else as exact.
+//                                                                                           shade_division()
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+
+#include <glm/vec2.hpp>
+
+#include "conventions.hpp"
+#include "detail/assert.hpp"
+#include "detail/lanes.hpp"
+#include "detail/nearest.hpp"
+#include "detail/planes.hpp"
+#include "detail/widen.hpp"
+#include "primitives.hpp"
+#include "skip.hpp"
+#include "texcoord.hpp"
+
+namespace texgen {
+
+namespace detail {
+
+// The values at the corner fragments of a tile of up to two numerators F and of Q. They are linear there, so what holds
+// at the corners with a margin for rounding holds at every fragment.
+struct Corners {
+    double numerator[2][4];
+    double q[4];
+    double numerator_error[2];
+    double q_error;
+    double least_q, largest_q;
+
+    bool all_behind() const noexcept { return largest_q < -q_error; }
+    bool all_in_front() const noexcept { return least_q > q_error; }
+    // Far enough in front that the relative error of q is below 2^-24.
+    bool well_in_front() const noexcept { return least_q > 0x1p24 * q_error; }
+
+    // The largest |F| and |F/Q|; the latter for a tile in front. Where Q varies little the quotient of the bounds will do;
+    // else the corners have it, u = F/Q being monotone along every line.
+    double largest_numerator(std::size_t k) const noexcept {
+        const double(&f)[4] = numerator[k];
+        return larger(larger(std::fabs(f[0]), std::fabs(f[1])), larger(std::fabs(f[2]), std::fabs(f[3]))) +
+               numerator_error[k];
+    }
+    double largest_quotient(std::size_t k) const noexcept {
+        if (largest_q < 1.25 * least_q) return largest_numerator(k) / (least_q - q_error);
+        double largest = 0.0;
+        for (std::size_t i = 0; i < 4; ++i)
+            largest = larger(largest, (std::fabs(numerator[k][i]) + numerator_error[k]) / (q[i] - q_error));
+        return largest;
+    }
+
+    // The error of F/Q in double for a tile well in front: as in certain_quotient(), where it is worst.
+    double quotient_error(std::size_t k, double largest) const noexcept {
+        return 1.0001 * (numerator_error[k] + q_error * largest) / (least_q - q_error) +
+               4.0 * unit_roundoff_double * largest;
+    }
+};
+
+// The corners of a tile for one coordinate or two.
+inline Corners corners(const TrianglePlanes& planes, const Plane* const (&numerator)[2], std::size_t numerators,
+                       const Plane& q, const Tile& tile) noexcept {
+    Corners corners{};
+    const auto fill = [&](const Plane& plane, double(&value)[4]) {
+        const Ramp ramp = planes.ramp(plane, tile);
+        const double across = (tile.width - 1) * ramp.dx;
+        const double down = (tile.height - 1) * ramp.dy;
+        value[0] = ramp.base;
+        value[1] = ramp.base + across;
+        value[2] = ramp.base + down;
+        value[3] = value[2] + across;
+        return planes.error(plane, tile);
+    };
+    for (std::size_t k = 0; k < numerators; ++k) corners.numerator_error[k] = fill(*numerator[k], corners.numerator[k]);
+    corners.q_error = fill(q, corners.q);
+    corners.least_q = smaller(smaller(corners.q[0], corners.q[1]), smaller(corners.q[2], corners.q[3]));
+    corners.largest_q = larger(larger(corners.q[0], corners.q[1]), larger(corners.q[2], corners.q[3]));
+    return corners;
+}
+
+// Where the fragments in front lie as to one side of the region: G = F - bound Q is positive above it and negative below.
+struct SideOfBound {
+    bool all_below, all_above;
+};
+
+// The float that is written may be on the other side of the bound than the exact value, by an ulp or by the tolerance:
+// so the answer must hold with that much slack.
+inline SideOfBound side_of(const Corners& at, std::size_t k, double bound, double tolerance) noexcept {
+    const double(&f)[4] = at.numerator[k];
+    const double g[4] = {f[0] - bound * at.q[0], f[1] - bound * at.q[1], f[2] - bound * at.q[2],
+                         f[3] - bound * at.q[3]};
+    const double least = smaller(smaller(g[0], g[1]), smaller(g[2], g[3]));
+    const double largest = larger(larger(g[0], g[1]), larger(g[2], g[3]));
+    const double slack = 0x1p-22 * std::fabs(bound) + 0x1p-148 + tolerance;
+    const double q = larger(std::fabs(at.least_q), std::fabs(at.largest_q));
+    const double margin = 1.0001 * (at.numerator_error[k] + (std::fabs(bound) + slack) * at.q_error + slack * q +
+                                    gamma(4) * std::fabs(bound) * q);
+    return {largest * (1.0 - gamma(4)) < -margin, least * (1.0 - gamma(4)) > margin};
+}
+
+// Where one coordinate lies in the region, for all fragments at once.
+enum class Place { outside, across, inside };
+
+inline Place place_of(const Corners& at, std::size_t k, double min, double max, double tolerance) noexcept {
+    const SideOfBound of_min = side_of(at, k, min, tolerance);
+    if (of_min.all_below) return Place::outside;
+    const SideOfBound of_max = side_of(at, k, max, tolerance);
+    if (of_max.all_above) return Place::outside;
+    return of_min.all_above && of_max.all_below && at.all_in_front() ? Place::inside : Place::across;
+}
+
+// Half an ulp of the largest value: the error of a nearest float.
+inline double half_ulp(double largest) noexcept {
+    return largest < 0x1p128 ? unit_roundoff_float * largest + 0x1p-150 : std::numeric_limits<double>::infinity();
+}
+
+// What a tile gets: the work, and for a polynomial the fragments of a chunk and a bound on the error of s and of t.
+struct Plan {
+    Work work;
+    int chunk;
+    double polynomial_error[2];
+};
+
+inline namespace TEXGEN_BUILD {
+class TileInterpolator;
+}
+
+}  // namespace detail
+
+class TriangleSetup;
+inline namespace TEXGEN_BUILD {
+Work interpolate(const TriangleSetup&, FragmentRect, Texcoords) noexcept;
+}
+
+// A triangle made ready for interpolation over any number of rectangles of fragments.
+class TriangleSetup {
+public:
+    // Guarantee: everything in double about the first vertex; no allocation, noexcept.
+    // Shapes: window positions in pixels, the camera's clip w, and homogeneous (s, t, r, q), in either winding.
+    // Bad input: empty where a number is not finite, a clip_w is not positive, or the area is zero (decided exactly).
+    static std::optional<TriangleSetup> of(const Triangle& triangle, TextureRegion region,
+                                           Tolerance tolerance = exact) noexcept {
+        const std::optional<detail::TrianglePlanes> planes = detail::TrianglePlanes::of(triangle);
+        if (!planes) return std::nullopt;
+        return TriangleSetup(*planes, region, tolerance);
+    }
+
+    // Guarantee: the least work that is certified to stay inside the tolerance for every fragment of the rectangle;
+    // never nothing where a fragment is lit. noexcept. An empty rectangle needs nothing.
+    Work work(FragmentRect rect) const noexcept {
+        if (rect.width <= 0 || rect.height <= 0) return Work::nothing;
+        const detail::Tile tile{rect.x, rect.y, rect.width, rect.height};
+        return plan(tile, corners(tile)).work;
+    }
+
+    // Guarantee: |computed - exact| of s (x) and t (y) is at most this for every fragment of the rectangle with q > 0,
+    // the rounding to float included; infinite where no finite bound exists, as next to q = 0. noexcept.
+    glm::dvec2 error_bound(FragmentRect rect) const noexcept {
+        if (rect.width <= 0 || rect.height <= 0) return {0.0, 0.0};
+        const detail::Tile tile{rect.x, rect.y, rect.width, rect.height};
+        const detail::Corners at = corners(tile);
+        if (at.all_behind()) return {0.0, 0.0};
+        const detail::Plan plan = this->plan(tile, at);
+        const auto bound = [&](std::size_t k) {
+            if (plan.chunk != 0) return plan.polynomial_error[k];
+            if (!at.all_in_front()) return std::numeric_limits<double>::infinity();
+            return detail::larger(tolerance_, detail::half_ulp(at.largest_quotient(k)));
+        };
+        return {bound(0), bound(1)};
+    }
+
+private:
+    friend class detail::TileInterpolator;
+    friend Work TEXGEN_BUILD::interpolate(const TriangleSetup&, FragmentRect, Texcoords) noexcept;
+
+    TriangleSetup(const detail::TrianglePlanes& planes, const TextureRegion& region, Tolerance tolerance) noexcept
+        : planes_(planes),
+          s_(planes.plane(0)),
+          t_(planes.plane(1)),
+          q_(planes.plane(3)),
+          lit_(region),
+          tolerance_(detail::accepted(tolerance)) {}
+
+    detail::Corners corners(const detail::Tile& tile) const noexcept {
+        return detail::corners(planes_, {&s_, &t_}, 2, q_, tile);
+    }
+    detail::Plan plan(const detail::Tile& tile, const detail::Corners& at) const noexcept;
+
+    detail::TrianglePlanes planes_;
+    detail::Plane s_, t_, q_;
+    detail::LitTest lit_;
+    double tolerance_;
+};
+
+static_assert(sizeof(TriangleSetup) <= 512);
+
+namespace detail {
+
+// The longest chunk whose polynomial stays inside the tolerance over the whole tile (0 if there is none), and its error.
+// Over L fragments |u1 - u0| <= L |D| / Q^2 with D = F_x Q - F Q_x, constant along a row, and |q1 - q0| = L |Q_x|: these
+// in the bounds that the kernels apply to every chunk (see kernels.inc.hpp), with Q at its least: no chunk is refused that
+// was chosen here.
+struct ChunkChoice {
+    int chunk;
+    double error;
+};
+
+// Only a share of the room that rounding leaves is given to the polynomial, where the tile is a sample of a larger one.
+template <bool Affine>
+ChunkChoice choose_chunk(const Corners& at, std::size_t k, double largest, double f_x, double q_x, int width,
+                         double tolerance, int longest, double share = 1.0) noexcept {
+    const auto slope_times_q_squared = [&](std::size_t i) {
+        const double first = f_x * at.q[i];
+        const double second = at.numerator[k][i] * q_x;
+        return std::fabs(first - second) + gamma(4) * (std::fabs(first) + std::fabs(second));
+    };
+    const double steepest = larger(slope_times_q_squared(0), slope_times_q_squared(2));
+    const double double_error = 2.0 * at.quotient_error(k, largest);
+    const double reciprocal = 1.0 / (at.least_q - at.q_error);
+    for (int chunk = longest; chunk >= (Affine ? 64 : 32); chunk /= 2) {
+        // The last chunk may reach beyond the tile, where q is less by this share of itself, and 1/q greater.
+        const double beyond = (-width & (chunk - 1)) * std::fabs(q_x) * reciprocal;
+        if (!(beyond <= 0.5) || !(at.least_q * (1.0 - beyond) > larger(0x1p25 * at.q_error, 0x1p-199))) continue;
+        const double largest_reciprocal = reciprocal * (1.0 + 2.0 * beyond);
+        const double du = steepest * chunk * largest_reciprocal * largest_reciprocal;
+        const double dq = std::fabs(q_x) * chunk * largest_reciprocal;
+        const double shape = Affine ? 0.25 * du * dq * (1.0 + 0.5 * dq) : 0.0482 * du * dq * dq;
+        const double error = 1.001 * shape / share + 0x1.01p-24 * (2.0 * largest + 6.0 * du) + double_error + 0x1p-133;
+        if (error <= tolerance * (1.0 - 0x1p-18)) return {chunk, error};
+    }
+    return {0, 0.0};
+}
+
+// The nodes of a chunk cost as much as some twenty fragments, and choosing its length as much as some hundred: short
+// rows and small tiles get a division.
+inline bool pays_for_polynomials(const Tile& tile) noexcept {
+    return tile.width >= 32 && static_cast<std::int64_t>(tile.width) * tile.height >= 256;
+}
+
+}  // namespace detail
+
+inline detail::Plan TriangleSetup::plan(const detail::Tile& tile, const detail::Corners& at) const noexcept {
+    using detail::Place;
+    if (at.all_behind()) return {Work::nothing, 0, {}};
+    const Place s_place = detail::place_of(at, 0, lit_.min(0), lit_.max(0), tolerance_);
+    if (s_place == Place::outside) return {Work::nothing, 0, {}};
+    const Place t_place = detail::place_of(at, 1, lit_.min(1), lit_.max(1), tolerance_);
+    if (t_place == Place::outside) return {Work::nothing, 0, {}};
+    const bool all_lit = s_place == Place::inside && t_place == Place::inside;
+
+    detail::Plan plan{all_lit ? Work::divide : Work::divide_and_test, 0, {}};
+    if (!at.well_in_front()) return plan;
+    if (q_.is_constant()) plan.work = Work::affine;
+    if (tolerance_ == 0.0 || !detail::pays_for_polynomials(tile)) return plan;
+
+    const double largest[2] = {at.largest_quotient(0), at.largest_quotient(1)};
+    const auto choose = [&]<bool Affine>(Work work) {
+        const double q_x = q_.value.dx;
+        const auto s = detail::choose_chunk<Affine>(at, 0, largest[0], s_.value.dx, q_x, tile.width, tolerance_, 256);
+        if (s.chunk == 0) return false;
+        const auto t =
+            detail::choose_chunk<Affine>(at, 1, largest[1], t_.value.dx, q_x, tile.width, tolerance_, s.chunk);
+        if (t.chunk == 0) return false;
+        plan = {work, t.chunk, {s.error, t.error}};
+        return true;
+    };
+    if (!choose.operator()<true>(Work::affine) && plan.work != Work::affine) choose.operator()<false>(Work::quadratic);
+    return plan;
+}
+
+namespace detail {
+
+inline namespace TEXGEN_BUILD {
+
+// Interpolates up to two coordinates, and the mask, of a triangle into the caller's arrays.
+class TileInterpolator {
+public:
+    static constexpr int scratch_width = 512;
+
+    TileInterpolator(const TriangleSetup& setup, FragmentRect rect) noexcept : setup_(setup), rect_(rect) {}
+
+    // A coordinate (0 to 3: s, t, r, q) and its plane; one that only the mask needs has no output.
+    void add(int coordinate, const Plane& plane, std::span<float> output) noexcept {
+        coordinate_[count_] = coordinate;
+        plane_[count_] = &plane;
+        output_[count_++] = output;
+    }
+    void add_lit(std::span<float> lit) noexcept { lit_ = lit; }
+
+    Corners corners(const Tile& tile) const noexcept {
+        return detail::corners(setup_.planes_, plane_, count_, setup_.q_, tile);
+    }
+
+    void shade(const Tile& tile, const Corners& at, const Plan& plan) noexcept {
+        if (setup_.tolerance_ == 0.0) return shade_nearest(tile, at);
+        if (plan.chunk != 0) return shade_polynomial(tile, at, plan);
+        if (!pays_for_polynomials(tile) || setup_.q_.is_constant()) return shade_division(tile, at);
+        // No polynomial covers all of the tile. In bands of rows, let its own middle say which to try.
+        constexpr int band_height = 32;
+        Tile band = tile;
+        for (band.height = band_height; band.y < tile.y + tile.height; band.y += band_height) {
+            const std::int64_t rest = tile.y + tile.height - band.y;
+            if (rest < band_height) band.height = static_cast<int>(rest);
+            const int chunk = chunk_of_the_middle(band);
+            if (chunk != 0 && chunk <= 2 * band.width)
+                shade_polynomial(band, corners(band), {Work::quadratic, chunk, {}});
+            else
+                shade_division(band, corners(band));
+        }
+    }
+
+private:
+    // Exact: a tile that is well in front is divided in vectors, one behind is cleared; any other is halved, until it
+    // is so small that its fragments are decided one by one.
+    void shade_nearest(const Tile& tile, const Corners& at) noexcept {
+        if (at.all_behind()) return clear(tile);
+        // Beyond a ratio of 2^12 the error bound of the largest quotient would make the smallest ones doubtful.
+        if (at.well_in_front() && at.least_q > 0x1p-12 * at.largest_q) {
+            TileJob job = this->job(tile);
+            for (std::size_t k = 0; k < count_; ++k)
+                job.quotient_error[k] = at.quotient_error(k, at.largest_quotient(k));
+            const Kernels& kernels = chosen_kernels();
+            TileJob::Unit unit = kernels.divide_nearest(job, job.unit_at(0, 0));
+            while (!job.is_done(unit)) {
+                shade_one_by_one(part(tile, unit));
+                unit = kernels.divide_nearest(job, job.unit_after(unit));
+            }
+            return;
+        }
+        if (tile.width <= 8 && tile.height <= 8) return shade_one_by_one(tile);
+        Tile first = tile;
+        Tile second = tile;
+        if (tile.width >= tile.height) {
+            first.width = tile.width / 2;
+            second.x += first.width;
+            second.width -= first.width;
+        } else {
+            first.height = tile.height / 2;
+            second.y += first.height;
+            second.height -= first.height;
+        }
+        shade_nearest(first, corners(first));
+        shade_nearest(second, corners(second));
+    }
+
+    // Chunks of a row by polynomials; what their certificates do not cover by division.
+    void shade_polynomial(const Tile& tile, const Corners& at, const Plan& plan) noexcept {
+        TileJob job = this->job(tile);
+        job.chunk = plan.chunk;
+        job.tolerance = setup_.tolerance_ * (1.0 - 0x1p-20);
+        job.q_error = at.q_error;
+        // The certificate multiplies three q and the tolerance: none may leave the range of double.
+        job.least_q = larger(0x1p24 * at.q_error, 0x1p-200);
+        for (std::size_t k = 0; k < count_; ++k) job.numerator_error[k] = at.numerator_error[k];
+        const Kernels& kernels = chosen_kernels();
+        const auto polynomial = plan.work == Work::affine ? kernels.affine : kernels.quadratic;
+        TileJob::Unit next{0, 0, 0, 0};
+        while (true) {
+            const TileJob::Unit refused = polynomial(job, next);
+            if (job.is_done(refused)) return;
+            const Tile rest = part(tile, refused);
+            shade_division(rest, corners(rest));
+            next = refused.x_end < tile.width ? TileJob::Unit{refused.x_end, 0, refused.y_begin, 0}
+                                              : TileJob::Unit{0, 0, refused.y_end, 0};
+        }
+    }
+
+    // A division a fragment: in float where that stays inside the tolerance, else in double, else as exact.
+    void shade_division(const Tile& tile, const Corners& at) noexcept {
+        if (!at.well_in_front()) return shade_nearest(tile, at);
+        TileJob job = this->job(tile);
+        job.chunk = tile.width < 256 ? tile.width : 256;
+        // A float division does twice the lanes of one in double, if the row has as many.
+        bool float_fits = tile.width >= 16;
+        bool double_fits = true;
+        for (std::size_t k = 0; k < count_; ++k) {
+            const double largest = at.largest_quotient(k);
+            float_fits = float_fits && float_error(at, k, largest, job.chunk) <= setup_.tolerance_;
+            double_fits =
+                double_fits && at.quotient_error(k, largest) + 1.0001 * half_ulp(largest) <= setup_.tolerance_;
+        }
+        if (float_fits) return chosen_kernels().divide_float(job);
+        if (double_fits) return chosen_kernels().divide(job);
+        shade_nearest(tile, at);
+    }
+
+    // The error of F/Q by float functions F_b + i F_x, |i| <= chunk / 2, with u = 2^-24: F_b, F_x, the product and the
+    // sum are rounded, 2 u |F| + 2 u |F_x| chunk / 2, Q alike; the reciprocal, the product add 2 u |F/Q|. Infinite where
+    // a float could leave its range.
+    double float_error(const Corners& at, std::size_t k, double largest, int chunk) const noexcept {
+        constexpr double u = 1.001 * unit_roundoff_float;
+        const double numerator = at.largest_numerator(k);
+        const double numerator_error = u * (2.0 * numerator + chunk * std::fabs(plane_[k]->value.dx));
+        const double q_error = u * (2.0 * at.largest_q + chunk * std::fabs(setup_.q_.value.dx));
+        const bool in_range = numerator < 0x1p100 && at.largest_q < 0x1p100 && at.least_q > 0x1p-100;
+        if (!in_range || !(q_error < 0x1p-12 * at.least_q)) return std::numeric_limits<double>::infinity();
+        return 1.001 * (numerator_error + largest * q_error + 0x1p-140) / at.least_q + 2.0 * u * largest + 0x1p-149 +
+               at.quotient_error(k, largest);
+    }
+
+    int chunk_of_the_middle(const Tile& tile) const noexcept {
+        const Tile middle{tile.x + tile.width / 2, tile.y + tile.height / 2, 1, 1};
+        const Corners at = corners(middle);
+        if (!at.well_in_front()) return 0;
+        int chunk = 256;
+        for (std::size_t k = 0; k < count_ && chunk != 0; ++k)
+            chunk = choose_chunk<false>(at, k, at.largest_quotient(k), plane_[k]->value.dx, setup_.q_.value.dx, chunk,
+                                        setup_.tolerance_, chunk, 0.4)
+                        .chunk;
+        return chunk;
+    }
+
+    void shade_one_by_one(const Tile& tile) noexcept {
+        for (std::int64_t y = tile.y; y < tile.y + tile.height; ++y)
+            for (std::int64_t x = tile.x; x < tile.x + tile.width; ++x) shade_one(x, y);
+    }
+
+    // One fragment, every decision exact.
+    void shade_one(std::int64_t x, std::int64_t y) noexcept {
+        const TrianglePlanes& planes = setup_.planes_;
+        const Bounded q = planes.at(setup_.q_, x, y);
+        const auto exact_q = [&] { return planes.exactly_at(3, x, y); };
+        const bool in_front = certain_sign(q, exact_q) > 0;
+        float value[2] = {0.0f, 0.0f};
+        for (std::size_t k = 0; k < count_; ++k) {
+            const auto exact_numerator = [&] { return planes.exactly_at(coordinate_[k], x, y); };
+            if (in_front) value[k] = certain_quotient(planes.at(*plane_[k], x, y), q, exact_numerator, exact_q);
+            if (!output_[k].empty()) output_[k][offset(x, y)] = value[k];
+        }
+        if (!lit_.empty()) lit_[offset(x, y)] = in_front ? setup_.lit_(value[0], value[1]) : 0.0f;
+    }
+
+    void clear(const Tile& tile) noexcept {
+        for (const std::span<float> output : {output_[0], output_[1], lit_}) {
+            if (output.empty()) continue;
+            for (std::int64_t y = tile.y; y < tile.y + tile.height; ++y) {
+                float* const row = output.data() + offset(tile.x, y);
+                for (int i = 0; i < tile.width; ++i) row[i] = 0.0f;
+            }
+        }
+    }
+
+    // What every kernel needs.
+    TileJob job(const Tile& tile) noexcept {
+        TileJob job{};
+        job.numerators = static_cast<int>(count_);
+        job.width = tile.width;
+        job.height = tile.height;
+        job.q = setup_.planes_.ramp(setup_.q_, tile);
+        job.q_is_constant = setup_.q_.is_constant();
+        for (std::size_t k = 0; k < count_; ++k) {
+            job.numerator[k] = setup_.planes_.ramp(*plane_[k], tile);
+            job.out[k] = output_[k].empty() ? scratch_[k] : output_[k].data() + offset(tile.x, tile.y);
+            job.pitch[k] = output_[k].empty() ? 0 : rect_.width;
+        }
+        if (lit_.empty()) return job;
+        job.lit = lit_.data() + offset(tile.x, tile.y);
+        job.lit_pitch = rect_.width;
+        setup_.lit_.copy_to(job.min, job.max);
+        return job;
+    }
+
+    static Tile part(const Tile& tile, const TileJob::Unit& unit) noexcept {
+        return {tile.x + unit.x_begin, tile.y + unit.y_begin, unit.x_end - unit.x_begin, unit.y_end - unit.y_begin};
+    }
+
+    std::size_t offset(std::int64_t x, std::int64_t y) const noexcept {
+        return static_cast<std::size_t>((y - rect_.y) * rect_.width + (x - rect_.x));
+    }
+
+    const TriangleSetup& setup_;
+    FragmentRect rect_;
+    std::size_t count_ = 0;
+    int coordinate_[2] = {};
+    const Plane* plane_[2] = {};
+    std::span<float> output_[2];
+    std::span<float> lit_;
+    float scratch_[2][scratch_width];  // coordinates that only the mask needs, a row at a time
+};
+
+}  // namespace TEXGEN_BUILD
+
+}  // namespace detail
+
+inline namespace TEXGEN_BUILD {
+
+// Guarantee: in front of the projector s/q, t/q and r/q, within max(tolerance, 1/2 ulp) of the exact value of the given
+// floats (r: the tolerance relative to max(1, |r|)). With `exact` each is the nearest float, so that its bits depend on
+// neither the rectangle, the length, the alignment nor the build. lit = 1 inside the closed region, decided from the s
+// and t that are (or would be) written. Behind, s = t = r = lit = 0, the sign of q decided exactly. Returns
+// setup.work(rect); for Work::nothing lit is 0 and s, t, r are not written. No allocation, noexcept.
+// Shapes: each output has width * height floats, row-major, or none (asserted). Fragments outside the triangle get the
+// values of its plane; where the interpolated 1/w is not positive nothing is promised.
+// Bad input: an empty rectangle does nothing.
+// Source: OpenGL compatibility specification, polygon rasterization; Everitt, Projective Texture Mapping, section 2.
+inline Work interpolate(const TriangleSetup& setup, FragmentRect rect, Texcoords out) noexcept {
+    TEXGEN_ASSERT(rect.width >= 0 && rect.height >= 0);
+    if (rect.width <= 0 || rect.height <= 0) return Work::nothing;
+    const std::size_t count = static_cast<std::size_t>(rect.width) * static_cast<std::size_t>(rect.height);
+    bool any_output = false;
+    for (std::span<float>* output : {&out.s, &out.t, &out.r, &out.lit}) {
+        if (!detail::is_computed(*output, count)) *output = {};
+        any_output = any_output || !output->empty();
+    }
+
+    const detail::Tile tile{rect.x, rect.y, rect.width, rect.height};
+    const detail::Corners at = setup.corners(tile);
+    const detail::Plan plan = setup.plan(tile, at);
+    if (plan.work == Work::nothing) {
+        for (float& lit : out.lit) lit = 0.0f;
+        return plan.work;
+    }
+
+    if (!any_output) return plan.work;
+
+    const bool both = !out.lit.empty() || (!out.s.empty() && !out.t.empty());
+    if (both || !out.s.empty() || !out.t.empty()) {
+        detail::TileInterpolator interpolator(setup, rect);
+        if (both || !out.s.empty()) interpolator.add(0, setup.s_, out.s);
+        if (both || !out.t.empty()) interpolator.add(1, setup.t_, out.t);
+        interpolator.add_lit(out.lit);
+        const bool needs_scratch = both && (out.s.empty() || out.t.empty());
+        if (both && !(needs_scratch && tile.width > detail::TileInterpolator::scratch_width)) {
+            interpolator.shade(tile, at, plan);
+        } else {
+            detail::Tile strip = tile;
+            for (strip.width = detail::TileInterpolator::scratch_width; strip.x < tile.x + tile.width;
+                 strip.x += detail::TileInterpolator::scratch_width) {
+                const std::int64_t rest = tile.x + tile.width - strip.x;
+                if (rest < strip.width) strip.width = static_cast<int>(rest);
+                interpolator.shade(strip, interpolator.corners(strip), plan);
+            }
+        }
+    }
+    if (!out.r.empty()) {
+        const detail::Plane r = setup.planes_.plane(2);
+        detail::TileInterpolator interpolator(setup, rect);
+        interpolator.add(2, r, out.r);
+        interpolator.shade(tile, interpolator.corners(tile), {Work::divide, 0, {}});
+    }
+    return plan.work;
+}
+
+}  // namespace TEXGEN_BUILD
+
+namespace detail {
+
+// A float stands for the segment's value at alpha exactly: A - alpha A + alpha B.
+inline Expansion<5> exactly_mixed(double a, double b, double alpha) noexcept {
+    Expansion<5> sum;
+    sum.add(a);
+    sum.add_product(-alpha, a);
+    sum.add_product(alpha, b);
+    return sum;
+}
+
+// 1 - alpha, the products and the sum are rounded once each.
+inline Bounded mixed(double a, double b, double alpha) noexcept {
+    const double from_a = (1.0 - alpha) * a;
+    const double from_b = alpha * b;
+    return {from_a + from_b, gamma(4) * (std::fabs(from_a) + std::fabs(from_b))};
+}
+
+// One value of a job, every decision exact.
+inline void interpolate_one(const SegmentJob& job, std::size_t i) noexcept {
+    const double alpha = job.alpha[i];
+    const auto exact_q = [&] { return exactly_mixed(job.q_a, job.q_b, alpha); };
+    const Bounded q = mixed(job.q_a, job.q_b, alpha);
+    const bool in_front = certain_sign(q, exact_q) > 0;
+    float value[2] = {0.0f, 0.0f};
+    for (int k = 0; k < job.numerators; ++k) {
+        if (in_front)
+            value[k] = certain_quotient(
+                mixed(job.a[k], job.b[k], alpha), q, [&] { return exactly_mixed(job.a[k], job.b[k], alpha); }, exact_q);
+        job.out[k][i] = value[k];
+    }
+    if (job.lit != nullptr) job.lit[i] = in_front && is_inside(value[0], value[1], job.min, job.max) ? 1.0f : 0.0f;
+}
+
+// What is known of a segment whose ends are in front: q is least, and |F/Q| largest, at an end.
+struct SegmentBounds {
+    double q_least, q_largest;
+    double numerator[2], quotient[2];
+
+    explicit SegmentBounds(const SegmentJob& job) noexcept
+        : q_least(smaller(job.q_a, job.q_b)), q_largest(larger(job.q_a, job.q_b)), numerator{}, quotient{} {
+        for (int k = 0; k < job.numerators; ++k) {
+            numerator[k] = larger(std::fabs(job.a[k]), std::fabs(job.b[k]));
+            quotient[k] = 1.001 * larger(std::fabs(job.a[k]) / job.q_a, std::fabs(job.b[k]) / job.q_b);
+        }
+    }
+
+    // As in certain_quotient(), with errors of `relative` in the numerator and in q, and `final` in the division.
+    double error(int k, double relative, double final) const noexcept {
+        return 1.001 * relative * (numerator[k] + quotient[k] * q_largest) / q_least + final * quotient[k];
+    }
+    bool is_well_in_front() const noexcept { return q_least > 0x1p-20 * q_largest && q_largest < 0x1p1000; }
+};
+
+// Whether float arithmetic stays inside the tolerance for every alpha in [0, 1]: with u = 2^-24 the five roundings of
+// A - alpha A + alpha B are at most 5 u max(|A|, |B|), and the reciprocal and the product add 2 u.
+inline bool segment_float_fits(const SegmentJob& job, const SegmentBounds& bounds, double tolerance) noexcept {
+    bool fits = bounds.q_least > 0x1p-10 * bounds.q_largest && bounds.q_least > 0x1p-100 && bounds.q_largest < 0x1p100;
+    for (int k = 0; k < job.numerators; ++k) {
+        const double error = bounds.error(k, 5.01 * unit_roundoff_float, 2.01 * unit_roundoff_float) +
+                             0x1p-146 / bounds.q_least + 0x1p-149;
+        fits = fits && bounds.numerator[k] < 0x1p100 && error <= tolerance;
+    }
+    return fits;
+}
+
+inline namespace TEXGEN_BUILD {
+
+// In float where that stays inside the tolerance for the whole segment, else the nearest float: in vectors, and the
+// blocks that those cannot vouch for value by value.
+inline void interpolate_job(SegmentJob job, double tolerance) noexcept {
+    const Kernels& kernels = chosen_kernels();
+    if (job.q_a > 0.0 && job.q_b > 0.0) {
+        const SegmentBounds bounds(job);
+        if (tolerance > 0.0 && segment_float_fits(job, bounds, tolerance)) return kernels.divide_segment_float(job);
+        job.in_front = bounds.is_well_in_front();
+        for (int k = 0; k < job.numerators; ++k)
+            job.quotient_error[k] = bounds.error(k, gamma(4), 4.0 * unit_roundoff_double);
+    }
+    for (std::size_t i = kernels.divide_segment_nearest(job, 0); i < job.count;
+         i = kernels.divide_segment_nearest(job, i)) {
+        const std::size_t block_end = (i / nearest_block + 1) * nearest_block;
+        for (; i < job.count && i < block_end; ++i) interpolate_one(job, i);
+    }
+}
+
+}  // namespace TEXGEN_BUILD
+
+}  // namespace detail
+
+inline namespace TEXGEN_BUILD {
+
+// Guarantee: C_u = ((1-a) A_u + a B_u) / ((1-a) A_q + a B_q) for u = s, t, r within max(tolerance, 1/2 ulp) of the exact
+// value of the given floats (r: the tolerance relative to max(1, |r|)); with `exact` the nearest float, the ends
+// included. The sign of q is exact, and behind the projector all are 0. lit as for triangles. No allocation, noexcept.
+// Shapes: each output as long as alpha, or empty (asserted); alpha in [0, 1] (asserted).
+// Bad input: NaN and infinity spoil their own value only; an alpha that is NaN is never lit.
+// Source: the C_u note, (2).
+inline void interpolate(const Segment& segment, std::span<const float> alpha, TextureRegion region, Texcoords out,
+                        Tolerance tolerance = exact) noexcept {
+    for ([[maybe_unused]] const float a : alpha) TEXGEN_ASSERT(!(a < 0.0f) && !(a > 1.0f));
+    const double accepted = detail::accepted(tolerance);
+    detail::for_each_group(out, alpha.size(), [&](int first, int numerators, const detail::PointOutputs& outputs) {
+        detail::SegmentJob job{};
+        job.numerators = numerators;
+        for (int k = 0; k < numerators; ++k) {
+            job.a[k] = detail::widened(segment.a[first + k]);
+            job.b[k] = detail::widened(segment.b[first + k]);
+        }
+        job.q_a = detail::widened(segment.a.w);
+        job.q_b = detail::widened(segment.b.w);
+        detail::LitTest(region).copy_to(job.min, job.max);
+        const auto run = [accepted](const detail::SegmentJob& part) { detail::interpolate_job(part, accepted); };
+
+        const std::size_t whole = alpha.size() / detail::point_quantum * detail::point_quantum;
+        job.alpha = alpha.data();
+        if (whole != 0) detail::run_batch(job, outputs, 0, whole, whole, run);
+        const std::size_t rest = alpha.size() - whole;
+        if (rest == 0) return;
+        float padded[detail::point_quantum];
+        for (std::size_t i = 0; i < detail::point_quantum; ++i) padded[i] = alpha[whole + (i < rest ? i : rest - 1)];
+        job.alpha = padded;
+        detail::run_batch(job, outputs, whole, rest, detail::point_quantum, run);
+    });
+}
+
+}  // namespace TEXGEN_BUILD
+
+}  // namespace texgen

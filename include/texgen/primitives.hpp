@@ -1,0 +1,33 @@
+#pragma once
+
+// Floor 5: the one input and output of every interpolator.
+
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
+
+#include "texcoord.hpp"
+
+namespace texgen {
+
+// (s, t, r, q) at alpha = 0 and at alpha = 1.
+struct Segment {
+    glm::vec4 a, b;
+};
+
+// window: pixels, with pixel centres at +0.5. clip_w: the camera's w, > 0. strq: homogeneous texture coordinates.
+struct WindowVertex {
+    glm::vec2 window;
+    float clip_w;
+    glm::vec4 strq;
+};
+
+struct Triangle {
+    WindowVertex a, b, c;
+};
+
+// The fragments [x, x + width) x [y, y + height), each at its centre; outputs are row-major, width * height.
+struct FragmentRect {
+    int x, y, width, height;
+};
+
+}  // namespace texgen
