@@ -1,0 +1,36 @@
+#pragma once
+
+// Failing inputs in hexadecimal, so that they can be run again bit for bit.
+
+#include <cstdio>
+#include <string>
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+namespace support {
+
+inline std::string hex(double value) {
+    char text[64];
+    std::snprintf(text, sizeof text, "%a", value);
+    return text;
+}
+inline std::string hex(float value) { return hex(static_cast<double>(value)); }
+
+template <glm::length_t N, class T, glm::qualifier Q>
+std::string hex(const glm::vec<N, T, Q>& v) {
+    std::string text = "(";
+    for (glm::length_t i = 0; i < N; ++i) text += (i == 0 ? "" : ", ") + hex(v[i]);
+    return text + ")";
+}
+
+// Column by column, as GLM's constructors take them.
+template <glm::length_t C, glm::length_t R, class T, glm::qualifier Q>
+std::string hex(const glm::mat<C, R, T, Q>& m) {
+    std::string text = "{";
+    for (glm::length_t i = 0; i < C; ++i) text += (i == 0 ? "" : ", ") + hex(m[i]);
+    return text + "}";
+}
+
+}  // namespace support

@@ -1,0 +1,273 @@
+// Transforms and their inverses: what is singular is refused, what is not is inverted, at any scale.
+
+#include "texgen/transform.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <type_traits>
+
+#include "support/hex.hpp"
+#include "support/oracle.hpp"
+#include "support/random.hpp"
+#include "support/rational_matrix.hpp"
+
+namespace {
+
+using support::exactly;
+using support::hex;
+using support::Random;
+using support::Rational;
+using support::RationalMatrix;
+using texgen::ModelMatrix;
+
+constexpr double nan_double = std::numeric_limits<double>::quiet_NaN();
+
+glm::dmat4 random_matrix(Random& random, double size = 1.0) {
+    glm::dmat4 m(0.0);
+    for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 4; ++row) m[column][row] = random.uniform(-size, size);
+    return m;
+}
+
+glm::dmat4 scale(double x, double y, double z) {
+    glm::dmat4 m(1.0);
+    m[0][0] = x;
+    m[1][1] = y;
+    m[2][2] = z;
+    return m;
+}
+
+// Rounded to float: what a user has.
+glm::dmat4 as_floats(const glm::dmat4& m) { return glm::dmat4(support::rounded(m)); }
+
+// The condition of m after rows and columns are scaled near 1, from exact arithmetic.
+double scaled_condition(const glm::dmat4& m) {
+    RationalMatrix scaled = exactly(m);
+    for (int pass = 0; pass < 3; ++pass) {
+        for (std::size_t i = 0; i < 4; ++i) {
+            Rational row = 0;
+            for (std::size_t k = 0; k < 4; ++k) row = std::max(row, support::magnitude(scaled[i][k]));
+            for (std::size_t k = 0; k < 4; ++k) scaled[i][k] *= support::power_of_two(-support::exponent_of(row));
+        }
+        for (std::size_t k = 0; k < 4; ++k) {
+            Rational column = 0;
+            for (std::size_t i = 0; i < 4; ++i) column = std::max(column, support::magnitude(scaled[i][k]));
+            for (std::size_t i = 0; i < 4; ++i) scaled[i][k] *= support::power_of_two(-support::exponent_of(column));
+        }
+    }
+    return support::nearest<double>(support::norm(scaled) * support::norm(*support::inverse(scaled)));
+}
+
+// The largest error of an element, in double ulps of the largest term in the sum that makes it. For an inverse that is
+// X = X A X: the terms X_ij A_jk X_kl of element (i, l).
+double worst_error(const glm::dmat4& m, const glm::dmat4& inverse) {
+    const RationalMatrix a = exactly(m), exact = *support::inverse(a), computed = exactly(inverse);
+    double worst = 0.0;
+    for (std::size_t i = 0; i < 4; ++i) {
+        for (std::size_t l = 0; l < 4; ++l) {
+            Rational largest = 0;
+            for (std::size_t j = 0; j < 4; ++j)
+                for (std::size_t k = 0; k < 4; ++k)
+                    largest = std::max(largest, support::magnitude(exact[i][j] * a[j][k] * exact[k][l]));
+            const Rational error = support::magnitude(computed[i][l] - exact[i][l]);
+            if (error == 0) continue;
+            worst = std::max(worst, support::nearest<double>(
+                                        error * support::power_of_two(-support::ulp_exponent<double>(largest))));
+        }
+    }
+    return worst;
+}
+
+}  // namespace
+
+TEST_CASE("composition goes from right to left, and knows its spaces") {
+    Random random(41);
+    const texgen::ViewMatrix view(random.rigid(3.0));
+    const ModelMatrix model(random.rigid(3.0));
+    const auto modelview = view * model;
+    static_assert(std::is_same_v<decltype(modelview), const texgen::ModelviewMatrix>);
+    static_assert(!std::is_default_constructible_v<ModelMatrix>);
+    static_assert(!std::is_convertible_v<glm::dmat4, ModelMatrix>);
+    const glm::dvec4 point(1.0, 2.0, 3.0, 1.0);
+    const glm::dvec4 once = modelview.matrix() * point, twice = view.matrix() * (model.matrix() * point);
+    for (int i = 0; i < 4; ++i) CHECK(once[i] == doctest::Approx(twice[i]).epsilon(1e-14));
+}
+
+TEST_CASE("a transform holds doubles unchanged and rounds each element once") {
+    Random random(42);
+    const glm::dmat4 m = random_matrix(random, 1e6);
+    CHECK(ModelMatrix(m).matrix() == m);
+    for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 4; ++row)
+            CHECK(ModelMatrix(m).rounded()[column][row] == support::nearest<float>(exactly(m[column][row])));
+    const glm::mat4 floats = support::rounded(m);
+    CHECK(ModelMatrix(floats).rounded() == floats);
+}
+
+TEST_CASE("exactly singular matrices are refused, 2000 of 2000") {
+    Random random(43);
+    int refused = 0, determinant_is_zero = 0;
+    for (int i = 0; i < 2000; ++i) {
+        // A row (or column) that is a small integer combination of two others, exactly: of float elements on a grid.
+        glm::dmat4 m(0.0);
+        for (int column = 0; column < 4; ++column)
+            for (int row = 0; row < 4; ++row) m[column][row] = random.integer(-(1 << 20), 1 << 20) * 0x1p-20;
+        const int target = random.integer(0, 3);
+        const int first = (target + random.integer(1, 3)) % 4, second = (target + random.integer(1, 3)) % 4;
+        const double p = random.integer(-3, 3), q = random.integer(-3, 3);
+        for (int k = 0; k < 4; ++k) {
+            if ((i & 1) != 0)
+                m[k][target] = p * m[k][first] + q * m[k][second];
+            else
+                m[target][k] = p * m[first][k] + q * m[second][k];
+        }
+        // Scaled by powers of two it is as singular as before.
+        const double size = std::ldexp(1.0, random.integer(-60, 60));
+        m = size * m;
+        REQUIRE_MESSAGE(!support::inverse(exactly(m)), hex(m));
+        determinant_is_zero += glm::determinant(m) == 0.0;
+        const bool answer = inverse(ModelMatrix(m)).has_value();
+        refused += !answer;
+        REQUIRE_MESSAGE(!answer, hex(m));
+    }
+    CHECK(refused == 2000);
+    CHECK(determinant_is_zero < 1900);
+}
+
+TEST_CASE("a matrix of rank 0, 1 or 2 is refused") {
+    Random random(44);
+    CHECK_FALSE(inverse(ModelMatrix(glm::dmat4(0.0))));
+    for (int i = 0; i < 500; ++i) {
+        glm::dmat4 m(0.0);
+        const int rank = random.integer(1, 2);
+        for (int term = 0; term < rank; ++term) {
+            glm::dvec4 u, v;
+            for (int k = 0; k < 4; ++k) {
+                u[k] = random.integer(-1000, 1000);
+                v[k] = random.integer(-1000, 1000);
+            }
+            for (int column = 0; column < 4; ++column) m[column] += v[column] * u;
+        }
+        REQUIRE_MESSAGE(!inverse(ModelMatrix(m)), hex(m));
+    }
+}
+
+TEST_CASE("uniform scales from 1e-30 to 1e30 are regular, and inverted within 2 ulp of the largest term") {
+    for (int exponent = -30; exponent <= 30; ++exponent) {
+        const double size = std::pow(10.0, exponent);
+        const glm::dmat4 affine = scale(size, size, size);
+        const auto answer = inverse(ModelMatrix(affine));
+        REQUIRE_MESSAGE(answer, hex(affine));
+        CHECK(worst_error(affine, answer->matrix()) <= 2.0);
+        const glm::dmat4 everything = size * glm::dmat4(1.0);
+        REQUIRE_MESSAGE(inverse(ModelMatrix(everything)), hex(everything));
+        Random random(45);
+        const glm::dmat4 posed = random.rigid(100.0 * size) * affine;
+        const auto posed_answer = inverse(ModelMatrix(posed));
+        REQUIRE_MESSAGE(posed_answer, hex(posed));
+        CHECK_MESSAGE(worst_error(posed, posed_answer->matrix()) <= 2.0, hex(posed));
+    }
+}
+
+TEST_CASE("each axis may have its own scale, and rows and columns any power of two") {
+    Random random(46);
+    for (int i = 0; i < 300; ++i) {
+        glm::dmat4 m = random.rigid(10.0) * scale(random.power_of_ten(-12.0, 12.0), random.power_of_ten(-12.0, 12.0),
+                                                  random.power_of_ten(-12.0, 12.0));
+        const auto answer = inverse(ModelMatrix(m));
+        REQUIRE_MESSAGE(answer, hex(m));
+        REQUIRE_MESSAGE(worst_error(m, answer->matrix()) <= 2.0, hex(m));
+        // Permutations change no decision.
+        std::swap(m[0], m[3]);
+        std::swap(m[1], m[2]);
+        REQUIRE_MESSAGE(inverse(ModelMatrix(m)), hex(m));
+    }
+}
+
+TEST_CASE("conditioned matrices are inverted within 2 ulp of the largest term, from 1e2 to 1e8") {
+    Random random(47);
+    double worst = 0.0, hardest = 0.0;
+    std::string worst_input;
+    for (int i = 0; i < 300; ++i) {
+        // Two rows that differ by 10^-k.
+        glm::dmat4 m = as_floats(random_matrix(random));
+        const double distance = random.power_of_ten(-8.0, -2.0);
+        for (int k = 0; k < 4; ++k) m[k][2] = m[k][0] + distance * m[k][2];
+        if (i % 2 == 0) m = as_floats(m);
+        if (!support::inverse(exactly(m))) continue;
+        const double condition = scaled_condition(m);
+        const auto answer = inverse(ModelMatrix(m));
+        REQUIRE_MESSAGE(answer, hex(m));
+        hardest = std::max(hardest, condition);
+        if (condition > 1e8) continue;
+        const double error = worst_error(m, answer->matrix());
+        if (error > worst) {
+            worst = error;
+            worst_input = hex(m);
+        }
+    }
+    CHECK(hardest > 1e8);
+    CHECK_MESSAGE(worst <= 2.0, worst_input);
+    MESSAGE(worst, " ulp of the largest term at most");
+}
+
+TEST_CASE("an affine matrix has an affine inverse: the last row is exactly (0, 0, 0, 1)") {
+    Random random(48);
+    for (int i = 0; i < 500; ++i) {
+        glm::dmat4 m = random_matrix(random, random.power_of_ten(-10.0, 10.0));
+        for (int column = 0; column < 4; ++column) m[column][3] = column == 3 ? 1.0 : 0.0;
+        const auto answer = inverse(ModelMatrix(m));
+        REQUIRE_MESSAGE(answer, hex(m));
+        for (int column = 0; column < 4; ++column) REQUIRE(answer->matrix()[column][3] == (column == 3 ? 1.0 : 0.0));
+    }
+}
+
+TEST_CASE("NaN, infinity and an inverse beyond the range are refused") {
+    Random random(49);
+    for (const double bad :
+         {nan_double, std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()})
+        for (int column = 0; column < 4; ++column)
+            for (int row = 0; row < 4; ++row) {
+                glm::dmat4 m = random.rigid(10.0);
+                m[column][row] = bad;
+                CHECK_FALSE(inverse(ModelMatrix(m)));
+            }
+    CHECK_FALSE(inverse(ModelMatrix(scale(1e-310, 1.0, 1.0))));
+    CHECK(inverse(ModelMatrix(scale(1e-300, 1e300, 1.0))));
+}
+
+TEST_CASE("the inverse of the inverse is the transform again, to the rounding of its condition") {
+    Random random(50);
+    for (int i = 0; i < 200; ++i) {
+        const glm::dmat4 m = random.rigid(1000.0);
+        const auto back = inverse(*inverse(ModelMatrix(m)));
+        REQUIRE(back);
+        for (int column = 0; column < 4; ++column)
+            for (int row = 0; row < 4; ++row) REQUIRE(std::fabs(back->matrix()[column][row] - m[column][row]) <= 1e-12);
+    }
+}
+
+TEST_CASE("the rigid inverse transposes the rotation exactly and rounds the translation once, at any distance") {
+    Random random(51);
+    double worst = 0.0;
+    for (int i = 0; i < 1000; ++i) {
+        const double distance = random.power_of_ten(0.0, 8.0);
+        const glm::dmat4 m = random.rigid(distance);
+        const glm::dmat4 answer = inverse_rigid(ModelMatrix(m)).matrix();
+        for (int row = 0; row < 3; ++row) {
+            Rational exact = 0;
+            for (int k = 0; k < 3; ++k) {
+                REQUIRE(answer[k][row] == m[row][k]);
+                exact -= exactly(m[row][k]) * exactly(m[3][k]);
+            }
+            worst = std::max(worst, support::ulp_error(answer[3][row], exact));
+        }
+        for (int column = 0; column < 4; ++column) REQUIRE(answer[column][3] == (column == 3 ? 1.0 : 0.0));
+    }
+    CHECK(worst <= 1.0);
+}
