@@ -1,0 +1,300 @@
+#include "compare.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <limits>
+#include <utility>
+
+#include <texgen/interpolate.hpp>
+#include <texgen/reference.hpp>
+
+#include "error.hpp"
+#include "peers.hpp"
+
+namespace report {
+
+namespace {
+
+constexpr double accepted_texels = 1.0 / 512;
+
+using Rects = std::span<const texgen::FragmentRect>;
+
+void texgen_within(texgen::Tolerance tolerance, const texgen::Triangle& triangle, const texgen::TextureRegion& region,
+                   Rects rects, RectCoordinates& out) {
+    const auto setup = texgen::TriangleSetup::of(triangle, region, tolerance);
+    if (!setup) return out.lit.fill(0.0f);
+    for (const texgen::FragmentRect& rect : rects) texgen::interpolate(*setup, rect, out.of(rect));
+}
+
+void texgen_exact(const texgen::Triangle& triangle, const texgen::TextureRegion& region, Rects rects,
+                  RectCoordinates& out) {
+    texgen_within(texgen::exact, triangle, region, rects, out);
+}
+
+void texgen_accepted(const texgen::Triangle& triangle, const texgen::TextureRegion& region, Rects rects,
+                     RectCoordinates& out) {
+    texgen_within(texgen::texels(accepted_texels, texture_size), triangle, region, rects, out);
+}
+
+struct FloatRegion {
+    float s_min, s_max, t_min, t_max;
+
+    explicit FloatRegion(const texgen::TextureRegion& region)
+        : s_min(static_cast<float>(region.min().x)),
+          s_max(static_cast<float>(region.max().x)),
+          t_min(static_cast<float>(region.min().y)),
+          t_max(static_cast<float>(region.max().y)) {}
+};
+
+template <class Peer>
+void glm_loop(const texgen::Triangle& triangle, const texgen::TextureRegion& region, Rects rects,
+              RectCoordinates& out) {
+    const FloatRegion bounds(region);
+    const Peer peer(triangle);
+    for (const texgen::FragmentRect& rect : rects) {
+        peer(rect, [&](std::size_t fragment, float s, float t, float q) {
+            out.s[fragment] = s;
+            out.t[fragment] = t;
+            // Without branches, so that the compiler can make vectors of the loop.
+            const bool is_lit =
+                (q > 0.0f) & (s >= bounds.s_min) & (s <= bounds.s_max) & (t >= bounds.t_min) & (t <= bounds.t_max);
+            out.lit[fragment] = is_lit ? 1.0f : 0.0f;
+        });
+    }
+}
+
+void eigen_planes(const texgen::Triangle& triangle, const texgen::TextureRegion& region, Rects rects,
+                  RectCoordinates& out) {
+    using Planes = EigenPlanes<Workload::rect_width>;
+    const FloatRegion bounds(region);
+    const Planes planes(triangle);
+    for (const texgen::FragmentRect& rect : rects) {
+        planes(rect, out.s.data(), out.t.data(), [&](Eigen::Index offset, const auto& s, const auto& t, const auto& q) {
+            Eigen::Map<Planes::Row>(out.lit.data() + offset, rect.width) =
+                (q > 0.0f && s >= bounds.s_min && s <= bounds.s_max && t >= bounds.t_min && t <= bounds.t_max)
+                    .template cast<float>();
+        });
+    }
+}
+
+struct Method {
+    const char* name;
+    void (*run)(const texgen::Triangle&, const texgen::TextureRegion&, Rects, RectCoordinates&);
+};
+
+constexpr std::array<Method, 5> methods{{{"texgen, exact", texgen_exact},
+                                         {"texgen, 1/512 texel", texgen_accepted},
+                                         {"GLM, barycentric", glm_loop<GlmBarycentric>},
+                                         {"GLM, plane equations", glm_loop<GlmPlanes>},
+                                         {"Eigen, plane equations", eigen_planes}}};
+
+struct Exact {
+    double s, t;
+    bool in_front, lit, near_border, on_slide;
+};
+
+bool is_within(double value, double min, double max) { return value >= min && value <= max; }
+
+Exact exact_at(const texgen::Triangle& triangle, const texgen::TextureRegion& region, int x, int y) {
+    const auto strq = texgen::reference::strq<long double>(triangle, x + 0.5L, y + 0.5L);
+    if (!(strq[3] > 0)) return {};
+    const auto quotient = texgen::reference::quotient<long double>(strq);
+    const auto s = static_cast<double>(quotient[0]);
+    const auto t = static_cast<double>(quotient[1]);
+    const glm::dvec2& min = region.min();
+    const glm::dvec2& max = region.max();
+    // lit is decided from the computed coordinates: within their error of the border both answers are right.
+    const auto is_near = [](double value, double border) {
+        constexpr double ulp = std::numeric_limits<float>::epsilon();
+        return std::fabs(value - border) <= std::max(accepted_texels / texture_size, ulp * std::fabs(border));
+    };
+    return {.s = s,
+            .t = t,
+            .in_front = true,
+            .lit = is_within(s, min.x, max.x) && is_within(t, min.y, max.y),
+            .near_border = is_near(s, min.x) || is_near(s, max.x) || is_near(t, min.y) || is_near(t, max.y),
+            .on_slide = is_within(s, 0, 1) && is_within(t, 0, 1)};
+}
+
+bool is_one_signed(const texgen::Triangle& triangle) {
+    return triangle.a.strq.w > 0.0f && triangle.b.strq.w > 0.0f && triangle.c.strq.w > 0.0f;
+}
+
+// The errors of one method, fragment by fragment.
+class Collector {
+public:
+    void add(const Exact& exact, float s, float t, bool lit, const Witness& at) {
+        if (lit != exact.lit && !exact.near_border) ++errors_.wrong_decisions;
+        if (!exact.on_slide) return;
+        const auto texels =
+            static_cast<float>(texture_size * std::max(finite(std::fabs(s - exact.s)), finite(std::fabs(t - exact.t))));
+        if (texels > errors_.max_texels) {
+            errors_.max_texels = texels;
+            errors_.worst = at;
+        }
+        texels_.push_back(texels);
+        for (const auto& [computed, wanted] : {std::pair{s, exact.s}, std::pair{t, exact.t}})
+            if (wanted >= 1.0 / texture_size)
+                ulp_.push_back(static_cast<float>(finite(in_ulp(computed - wanted, wanted))));
+    }
+
+    Errors finish() {
+        errors_.nearly_max_texels = percentile(texels_);
+        errors_.nearly_max_ulp = percentile(ulp_);
+        errors_.max_ulp = ulp_.empty() ? 0.0 : *std::ranges::max_element(ulp_);
+        return errors_;
+    }
+
+private:
+    static double percentile(std::vector<float>& errors) {
+        if (errors.empty()) return 0.0;
+        const std::size_t rank = errors.size() - 1 - errors.size() / 1000;
+        std::ranges::nth_element(errors, errors.begin() + static_cast<std::ptrdiff_t>(rank));
+        return errors[rank];
+    }
+
+    Errors errors_;
+    std::vector<float> texels_, ulp_;
+};
+
+struct RectCheck {
+    texgen::FragmentRect rect;
+    const std::array<RowSpan, Workload::rect_height>& coverage;
+
+    // visit(index in the rect, x, y) for each covered fragment.
+    template <class Visit>
+    void for_each(const Visit& visit) const {
+        for (int row = 0; row < rect.height; ++row) {
+            const auto [begin, end] = coverage[static_cast<std::size_t>(row)];
+            for (int column = begin; column < end; ++column)
+                visit(static_cast<std::size_t>(row * rect.width + column), rect.x + column, rect.y + row);
+        }
+    }
+};
+
+// The library's own promise covers more than the slide: every fragment in front of the projector whose coordinates it
+// has written.
+void check_promise(Comparison& comparison, const texgen::Triangle& triangle, const RectCheck& check,
+                   std::span<const Exact> exact, const RectCoordinates& coordinates) {
+    check.for_each([&](std::size_t i, int x, int y) {
+        if (!exact[i].in_front) return;
+        for (const auto& [computed, wanted] :
+             {std::pair{coordinates.s[i], exact[i].s}, std::pair{coordinates.t[i], exact[i].t}}) {
+            if (std::fabs(wanted) < std::numeric_limits<float>::min()) continue;
+            const double ulp = in_ulp(computed - wanted, wanted);
+            if (ulp <= comparison.largest_ulp) continue;
+            comparison.largest_ulp = ulp;
+            comparison.largest_ulp_at = {triangle, x, y};
+        }
+    });
+}
+
+void measure_errors(Comparison& comparison, const Workload& work, const texgen::TextureRegion& region) {
+    std::array<Collector, methods.size()> collectors;
+    std::array<Exact, Workload::rect_area> exact{};
+    RectCoordinates coordinates{};
+    for (const Workload::Job& job : work.jobs) {
+        const texgen::Triangle& triangle = work.triangles[job.triangle].window;
+        const auto setup = texgen::TriangleSetup::of(triangle, region);
+        for (std::size_t r = job.first_rect; r < job.first_rect + job.rect_count; ++r) {
+            const texgen::FragmentRect& rect = work.rects[r];
+            const RectCheck check{rect, work.coverage[r]};
+            check.for_each([&](std::size_t i, int x, int y) {
+                exact[i] = exact_at(triangle, region, x, y);
+                ++comparison.covered_fragments;
+            });
+            for (std::size_t m = 0; m < methods.size(); ++m) {
+                methods[m].run(triangle, region, std::span(&rect, 1), coordinates);
+                check.for_each([&](std::size_t i, int x, int y) {
+                    collectors[m].add(exact[i], coordinates.s[i], coordinates.t[i], coordinates.lit[i] != 0.0f,
+                                      {triangle, x, y});
+                });
+            }
+            if (!setup) continue;
+            const texgen::Work done = texgen::interpolate(*setup, rect, coordinates.of(rect));
+            comparison.fragments_of_work[static_cast<std::size_t>(done)] += coordinates.of(rect).s.size();
+            if (done != texgen::Work::nothing && is_one_signed(triangle))
+                check_promise(comparison, triangle, check, exact, coordinates);
+        }
+    }
+    for (std::size_t m = 0; m < methods.size(); ++m)
+        comparison.measurements.push_back({methods[m].name, 0.0, collectors[m].finish()});
+}
+
+// Time of the processor, which other programs do not slow down by taking turns with this one.
+double seconds_for(const Method& method, const Workload& work, const texgen::TextureRegion& region, int passes) {
+    static RectCoordinates coordinates;
+    const std::clock_t start = std::clock();
+    for (int pass = 0; pass < passes; ++pass)
+        for (const Workload::Job& job : work.jobs)
+            method.run(work.triangles[job.triangle].window, region, work.rects_of(job), coordinates);
+    return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC / passes;
+}
+
+// So many that one measurement takes a millisecond, the clock's step being a microsecond.
+int passes_for(const Method& method, const Workload& work, const texgen::TextureRegion& region) {
+    constexpr double enough_seconds = 1e-3;
+    int passes = 1;
+    while (passes < 1024 && passes * seconds_for(method, work, region, passes) < enough_seconds) passes *= 2;
+    return passes;
+}
+
+// The methods take turns, so that a change of the machine's speed meets all of them; the median of the rounds counts.
+void measure_times(Comparison& comparison, const Workload& work, const texgen::TextureRegion& region) {
+    constexpr std::size_t fewest_rounds = 5, most_rounds = 21;
+    constexpr double enough_seconds = 0.8;
+    std::array<int, methods.size()> passes{};
+    for (std::size_t m = 0; m < methods.size(); ++m) passes[m] = passes_for(methods[m], work, region);
+    std::array<std::vector<double>, methods.size()> seconds;
+    double total = 0;
+    for (std::size_t round = 0; round < most_rounds && (round < fewest_rounds || total < enough_seconds); ++round) {
+        for (std::size_t turn = 0; turn < methods.size(); ++turn) {
+            const std::size_t m = (turn + round) % methods.size();
+            seconds[m].push_back(seconds_for(methods[m], work, region, passes[m]));
+            total += passes[m] * seconds[m].back();
+        }
+    }
+    for (std::size_t m = 0; m < methods.size(); ++m) {
+        const auto middle = seconds[m].begin() + static_cast<std::ptrdiff_t>(seconds[m].size() / 2);
+        std::nth_element(seconds[m].begin(), middle, seconds[m].end());
+        comparison.measurements[m].nanoseconds = 1e9 * *middle / static_cast<double>(comparison.evaluated_fragments);
+    }
+}
+
+}  // namespace
+
+std::string in_hexadecimal(const Witness& witness) {
+    const auto& [triangle, x, y] = witness;
+    std::string text = "fragment (" + std::to_string(x) + ", " + std::to_string(y) + ")";
+    const auto append = [&text](const char* name, const texgen::WindowVertex& v) {
+        std::array<char, 256> line;
+        std::snprintf(line.data(), line.size(), "; %s: window %a %a, w %a, strq %a %a %a %a", name,
+                      static_cast<double>(v.window.x), static_cast<double>(v.window.y), static_cast<double>(v.clip_w),
+                      static_cast<double>(v.strq.x), static_cast<double>(v.strq.y), static_cast<double>(v.strq.z),
+                      static_cast<double>(v.strq.w));
+        text += line.data();
+    };
+    append("a", triangle.a);
+    append("b", triangle.b);
+    append("c", triangle.c);
+    return text;
+}
+
+bool Comparison::is_as_promised() const {
+    const Errors& exact = measurements[0].errors;
+    const Errors& accepted = measurements[1].errors;
+    return largest_ulp <= promised_ulp && exact.wrong_decisions == 0 && accepted.wrong_decisions == 0 &&
+           accepted.max_texels <= accepted_texels;
+}
+
+Comparison compare(const Workload& work, const texgen::TextureRegion& region) {
+    Comparison comparison;
+    comparison.evaluated_fragments = work.evaluated_fragments();
+    measure_errors(comparison, work, region);
+    measure_times(comparison, work, region);
+    return comparison;
+}
+
+}  // namespace report

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <texgen/conventions.hpp>
+#include <texgen/primitives.hpp>
+
+#include "rasterizer.hpp"
+
+namespace report {
+
+// The input of one fragment, in full.
+struct Witness {
+    texgen::Triangle triangle;
+    int x, y;
+};
+
+std::string in_hexadecimal(const Witness& witness);
+
+// Errors of s and t against the reference in long double, over the covered fragments that the slide falls on.
+struct Errors {
+    double max_texels = 0, nearly_max_texels = 0;  // of a texture of 4096; nearly max: the 99.9th percentile
+    double max_ulp = 0, nearly_max_ulp = 0;        // of float, where the coordinate is a texel or more from 0
+    std::size_t wrong_decisions = 0;               // lit where it is dark, or dark where it is lit
+    Witness worst{};
+};
+
+struct Measurement {
+    std::string method;
+    double nanoseconds;  // a fragment of the rects, the set-up of the triangles included
+    Errors errors;
+};
+
+struct Comparison {
+    std::size_t covered_fragments = 0, evaluated_fragments = 0;
+    std::vector<Measurement> measurements;           // the library first: exact, then within 1/512 texel
+    std::array<std::size_t, 5> fragments_of_work{};  // by texgen::Work, of the library, exact
+    double largest_ulp = 0;                          // of the library, on every fragment for which it makes its promise
+    Witness largest_ulp_at{};
+
+    bool is_as_promised() const;
+};
+
+// Runs the library and its peers over the work: first once for the errors, then in turns against the clock.
+Comparison compare(const Workload& work, const texgen::TextureRegion& region);
+
+}  // namespace report

@@ -1,0 +1,95 @@
+#include "files.hpp"
+
+#include <fstream>
+#include <random>
+#include <sstream>
+#include <system_error>
+#include <vector>
+
+#include "failure.hpp"
+
+namespace report {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::uintmax_t largest_input = std::uintmax_t{1} << 30;
+
+// The destination itself where it exists, otherwise the folder that it will be made in.
+fs::path deepest_existing_folder(const fs::path& destination) {
+    fs::path folder = destination;
+    std::error_code error;
+    while (!fs::exists(folder, error) && folder.has_relative_path()) folder = folder.parent_path();
+    if (!fs::is_directory(folder, error))
+        throw Failure{"cannot write to " + destination.string() + ": " + folder.string() + " is not a folder"};
+    return folder;
+}
+
+}  // namespace
+
+std::string read_file(const fs::path& file) {
+    std::error_code error;
+    const fs::file_status status = fs::status(file, error);
+    if (!fs::exists(status)) throw Failure{"cannot open " + file.string() + ": no such file"};
+    if (!fs::is_regular_file(status)) throw Failure{"cannot read " + file.string() + ": not a regular file"};
+    const std::uintmax_t size = fs::file_size(file, error);
+    if (error || size > largest_input) throw Failure{"cannot read " + file.string() + ": larger than 1 GiB"};
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) throw Failure{"cannot open " + file.string() + ": permission denied"};
+    std::string bytes(static_cast<std::size_t>(size), '\0');
+    stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    if (!stream) throw Failure{"cannot read " + file.string()};
+    return bytes;
+}
+
+Staging::Staging(const fs::path& destination) {
+    std::error_code error;
+    destination_ = fs::absolute(destination, error).lexically_normal();
+    if (!destination_.has_filename()) destination_ = destination_.parent_path();
+    const fs::path parent = deepest_existing_folder(destination_);
+    std::random_device random;
+    for (int attempt = 0; attempt < 100; ++attempt) {
+        std::ostringstream name;
+        name << ".texgen-report-" << std::hex << random();
+        if (fs::create_directory(parent / name.str(), error)) {
+            folder_ = parent / name.str();
+            return;
+        }
+    }
+    throw Failure{"cannot write to " + destination.string() + ": " + error.message()};
+}
+
+Staging::~Staging() {
+    std::error_code error;
+    if (!folder_.empty()) fs::remove_all(folder_, error);
+}
+
+void Staging::write(const std::string& name, std::string_view bytes) const {
+    std::ofstream stream(folder_ / name, std::ios::binary);
+    stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    stream.close();
+    if (!stream) throw Failure{"cannot write " + (destination_ / name).string()};
+}
+
+void Staging::publish() const {
+    std::error_code error;
+    if (!fs::exists(destination_, error)) {
+        fs::create_directories(destination_.parent_path(), error);
+        fs::rename(folder_, destination_, error);
+        if (error) throw Failure{"cannot write to " + destination_.string() + ": " + error.message()};
+        return;
+    }
+    std::vector<fs::path> names;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
+        names.push_back(entry.path().filename());
+        if (fs::is_directory(destination_ / names.back(), error))
+            throw Failure{"cannot write " + (destination_ / names.back()).string() + ": a folder has that name"};
+    }
+    for (const fs::path& name : names) {
+        fs::rename(folder_ / name, destination_ / name, error);
+        if (error) throw Failure{"cannot write " + (destination_ / name).string() + ": " + error.message()};
+    }
+}
+
+}  // namespace report

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace report {
+
+// The whole of a regular file. Throws Failure for anything else, and beyond 1 GiB.
+std::string read_file(const std::filesystem::path& file);
+
+// A hidden folder next to the report's final place, on the same file system. What is written there appears at the
+// final place by publish() or not at all: the destructor removes what was not published.
+class Staging {
+public:
+    explicit Staging(const std::filesystem::path& destination);
+    ~Staging();
+    Staging(const Staging&) = delete;
+    Staging& operator=(const Staging&) = delete;
+
+    const std::filesystem::path& folder() const { return folder_; }
+    void write(const std::string& name, std::string_view bytes) const;
+
+    // The whole folder is renamed where there was none. Otherwise the files replace their namesakes one by one, and
+    // other files stay: the folder may be the user's home.
+    void publish() const;
+
+private:
+    std::filesystem::path destination_;
+    std::filesystem::path folder_;
+};
+
+}  // namespace report

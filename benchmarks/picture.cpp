@@ -1,0 +1,162 @@
+#include "picture.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <memory>
+
+#include <glm/common.hpp>
+
+#define STBI_ONLY_JPEG
+#define STBI_ONLY_PNG
+#define STBI_MAX_DIMENSIONS 16384
+#define STB_IMAGE_IMPLEMENTATION
+#include <stb_image.h>
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#include <stb_image_write.h>
+
+#include "failure.hpp"
+#include "files.hpp"
+
+namespace report {
+
+namespace {
+
+constexpr int largest_side = 1024;
+
+// Bytes as a stream for the decoder, which takes the end of a file for zeros and decodes on.
+struct ByteStream {
+    const std::string& bytes;
+    std::size_t position = 0;
+    bool was_read_beyond_end = false;
+
+    int read(char* data, int size) {
+        const std::size_t count = std::min(static_cast<std::size_t>(size), bytes.size() - position);
+        was_read_beyond_end |= count == 0;
+        std::memcpy(data, bytes.data() + position, count);
+        position += count;
+        return static_cast<int>(count);
+    }
+
+    void skip(int count) {
+        const auto end = static_cast<std::ptrdiff_t>(bytes.size());
+        const std::ptrdiff_t target = static_cast<std::ptrdiff_t>(position) + count;
+        was_read_beyond_end |= target > end;
+        position = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(target, 0, end));
+    }
+};
+
+constexpr stbi_io_callbacks byte_stream_callbacks{
+    [](void* user, char* data, int size) { return static_cast<ByteStream*>(user)->read(data, size); },
+    [](void* user, int count) { static_cast<ByteStream*>(user)->skip(count); },
+    [](void* user) {
+        const auto* stream = static_cast<const ByteStream*>(user);
+        return static_cast<int>(stream->position == stream->bytes.size());
+    }};
+
+// Whether no Huffman table of a JPEG has more than 256 codes: stb_image 2.27 writes them all into an array of 257.
+bool huffman_tables_fit(const std::string& jpeg) {
+    const auto byte = [&jpeg](std::size_t i) {
+        return i < jpeg.size() ? static_cast<unsigned>(static_cast<unsigned char>(jpeg[i])) : 0u;
+    };
+    std::size_t position = 2;
+    for (;;) {
+        position = jpeg.find('\xff', position);
+        if (position == std::string::npos) return true;
+        const unsigned marker = byte(++position);
+        const bool is_in_scan_data = marker == 0x00 || (marker >= 0xd0 && marker <= 0xd7);
+        if (marker == 0xff || is_in_scan_data) continue;
+        if (marker == 0xd9) return true;
+        ++position;
+        const std::size_t end = position + (byte(position) << 8 | byte(position + 1));
+        if (marker == 0xc4) {
+            for (std::size_t table = position + 2; table < end;) {
+                unsigned codes = 0;
+                for (std::size_t length = 1; length <= 16; ++length) codes += byte(table + length);
+                if (codes > 256) return false;
+                table += 17 + codes;
+            }
+        }
+        position = end;
+    }
+}
+
+// The mean of each factor x factor block of the decoded bytes; blocks at the right and the bottom may be cut.
+Picture reduced(const unsigned char* bytes, int width, int height, int factor) {
+    Picture picture((width + factor - 1) / factor, (height + factor - 1) / factor, glm::vec3(0));
+    for (int y = 0; y < picture.height; ++y) {
+        for (int x = 0; x < picture.width; ++x) {
+            const int right = std::min((x + 1) * factor, width);
+            const int bottom = std::min((y + 1) * factor, height);
+            glm::vec3 sum(0);
+            for (int row = y * factor; row < bottom; ++row) {
+                for (int column = x * factor; column < right; ++column) {
+                    const unsigned char* rgb = bytes + 3 * (static_cast<std::ptrdiff_t>(row) * width + column);
+                    sum += glm::vec3(rgb[0], rgb[1], rgb[2]);
+                }
+            }
+            const int count = (right - x * factor) * (bottom - y * factor);
+            picture.at(x, y) = sum / (255.0f * static_cast<float>(count));
+        }
+    }
+    return picture;
+}
+
+unsigned char to_byte(float value) {
+    return static_cast<unsigned char>(std::lround(255.0f * std::clamp(value, 0.0f, 1.0f)));
+}
+
+}  // namespace
+
+glm::vec3 Picture::sample(float s, float t) const {
+    const float x = std::clamp(s * static_cast<float>(width) - 0.5f, 0.0f, static_cast<float>(width - 1));
+    const float y = std::clamp((1.0f - t) * static_cast<float>(height) - 0.5f, 0.0f, static_cast<float>(height - 1));
+    const int left = static_cast<int>(x);
+    const int above = static_cast<int>(y);
+    const int right = std::min(left + 1, width - 1);
+    const int below = std::min(above + 1, height - 1);
+    const float to_right = x - static_cast<float>(left);
+    return glm::mix(glm::mix(at(left, above), at(right, above), to_right),
+                    glm::mix(at(left, below), at(right, below), to_right), y - static_cast<float>(above));
+}
+
+Picture load_picture(const std::filesystem::path& file) {
+    const std::string bytes = read_file(file);
+    if (bytes.starts_with("\xff\xd8") && !huffman_tables_fit(bytes))
+        throw Failure{"cannot use " + file.string() + ": a damaged JPEG picture"};
+    ByteStream stream{bytes};
+    int width = 0, height = 0, channels = 0;
+    unsigned char* decoded = stbi_load_from_callbacks(&byte_stream_callbacks, &stream, &width, &height, &channels, 3);
+    const std::unique_ptr<unsigned char, void (*)(void*)> owner(decoded, stbi_image_free);
+    if (decoded == nullptr) {
+        const std::string reason = stbi_failure_reason();
+        throw Failure{"cannot use " + file.string() + ": not a PNG or JPEG picture, or damaged" +
+                      (reason.empty() ? "" : " (" + reason + ")")};
+    }
+    if (stream.was_read_beyond_end) throw Failure{"cannot use " + file.string() + ": the picture is cut off"};
+    return reduced(decoded, width, height, (std::max(width, height) + largest_side - 1) / largest_side);
+}
+
+std::string encode_png(const Picture& picture) {
+    std::vector<unsigned char> bytes;
+    bytes.reserve(3 * picture.pixels.size());
+    for (const glm::vec3& colour : picture.pixels)
+        for (int channel = 0; channel < 3; ++channel) bytes.push_back(to_byte(colour[channel]));
+    std::string png;
+    const auto append = [](void* user, void* data, int size) {
+        static_cast<std::string*>(user)->append(static_cast<const char*>(data), static_cast<std::size_t>(size));
+    };
+    if (!stbi_write_png_to_func(append, &png, picture.width, picture.height, 3, bytes.data(), 3 * picture.width))
+        throw Failure{"cannot encode a picture: out of memory"};
+    return png;
+}
+
+Picture with_white_border(const Picture& picture, int border) {
+    Picture framed = picture;
+    for (int y = 0; y < framed.height; ++y)
+        for (int x = 0; x < framed.width; ++x)
+            if (std::min({x, y, framed.width - 1 - x, framed.height - 1 - y}) < border) framed.at(x, y) = glm::vec3(1);
+    return framed;
+}
+
+}  // namespace report

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+namespace report {
+
+// Colours from 0 to 1, the top row first.
+struct Picture {
+    int width = 0, height = 0;
+    std::vector<glm::vec3> pixels;
+
+    Picture() = default;
+    Picture(int columns, int rows, glm::vec3 colour)
+        : width(columns),
+          height(rows),
+          pixels(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), colour) {}
+
+    glm::vec3& at(int x, int y) { return pixels[index(x, y)]; }
+    const glm::vec3& at(int x, int y) const { return pixels[index(x, y)]; }
+
+    // Bilinear, clamped to the edge; (s, t) = (0, 0) is the bottom left corner, as OpenGL has it.
+    glm::vec3 sample(float s, float t) const;
+
+private:
+    std::size_t index(int x, int y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+    }
+};
+
+// A PNG or JPEG, reduced by a whole factor to at most 1024 pixels a side. Throws Failure for what is not one.
+Picture load_picture(const std::filesystem::path& file);
+
+std::string encode_png(const Picture& picture);
+
+// A slide that shows where it is turned, mirrored or stretched: letters, an arrow, its corners' coordinates, a ruler in
+// texels, and ramps along its sides. 1024 pixels square.
+Picture built_in_slide();
+
+// The picture, of which the outermost pixels are white.
+Picture with_white_border(const Picture& picture, int border);
+
+}  // namespace report

@@ -1,0 +1,124 @@
+#include "render.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <texgen/interpolate.hpp>
+#include <texgen/reference.hpp>
+
+#include "rasterizer.hpp"
+
+namespace report {
+
+namespace {
+
+constexpr glm::vec3 backdrop(0.11f, 0.12f, 0.15f);
+
+// What a program that forgets q <= 0 would do.
+void divide_regardless(const texgen::Triangle& triangle, const texgen::TextureRegion& region, texgen::FragmentRect rect,
+                       const texgen::Texcoords& out) {
+    for (int row = 0; row < rect.height; ++row) {
+        for (int column = 0; column < rect.width; ++column) {
+            const auto strq = texgen::reference::strq<double>(triangle, rect.x + column + 0.5, rect.y + row + 0.5);
+            const auto quotient = texgen::reference::quotient<double>(strq);
+            const auto fragment = static_cast<std::size_t>(row * rect.width + column);
+            out.s[fragment] = static_cast<float>(quotient[0]);
+            out.t[fragment] = static_cast<float>(quotient[1]);
+            const bool lit = quotient[0] >= region.min().x && quotient[0] <= region.max().x &&
+                             quotient[1] >= region.min().y && quotient[1] <= region.max().y;
+            out.lit[fragment] = lit ? 1.0f : 0.0f;
+        }
+    }
+}
+
+class Frame {
+public:
+    Frame(const Scene& scene, const View& view, int width, int height)
+        : scene_(scene),
+          view_(view),
+          colour_(width, height, backdrop),
+          depth_(colour_.pixels.size(), std::numeric_limits<float>::infinity()) {}
+
+    void draw(const Workload& work) {
+        for (const Workload::Job& job : work.jobs) {
+            const DrawnTriangle& triangle = work.triangles[job.triangle];
+            const AttributePlane plane(triangle);
+            const auto setup = texgen::TriangleSetup::of(triangle.window, scene_.region);
+            for (std::size_t i = job.first_rect; i < job.first_rect + job.rect_count; ++i) {
+                const texgen::FragmentRect rect = work.rects[i];
+                const texgen::Texcoords out = coordinates_.of(rect);
+                if (view_.coordinates == Coordinates::ignoring_sign_of_q)
+                    divide_regardless(triangle.window, scene_.region, rect, out);
+                else if (setup)
+                    texgen::interpolate(*setup, rect, out);
+                else
+                    std::ranges::fill(out.lit, 0.0f);
+                draw_rect(rect, work.coverage[i], plane, triangle.colour);
+            }
+        }
+    }
+
+    const Picture& colour() const { return colour_; }
+
+private:
+    void draw_rect(texgen::FragmentRect rect, const std::array<RowSpan, Workload::rect_height>& coverage,
+                   const AttributePlane& plane, glm::vec3 surface_colour) {
+        for (int row = 0; row < rect.height; ++row) {
+            const auto [begin, end] = coverage[static_cast<std::size_t>(row)];
+            for (int column = begin; column < end; ++column) {
+                const int x = rect.x + column;
+                const int y = rect.y + row;
+                // The window's y grows upwards, a picture's rows go down.
+                const int picture_y = colour_.height - 1 - y;
+                float& nearest = depth_[static_cast<std::size_t>(picture_y) * static_cast<std::size_t>(colour_.width) +
+                                        static_cast<std::size_t>(x)];
+                const float depth = plane.depth(x, y);
+                if (!(depth < nearest)) continue;
+                nearest = depth;
+                colour_.at(x, picture_y) =
+                    shade(plane.attributes(x, y), surface_colour, static_cast<std::size_t>(row * rect.width + column));
+            }
+        }
+    }
+
+    glm::vec3 shade(const Attributes& at, glm::vec3 colour, std::size_t fragment) const {
+        const bool lit = coordinates_.lit[fragment] != 0.0f;
+        const glm::vec3 slide =
+            lit ? view_.slide->sample(coordinates_.s[fragment], coordinates_.t[fragment]) : glm::vec3(0);
+        if (scene_.shading == Shading::slide_alone) return lit ? slide : backdrop;
+
+        const glm::vec3 to_camera = glm::normalize(glm::vec3(scene_.camera.position) - at.position);
+        const float towards_camera = glm::dot(glm::normalize(at.normal), to_camera);
+        const float headlight = std::abs(towards_camera);
+        if (scene_.shading == Shading::modulate)
+            return colour * (0.25f + 0.75f * headlight) * (lit ? slide : glm::vec3(1));
+
+        const glm::vec3 normal = towards_camera < 0.0f ? -glm::normalize(at.normal) : glm::normalize(at.normal);
+        const glm::vec3 to_projector = glm::normalize(glm::vec3(scene_.light) - scene_.light.w * at.position);
+        const float diffuse = std::max(0.0f, glm::dot(normal, to_projector));
+        return colour * (0.08f + 0.26f * headlight + 1.05f * diffuse * slide);
+    }
+
+    const Scene& scene_;
+    const View& view_;
+    Picture colour_;
+    std::vector<float> depth_;
+    RectCoordinates coordinates_{};
+};
+
+}  // namespace
+
+Picture render(const Scene& scene, const View& view, int width, int height) {
+    Picture sum(width, height, glm::vec3(0));
+    for (const glm::vec2 offset :
+         {glm::vec2(-0.25f, -0.25f), glm::vec2(0.25f, -0.25f), glm::vec2(-0.25f, 0.25f), glm::vec2(0.25f, 0.25f)}) {
+        Frame frame(scene, view, width, height);
+        frame.draw(rasterize(view.surfaces, scene.camera, width, height, offset));
+        for (std::size_t i = 0; i < sum.pixels.size(); ++i) sum.pixels[i] += 0.25f * frame.colour().pixels[i];
+    }
+    return sum;
+}
+
+}  // namespace report

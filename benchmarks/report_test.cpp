@@ -1,0 +1,246 @@
+// The report program from outside: what it says, what it leaves behind, and what it returns.
+
+#include <doctest/doctest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string contents(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    std::ostringstream text;
+    text << stream.rdbuf();
+    return text.str();
+}
+
+void write(const fs::path& file, const std::string& bytes) { std::ofstream(file, std::ios::binary) << bytes; }
+
+struct Outcome {
+    int status;
+    std::string output, error;
+};
+
+// An empty folder, the working directory of the program while it lives.
+class Workplace {
+public:
+    Workplace() : before_(fs::current_path()), folder_(before_ / "report_test_files") {
+        fs::remove_all(folder_);
+        fs::create_directory(folder_);
+        fs::current_path(folder_);
+    }
+    ~Workplace() {
+        fs::current_path(before_);
+        fs::remove_all(folder_);
+    }
+    Workplace(const Workplace&) = delete;
+    Workplace& operator=(const Workplace&) = delete;
+
+    Outcome run(const std::string& arguments) const {
+        const fs::path output = before_ / "report_test_output", error = before_ / "report_test_error";
+        const int status = std::system(
+            ("'" TEXGEN_REPORT_PROGRAM "' " + arguments + " >'" + output.string() + "' 2>'" + error.string() + "'")
+                .c_str());
+        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents(output), contents(error)};
+    }
+
+    std::vector<std::string> files() const {
+        std::vector<std::string> names;
+        for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder_))
+            names.push_back(fs::relative(entry.path(), folder_).string());
+        std::ranges::sort(names);
+        return names;
+    }
+
+    void check_refusal(const std::string& arguments, const std::string& reason) const {
+        CAPTURE(arguments);
+        const std::vector<std::string> before = files();
+        const Outcome outcome = run(arguments);
+        CAPTURE(outcome.error);
+        CHECK(outcome.status == 2);
+        CHECK(outcome.output == "");
+        CHECK(std::ranges::count(outcome.error, '\n') == 1);
+        CHECK(outcome.error.ends_with('\n'));
+        CHECK(outcome.error.find(reason) != std::string::npos);
+        CHECK(files() == before);
+    }
+
+private:
+    fs::path before_, folder_;
+};
+
+const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+const std::string png_signature = "\x89PNG\r\n\x1a\n";
+
+// A PNG that ends after its header.
+std::string png_header(const std::string& width, const std::string& height) {
+    using namespace std::string_literals;
+    return png_signature + "\0\0\0\rIHDR"s + width + height + "\x08\x02\0\0\0\0\0\0\0"s;
+}
+
+}  // namespace
+
+TEST_CASE("a bad option is refused in one line") {
+    const Workplace place;
+    place.check_refusal("--colour red", "--colour");
+    place.check_refusal("teapot.obj", "teapot.obj");
+    for (const char* option : {"--mesh", "--slide", "--size", "--out", "--timings"}) {
+        place.check_refusal(option, option);
+        place.check_refusal(option + std::string(" ''"), option);
+    }
+    for (const char* size : {"64", "x", "64x", "x64", "15x64", "64x4097", "-64x64", "64x64x64", "64,64", "1e3x64",
+                             "99999999999999999999x64"})
+        place.check_refusal(std::string("--size ") + size, size);
+}
+
+TEST_CASE("a mesh that cannot be used is refused in one line") {
+    const Workplace place;
+    place.check_refusal("--mesh missing.obj", "missing.obj");
+    place.check_refusal("--mesh .", "not a regular file");
+    place.check_refusal("--mesh \"$(printf 'two\\nlines.obj')\"", "two?lines.obj");
+    const auto check = [&](const std::string& text, const std::string& reason) {
+        write("mesh.obj", text);
+        place.check_refusal("--size 16x16 --mesh mesh.obj", reason);
+    };
+    check("", "no faces");
+    check(triangle, "no faces");
+    check(triangle + "f 1 2\n", "no faces");
+    check(triangle + "f 1 2 4\n", "out of range");
+    check(triangle + "f 0 1 2\n", "out of range");
+    check(triangle + "f -1 -2 -4\n", "out of range");
+    check(triangle + "f 1 2 99999999999\n", "out of range");
+    check(triangle + "f one two three\n", "out of range");
+    check(triangle + "vn 0 0 1\nf 1//1 2//1 3//2\n", "out of range");
+    check("v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "line 1");
+    check("v 0 0 0\nv inf 0 0\nv 0 1 0\nf 1 2 3\n", "line 2");
+    check("v 0 0 0\nv 1 0 0\nv 0 1\nf 1 2 3\n", "line 3");
+    check("v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n", "one point");
+    check(std::string("\x7f"
+                      "ELF\0\0\xff\xfe\0v\0f",
+                      12),
+          "no faces");
+}
+
+TEST_CASE("a slide that cannot be used is refused in one line") {
+    using namespace std::string_literals;
+    const Workplace place;
+    REQUIRE(place.run("--size 16x16 --out good").status == 0);
+    const std::string good = contents("good/teapot.png");
+    place.check_refusal("--slide missing.png", "missing.png");
+    const auto check = [&](const std::string& bytes) {
+        write("slide.png", bytes);
+        place.check_refusal("--size 16x16 --slide slide.png", "slide.png");
+    };
+    check("");
+    check("not a picture");
+    check(png_signature);
+    check(good.substr(0, good.size() / 2));
+    check(good.substr(0, good.size() - 1));
+    check(png_header("\0\0\0\0"s, "\0\0\0\1"s));
+    check(png_header("\x7f\xff\xff\xff", "\x7f\xff\xff\xff"));
+    check("\xff\xd8\xff"s);
+    check("\xff\xd8\xff\xc4\x10\x02\x00"s + std::string(16, '\xff') + std::string(4080, '\0'));
+}
+
+TEST_CASE("timings that are none are refused in one line") {
+    const Workplace place;
+    place.check_refusal("--timings missing.json", "missing.json");
+    for (const char* text : {"", "{}", "not JSON", "{\n\"run_name\": \"a > b\",\n\"aggregate_name\": \"median\"\n}\n",
+                             "\"\": \": \"", "\n}\n{\n\"cpu_time\": nan,\n}"}) {
+        write("timings.json", text);
+        place.check_refusal("--timings timings.json", "timings.json");
+    }
+}
+
+TEST_CASE("timings become a table and a plot of the page") {
+    const Workplace place;
+    const auto row = [](const char* name, const char* time) {
+        return std::string("    {\n      \"run_name\": \"K9, 1024 > ") + name +
+               "\",\n      \"aggregate_name\": \"median\",\n      \"cpu_time\": " + time +
+               ",\n      \"elements\": 1.0e+03,\n      \"row\": 0,\n      \"texels\": 1e-3,\n      \"ulp\": 2\n    "
+               "},\n";
+    };
+    write("timings.json", row("texgen, <exact>", "1.25e+03") + row("GLM, loop", "2.5e+03"));
+    CHECK(place.run("--size 16x16 --timings timings.json").status == 0);
+    const std::string page = contents("report/index.html");
+    CHECK(page.find("<td>texgen, &lt;exact&gt;</td><td>1.250</td><td>2.00</td>") != std::string::npos);
+}
+
+TEST_CASE("a folder that cannot be written is refused in one line, and an old report survives") {
+    const Workplace place;
+    write("file", "mine");
+    place.check_refusal("--size 16x16 --out file", "not a folder");
+    place.check_refusal("--size 16x16 --out file/below", "not a folder");
+    place.check_refusal("--size 16x16 --out /dev/null/below", "not a folder");
+    fs::create_directories("old/teapot.png");
+    write("old/index.html", "yesterday");
+    place.check_refusal("--size 16x16 --out old", "teapot.png");
+    place.check_refusal("--size 16x16 --out old --mesh missing.obj", "missing.obj");
+    CHECK(contents("old/index.html") == "yesterday");
+    CHECK(contents("file") == "mine");
+}
+
+TEST_CASE("a run writes the page and the pictures, and nothing else") {
+    const Workplace place;
+    const Outcome outcome = place.run("--size 64x48 --out deep/down");
+    CHECK(outcome.status == 0);
+    CHECK(outcome.error == "");
+    CHECK(outcome.output.find("texgen, exact") != std::string::npos);
+    CHECK(outcome.output.find("64x48") != std::string::npos);
+
+    std::vector<std::string> pictures;
+    for (const std::string& file : place.files()) {
+        const fs::path path(file);
+        if (path.extension() != ".png") continue;
+        pictures.push_back(path.filename().string());
+        CHECK(contents(path).starts_with(png_signature));
+    }
+    CHECK(pictures == std::vector<std::string>{"border.png", "border_missing.png", "orthographic.png", "reverse.png",
+                                               "reverse_uncured.png", "teapot.png", "trapezoid.png",
+                                               "trapezoid_real.png"});
+    const std::string page = contents("deep/down/index.html");
+    CHECK(page.ends_with("</html>\n"));
+    CHECK(page.find("data:image/png;base64,") != std::string::npos);
+    CHECK(page.find("src=\"http") == std::string::npos);
+    for (const std::string& file : place.files()) CHECK(file.find("/.") == std::string::npos);
+}
+
+TEST_CASE("a run replaces an old report and leaves other files alone") {
+    const Workplace place;
+    fs::create_directory("mine");
+    write("mine/index.html", "yesterday");
+    write("mine/letter.txt", "dear reader");
+    CHECK(place.run("--size 16x16 --out mine").status == 0);
+    CHECK(contents("mine/index.html").starts_with("<!DOCTYPE html>"));
+    CHECK(contents("mine/letter.txt") == "dear reader");
+}
+
+TEST_CASE("a run takes a mesh and a slide of the user's") {
+    const Workplace place;
+    REQUIRE(place.run("--size 16x16 --out first").status == 0);
+    write("mesh.obj", "# relative indices, a quadrilateral, and a face with normals\n" + triangle +
+                          "v 1 1 0.5\r\nvn 0 0 1\nf -4 -3 -1 -2\nf 1//1 2//1 3//1\n");
+    const Outcome outcome = place.run("--size 32x32 --mesh mesh.obj --slide first/reverse.png");
+    CHECK(outcome.status == 0);
+    CHECK(outcome.error == "");
+    CHECK(contents("report/index.html").find("mesh.obj") != std::string::npos);
+    CHECK(contents("report/index.html").find("reverse.png") != std::string::npos);
+}
+
+TEST_CASE("--help says how, and writes nothing") {
+    const Workplace place;
+    const Outcome outcome = place.run("--help");
+    CHECK(outcome.status == 0);
+    CHECK(outcome.error == "");
+    for (const char* option : {"--mesh", "--slide", "--size", "--out", "--timings"})
+        CHECK(outcome.output.find(option) != std::string::npos);
+    CHECK(place.files().empty());
+}

@@ -1,0 +1,232 @@
+#include "scenes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include <glm/ext/matrix_clip_space.hpp>
+#include <glm/ext/matrix_transform.hpp>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+#include <texgen/linear.hpp>
+#include <texgen/projector.hpp>
+#include <texgen/texcoord.hpp>
+
+namespace report {
+
+namespace {
+
+constexpr glm::vec3 plaster(0.86f, 0.85f, 0.82f);
+constexpr glm::vec3 porcelain(0.95f, 0.94f, 0.92f);
+constexpr glm::vec3 steel(0.55f, 0.60f, 0.75f);
+
+// The projector of the GLSL walk-through.
+const texgen::Aim walk_through_aim{.position = {2, 5, 5}, .target = {-2, -4, 0}, .up = {0, 1, 0}};
+
+// How high the slide is when its longer side is 1.
+double relative_height(const Picture& slide) {
+    return static_cast<double>(slide.height) / std::max(slide.width, slide.height);
+}
+
+// `degrees` is the angle of the slide's longer side.
+texgen::PerspectiveLens walk_through_lens(const Picture& slide, double degrees = 30) {
+    const double half_height = relative_height(slide) * std::tan(0.5 * glm::radians(degrees));
+    return {.fovy = texgen::radians(2.0 * std::atan(half_height)),
+            .aspect = static_cast<double>(slide.width) / slide.height,
+            .z_near = 0.2,
+            .z_far = 1000};
+}
+
+struct Eye {
+    glm::dvec3 position, target;
+    double fovy;  // of the shorter side of the picture, in degrees
+};
+
+Camera camera(const Eye& eye, double aspect) {
+    double half_height = std::tan(0.5 * glm::radians(eye.fovy));
+    if (aspect < 1.0) half_height /= aspect;
+    const double z_near = 0.1;
+    const double top = z_near * half_height;
+    const glm::dmat4 projection = glm::frustum(-top * aspect, top * aspect, -top, top, z_near, 200.0);
+    return {projection * glm::lookAt(eye.position, eye.target, glm::dvec3(0, 1, 0)), eye.position};
+}
+
+texgen::ModelMatrix placed(glm::dvec3 position, double turn_degrees, double scale) {
+    glm::dmat4 matrix = glm::translate(glm::dmat4(1.0), position);
+    matrix = glm::rotate(matrix, glm::radians(turn_degrees), glm::dvec3(0, 1, 0));
+    return texgen::ModelMatrix(glm::scale(matrix, glm::dvec3(scale)));
+}
+
+Surface projected(const texgen::Projector& projector, Mesh mesh, const texgen::ModelMatrix& model, glm::vec3 colour) {
+    std::vector<glm::vec4> strq(mesh.positions.size());
+    texgen::generate(texgen::object_linear(projector, model), texgen::object_space(mesh.positions), std::span(strq));
+    return {std::move(mesh), model, std::move(strq), colour};
+}
+
+const texgen::ModelMatrix in_place(glm::dmat4(1.0));
+
+// The mesh under the walk-through's slide, on a floor that its axis meets at the target. The floor reaches behind the
+// camera.
+std::vector<Surface> mesh_on_floor(const texgen::Projector& projector, const Mesh& mesh) {
+    return {projected(projector, parallelogram({-32, -4, 30}, {60, 0, 0}, {0, 0, -60}, 6), in_place, plaster),
+            projected(projector, mesh, placed({-2.2, -4, -0.2}, 25, 0.62), porcelain)};
+}
+
+const Eye beside_walk_through{{1.2, 2.6, 9.2}, {-1.85, -3.75, 0.3}, 39};
+
+Scene walk_through(const Mesh& mesh, const std::shared_ptr<const Picture>& slide, double aspect) {
+    const texgen::Projector projector =
+        texgen::make_projector(walk_through_lens(*slide), walk_through_aim, texgen::opengl).value();
+    return {
+        .name = "teapot",
+        .title = "A mesh and a floor under a slide",
+        .camera = camera(beside_walk_through, aspect),
+        .shading = Shading::slide_as_light,
+        .light = glm::vec4(walk_through_aim.position, 1),
+        .region = texgen::whole_texture(),
+        .views = {{.file = "teapot.png",
+                   .caption = "The walk-through's projector: 30 degrees wide, at (2, 5, 5), aimed at (-2, -4, 0). "
+                              "The slide lies upright and unmirrored on the floor and on the mesh alike. A projected "
+                              "texture casts no shadow: the floor behind the mesh has its part of the slide too.",
+                   .surfaces = mesh_on_floor(projector, mesh),
+                   .slide = slide}}};
+}
+
+Scene orthographic(const Mesh& mesh, const std::shared_ptr<const Picture>& slide, double aspect) {
+    const double half_height = 2.6 * relative_height(*slide);
+    const double half_width = half_height * slide->width / slide->height;
+    const texgen::OrthographicLens lens{.left = -half_width,
+                                        .right = half_width,
+                                        .bottom = -half_height,
+                                        .top = half_height,
+                                        .z_near = 0.2,
+                                        .z_far = 1000};
+    const texgen::Projector projector = texgen::make_projector(lens, walk_through_aim, texgen::opengl).value();
+    return {.name = "orthographic",
+            .title = "The same from an orthographic projector",
+            .camera = camera(beside_walk_through, aspect),
+            .shading = Shading::slide_as_light,
+            .light = glm::vec4(walk_through_aim.position - walk_through_aim.target, 0),
+            .region = texgen::whole_texture(),
+            .views = {{.file = "orthographic.png",
+                       .caption = "The same aim with parallel rays: q is 1 at every vertex, and nothing is divided by "
+                                  "it. On the floor the slide is a parallelogram with checks of one size; what makes "
+                                  "the far ones smaller is the camera.",
+                       .surfaces = mesh_on_floor(projector, mesh),
+                       .slide = slide}}};
+}
+
+// A quadrilateral of the window, w = 1, with the texture coordinates of a rectangle seen in perspective.
+Surface trapezoid(double aspect) {
+    Surface surface{.mesh = {}, .world_from_object = in_place, .strq = {}, .colour = glm::vec3(1)};
+    const float narrow = 0.35f, wide = 0.9f;
+    const float half_width = aspect < 1.0 ? 1.0f : static_cast<float>(1.0 / aspect);
+    const float half_height = aspect < 1.0 ? static_cast<float>(aspect) : 1.0f;
+    for (const auto& [x, y, s, t, q] :
+         {std::array{-wide, -0.8f, 0.0f, 0.0f, wide}, std::array{wide, -0.8f, 1.0f, 0.0f, wide},
+          std::array{narrow, 0.8f, 1.0f, 1.0f, narrow}, std::array{-narrow, 0.8f, 0.0f, 1.0f, narrow}}) {
+        surface.mesh.positions.emplace_back(half_width * x, half_height * y, 0.0f);
+        surface.mesh.normals.emplace_back(0, 0, 1);
+        surface.strq.emplace_back(s * q, t * q, 0.0f, q);
+    }
+    surface.mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    return surface;
+}
+
+Scene qcoord(const std::shared_ptr<const Picture>& slide, double aspect) {
+    const Surface projective = trapezoid(aspect);
+    Surface real = projective;
+    for (glm::vec4& strq : real.strq) strq /= strq.w;
+    return {
+        .name = "trapezoid",
+        .title = "The trapezoid, projective and real",
+        .camera = {glm::dmat4(1.0), glm::dvec3(0, 0, 1)},
+        .shading = Shading::slide_alone,
+        .light = glm::vec4(0, 0, 1, 0),
+        .region = texgen::whole_texture(),
+        .views = {{.file = "trapezoid.png",
+                   .caption = "Projective: (s, t, q) is interpolated and divided at each fragment. The narrow side "
+                              "has the smaller q; the slide looks like a board that leans back, and every straight "
+                              "line of it is straight.",
+                   .surfaces = {projective},
+                   .slide = slide},
+                  {.file = "trapezoid_real.png",
+                   .caption = "Real: divided at the vertices, then interpolated. Wrong: each triangle has an affine "
+                              "image of its own, and along the diagonal from the lower left to the upper right "
+                              "every line has a crease.",
+                   .surfaces = {real},
+                   .slide = slide}}};
+}
+
+// A projector between two walls that stand open towards the camera: one before it, one behind it.
+Scene reverse(const std::shared_ptr<const Picture>& slide, double aspect) {
+    const texgen::Aim aim{.position = {0, 1.8, 0}, .target = {-5, 2.2, 0}, .up = {0, 1, 0}};
+    const texgen::Projector projector =
+        texgen::make_projector(walk_through_lens(*slide, 40), aim, texgen::opengl).value();
+    const auto wall = [&](float side) {
+        return projected(projector, parallelogram({5.0f * side, -0.5f, 3.5f}, {-2.6f * side, 0, -7}, {0, 5.0f, 0}, 2),
+                         in_place, plaster);
+    };
+    std::vector<Surface> surfaces{
+        projected(projector, parallelogram({-7, -0.5f, 20}, {14, 0, 0}, {0, 0, -40}, 4), in_place, plaster), wall(-1),
+        wall(1)};
+    // The projector's own body lies around the centre of projection, where q is nearly 0: it gets no slide.
+    Mesh body = box({-0.3f, 1.5f, -0.25f}, {0.5f, 2.1f, 0.25f});
+    append(body, box({-0.5f, 1.65f, -0.15f}, {-0.3f, 1.95f, 0.15f}));
+    append(body, box({0.04f, -0.5f, -0.06f}, {0.16f, 1.5f, 0.06f}));
+    Surface stand{.mesh = body, .world_from_object = in_place, .strq = {}, .colour = steel};
+    stand.strq.assign(body.positions.size(), glm::vec4(-1, -1, 0, 1));
+    surfaces.push_back(std::move(stand));
+    return {
+        .name = "reverse",
+        .title = "Reverse projection",
+        .camera = camera({{0, 4.0, 13.5}, {0, 1.6, 0}, 46}, aspect),
+        .shading = Shading::slide_as_light,
+        .light = glm::vec4(aim.position, 1),
+        .region = texgen::whole_texture(),
+        .views = {{.file = "reverse.png",
+                   .caption = "A projector between two walls, aimed at the left one. The wall at its back has q < 0 "
+                              "and stays dark.",
+                   .surfaces = surfaces,
+                   .slide = slide},
+                  {.file = "reverse_uncured.png",
+                   .caption = "The same without the test of q: s/q and t/q fall inside the slide behind the "
+                              "projector too, and the wall there gets it upside down: a mirror image.",
+                   .surfaces = surfaces,
+                   .slide = slide,
+                   .coordinates = Coordinates::ignoring_sign_of_q}}};
+}
+
+// The texture modulates the surface everywhere, so what confines the slide is the texture's own white border.
+Scene white_border(const Mesh& mesh, const std::shared_ptr<const Picture>& slide, double aspect) {
+    const texgen::Projector projector =
+        texgen::make_projector(walk_through_lens(*slide), walk_through_aim, texgen::opengl).value();
+    const std::vector<Surface> surfaces = mesh_on_floor(projector, mesh);
+    return {.name = "border",
+            .title = "A white border with modulate",
+            .camera = camera(beside_walk_through, aspect),
+            .shading = Shading::modulate,
+            .light = glm::vec4(walk_through_aim.position, 1),
+            // The border's texels reach as far as the clamp does, so the coordinates are needed far outside the slide.
+            .region = texgen::atlas_tile({-1000, -1000}, {1000, 1000}),
+            .views = {{.file = "border.png",
+                       .caption = "The texture is clamped to its edge and multiplies the colour of the surface. Its "
+                                  "outermost texels are white, so outside the slide nothing changes.",
+                       .surfaces = surfaces,
+                       .slide = std::make_shared<const Picture>(with_white_border(*slide, 2))},
+                      {.file = "border_missing.png",
+                       .caption = "The same without the border: the clamp draws the slide's edge out over the floor.",
+                       .surfaces = surfaces,
+                       .slide = slide}}};
+}
+
+}  // namespace
+
+std::vector<Scene> make_scenes(const Mesh& mesh, const Picture& slide, double aspect) {
+    const auto shared = std::make_shared<const Picture>(slide);
+    return {walk_through(mesh, shared, aspect), qcoord(shared, aspect), reverse(shared, aspect),
+            orthographic(mesh, shared, aspect), white_border(mesh, shared, aspect)};
+}
+
+}  // namespace report

@@ -1,0 +1,334 @@
+#include "timings.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <sstream>
+#include <utility>
+
+#include "failure.hpp"
+#include "files.hpp"
+#include "html.hpp"
+
+namespace report {
+
+namespace {
+
+constexpr std::string_view separator = " > ";
+
+// "key": value of one line, without quotes and the comma.
+std::optional<std::pair<std::string, std::string>> parse_line(std::string_view line) {
+    const std::size_t key = line.find('"');
+    const std::size_t key_end = line.find("\": ");
+    if (key == line.npos || key_end == line.npos || key_end <= key) return std::nullopt;
+    std::string_view value = line.substr(key_end + 3);
+    while (!value.empty() && (value.back() == ',' || value.back() == '\r')) value.remove_suffix(1);
+    if (value.size() >= 2 && value.front() == '"' && value.back() == '"') value = value.substr(1, value.size() - 2);
+    return std::pair{std::string(line.substr(key + 1, key_end - key - 1)), std::string(value)};
+}
+
+// What one "{" to "}" of the file has said.
+struct Entry {
+    std::string run_name, aggregate;
+    std::optional<double> cpu_time, elements, row, texels, ulp;
+
+    void set(const std::string& key, const std::string& value) {
+        if (key == "run_name") run_name = value;
+        if (key == "aggregate_name") aggregate = value;
+        for (auto& [name, number] : {std::pair{"cpu_time", &cpu_time}, std::pair{"elements", &elements},
+                                     std::pair{"row", &row}, std::pair{"texels", &texels}, std::pair{"ulp", &ulp}}) {
+            double parsed = 0;
+            const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), parsed);
+            if (key == name && error == std::errc() && end == value.data() + value.size() && std::isfinite(parsed))
+                *number = parsed;
+        }
+    }
+
+    std::optional<Timing> timing() const {
+        const std::size_t middle = run_name.find(separator);
+        if (aggregate != "median" || middle == run_name.npos || !cpu_time || !elements || !row || !(*elements > 0) ||
+            !(*cpu_time > 0))
+            return std::nullopt;
+        return Timing{.number = *row,
+                      .scene = run_name.substr(0, middle),
+                      .variant = run_name.substr(middle + separator.size()),
+                      .nanoseconds = *cpu_time / *elements,
+                      .has_errors = texels && ulp,
+                      .texels = texels.value_or(0),
+                      .ulp = ulp.value_or(0)};
+    }
+};
+
+// As the issue that set them says it: `than` must take at least `ratio` times as long as `variant`. Without `than` it is
+// the nanoseconds that `variant` may take.
+struct Promise {
+    std::size_t build;  // 0: -O2, 1: -O3 -march=native
+    const char* scene;
+    const char* variant;
+    const char* than;
+    double ratio;
+};
+
+constexpr const char* exact = "texgen, exact";
+constexpr const char* fine = "texgen, 1/512 texel of 4096";
+constexpr const char* coarse = "texgen, 1/16 texel of 1024";
+constexpr const char* planes = "GLM, plane equations";
+constexpr const char* barycentric = "GLM, barycentric";
+constexpr const char* product = "GLM, mat4 * vec4";
+constexpr const char* mix = "GLM, mix";
+constexpr const char* stores = "floor: two store streams";
+constexpr const char* copying = "floor: copying as many bytes";
+
+constexpr Promise promises[] = {
+    {1, "K3, 1024x1, q/w by 1.3", fine, planes, 5},
+    {1, "K3, 1024x1, q/w by 1.3", fine, stores, 0.5},
+    {1, "K3, 1024x16, q/w by 1.3", fine, planes, 5},
+    {1, "K3, 1024x16, q/w by 1.3", fine, stores, 0.5},
+    {1, "K3, 1024x1, q/w by 30", fine, planes, 3},
+    {1, "K3, 1024x16, q/w by 30", fine, planes, 3},
+    {1, "K3, 1024x1, q/w by 1.3", exact, planes, 1.3},
+    {1, "K3, 1024x1, q/w by 1.3", exact, barycentric, 4},
+    {1, "K3, 1024x16, q/w by 1.3", exact, planes, 1.3},
+    {1, "K3, 1024x16, q/w by 1.3", exact, barycentric, 4},
+    {1, "K3, triangles of 64x1 with set-up", fine, planes, 1.2},
+    {1, "K3, triangles of 8x8 with set-up", fine, planes, 1.2},
+    {1, "K3, set-up alone", fine, nullptr, 40},
+    {1, "K1p planar, 1024", coarse, product, 1.8},
+    {1, "K1p interleaved, 1024", coarse, product, 1.2},
+    {1, "K2, 1024", coarse, mix, 2},
+    {1, "K2, 1024", exact, mix, 0.6},
+    {1, "K3, DRAM, 4096x4096, q/w by 1.3", exact, stores, 1 / 1.15},
+    {1, "K1p planar, 16 M (DRAM)", exact, copying, 1 / 1.15},
+    {0, "K3, 1024x1, q/w by 1.3", fine, barycentric, 40},
+    {0, "K3, 1024x16, q/w by 1.3", fine, barycentric, 40},
+    {0, "K3, 1024x1, q/w by 30", fine, barycentric, 30},
+    {0, "K3, 1024x16, q/w by 30", fine, barycentric, 30},
+    {0, "K1p planar, 1024", coarse, product, 15},
+    {0, "K1p interleaved, 1024", coarse, product, 8},
+    {0, "K2, 1024", coarse, mix, 6},
+};
+
+struct Verdict {
+    std::string build, scene, variant, than, promised, measured, possible, answer;
+};
+
+// Those of the promises whose rows were measured. What is possible is the peer's time over that of the stores alone.
+std::vector<Verdict> verdicts_of(const std::vector<Timings>& builds) {
+    std::vector<Verdict> verdicts;
+    for (const Promise& promise : promises) {
+        if (promise.build >= builds.size()) continue;
+        const Timings& build = builds[promise.build];
+        const Timing* ours = build.find(promise.scene, promise.variant);
+        const Timing* than = promise.than == nullptr ? ours : build.find(promise.scene, promise.than);
+        if (ours == nullptr || than == nullptr) continue;
+        Verdict verdict{build.flags, promise.scene, promise.variant, "", "", "", "", ""};
+        if (promise.than == nullptr) {
+            verdict.promised = formatted("%.0f ns", promise.ratio);
+            verdict.measured = formatted("%.1f ns", ours->nanoseconds);
+            verdict.answer = ours->nanoseconds <= promise.ratio ? "yes" : "no";
+        } else {
+            const double measured = than->nanoseconds / ours->nanoseconds;
+            const Timing* floor = build.find(promise.scene, stores);
+            const double possible = floor != nullptr ? than->nanoseconds / floor->nanoseconds : HUGE_VAL;
+            verdict.than = promise.than;
+            verdict.promised = formatted("%.3gx", promise.ratio);
+            verdict.measured = formatted("%.3gx", measured);
+            if (floor != nullptr) verdict.possible = formatted("%.3gx", possible);
+            verdict.answer = measured >= promise.ratio  ? "yes"
+                             : possible < promise.ratio ? "no: beyond the stores"
+                                                        : "no";
+        }
+        verdicts.push_back(verdict);
+    }
+    return verdicts;
+}
+
+// Where a coarser stop of the dial takes clearly longer than a finer one.
+std::vector<std::string> slower_stops(const std::vector<Timings>& builds) {
+    constexpr double noise = 1.1;
+    std::vector<std::string> lines;
+    for (const Timings& build : builds) {
+        for (auto row = build.rows.begin(); row != build.rows.end(); ++row) {
+            if (!row->variant.starts_with("texgen")) continue;
+            for (auto finer = build.rows.begin(); finer != row; ++finer) {
+                if (finer->scene != row->scene || !finer->variant.starts_with("texgen") ||
+                    row->nanoseconds <= noise * finer->nanoseconds)
+                    continue;
+                lines.push_back(build.flags + ": " + row->scene + ": " + row->variant +
+                                formatted(" takes %.2f times as long as ", row->nanoseconds / finer->nanoseconds) +
+                                finer->variant);
+                break;
+            }
+        }
+    }
+    return lines;
+}
+
+// The row that a scene's others are compared with.
+const Timing* baseline(const Timings& build, const std::string& scene) {
+    const auto found = std::ranges::find_if(
+        build.rows, [&](const Timing& row) { return row.scene == scene && row.variant.starts_with("GLM"); });
+    return found == build.rows.end() ? nullptr : &*found;
+}
+
+std::string workload_of(const std::string& scene) { return scene.substr(0, scene.find(',')); }
+
+std::vector<std::string> scenes_of(const std::vector<Timings>& builds) {
+    std::vector<std::string> scenes;
+    for (const Timing& row : builds.front().rows)
+        if (std::ranges::find(scenes, row.scene) == scenes.end()) scenes.push_back(row.scene);
+    return scenes;
+}
+
+std::string cells_of(const Timings& build, const std::string& scene, const std::string& variant) {
+    const Timing* row = build.find(scene, variant);
+    if (row == nullptr) return "<td></td><td></td><td></td><td></td>";
+    const Timing* glm = baseline(build, scene);
+    return "<td>" + formatted("%.3f", row->nanoseconds) + "</td><td>" +
+           (glm == nullptr ? "" : formatted("%.2f", glm->nanoseconds / row->nanoseconds)) + "</td><td>" +
+           (row->has_errors ? number(row->texels) : "") + "</td><td>" + (row->has_errors ? number(row->ulp) : "") +
+           "</td>";
+}
+
+constexpr const char* explanation =
+    "Each row computes what its scene asks for, is checked against the definitions in long double, and is then timed: "
+    "medians of rounds in random order, in processor time, over inputs that change. A time is that of one element: a "
+    "point, a value of alpha, a fragment; for the set-up a triangle. K1h: points to s, t, r, q. K1p: points to s/q, "
+    "t/q. "
+    "K2: a segment at an array of alpha to s, t. K3: fragments of a triangle to s, t; q/w grows along the rows by the "
+    "given factor, or not at all (parallel); set-up counts only where it says so. Errors are the largest, in texels of "
+    "4096 and in units in the last place of float. Speed is relative to the first GLM row of the scene in the same "
+    "run. "
+    "Floors only move bytes.";
+
+}  // namespace
+
+const Timing* Timings::find(std::string_view scene, std::string_view variant) const {
+    const auto found =
+        std::ranges::find_if(rows, [&](const Timing& row) { return row.scene == scene && row.variant == variant; });
+    return found == rows.end() ? nullptr : &*found;
+}
+
+Timings read_timings(const std::string& file) {
+    std::istringstream text(read_file(file));
+    Timings timings;
+    Entry entry;
+    for (std::string line; std::getline(text, line);) {
+        if (line.find('{') != line.npos) entry = {};
+        if (const auto pair = parse_line(line)) {
+            if (pair->first == "compiler") timings.compiler = pair->second;
+            if (pair->first == "flags") timings.flags = pair->second;
+            entry.set(pair->first, pair->second);
+        } else if (line.find('}') != line.npos) {
+            if (const auto timing = entry.timing()) timings.rows.push_back(*timing);
+            entry = {};
+        }
+    }
+    if (timings.rows.empty()) throw Failure{"no timings in " + file};
+    std::ranges::sort(timings.rows, {}, &Timing::number);
+    return timings;
+}
+
+std::vector<TimingsPlot> plots_of(const std::vector<Timings>& builds) {
+    std::vector<TimingsPlot> plots;
+    if (builds.empty()) return plots;
+    for (const std::string& scene : scenes_of(builds)) {
+        if (scene.find(", 1024") == scene.npos) continue;
+        for (const Timings& build : builds) {
+            std::vector<Timing> rows;
+            for (const Timing& row : build.rows)
+                if (row.scene == scene && row.has_errors) rows.push_back(row);
+            const std::string name = formatted("timings_%zu", plots.size());
+            std::string script =
+                "set terminal svg size 760,420 font 'sans-serif,13' background 'white'\nset output '" + name +
+                ".svg'\nset logscale xy\nset format y '10^{%L}'\nset xlabel 'ns an element'\n"
+                "set ylabel 'largest error, texels of 4096'\nset grid\nset key outside right top reverse Left\n"
+                "set title \"" +
+                scene + ", " + build.flags + "\" noenhanced\n";
+            const auto point = [](const Timing& row) {
+                return formatted("%.6g %.6g\n", row.nanoseconds, std::max(row.texels, 1e-6));
+            };
+            for (std::size_t i = 0; i < rows.size(); ++i)
+                script += formatted("$row%zu << end\n", i) + point(rows[i]) + "end\n";
+            std::vector<Timing> in_time = rows;
+            std::ranges::sort(in_time, {}, &Timing::nanoseconds);
+            script += "$front << end\n";
+            double least = HUGE_VAL;
+            for (const Timing& row : in_time) {
+                if (row.texels >= least) continue;
+                least = row.texels;
+                script += point(row);
+            }
+            script += "end\nplot $front using 1:2 with steps linecolor 'grey' title 'Pareto front'";
+            for (std::size_t i = 0; i < rows.size(); ++i)
+                script += formatted(", \\\n     $row%zu using 1:2 with points pointtype %d pointsize 1.2 title \"%s\"",
+                                    i, rows[i].variant.starts_with("texgen") ? 7 : 6, rows[i].variant.c_str());
+            plots.push_back({scene + ", " + build.flags, name, script + "\n", {}});
+        }
+    }
+    return plots;
+}
+
+std::string text_of(const std::vector<Timings>& builds) {
+    std::string text;
+    for (const Verdict& v : verdicts_of(builds))
+        text +=
+            formatted("%-26s %-34s %-28s %-29s %8s %8s %8s  %s\n", v.build.c_str(), v.scene.c_str(), v.variant.c_str(),
+                      v.than.c_str(), v.promised.c_str(), v.measured.c_str(), v.possible.c_str(), v.answer.c_str());
+    for (const std::string& line : slower_stops(builds)) text += line + "\n";
+    return text;
+}
+
+std::string html_of(const std::vector<Timings>& builds, const std::vector<TimingsPlot>& plots) {
+    if (builds.empty()) return {};
+    std::string html =
+        "<h2>Speed promised and measured</h2>\n<p>Possible is the peer's time over that of storing the "
+        "results alone, on this processor.</p>\n<table>\n"
+        "<tr><th>scene</th><th>row</th><th>against</th><th>build</th><th>promised</th><th>measured</th>"
+        "<th>possible</th><th>kept</th></tr>\n";
+    for (const Verdict& v : verdicts_of(builds)) {
+        html += "<tr>";
+        for (const std::string* cell :
+             {&v.scene, &v.variant, &v.than, &v.build, &v.promised, &v.measured, &v.possible, &v.answer})
+            html += "<td>" + escaped(*cell) + "</td>";
+        html += "</tr>\n";
+    }
+    html += "</table>\n";
+    if (const std::vector<std::string> lines = slower_stops(builds); !lines.empty()) {
+        html += "<p>Where accepting a larger error costs time:</p>\n<ul>\n";
+        for (const std::string& line : lines) html += "<li>" + escaped(line) + "</li>\n";
+        html += "</ul>\n";
+    }
+
+    html += "<h2>Workloads</h2>\n<p>" + std::string(explanation) + "</p>\n";
+    std::string header = "<tr><th></th>", names = "<tr><th>row</th>";
+    for (const Timings& build : builds) {
+        header += "<th colspan=\"4\">" + escaped(build.compiler + " " + build.flags) + "</th>";
+        names += "<th>ns</th><th>speed</th><th>max texel</th><th>max ulp</th>";
+    }
+    header += "</tr>\n" + names + "</tr>\n";
+    std::string workload;
+    for (const std::string& scene : scenes_of(builds)) {
+        if (workload_of(scene) != workload) {
+            html += workload.empty() ? "" : "</table>\n";
+            workload = workload_of(scene);
+            html += "<h3>" + escaped(workload) + "</h3>\n<table>\n" + header;
+        }
+        html += formatted("<tr class=\"scene\"><td colspan=\"%zu\">", 1 + 4 * builds.size()) + escaped(scene) +
+                "</td></tr>\n";
+        for (const Timing& row : builds.front().rows) {
+            if (row.scene != scene) continue;
+            html += row.variant.starts_with("texgen") ? "<tr class=\"library\"><td>" : "<tr><td>";
+            html += escaped(row.variant) + "</td>";
+            for (const Timings& build : builds) html += cells_of(build, scene, row.variant);
+            html += "</tr>\n";
+        }
+    }
+    html += "</table>\n<div class=\"pictures\">\n";
+    for (const TimingsPlot& plot : plots) html += figure(plot.svg, plot.title, plot.title);
+    return html + "</div>\n";
+}
+
+}  // namespace report
