@@ -136,7 +136,7 @@ TEST_CASE("every fragment of a row whose values all lie between two floats is de
                 const Shot shot = make(width, height, random);
                 const ExactTriangle exact(shot.triangle);
                 for (const int column : {0, width - 1}) {
-                    const support::Quotient u = exact.at(shot.rect.x + column, shot.rect.y).over_q(0);
+                    const support::Quotient u = exact.at(shot.x(column), shot.y(0)).over_q(0);
                     REQUIRE((make == row_of_ties ? support::is_tie(u) : support::distance_to_tie(u) < 0x1p-46));
                 }
                 Seen seen;

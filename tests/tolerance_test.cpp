@@ -116,8 +116,8 @@ double largest_quotient(const Shot& shot) {
     const ExactTriangle exact(shot.triangle);
     double largest = 0.0;
     for (std::int64_t i = 0; i < 9; ++i) {
-        const support::Homogeneous at = exact.at(shot.rect.x + (i % 3) * (shot.rect.width - 1) / 2,
-                                                 shot.rect.y + (i / 3) * (shot.rect.height - 1) / 2);
+        const support::Homogeneous at =
+            exact.at(shot.x((i % 3) * (shot.rect.width - 1) / 2), shot.y((i / 3) * (shot.rect.height - 1) / 2));
         for (std::size_t k = 0; k < 3; ++k)
             if (at.q.sign() > 0) largest = std::max(largest, std::fabs(at.over_q(k).estimate()));
     }

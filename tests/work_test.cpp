@@ -56,8 +56,7 @@ TextureRegion region_at(const Shot& shot, const ExactTriangle& exact, Random& ra
     const auto somewhere = [&](int length) {
         return random.integer(0, 2) == 0 ? random.integer(0, length - 1) : random.coin() ? 0 : length - 1;
     };
-    const Homogeneous at =
-        exact.at(shot.rect.x + somewhere(shot.rect.width), shot.rect.y + somewhere(shot.rect.height));
+    const Homogeneous at = exact.at(shot.x(somewhere(shot.rect.width)), shot.y(somewhere(shot.rect.height)));
     return at.q.sign() > 0 ? support::region_about(at.over_q(0), at.over_q(1), random) : texgen::whole_texture();
 }
 
@@ -66,7 +65,7 @@ TextureRegion region_around(const Shot& shot, const ExactTriangle& exact, Random
     glm::dvec2 least(HUGE_VAL), largest(-HUGE_VAL);
     for (const int x : {0, shot.rect.width - 1}) {
         for (const int y : {0, shot.rect.height - 1}) {
-            const Homogeneous at = exact.at(shot.rect.x + x, shot.rect.y + y);
+            const Homogeneous at = exact.at(shot.x(x), shot.y(y));
             if (at.q.sign() <= 0) return texgen::whole_texture();
             for (int k = 0; k < 2; ++k) {
                 const double u = at.over_q(static_cast<std::size_t>(k)).estimate();
@@ -112,8 +111,8 @@ Truth truth_of(const Shot& shot, const ExactTriangle& exact, const TextureRegion
 double largest_error(const Shot& shot, const ExactTriangle& exact, const Outputs& out, std::size_t coordinate) {
     double largest = 0.0;
     for (std::size_t i = 0; i < out.size(); ++i) {
-        const std::int64_t x = shot.rect.x + static_cast<std::int64_t>(i) % shot.rect.width;
-        const std::int64_t y = shot.rect.y + static_cast<std::int64_t>(i) / shot.rect.width;
+        const std::int64_t x = shot.x(static_cast<int>(i) % shot.rect.width);
+        const std::int64_t y = shot.y(static_cast<int>(i) / shot.rect.width);
         if (!exact.has_positive_w(x, y)) continue;
         const Homogeneous at = exact.at(x, y);
         if (at.q.sign() > 0)
@@ -187,7 +186,7 @@ TEST_CASE("where nothing is lit by a margin nothing is done; where all is lit by
             const double scale = 1e-6 * support::magnitude(exact.at(shot.rect.x, shot.rect.y).q).estimate();
             for (const int x : {0, shot.rect.width - 1}) {
                 for (const int y : {0, shot.rect.height - 1}) {
-                    const Homogeneous at = exact.at(shot.rect.x + x, shot.rect.y + y);
+                    const Homogeneous at = exact.at(shot.x(x), shot.y(y));
                     all_in_front = all_in_front && at.q.estimate() > scale;
                     all_behind = all_behind && at.q.estimate() < -scale;
                     for (std::size_t k = 0; k < 2 && all_in_front; ++k) {

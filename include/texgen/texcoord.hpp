@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <optional>
 #include <span>
@@ -43,9 +44,13 @@ public:
 
     std::size_t size() const noexcept { return count_; }
 
-    // Whether the layout is one that needs no gathering: one array of vectors, or three arrays of floats.
-    bool is_interleaved() const noexcept { return stride_bytes_ == 3 * sizeof(float) && y_ == x_ + 1 && z_ == x_ + 2; }
-    bool is_planar() const noexcept { return stride_bytes_ == sizeof(float); }
+    // Whether the layout is one that needs no gathering: one array of vectors, or three arrays of floats, aligned.
+    bool is_interleaved() const noexcept {
+        return stride_bytes_ == 3 * sizeof(float) && y_ == x_ + 1 && z_ == x_ + 2 && is_aligned(x_);
+    }
+    bool is_planar() const noexcept {
+        return stride_bytes_ == sizeof(float) && is_aligned(x_) && is_aligned(y_) && is_aligned(z_);
+    }
 
     const float* x() const noexcept { return x_; }
     const float* y() const noexcept { return y_; }
@@ -56,6 +61,9 @@ public:
     }
 
 private:
+    static bool is_aligned(const float* first) noexcept {
+        return reinterpret_cast<std::uintptr_t>(first) % alignof(float) == 0;
+    }
     static float load(const float* first, std::size_t offset_bytes) noexcept {
         float value;
         std::memcpy(&value, reinterpret_cast<const std::byte*>(first) + offset_bytes, sizeof value);

@@ -25,6 +25,10 @@ namespace support {
 struct Shot {
     texgen::Triangle triangle;
     texgen::FragmentRect rect;
+
+    // The fragment at a column and a row of the rectangle, which may reach beyond the range of int.
+    std::int64_t x(std::int64_t column) const { return rect.x + column; }
+    std::int64_t y(std::int64_t row) const { return rect.y + row; }
 };
 
 inline std::string text(const texgen::FragmentRect& rect) {
@@ -240,7 +244,7 @@ inline bool changes_sign(const Shot& shot, const ExactTriangle& exact, std::size
     bool negative = false, positive = false;
     for (const std::int64_t x : {0, shot.rect.width - 1}) {
         for (const std::int64_t y : {0, shot.rect.height - 1}) {
-            const Homogeneous at = exact.at(shot.rect.x + x, shot.rect.y + y);
+            const Homogeneous at = exact.at(shot.x(x), shot.y(y));
             const int sign = (coordinate == 0 ? at.s : at.q).sign();
             negative = negative || sign < 0;
             positive = positive || sign > 0;
@@ -253,7 +257,7 @@ template <class Predicate>
 bool any_fragment(const Shot& shot, const ExactTriangle& exact, const Predicate& predicate) {
     for (std::int64_t y = 0; y < shot.rect.height; ++y)
         for (std::int64_t x = 0; x < shot.rect.width; ++x)
-            if (predicate(exact.at(shot.rect.x + x, shot.rect.y + y))) return true;
+            if (predicate(exact.at(shot.x(x), shot.y(y)))) return true;
     return false;
 }
 
