@@ -11,7 +11,8 @@
 //              side. Always the nearest float.                                              shade_nearest()
 //   polynomial along chunks of 32 to 256 fragments of a row, the line or the parabola through the exact values at the
 //              ends (and the middle), certified chunk by chunk.                             shade_polynomial()
-//   division   where a chunk's certificate fails: in float if its bound fits, else in double, else as exact.
+//   division   where a chunk's certificate fails: of float functions if their bound fits, else of double functions
+//              rounded to float, else as exact.
 //                                                                                           shade_division()
 
 #include <cmath>
@@ -37,14 +38,16 @@ namespace texgen {
 
 namespace detail {
 
-// The values at the corner fragments of a tile of up to two numerators F and of Q. They are linear there, so what holds
-// at the corners with a margin for rounding holds at every fragment.
+// A tile of up to two numerators F and of Q: the linear functions, their values at the corner fragments and bounds on
+// their errors. What holds at the corners with a margin for rounding holds at every fragment.
 struct Corners {
+    Ramp numerator_ramp[2], q_ramp;
     double numerator[2][4];
     double q[4];
     double numerator_error[2];
     double q_error;
     double least_q, largest_q;
+    double reciprocal;  // the largest 1 / q, for a tile in front
 
     bool all_behind() const noexcept { return largest_q < -q_error; }
     bool all_in_front() const noexcept { return least_q > q_error; }
@@ -59,7 +62,7 @@ struct Corners {
                numerator_error[k];
     }
     double largest_quotient(std::size_t k) const noexcept {
-        if (largest_q < 1.25 * least_q) return largest_numerator(k) / (least_q - q_error);
+        if (largest_q < 1.25 * least_q) return largest_numerator(k) * reciprocal;
         double largest = 0.0;
         for (std::size_t i = 0; i < 4; ++i)
             largest = larger(largest, (std::fabs(numerator[k][i]) + numerator_error[k]) / (q[i] - q_error));
@@ -68,8 +71,7 @@ struct Corners {
 
     // The error of F/Q in double for a tile well in front: as in certain_quotient(), where it is worst.
     double quotient_error(std::size_t k, double largest) const noexcept {
-        return 1.0001 * (numerator_error[k] + q_error * largest) / (least_q - q_error) +
-               4.0 * unit_roundoff_double * largest;
+        return 1.0001 * (numerator_error[k] + q_error * largest) * reciprocal + 4.0 * unit_roundoff_double * largest;
     }
 };
 
@@ -77,8 +79,8 @@ struct Corners {
 inline Corners corners(const TrianglePlanes& planes, const Plane* const (&numerator)[2], std::size_t numerators,
                        const Plane& q, const Tile& tile) noexcept {
     Corners corners{};
-    const auto fill = [&](const Plane& plane, double(&value)[4]) {
-        const Ramp ramp = planes.ramp(plane, tile);
+    const auto fill = [&](const Plane& plane, Ramp& ramp, double(&value)[4]) {
+        ramp = planes.ramp(plane, tile);
         const double across = (tile.width - 1) * ramp.dx;
         const double down = (tile.height - 1) * ramp.dy;
         value[0] = ramp.base;
@@ -87,10 +89,12 @@ inline Corners corners(const TrianglePlanes& planes, const Plane* const (&numera
         value[3] = value[2] + across;
         return planes.error(plane, tile);
     };
-    for (std::size_t k = 0; k < numerators; ++k) corners.numerator_error[k] = fill(*numerator[k], corners.numerator[k]);
-    corners.q_error = fill(q, corners.q);
+    for (std::size_t k = 0; k < numerators; ++k)
+        corners.numerator_error[k] = fill(*numerator[k], corners.numerator_ramp[k], corners.numerator[k]);
+    corners.q_error = fill(q, corners.q_ramp, corners.q);
     corners.least_q = smaller(smaller(corners.q[0], corners.q[1]), smaller(corners.q[2], corners.q[3]));
     corners.largest_q = larger(larger(corners.q[0], corners.q[1]), larger(corners.q[2], corners.q[3]));
+    corners.reciprocal = 1.0 / (corners.least_q - corners.q_error);
     return corners;
 }
 
@@ -223,28 +227,34 @@ struct ChunkChoice {
 
 // Only a share of the room that rounding leaves is given to the polynomial, where the tile is a sample of a larger one.
 template <bool Affine>
-ChunkChoice choose_chunk(const Corners& at, std::size_t k, double largest, double f_x, double q_x, int width,
-                         double tolerance, int longest, double share = 1.0) noexcept {
+ChunkChoice choose_chunk(const Corners& at, std::size_t k, double largest, int width, double tolerance, int longest,
+                         double share = 1.0) noexcept {
+    constexpr int shortest = Affine ? 64 : 32;
+    const double f_x = at.numerator_ramp[k].dx;
+    const double q_x = at.q_ramp.dx;
     const auto slope_times_q_squared = [&](std::size_t i) {
         const double first = f_x * at.q[i];
         const double second = at.numerator[k][i] * q_x;
         return std::fabs(first - second) + gamma(4) * (std::fabs(first) + std::fabs(second));
     };
     const double steepest = larger(slope_times_q_squared(0), slope_times_q_squared(2));
-    const double double_error = 2.0 * at.quotient_error(k, largest);
-    const double reciprocal = 1.0 / (at.least_q - at.q_error);
-    for (int chunk = longest; chunk >= (Affine ? 64 : 32); chunk /= 2) {
+    const double without_slope = 0x1.01p-24 * (2.0 * largest) + 2.0 * at.quotient_error(k, largest) + 0x1p-133;
+    const auto error_of = [&](int chunk) {
         // The last chunk may reach beyond the tile, where q is less by this share of itself, and 1/q greater.
-        const double beyond = (-width & (chunk - 1)) * std::fabs(q_x) * reciprocal;
-        if (!(beyond <= 0.5) || !(at.least_q * (1.0 - beyond) > larger(0x1p25 * at.q_error, 0x1p-199))) continue;
-        const double largest_reciprocal = reciprocal * (1.0 + 2.0 * beyond);
+        const double beyond = (-width & (chunk - 1)) * std::fabs(q_x) * at.reciprocal;
+        if (!(beyond <= 0.5) || !(at.least_q * (1.0 - beyond) > larger(0x1p25 * at.q_error, 0x1p-199)))
+            return std::numeric_limits<double>::infinity();
+        const double largest_reciprocal = at.reciprocal * (1.0 + 2.0 * beyond);
         const double du = steepest * chunk * largest_reciprocal * largest_reciprocal;
         const double dq = std::fabs(q_x) * chunk * largest_reciprocal;
         const double shape = Affine ? 0.25 * du * dq * (1.0 + 0.5 * dq) : 0.0482 * du * dq * dq;
-        const double error = 1.001 * shape / share + 0x1.01p-24 * (2.0 * largest + 6.0 * du) + double_error + 0x1p-133;
-        if (error <= tolerance * (1.0 - 0x1p-18)) return {chunk, error};
-    }
-    return {0, 0.0};
+        return 1.001 * shape / share + 0x1.01p-24 * 6.0 * du + without_slope;
+    };
+    const double accepted = tolerance * (1.0 - 0x1p-18);
+    if (!(error_of(shortest) <= accepted)) return {0, 0.0};
+    for (int chunk = longest; chunk > shortest; chunk /= 2)
+        if (const double error = error_of(chunk); error <= accepted) return {chunk, error};
+    return {shortest, error_of(shortest)};
 }
 
 // The nodes of a chunk cost as much as some twenty fragments, and choosing its length as much as some hundred: short
@@ -271,11 +281,9 @@ inline detail::Plan TriangleSetup::plan(const detail::Tile& tile, const detail::
 
     const double largest[2] = {at.largest_quotient(0), at.largest_quotient(1)};
     const auto choose = [&]<bool Affine>(Work work) {
-        const double q_x = q_.value.dx;
-        const auto s = detail::choose_chunk<Affine>(at, 0, largest[0], s_.value.dx, q_x, tile.width, tolerance_, 256);
+        const auto s = detail::choose_chunk<Affine>(at, 0, largest[0], tile.width, tolerance_, 256);
         if (s.chunk == 0) return false;
-        const auto t =
-            detail::choose_chunk<Affine>(at, 1, largest[1], t_.value.dx, q_x, tile.width, tolerance_, s.chunk);
+        const auto t = detail::choose_chunk<Affine>(at, 1, largest[1], tile.width, tolerance_, s.chunk);
         if (t.chunk == 0) return false;
         plan = {work, t.chunk, {s.error, t.error}};
         return true;
@@ -332,7 +340,7 @@ private:
         if (at.all_behind()) return clear(tile);
         // Beyond a ratio of 2^12 the error bound of the largest quotient would make the smallest ones doubtful.
         if (at.well_in_front() && at.least_q > 0x1p-12 * at.largest_q) {
-            TileJob job = this->job(tile);
+            TileJob job = this->job(tile, at);
             for (std::size_t k = 0; k < count_; ++k)
                 job.quotient_error[k] = at.quotient_error(k, at.largest_quotient(k));
             const Kernels& kernels = chosen_kernels();
@@ -361,7 +369,7 @@ private:
 
     // Chunks of a row by polynomials; what their certificates do not cover by division.
     void shade_polynomial(const Tile& tile, const Corners& at, const Plan& plan) noexcept {
-        TileJob job = this->job(tile);
+        TileJob job = this->job(tile, at);
         job.chunk = plan.chunk;
         job.tolerance = setup_.tolerance_ * (1.0 - 0x1p-20);
         job.q_error = at.q_error;
@@ -381,23 +389,30 @@ private:
         }
     }
 
-    // A division a fragment: in float where that stays inside the tolerance, else in double, else as exact.
+    // A division a fragment: of linear functions in float where that stays inside the tolerance, else of those in double
+    // rounded to float, else as exact.
     void shade_division(const Tile& tile, const Corners& at) noexcept {
         if (!at.well_in_front()) return shade_nearest(tile, at);
-        TileJob job = this->job(tile);
+        TileJob job = this->job(tile, at);
         job.chunk = tile.width < 256 ? tile.width : 256;
-        // A float division does twice the lanes of one in double, if the row has as many.
+        // A row of functions in float takes twice the lanes, if it has as many.
         bool float_fits = tile.width >= 16;
-        bool double_fits = true;
+        bool rounded_fits = at.least_q > 0x1p-20 * at.largest_q;
         for (std::size_t k = 0; k < count_; ++k) {
             const double largest = at.largest_quotient(k);
             float_fits = float_fits && float_error(at, k, largest, job.chunk) <= setup_.tolerance_;
-            double_fits =
-                double_fits && at.quotient_error(k, largest) + 1.0001 * half_ulp(largest) <= setup_.tolerance_;
+            rounded_fits = rounded_fits && rounded_error(at, k, largest) <= setup_.tolerance_;
         }
         if (float_fits) return chosen_kernels().divide_float(job);
-        if (double_fits) return chosen_kernels().divide(job);
-        shade_nearest(tile, at);
+        if (!rounded_fits) return shade_nearest(tile, at);
+        job.scale(reciprocal_power_of_two(at.largest_q));
+        chosen_kernels().divide_rounded(job);
+    }
+
+    // The error of F/Q with F and Q rounded to float, then the reciprocal and the product: 4 u |F/Q|, u = 2^-24. With
+    // 2^-21 <= Q <= 2 a float of F that is subnormal, or flushed to zero, adds less than 2^-104.
+    double rounded_error(const Corners& at, std::size_t k, double largest) const noexcept {
+        return 4.01 * unit_roundoff_float * largest + 0x1p-104 + at.quotient_error(k, largest);
     }
 
     // The error of F/Q by float functions F_b + i F_x, |i| <= chunk / 2, with u = 2^-24: F_b, F_x, the product and the
@@ -420,9 +435,7 @@ private:
         if (!at.well_in_front()) return 0;
         int chunk = 256;
         for (std::size_t k = 0; k < count_ && chunk != 0; ++k)
-            chunk = choose_chunk<false>(at, k, at.largest_quotient(k), plane_[k]->value.dx, setup_.q_.value.dx, chunk,
-                                        setup_.tolerance_, chunk, 0.4)
-                        .chunk;
+            chunk = choose_chunk<false>(at, k, at.largest_quotient(k), chunk, setup_.tolerance_, chunk, 0.4).chunk;
         return chunk;
     }
 
@@ -457,15 +470,15 @@ private:
     }
 
     // What every kernel needs.
-    TileJob job(const Tile& tile) noexcept {
+    TileJob job(const Tile& tile, const Corners& at) noexcept {
         TileJob job{};
         job.numerators = static_cast<int>(count_);
         job.width = tile.width;
         job.height = tile.height;
-        job.q = setup_.planes_.ramp(setup_.q_, tile);
+        job.q = at.q_ramp;
         job.q_is_constant = setup_.q_.is_constant();
         for (std::size_t k = 0; k < count_; ++k) {
-            job.numerator[k] = setup_.planes_.ramp(*plane_[k], tile);
+            job.numerator[k] = at.numerator_ramp[k];
             job.out[k] = output_[k].empty() ? scratch_[k] : output_[k].data() + offset(tile.x, tile.y);
             job.pitch[k] = output_[k].empty() ? 0 : rect_.width;
         }

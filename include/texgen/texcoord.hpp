@@ -224,18 +224,29 @@ inline void project_nearest(PointJob job, std::size_t begin, std::size_t end) no
     }
 }
 
-// In float where a block is certified to be inside the tolerance, else as exact. A block that fails has company: after
-// each failure it is longer until float is tried again.
-inline void project_within_tolerance(const PointJob& job) noexcept {
-    if (job.tolerance == 0.0) return project_nearest(job, 0, job.count);
-    const Kernels& kernels = chosen_kernels();
+// Points begin to end by a kernel that stops at a block whose error is not certified to be inside the tolerance. Such a
+// block has company: `otherwise` gets more points after each failure, until the kernel is tried again.
+template <class Kernel, class Otherwise>
+void project_within(Kernel kernel, PointJob job, std::size_t begin, std::size_t end,
+                    const Otherwise& otherwise) noexcept {
+    job.count = end;
     std::size_t pause = float_block;
-    for (std::size_t i = kernels.divide_points_float(job, 0); i < job.count; i = kernels.divide_points_float(job, i)) {
-        pause = pause < job.count / 8 ? 8 * pause : job.count;
-        const std::size_t end = pause < job.count - i ? i + pause : job.count;
-        project_nearest(job, i, end);
-        i = end;
+    for (std::size_t i = kernel(job, begin); i < end; i = kernel(job, i)) {
+        pause = pause < (end - begin) / 8 ? 8 * pause : end - begin;
+        const std::size_t resume = pause < end - i ? i + pause : end;
+        otherwise(job, i, resume);
+        i = resume;
     }
+}
+
+// The dial: forms and division in float, else forms in double divided in float, else as exact.
+inline void project_within_tolerance(const PointJob& points) noexcept {
+    if (points.tolerance == 0.0) return project_nearest(points, 0, points.count);
+    const Kernels& kernels = chosen_kernels();
+    const auto rounded = [&kernels](const PointJob& job, std::size_t begin, std::size_t end) {
+        project_within(kernels.divide_points_rounded, job, begin, end, project_nearest);
+    };
+    project_within(kernels.divide_points_float, points, 0, points.count, rounded);
 }
 
 }  // namespace TEXGEN_BUILD

@@ -48,21 +48,23 @@ TEXGEN_INLINE void store_first(const TileJob& job, const TileRow<Numerators>& ro
 // ---- Division in double ----------------------------------------------------------------------------------------
 
 // One vector of quotients from `index` on. With Nearest, marks in `doubtful` where value - error and value + error do
-// not round to one float.
+// not round to one float; else numerators and q are rounded to float and divided there.
 template <bool ConstantQ, bool Nearest, std::size_t Numerators>
 TEXGEN_INLINE void divide_vector(const TileJob& job, const TileRow<Numerators>& row, const Doubles& index,
                                  const Doubles& reciprocal_of_constant, Floats (&quotient)[Numerators],
                                  Words& doubtful) noexcept {
-    Doubles reciprocal = reciprocal_of_constant;
-    if constexpr (!ConstantQ) reciprocal = 1.0 / (index * job.q.dx + row.q);
-    for (std::size_t k = 0; k < Numerators; ++k) {
-        const Doubles value = (index * job.numerator[k].dx + row.base[k]) * reciprocal;
-        if constexpr (Nearest) {
+    if constexpr (Nearest) {
+        Doubles reciprocal = reciprocal_of_constant;
+        if constexpr (!ConstantQ) reciprocal = 1.0 / (index * job.q.dx + row.q);
+        for (std::size_t k = 0; k < Numerators; ++k) {
+            const Doubles value = (index * job.numerator[k].dx + row.base[k]) * reciprocal;
             quotient[k] = to_floats(value - job.quotient_error[k]);
             doubtful |= bits(quotient[k]) ^ bits(to_floats(value + job.quotient_error[k]));
-        } else {
-            quotient[k] = to_floats(value);
         }
+    } else {
+        const Floats reciprocal = 1.0f / to_floats(index * job.q.dx + row.q);
+        for (std::size_t k = 0; k < Numerators; ++k)
+            quotient[k] = to_floats(index * job.numerator[k].dx + row.base[k]) * reciprocal;
     }
 }
 
@@ -112,7 +114,7 @@ inline TileJob::Unit divide_nearest(const TileJob& original, TileJob::Unit first
                                  : divide_units<false, true, 1, false>(job, first);
 }
 
-inline void divide(const TileJob& original) noexcept {
+inline void divide_rounded(const TileJob& original) noexcept {
     const TileJob job = original;
     const TileJob::Unit first = job.unit_at(0, 0);
     if (job.lit != nullptr)
@@ -462,20 +464,57 @@ inline std::size_t divide_points_nearest(const PointJob& original, std::size_t f
     return job.triples ? divide_points_nearest_from<true>(job, first) : divide_points_nearest_from<false>(job, first);
 }
 
-// All in float, in blocks of float_block points. With u = 2^-24 the rounded forms and their four terms give
-// 5 u sum |T_j| max |v_j|; the largest quotient and the least q, found on the way, then bound the error of every point
-// as in certain_quotient(), with 2 u for the reciprocal and the product. Returns where the first block begins that is not
-// inside the tolerance (it is written all the same), or the count. A NaN makes the largest quotient one, and fails.
-template <bool Triples, bool Pairs, std::size_t Numerators, bool Lit>
-TEXGEN_INLINE std::size_t divide_points_float_of(const PointJob& job, std::size_t first) noexcept {
-    const PointForm* const form[3] = {&job.q, &job.numerator[0], &job.numerator[Numerators - 1]};
-    float f[3][4];
-    for (std::size_t k = 0; k < 3; ++k) {
-        f[k][0] = static_cast<float>(form[k]->x);
-        f[k][1] = static_cast<float>(form[k]->y);
-        f[k][2] = static_cast<float>(form[k]->z);
-        f[k][3] = static_cast<float>(form[k]->w);
+// The forms of q and of the numerators in float, in the order in which they are computed.
+template <std::size_t Numerators>
+struct FloatForms {
+    float coefficient[1 + Numerators][4];
+
+    TEXGEN_INLINE explicit FloatForms(const PointJob& job) noexcept {
+        fill(coefficient[0], job.q);
+        for (std::size_t k = 0; k < Numerators; ++k) fill(coefficient[1 + k], job.numerator[k]);
     }
+    TEXGEN_INLINE WideFloats at(std::size_t k, const WideFloats& x, const WideFloats& y,
+                                const WideFloats& z) const noexcept {
+        const float(&c)[4] = coefficient[k];
+        return x * c[0] + (y * c[1] + (z * c[2] + c[3]));
+    }
+
+private:
+    TEXGEN_INLINE static void fill(float (&to)[4], const PointForm& form) noexcept {
+        to[0] = static_cast<float>(form.x);
+        to[1] = static_cast<float>(form.y);
+        to[2] = static_cast<float>(form.z);
+        to[3] = static_cast<float>(form.w);
+    }
+};
+
+// The same in double, rounded once.
+template <std::size_t Numerators>
+struct DoubleForms {
+    const PointJob& job;
+
+    TEXGEN_INLINE explicit DoubleForms(const PointJob& points) noexcept : job(points) {}
+    TEXGEN_INLINE WideFloats at(std::size_t k, const WideFloats& x, const WideFloats& y,
+                                const WideFloats& z) const noexcept {
+        const PointForm& form = k == 0 ? job.q : job.numerator[k - 1];
+        const auto value = [&form](const Doubles& vx, const Doubles& vy, const Doubles& vz) {
+            return detail::TEXGEN_ISA::at(form, vx, vy, vz);
+        };
+        return in_double(value, x, y, z);
+    }
+};
+
+// Divided in float, in blocks of float_block points. With u = 2^-24 the rounded forms and their four terms give
+// 5 u sum |T_j| max |v_j|, and forms in double gamma(5) of it and u of the value; the largest quotient and the least q,
+// found on the way, then bound the error of every point as in certain_quotient(), with 2 u for the reciprocal and the
+// product. Returns where the first block begins that is not inside the tolerance (it is written all the same), or the
+// count. A NaN makes the largest quotient one, and fails.
+template <template <std::size_t> class Forms, bool Triples, bool Pairs, std::size_t Numerators, bool Lit>
+TEXGEN_INLINE std::size_t divide_points_within_of(const PointJob& job, std::size_t first) noexcept {
+    constexpr bool in_float = std::is_same_v<Forms<1>, FloatForms<1>>;
+    constexpr double form_error = in_float ? 5.01 * unit_roundoff_float : gamma(5);
+    constexpr double roundings = (in_float ? 2.01 : 4.01) * unit_roundoff_float;
+    const Forms<Numerators> forms(job);
     for (std::size_t begin = first; begin < job.count; begin += float_block) {
         const std::size_t end = begin + float_block < job.count ? begin + float_block : job.count;
         WideWords x_largest{};
@@ -489,46 +528,54 @@ TEXGEN_INLINE std::size_t divide_points_float_of(const PointJob& job, std::size_
             x_largest = maximum(magnitude_bits(x), x_largest);
             y_largest = maximum(magnitude_bits(y), y_largest);
             z_largest = maximum(magnitude_bits(z), z_largest);
-            const WideFloats q = x * f[0][0] + (y * f[0][1] + (z * f[0][2] + f[0][3]));
+            const WideFloats q = forms.at(0, x, y, z);
             q_least = minimum(signed_bits(q), q_least);
             const WideFloats reciprocal = 1.0f / q;
             WideFloats value[Numerators];
             for (std::size_t k = 0; k < Numerators; ++k) {
-                const float(&c)[4] = f[k + 1];
-                value[k] = (x * c[0] + (y * c[1] + (z * c[2] + c[3]))) * reciprocal;
+                value[k] = forms.at(1 + k, x, y, z) * reciprocal;
                 largest[k] = maximum(magnitude_bits(value[k]), largest[k]);
             }
             store_points<Pairs, Lit>(job, i, value, ~WideWords{});
         }
         const PointExtent extent(x_largest, y_largest, z_largest);
-        const double underflow = 0x1p-140 * (extent.x + extent.y + extent.z + 1.0);
-        const double q_error = 5.01 * unit_roundoff_float * extent.magnitude_of(job.q) + underflow;
+        const double underflow = 0x1p-124 * (extent.x + extent.y + extent.z + 1.0);
+        const double q_error = form_error * extent.magnitude_of(job.q) + underflow;
         // The bits of positive floats have their order; those of a negative one, and of -0, are below them all.
         const int least_bits = ~largest_lane(~q_least);
-        const double q = static_cast<double>(std::bit_cast<float>(least_bits)) - q_error;
-        bool certified = q > 0x1p-100;
+        const double q = static_cast<double>(std::bit_cast<float>(least_bits)) * (1.0 - roundings) - q_error;
+        bool certified = q > 0x1p-60;
         for (std::size_t k = 0; k < Numerators; ++k) {
             const auto bound = static_cast<double>(std::bit_cast<float>(largest_lane(largest[k])));
-            const double error = 5.01 * unit_roundoff_float * extent.magnitude_of(job.numerator[k]) + underflow;
-            certified = certified &&
-                        1.001 * (error + bound * q_error) / q + 2.01 * unit_roundoff_float * bound <= job.tolerance;
+            const double error = form_error * extent.magnitude_of(job.numerator[k]) + underflow;
+            certified = certified && 1.001 * (error + bound * q_error) / q + roundings * bound <= job.tolerance;
         }
         if (!certified) return begin;
     }
     return job.count;
 }
 
-template <bool Triples>
-TEXGEN_INLINE std::size_t divide_points_float_from(const PointJob& job, std::size_t first) noexcept {
-    if (job.pairs) return divide_points_float_of<Triples, true, 2, false>(job, first);
-    if (job.lit != nullptr) return divide_points_float_of<Triples, false, 2, true>(job, first);
-    if (job.numerators == 2) return divide_points_float_of<Triples, false, 2, false>(job, first);
-    return divide_points_float_of<Triples, false, 1, false>(job, first);
+template <template <std::size_t> class Forms, bool Triples>
+TEXGEN_INLINE std::size_t divide_points_within_from(const PointJob& job, std::size_t first) noexcept {
+    if (job.pairs) return divide_points_within_of<Forms, Triples, true, 2, false>(job, first);
+    if (job.lit != nullptr) return divide_points_within_of<Forms, Triples, false, 2, true>(job, first);
+    if (job.numerators == 2) return divide_points_within_of<Forms, Triples, false, 2, false>(job, first);
+    return divide_points_within_of<Forms, Triples, false, 1, false>(job, first);
 }
 
-inline std::size_t divide_points_float(const PointJob& original, std::size_t first) noexcept {
+template <template <std::size_t> class Forms>
+TEXGEN_INLINE std::size_t divide_points_within(const PointJob& original, std::size_t first) noexcept {
     const PointJob job = original;
-    return job.triples ? divide_points_float_from<true>(job, first) : divide_points_float_from<false>(job, first);
+    return job.triples ? divide_points_within_from<Forms, true>(job, first)
+                       : divide_points_within_from<Forms, false>(job, first);
+}
+
+inline std::size_t divide_points_float(const PointJob& job, std::size_t first) noexcept {
+    return divide_points_within<FloatForms>(job, first);
+}
+
+inline std::size_t divide_points_rounded(const PointJob& job, std::size_t first) noexcept {
+    return divide_points_within<DoubleForms>(job, first);
 }
 
 // The forms at points, in double, rounded once.
@@ -642,8 +689,8 @@ inline void divide_segment_float(const SegmentJob& original) noexcept {
         divide_segment_float_of<1, false>(job);
 }
 
-inline constexpr Kernels kernels{
-    divide_nearest,      divide,          divide_float,           quadratic,           affine, divide_points_nearest,
-    divide_points_float, generate_points, divide_segment_nearest, divide_segment_float};
+inline constexpr Kernels kernels{divide_nearest,  divide_rounded,         divide_float,        quadratic,
+                                 affine,          divide_points_nearest,  divide_points_float, divide_points_rounded,
+                                 generate_points, divide_segment_nearest, divide_segment_float};
 
 }  // namespace texgen::detail::TEXGEN_ISA

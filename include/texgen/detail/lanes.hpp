@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <type_traits>
 #include <utility>
 
 #include "rounding.hpp"
@@ -58,6 +59,15 @@ struct TileJob {
         return unit.x_end < width ? unit_at(unit.x_end, unit.y_begin) : unit_at(0, unit.y_end);
     }
     bool is_done(const Unit& unit) const noexcept { return unit.y_begin >= height; }
+
+    // A factor that the numerators and q share is free.
+    void scale(double factor) noexcept {
+        const auto scaled = [factor](const Ramp& ramp) {
+            return Ramp{ramp.base * factor, ramp.dx * factor, ramp.dy * factor};
+        };
+        for (int k = 0; k < numerators; ++k) numerator[k] = scaled(numerator[k]);
+        q = scaled(q);
+    }
 };
 
 // A linear form of points (x, y, z, 1).
@@ -88,7 +98,7 @@ struct PointJob : DividedOutput {
     const float* z;
     PointForm numerator[2];
     PointForm q;
-    double tolerance;  // for divide_points_float
+    double tolerance;  // for divide_points_float and divide_points_rounded
 
     void advance(std::size_t points) noexcept {
         x += triples ? 3 * points : points;
@@ -122,7 +132,7 @@ struct GenerateJob {
 
 struct Kernels {
     TileJob::Unit (*divide_nearest)(const TileJob&, TileJob::Unit first) noexcept;
-    void (*divide)(const TileJob&) noexcept;
+    void (*divide_rounded)(const TileJob&) noexcept;
     void (*divide_float)(const TileJob&) noexcept;
     TileJob::Unit (*quadratic)(const TileJob&, TileJob::Unit first) noexcept;
     TileJob::Unit (*affine)(const TileJob&, TileJob::Unit first) noexcept;
@@ -130,6 +140,7 @@ struct Kernels {
     std::size_t (*divide_points_nearest)(const PointJob&, std::size_t first) noexcept;
     // The same for a block of float_block points that is not inside the tolerance.
     std::size_t (*divide_points_float)(const PointJob&, std::size_t first) noexcept;
+    std::size_t (*divide_points_rounded)(const PointJob&, std::size_t first) noexcept;
     void (*generate_points)(const GenerateJob&) noexcept;
     std::size_t (*divide_segment_nearest)(const SegmentJob&, std::size_t first) noexcept;
     void (*divide_segment_float)(const SegmentJob&) noexcept;

@@ -86,6 +86,12 @@ TEXGEN_INLINE Doubles to_doubles(const Floats& values) noexcept {
     return Doubles::of([&](int i) { return static_cast<double>(values.lane[i]); });
 }
 
+// f(Doubles...), rounded to float.
+template <class Function, class... Vector>
+TEXGEN_INLINE WideFloats in_double(const Function& f, const Vector&... values) noexcept {
+    return to_floats(f(to_doubles(values)...));
+}
+
 using LongWords = Words;
 TEXGEN_INLINE LongWords greater(const Doubles& a, double b) noexcept {
     return LongWords::of([&](int i) { return a.lane[i] > b ? -1 : 0; });

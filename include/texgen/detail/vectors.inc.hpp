@@ -30,6 +30,22 @@ TEXGEN_INLINE Doubles to_doubles(const Floats& values) noexcept {
 #endif
 }
 
+// f(Doubles...) of each half of the vectors, rounded to float.
+template <int First, int... Lane>
+TEXGEN_INLINE Doubles half(const WideFloats& values, std::integer_sequence<int, Lane...>) noexcept {
+    return to_doubles(__builtin_shufflevector(values, values, (First + Lane)...));
+}
+template <int... Lane>
+TEXGEN_INLINE WideFloats joined(const Floats& low, const Floats& high, std::integer_sequence<int, Lane...>) noexcept {
+    return __builtin_shufflevector(low, high, Lane...);
+}
+template <class Function, class... Vector>
+TEXGEN_INLINE WideFloats in_double(const Function& f, const Vector&... values) noexcept {
+    using Half = std::make_integer_sequence<int, lanes>;
+    return joined(to_floats(f(half<0>(values, Half())...)), to_floats(f(half<lanes>(values, Half())...)),
+                  std::make_integer_sequence<int, wide_lanes>());
+}
+
 // Masks of Doubles are 64 bits wide.
 using LongWords [[gnu::vector_size(TEXGEN_LANE_BYTES)]] = long long;
 TEXGEN_INLINE LongWords greater(const Doubles& a, double b) noexcept { return a > b; }
