@@ -2,6 +2,21 @@
 
 // Floor 6: what a primitive, a batch or a box needs. Work that is not needed is not done.
 
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <span>
+
+#include <glm/vec3.hpp>
+
+#include "conventions.hpp"
+#include "detail/assert.hpp"
+#include "detail/body_blocks.hpp"
+#include "detail/lit_forms.hpp"
+#include "detail/widen.hpp"
+#include "transform.hpp"
+
 namespace texgen {
 
 // What the fragments of a rectangle need, in the order of its cost.
@@ -13,5 +28,200 @@ namespace texgen {
 //   divide_and_test  one division a fragment; the sign of q or the sides of the region are tested
 // Where the region's border crosses an affine or quadratic rectangle, the mask is compared from the coordinates.
 enum class Work { nothing, affine, quadratic, divide, divide_and_test };
+
+// What the slide is to a body. A point is lit where q > 0 and (s, t) is in the closed region.
+//   outside  no point of the closed body is lit
+//   partial  neither of the others, or not provably one of them
+//   inside   all points are lit
+enum class Coverage { outside, partial, inside };
+
+// The points between two corners, both included. Extents may be infinite.
+struct Box {
+    glm::vec3 min, max;
+};
+
+// The points within `radius` of the centre, those at that distance included.
+struct Sphere {
+    glm::vec3 centre;
+    float radius;
+};
+
+namespace detail {
+
+// What the five planes say of a box, exactly: the contract where the floats are in doubt.
+inline Coverage exact_coverage(const LitForms& forms, const Box& box) noexcept {
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    bool is_empty = false;
+    for (int j = 0; j < 3; ++j) {
+        if (!(box.min[j] <= box.max[j]) && !(box.min[j] > box.max[j])) return Coverage::partial;  // a NaN
+        is_empty = is_empty || box.min[j] > box.max[j];
+    }
+    if (is_empty || forms.light_nothing()) return Coverage::outside;
+    if (!forms.are_usable()) return Coverage::partial;
+    for (int j = 0; j < 3; ++j)
+        if (box.min[j] == infinity || box.max[j] == -infinity) return Coverage::partial;  // no point at all
+
+    // The sign of a form at the vertex where it is largest, or least.
+    const auto sign_at_vertex = [&](std::size_t k, bool largest) {
+        Point vertex{};
+        for (std::size_t j = 0; j < 3; ++j) {
+            if (!forms[k].uses[j]) continue;
+            vertex[j] =
+                widened((forms[k].a[j] > 0.0) == largest ? box.max[static_cast<int>(j)] : box.min[static_cast<int>(j)]);
+            if (!is_finite(vertex[j])) return largest ? 1 : -1;
+        }
+        return forms.sign_at(k, vertex);
+    };
+    if (sign_at_vertex(LitForms::q, true) <= 0) return Coverage::outside;
+    bool is_inside = sign_at_vertex(LitForms::q, false) > 0;
+    for (std::size_t k = 0; k < LitForms::side_count; ++k) {
+        if (sign_at_vertex(k, true) < 0) return Coverage::outside;
+        is_inside = is_inside && sign_at_vertex(k, false) >= 0;
+    }
+    return is_inside ? Coverage::inside : Coverage::partial;
+}
+
+// Boxes that the planes leave partial, gathered from many blocks: few of a scene are.
+class PartialBoxes {
+public:
+    bool is_full() const noexcept { return count_ == body_block; }
+
+    void add(const Box& box, Coverage& out) noexcept {
+        for (std::size_t j = 0; j < 3; ++j) {
+            boxes_.min[j][count_] = static_cast<double>(box.min[static_cast<int>(j)]);
+            boxes_.max[j][count_] = static_cast<double>(box.max[static_cast<int>(j)]);
+        }
+        out_[count_++] = &out;
+    }
+
+    void separate(const LitForms& forms) noexcept {
+        Lane<double> least;
+        test_separation(forms, boxes_, least);
+        for (std::size_t i = 0; i < count_; ++i)
+            if (least[i] < 0.0) *out_[i] = Coverage::outside;
+        count_ = 0;
+    }
+
+private:
+    BoxBlock<double> boxes_{};
+    Lane<Coverage*> out_{};
+    std::size_t count_ = 0;
+};
+
+inline void cover(const LitForms& forms, const FloatForms& float_forms, std::span<const Box> boxes,
+                  std::span<Coverage> out) noexcept {
+    PartialBoxes partial;
+    BoxBlock<float> block{};
+    for (std::size_t begin = 0; begin < boxes.size(); begin += body_block) {
+        const std::size_t count = boxes.size() - begin < body_block ? boxes.size() - begin : body_block;
+        for (std::size_t i = 0; i < count; ++i) {
+            const Box& box = boxes[begin + i];
+            for (std::size_t j = 0; j < 3; ++j) {
+                block.min[j][i] = box.min[static_cast<int>(j)];
+                block.max[j][i] = box.max[static_cast<int>(j)];
+            }
+        }
+        Lane<int> verdicts;
+        test_planes(float_forms, block, verdicts);
+        for (std::size_t i = 0; i < count; ++i) {
+            const Box& box = boxes[begin + i];
+            Coverage& result = out[begin + i];
+            result = verdicts[i] == doubtful ? exact_coverage(forms, box) : static_cast<Coverage>(verdicts[i]);
+            if (result != Coverage::partial || !forms.are_usable()) continue;
+            partial.add(box, result);
+            if (partial.is_full()) partial.separate(forms);
+        }
+    }
+    partial.separate(forms);
+}
+
+// f(centre) +- |a| radius are the extremes of a form over a sphere.
+inline Coverage sphere_coverage(const LitForms& forms, const Sphere& sphere) noexcept {
+    const Point centre{widened(sphere.centre.x), widened(sphere.centre.y), widened(sphere.centre.z)};
+    const double radius = widened(sphere.radius);
+    const double size = std::fabs(centre[0]) + std::fabs(centre[1]) + std::fabs(centre[2]) + std::fabs(radius);
+    if (!is_finite(size)) return Coverage::partial;
+    if (radius < 0.0 || forms.light_nothing()) return Coverage::outside;
+    if (!forms.are_usable()) return Coverage::partial;
+    bool is_inside = true;
+    for (std::size_t k = 0; k < LitForms::count; ++k) {
+        const BoundedForm& form = forms[k];
+        const double value = form.a[0] * centre[0] + form.a[1] * centre[1] + form.a[2] * centre[2] + form.d;
+        const double change = std::sqrt(form.a[0] * form.a[0] + form.a[1] * form.a[1] + form.a[2] * form.a[2]) * radius;
+        const double error = 4.0 * form.error_a * size + form.error_d;
+        if (value + change + error < 0.0) return Coverage::outside;
+        is_inside = is_inside && value - change - error > 0.0;
+    }
+    return is_inside ? Coverage::inside : Coverage::partial;
+}
+
+inline void cover(const LitForms& forms, std::span<const Sphere> spheres, std::span<Coverage> out) noexcept {
+    for (std::size_t i = 0; i < spheres.size(); ++i) out[i] = sphere_coverage(forms, spheres[i]);
+}
+
+}  // namespace detail
+
+// The points that a slide lights, prepared once for many questions: what the functions below prepare at every call.
+// Guarantee: `outside` and `inside` are never false: they hold for the exact values of the matrix, the region and the body
+// as they are given. A box is `partial` only where it is so, or touches a plane through an edge or through the apex of the
+// projector's pyramid within 2^-48 of the sizes involved; the pyramid's own planes are decided exactly. A batch answers as
+// the single question does. No allocation, noexcept.
+// Shape: bodies of Space, in order; both spans have one size (asserted).
+// Bad input: a NaN anywhere in a body, or a matrix that is not finite: partial. A box with min > max in some axis, a
+// sphere with a negative radius, an empty region (see TextureRegion) or a q that is 0 everywhere: outside. Exponents so
+// far apart that exact sums leave the range of double (elements below 2^-400 of the matrix's largest, sides of the region
+// beyond 2^+-200): partial. An infinite side of the region is none.
+// Source: the separating axis theorem; Gottschalk, Lin, Manocha, OBBTree, SIGGRAPH 1996.
+template <class Space>
+class LitVolume {
+public:
+    LitVolume(const Transform<Texture, Space>& texture_from_space, const TextureRegion& region) noexcept
+        : forms_(texture_from_space.matrix(), region), float_forms_(forms_) {}
+
+    Coverage coverage(const Box& box) const noexcept { return coverage_of(box); }
+    Coverage coverage(const Sphere& sphere) const noexcept { return coverage_of(sphere); }
+
+    void coverage(std::span<const Box> boxes, std::span<Coverage> out) const noexcept {
+        TEXGEN_ASSERT(boxes.size() == out.size());
+        detail::cover(forms_, float_forms_, boxes, out);
+    }
+    void coverage(std::span<const Sphere> spheres, std::span<Coverage> out) const noexcept {
+        TEXGEN_ASSERT(spheres.size() == out.size());
+        detail::cover(forms_, spheres, out);
+    }
+
+private:
+    template <class Body>
+    Coverage coverage_of(const Body& body) const noexcept {
+        Coverage result;
+        coverage(std::span(&body, 1), std::span(&result, 1));
+        return result;
+    }
+
+    detail::LitForms forms_;
+    detail::FloatForms float_forms_;
+};
+
+// What the slide is to a box or a sphere, and to many of them: a LitVolume of the transform and the region, asked once.
+template <class Space>
+Coverage coverage(const Transform<Texture, Space>& texture_from_space, const TextureRegion& region,
+                  const Box& box) noexcept {
+    return LitVolume<Space>(texture_from_space, region).coverage(box);
+}
+template <class Space>
+Coverage coverage(const Transform<Texture, Space>& texture_from_space, const TextureRegion& region,
+                  const Sphere& sphere) noexcept {
+    return LitVolume<Space>(texture_from_space, region).coverage(sphere);
+}
+template <class Space>
+void coverage(const Transform<Texture, Space>& texture_from_space, const TextureRegion& region,
+              std::span<const Box> boxes, std::span<Coverage> out) noexcept {
+    LitVolume<Space>(texture_from_space, region).coverage(boxes, out);
+}
+template <class Space>
+void coverage(const Transform<Texture, Space>& texture_from_space, const TextureRegion& region,
+              std::span<const Sphere> spheres, std::span<Coverage> out) noexcept {
+    LitVolume<Space>(texture_from_space, region).coverage(spheres, out);
+}
 
 }  // namespace texgen

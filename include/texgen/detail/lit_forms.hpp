@@ -1,0 +1,256 @@
+#pragma once
+
+// Where a slide falls, as linear forms. With rows T_s, T_t, T_q of a texgen matrix a point v = (x, y, z, 1) is lit iff
+//
+//   T_s v - min.x T_q v >= 0,  max.x T_q v - T_s v >= 0,  the same for t,  and  T_q v > 0,
+//
+// which are the four sides of a pyramid (of a prism, where T_q is constant) and the plane of its apex. What is asked of
+// these forms is asked of their exact values, with the matrix and the region as they are given.
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include <glm/mat4x4.hpp>
+
+#include "../conventions.hpp"
+#include "expansion.hpp"
+#include "inverse.hpp"
+#include "nearest.hpp"
+#include "rounding.hpp"
+
+namespace texgen::detail {
+
+// a . (x, y, z) + d, known to within error_a (|x| + |y| + |z|) + error_d when it is computed in double in any order. A
+// coordinate whose coefficient is exactly 0 is not used: there the box may be infinite.
+struct BoundedForm {
+    std::array<double, 3> a;
+    double d;
+    double error_a, error_d;
+    std::array<bool, 3> uses;
+};
+
+// The coordinates of a vertex, or of the middle of a sphere.
+using Point = std::array<double, 3>;
+
+class LitForms {
+public:
+    static constexpr std::size_t side_count = 4;
+    static constexpr std::size_t count = 5;  // the sides s_min, s_max, t_min, t_max, and q
+    static constexpr std::size_t q = 4;
+
+    LitForms(const glm::dmat4& matrix, const TextureRegion& region) noexcept {
+        const glm::dvec2& min = region.min();
+        const glm::dvec2& max = region.max();
+        is_usable_ = take_matrix(matrix) && take_sides(min, max);
+        lights_nothing_ =
+            is_finite(matrix) && (!(min.x <= max.x && min.y <= max.y) || (is_usable_ && rows_[2] == Row{}));
+        if (!is_usable_ || lights_nothing_) return;
+        for (std::size_t k = 0; k < count; ++k) take_form(k);
+        add_edge_forms();
+        add_axis_forms(min, max);
+    }
+
+    // Whether every point is dark: the region is empty or q is 0 everywhere.
+    bool light_nothing() const noexcept { return lights_nothing_; }
+
+    // Whether anything can be said: false for numbers that are not finite, and for exponents so far apart that an exact
+    // sum could leave the range of double.
+    bool are_usable() const noexcept { return is_usable_; }
+
+    // Form k, times a positive number that brings its largest a near to 1.
+    const BoundedForm& operator[](std::size_t k) const noexcept { return forms_[k]; }
+
+    // -1, 0, 1: the sign of form k at a finite point, exactly.
+    int sign_at(std::size_t k, const Point& point) const noexcept {
+        const BoundedForm& form = forms_[k];
+        double value = form.d;
+        double magnitude = std::fabs(form.d);
+        for (std::size_t j = 0; j < 3; ++j) {
+            value += form.a[j] * point[j];
+            magnitude += std::fabs(form.a[j] * point[j]);
+        }
+        return certain_sign({value, gamma(8) * magnitude}, [&] { return exactly_at(k, point); });
+    }
+
+    // Further forms that are >= 0 wherever all five are: the planes that the theorem of separating axes asks about, each
+    // a combination of the five with weights that are exactly >= 0. Where one of them is negative over all of a convex
+    // body, nothing of the body is lit.
+    std::size_t separating_count() const noexcept { return separating_count_; }
+    const BoundedForm& separating(std::size_t i) const noexcept { return separating_[i]; }
+
+private:
+    using Row = std::array<double, 4>;
+
+    // A power of two takes the largest element to 1: nothing changes but the range of the exponents.
+    bool take_matrix(const glm::dmat4& matrix) noexcept {
+        if (!is_finite(matrix)) return false;
+        double largest = 0.0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            for (std::size_t j = 0; j < 4; ++j) {
+                rows_[k][j] = matrix[static_cast<int>(j)][k == 2 ? 3 : static_cast<int>(k)];
+                largest = larger(largest, std::fabs(rows_[k][j]));
+            }
+        }
+        if (largest == 0.0) return true;
+        int exponent = 0;
+        std::frexp(largest, &exponent);
+        for (Row& row : rows_) {
+            for (double& element : row) {
+                if (element == 0.0) continue;
+                element = std::ldexp(element, -exponent);
+                if (!(std::fabs(element) >= 0x1p-400)) return false;
+            }
+        }
+        return true;
+    }
+
+    // An infinite side is none, and q takes its place: it is one of the five all the same.
+    bool take_sides(const glm::dvec2& min, const glm::dvec2& max) noexcept {
+        for (std::size_t k = 0; k < side_count; ++k) {
+            const bool is_min = k % 2 == 0;
+            const double side = (is_min ? min : max)[static_cast<int>(k / 2)];
+            const double size = std::fabs(side);
+            if (side == (is_min ? -infinity : infinity)) {
+                weight_[k] = {0.0, 1.0};
+            } else if (size == 0.0 || (size >= 0x1p-200 && size <= 0x1p200)) {
+                weight_[k] = is_min ? Weight{1.0, -side} : Weight{-1.0, side};
+            } else {
+                return false;
+            }
+        }
+        weight_[q] = {0.0, 1.0};
+        return true;
+    }
+
+    // Each coefficient is rounded once, so that its sign is right and it is 0 only if it is 0.
+    void take_form(std::size_t k) noexcept {
+        const Row& row = rows_[k / 2 % 2];
+        Row form;
+        for (std::size_t j = 0; j < 4; ++j)
+            form[j] = std::fma(weight_[k].of_q, rows_[2][j], weight_[k].of_row * row[j]);
+        const double largest = larger(larger(std::fabs(form[0]), std::fabs(form[1])), std::fabs(form[2]));
+        const double scale = reciprocal_power_of_two(largest > 0.0 ? largest : larger(std::fabs(form[3]), 0x1p-900));
+        BoundedForm& bounded = forms_[k];
+        for (std::size_t j = 0; j < 3; ++j) {
+            bounded.a[j] = scale * form[j];
+            bounded.uses[j] = form[j] != 0.0;
+        }
+        bounded.d = scale * form[3];
+        set_errors(bounded, {}, 0.0);
+    }
+
+    // What the coefficients carry already, and 8 u of each term for its own rounding, for the sums and for the bound's.
+    static void set_errors(BoundedForm& form, const Point& error_of_a, double error_of_d) noexcept {
+        form.error_a = 0.0;
+        for (std::size_t j = 0; j < 3; ++j)
+            form.error_a = larger(form.error_a, 1.001 * (error_of_a[j] + gamma(8) * std::fabs(form.a[j])));
+        form.error_d = 1.001 * (error_of_d + gamma(8) * std::fabs(form.d)) + 0x1p-1000;
+        form.error_a += 0x1p-1000;
+    }
+
+    using Exact = Expansion<24>;
+    Exact exactly_at(std::size_t k, const Point& point) const noexcept {
+        const Row& row = rows_[k / 2 % 2];
+        Exact sum;
+        for (std::size_t j = 0; j < 4; ++j) {
+            const double coordinate = j < 3 ? point[j] : 1.0;
+            const DoubleDouble of_q = two_product(weight_[k].of_q, rows_[2][j]);
+            sum.add_product(weight_[k].of_row * row[j], coordinate);
+            sum.add_product(of_q.low, coordinate);
+            sum.add_product(of_q.high, coordinate);
+        }
+        return sum;
+    }
+
+    // The planes through an edge of the pyramid, where sides f and g meet, and parallel to an axis of the space: with
+    // coefficients f_k and g_k of that axis, |g_k| f + |f_k| g has none where f_k and g_k have opposite signs. The other
+    // coefficients are two products of rounded numbers and a sum: 4 u of the terms.
+    void add_edge_forms() noexcept {
+        for (std::size_t s = 0; s < 2; ++s) {
+            for (std::size_t t = 2; t < 4; ++t) {
+                const BoundedForm& f = forms_[s];
+                const BoundedForm& g = forms_[t];
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    if (!(f.a[axis] < 0.0 ? g.a[axis] > 0.0 : f.a[axis] > 0.0 && g.a[axis] < 0.0)) continue;
+                    const double of_f = std::fabs(g.a[axis]);
+                    const double of_g = std::fabs(f.a[axis]);
+                    BoundedForm form{};
+                    Point error{};
+                    for (std::size_t j = 0; j < 3; ++j) {
+                        form.uses[j] = j != axis && (f.uses[j] || g.uses[j]);
+                        if (!form.uses[j]) continue;
+                        form.a[j] = of_f * f.a[j] + of_g * g.a[j];
+                        error[j] = gamma(5) * (of_f * std::fabs(f.a[j]) + of_g * std::fabs(g.a[j]));
+                    }
+                    form.d = of_f * f.d + of_g * g.d;
+                    set_errors(form, error, gamma(5) * (of_f * std::fabs(f.d) + of_g * std::fabs(g.d)));
+                    separating_[separating_count_++] = form;
+                }
+            }
+        }
+    }
+
+    // The planes through the apex that have x, y or z alone. alpha T_s + beta T_t + gamma T_q with the cofactors of that
+    // column of the 3x3 of the rows has no coefficient in the two others, and where alpha s + beta t + gamma has one sign
+    // at the corners of the region, it has it in all of the pyramid.
+    void add_axis_forms(const glm::dvec2& min, const glm::dvec2& max) noexcept {
+        const auto minor_of = [this](std::size_t k, std::size_t l, std::size_t m, std::size_t n) {
+            const double first = rows_[k][m] * rows_[l][n];
+            const double second = rows_[k][n] * rows_[l][m];
+            return Bounded{first - second, gamma(3) * (std::fabs(first) + std::fabs(second)) + 0x1p-1000};
+        };
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const std::size_t m = (axis + 1) % 3;
+            const std::size_t n = (axis + 2) % 3;
+            const Bounded cofactor[3] = {minor_of(1, 2, m, n), minor_of(2, 0, m, n), minor_of(0, 1, m, n)};
+            const auto dot = [&](double s, double t, double of_q) {
+                const double terms[3] = {cofactor[0].value * s, cofactor[1].value * t, cofactor[2].value * of_q};
+                const double error = cofactor[0].error * std::fabs(s) + cofactor[1].error * std::fabs(t) +
+                                     cofactor[2].error * std::fabs(of_q);
+                const double magnitude = std::fabs(terms[0]) + std::fabs(terms[1]) + std::fabs(terms[2]);
+                return Bounded{terms[0] + terms[1] + terms[2], 1.001 * error + gamma(5) * magnitude + 0x1p-1000};
+            };
+            bool is_positive = true;
+            bool is_negative = true;
+            for (const double s : {min.x, max.x}) {
+                for (const double t : {min.y, max.y}) {
+                    const Bounded corner = dot(s, t, 1.0);
+                    const bool is_certain = std::fabs(corner.value) >= corner.error && corner.error < 0x1p1000;
+                    is_positive = is_positive && is_certain && corner.value > 0.0;
+                    is_negative = is_negative && is_certain && corner.value < 0.0;
+                }
+            }
+            if (is_positive == is_negative) continue;
+            const double sign = is_positive ? 1.0 : -1.0;
+            const Bounded a = dot(rows_[0][axis], rows_[1][axis], rows_[2][axis]);
+            const Bounded d = dot(rows_[0][3], rows_[1][3], rows_[2][3]);
+            BoundedForm form{};
+            form.a[axis] = sign * a.value;
+            form.uses[axis] = true;
+            form.d = sign * d.value;
+            Point error{};
+            error[axis] = a.error;
+            set_errors(form, error, d.error);
+            separating_[separating_count_++] = form;
+        }
+    }
+
+    static constexpr double infinity = std::numeric_limits<double>::infinity();
+
+    // Form k is of_row * (T_s or T_t) + of_q * T_q.
+    struct Weight {
+        double of_row, of_q;
+    };
+
+    std::array<Row, 3> rows_{};  // T_s, T_t, T_q
+    std::array<Weight, count> weight_{};
+    std::array<BoundedForm, count> forms_{};
+    std::array<BoundedForm, 15> separating_{};
+    std::size_t separating_count_ = 0;
+    bool is_usable_;
+    bool lights_nothing_;
+};
+
+}  // namespace texgen::detail
