@@ -1,9 +1,11 @@
 #pragma once
 
 // Floor 6: what a scene needs before its polygons can be interpolated. A vertex behind the camera has no place in the
-// window, so polygons are cut at the near plane while they are homogeneous, and only then divided.
+// window, so polygons are cut at the near plane while they are homogeneous, and only then divided; likewise with what is
+// behind the projector or outside its slide. The slide's planes, for hardware that clips, stand here too.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -14,8 +16,10 @@
 
 #include "conventions.hpp"
 #include "detail/assert.hpp"
+#include "detail/nearest.hpp"
 #include "detail/widen.hpp"
 #include "primitives.hpp"
+#include "transform.hpp"
 
 namespace texgen {
 
@@ -172,6 +176,190 @@ inline std::size_t clip_to_near(std::span<const ClipVertex> polygon, std::span<C
                                outside);
     };
     return detail::cut_convex(out, count, detail::ClipDistance::from_eye(), cut_before_eye);
+}
+
+namespace detail {
+
+// The signed distance of (s, t, r, q) from a side of the slide, u >= min q or u <= max q for u = s or t, or from q >= 0:
+// in no unit; inside is >= 0.
+class SlideDistance {
+public:
+    static SlideDistance at_least(int coordinate, double side) noexcept { return {coordinate, 1.0, -usable(side)}; }
+    static SlideDistance at_most(int coordinate, double side) noexcept { return {coordinate, -1.0, usable(side)}; }
+    static SlideDistance in_front() noexcept { return {3, 1.0, 0.0}; }
+
+    Bounded operator()(const ClipVertex& vertex) const noexcept {
+        const double own = sign_ * widened(vertex.strq[coordinate_]);
+        const double of_q = per_q_ * widened(vertex.strq.w);
+        return {own + of_q, gamma(2) * (std::fabs(own) + std::fabs(of_q))};
+    }
+
+    Expansion<3> exactly(const ClipVertex& vertex) const noexcept {
+        Expansion<3> sum;
+        sum.add(sign_ * widened(vertex.strq[coordinate_]));
+        sum.add_product(per_q_, widened(vertex.strq.w));
+        return sum;
+    }
+
+    int sign(const ClipVertex& vertex) const noexcept {
+        return certain_sign((*this)(vertex), [&] { return exactly(vertex); });
+    }
+
+private:
+    SlideDistance(int coordinate, double sign, double per_q) noexcept
+        : coordinate_(coordinate), sign_(sign), per_q_(per_q) {}
+
+    // Floats have |u/q| in [2^-277, 2^277], or 0: a side that is brought into a wider range decides the same of them, and
+    // its products stay exact.
+    static double usable(double side) noexcept {
+        if (side == 0.0) return 0.0;
+        return std::copysign(smaller(larger(std::fabs(side), 0x1p-300), 0x1p300), side);
+    }
+
+    int coordinate_;
+    double sign_, per_q_;
+};
+
+// Where the edge from a vertex inside to one outside crosses the side: (d_i outside - d_o inside) / (d_i - d_o) with
+// d_i > 0 > d_o, each component the float nearest to it. With weights v^ = v + e, |e| <= E, the numerator errs by
+// E_o |inside| + E_i |outside| and by three roundings.
+inline ClipVertex cut_at(const SlideDistance& side, const ClipVertex& inside, const ClipVertex& outside) noexcept {
+    const Bounded of_inside = side(inside);
+    const Bounded of_outside = side(outside);
+    const Bounded difference{
+        of_inside.value - of_outside.value,
+        of_inside.error + of_outside.error + gamma(2) * (std::fabs(of_inside.value) + std::fabs(of_outside.value))};
+    const auto exact_difference = [&] {
+        Expansion<6> sum;
+        sum.add_scaled(side.exactly(inside), 1.0);
+        sum.add_scaled(side.exactly(outside), -1.0);
+        return sum;
+    };
+    const auto component = [&](float given_inside, float given_outside) {
+        const double i = widened(given_inside);
+        const double o = widened(given_outside);
+        const double from_i = -of_outside.value * i;
+        const double from_o = of_inside.value * o;
+        const Bounded sum{from_i + from_o, 1.001 * (of_outside.error * std::fabs(i) + of_inside.error * std::fabs(o) +
+                                                    gamma(3) * (std::fabs(from_i) + std::fabs(from_o)))};
+        const auto exact_sum = [&] {
+            Expansion<12> exact;
+            exact.add_scaled(side.exactly(outside), -i);
+            exact.add_scaled(side.exactly(inside), o);
+            return exact;
+        };
+        return certain_quotient(sum, difference, exact_sum, exact_difference);
+    };
+    ClipVertex result{};
+    for (int k = 0; k < 4; ++k) {
+        result.position[k] = component(inside.position[k], outside.position[k]);
+        result.strq[k] = component(inside.strq[k], outside.strq[k]);
+    }
+    return result;
+}
+
+// Cuts the polygon in storage[0, count) edge by edge and returns the new count; 0 where storage has no room. sign() is
+// that of the distance of a vertex; cut() as for cut_convex. It is read from the end of the storage on, so that what is
+// written at its begin grows into the room that is free.
+template <class Sign, class Cut>
+std::size_t cut_edges(std::span<ClipVertex> storage, std::size_t count, const Sign& sign, const Cut& cut) noexcept {
+    const auto begin = storage.begin();
+    const auto end = begin + static_cast<std::ptrdiff_t>(count);
+    if (std::all_of(begin, end, [&](const ClipVertex& v) { return sign(v) >= 0; })) return count;
+    std::copy_backward(begin, end, storage.end());
+    const std::size_t first = storage.size() - count;
+    const ClipVertex first_vertex = storage[first];
+    ClipVertex to = first_vertex;
+    int to_sign = sign(to);
+    std::size_t written = 0;
+    for (std::size_t i = first; i < storage.size(); ++i) {
+        const ClipVertex from = to;
+        const int from_sign = to_sign;
+        to = i + 1 < storage.size() ? storage[i + 1] : first_vertex;
+        to_sign = sign(to);
+        const bool crosses = (from_sign > 0 && to_sign < 0) || (from_sign < 0 && to_sign > 0);
+        // Vertices up to i are read.
+        if (written + (from_sign >= 0) + crosses > i + 1) return 0;
+        if (from_sign >= 0) storage[written++] = from;
+        if (crosses) storage[written++] = from_sign > 0 ? cut(from, to) : cut(to, from);
+    }
+    return written < 3 ? 0 : written;
+}
+
+}  // namespace detail
+
+// The planes of the slide's region: q, s - min.x q, max.x q - s, t - min.y q, max.y q - t. A point of the space is lit
+// where all five are >= 0 (and q > 0): for gl_ClipDistance, or in eye space for glClipPlane.
+// Guarantee: each coefficient is the exact one of the matrix in double, rounded to double and then to float: within
+// (1/2 + 2^-29) float ulp, and of its sign. No allocation, noexcept.
+// Shape: coefficients (x, y, z, w) of points (x, y, z, 1) of the space that the matrix takes to the texture.
+// Bad input: NaN and infinity of the matrix or the region stay in the coefficients that they reach.
+// Source: Segal, Korobkin, van Widenfelt, Foran, Haeberli, Fast Shadows and Lighting Effects Using Texture Mapping
+// (SIGGRAPH 1992): what is not to be lit is clipped.
+template <class Space>
+std::array<glm::vec4, 5> clip_planes(const Transform<Texture, Space>& texgen, TextureRegion region) noexcept {
+    std::array<glm::vec4, 5> result;
+    for (int column = 0; column < 4; ++column) {
+        const glm::dvec4& from = texgen.matrix()[column];
+        result[0][column] = static_cast<float>(from.w);
+        for (int k = 0; k < 2; ++k) {
+            const auto i = static_cast<std::size_t>(1 + 2 * k);
+            result[i][column] = static_cast<float>(std::fma(-region.min()[k], from.w, from[k]));
+            result[i + 1][column] = static_cast<float>(std::fma(region.max()[k], from.w, -from[k]));
+        }
+    }
+    return result;
+}
+
+// How far outside a side of the region a vertex of clip_to_slide() may be: min q - u and u - max q are at most
+// slide_clip_error max(|min|, |max|) q for u = s and t, while no number is below the normal floats.
+//
+// A vertex that comes out has at most five cuts behind it. A cut of vertices with u - min q >= -e q satisfies that too,
+// as it is linear, and rounding u and q moves u - min q by 2^-24 (|u| + |min| q) <= 2^-23 max(|min|, |max|) q more.
+inline constexpr double slide_clip_error = 0x1p-20;
+
+// The part of a convex polygon that the slide falls on, in the order of the polygon, though its first vertex may be another:
+// q > 0, and s and t in the region's four sides. Returns the count of vertices written to `out`; 0 where nothing with an
+// area is left.
+// Guarantee: every vertex that comes out has q > 0 and is inside the region but for slide_clip_error. Vertices inside keep
+// their bits; sides are decided exactly, so a vertex on a side stays. A new vertex is the exact intersection of its edge
+// (of a new edge's ends as they were rounded), each component of position and strq the nearest float. Shared edges stay
+// closed, to the bit: the edges are cut one after another at q = 0 and at the four sides, and what becomes of an edge at
+// each is a function of its two ends, in whatever order and whatever polygon they stand. No allocation, noexcept.
+// Shape: out.size() >= polygon.size() + 5 (asserted); out may begin where the polygon does, and overlaps it in no other way.
+// At the projector itself (s = t = q = 0, the one point of the sides with q = 0) there is no coordinate: a polygon that
+// reaches it is cut at a millionth (2^-20) of the q of the edge's other end.
+// Bad input: a polygon with an s, t or q that is not finite is dropped, and all are where the region holds no point. r and
+// the position may hold anything. What is not convex (as rounding may leave a polygon with more than three corners) is
+// cut as it is, and dropped where `out` has no room for the vertices that this takes beyond 5.
+// Source: Sutherland and Hodgman, Reentrant Polygon Clipping, CACM 17 (1974).
+inline std::size_t clip_to_slide(std::span<const ClipVertex> polygon, TextureRegion region,
+                                 std::span<ClipVertex> out) noexcept {
+    TEXGEN_ASSERT(out.size() >= polygon.size() + 5);
+    if (out.size() < polygon.size() + 5 || polygon.size() < 3) return 0;
+    if (!(region.min().x <= region.max().x && region.min().y <= region.max().y)) return 0;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const glm::vec4& strq = polygon[i].strq;
+        if (!detail::is_finite(glm::vec4(strq.x, strq.y, 0.0f, strq.w))) return 0;
+        out[i] = polygon[i];
+    }
+
+    // q >= 0 comes first, so that what satisfies a side is a cone. Then q = 0 is left only where s = t = 0.
+    using Side = detail::SlideDistance;
+    const Side sides[] = {Side::in_front(), Side::at_least(0, region.min().x), Side::at_most(0, region.max().x),
+                          Side::at_least(1, region.min().y), Side::at_most(1, region.max().y)};
+    std::size_t count = polygon.size();
+    for (const Side& side : sides) {
+        count = detail::cut_edges(
+            out, count, [&](const ClipVertex& v) { return side.sign(v); },
+            [&](const ClipVertex& inside, const ClipVertex& outside) { return cut_at(side, inside, outside); });
+    }
+    const auto in_front = [](const ClipVertex& v) { return v.strq.w > 0.0f ? 1 : -1; };
+    const auto cut_before_projector = [](const ClipVertex& inside, const ClipVertex& outside) {
+        const float q = std::max(0x1p-20f * inside.strq.w, std::numeric_limits<float>::denorm_min());
+        return detail::between(q, inside, detail::widened(inside.strq.w) - q, outside);
+    };
+    return detail::cut_edges(out, count, in_front, cut_before_projector);
 }
 
 }  // namespace texgen
