@@ -10,11 +10,26 @@ enum class DepthRange { negative_one_to_one, zero_to_one };  // NDC depth of the
 enum class NdcY { up, down };
 enum class TextureOrigin { bottom_left, top_left };  // the corner of the picture that (s, t) = (0, 0) addresses
 
+namespace detail {
+
+// A member that has no default: leaving it out does not compile.
+template <class T>
+class Given {
+public:
+    constexpr Given(T value) noexcept : value_(value) {}
+    constexpr operator T() const noexcept { return value_; }
+
+private:
+    T value_;
+};
+
+}  // namespace detail
+
 // Three independent choices of a graphics API. There is no default: the caller says which one the numbers follow.
 struct Conventions {
-    DepthRange depth;
-    NdcY ndc_y;
-    TextureOrigin origin;
+    detail::Given<DepthRange> depth;
+    detail::Given<NdcY> ndc_y;
+    detail::Given<TextureOrigin> origin;
 
     friend constexpr bool operator==(const Conventions&, const Conventions&) = default;
 };

@@ -141,9 +141,8 @@ inline double CertifiedInverse::certificate() const noexcept {
             residual += std::fabs(dot(scaled_[i].data(), inverse_, static_cast<int>(j), i == j ? 1.0 : 0.0).high);
             for (std::size_t k = 0; k < 4; ++k) product += std::fabs(inverse_[i][k]) * std::fabs(scaled_[k][j]);
         }
-        // Written so that a NaN stays: std::fmax would drop it.
-        residual_norm = residual <= residual_norm ? residual_norm : residual;
-        product_norm = product <= product_norm ? product_norm : product;
+        residual_norm = larger_or_nan(residual_norm, residual);
+        product_norm = larger_or_nan(product_norm, product);
     }
     return residual_norm + 5.0 * unit_roundoff_double * product_norm;
 }
@@ -193,10 +192,7 @@ inline glm::dvec4 CertifiedInverse::solve_row(const glm::dvec4& row) const noexc
 // How far the 3x3 part is from orthonormal, and the last row from (0, 0, 0, 1): the largest deviation.
 inline double distance_from_rigid(const glm::dmat4& m) noexcept {
     double distance = 0.0;
-    const auto include = [&distance](double deviation) {
-        const double size = std::fabs(deviation);
-        distance = size <= distance ? distance : size;
-    };
+    const auto include = [&distance](double deviation) { distance = larger_or_nan(distance, std::fabs(deviation)); };
     for (int i = 0; i < 3; ++i) {
         for (int j = 0; j <= i; ++j)
             include(m[i][0] * m[j][0] + m[i][1] * m[j][1] + m[i][2] * m[j][2] - (i == j ? 1.0 : 0.0));

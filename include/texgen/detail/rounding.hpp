@@ -16,6 +16,9 @@ inline constexpr double unit_roundoff_double = 0x1p-53;
 constexpr double smaller(double a, double b) noexcept { return a < b ? a : b; }
 constexpr double larger(double a, double b) noexcept { return a > b ? a : b; }
 
+// The larger of two, and a NaN if either is one: for what must never be taken for small.
+constexpr double larger_or_nan(double a, double b) noexcept { return a > b || !(a == a) ? a : b; }
+
 // A power of two within a factor 2 of 1 / value, for a value that is normal and below 2^1022.
 inline double reciprocal_power_of_two(double value) noexcept {
     const std::uint64_t biased_exponent = std::bit_cast<std::uint64_t>(value) >> 52 & 0x7ff;
