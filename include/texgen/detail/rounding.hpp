@@ -7,6 +7,12 @@
 #include <cmath>
 #include <cstdint>
 
+// A compiler that may reorder sums takes two_sum() for a and 0, and a reciprocal for a division: no bound would hold.
+#if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || \
+    (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
+#error "texgen computes with proved error bounds, which need arithmetic as written: compile the files that include it with -fno-fast-math after -ffast-math or -Ofast (they link with files that have it)."
+#endif
+
 namespace texgen::detail {
 
 inline constexpr double unit_roundoff_float = 0x1p-24;
