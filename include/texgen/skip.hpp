@@ -81,58 +81,78 @@ inline Coverage exact_coverage(const LitForms& forms, const Box& box) noexcept {
     return is_inside ? Coverage::inside : Coverage::partial;
 }
 
-// Boxes that the planes leave partial, gathered from many blocks: few of a scene are.
-class PartialBoxes {
+// Boxes that the floats did not reject, gathered from many blocks, as few of a scene remain.
+class RemainingBoxes {
 public:
-    bool is_full() const noexcept { return count_ == body_block; }
-
-    void add(const Box& box, Coverage& out) noexcept {
-        for (std::size_t j = 0; j < 3; ++j) {
-            boxes_.min[j][count_] = static_cast<double>(box.min[static_cast<int>(j)]);
-            boxes_.max[j][count_] = static_cast<double>(box.max[static_cast<int>(j)]);
-        }
-        out_[count_++] = &out;
+    void add(const LitForms& forms, const Box& box, Coverage& out) noexcept {
+        block_.set(count_, box);
+        box_[count_] = &box;
+        out_[count_] = &out;
+        if (++count_ == double_box_block) decide(forms);
     }
 
-    void separate(const LitForms& forms) noexcept {
-        Lane<double> least;
-        test_separation(forms, boxes_, least);
-        for (std::size_t i = 0; i < count_; ++i)
-            if (least[i] < 0.0) *out_[i] = Coverage::outside;
+    void decide(const LitForms& forms) noexcept {
+        if (count_ == 0) return;
+        DoubleLanes least_of_largest;
+        DoubleLanes least;
+        DoubleLanes separation;
+        find_extremes(forms, block_, least_of_largest, least);
+        bool is_any_partial = false;
+        for (std::size_t i = 0; i < count_; ++i) {
+            *out_[i] = decided(forms, i, least_of_largest[i], least[i]);
+            is_any_partial = is_any_partial || *out_[i] == Coverage::partial;
+        }
+        if (is_any_partial && forms.are_usable()) {
+            find_separation(forms, block_, separation);
+            for (std::size_t i = 0; i < count_; ++i)
+                if (*out_[i] == Coverage::partial && separation[i] < 0.0) *out_[i] = Coverage::outside;
+        }
         count_ = 0;
     }
 
 private:
-    BoxBlock<double> boxes_{};
-    Lane<Coverage*> out_{};
+    Coverage decided(const LitForms& forms, std::size_t i, double least_of_largest, double least) const noexcept {
+        const auto& [min, max] = block_;
+        bool is_proper = true;
+        double size = 0.0;
+        for (std::size_t j = 0; j < 3; ++j) {
+            is_proper = is_proper && min[j][i] <= max[j][i];
+            size += larger(-min[j][i], max[j][i]);
+        }
+        const double error = forms.error(size);
+        if (is_proper && error < 0x1p1000) {
+            if (least_of_largest < -error) return Coverage::outside;
+            if (least > error) return Coverage::inside;
+            if (least_of_largest > error && least < -error) return Coverage::partial;
+        }
+        return exact_coverage(forms, *box_[i]);
+    }
+
+    DoubleBlock block_{};
+    std::array<const Box*, double_box_block> box_{};
+    std::array<Coverage*, double_box_block> out_{};
     std::size_t count_ = 0;
 };
 
 inline void cover(const LitForms& forms, const FloatForms& float_forms, std::span<const Box> boxes,
                   std::span<Coverage> out) noexcept {
-    PartialBoxes partial;
-    BoxBlock<float> block{};
-    for (std::size_t begin = 0; begin < boxes.size(); begin += body_block) {
-        const std::size_t count = boxes.size() - begin < body_block ? boxes.size() - begin : body_block;
+    RemainingBoxes remaining;
+    FloatForms::Block block{};
+    std::array<int, box_block> rejected;
+    std::array<std::size_t, box_block> kept;
+    for (std::size_t begin = 0; begin < boxes.size(); begin += box_block) {
+        const std::size_t count = boxes.size() - begin < box_block ? boxes.size() - begin : box_block;
+        for (std::size_t i = 0; i < count; ++i) block.set(i, boxes[begin + i]);
+        float_forms.reject(block, rejected);
+        std::size_t kept_count = 0;
         for (std::size_t i = 0; i < count; ++i) {
-            const Box& box = boxes[begin + i];
-            for (std::size_t j = 0; j < 3; ++j) {
-                block.min[j][i] = box.min[static_cast<int>(j)];
-                block.max[j][i] = box.max[static_cast<int>(j)];
-            }
+            out[begin + i] = Coverage::outside;
+            kept[kept_count] = begin + i;
+            kept_count += rejected[i] == 0 ? 1u : 0u;
         }
-        Lane<int> verdicts;
-        test_planes(float_forms, block, verdicts);
-        for (std::size_t i = 0; i < count; ++i) {
-            const Box& box = boxes[begin + i];
-            Coverage& result = out[begin + i];
-            result = verdicts[i] == doubtful ? exact_coverage(forms, box) : static_cast<Coverage>(verdicts[i]);
-            if (result != Coverage::partial || !forms.are_usable()) continue;
-            partial.add(box, result);
-            if (partial.is_full()) partial.separate(forms);
-        }
+        for (std::size_t i = 0; i < kept_count; ++i) remaining.add(forms, boxes[kept[i]], out[kept[i]]);
     }
-    partial.separate(forms);
+    remaining.decide(forms);
 }
 
 // f(centre) +- |a| radius are the extremes of a form over a sphere.

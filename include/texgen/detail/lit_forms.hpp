@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <span>
 
 #include <glm/mat4x4.hpp>
 
@@ -23,7 +24,7 @@
 namespace texgen::detail {
 
 // a . (x, y, z) + d, known to within error_a (|x| + |y| + |z|) + error_d when it is computed in double in any order. A
-// coordinate whose coefficient is exactly 0 is not used: there the box may be infinite.
+// coordinate whose coefficient is exactly 0 is not used: there a box may be infinite.
 struct BoundedForm {
     std::array<double, 3> a;
     double d;
@@ -62,6 +63,9 @@ public:
     // Form k, times a positive number that brings its largest a near to 1.
     const BoundedForm& operator[](std::size_t k) const noexcept { return forms_[k]; }
 
+    // A bound for all five: each, computed in double where |x| + |y| + |z| <= size, errs by less.
+    double error(double size) const noexcept { return error_a_ * size + error_d_; }
+
     // -1, 0, 1: the sign of form k at a finite point, exactly.
     int sign_at(std::size_t k, const Point& point) const noexcept {
         const BoundedForm& form = forms_[k];
@@ -77,8 +81,7 @@ public:
     // Further forms that are >= 0 wherever all five are: the planes that the theorem of separating axes asks about, each
     // a combination of the five with weights that are exactly >= 0. Where one of them is negative over all of a convex
     // body, nothing of the body is lit.
-    std::size_t separating_count() const noexcept { return separating_count_; }
-    const BoundedForm& separating(std::size_t i) const noexcept { return separating_[i]; }
+    std::span<const BoundedForm> separating() const noexcept { return std::span(separating_).first(separating_count_); }
 
 private:
     using Row = std::array<double, 4>;
@@ -139,6 +142,8 @@ private:
         }
         bounded.d = scale * form[3];
         set_errors(bounded, {}, 0.0);
+        error_a_ = larger(error_a_, bounded.error_a);
+        error_d_ = larger(error_d_, bounded.error_d);
     }
 
     // What the coefficients carry already, and 8 u of each term for its own rounding, for the sums and for the bound's.
@@ -249,6 +254,8 @@ private:
     std::array<BoundedForm, count> forms_{};
     std::array<BoundedForm, 15> separating_{};
     std::size_t separating_count_ = 0;
+    double error_a_ = 0.0;
+    double error_d_ = 0.0;
     bool is_usable_;
     bool lights_nothing_;
 };
