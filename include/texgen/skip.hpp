@@ -105,22 +105,24 @@ public:
         if (is_any_partial && forms.are_usable()) {
             find_separation(forms, block_, separation);
             for (std::size_t i = 0; i < count_; ++i)
-                if (*out_[i] == Coverage::partial && separation[i] < 0.0) *out_[i] = Coverage::outside;
+                if (*out_[i] == Coverage::partial && is_proper(i) && separation[i] < 0.0) *out_[i] = Coverage::outside;
         }
         count_ = 0;
     }
 
 private:
+    // Neither empty nor with a NaN.
+    bool is_proper(std::size_t i) const noexcept {
+        bool result = true;
+        for (std::size_t j = 0; j < 3; ++j) result = result && block_.min[j][i] <= block_.max[j][i];
+        return result;
+    }
+
     Coverage decided(const LitForms& forms, std::size_t i, double least_of_largest, double least) const noexcept {
-        const auto& [min, max] = block_;
-        bool is_proper = true;
         double size = 0.0;
-        for (std::size_t j = 0; j < 3; ++j) {
-            is_proper = is_proper && min[j][i] <= max[j][i];
-            size += larger(-min[j][i], max[j][i]);
-        }
+        for (std::size_t j = 0; j < 3; ++j) size += larger(-block_.min[j][i], block_.max[j][i]);
         const double error = forms.error(size);
-        if (is_proper && error < 0x1p1000) {
+        if (is_proper(i) && error < 0x1p1000) {
             if (least_of_largest < -error) return Coverage::outside;
             if (least > error) return Coverage::inside;
             if (least_of_largest > error && least < -error) return Coverage::partial;

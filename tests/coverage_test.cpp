@@ -1,0 +1,541 @@
+// What a slide covers of boxes and spheres: never a false outside, never a false inside, judged by exact sums.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdlib>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "support/exact.hpp"
+#include "support/hex.hpp"
+#include "support/random.hpp"
+#include "texgen/linear.hpp"
+#include "texgen/projector.hpp"
+#include "texgen/skip.hpp"
+
+namespace {
+
+using support::Dyadic;
+using support::hex;
+using support::Random;
+using texgen::atlas_tile;
+using texgen::Box;
+using texgen::Coverage;
+using texgen::coverage;
+using texgen::degrees;
+using texgen::LitVolume;
+using texgen::Sphere;
+using texgen::TextureRegion;
+using texgen::whole_texture;
+using texgen::WorldTexgen;
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr float nan_float = std::numeric_limits<float>::quiet_NaN();
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+std::string hex(const Box& box) { return "box " + hex(box.min) + " to " + hex(box.max); }
+[[maybe_unused]] std::string hex(const Sphere& sphere) {
+    return "sphere " + hex(sphere.centre) + ", radius " + hex(sphere.radius);
+}
+
+// How many boxes the test of the hostile families takes: TEXGEN_COVERAGE_BOXES says otherwise.
+long hostile_box_count() {
+    const char* text = std::getenv("TEXGEN_COVERAGE_BOXES");
+    return text != nullptr ? std::atol(text) : 150000;
+}
+
+// c[0] x + c[1] y + c[2] z + c[3] >= 0, or > 0.
+struct Inequality {
+    std::array<Dyadic, 4> c;
+    bool is_strict;
+};
+
+// Whether a point fulfils all of them: Fourier and Motzkin's elimination, which is exact, and for the last variable its
+// greatest lower bound against its least upper one.
+bool have_a_solution(std::vector<Inequality> all) {
+    for (std::size_t variable = 0; variable < 2; ++variable) {
+        std::vector<Inequality> rest, lower, upper;
+        for (const Inequality& one : all) {
+            const int sign = one.c[variable].sign();
+            (sign == 0 ? rest : sign > 0 ? lower : upper).push_back(one);
+        }
+        for (const Inequality& low : lower) {
+            for (const Inequality& high : upper) {
+                Inequality sum{{}, low.is_strict || high.is_strict};
+                for (std::size_t k = variable + 1; k < 4; ++k)
+                    sum.c[k] = high.c[k] * low.c[variable] - low.c[k] * high.c[variable];
+                rest.push_back(sum);
+            }
+        }
+        all = rest;
+    }
+    const Inequality *low = nullptr, *high = nullptr;  // z >= -low.c[3] / low.c[2], z <= high.c[3] / -high.c[2]
+    for (const Inequality& one : all) {
+        const int sign = one.c[2].sign();
+        if (sign == 0) {
+            if (one.c[3].sign() < (one.is_strict ? 1 : 0)) return false;
+            continue;
+        }
+        const Inequality*& bound = sign > 0 ? low : high;
+        if (bound == nullptr) {
+            bound = &one;
+            continue;
+        }
+        const int order =
+            (one.c[3] * support::magnitude(bound->c[2]) - bound->c[3] * support::magnitude(one.c[2])).sign();
+        if (order < 0 || (order == 0 && one.is_strict)) bound = &one;
+    }
+    if (low == nullptr || high == nullptr) return true;
+    const int gap = (high->c[3] * low->c[2] - low->c[3] * high->c[2]).sign();
+    return gap > 0 || (gap == 0 && !low->is_strict && !high->is_strict);
+}
+
+// The truth. A region with an infinite side must be open there.
+class Judge {
+public:
+    Judge(const glm::dmat4& matrix, const TextureRegion& region) {
+        const auto row = [&](int k) {
+            std::array<Dyadic, 4> c;
+            for (int j = 0; j < 4; ++j) c[static_cast<std::size_t>(j)] = Dyadic(matrix[j][k]);
+            return c;
+        };
+        const std::array<Dyadic, 4> q = row(3);
+        const auto add = [&](const std::array<Dyadic, 4>& coordinate, double side, double sign) {
+            if (std::isinf(side)) return;
+            Inequality one{{}, false};
+            for (std::size_t j = 0; j < 4; ++j) one.c[j] = Dyadic(sign) * (coordinate[j] - Dyadic(side) * q[j]);
+            forms_.push_back(one);
+        };
+        add(row(0), region.min().x, 1.0);
+        add(row(0), region.max().x, -1.0);
+        add(row(1), region.min().y, 1.0);
+        add(row(1), region.max().y, -1.0);
+        forms_.push_back({q, true});
+    }
+
+    const std::vector<Inequality>& forms() const { return forms_; }
+
+    // The sign of form k where it is largest over the box (or least).
+    int extreme_sign(std::size_t k, const Box& box, bool largest) const {
+        Dyadic value = forms_[k].c[3];
+        for (int j = 0; j < 3; ++j) {
+            const Dyadic& a = forms_[k].c[static_cast<std::size_t>(j)];
+            if (a.sign() == 0) continue;
+            const float x = (a.sign() > 0) == largest ? box.max[j] : box.min[j];
+            if (std::isinf(x)) return largest ? 1 : -1;
+            value = value + a * Dyadic(x);
+        }
+        return value.sign();
+    }
+
+    bool is_outside_a_plane(const Box& box) const {
+        for (std::size_t k = 0; k < forms_.size(); ++k)
+            if (extreme_sign(k, box, true) < (forms_[k].is_strict ? 1 : 0)) return true;
+        return false;
+    }
+    bool is_inside(const Box& box) const {
+        for (std::size_t k = 0; k < forms_.size(); ++k)
+            if (extreme_sign(k, box, false) < (forms_[k].is_strict ? 1 : 0)) return false;
+        return true;
+    }
+    bool is_outside(const Box& box) const {
+        std::vector<Inequality> all = forms_;
+        for (int j = 0; j < 3; ++j) {
+            Inequality low{{}, false}, high{{}, false};
+            low.c[static_cast<std::size_t>(j)] = Dyadic(1.0);
+            high.c[static_cast<std::size_t>(j)] = Dyadic(-1.0);
+            if (!std::isinf(box.min[j])) {
+                low.c[3] = -Dyadic(box.min[j]);
+                all.push_back(low);
+            }
+            if (!std::isinf(box.max[j])) {
+                high.c[3] = Dyadic(box.max[j]);
+                all.push_back(high);
+            }
+        }
+        return !have_a_solution(all);
+    }
+
+private:
+    std::vector<Inequality> forms_;  // q is the last
+};
+
+bool has_nan(const Box& box) {
+    for (int j = 0; j < 3; ++j)
+        if (std::isnan(box.min[j]) || std::isnan(box.max[j])) return true;
+    return false;
+}
+bool is_empty(const Box& box) { return box.min.x > box.max.x || box.min.y > box.max.y || box.min.z > box.max.z; }
+bool has_no_number(const Box& box) {
+    for (int j = 0; j < 3; ++j)
+        if (box.min[j] == infinity || box.max[j] == -infinity) return true;
+    return false;
+}
+
+// Whether the library promises exact decisions at the five planes.
+bool has_moderate_exponents(const glm::dmat4& matrix, const TextureRegion& region) {
+    double largest = 0.0, least = infinite;
+    for (int j = 0; j < 4; ++j) {
+        for (const int k : {0, 1, 3}) {
+            const double size = std::fabs(matrix[j][k]);
+            largest = std::max(largest, size);
+            if (size > 0.0) least = std::min(least, size);
+        }
+    }
+    for (const double side : {region.min().x, region.max().x, region.min().y, region.max().y}) {
+        const double size = std::fabs(side);
+        if (size > 0.0 && size < infinite && !(size >= 0x1p-200 && size <= 0x1p200)) return false;
+    }
+    return largest == 0.0 || least / largest > 0x1p-398;
+}
+
+struct Counts {
+    long outside = 0, partial = 0, inside = 0, separated = 0, touching = 0, false_partial = 0;
+};
+
+// Empty where the answer is what the contract says. `look_for_false_partials` asks of each `partial` whether it is one.
+std::string what_is_wrong(Coverage answer, const Judge& judge, bool is_exact, const Box& box, Counts& counts,
+                          bool look_for_false_partials = false) {
+    if (has_nan(box)) return answer == Coverage::partial ? "" : "a NaN, and not partial";
+    if (is_empty(box)) return answer == Coverage::outside ? "" : "empty, and not outside";
+    if (has_no_number(box)) return answer == Coverage::inside ? "no point of it is lit, and it is inside" : "";
+    const bool outside_a_plane = judge.is_outside_a_plane(box);
+    const bool inside = !outside_a_plane && judge.is_inside(box);
+    for (std::size_t k = 0; k < judge.forms().size(); ++k)
+        if (judge.extreme_sign(k, box, true) == 0 || judge.extreme_sign(k, box, false) == 0) {
+            ++counts.touching;
+            break;
+        }
+    switch (answer) {
+        case Coverage::outside:
+            ++counts.outside;
+            if (outside_a_plane) return "";
+            ++counts.separated;
+            return judge.is_outside(box) ? "" : "a false outside";
+        case Coverage::inside:
+            ++counts.inside;
+            return inside ? "" : "a false inside";
+        case Coverage::partial:
+            ++counts.partial;
+            if (is_exact && outside_a_plane) return "outside a plane, and not outside";
+            if (is_exact && inside) return "inside all planes, and not inside";
+            if (look_for_false_partials && judge.is_outside(box)) ++counts.false_partial;
+            return "";
+    }
+    return "no answer at all";
+}
+
+struct Slide {
+    glm::dmat4 matrix;
+    TextureRegion region;
+};
+
+std::string hex(const Slide& slide) {
+    return "matrix " + hex(slide.matrix) + ", region " + hex(slide.region.min()) + " to " + hex(slide.region.max());
+}
+
+// A projector as a scene has it, about a place, and the whole texture or a tile of an atlas.
+Slide ordinary_slide(Random& random, double distance_from_origin) {
+    const glm::dvec3 place = distance_from_origin * random.direction();
+    const texgen::Aim aim{.position = place + random.uniform(0.0, 20.0) * random.direction(),
+                          .target = place + random.uniform(0.0, 20.0) * random.direction(),
+                          .up = random.direction()};
+    const TextureRegion region = random.coin() ? whole_texture()
+                                               : atlas_tile({random.integer(0, 7) / 8.0, random.integer(0, 3) / 4.0},
+                                                            {random.integer(8, 15) / 8.0, random.integer(4, 7) / 4.0});
+    const auto slide_of = [&](const auto& lens) -> std::optional<Slide> {
+        const auto projector = texgen::make_projector(lens, aim, random.coin() ? texgen::opengl : texgen::direct3d);
+        if (!projector) return {};
+        const TextureRegion of_slide = random.coin() ? region : whole_texture();
+        return Slide{texgen::texture_from_world(*projector, of_slide).matrix(), region};
+    };
+    std::optional<Slide> slide;
+    switch (random.integer(0, 3)) {
+        case 0: {
+            const double size = random.uniform(1.0, 15.0);
+            slide = slide_of(texgen::OrthographicLens{-size, random.uniform(0.3, 1.0) * size, -size,
+                                                      random.uniform(0.3, 1.0) * size, 0.1, 100.0});
+            break;
+        }
+        case 1:
+            slide = slide_of(texgen::FrustumLens{random.uniform(-0.5, 0.0), random.uniform(0.1, 0.5),
+                                                 random.uniform(-0.5, 0.0), random.uniform(0.1, 0.5), 0.5, 200.0});
+            break;
+        default:
+            slide = slide_of(texgen::PerspectiveLens{.fovy = degrees(random.uniform(8.0, 110.0)),
+                                                     .aspect = random.uniform(0.5, 2.0),
+                                                     .z_near = 0.1,
+                                                     .z_far = random.coin() ? infinite : 500.0});
+            break;
+    }
+    return slide ? *slide : ordinary_slide(random, distance_from_origin);
+}
+
+Slide hostile_slide(Random& random) {
+    Slide slide = ordinary_slide(random, random.integer(0, 2) == 0 ? random.power_of_ten(2.0, 6.0) : 0.0);
+    const auto any_region = [&] {
+        const auto side = [&] {
+            const int kind = random.integer(0, 19);
+            return kind == 0 ? random.power_of_ten(-300.0, 300.0) : kind == 1 ? 0.0 : random.uniform(-4.0, 4.0);
+        };
+        glm::dvec2 min(side(), side()), max(side(), side());
+        if (random.integer(0, 3) == 0) max.x = min.x;
+        if (random.integer(0, 3) == 0) min.x = -infinite;
+        if (random.integer(0, 3) == 0) max.y = infinite;
+        return atlas_tile(min, max);
+    };
+    switch (random.integer(0, 9)) {
+        case 0:
+            slide.matrix = glm::dmat4(support::rounded(slide.matrix));
+            break;
+        case 1:
+            slide.matrix *= random.power_of_ten(-30.0, 30.0);
+            break;
+        case 2: {  // small integers: exact ties everywhere
+            for (int j = 0; j < 4; ++j)
+                for (int k = 0; k < 4; ++k) slide.matrix[j][k] = random.integer(-2, 2);
+            slide.region = atlas_tile({random.integer(-2, 1), random.integer(-2, 1)},
+                                      {random.integer(-1, 2), random.integer(-1, 2)});
+            break;
+        }
+        case 3: {
+            const int axis = random.integer(0, 2);
+            slide.matrix[axis] = -slide.matrix[axis];
+            break;
+        }
+        case 4:
+            for (int j = 0; j < 4; ++j)
+                for (int k = 0; k < 4; ++k)
+                    slide.matrix[j][k] = random.uniform(-1.0, 1.0) * random.power_of_ten(-3.0, 3.0);
+            break;
+        case 5:
+            slide.region = any_region();
+            break;
+        case 6:
+            if (random.integer(0, 9) == 0)
+                for (int j = 0; j < 4; ++j) slide.matrix[j][random.integer(0, 3)] *= random.power_of_ten(-250.0, 250.0);
+            break;
+        case 7: {  // aligned with the axes
+            const double focal_length = random.power_of_ten(-1.0, 1.0);
+            slide.matrix = glm::dmat4(0.0);
+            slide.matrix[random.integer(0, 1)][0] = focal_length;
+            slide.matrix[random.integer(0, 1)][1] = random.coin() ? focal_length : -focal_length;
+            slide.matrix[2][0] = slide.matrix[2][1] = random.coin() ? 0.5 : 0.0;
+            slide.matrix[2][3] = random.coin() ? 1.0 : -1.0;
+            for (const int k : {0, 1, 3}) slide.matrix[3][k] = random.coin() ? 0.0 : random.integer(-3, 3);
+            break;
+        }
+        case 8:  // q hardly changes
+            for (int j = 0; j < 3; ++j) slide.matrix[j][3] *= random.power_of_ten(-12.0, -4.0);
+            break;
+        default:
+            break;
+    }
+    return slide;
+}
+
+// A point where `forms` of them are 0, as far as double goes: on a side, on an edge, at the apex.
+glm::dvec3 point_on(const Slide& slide, int forms, Random& random, const glm::dvec3& about) {
+    const auto row = [&](int k) {
+        return glm::dvec4(slide.matrix[0][k], slide.matrix[1][k], slide.matrix[2][k], slide.matrix[3][k]);
+    };
+    const glm::dvec4 q = row(3);
+    const auto side = [&](int k) {
+        const double value = (random.coin() ? slide.region.min() : slide.region.max())[k];
+        return std::isinf(value) ? q : row(k) - value * q;
+    };
+    const glm::dvec4 plane[3] = {forms == 1 && random.integer(0, 3) == 0 ? q : side(random.integer(0, 1)), side(0),
+                                 side(1)};
+    glm::dvec3 p = about;
+    const auto normal = [](const glm::dvec4& f) { return glm::dvec3(f.x, f.y, f.z); };
+    const auto dot = [](const glm::dvec3& a, const glm::dvec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; };
+    for (int step = 0; step < (forms == 1 ? 3 : 60); ++step) {
+        const glm::dvec4& f = forms == 1      ? plane[0]
+                              : forms == 2    ? plane[1 + step % 2]
+                              : step % 3 == 2 ? q
+                                              : plane[1 + step % 3];
+        const glm::dvec3 n = normal(f);
+        const double squared = dot(n, n);
+        if (squared > 0.0) p -= (dot(n, p) + f.w) / squared * n;
+    }
+    return p;
+}
+
+enum class Family { ordinary, at_side, at_edge, at_apex, integers, tiny, huge, unbounded, empty, nan, bits };
+constexpr int family_count = 11;
+
+Box hostile_box(const Slide& slide, Family family, Random& random) {
+    const double reach = random.power_of_ten(-1.0, 2.0);
+    glm::dvec3 about = random.uniform(0.0, 1.0) * reach * random.direction();
+    // Where the projector is, if it is far away.
+    if (random.integer(0, 3) != 0) {
+        const glm::dvec3 apex = point_on(slide, 3, random, glm::dvec3(0.0));
+        if (std::fabs(apex.x) + std::fabs(apex.y) + std::fabs(apex.z) < 1e7) about += apex;
+    }
+    const auto box_from = [&](const glm::vec3& corner, double size) {
+        Box box{corner, corner};
+        for (int j = 0; j < 3; ++j) {
+            if (random.integer(0, 3) == 0) continue;  // flat
+            const float other = support::to_float(static_cast<double>(corner[j]) + random.uniform(-1.0, 1.0) * size);
+            box.min[j] = std::min(corner[j], other);
+            box.max[j] = std::max(corner[j], other);
+        }
+        return box;
+    };
+    const auto near = [&](const glm::dvec3& p) {
+        glm::vec3 result;
+        for (int j = 0; j < 3; ++j) result[j] = support::neighbour(support::to_float(p[j]), random.integer(-2, 2));
+        return result;
+    };
+    const double size = random.power_of_ten(-2.0, 2.0);
+    switch (family) {
+        case Family::ordinary:
+            return box_from(glm::vec3(about), size);
+        case Family::at_side:
+            return box_from(near(point_on(slide, 1, random, about)), size);
+        case Family::at_edge:
+            return box_from(near(point_on(slide, 2, random, about)), size);
+        case Family::at_apex:
+            return box_from(near(point_on(slide, 3, random, about)), size);
+        case Family::integers: {
+            Box box{};
+            for (int j = 0; j < 3; ++j) {
+                const int first = random.integer(-4, 4), second = random.integer(-4, 4);
+                box.min[j] = static_cast<float>(std::min(first, second));
+                box.max[j] = static_cast<float>(std::max(first, second));
+            }
+            return box;
+        }
+        case Family::tiny:
+            return box_from(
+                random.coin() ? near(point_on(slide, random.integer(1, 3), random, about)) : glm::vec3(0.0f),
+                random.power_of_ten(-44.0, -4.0));
+        case Family::huge:
+            return box_from(glm::vec3(about), random.power_of_ten(4.0, 38.0));
+        case Family::unbounded: {
+            Box box = random.coin() ? hostile_box(slide, Family::integers, random)
+                                    : box_from(near(point_on(slide, random.integer(1, 3), random, about)), size);
+            for (int j = 0; j < 3; ++j) {
+                if (random.integer(0, 2) == 0) box.min[j] = -infinity;
+                if (random.integer(0, 2) == 0) box.max[j] = infinity;
+            }
+            if (random.integer(0, 19) == 0) box.min.x = infinity;
+            return box;
+        }
+        case Family::empty: {
+            Box box = box_from(glm::vec3(about), size);
+            const int axis = random.integer(0, 2);
+            std::swap(box.min[axis], box.max[axis]);
+            if (box.min[axis] == box.max[axis]) box.max[axis] = support::neighbour(box.max[axis], -1);
+            if (random.integer(0, 9) == 0) box = {glm::vec3(infinity), glm::vec3(-infinity)};
+            return box;
+        }
+        case Family::nan: {
+            Box box = box_from(glm::vec3(about), size);
+            (random.coin() ? box.min : box.max)[random.integer(0, 2)] = nan_float;
+            return box;
+        }
+        case Family::bits:
+            return {{random.any_float(), random.any_float(), random.any_float()},
+                    {random.any_float(), random.any_float(), random.any_float()}};
+    }
+    return {};
+}
+
+// Whether the region has a point.
+bool is_a_region(const TextureRegion& region) {
+    return region.min().x <= region.max().x && region.min().y <= region.max().y;
+}
+
+}  // namespace
+
+TEST_CASE("no box of a hostile family is outside or inside that is not, and the five planes are decided exactly") {
+    Random random(41);
+    const long total = hostile_box_count();
+    std::array<Counts, family_count> counts{};
+    long done = 0;
+    while (done < total) {
+        const Slide slide = hostile_slide(random);
+        const WorldTexgen transform(slide.matrix);
+        const Judge judge(slide.matrix, slide.region);
+        const bool is_exact = has_moderate_exponents(slide.matrix, slide.region);
+        std::vector<Box> boxes;
+        std::vector<Family> families;
+        for (int i = random.integer(0, 150); i > 0; --i) {
+            families.push_back(static_cast<Family>(random.integer(0, family_count - 1)));
+            boxes.push_back(hostile_box(slide, families.back(), random));
+        }
+        std::vector<Coverage> answers(boxes.size(), Coverage::inside);
+        const LitVolume<texgen::World> volume(transform, slide.region);
+        volume.coverage(boxes, answers);
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+            Counts& of_family = counts[static_cast<std::size_t>(families[i])];
+            std::string wrong = what_is_wrong(answers[i], judge, is_exact, boxes[i], of_family);
+            if (!is_a_region(slide.region) && !has_nan(boxes[i]) && answers[i] != Coverage::outside)
+                wrong = "the region is empty, and it is not outside";
+            if (volume.coverage(boxes[i]) != answers[i]) wrong = "one box alone is something else";
+            REQUIRE_MESSAGE(wrong.empty(), wrong << ": " << hex(slide) << ", " << hex(boxes[i]) << ": "
+                                                 << static_cast<int>(answers[i]));
+        }
+        done += static_cast<long>(boxes.size());
+    }
+    const auto of = [&](Family family) -> const Counts& { return counts[static_cast<std::size_t>(family)]; };
+    for (int family = 0; family < family_count; ++family) {
+        const Counts& c = counts[static_cast<std::size_t>(family)];
+        MESSAGE("family " << family << ": outside " << c.outside << ", by a separating plane alone " << c.separated
+                          << ", partial " << c.partial << ", inside " << c.inside << ", touching " << c.touching);
+        if (family >= static_cast<int>(Family::empty)) continue;
+        CHECK(c.outside > total / 1000);
+        CHECK(c.partial > total / 1000);
+    }
+    CHECK(of(Family::integers).touching > total / 300);
+    CHECK(of(Family::unbounded).separated > 0);
+    for (const Family family : {Family::at_side, Family::at_edge, Family::at_apex, Family::integers})
+        CHECK(of(family).separated > total / 10000);
+    for (const Family family :
+         {Family::ordinary, Family::at_side, Family::at_edge, Family::integers, Family::unbounded})
+        CHECK(of(family).inside > total / 3000);
+}
+
+TEST_CASE("of the boxes of random scenes less than 3 % are partial that could be outside") {
+    Random random(42);
+    Counts counts;
+    long tested = 0;
+    for (int scene = 0; scene < 160; ++scene) {
+        const double distance = scene % 4 == 0 ? 1e5 : 0.0;
+        const Slide slide = ordinary_slide(random, distance);
+        const Judge judge(slide.matrix, slide.region);
+        const LitVolume<texgen::World> volume(WorldTexgen(slide.matrix), slide.region);
+        const glm::dvec3 apex = point_on(slide, 3, random, glm::dvec3(0.0));
+        const glm::dvec3 centre = distance > 0.0 ? apex : glm::dvec3(0.0);
+        std::vector<Box> boxes;
+        for (int i = 0; i < 300; ++i) {
+            const double size = random.power_of_ten(-1.0, 1.5);
+            const glm::dvec3 middle = centre + random.uniform(0.0, 40.0) * random.direction();
+            const glm::dvec3 half(size * random.uniform(0.1, 1.0), size * random.uniform(0.1, 1.0),
+                                  size * random.uniform(0.1, 1.0));
+            boxes.push_back({glm::vec3(middle - half), glm::vec3(middle + half)});
+        }
+        std::vector<Coverage> answers(boxes.size());
+        volume.coverage(boxes, answers);
+        tested += static_cast<long>(boxes.size());
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+            const std::string wrong = what_is_wrong(answers[i], judge, true, boxes[i], counts, true);
+            REQUIRE_MESSAGE(wrong.empty(), wrong << ": " << hex(slide) << ", " << hex(boxes[i]));
+        }
+    }
+    MESSAGE("of " << tested << ": outside " << counts.outside << " (by a separating plane alone " << counts.separated
+                  << "), partial " << counts.partial << " (falsely " << counts.false_partial << "), inside "
+                  << counts.inside);
+    CHECK(counts.partial > tested / 20);
+    CHECK(counts.inside > tested / 50);
+    CHECK(counts.separated > tested / 200);
+    CHECK(counts.false_partial * 100 < tested * 3);
+    // The theorem of separating axes leaves none but what rounding does.
+    CHECK(counts.false_partial * 1000 < tested);
+}
