@@ -1,0 +1,204 @@
+#pragma once
+
+// Eigen users' border, not in the umbrella: matrices go across by value and say their spaces, arrays go across as views.
+// A view is made of the strides that the Eigen object reports; what has no such view (an expression, another scalar, a
+// temporary, a stride where none can be) does not compile, so nothing is copied and nothing is read at a wrong place.
+
+#include <concepts>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <type_traits>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include "detail/assert.hpp"
+#include "texcoord.hpp"
+#include "transform.hpp"
+
+namespace texgen {
+
+namespace detail {
+
+template <class T>
+concept FloatOrDouble = std::same_as<T, float> || std::same_as<T, double>;
+
+template <class T>
+concept EigenDense = requires(const T& t) {
+    []<class Derived>(const Eigen::DenseBase<Derived>&) {}(t);
+};
+
+template <class T>
+concept EigenTransform = requires(const T& t) {
+    []<class Scalar, int Mode, int Options>(const Eigen::Transform<Scalar, 3, Mode, Options>&) {}(t);
+};
+
+template <class T>
+concept EigenMatrix4 =
+    EigenDense<T> && FloatOrDouble<typename T::Scalar> && T::RowsAtCompileTime == 4 && T::ColsAtCompileTime == 4;
+
+template <class T>
+inline constexpr bool owns_elements =
+    std::is_base_of_v<Eigen::PlainObjectBase<std::remove_cvref_t<T>>, std::remove_cvref_t<T>>;
+
+// Floats in memory that outlive the call: a view of them, or an lvalue that owns them. T as of a forwarding reference.
+template <class T>
+concept EigenFloats = EigenDense<std::remove_cvref_t<T>> && std::same_as < typename std::remove_cvref_t<T>::Scalar,
+float > &&(std::remove_cvref_t<T>::Flags& Eigen::DirectAccessBit) != 0 &&
+    (std::is_lvalue_reference_v<T> || !owns_elements<T>);
+
+// Points are columns of three rows, or rows of three columns; nine numbers do not say which.
+template <class T>
+concept EigenPoints = EigenFloats<T> &&(std::remove_cvref_t<T>::RowsAtCompileTime == 3) !=
+                      (std::remove_cvref_t<T>::ColsAtCompileTime == 3);
+
+template <class T>
+concept EigenCoordinates = EigenFloats<T> && bool(std::remove_cvref_t<T>::IsVectorAtCompileTime);
+
+// Floats that follow one another, in the order of row-major fragments.
+template <class T>
+concept EigenSpan = EigenFloats<T> &&
+    ((bool(std::remove_cvref_t<T>::IsVectorAtCompileTime) && std::remove_cvref_t<T>::InnerStrideAtCompileTime == 1) ||
+     (bool(std::remove_cvref_t<T>::IsRowMajor) && owns_elements<T>));
+
+template <class Space, class Points>
+Positions<Space> positions_of(const Points& points) noexcept {
+    constexpr bool in_columns = Points::RowsAtCompileTime == 3;
+    const Eigen::Index count = in_columns ? points.cols() : points.rows();
+    const Eigen::Index next_point = in_columns ? points.colStride() : points.rowStride();
+    const Eigen::Index next_coordinate = in_columns ? points.rowStride() : points.colStride();
+    const bool forwards = next_point >= 0;
+    TEXGEN_ASSERT(forwards);
+    if (count == 0 || !forwards) return {nullptr, nullptr, nullptr, 0, sizeof(float)};
+    const float* const x = points.data();
+    return {x, x + next_coordinate, x + 2 * next_coordinate, static_cast<std::size_t>(count),
+            static_cast<std::size_t>(next_point) * sizeof(float)};
+}
+
+template <class Space, class X, class Y, class Z>
+Positions<Space> positions_of(const X& x, const Y& y, const Z& z) noexcept {
+    const Eigen::Index next = x.innerStride();
+    const bool alike =
+        x.size() == y.size() && x.size() == z.size() && next == y.innerStride() && next == z.innerStride() && next >= 0;
+    TEXGEN_ASSERT(alike);
+    if (x.size() == 0 || !alike) return {nullptr, nullptr, nullptr, 0, sizeof(float)};
+    return {x.data(), y.data(), z.data(), static_cast<std::size_t>(x.size()),
+            static_cast<std::size_t>(next) * sizeof(float)};
+}
+
+}  // namespace detail
+
+// ---- Matrices --------------------------------------------------------------------------------------------------
+
+// Guarantee: each element is kept exactly; no allocation, noexcept for a plain matrix.
+// Shape: from_eigen<ViewMatrix>(m), a 4x4 of float or double for column vectors, or an Eigen::Transform of any mode
+// (Isometry3d, Affine3f, AffineCompact3d, Projective3d ...). The role names the spaces; there is no default.
+// Bad input: NaN and infinity are kept as they are.
+template <class Role, detail::EigenMatrix4 Matrix>
+Role from_eigen(const Matrix& matrix) {
+    const Eigen::Matrix<typename Matrix::Scalar, 4, 4> value = matrix;
+    glm::mat<4, 4, typename Matrix::Scalar> result;
+    for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 4; ++row) result[column][row] = value(row, column);
+    return Role(result);
+}
+
+template <class Role, detail::EigenTransform EigenTransform>
+Role from_eigen(const EigenTransform& transform) noexcept {
+    return from_eigen<Role>(
+        Eigen::Transform<typename EigenTransform::Scalar, 3, Eigen::Projective>(transform).matrix());
+}
+
+// Guarantee: exact for Matrix4d and Projective3d; each element rounded once for Matrix4f and Projective3f. No allocation,
+// noexcept. Bad input: as Transform.
+template <class Target = Eigen::Matrix4d, class To, class From>
+Target to_eigen(const Transform<To, From>& transform) noexcept {
+    using Scalar = typename Target::Scalar;
+    static_assert(std::is_same_v<Target, Eigen::Matrix<Scalar, 4, 4>> ||
+                      std::is_same_v<Target, Eigen::Transform<Scalar, 3, Eigen::Projective>>,
+                  "Matrix4d, Matrix4f, Projective3d or Projective3f; to_eigen_affine() has the others");
+    Target result;
+    for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 4; ++row) result(row, column) = static_cast<Scalar>(transform.matrix()[column][row]);
+    return result;
+}
+
+// The same as Affine3d or Affine3f. Bad input: empty where the last row is not exactly (0, 0, 0, 1), so that no projection
+// is lost; every texgen matrix of a perspective projector is such a one.
+template <class Target = Eigen::Affine3d, class To, class From>
+std::optional<Target> to_eigen_affine(const Transform<To, From>& transform) noexcept {
+    static_assert(std::is_same_v<Target, Eigen::Affine3d> || std::is_same_v<Target, Eigen::Affine3f>,
+                  "Affine3d or Affine3f");
+    const glm::dmat4& m = transform.matrix();
+    if (!(m[0][3] == 0.0 && m[1][3] == 0.0 && m[2][3] == 0.0 && m[3][3] == 1.0)) return std::nullopt;
+    return Target(to_eigen<Eigen::Matrix<typename Target::Scalar, 4, 4>>(transform));
+}
+
+// ---- Vectors ---------------------------------------------------------------------------------------------------
+
+// Guarantee: each element is kept. Shapes: glm::vec2, vec3, vec4 and dvec2, dvec3, dvec4; column vectors of as many rows.
+template <glm::length_t N, detail::FloatOrDouble Scalar, glm::qualifier Q>
+Eigen::Matrix<Scalar, static_cast<int>(N), 1> to_eigen(const glm::vec<N, Scalar, Q>& vector) noexcept {
+    Eigen::Matrix<Scalar, static_cast<int>(N), 1> result;
+    for (glm::length_t i = 0; i < N; ++i) result(static_cast<Eigen::Index>(i)) = vector[i];
+    return result;
+}
+
+template <class Vector>
+requires detail::EigenDense<Vector> && detail::FloatOrDouble<typename Vector::Scalar> &&
+    (Vector::ColsAtCompileTime == 1 && Vector::RowsAtCompileTime >= 2 &&
+     Vector::RowsAtCompileTime <=
+         4) glm::vec<Vector::RowsAtCompileTime, typename Vector::Scalar> to_glm(const Vector& vector) {
+    const Eigen::Matrix<typename Vector::Scalar, Vector::RowsAtCompileTime, 1> value = vector;
+    glm::vec<Vector::RowsAtCompileTime, typename Vector::Scalar> result;
+    for (int i = 0; i < Vector::RowsAtCompileTime; ++i) result[static_cast<glm::length_t>(i)] = value(i);
+    return result;
+}
+
+// ---- Points and outputs ----------------------------------------------------------------------------------------
+
+// Guarantee: a view of the given floats, which are not copied and must outlive it; no allocation, noexcept.
+// Shapes: points as columns of a 3 x N (Matrix3Xf, Ref, Map, block; interleaved where its columns are dense, planar where
+// it is row-major), as rows of an N x 3, or as three vectors of coordinates of one size and one inner stride. Any strides.
+// Bad input: three vectors that disagree, and negative strides, are asserted; without assertions they are no points.
+template <detail::EigenPoints Points>
+Positions<Object> object_space(Points&& points) noexcept {
+    return detail::positions_of<Object>(points);
+}
+template <detail::EigenCoordinates X, detail::EigenCoordinates Y, detail::EigenCoordinates Z>
+Positions<Object> object_space(X&& x, Y&& y, Z&& z) noexcept {
+    return detail::positions_of<Object>(x, y, z);
+}
+
+template <detail::EigenPoints Points>
+Positions<World> world_space(Points&& points) noexcept {
+    return detail::positions_of<World>(points);
+}
+template <detail::EigenCoordinates X, detail::EigenCoordinates Y, detail::EigenCoordinates Z>
+Positions<World> world_space(X&& x, Y&& y, Z&& z) noexcept {
+    return detail::positions_of<World>(x, y, z);
+}
+
+template <detail::EigenPoints Points>
+Positions<Eye> eye_space(Points&& points) noexcept {
+    return detail::positions_of<Eye>(points);
+}
+template <detail::EigenCoordinates X, detail::EigenCoordinates Y, detail::EigenCoordinates Z>
+Positions<Eye> eye_space(X&& x, Y&& y, Z&& z) noexcept {
+    return detail::positions_of<Eye>(x, y, z);
+}
+
+// The floats of a vector without gaps (VectorXf, Ref<ArrayXf>, a column of a matrix), or of a row-major matrix or array
+// that owns them (height x width fragments): an output of Texcoords, or an input of alphas.
+// Guarantee: a view as above; std::span<const float> of what is const. A vector that may have gaps does not compile.
+template <detail::EigenSpan Floats>
+auto floats(Floats&& values) noexcept {
+    return std::span(values.data(), static_cast<std::size_t>(values.size()));
+}
+
+}  // namespace texgen
