@@ -148,6 +148,7 @@ class TileInterpolator;
 }  // namespace detail
 
 class TriangleSetup;
+class FootprintSetup;
 inline namespace TEXGEN_BUILD {
 Work interpolate(const TriangleSetup&, FragmentRect, Texcoords) noexcept;
 }
@@ -190,6 +191,7 @@ public:
     }
 
 private:
+    friend class FootprintSetup;
     friend class detail::TileInterpolator;
     friend Work TEXGEN_BUILD::interpolate(const TriangleSetup&, FragmentRect, Texcoords) noexcept;
 

@@ -5,6 +5,7 @@
 #include "clip.hpp"
 #include "conventions.hpp"
 #include "fixed_function.hpp"
+#include "footprint.hpp"
 #include "interpolate.hpp"
 #include "linear.hpp"
 #include "primitives.hpp"

@@ -689,8 +689,15 @@ inline void divide_segment_float(const SegmentJob& original) noexcept {
         divide_segment_float_of<1, false>(job);
 }
 
+}  // namespace texgen::detail::TEXGEN_ISA
+
+#include "footprint.inc.hpp"
+
+namespace texgen::detail::TEXGEN_ISA {
+
 inline constexpr Kernels kernels{divide_nearest,  divide_rounded,         divide_float,        quadratic,
                                  affine,          divide_points_nearest,  divide_points_float, divide_points_rounded,
-                                 generate_points, divide_segment_nearest, divide_segment_float};
+                                 generate_points, divide_segment_nearest, divide_segment_float,
+                                 differentiate,   filter};
 
 }  // namespace texgen::detail::TEXGEN_ISA

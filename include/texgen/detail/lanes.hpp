@@ -130,6 +130,32 @@ struct GenerateJob {
     float* quads;
 };
 
+// The derivatives of s (0) and t (1) over a rectangle, and what filters make of them. Of d/dx Q^2 and d/dy Q^2 the one
+// grows by twist a row, the other shrinks by twist a column. An output is null or an array whose rows are pitch apart.
+struct FootprintJob {
+    struct Slope {
+        double dx, dy, twist;
+    };
+
+    // The sum of two squares of `texels` that the filters need in float, when the largest of the job is about 1.
+    static constexpr float smallest_square = 0x1p-24f;
+
+    int width, height;
+    Ramp q;
+    Slope slope[2];
+    Slope texels[2];  // the same in texels, times a factor that level_offset and the factors below make good
+    bool in_float;
+    float level_offset, anisotropy_factor, major_factor[2];
+    float* dx[2];
+    float* dy[2];
+    float* level;
+    float* anisotropy;
+    float* major[2];
+    std::ptrdiff_t pitch;
+
+    float* row(float* output, int y) const noexcept { return output == nullptr ? nullptr : output + y * pitch; }
+};
+
 struct Kernels {
     TileJob::Unit (*divide_nearest)(const TileJob&, TileJob::Unit first) noexcept;
     void (*divide_rounded)(const TileJob&) noexcept;
@@ -144,6 +170,9 @@ struct Kernels {
     void (*generate_points)(const GenerateJob&) noexcept;
     std::size_t (*divide_segment_nearest)(const SegmentJob&, std::size_t first) noexcept;
     void (*divide_segment_float)(const SegmentJob&) noexcept;
+    void (*differentiate)(const FootprintJob&) noexcept;
+    // The first row from `first` on with a fragment that floats do not serve, or the height.
+    int (*filter)(const FootprintJob&, int first) noexcept;
 };
 
 }  // namespace texgen::detail

@@ -107,6 +107,22 @@ TEXGEN_INLINE WideWords magnitude_bits(const WideFloats& a) noexcept {
 TEXGEN_INLINE WideWords signed_bits(const WideFloats& a) noexcept {
     return WideWords::of([&](int i) { return std::bit_cast<int>(a.lane[i]); });
 }
+TEXGEN_INLINE WideFloats from_bits(const WideWords& words) noexcept {
+    return WideFloats::of([&](int i) { return std::bit_cast<float>(words.lane[i]); });
+}
+TEXGEN_INLINE WideFloats to_numbers(const WideWords& words) noexcept {
+    return WideFloats::of([&](int i) { return static_cast<float>(words.lane[i]); });
+}
+TEXGEN_INLINE WideWords halved(const WideWords& words) noexcept {
+    return WideWords::of([&](int i) { return words.lane[i] >> 1; });
+}
+TEXGEN_INLINE WideFloats magnitude(const WideFloats& a) noexcept { return from_bits(magnitude_bits(a)); }
+TEXGEN_INLINE WideWords is_negative(const WideFloats& a) noexcept {
+    return WideWords::of([&](int i) { return a.lane[i] < 0.0f ? -1 : 0; });
+}
+TEXGEN_INLINE WideFloats select(const WideWords& mask, const WideFloats& a, const WideFloats& b) noexcept {
+    return from_bits((mask & signed_bits(a)) | (~mask & signed_bits(b)));
+}
 TEXGEN_INLINE WideWords minimum(const WideWords& a, const WideWords& b) noexcept {
     return WideWords::of([&](int i) { return a.lane[i] < b.lane[i] ? a.lane[i] : b.lane[i]; });
 }

@@ -17,6 +17,7 @@
 #include <glm/vec4.hpp>
 
 #include "../primitives.hpp"
+#include "expansion.hpp"
 #include "lanes.hpp"
 #include "nearest.hpp"
 #include "rounding.hpp"
@@ -38,6 +39,19 @@ struct Plane {
     Ramp magnitude;
 
     bool is_constant() const noexcept { return value.dx == 0.0 && value.dy == 0.0; }
+};
+
+// The derivatives of f/q by x and y, times Q^2, as functions of p - a. With mu_ij = (f_i q_j - f_j q_i) times the weights
+// of i and j, and twice the signed area,
+//   d(f/q)/dx Q^2 = F_x Q - F Q_x = -area (mu_ab (c - p).y + mu_bc (a - p).y + mu_ca (b - p).y)
+//   d(f/q)/dy Q^2 = F_y Q - F Q_y =  area (mu_ab (c - p).x + mu_bc (a - p).x + mu_ca (b - p).x):
+// the one does not depend on x, nor the other on y. `magnitude` is the same with the absolute values of all terms.
+struct Slope {
+    struct Terms {
+        double dx, dy;  // at the first vertex
+        double twist;   // a step of y adds it to dx, a step of x takes it from dy
+    };
+    Terms value, magnitude;
 };
 
 class TrianglePlanes {
@@ -67,6 +81,59 @@ public:
                  b_and_a * std::fabs(to_c_.y) + c_and_a * std::fabs(to_b_.y),
                  c_and_a * std::fabs(to_b_.x) + b_and_a * std::fabs(to_c_.x)}};
     }
+
+    // The slope of one coordinate, 0 to 2 for s, t, r. Each mu carries 3 u: products of two floats are exact, so s and t
+    // that are large everywhere cancel without harm. The area carries 4 u, a difference of points 1 u, products and sums
+    // 5 u: gamma(16) of the magnitudes covers the values, and a step from the first vertex.
+    Slope slope(int coordinate) const noexcept {
+        const WindowVertex* const corner[] = {&triangle_.a, &triangle_.b, &triangle_.c};
+        const double area = difference_of_products(to_b_.x, to_c_.y, to_b_.y, to_c_.x);
+        const auto mu = [&](int i, int j) {
+            return (widened(corner[i]->strq[coordinate]) * widened(corner[j]->strq.w) -
+                    widened(corner[j]->strq[coordinate]) * widened(corner[i]->strq.w)) *
+                   (weight_[i] * weight_[j]) * area;
+        };
+        const double ab = mu(0, 1);
+        const double bc = mu(1, 2);
+        const double ca = mu(2, 0);
+        const double size_ab = std::fabs(ab);
+        const double size_ca = std::fabs(ca);
+        return {{-(ab * to_c_.y + ca * to_b_.y), ab * to_c_.x + ca * to_b_.x, ab + bc + ca},
+                {size_ab * std::fabs(to_c_.y) + size_ca * std::fabs(to_b_.y),
+                 size_ab * std::fabs(to_c_.x) + size_ca * std::fabs(to_b_.x), size_ab + std::fabs(bc) + size_ca}};
+    }
+
+    // The Jacobian determinant of (s/q, t/q), times Q^3: the same everywhere. With M the matrix of the corners' (s, t, q),
+    // the planes are M times the edge functions, whose determinant is area^2. Within 2^-46 of itself; its sign is exact.
+    double jacobian_determinant() const noexcept {
+        const WindowVertex* const corner[] = {&triangle_.a, &triangle_.b, &triangle_.c, &triangle_.a, &triangle_.b};
+        const double area = difference_of_products(to_b_.x, to_c_.y, to_b_.y, to_c_.x);
+        const double scale = (area * weight_[0]) * (area * weight_[1]) * weight_[2];
+        double sum = 0.0;
+        double magnitude = 0.0;
+        double term[3][3];
+        for (int i = 0; i < 3; ++i) {
+            term[i][0] = widened(corner[i]->strq.x);
+            term[i][1] = widened(corner[i + 1]->strq.y) * widened(corner[i + 2]->strq.w);
+            term[i][2] = -widened(corner[i + 2]->strq.y) * widened(corner[i + 1]->strq.w);
+            sum += term[i][0] * (term[i][1] + term[i][2]);
+            magnitude += std::fabs(term[i][0]) * (std::fabs(term[i][1]) + std::fabs(term[i][2]));
+        }
+        if (std::fabs(sum) > 0x1p-4 * magnitude) return sum * scale;
+        Expansion<12> exact;
+        for (const auto& [s, left, right] : term) {
+            exact.add_product(s, left);
+            exact.add_product(s, right);
+        }
+        return exact.estimate() * scale;
+    }
+
+    // The window, seen from the first vertex: the centre of a fragment, and the other vertices.
+    glm::dvec2 from_a(const Tile& tile) const noexcept {
+        return {(static_cast<double>(tile.x) + 0.5) - a_.x, (static_cast<double>(tile.y) + 0.5) - a_.y};
+    }
+    const glm::dvec2& to_b() const noexcept { return to_b_; }
+    const glm::dvec2& to_c() const noexcept { return to_c_; }
 
     // F at fragment (tile.x + i, tile.y + j) as a function of i and j.
     Ramp ramp(const Plane& plane, const Tile& tile) const noexcept {
@@ -99,6 +166,12 @@ public:
         add_corner(sum, p, b.strq[coordinate], c, a);
         add_corner(sum, p, c.strq[coordinate], a, b);
         return sum;
+    }
+
+    // The same within a few ulp of itself, and with the factor of the planes.
+    double closely_at(int coordinate, std::int64_t x, std::int64_t y) const noexcept {
+        const double weight = orientation_ * (widened(triangle_.b.clip_w) * widened(triangle_.c.clip_w));
+        return exactly_at(coordinate, x, y).estimate() * (weight_[0] / weight);
     }
 
 private:
@@ -158,10 +231,6 @@ private:
         Expansion<20> weighted;
         weighted.add_scaled(edge, orientation_ * (widened(j.clip_w) * widened(k.clip_w)));
         sum.add_scaled(weighted, widened(f));
-    }
-
-    glm::dvec2 from_a(const Tile& tile) const noexcept {
-        return {(static_cast<double>(tile.x) + 0.5) - a_.x, (static_cast<double>(tile.y) + 0.5) - a_.y};
     }
 
     Triangle triangle_;

@@ -62,6 +62,17 @@ TEXGEN_INLINE WideWords signed_bits(const WideFloats& a) noexcept { return __bui
 TEXGEN_INLINE WideWords minimum(const WideWords& a, const WideWords& b) noexcept { return a < b ? a : b; }
 TEXGEN_INLINE WideWords maximum(const WideWords& a, const WideWords& b) noexcept { return a > b ? a : b; }
 
+TEXGEN_INLINE WideFloats from_bits(const WideWords& words) noexcept { return __builtin_bit_cast(WideFloats, words); }
+TEXGEN_INLINE WideFloats to_numbers(const WideWords& words) noexcept {
+    return __builtin_convertvector(words, WideFloats);
+}
+TEXGEN_INLINE WideWords halved(const WideWords& words) noexcept { return words >> 1; }
+TEXGEN_INLINE WideFloats magnitude(const WideFloats& a) noexcept { return from_bits(magnitude_bits(a)); }
+TEXGEN_INLINE WideWords is_negative(const WideFloats& a) noexcept { return a < 0.0f; }
+TEXGEN_INLINE WideFloats select(const WideWords& mask, const WideFloats& a, const WideFloats& b) noexcept {
+    return from_bits((mask & signed_bits(a)) | (~mask & signed_bits(b)));
+}
+
 template <int Distance, int... Lane>
 TEXGEN_INLINE WideWords rotated(const WideWords& a, std::integer_sequence<int, Lane...>) noexcept {
     return __builtin_shufflevector(a, a, ((Lane + Distance) % wide_lanes)...);

@@ -1,0 +1,171 @@
+// The inner loops of footprints. Included by kernels.inc.hpp.
+
+namespace texgen::detail::TEXGEN_ISA {
+
+TEXGEN_INLINE const WideFloats& to_floats(const WideFloats& values) noexcept { return values; }
+
+// The first `count` lanes.
+template <class Vector>
+TEXGEN_INLINE void store_some(float* to, int count, const Vector& values) noexcept {
+    if (count == static_cast<int>(sizeof(Vector) / sizeof(float))) return store(to, values);
+    float buffer[sizeof(Vector) / sizeof(float)];
+    store(buffer, values);
+    for (int i = 0; i < count; ++i) to[i] = buffer[i];
+}
+
+// Calls do_vector(x, count) over a row, whole vectors as long as there is room for one: the last overlaps the one before.
+template <int Lanes, class DoVector>
+TEXGEN_INLINE void for_each_vector(int width, const DoVector& do_vector) noexcept {
+    const int count = width < Lanes ? width : Lanes;
+    for (int x = 0; x < width; x += Lanes) do_vector(x + count <= width ? x : width - count, count);
+}
+
+// (dx + y twist, dy - x twist) / Q^2 of s and of t.
+template <class Vector, class Scalar>
+TEXGEN_INLINE void differentiate_rows(const FootprintJob& job) noexcept {
+    using Result = std::remove_cvref_t<decltype(to_floats(Vector()))>;
+    const auto q_dx = static_cast<Scalar>(job.q.dx);
+    const auto s_dy = static_cast<Scalar>(job.slope[0].dy);
+    const auto t_dy = static_cast<Scalar>(job.slope[1].dy);
+    const auto s_twist = static_cast<Scalar>(-job.slope[0].twist);
+    const auto t_twist = static_cast<Scalar>(-job.slope[1].twist);
+    const auto put = [](float* to, int x, int count, const Vector& values) {
+        if (to != nullptr) store_some<Result>(to + x, count, to_floats(values));
+    };
+    for (int y = 0; y < job.height; ++y) {
+        const auto q = static_cast<Scalar>(job.q.base + y * job.q.dy);
+        const auto s_dx = static_cast<Scalar>(job.slope[0].dx + y * job.slope[0].twist);
+        const auto t_dx = static_cast<Scalar>(job.slope[1].dx + y * job.slope[1].twist);
+        float* const dsdx = job.row(job.dx[0], y);
+        float* const dtdx = job.row(job.dx[1], y);
+        float* const dsdy = job.row(job.dy[0], y);
+        float* const dtdy = job.row(job.dy[1], y);
+        for_each_vector<static_cast<int>(sizeof(Result) / sizeof(float))>(job.width, [&](int x, int count) {
+            const Vector index = indices<Vector>() + static_cast<Scalar>(x);
+            const Vector reciprocal = Scalar(1) / (index * q_dx + q);
+            const Vector squared = reciprocal * reciprocal;
+            put(dsdx, x, count, squared * s_dx);
+            put(dtdx, x, count, squared * t_dx);
+            put(dsdy, x, count, squared * (index * s_twist + s_dy));
+            put(dtdy, x, count, squared * (index * t_twist + t_dy));
+        });
+    }
+}
+
+inline void differentiate(const FootprintJob& original) noexcept {
+    const FootprintJob job = original;
+    if (job.in_float)
+        differentiate_rows<WideFloats, float>(job);
+    else
+        differentiate_rows<Doubles, double>(job);
+}
+
+// function(index): in float, or in double and rounded.
+template <bool InFloat, class Function>
+TEXGEN_INLINE WideFloats rounded(const WideFloats& index, const Function& function) noexcept {
+    if constexpr (InFloat)
+        return function(index, float());
+    else
+        return in_double([&](const Doubles& i) { return function(i, double()); }, index);
+}
+
+TEXGEN_INLINE WideFloats larger_of(const WideFloats& a, const WideFloats& b) noexcept {
+    return from_bits(maximum(signed_bits(a), signed_bits(b)));  // for numbers that are not negative
+}
+
+// 1/2 log2(a / b) for normal a, b > 0, within 2^-23. With a = 2^i m, b = 2^j n and s = (m - n) / (m + n) it is
+// (i - j)/2 + artanh(s) / ln 2, and |s| < 1/3: the polynomial meets the latter at the zeros of a Chebyshev polynomial,
+// within 2^-24.4.
+TEXGEN_INLINE WideFloats half_log2_of_quotient(const WideFloats& a, const WideFloats& b) noexcept {
+    const auto mantissa = [](const WideFloats& value) {
+        return from_bits((signed_bits(value) & (WideWords{} + 0x7fffff)) | (WideWords{} + 0x3f800000));
+    };
+    const auto exponent = [](const WideFloats& value) { return signed_bits(value) & (WideWords{} + 0x7f800000); };
+    const WideFloats m = mantissa(a);
+    const WideFloats n = mantissa(b);
+    const WideFloats s = (m - n) * (1.0f / (m + n));
+    const WideFloats x = s * s;
+    const WideFloats series = ((x * 0.252369056f + 0.284511161f) * x + 0.481025008f) * x + 1.44269398f;
+    return series * s + to_numbers(exponent(a) - exponent(b)) * 0x1p-24f;
+}
+
+// 1 / sqrt(x) within 2^-22 of itself, for normal numbers, and finite for 0: Newton's iteration from a guess within 3.5 %.
+TEXGEN_INLINE WideFloats inverse_square_root(const WideFloats& x) noexcept {
+    WideFloats y = from_bits((WideWords{} + 0x5f3759df) - halved(signed_bits(x)));
+    for (int i = 0; i < 3; ++i) y = y * (1.5f - (x * 0.5f) * (y * y));
+    return y;
+}
+
+// Rows from `first` on, up to the first with a fragment whose derivatives are too small for the floats here (it is written
+// all the same); the height if there is none.
+template <bool InFloat, bool Shape>
+TEXGEN_INLINE int filter_rows(const FootprintJob& job, int first) noexcept {
+    constexpr int smallest = std::bit_cast<int>(FootprintJob::smallest_square);
+    for (int y = first; y < job.height; ++y) {
+        const double q_base = job.q.base + y * job.q.dy;
+        const double s_dx = job.texels[0].dx + y * job.texels[0].twist;
+        const double t_dx = job.texels[1].dx + y * job.texels[1].twist;
+        const double dx_dx = s_dx * s_dx + t_dx * t_dx;
+        float* const level = job.row(job.level, y);
+        float* const anisotropy = job.row(job.anisotropy, y);
+        float* const major_s = job.row(job.major[0], y);
+        float* const major_t = job.row(job.major[1], y);
+        WideWords too_small{};
+        for_each_vector<wide_lanes>(job.width, [&](int x, int count) {
+            const WideFloats index = indices<WideFloats>() + static_cast<float>(x);
+            const auto linear = [](const auto& i, double base, double dx, auto scalar) {
+                return i * static_cast<decltype(scalar)>(dx) + static_cast<decltype(scalar)>(base);
+            };
+            const WideFloats q = rounded<InFloat>(
+                index, [&](const auto& i, auto scalar) { return linear(i, q_base, job.q.dx, scalar); });
+            const WideFloats s_dy = rounded<InFloat>(index, [&](const auto& i, auto scalar) {
+                return linear(i, job.texels[0].dy, -job.texels[0].twist, scalar);
+            });
+            const WideFloats t_dy = rounded<InFloat>(index, [&](const auto& i, auto scalar) {
+                return linear(i, job.texels[1].dy, -job.texels[1].twist, scalar);
+            });
+            const WideFloats square = larger_of(s_dy * s_dy + t_dy * t_dy, WideFloats{} + static_cast<float>(dx_dx));
+            too_small = maximum(too_small, (WideWords{} + smallest) - signed_bits(square));
+            if (!Shape || level != nullptr) {
+                const WideFloats q_q = q * q;
+                store_some(level + x, count, half_log2_of_quotient(square, q_q * q_q) + job.level_offset);
+            }
+            if constexpr (Shape) {
+                // The larger eigenvalue of J J^T = ((a, b), (b, c)), and its eigenvector: (|half| + root, b), or
+                // (b, |half| + root) where half < 0; (1, 0) for a circle.
+                const WideFloats a = s_dy * s_dy + static_cast<float>(s_dx * s_dx);
+                const WideFloats c = t_dy * t_dy + static_cast<float>(t_dx * t_dx);
+                const WideFloats b = s_dy * t_dy + static_cast<float>(s_dx * t_dx);
+                const WideFloats half = (a - c) * 0.5f;
+                const WideFloats root_square = half * half + b * b;
+                const WideFloats root = root_square * inverse_square_root(root_square);
+                const WideFloats largest = (a + c) * 0.5f + root;
+                const WideFloats per_q = 1.0f / q;
+                if (anisotropy != nullptr)
+                    store_some(anisotropy + x, count,
+                               larger_of(largest * per_q * job.anisotropy_factor, WideFloats{} + 1.0f));
+                if (major_s != nullptr || major_t != nullptr) {
+                    const WideFloats along = magnitude(half) + root + largest * 0x1p-24f;
+                    const WideFloats length =
+                        largest * inverse_square_root(largest * (along * along + b * b)) * (per_q * per_q);
+                    const WideWords swapped = is_negative(half);
+                    if (major_s != nullptr)
+                        store_some(major_s + x, count, select(swapped, b, along) * length * job.major_factor[0]);
+                    if (major_t != nullptr)
+                        store_some(major_t + x, count, select(swapped, along, b) * length * job.major_factor[1]);
+                }
+            }
+        });
+        if (largest_lane(too_small) > 0) return y;
+    }
+    return job.height;
+}
+
+inline int filter(const FootprintJob& original, int first) noexcept {
+    const FootprintJob job = original;
+    const bool shape = job.anisotropy != nullptr || job.major[0] != nullptr || job.major[1] != nullptr;
+    if (job.in_float) return shape ? filter_rows<true, true>(job, first) : filter_rows<true, false>(job, first);
+    return shape ? filter_rows<false, true>(job, first) : filter_rows<false, false>(job, first);
+}
+
+}  // namespace texgen::detail::TEXGEN_ISA
