@@ -14,6 +14,7 @@
 #include "support/exact.hpp"
 #include "support/hex.hpp"
 #include "support/random.hpp"
+#include "support/rational_matrix.hpp"
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
 #include "texgen/skip.hpp"
@@ -39,9 +40,7 @@ constexpr float nan_float = std::numeric_limits<float>::quiet_NaN();
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 std::string hex(const Box& box) { return "box " + hex(box.min) + " to " + hex(box.max); }
-[[maybe_unused]] std::string hex(const Sphere& sphere) {
-    return "sphere " + hex(sphere.centre) + ", radius " + hex(sphere.radius);
-}
+std::string hex(const Sphere& sphere) { return "sphere " + hex(sphere.centre) + ", radius " + hex(sphere.radius); }
 
 // How many boxes the test of the hostile families takes: TEXGEN_COVERAGE_BOXES says otherwise.
 long hostile_box_count() {
@@ -283,7 +282,7 @@ Slide hostile_slide(Random& random) {
             const int kind = random.integer(0, 19);
             return kind == 0 ? random.power_of_ten(-300.0, 300.0) : kind == 1 ? 0.0 : random.uniform(-4.0, 4.0);
         };
-        glm::dvec2 min(side(), side()), max(side(), side());
+        glm::dvec2 min{side(), side()}, max{side(), side()};  // braces: from left to right
         if (random.integer(0, 3) == 0) max.x = min.x;
         if (random.integer(0, 3) == 0) min.x = -infinite;
         if (random.integer(0, 3) == 0) max.y = infinite;
@@ -538,4 +537,240 @@ TEST_CASE("of the boxes of random scenes less than 3 % are partial that could be
     CHECK(counts.false_partial * 100 < tested * 3);
     // The theorem of separating axes leaves none but what rounding does.
     CHECK(counts.false_partial * 1000 < tested);
+}
+
+namespace {
+
+using support::Rational;
+
+// How far a point is from what is lit (q >= 0 and the four sides), exactly: the nearest point is the projection onto the
+// planes of some of the forms, so it is the nearest of those projections that fulfil all of them.
+class DistanceJudge {
+public:
+    explicit DistanceJudge(const Judge& judge) {
+        for (const Inequality& form : judge.forms()) {
+            std::array<Rational, 4> f;
+            for (std::size_t j = 0; j < 4; ++j) f[j] = form.c[j].rational();
+            forms_.push_back(f);
+        }
+    }
+
+    // Whether some point within the radius is lit, or would be with q = 0.
+    bool reaches(const Sphere& sphere) const {
+        const std::array<Rational, 3> centre{support::exactly(sphere.centre.x), support::exactly(sphere.centre.y),
+                                             support::exactly(sphere.centre.z)};
+        const Rational radius = support::exactly(sphere.radius);
+        const std::size_t n = forms_.size();
+        for (std::size_t set = 0; set < std::size_t{1} << n; ++set) {
+            std::vector<std::size_t> active;
+            for (std::size_t k = 0; k < n; ++k)
+                if ((set >> k & 1u) != 0u) active.push_back(k);
+            if (active.size() > 3) continue;
+            const auto point = projection(centre, active);
+            if (!point) continue;
+            Rational squared = 0;
+            for (std::size_t j = 0; j < 3; ++j) squared += ((*point)[j] - centre[j]) * ((*point)[j] - centre[j]);
+            if (squared > radius * radius) continue;
+            if (std::ranges::all_of(forms_, [&](const auto& f) { return value(f, *point) >= 0; })) return true;
+        }
+        return false;
+    }
+
+    // -1, 0, 1: f(centre) + sign |a| radius.
+    int extreme_sign(std::size_t k, const Sphere& sphere, int sign) const {
+        const auto& f = forms_[k];
+        const Rational at = value(f, {support::exactly(sphere.centre.x), support::exactly(sphere.centre.y),
+                                      support::exactly(sphere.centre.z)});
+        const Rational radius = support::exactly(sphere.radius);
+        const Rational change = (f[0] * f[0] + f[1] * f[1] + f[2] * f[2]) * radius * radius;  // squared
+        const Rational squared = at * at;
+        if (sign > 0) return at >= 0 ? (at > 0 || change > 0) : squared > change ? -1 : squared < change;
+        return at <= 0            ? -static_cast<int>(at < 0 || change > 0)
+               : squared > change ? 1
+                                  : -static_cast<int>(squared < change);
+    }
+    bool is_outside_a_plane(const Sphere& sphere) const {
+        for (std::size_t k = 0; k < forms_.size(); ++k)
+            if (extreme_sign(k, sphere, 1) < (k + 1 == forms_.size() ? 1 : 0)) return true;
+        return false;
+    }
+    bool is_inside(const Sphere& sphere) const {
+        for (std::size_t k = 0; k < forms_.size(); ++k)
+            if (extreme_sign(k, sphere, -1) < (k + 1 == forms_.size() ? 1 : 0)) return false;
+        return true;
+    }
+
+private:
+    static Rational value(const std::array<Rational, 4>& f, const std::array<Rational, 3>& p) {
+        return f[0] * p[0] + f[1] * p[1] + f[2] * p[2] + f[3];
+    }
+
+    // Onto the points where all active forms are 0: c - N^T (N N^T)^-1 f(c). Empty where the normals are dependent.
+    std::optional<std::array<Rational, 3>> projection(const std::array<Rational, 3>& centre,
+                                                      const std::vector<std::size_t>& active) const {
+        support::RationalMatrix gram{};
+        for (std::size_t i = 0; i < 4; ++i) {
+            gram[i][i] = 1;
+            for (std::size_t k = 0; k < active.size() && i < active.size(); ++k) {
+                gram[i][k] = 0;
+                for (std::size_t j = 0; j < 3; ++j) gram[i][k] += forms_[active[i]][j] * forms_[active[k]][j];
+            }
+        }
+        const auto inverse = support::inverse(gram);
+        if (!inverse) return {};
+        std::array<Rational, 3> point = centre;
+        for (std::size_t i = 0; i < active.size(); ++i) {
+            Rational weight = 0;
+            for (std::size_t k = 0; k < active.size(); ++k)
+                weight -= (*inverse)[i][k] * value(forms_[active[k]], centre);
+            for (std::size_t j = 0; j < 3; ++j) point[j] += weight * forms_[active[i]][j];
+        }
+        return point;
+    }
+
+    std::vector<std::array<Rational, 4>> forms_;  // q is the last
+};
+
+}  // namespace
+
+TEST_CASE("no sphere is outside or inside that is not, and few of a scene are partial that could be outside") {
+    Random random(43);
+    Counts counts;
+    int tested = 0, judged_partial = 0, clearly_inside = 0, clearly_outside = 0;
+    for (int scene = 0; scene < 60; ++scene) {
+        const Slide slide = scene % 3 == 2 ? hostile_slide(random) : ordinary_slide(random, scene % 6 == 0 ? 1e5 : 0.0);
+        const DistanceJudge judge(Judge(slide.matrix, slide.region));
+        const bool is_ordinary = scene % 3 != 2;
+        const glm::dvec3 apex = point_on(slide, 3, random, glm::dvec3(0.0));
+        std::vector<Sphere> spheres;
+        for (int i = 0; i < 40; ++i) {
+            const double size = random.power_of_ten(-1.0, 1.3);
+            const glm::dvec3 about =
+                (scene % 6 == 0 ? apex : glm::dvec3(0.0)) + random.uniform(0.0, 40.0) * random.direction();
+            Sphere sphere{glm::vec3(about), support::to_float(size)};
+            if (i % 4 == 0) {  // touching a side, an edge or the apex as well as floats can
+                const glm::dvec3 point = point_on(slide, random.integer(1, 3), random, about);
+                const glm::dvec3 way = point - glm::dvec3(sphere.centre);
+                const float distance = support::to_float(std::sqrt(way.x * way.x + way.y * way.y + way.z * way.z));
+                sphere.radius = support::neighbour(distance, random.integer(-2, 2));
+                if (!(sphere.radius >= 0.0f && sphere.radius < infinity)) sphere.radius = 0.0f;
+            }
+            if (i % 20 == 1) sphere.radius = 0.0f;
+            spheres.push_back(sphere);
+        }
+        std::vector<Coverage> answers(spheres.size());
+        const LitVolume<texgen::World> volume(WorldTexgen(slide.matrix), slide.region);
+        volume.coverage(spheres, answers);
+        for (std::size_t i = 0; i < spheres.size(); ++i) {
+            const Sphere& sphere = spheres[i];
+            std::string wrong;
+            if (answers[i] == Coverage::outside) {
+                ++counts.outside;
+                if (!judge.is_outside_a_plane(sphere)) {
+                    ++counts.separated;
+                    if (judge.reaches(sphere)) wrong = "a false outside";
+                }
+            } else if (answers[i] == Coverage::inside) {
+                ++counts.inside;
+                if (!judge.is_inside(sphere)) wrong = "a false inside";
+            } else {
+                ++counts.partial;
+                if (is_ordinary && i % 4 != 0) {
+                    ++judged_partial;
+                    counts.false_partial += !judge.reaches(sphere);
+                    Sphere a_little_larger = sphere;
+                    a_little_larger.radius *= 1.0001f;
+                    clearly_inside += judge.is_inside(a_little_larger);
+                    clearly_outside += judge.is_outside_a_plane(a_little_larger);
+                }
+            }
+            tested += is_ordinary && i % 4 != 0;
+            if (volume.coverage(sphere) != answers[i]) wrong = "one sphere alone is something else";
+            REQUIRE_MESSAGE(wrong.empty(), wrong << ": " << hex(slide) << ", " << hex(sphere));
+        }
+    }
+    MESSAGE("outside " << counts.outside << " (by a separating plane alone " << counts.separated << "), partial "
+                       << counts.partial << ", inside " << counts.inside << "; of " << tested << " in ordinary scenes "
+                       << counts.false_partial << " are falsely partial");
+    CHECK(counts.separated > 10);
+    CHECK(counts.inside > 50);
+    CHECK(judged_partial > 50);
+    CHECK(clearly_inside == 0);
+    CHECK(clearly_outside == 0);
+    CHECK(counts.false_partial * 100 < tested * 3);
+}
+
+TEST_CASE("what is no body, no slide or no number gets a safe answer") {
+    const auto projector = texgen::make_projector(
+        texgen::PerspectiveLens{.fovy = degrees(30), .aspect = 1, .z_near = 0.2, .z_far = 1000},
+        texgen::Aim{.position = {0, 0, 0}, .target = {0, 0, -1}, .up = {0, 1, 0}}, texgen::opengl);
+    REQUIRE(projector);
+    const WorldTexgen transform = texgen::texture_from_world(*projector);
+    const Box inside{{-0.1f, -0.1f, -11.0f}, {0.1f, 0.1f, -10.0f}};
+    const Sphere ball{{0.0f, 0.0f, -10.0f}, 0.5f};
+    const Box behind{{-0.1f, -0.1f, 10.0f}, {0.1f, 0.1f, 11.0f}};
+    const Box everything{glm::vec3(-infinity), glm::vec3(infinity)};
+    CHECK(coverage(transform, whole_texture(), inside) == Coverage::inside);
+    CHECK(coverage(transform, whole_texture(), ball) == Coverage::inside);
+    CHECK(coverage(transform, whole_texture(), behind) == Coverage::outside);
+    CHECK(coverage(transform, whole_texture(), everything) == Coverage::partial);
+
+    // The apex itself has q = 0, and the half-space behind it, too.
+    CHECK(coverage(transform, whole_texture(), Box{glm::vec3(0.0f), glm::vec3(0.0f)}) == Coverage::outside);
+    CHECK(coverage(transform, whole_texture(), Box{{-infinity, -infinity, 0.0f}, glm::vec3(infinity)}) ==
+          Coverage::outside);
+    CHECK(coverage(transform, whole_texture(), Box{{-infinity, -infinity, -1e-30f}, glm::vec3(infinity)}) ==
+          Coverage::partial);
+    // A beam to infinity along the projector's axis.
+    CHECK(coverage(transform, whole_texture(), Box{{-0.1f, -0.1f, -infinity}, {0.1f, 0.1f, -10.0f}}) ==
+          Coverage::inside);
+
+    SUBCASE("spheres") {
+        const auto of = [&](const Sphere& sphere) { return coverage(transform, whole_texture(), sphere); };
+        CHECK(of({{0, 0, -10}, -1.0f}) == Coverage::outside);
+        CHECK(of({{0, 0, -10}, -infinity}) == Coverage::outside);
+        CHECK(of({{0, 0, -10}, nan_float}) == Coverage::partial);
+        CHECK(of({{nan_float, 0, -10}, -1.0f}) == Coverage::partial);
+        CHECK(of({{0, 0, 10}, infinity}) == Coverage::partial);
+        CHECK(of({{0, 0, infinity}, 1.0f}) == Coverage::partial);
+        CHECK(of({{0, 0, 10}, 0.0f}) == Coverage::outside);
+        CHECK(of({{0, 0, -10}, 0.0f}) == Coverage::inside);
+    }
+    SUBCASE("regions without a point are outside, and none is made of a NaN in the box") {
+        const double nan = std::numeric_limits<double>::quiet_NaN();
+        for (const TextureRegion& region :
+             {atlas_tile({0.6, 0.0}, {0.4, 1.0}), atlas_tile({0.0, nan}, {1.0, 1.0}),
+              atlas_tile({0.0, 0.0}, {1.0, nan}), atlas_tile({infinite, 0.0}, {-infinite, 1.0})}) {
+            CHECK(coverage(transform, region, inside) == Coverage::outside);
+            CHECK(coverage(transform, region, ball) == Coverage::outside);
+            CHECK(coverage(transform, region, Box{inside.min, glm::vec3(nan_float)}) == Coverage::partial);
+        }
+        CHECK(coverage(transform, atlas_tile({-infinite, -infinite}, {infinite, infinite}), inside) ==
+              Coverage::inside);
+        CHECK(coverage(transform, atlas_tile({-infinite, -infinite}, {infinite, infinite}), behind) ==
+              Coverage::outside);
+    }
+    SUBCASE("a matrix with a NaN or an infinity anywhere makes everything partial, but what is empty") {
+        for (int element = 0; element < 16; ++element) {
+            for (const double bad : {std::numeric_limits<double>::quiet_NaN(), infinite, -infinite}) {
+                glm::dmat4 matrix = transform.matrix();
+                matrix[element / 4][element % 4] = bad;
+                CHECK(coverage(WorldTexgen(matrix), whole_texture(), inside) == Coverage::partial);
+                CHECK(coverage(WorldTexgen(matrix), whole_texture(), behind) == Coverage::partial);
+                CHECK(coverage(WorldTexgen(matrix), whole_texture(), ball) == Coverage::partial);
+                CHECK(coverage(WorldTexgen(matrix), whole_texture(), Box{inside.max, inside.min}) == Coverage::outside);
+            }
+        }
+    }
+    SUBCASE("where q is 0 everywhere nothing is lit") {
+        glm::dmat4 matrix = transform.matrix();
+        for (int j = 0; j < 4; ++j) matrix[j][3] = 0.0;
+        CHECK(coverage(WorldTexgen(matrix), whole_texture(), everything) == Coverage::outside);
+        CHECK(coverage(WorldTexgen(matrix), whole_texture(), ball) == Coverage::outside);
+        CHECK(coverage(WorldTexgen(glm::dmat4(0.0)), whole_texture(), everything) == Coverage::outside);
+    }
+    SUBCASE("an empty batch is answered") {
+        coverage(transform, whole_texture(), std::span<const Box>(), std::span<Coverage>());
+        coverage(transform, whole_texture(), std::span<const Sphere>(), std::span<Coverage>());
+    }
 }

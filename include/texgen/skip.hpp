@@ -2,7 +2,7 @@
 
 // Floor 6: what a primitive, a batch or a box needs. Work that is not needed is not done.
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -12,7 +12,7 @@
 
 #include "conventions.hpp"
 #include "detail/assert.hpp"
-#include "detail/body_blocks.hpp"
+#include "detail/lanes.hpp"
 #include "detail/lit_forms.hpp"
 #include "detail/widen.hpp"
 #include "transform.hpp"
@@ -48,140 +48,166 @@ struct Sphere {
 
 namespace detail {
 
-// What the five planes say of a box, exactly: the contract where the floats are in doubt.
+// Neither empty nor with a NaN.
+inline bool is_proper(const Box& box) noexcept {
+    return box.min.x <= box.max.x && box.min.y <= box.max.y && box.min.z <= box.max.z;
+}
+
+// What the five planes say of a box, exactly. For a NaN, and for forms of which nothing is known: partial.
 inline Coverage exact_coverage(const LitForms& forms, const Box& box) noexcept {
     constexpr float infinity = std::numeric_limits<float>::infinity();
     bool is_empty = false;
     for (int j = 0; j < 3; ++j) {
-        if (!(box.min[j] <= box.max[j]) && !(box.min[j] > box.max[j])) return Coverage::partial;  // a NaN
+        if (!(box.min[j] <= box.max[j]) && !(box.min[j] > box.max[j])) return Coverage::partial;
         is_empty = is_empty || box.min[j] > box.max[j];
     }
     if (is_empty || forms.light_nothing()) return Coverage::outside;
     if (!forms.are_usable()) return Coverage::partial;
     for (int j = 0; j < 3; ++j)
-        if (box.min[j] == infinity || box.max[j] == -infinity) return Coverage::partial;  // no point at all
+        if (box.min[j] == infinity || box.max[j] == -infinity) return Coverage::partial;  // beyond all numbers
 
     // The sign of a form at the vertex where it is largest, or least.
     const auto sign_at_vertex = [&](std::size_t k, bool largest) {
         Point vertex{};
         for (std::size_t j = 0; j < 3; ++j) {
             if (!forms[k].uses[j]) continue;
-            vertex[j] =
-                widened((forms[k].a[j] > 0.0) == largest ? box.max[static_cast<int>(j)] : box.min[static_cast<int>(j)]);
+            const glm::vec3& corner = (forms[k].a[j] > 0.0) == largest ? box.max : box.min;
+            vertex[j] = widened(corner[static_cast<int>(j)]);
             if (!is_finite(vertex[j])) return largest ? 1 : -1;
         }
         return forms.sign_at(k, vertex);
     };
     if (sign_at_vertex(LitForms::q, true) <= 0) return Coverage::outside;
     bool is_inside = sign_at_vertex(LitForms::q, false) > 0;
-    for (std::size_t k = 0; k < LitForms::side_count; ++k) {
+    for (std::size_t k = 0; k < side_count; ++k) {
         if (sign_at_vertex(k, true) < 0) return Coverage::outside;
         is_inside = is_inside && sign_at_vertex(k, false) >= 0;
     }
     return is_inside ? Coverage::inside : Coverage::partial;
 }
 
-// Boxes that the floats did not reject, gathered from many blocks, as few of a scene remain.
-class RemainingBoxes {
+inline namespace TEXGEN_BUILD {
+
+// Boxes that the five planes leave partial, gathered until they fill vectors.
+class PartialBoxes {
 public:
     void add(const LitForms& forms, const Box& box, Coverage& out) noexcept {
-        block_.set(count_, box);
-        box_[count_] = &box;
+        for (int j = 0; j < 3; ++j) {
+            const auto min = static_cast<double>(box.min[j]);
+            const auto max = static_cast<double>(box.max[j]);
+            block_.min[j][count_] = min;
+            block_.max[j][count_] = max;
+            block_.size[j][count_] = larger(-min, max);
+        }
         out_[count_] = &out;
-        if (++count_ == double_box_block) decide(forms);
+        if (++count_ == box_block) separate(forms);
     }
 
-    void decide(const LitForms& forms) noexcept {
+    // Those that a further plane separates from the pyramid are outside.
+    void separate(const LitForms& forms) noexcept {
         if (count_ == 0) return;
-        DoubleLanes least_of_largest;
-        DoubleLanes least;
-        DoubleLanes separation;
-        find_extremes(forms, block_, least_of_largest, least);
-        bool is_any_partial = false;
-        for (std::size_t i = 0; i < count_; ++i) {
-            *out_[i] = decided(forms, i, least_of_largest[i], least[i]);
-            is_any_partial = is_any_partial || *out_[i] == Coverage::partial;
-        }
-        if (is_any_partial && forms.are_usable()) {
-            find_separation(forms, block_, separation);
-            for (std::size_t i = 0; i < count_; ++i)
-                if (*out_[i] == Coverage::partial && is_proper(i) && separation[i] < 0.0) *out_[i] = Coverage::outside;
-        }
+        double least_of_largest[box_block];
+        const std::span<const BoundedForm> separating = forms.separating();
+        chosen_box_kernels().separate(separating.data(), separating.size(), block_, least_of_largest);
+        for (std::size_t i = 0; i < count_; ++i)
+            *out_[i] = least_of_largest[i] < 0.0 ? Coverage::outside : Coverage::partial;
         count_ = 0;
     }
 
 private:
-    // Neither empty nor with a NaN.
-    bool is_proper(std::size_t i) const noexcept {
-        bool result = true;
-        for (std::size_t j = 0; j < 3; ++j) result = result && block_.min[j][i] <= block_.max[j][i];
-        return result;
-    }
-
-    Coverage decided(const LitForms& forms, std::size_t i, double least_of_largest, double least) const noexcept {
-        double size = 0.0;
-        for (std::size_t j = 0; j < 3; ++j) size += larger(-block_.min[j][i], block_.max[j][i]);
-        const double error = forms.error(size);
-        if (is_proper(i) && error < 0x1p1000) {
-            if (least_of_largest < -error) return Coverage::outside;
-            if (least > error) return Coverage::inside;
-            if (least_of_largest > error && least < -error) return Coverage::partial;
-        }
-        return exact_coverage(forms, *box_[i]);
-    }
-
-    DoubleBlock block_{};
-    std::array<const Box*, double_box_block> box_{};
-    std::array<Coverage*, double_box_block> out_{};
+    BoxBlock block_{};
+    Coverage* out_[box_block];
     std::size_t count_ = 0;
 };
 
 inline void cover(const LitForms& forms, const FloatForms& float_forms, std::span<const Box> boxes,
                   std::span<Coverage> out) noexcept {
-    RemainingBoxes remaining;
-    FloatForms::Block block{};
-    std::array<int, box_block> rejected;
-    std::array<std::size_t, box_block> kept;
-    for (std::size_t begin = 0; begin < boxes.size(); begin += box_block) {
-        const std::size_t count = boxes.size() - begin < box_block ? boxes.size() - begin : box_block;
-        for (std::size_t i = 0; i < count; ++i) block.set(i, boxes[begin + i]);
-        float_forms.reject(block, rejected);
-        std::size_t kept_count = 0;
-        for (std::size_t i = 0; i < count; ++i) {
-            out[begin + i] = Coverage::outside;
-            kept[kept_count] = begin + i;
-            kept_count += rejected[i] == 0 ? 1u : 0u;
+    static_assert(sizeof(Box) == 6 * sizeof(float));
+    constexpr std::size_t chunk = 16 * box_quantum;
+    PartialBoxes partial;
+    int classes[chunk];
+    std::size_t open[chunk];
+    for (std::size_t begin = 0; begin < boxes.size();) {
+        // Whole quanta where they are, the rest from a copy.
+        const std::size_t left = boxes.size() - begin;
+        const std::size_t count = left >= chunk ? chunk : left >= box_quantum ? left / box_quantum * box_quantum : left;
+        if (count >= box_quantum) {
+            chosen_box_kernels().classify(float_forms, &boxes[begin].min.x, count, classes);
+        } else {
+            Box copy[box_quantum] = {};
+            std::copy_n(boxes.begin() + static_cast<std::ptrdiff_t>(begin), count, copy);
+            chosen_box_kernels().classify(float_forms, &copy[0].min.x, box_quantum, classes);
         }
-        for (std::size_t i = 0; i < kept_count; ++i) remaining.add(forms, boxes[kept[i]], out[kept[i]]);
+        // Without a branch: partial and doubtful are the odd ones.
+        std::size_t open_count = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            out[begin + i] = static_cast<Coverage>(classes[i]);
+            open[open_count] = begin + i;
+            open_count += static_cast<std::size_t>(classes[i] & 1);
+        }
+        for (std::size_t k = 0; k < open_count; ++k) {
+            const Box& box = boxes[open[k]];
+            Coverage& result = out[open[k]];
+            if (result != Coverage::partial) result = exact_coverage(forms, box);
+            if (result == Coverage::partial && is_proper(box) && forms.are_usable()) partial.add(forms, box, result);
+        }
+        begin += count;
     }
-    remaining.decide(forms);
+    partial.separate(forms);
 }
 
-// f(centre) +- |a| radius are the extremes of a form over a sphere.
-inline Coverage sphere_coverage(const LitForms& forms, const Sphere& sphere) noexcept {
+}  // namespace TEXGEN_BUILD
+
+// The extremes of a form over a sphere are its value at the centre +- |a| radius. Beside an edge of the pyramid a sphere
+// may be outside none of the five planes: there the plane through the edge that faces the centre separates them. With
+// the products of normals G it is w_f f + w_g g, w = -G^-1 (f, g) at the centre, up to a positive factor, where both
+// weights are positive; rounded weights serve as well.
+inline Coverage coverage_of(const LitForms& forms, const Sphere& sphere) noexcept {
     const Point centre{widened(sphere.centre.x), widened(sphere.centre.y), widened(sphere.centre.z)};
     const double radius = widened(sphere.radius);
-    const double size = std::fabs(centre[0]) + std::fabs(centre[1]) + std::fabs(centre[2]) + std::fabs(radius);
-    if (!is_finite(size)) return Coverage::partial;
+    const double size = std::fabs(centre[0]) + std::fabs(centre[1]) + std::fabs(centre[2]);
+    if (!(size >= 0.0 && (radius >= 0.0 || radius < 0.0))) return Coverage::partial;  // a NaN
     if (radius < 0.0 || forms.light_nothing()) return Coverage::outside;
-    if (!forms.are_usable()) return Coverage::partial;
+    if (!forms.are_usable() || !is_finite(size + radius)) return Coverage::partial;
+    const auto dot = [](const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
+    double value[LitForms::count];
+    double error[LitForms::count];
+    double norm[LitForms::count];
     bool is_inside = true;
     for (std::size_t k = 0; k < LitForms::count; ++k) {
         const BoundedForm& form = forms[k];
-        const double value = form.a[0] * centre[0] + form.a[1] * centre[1] + form.a[2] * centre[2] + form.d;
-        const double change = std::sqrt(form.a[0] * form.a[0] + form.a[1] * form.a[1] + form.a[2] * form.a[2]) * radius;
-        const double error = 4.0 * form.error_a * size + form.error_d;
-        if (value + change + error < 0.0) return Coverage::outside;
-        is_inside = is_inside && value - change - error > 0.0;
+        value[k] = dot(form.a, centre) + form.d;
+        error[k] = form.error_a * size + form.error_d;
+        norm[k] = (1.0 + gamma(8)) * std::sqrt(dot(form.a, form.a));
+        const double change = norm[k] * radius;
+        if (value[k] + change + (error[k] + gamma(4) * change) < 0.0) return Coverage::outside;
+        is_inside = is_inside && value[k] - change - (error[k] + gamma(4) * change) > 0.0;
     }
-    return is_inside ? Coverage::inside : Coverage::partial;
-}
-
-inline void cover(const LitForms& forms, std::span<const Sphere> spheres, std::span<Coverage> out) noexcept {
-    for (std::size_t i = 0; i < spheres.size(); ++i) out[i] = sphere_coverage(forms, spheres[i]);
+    if (is_inside) return Coverage::inside;
+    for (std::size_t f = 0; f < 2; ++f) {
+        for (std::size_t g = 2; g < side_count; ++g) {
+            const double across = dot(forms[f].a, forms[g].a);
+            double of_f = across * value[g] - norm[g] * norm[g] * value[f];
+            double of_g = across * value[f] - norm[f] * norm[f] * value[g];
+            if (!(of_f > 0.0 && of_g > 0.0)) continue;
+            const double both = of_f + of_g;  // or their squares could be too small for a double
+            of_f /= both;
+            of_g /= both;
+            const double longest = of_f * norm[f] + of_g * norm[g];
+            const double squared = of_f * of_f * (norm[f] * norm[f]) + 2.0 * of_f * of_g * across +
+                                   of_g * of_g * (norm[g] * norm[g]) + gamma(32) * longest * longest;
+            const double change = std::sqrt(squared) * radius;
+            const double rounding = gamma(8) * (of_f * std::fabs(value[f]) + of_g * std::fabs(value[g]) + change);
+            if (of_f * value[f] + of_g * value[g] + change + (of_f * error[f] + of_g * error[g]) + rounding < 0.0)
+                return Coverage::outside;
+        }
+    }
+    return Coverage::partial;
 }
 
 }  // namespace detail
+
+inline namespace TEXGEN_BUILD {
 
 // The points that a slide lights, prepared once for many questions: what the functions below prepare at every call.
 // Guarantee: `outside` and `inside` are never false: they hold for the exact values of the matrix, the region and the body
@@ -198,10 +224,15 @@ template <class Space>
 class LitVolume {
 public:
     LitVolume(const Transform<Texture, Space>& texture_from_space, const TextureRegion& region) noexcept
-        : forms_(texture_from_space.matrix(), region), float_forms_(forms_) {}
+        : forms_(texture_from_space.matrix(), region), float_forms_(forms_.in_float()) {}
 
-    Coverage coverage(const Box& box) const noexcept { return coverage_of(box); }
-    Coverage coverage(const Sphere& sphere) const noexcept { return coverage_of(sphere); }
+    // The batch's own loops answer for one box too, so that the answers are the same.
+    Coverage coverage(const Box& box) const noexcept {
+        Coverage result;
+        coverage(std::span(&box, 1), std::span(&result, 1));
+        return result;
+    }
+    Coverage coverage(const Sphere& sphere) const noexcept { return detail::coverage_of(forms_, sphere); }
 
     void coverage(std::span<const Box> boxes, std::span<Coverage> out) const noexcept {
         TEXGEN_ASSERT(boxes.size() == out.size());
@@ -209,17 +240,10 @@ public:
     }
     void coverage(std::span<const Sphere> spheres, std::span<Coverage> out) const noexcept {
         TEXGEN_ASSERT(spheres.size() == out.size());
-        detail::cover(forms_, spheres, out);
+        for (std::size_t i = 0; i < spheres.size(); ++i) out[i] = coverage(spheres[i]);
     }
 
 private:
-    template <class Body>
-    Coverage coverage_of(const Body& body) const noexcept {
-        Coverage result;
-        coverage(std::span(&body, 1), std::span(&result, 1));
-        return result;
-    }
-
     detail::LitForms forms_;
     detail::FloatForms float_forms_;
 };
@@ -245,5 +269,7 @@ void coverage(const Transform<Texture, Space>& texture_from_space, const Texture
               std::span<const Sphere> spheres, std::span<Coverage> out) noexcept {
     LitVolume<Space>(texture_from_space, region).coverage(spheres, out);
 }
+
+}  // namespace TEXGEN_BUILD
 
 }  // namespace texgen

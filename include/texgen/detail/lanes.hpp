@@ -14,6 +14,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "box_kernels.hpp"
 #include "rounding.hpp"
 
 namespace texgen::detail {
@@ -186,6 +187,7 @@ struct Kernels {
 #define TEXGEN_ISA scalar
 #include "loops.inc.hpp"
 
+#include "boxes.inc.hpp"
 #include "kernels.inc.hpp"
 #undef TEXGEN_ISA
 #undef TEXGEN_INLINE
@@ -193,6 +195,7 @@ struct Kernels {
 namespace texgen::detail {
 inline namespace TEXGEN_BUILD {
 inline const Kernels& chosen_kernels() noexcept { return scalar::kernels; }
+inline const BoxKernels& chosen_box_kernels() noexcept { return scalar::box_kernels; }
 }  // namespace TEXGEN_BUILD
 }  // namespace texgen::detail
 
@@ -237,6 +240,7 @@ inline const Kernels& chosen_kernels() noexcept { return scalar::kernels; }
 #define TEXGEN_ISA TEXGEN_FLAGS(flags_)
 #include "vectors.inc.hpp"
 
+#include "boxes.inc.hpp"
 #include "kernels.inc.hpp"
 #undef TEXGEN_ISA
 #undef TEXGEN_LANE_BYTES
@@ -256,6 +260,7 @@ inline const Kernels& chosen_kernels() noexcept { return scalar::kernels; }
 #endif
 #include "vectors.inc.hpp"
 
+#include "boxes.inc.hpp"
 #include "kernels.inc.hpp"
 #ifdef __clang__
 #pragma clang attribute pop
@@ -275,6 +280,7 @@ inline const Kernels& chosen_kernels() noexcept { return scalar::kernels; }
 #endif
 #include "vectors.inc.hpp"
 
+#include "boxes.inc.hpp"
 #include "kernels.inc.hpp"
 #ifdef __clang__
 #pragma clang attribute pop
@@ -287,17 +293,23 @@ inline const Kernels& chosen_kernels() noexcept { return scalar::kernels; }
 namespace texgen::detail {
 inline namespace TEXGEN_BUILD {
 
-inline const Kernels& choose_kernels() noexcept {
+template <class Table>
+const Table& choose(const Table& for_avx512, const Table& for_avx2, const Table& for_flags) noexcept {
     __builtin_cpu_init();
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq") &&
         __builtin_cpu_supports("avx512bw"))
-        return avx512::kernels;
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return avx2::kernels;
-    return TEXGEN_FLAGS(flags_)::kernels;
+        return for_avx512;
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return for_avx2;
+    return for_flags;
 }
 
 inline const Kernels& chosen_kernels() noexcept {
-    static const Kernels& chosen = choose_kernels();
+    static const Kernels& chosen = choose(avx512::kernels, avx2::kernels, TEXGEN_FLAGS(flags_)::kernels);
+    return chosen;
+}
+
+inline const BoxKernels& chosen_box_kernels() noexcept {
+    static const BoxKernels& chosen = choose(avx512::box_kernels, avx2::box_kernels, TEXGEN_FLAGS(flags_)::box_kernels);
     return chosen;
 }
 
@@ -311,6 +323,7 @@ inline const Kernels& chosen_kernels() noexcept {
 namespace texgen::detail {
 inline namespace TEXGEN_BUILD {
 inline const Kernels& chosen_kernels() noexcept { return TEXGEN_FLAGS(flags_)::kernels; }
+inline const BoxKernels& chosen_box_kernels() noexcept { return TEXGEN_FLAGS(flags_)::box_kernels; }
 }  // namespace TEXGEN_BUILD
 }  // namespace texgen::detail
 

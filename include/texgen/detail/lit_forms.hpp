@@ -16,6 +16,7 @@
 #include <glm/mat4x4.hpp>
 
 #include "../conventions.hpp"
+#include "box_kernels.hpp"
 #include "expansion.hpp"
 #include "inverse.hpp"
 #include "nearest.hpp"
@@ -23,23 +24,13 @@
 
 namespace texgen::detail {
 
-// a . (x, y, z) + d, known to within error_a (|x| + |y| + |z|) + error_d when it is computed in double in any order. A
-// coordinate whose coefficient is exactly 0 is not used: there a box may be infinite.
-struct BoundedForm {
-    std::array<double, 3> a;
-    double d;
-    double error_a, error_d;
-    std::array<bool, 3> uses;
-};
-
 // The coordinates of a vertex, or of the middle of a sphere.
 using Point = std::array<double, 3>;
 
 class LitForms {
 public:
-    static constexpr std::size_t side_count = 4;
-    static constexpr std::size_t count = 5;  // the sides s_min, s_max, t_min, t_max, and q
-    static constexpr std::size_t q = 4;
+    static constexpr std::size_t count = lit_form_count;
+    static constexpr std::size_t q = side_count;
 
     LitForms(const glm::dmat4& matrix, const TextureRegion& region) noexcept {
         const glm::dvec2& min = region.min();
@@ -63,9 +54,6 @@ public:
     // Form k, times a positive number that brings its largest a near to 1.
     const BoundedForm& operator[](std::size_t k) const noexcept { return forms_[k]; }
 
-    // A bound for all five: each, computed in double where |x| + |y| + |z| <= size, errs by less.
-    double error(double size) const noexcept { return error_a_ * size + error_d_; }
-
     // -1, 0, 1: the sign of form k at a finite point, exactly.
     int sign_at(std::size_t k, const Point& point) const noexcept {
         const BoundedForm& form = forms_[k];
@@ -76,6 +64,38 @@ public:
             magnitude += std::fabs(form.a[j] * point[j]);
         }
         return certain_sign({value, gamma(8) * magnitude}, [&] { return exactly_at(k, point); });
+    }
+
+    // In float, scaled by powers of two so that one bound serves all. With u = 2^-24 a coefficient is rounded (1 u), as are
+    // its product (1 u) and at most three sums (3 u): 5 u (max|a_j| size + |d|), and 0.1 u for the bound's own roundings.
+    // |a_j| and |d| are so small that nothing overflows before the size does.
+    // A form is worth as much as it changes within the scene. How large that is, the distances of the sides from the
+    // origin tell: a form that hardly changes there (q, nearly orthographic) is not scaled up to them.
+    FloatForms in_float() const noexcept {
+        const auto gradient = [](const BoundedForm& form) {
+            return std::fabs(form.a[0]) + std::fabs(form.a[1]) + std::fabs(form.a[2]);
+        };
+        double extent = 0.0;
+        for (std::size_t k = 0; k < side_count; ++k)
+            if (gradient(forms_[k]) > 0.0) extent = larger(extent, std::fabs(forms_[k].d) / gradient(forms_[k]));
+        FloatForms result{};
+        double largest_a = 0.0;
+        double largest_d = 0.0;
+        for (std::size_t k = 0; k < count; ++k) {
+            const BoundedForm& form = forms_[k];
+            const double size = larger(gradient(form), extent > 0.0 ? std::fabs(form.d) / extent : 0.0);
+            const double scale = size > 0x1p-900 && size < 0x1p900 ? 0.125 * reciprocal_power_of_two(size) : 0.0;
+            for (std::size_t j = 0; j < 3; ++j) {
+                result.form[k].a[j] = static_cast<float>(scale * form.a[j]);
+                largest_a = larger(largest_a, scale * std::fabs(form.a[j]));
+            }
+            result.form[k].d = static_cast<float>(scale * form.d);
+            largest_d = larger(largest_d, scale * std::fabs(form.d));
+        }
+        if (!(largest_d < 0x1p100)) largest_d = infinity;  // nothing is certain
+        result.error_per_size = static_cast<float>(5.1 * unit_roundoff_float * largest_a + 0x1p-100);
+        result.error = static_cast<float>(5.1 * unit_roundoff_float * largest_d + 0x1p-100);
+        return result;
     }
 
     // Further forms that are >= 0 wherever all five are: the planes that the theorem of separating axes asks about, each
@@ -97,12 +117,12 @@ private:
             }
         }
         if (largest == 0.0) return true;
-        int exponent = 0;
-        std::frexp(largest, &exponent);
+        if (!(largest >= 0x1p-1000 && largest < 0x1p1000)) return false;
+        const double scale = reciprocal_power_of_two(largest);
         for (Row& row : rows_) {
             for (double& element : row) {
                 if (element == 0.0) continue;
-                element = std::ldexp(element, -exponent);
+                element *= scale;
                 if (!(std::fabs(element) >= 0x1p-400)) return false;
             }
         }
@@ -142,8 +162,6 @@ private:
         }
         bounded.d = scale * form[3];
         set_errors(bounded, {}, 0.0);
-        error_a_ = larger(error_a_, bounded.error_a);
-        error_d_ = larger(error_d_, bounded.error_d);
     }
 
     // What the coefficients carry already, and 8 u of each term for its own rounding, for the sums and for the bound's.
@@ -254,8 +272,6 @@ private:
     std::array<BoundedForm, count> forms_{};
     std::array<BoundedForm, 15> separating_{};
     std::size_t separating_count_ = 0;
-    double error_a_ = 0.0;
-    double error_d_ = 0.0;
     bool is_usable_;
     bool lights_nothing_;
 };

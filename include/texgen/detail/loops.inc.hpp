@@ -135,6 +135,19 @@ TEXGEN_INLINE int largest_lane(const WideWords& a) noexcept {
     return largest;
 }
 
+TEXGEN_INLINE WideFloats minimum(const WideFloats& a, const WideFloats& b) noexcept {
+    return WideFloats::of([&](int i) { return a.lane[i] < b.lane[i] ? a.lane[i] : b.lane[i]; });
+}
+TEXGEN_INLINE WideFloats maximum(const WideFloats& a, const WideFloats& b) noexcept {
+    return WideFloats::of([&](int i) { return a.lane[i] > b.lane[i] ? a.lane[i] : b.lane[i]; });
+}
+TEXGEN_INLINE WideWords less(const WideFloats& a, const WideFloats& b) noexcept {
+    return WideWords::of([&](int i) { return a.lane[i] < b.lane[i] ? -1 : 0; });
+}
+TEXGEN_INLINE WideWords at_most(const WideFloats& a, const WideFloats& b) noexcept {
+    return WideWords::of([&](int i) { return a.lane[i] <= b.lane[i] ? -1 : 0; });
+}
+
 TEXGEN_INLINE Doubles minimum(const Doubles& a, const Doubles& b) noexcept {
     return Doubles::of([&](int i) { return a.lane[i] < b.lane[i] ? a.lane[i] : b.lane[i]; });
 }
@@ -168,6 +181,12 @@ TEXGEN_INLINE void load_triples(const float* from, Floats& x, Floats& y, Floats&
     x = Floats::of([&](int i) { return from[3 * i]; });
     y = Floats::of([&](int i) { return from[3 * i + 1]; });
     z = Floats::of([&](int i) { return from[3 * i + 2]; });
+}
+TEXGEN_INLINE void load_boxes(const float* from, WideFloats (&min)[3], WideFloats (&max)[3]) noexcept {
+    for (int j = 0; j < 3; ++j) {
+        min[j] = WideFloats::of([&](int i) { return from[6 * i + j]; });
+        max[j] = WideFloats::of([&](int i) { return from[6 * i + 3 + j]; });
+    }
 }
 TEXGEN_INLINE void store_pairs(float* to, const Floats& a, const Floats& b) noexcept {
     for (int i = 0; i < lanes; ++i) {

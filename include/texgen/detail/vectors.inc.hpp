@@ -86,6 +86,11 @@ TEXGEN_INLINE int largest_lane(const WideWords& a) noexcept {
             maximum(a, rotated<Distance>(a, std::make_integer_sequence<int, wide_lanes>())));
 }
 
+TEXGEN_INLINE WideFloats minimum(const WideFloats& a, const WideFloats& b) noexcept { return a < b ? a : b; }
+TEXGEN_INLINE WideFloats maximum(const WideFloats& a, const WideFloats& b) noexcept { return a > b ? a : b; }
+TEXGEN_INLINE WideWords less(const WideFloats& a, const WideFloats& b) noexcept { return a < b; }
+TEXGEN_INLINE WideWords at_most(const WideFloats& a, const WideFloats& b) noexcept { return a <= b; }
+
 TEXGEN_INLINE Doubles minimum(const Doubles& a, const Doubles& b) noexcept { return a < b ? a : b; }
 TEXGEN_INLINE Doubles maximum(const Doubles& a, const Doubles& b) noexcept { return a > b ? a : b; }
 TEXGEN_INLINE Doubles magnitude(const Doubles& a) noexcept { return maximum(a, -a); }
@@ -133,6 +138,23 @@ TEXGEN_INLINE void load_triples(const float* from, Vector& x, Vector& y, Vector&
     x = every_third<0>(a, b, c, std::make_integer_sequence<int, n>());
     y = every_third<1>(a, b, c, std::make_integer_sequence<int, n>());
     z = every_third<2>(a, b, c, std::make_integer_sequence<int, n>());
+}
+
+// Lanes First, First + 2, ... of both vectors.
+template <int First, class Vector, int... Lane>
+TEXGEN_INLINE Vector every_second(const Vector& a, const Vector& b, std::integer_sequence<int, Lane...>) noexcept {
+    return __builtin_shufflevector(a, b, (2 * Lane + First)...);
+}
+// Two corners of three floats a box.
+TEXGEN_INLINE void load_boxes(const float* from, WideFloats (&min)[3], WideFloats (&max)[3]) noexcept {
+    WideFloats first[3];
+    WideFloats second[3];
+    load_triples(from, first[0], first[1], first[2]);
+    load_triples(from + 3 * wide_lanes, second[0], second[1], second[2]);
+    for (int j = 0; j < 3; ++j) {
+        min[j] = every_second<0>(first[j], second[j], std::make_integer_sequence<int, wide_lanes>());
+        max[j] = every_second<1>(first[j], second[j], std::make_integer_sequence<int, wide_lanes>());
+    }
 }
 
 // Lane i of both vectors in turn.
