@@ -78,6 +78,8 @@ constexpr const char* planes = "GLM, plane equations";
 constexpr const char* barycentric = "GLM, barycentric";
 constexpr const char* product = "GLM, mat4 * vec4";
 constexpr const char* mix = "GLM, mix";
+constexpr const char* batch = "texgen, a batch";
+constexpr const char* five_planes = "GLM, five planes";
 constexpr const char* stores = "floor: two store streams";
 constexpr const char* copying = "floor: copying as many bytes";
 
@@ -108,6 +110,12 @@ constexpr Promise promises[] = {
     {0, "K1p planar, 1024", coarse, product, 15},
     {0, "K1p interleaved, 1024", coarse, product, 8},
     {0, "K2, 1024", coarse, mix, 6},
+    {0, "Coverage, 4096 boxes, scattered", batch, five_planes, 4},
+    {0, "Coverage, 4096 boxes, dense", batch, five_planes, 4},
+    {0, "Coverage, 4096 boxes, 1e5 from the origin", batch, five_planes, 4},
+    {1, "Coverage, 4096 boxes, scattered", batch, five_planes, 4},
+    {1, "Coverage, 4096 boxes, dense", batch, five_planes, 4},
+    {1, "Coverage, 4096 boxes, 1e5 from the origin", batch, five_planes, 4},
 };
 
 struct Verdict {
@@ -198,7 +206,8 @@ constexpr const char* explanation =
     "point, a value of alpha, a fragment; for the set-up a triangle. K1h: points to s, t, r, q. K1p: points to s/q, "
     "t/q. "
     "K2: a segment at an array of alpha to s, t. K3: fragments of a triangle to s, t; q/w grows along the rows by the "
-    "given factor, or not at all (parallel); set-up counts only where it says so. Errors are the largest, in texels of "
+    "given factor, or not at all (parallel); set-up counts only where it says so. Coverage: a box or a sphere "
+    "against one projector. Errors are the largest, in texels of "
     "4096 and in units in the last place of float. Speed is relative to the first GLM row of the scene in the same "
     "run. "
     "Floors only move bytes.";

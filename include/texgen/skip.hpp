@@ -91,7 +91,8 @@ inline namespace TEXGEN_BUILD {
 // Boxes that the five planes leave partial, gathered until they fill vectors.
 class PartialBoxes {
 public:
-    void add(const LitForms& forms, const Box& box, Coverage& out) noexcept {
+    void add_if_partial(const LitForms& forms, const Box& box, Coverage& out) noexcept {
+        if (out != Coverage::partial || !is_proper(box) || !forms.are_usable()) return;
         for (int j = 0; j < 3; ++j) {
             const auto min = static_cast<double>(box.min[j]);
             const auto max = static_cast<double>(box.max[j]);
@@ -149,11 +150,21 @@ inline void cover(const LitForms& forms, const FloatForms& float_forms, std::spa
             const Box& box = boxes[open[k]];
             Coverage& result = out[open[k]];
             if (result != Coverage::partial) result = exact_coverage(forms, box);
-            if (result == Coverage::partial && is_proper(box) && forms.are_usable()) partial.add(forms, box, result);
+            partial.add_if_partial(forms, box, result);
         }
         begin += count;
     }
     partial.separate(forms);
+}
+
+// One box: the planes are decided exactly at once, which says what the floats would.
+inline Coverage coverage_of(const LitForms& forms, const Box& box) noexcept {
+    Coverage result = exact_coverage(forms, box);
+    if (result != Coverage::partial) return result;
+    PartialBoxes partial;
+    partial.add_if_partial(forms, box, result);
+    partial.separate(forms);
+    return result;
 }
 
 }  // namespace TEXGEN_BUILD
@@ -172,14 +183,12 @@ inline Coverage coverage_of(const LitForms& forms, const Sphere& sphere) noexcep
     const auto dot = [](const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
     double value[LitForms::count];
     double error[LitForms::count];
-    double norm[LitForms::count];
     bool is_inside = true;
     for (std::size_t k = 0; k < LitForms::count; ++k) {
         const BoundedForm& form = forms[k];
         value[k] = dot(form.a, centre) + form.d;
         error[k] = form.error_a * size + form.error_d;
-        norm[k] = (1.0 + gamma(8)) * std::sqrt(dot(form.a, form.a));
-        const double change = norm[k] * radius;
+        const double change = forms.slope(k) * radius;
         if (value[k] + change + (error[k] + gamma(4) * change) < 0.0) return Coverage::outside;
         is_inside = is_inside && value[k] - change - (error[k] + gamma(4) * change) > 0.0;
     }
@@ -187,15 +196,15 @@ inline Coverage coverage_of(const LitForms& forms, const Sphere& sphere) noexcep
     for (std::size_t f = 0; f < 2; ++f) {
         for (std::size_t g = 2; g < side_count; ++g) {
             const double across = dot(forms[f].a, forms[g].a);
-            double of_f = across * value[g] - norm[g] * norm[g] * value[f];
-            double of_g = across * value[f] - norm[f] * norm[f] * value[g];
+            double of_f = across * value[g] - forms.slope(g) * forms.slope(g) * value[f];
+            double of_g = across * value[f] - forms.slope(f) * forms.slope(f) * value[g];
             if (!(of_f > 0.0 && of_g > 0.0)) continue;
             const double both = of_f + of_g;  // or their squares could be too small for a double
             of_f /= both;
             of_g /= both;
-            const double longest = of_f * norm[f] + of_g * norm[g];
-            const double squared = of_f * of_f * (norm[f] * norm[f]) + 2.0 * of_f * of_g * across +
-                                   of_g * of_g * (norm[g] * norm[g]) + gamma(32) * longest * longest;
+            const double longest = of_f * forms.slope(f) + of_g * forms.slope(g);
+            const double squared = of_f * of_f * (forms.slope(f) * forms.slope(f)) + 2.0 * of_f * of_g * across +
+                                   of_g * of_g * (forms.slope(g) * forms.slope(g)) + gamma(32) * longest * longest;
             const double change = std::sqrt(squared) * radius;
             const double rounding = gamma(8) * (of_f * std::fabs(value[f]) + of_g * std::fabs(value[g]) + change);
             if (of_f * value[f] + of_g * value[g] + change + (of_f * error[f] + of_g * error[g]) + rounding < 0.0)
@@ -226,12 +235,7 @@ public:
     LitVolume(const Transform<Texture, Space>& texture_from_space, const TextureRegion& region) noexcept
         : forms_(texture_from_space.matrix(), region), float_forms_(forms_.in_float()) {}
 
-    // The batch's own loops answer for one box too, so that the answers are the same.
-    Coverage coverage(const Box& box) const noexcept {
-        Coverage result;
-        coverage(std::span(&box, 1), std::span(&result, 1));
-        return result;
-    }
+    Coverage coverage(const Box& box) const noexcept { return detail::coverage_of(forms_, box); }
     Coverage coverage(const Sphere& sphere) const noexcept { return detail::coverage_of(forms_, sphere); }
 
     void coverage(std::span<const Box> boxes, std::span<Coverage> out) const noexcept {

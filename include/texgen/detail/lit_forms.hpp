@@ -54,6 +54,9 @@ public:
     // Form k, times a positive number that brings its largest a near to 1.
     const BoundedForm& operator[](std::size_t k) const noexcept { return forms_[k]; }
 
+    // |a| of form k, or up to 2^-49 of it more.
+    double slope(std::size_t k) const noexcept { return slopes_[k]; }
+
     // -1, 0, 1: the sign of form k at a finite point, exactly.
     int sign_at(std::size_t k, const Point& point) const noexcept {
         const BoundedForm& form = forms_[k];
@@ -162,6 +165,8 @@ private:
         }
         bounded.d = scale * form[3];
         set_errors(bounded, {}, 0.0);
+        const auto& [a, b, c] = bounded.a;
+        slopes_[k] = (1.0 + gamma(8)) * std::sqrt(a * a + b * b + c * c);
     }
 
     // What the coefficients carry already, and 8 u of each term for its own rounding, for the sums and for the bound's.
@@ -270,6 +275,7 @@ private:
     std::array<Row, 3> rows_{};  // T_s, T_t, T_q
     std::array<Weight, count> weight_{};
     std::array<BoundedForm, count> forms_{};
+    std::array<double, count> slopes_{};
     std::array<BoundedForm, 15> separating_{};
     std::size_t separating_count_ = 0;
     bool is_usable_;
