@@ -21,6 +21,7 @@
 #include "files.hpp"
 #include "page.hpp"
 #include "render.hpp"
+#include "room.hpp"
 #include "scenes.hpp"
 #include "timings.hpp"
 
@@ -45,7 +46,7 @@ constexpr const char* usage =
     "  --timings FILE  what texgen_bench_o2, then what texgen_bench_native wrote with --benchmark_out\n"
     "  --help        this text\n"
     "\n"
-    "Exit status: 0; 1 where the library broke its promise of accuracy; 2 for a bad option, input or folder.\n";
+    "Exit status: 0; 1 where the library broke a promise; 2 for a bad option, input or folder.\n";
 
 struct Options {
     std::optional<fs::path> mesh, slide;
@@ -173,6 +174,7 @@ int run(const Options& options) {
     static_cast<void>(Staging(options.out));
 
     const Report report = make_report(options, mesh, slide);
+    const RoomReport room = make_room(slide, options.width, options.height);
 
     const Staging staging(options.out);
     const std::string name = "time_against_error";
@@ -182,15 +184,22 @@ int run(const Options& options) {
     for (TimingsPlot& drawn : plots) drawn.svg = draw_plot(staging, drawn.name, drawn.script);
     for (const SceneReport& scene : report.scenes)
         for (const PictureOfScene& picture : scene.pictures) staging.write(picture.file, picture.png);
-    staging.write("index.html", html_of(report, plot, html_of(timings, plots)));
+    const std::string room_png = encode_png(room.picture), work_png = encode_png(room.work_picture);
+    staging.write("room.png", room_png);
+    staging.write("room_work.png", work_png);
+    staging.write("index.html", html_of(report, plot, html_of(timings, plots) + html_of(room, room_png, work_png)));
     staging.publish();
 
-    std::fputs((text_of(report) + "\n" + text_of(timings)).c_str(), stdout);
+    std::fputs((text_of(report) + "\n" + text_of(room) + "\n" + text_of(timings)).c_str(), stdout);
     if (plot.empty()) std::puts("\nno plot: gnuplot is missing or failed");
     std::printf("\nwritten to %s\n", (options.out / "index.html").string().c_str());
     for (const SceneReport& scene : report.scenes) {
         if (scene.comparison.is_as_promised()) continue;
         std::fprintf(stderr, "texgen_report: the library broke its promise in %s\n", scene.name.c_str());
+        return 1;
+    }
+    if (!room.is_same_picture()) {
+        std::fputs("texgen_report: what was skipped in the room changed its picture\n", stderr);
         return 1;
     }
     return 0;

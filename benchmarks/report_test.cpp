@@ -195,6 +195,8 @@ TEST_CASE("a run writes the page and the pictures, and nothing else") {
     CHECK(outcome.error == "");
     CHECK(outcome.output.find("texgen, exact") != std::string::npos);
     CHECK(outcome.output.find("64x48") != std::string::npos);
+    CHECK(outcome.output.find("the same") != std::string::npos);
+    CHECK(outcome.output.find("differs") == std::string::npos);
 
     std::vector<std::string> pictures;
     for (const std::string& file : place.files()) {
@@ -204,8 +206,8 @@ TEST_CASE("a run writes the page and the pictures, and nothing else") {
         CHECK(contents(path).starts_with(png_signature));
     }
     CHECK(pictures == std::vector<std::string>{"border.png", "border_missing.png", "orthographic.png", "reverse.png",
-                                               "reverse_uncured.png", "teapot.png", "trapezoid.png",
-                                               "trapezoid_real.png"});
+                                               "reverse_uncured.png", "room.png", "room_work.png", "teapot.png",
+                                               "trapezoid.png", "trapezoid_real.png"});
     const std::string page = contents("deep/down/index.html");
     CHECK(page.ends_with("</html>\n"));
     CHECK(page.find("data:image/png;base64,") != std::string::npos);
