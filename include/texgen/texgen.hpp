@@ -4,6 +4,7 @@
 
 #include "clip.hpp"
 #include "conventions.hpp"
+#include "diagnose.hpp"
 #include "fixed_function.hpp"
 #include "footprint.hpp"
 #include "interpolate.hpp"

@@ -1,0 +1,210 @@
+#pragma once
+
+// Which product of the scale-bias S, the projector's P and V, and the pose X (the model matrix M or the camera's V_e^-1)
+// a texgen matrix is: the right one, S P V X, or one that a mistake makes of it.
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+
+#include <glm/mat4x4.hpp>
+
+#include "../conventions.hpp"
+#include "../scale_bias.hpp"
+#include "inverse.hpp"
+
+namespace texgen::detail {
+
+inline glm::dmat4 transposed(const glm::dmat4& m) noexcept {
+    glm::dmat4 result(0.0);
+    for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 4; ++row) result[row][column] = m[column][row];
+    return result;
+}
+
+inline bool is_zero_row(const glm::dmat4& m, int row) noexcept {
+    return m[0][row] == 0.0 && m[1][row] == 0.0 && m[2][row] == 0.0 && m[3][row] == 0.0;
+}
+
+// A product, and the sums of the magnitudes of its terms, which its rounding is relative to.
+struct Product {
+    glm::dmat4 value, magnitude;
+};
+
+inline Product operator*(const Product& a, const Product& b) noexcept {
+    return {a.value * b.value, a.magnitude * b.magnitude};
+}
+
+inline Product lens_factor(const glm::dmat4& m) noexcept {
+    Product result{m, m};
+    for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 4; ++row) result.magnitude[column][row] = std::fabs(m[column][row]);
+    return result;
+}
+
+// Rotations and inverses carry noise relative to the largest element of a column, also where they hold a zero.
+inline Product pose_factor(const glm::dmat4& m) noexcept {
+    Product result = lens_factor(m);
+    for (int column = 0; column < 4; ++column) {
+        glm::dvec4& c = result.magnitude[column];
+        c.x = c.y = c.z = larger(c.x, larger(c.y, c.z));
+    }
+    return result;
+}
+
+// k where `given` is k times the product, in the rows (and, of what was read transposed, the columns) in which it is not
+// zero: planes that were never written say nothing. 0 where it is not.
+// The tolerance, 2^-16 of the magnitudes: three products in float of factors rounded to float err by 16 * 2^-24 at most,
+// a product in double that is rounded once by 2^-24.
+inline double multiple_of(const Product& product, const glm::dmat4& given, bool was_transposed = false) noexcept {
+    constexpr double tolerance = 0x1p-16;
+    const auto says_nothing = [&](int column) { return was_transposed && given[column] == glm::dvec4(0.0); };
+    double along = 0.0;
+    double norm = 0.0;
+    for (int row = 0; row < 4; ++row) {
+        if (is_zero_row(given, row)) continue;
+        for (int column = 0; column < 4; ++column) {
+            const double magnitude = product.magnitude[column][row];
+            if (!(magnitude > 0.0) || says_nothing(column)) continue;
+            const double value = product.value[column][row] / magnitude;
+            along += given[column][row] / magnitude * value;
+            norm += value * value;
+        }
+    }
+    const double multiple = along / norm;
+    for (int row = 0; row < 4; ++row) {
+        if (is_zero_row(given, row)) continue;
+        for (int column = 0; column < 4; ++column) {
+            if (says_nothing(column)) continue;
+            const double distance = std::fabs(given[column][row] - multiple * product.value[column][row]);
+            if (!(distance <= tolerance * std::fabs(multiple) * product.magnitude[column][row])) return 0.0;
+        }
+    }
+    return is_finite(multiple) ? multiple : 0.0;
+}
+
+enum class Order { right, view_before_projection, wrong };
+enum class PoseUse { right, left_out, inverted, doubled };
+enum class ScaleBiasUse { right, left_out, doubled };
+
+// How a matrix was made of its factors.
+struct Composition {
+    bool transposed = false;
+    Order order = Order::right;
+    PoseUse pose = PoseUse::right;
+    ScaleBiasUse scale_bias = ScaleBiasUse::right;
+    bool s_mirrored = false, t_mirrored = false, other_depth = false;
+    double multiple = 1.0;
+};
+
+struct Factors {
+    glm::dmat4 projection, view;
+    std::optional<glm::dmat4> pose;  // empty: the points are in the world
+    Conventions conventions;
+    TextureRegion region;
+    DepthMapping depth;
+};
+
+inline Product scale_bias_factor(const Factors& factors, const Composition& composition) noexcept {
+    if (composition.scale_bias == ScaleBiasUse::left_out) return lens_factor(glm::dmat4(1.0));
+    glm::dmat4 matrix = texgen::scale_bias(factors.conventions, factors.region, factors.depth).matrix();
+    if (composition.s_mirrored) matrix[0][0] = -matrix[0][0];
+    if (composition.t_mirrored) matrix[1][1] = -matrix[1][1];
+    if (composition.other_depth) {
+        const bool halves = matrix[3][2] != 0.0;
+        matrix[2][2] = halves ? 1.0 : 0.5;
+        matrix[3][2] = halves ? 0.0 : 0.5;
+    }
+    const Product once = lens_factor(matrix);
+    return composition.scale_bias == ScaleBiasUse::doubled ? once * once : once;
+}
+
+// The pose as a mistake would use it; empty for an inverse that does not exist.
+inline std::optional<Product> pose_factor(const Factors& factors, PoseUse use) noexcept {
+    if (!factors.pose) return use == PoseUse::right ? std::optional(lens_factor(glm::dmat4(1.0))) : std::nullopt;
+    switch (use) {
+        case PoseUse::right:
+            return pose_factor(*factors.pose);
+        case PoseUse::left_out:
+            return lens_factor(glm::dmat4(1.0));
+        case PoseUse::doubled:
+            return pose_factor(*factors.pose) * pose_factor(*factors.pose);
+        case PoseUse::inverted:
+            break;
+    }
+    const CertifiedInverse inverse(*factors.pose);
+    return inverse.regular() ? std::optional(pose_factor(inverse.matrix())) : std::nullopt;
+}
+
+inline Product right_composition(const Factors& factors) noexcept {
+    const Product lens = scale_bias_factor(factors, {}) * lens_factor(factors.projection);
+    const Product view = pose_factor(factors.view);
+    return factors.pose ? lens * (view * pose_factor(*factors.pose)) : lens * view;
+}
+
+// Mirroring, depth and the use of a factor are told apart only where S stands once.
+inline constexpr std::array scale_bias_mistakes{
+    Composition{},
+    Composition{.scale_bias = ScaleBiasUse::left_out},
+    Composition{.scale_bias = ScaleBiasUse::doubled},
+    Composition{.t_mirrored = true},
+    Composition{.other_depth = true},
+    Composition{.s_mirrored = true},
+    Composition{.s_mirrored = true, .t_mirrored = true},
+    Composition{.s_mirrored = true, .other_depth = true},
+    Composition{.t_mirrored = true, .other_depth = true},
+};
+
+constexpr int mistakes(const Composition& c) noexcept {
+    return c.transposed + (c.order != Order::right) + (c.pose != PoseUse::right) +
+           (c.scale_bias != ScaleBiasUse::right) + c.s_mirrored + c.t_mirrored + c.other_depth;
+}
+
+// The orders of S (0), P (1), V (2) and X (3), the right one left out and the most likely first: V before P, then the
+// row vectors' order, then the others.
+inline constexpr std::array<std::array<std::size_t, 4>, 23> wrong_orders{
+    {{0, 2, 1, 3}, {3, 2, 1, 0}, {3, 0, 1, 2}, {0, 1, 3, 2}, {1, 0, 2, 3}, {1, 2, 0, 3}, {1, 2, 3, 0}, {0, 3, 1, 2},
+     {0, 2, 3, 1}, {0, 3, 2, 1}, {1, 0, 3, 2}, {1, 3, 0, 2}, {1, 3, 2, 0}, {2, 0, 1, 3}, {2, 0, 3, 1}, {2, 1, 0, 3},
+     {2, 1, 3, 0}, {2, 3, 0, 1}, {2, 3, 1, 0}, {3, 0, 2, 1}, {3, 1, 0, 2}, {3, 1, 2, 0}, {3, 2, 0, 1}}};
+
+// The composition with the fewest mistakes, two at most, that gives the matrix; empty where none does.
+inline std::optional<Composition> composition_of(const glm::dmat4& texgen, const Factors& factors) noexcept {
+    const std::array<glm::dmat4, 2> given{texgen, detail::transposed(texgen)};
+    for (int allowed = 0; allowed <= 2; ++allowed) {
+        for (const PoseUse pose : {PoseUse::right, PoseUse::inverted, PoseUse::left_out, PoseUse::doubled}) {
+            const std::optional<Product> x = pose_factor(factors, pose);
+            if (!x) continue;
+            for (const Composition& scale_bias_mistake : scale_bias_mistakes) {
+                for (const bool transposed : {false, true}) {
+                    Composition composition = scale_bias_mistake;
+                    composition.pose = pose;
+                    composition.transposed = transposed;
+                    const int without_order = mistakes(composition);
+                    if (without_order > allowed || without_order + 1 < allowed) continue;
+                    const std::array<Product, 4> product{scale_bias_factor(factors, composition),
+                                                         lens_factor(factors.projection), pose_factor(factors.view),
+                                                         *x};
+                    const auto gives = [&](const std::array<std::size_t, 4>& order) {
+                        composition.multiple =
+                            multiple_of(product[order[0]] * product[order[1]] * (product[order[2]] * product[order[3]]),
+                                        given[transposed], transposed);
+                        return composition.multiple != 0.0;
+                    };
+                    if (without_order == allowed) {
+                        if (gives({0, 1, 2, 3})) return composition;
+                        continue;
+                    }
+                    for (const std::array<std::size_t, 4>& order : wrong_orders) {
+                        if (!gives(order)) continue;
+                        composition.order = order == wrong_orders[0] ? Order::view_before_projection : Order::wrong;
+                        return composition;
+                    }
+                }
+            }
+        }
+    }
+    return std::nullopt;
+}
+
+}  // namespace texgen::detail
