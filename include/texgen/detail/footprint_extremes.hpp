@@ -202,7 +202,7 @@ inline double least_square_of_rho(const FootprintField& field, const WindowPolyg
             bound = smaller(here, bound);
             continue;
         }
-        const double middle = low > 0x1p-6 * high ? std::sqrt(low) * std::sqrt(high) : 0x1p-6 * high;
+        const double middle = low > 0x1p-7 * high ? std::sqrt(low) * std::sqrt(high) : 0x1p-6 * high;
         if (!(middle > low && middle < high)) {
             bound = smaller(here, bound);
             continue;

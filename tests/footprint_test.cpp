@@ -1,0 +1,739 @@
+// Footprints: derivatives judged exactly and by 400-bit differences, what filters make of them, and their extremes.
+
+#include "texgen/footprint.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "support/fragments.hpp"
+#include "support/hard_triangles.hpp"
+#include "support/hex.hpp"
+#include "support/outputs.hpp"
+#include "support/random.hpp"
+#include "support/real.hpp"
+#include "texgen/linear.hpp"
+#include "texgen/projector.hpp"
+#include "texgen/texcoord.hpp"
+
+namespace {
+
+using support::count_of;
+using support::Dyadic;
+using support::everywhere;
+using support::ExactTriangle;
+using support::hex;
+using support::Homogeneous;
+using support::Random;
+using support::Real;
+using support::same_bits;
+using support::setup_of;
+using support::Shot;
+using texgen::Footprint;
+using texgen::FootprintExtremes;
+using texgen::Footprints;
+using texgen::FootprintSetup;
+using texgen::FragmentRect;
+using texgen::TexelsPerUnit;
+using texgen::Tolerance;
+using texgen::Triangle;
+using texgen::TriangleSetup;
+using texgen::WindowVertex;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double nan_double = std::numeric_limits<double>::quiet_NaN();
+
+// Where each output of a batch stands in the arrays below.
+enum Output : std::size_t { dsdx, dtdx, dsdy, dtdy, level, anisotropy, major_s, major_t };
+
+// The eight outputs of a rectangle, those of `asked` (a bit each) given to the library, all poisoned and padded.
+class Batch {
+public:
+    static constexpr unsigned all = 255;
+
+    explicit Batch(const FragmentRect& rect, unsigned asked = all, std::size_t misalignment = 0)
+        : first_{support::Outputs(count_of(rect), asked & 15u, misalignment)},
+          rest_{support::Outputs(count_of(rect), asked >> 4, misalignment)} {}
+
+    Footprints spans() {
+        const texgen::Texcoords a = first_.spans(), b = rest_.spans();
+        return {.dsdx = a.s,
+                .dtdx = a.t,
+                .dsdy = a.r,
+                .dtdy = a.lit,
+                .level = b.s,
+                .anisotropy = b.t,
+                .major_s = b.r,
+                .major_t = b.lit};
+    }
+    std::span<const float> operator[](std::size_t k) const { return k < 4 ? first_[k] : rest_[k - 4]; }
+    double at(std::size_t k, std::size_t i) const { return static_cast<double>((*this)[k][i]); }
+    bool is_untouched() const {
+        for (std::size_t k = 0; k < 8; ++k)
+            if (!support::Outputs::is_poison((*this)[k])) return false;
+        return true;
+    }
+    bool pads_are_intact() const { return first_.pads_are_intact() && rest_.pads_are_intact(); }
+
+private:
+    support::Outputs first_, rest_;
+};
+
+// The Jacobian exactly, but for its last division: numerators over q^2, in units of s and t.
+struct ExactFootprint {
+    Real dx[2], dy[2];
+
+    static Real real(const Dyadic& value) {
+        const support::Rational rational = value.rational();
+        return Real(numerator(rational)) / Real(denominator(rational));
+    }
+
+    // S, T and Q are affine, so differences of neighbours are their slopes exactly.
+    ExactFootprint(const ExactTriangle& exact, std::int64_t x, std::int64_t y) {
+        const Homogeneous here = exact.at(x, y), right = exact.at(x + 1, y), up = exact.at(x, y + 1);
+        const Real q_squared = real(here.q) * real(here.q);
+        const auto slope = [&](const Dyadic& f, const Dyadic& next, const Dyadic& next_q) {
+            return Real(real((next - f) * here.q - f * (next_q - here.q)) / q_squared);
+        };
+        dx[0] = slope(here.s, right.s, right.q);
+        dx[1] = slope(here.t, right.t, right.q);
+        dy[0] = slope(here.s, up.s, up.q);
+        dy[1] = slope(here.t, up.t, up.q);
+    }
+
+    // The singular values in texels, from the eigenvalues of J J^T.
+    struct Shape {
+        Real rho, largest, least;
+    };
+    Shape shape(const TexelsPerUnit& texels) const {
+        const Real a = dx[0] * Real(texels.s), b = dy[0] * Real(texels.s), c = dx[1] * Real(texels.t),
+                   d = dy[1] * Real(texels.t);
+        const Real column_x = a * a + c * c, column_y = b * b + d * d;
+        const Real sum = column_x + column_y, determinant = a * d - b * c;
+        const Real square = (sum + sqrt(Real(sum * sum - 4 * determinant * determinant))) / 2;
+        const Real largest = sqrt(square);
+        return {sqrt(column_x > column_y ? column_x : column_y), largest,
+                largest == 0 ? Real(0) : Real(abs(determinant) / largest)};
+    }
+
+    Real norm(std::size_t k) const { return sqrt(Real(dx[k] * dx[k] + dy[k] * dy[k])); }
+};
+
+double distance(double computed, const Real& exact) { return static_cast<double>(abs(Real(computed) - exact)); }
+
+// q/w at a fragment relative to the largest of its terms: how far away from q = 0 it is.
+double distance_from_zero(const Triangle& triangle, double x, double y) {
+    const auto corner = support::vertices(triangle);
+    double sum = 0.0, largest = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const WindowVertex &j = *corner[(i + 1) % 3], &k = *corner[(i + 2) % 3];
+        const double edge = (static_cast<double>(j.window.x) - x) * (static_cast<double>(k.window.y) - y) -
+                            (static_cast<double>(j.window.y) - y) * (static_cast<double>(k.window.x) - x);
+        const double term = edge * static_cast<double>(corner[i]->strq.w) / static_cast<double>(corner[i]->clip_w);
+        sum += term;
+        largest = std::max(largest, std::fabs(term));
+    }
+    return std::fabs(sum) / largest;
+}
+
+std::string text(const TexelsPerUnit& texels) { return "texels " + hex(texels.s) + ", " + hex(texels.t); }
+
+TexelsPerUnit some_texels(Random& random) {
+    return {std::ldexp(1.0, random.integer(0, 13)) * (random.coin() ? 1.0 : random.uniform(0.6, 1.4)),
+            std::ldexp(1.0, random.integer(0, 13))};
+}
+
+// A parallelogram of the window with w = 1, so that q is affine; s/q, t/q and q given at its corners.
+Triangle flat(const std::array<glm::vec2, 3>& window, const std::array<glm::vec3, 3>& stq) {
+    Triangle triangle{};
+    const auto corner = support::vertices(triangle);
+    for (std::size_t i = 0; i < 3; ++i)
+        *corner[i] = {window[i], 1.0f, {stq[i].x * stq[i].z, stq[i].y * stq[i].z, 0.0f, stq[i].z}};
+    return triangle;
+}
+
+// A window-filling triangle in front: q/w varies by up to `ratio`, s and t by ordinary amounts.
+Triangle spread_triangle(Random& random, double ratio) {
+    for (;;) {
+        Triangle triangle{};
+        for (WindowVertex* vertex : support::vertices(triangle)) {
+            const double w = random.uniform(0.5, 8.0), q = w * std::pow(ratio, random.uniform(0.0, 1.0));
+            vertex->window = {random.uniform_float(-100.0, 600.0), random.uniform_float(-100.0, 600.0)};
+            vertex->clip_w = support::to_float(w);
+            vertex->strq = {support::to_float(random.uniform(-1.0, 2.0) * q),
+                            support::to_float(random.uniform(-1.0, 2.0) * q), 0.0f, support::to_float(q)};
+        }
+        if (std::fabs(support::twice_area(triangle)) > 20000.0) return triangle;
+    }
+}
+
+bool contains_centre(const Triangle& triangle, int x, int y) {
+    const auto corner = support::vertices(triangle);
+    const double side = support::twice_area(triangle);
+    for (std::size_t i = 0; i < 3; ++i) {
+        Triangle part = triangle;
+        support::vertices(part)[i]->window = glm::vec2(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+        if (support::twice_area(part) * side < 0.0) return false;
+    }
+    return corner[0] != nullptr;
+}
+
+}  // namespace
+
+TEST_CASE("derivatives are the exact ones within the stated bound, for every hard family") {
+    std::uint64_t seed = 6000;
+    int checked = 0, behind = 0, unbounded = 0;
+    double worst = 0.0;
+    for (const support::HardFamily& family : support::hard_families) {
+        Random random(++seed);
+        int hard = 0, away = 0;
+        double worst_away = 0.0;
+        constexpr int shots = 60;
+        for (int i = 0; i < shots; ++i) {
+            const Shot shot = family.make(random);
+            const ExactTriangle exact(shot.triangle);
+            hard += family.is_hard(shot, exact);
+            const TexelsPerUnit texels = some_texels(random);
+            const FootprintSetup setup(setup_of(shot.triangle), texels);
+            const glm::dvec2 bound = setup.error_bound(shot.rect);
+            Batch out(shot.rect, Batch::all, static_cast<std::size_t>(random.integer(0, 15)));
+            const bool written = footprint(setup, shot.rect, out.spans());
+            REQUIRE(out.pads_are_intact());
+            if (!written) REQUIRE(out.is_untouched());
+            const std::size_t step = count_of(shot.rect) / 6 + 1;
+            for (std::size_t k = static_cast<std::size_t>(random.integer(0, 2)); k < count_of(shot.rect); k += step) {
+                const std::int64_t x = shot.x(static_cast<std::int64_t>(k) % shot.rect.width);
+                const std::int64_t y = shot.y(static_cast<std::int64_t>(k) / shot.rect.width);
+                if (!exact.has_positive_w(x, y)) continue;
+                const std::string context = std::string(family.name) + " " + text(texels) + ", fragment " +
+                                            std::to_string(x) + " " + std::to_string(y) + " of " + hex(shot);
+                if (exact.at(x, y).q.sign() <= 0) {
+                    ++behind;
+                    for (std::size_t o = 0; o < 8 && written; ++o) REQUIRE_MESSAGE(same_bits(out[o][k], 0.0f), context);
+                    continue;
+                }
+                REQUIRE_MESSAGE(written, context);
+                ++checked;
+                const ExactFootprint truth(exact, x, y);
+                const double zero =
+                    distance_from_zero(shot.triangle, static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5);
+                for (std::size_t c = 0; c < 2; ++c) {
+                    const double error = std::max(distance(out.at(dsdx + c, k), truth.dx[c]),
+                                                  distance(out.at(dsdy + c, k), truth.dy[c]));
+                    if (std::isnan(error) || std::isinf(error)) continue;  // beyond the range of float
+                    const double allowed = bound[static_cast<int>(c)];
+                    REQUIRE_MESSAGE(error <= allowed, context << " error " << error << " allowed " << allowed);
+                    unbounded += std::isinf(allowed);
+                    if (!std::isinf(allowed)) worst = std::max(worst, error / allowed);
+                    const auto norm = static_cast<double>(truth.norm(c));
+                    if (zero > 1e-4 && norm > 1e-30) {
+                        ++away;
+                        worst_away = std::max(worst_away, error / norm);
+                    }
+                }
+            }
+        }
+        INFO(family.name);
+        CHECK(hard >= family.least_share * shots * 0.6);
+        if (family.least_share == 1.0) CHECK(away > 100);
+        CHECK(worst_away <= 1e-5);
+        MESSAGE(std::string(family.name), ": away from q = 0 the largest relative error is ", worst_away, " in ", away);
+    }
+    MESSAGE(checked, " fragments, ", behind, " behind, ", unbounded, " without a bound; worst error ", worst,
+            " of its bound");
+    CHECK(checked > 3000);
+    CHECK(behind > 200);
+    CHECK(worst > 0.5);
+    CHECK(unbounded < checked / 3);
+}
+
+TEST_CASE("derivatives agree with 400-bit differences of the definition to 1e-5") {
+    Random random(6100);
+    double worst = 0.0;
+    int checked = 0, mirrored = 0, orthographic = 0, steep = 0, tiny = 0, far = 0;
+    for (int i = 0; i < 1500; ++i) {
+        const auto family = support::families[static_cast<std::size_t>(i) % support::families.size()];
+        Triangle triangle = support::make_triangle(family, random);
+        if (i % 5 == 1)  // far from the origin of the window
+            for (WindowVertex* vertex : support::vertices(triangle)) vertex->window += glm::vec2(16384.0f, -30000.0f);
+        if (i % 5 == 2)  // some pixels large
+            for (WindowVertex* vertex : support::vertices(triangle)) vertex->window *= 1.0f / 256.0f;
+        const FragmentRect pixel = support::pixel_near(triangle, random);
+        const double x = pixel.x + 0.5, y = pixel.y + 0.5;
+        if (distance_from_zero(triangle, x, y) < 1e-4) continue;
+        const FootprintSetup setup(setup_of(triangle), {256.0, 256.0});
+        const auto footprint = setup.at(pixel.x, pixel.y);
+        const auto corner = support::vertices(triangle);
+        // s/q and t/q from the definition: barycentric coordinates over w.
+        const auto quotient = [&](const Real& px, const Real& py, int coordinate) {
+            Real numerator = 0, denominator = 0;
+            for (std::size_t v = 0; v < 3; ++v) {
+                const WindowVertex &j = *corner[(v + 1) % 3], &k = *corner[(v + 2) % 3];
+                const Real weight = ((Real(j.window.x) - px) * (Real(k.window.y) - py) -
+                                     (Real(j.window.y) - py) * (Real(k.window.x) - px)) /
+                                    Real(corner[v]->clip_w);
+                numerator += weight * Real(corner[v]->strq[coordinate]);
+                denominator += weight * Real(corner[v]->strq.w);
+            }
+            return Real(numerator / denominator);
+        };
+        if (!footprint) continue;
+        const Real h = ldexp(Real(1), -90);
+        for (int c = 0; c < 2; ++c) {
+            const Real dx = (quotient(Real(x) + h, y, c) - quotient(Real(x) - h, y, c)) / (2 * h);
+            const Real dy = (quotient(x, Real(y) + h, c) - quotient(x, Real(y) - h, c)) / (2 * h);
+            const auto norm = static_cast<double>(sqrt(Real(dx * dx + dy * dy)));
+            const double error = std::max(distance(footprint->dx[c], dx), distance(footprint->dy[c], dy)) / norm;
+            worst = std::max(worst, error);
+            REQUIRE_MESSAGE(error <= 1e-5, hex(triangle) << " fragment " << pixel.x << " " << pixel.y);
+        }
+        ++checked;
+        mirrored += support::twice_area(triangle) < 0.0;
+        orthographic += family == support::Family::parallel;
+        steep += support::detail::spread(triangle, [](const WindowVertex& v) { return v.strq.w; }) > 100.0;
+        tiny += std::fabs(support::twice_area(triangle)) < 16.0;
+        far += triangle.a.window.x > 10000.0f;
+    }
+    MESSAGE(checked, " fragments, worst relative error ", worst);
+    CHECK(checked > 900);
+    for (const int count : {mirrored, orthographic, steep, tiny, far}) CHECK(count > 80);
+}
+
+TEST_CASE("level, anisotropy and major axis are those of the exact Jacobian") {
+    Random random(6200);
+    int circular = 0, thin = 0, magnified = 0, minified = 0, checked = 0;
+    double worst_level = 0.0, worst_anisotropy = 0.0, worst_major = 0.0;
+    for (int i = 0; i < 500; ++i) {
+        const auto family = support::families[static_cast<std::size_t>(i) % support::families.size()];
+        Triangle triangle = i % 3 == 0 ? spread_triangle(random, random.power_of_ten(0.0, 3.0))
+                                       : support::make_triangle(family, random);
+        if (i % 11 == 0)  // squares of the window are squares of the texture
+            triangle = flat({glm::vec2(0, 0), glm::vec2(512, 0), glm::vec2(0, 512)},
+                            {glm::vec3(0, 0, 1), glm::vec3(1, 0, 1), glm::vec3(0, 1, 1)});
+        if (i % 11 == 1)  // the t of all corners is nearly a function of their s
+            for (WindowVertex* vertex : support::vertices(triangle))
+                vertex->strq.y = vertex->strq.x * (1.0f + random.uniform_float(-1e-6, 1e-6));
+        const FragmentRect pixel = support::pixel_near(triangle, random);
+        const Shot shot{triangle, {pixel.x - random.integer(0, 20), pixel.y, random.integer(1, 50), 2}};
+        const TexelsPerUnit texels = i % 11 == 0 ? TexelsPerUnit{256.0, 256.0} : some_texels(random);
+        const ExactTriangle exact(triangle);
+        const FootprintSetup setup(setup_of(triangle), texels);
+        Batch out(shot.rect);
+        if (!footprint(setup, shot.rect, out.spans())) continue;
+        for (std::size_t k = 0; k < count_of(shot.rect); k += 1 + count_of(shot.rect) / 5) {
+            const std::int64_t x = shot.x(static_cast<std::int64_t>(k) % shot.rect.width);
+            const std::int64_t y = shot.y(static_cast<std::int64_t>(k) / shot.rect.width);
+            if (!exact.has_positive_w(x, y) || exact.at(x, y).q.sign() <= 0) continue;
+            if (distance_from_zero(triangle, static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5) < 1e-3)
+                continue;
+            const ExactFootprint truth(exact, x, y);
+            const ExactFootprint::Shape shape = truth.shape(texels);
+            const auto rho = static_cast<double>(shape.rho), ratio = static_cast<double>(shape.largest / shape.least);
+            const auto length = static_cast<double>(shape.largest);
+            const std::string context =
+                text(texels) + ", fragment " + std::to_string(x) + " " + std::to_string(y) + " of " + hex(shot);
+            ++checked;
+            // What the bound on the derivatives leaves open, in levels and relative.
+            const glm::dvec2 bound = setup.error_bound({static_cast<int>(x), static_cast<int>(y), 1, 1});
+            const double open = 2.0 * std::max(bound.x * texels.s, bound.y * texels.t) / rho;
+            if (!(open < 1e-3)) continue;
+            const double exact_level = std::log2(rho);
+            const double level_error = std::fabs(out.at(level, k) - exact_level);
+            const double level_allowed = 0x1p-18 * std::max(1.0, std::fabs(exact_level) / 32.0) + 1.5 * open;
+            worst_level = std::max(worst_level, level_error / level_allowed);
+            REQUIRE_MESSAGE(level_error <= level_allowed, context);
+            if (ratio < 1e30) {
+                const double ratio_error = std::fabs(out.at(anisotropy, k) / ratio - 1.0);
+                worst_anisotropy = std::max(worst_anisotropy, ratio_error / (0x1p-18 + 2.0 * open));
+                REQUIRE_MESSAGE(ratio_error <= 0x1p-18 + 2.0 * open, context);
+            }
+            // Its length is the larger singular value, and J J^T maps it to itself times the square of that.
+            const double m[2] = {out.at(major_s, k) * texels.s, out.at(major_t, k) * texels.t};
+            const auto image = [&](std::size_t c) {
+                const double scale_c = c == 0 ? texels.s : texels.t;
+                double sum = 0.0;
+                for (std::size_t j = 0; j < 2; ++j) {
+                    const double scale_j = j == 0 ? texels.s : texels.t;
+                    sum += static_cast<double>(truth.dx[c] * truth.dx[j] + truth.dy[c] * truth.dy[j]) * scale_c *
+                           scale_j * m[j];
+                }
+                return sum / (length * length);
+            };
+            const double major_error =
+                std::max(std::fabs(std::hypot(m[0], m[1]) - length), std::hypot(image(0) - m[0], image(1) - m[1])) /
+                length;
+            worst_major = std::max(worst_major, major_error / (0x1p-18 + 4.0 * open));
+            REQUIRE_MESSAGE(major_error <= 0x1p-18 + 4.0 * open, context);
+
+            const auto one = setup.at(static_cast<int>(x), static_cast<int>(y));
+            REQUIRE(one.has_value());
+            CHECK(std::fabs(one->level - exact_level) <= 1e-9 + 1.5 * open);
+            CHECK(std::fabs(one->singular_values.x / length - 1.0) <= 1e-9 + 2.0 * open);
+            CHECK(std::fabs(one->singular_values.y - static_cast<double>(shape.least)) <= (1e-9 + 2.0 * open) * length);
+            if (ratio < 1e30) CHECK(std::fabs(one->anisotropy / ratio - 1.0) <= 1e-6 + 2.0 * open);
+            circular += ratio < 1.000001;
+            thin += ratio > 1e4;
+            magnified += rho < 0.5;
+            minified += rho > 2.0;
+        }
+    }
+    MESSAGE(checked, " fragments; of their bounds: level ", worst_level, ", anisotropy ", worst_anisotropy, ", major ",
+            worst_major);
+    CHECK(checked > 1000);
+    for (const int count : {circular, thin, magnified, minified}) CHECK(count > 40);
+}
+
+TEST_CASE("a tolerance is kept in units a pixel, and some of it is used") {
+    std::uint64_t seed = 6300;
+    int checked = 0, differ = 0;
+    for (const support::HardFamily& family : support::hard_families) {
+        Random random(++seed);
+        for (int i = 0; i < 40; ++i) {
+            const Shot shot = family.make(random);
+            const ExactTriangle exact(shot.triangle);
+            const double tolerance = random.power_of_ten(-8.0, -2.0);
+            const FootprintSetup setup(setup_of(shot.triangle, everywhere(), Tolerance{tolerance}), {1024.0, 1024.0});
+            const FootprintSetup strict(setup_of(shot.triangle), {1024.0, 1024.0});
+            Batch out(shot.rect), of_exact(shot.rect);
+            if (!footprint(setup, shot.rect, out.spans())) continue;
+            footprint(strict, shot.rect, of_exact.spans());
+            const glm::dvec2 bound = setup.error_bound(shot.rect);
+            for (std::size_t k = 0; k < count_of(shot.rect); k += 1 + count_of(shot.rect) / 4) {
+                const std::int64_t x = shot.x(static_cast<std::int64_t>(k) % shot.rect.width);
+                const std::int64_t y = shot.y(static_cast<std::int64_t>(k) / shot.rect.width);
+                if (!exact.has_positive_w(x, y) || exact.at(x, y).q.sign() <= 0) continue;
+                const ExactFootprint truth(exact, x, y);
+                for (std::size_t c = 0; c < 2; ++c) {
+                    const double error = std::max(distance(out.at(dsdx + c, k), truth.dx[c]),
+                                                  distance(out.at(dsdy + c, k), truth.dy[c]));
+                    if (std::isnan(error) || std::isinf(error)) continue;
+                    REQUIRE_MESSAGE(error <= bound[static_cast<int>(c)], family.name << " " << hex(shot));
+                    ++checked;
+                    differ += !same_bits(out[dsdx + c][k], of_exact[dsdx + c][k]);
+                }
+            }
+        }
+    }
+    MESSAGE(checked, " derivatives, ", differ, " with other bits than those of exact");
+    CHECK(checked > 2000);
+    CHECK(differ > 300);
+}
+
+TEST_CASE("only what is asked for is written, the same whatever else is asked for, in any rectangle and alignment") {
+    Random random(6400);
+    for (int i = 0; i < 300; ++i) {
+        const Shot shot = support::detail::ordinary(
+            support::families[static_cast<std::size_t>(i) % support::families.size()], random);
+        const FootprintSetup setup(setup_of(shot.triangle), some_texels(random));
+        Batch all(shot.rect);
+        const bool written = footprint(setup, shot.rect, all.spans());
+        const auto asked = static_cast<unsigned>(random.integer(0, 255));
+        Batch some(shot.rect, asked, static_cast<std::size_t>(random.integer(0, 15)));
+        REQUIRE(footprint(setup, shot.rect, some.spans()) == written);
+        REQUIRE(some.pads_are_intact());
+        for (std::size_t k = 0; k < 8; ++k)
+            if (((asked >> k) & 1u) != 0u)
+                for (std::size_t f = 0; f < count_of(shot.rect); ++f)
+                    REQUIRE_MESSAGE(
+                        (same_bits(some[k][f], all[k][f]) ||
+                         (k >= 4 && std::fabs(some.at(k, f) - all.at(k, f)) <= 1e-5 * std::fabs(all.at(k, f)))),
+                        hex(shot));
+    }
+}
+
+TEST_CASE("no fragment of ten million is outside the extremes, and they are reached") {
+    Random random(6500);
+    std::size_t fragments = 0;
+    int rects = 0, wide = 0, inner = 0;
+    double worst_gap = 0.0;
+    constexpr int side = 128;
+    Batch out({0, 0, side, side}, (1u << level) | (1u << anisotropy));
+    Batch derivatives({0, 0, side, side}, 15u);
+    while (fragments < 10'000'000u) {
+        const double ratio = random.power_of_ten(0.0, 2.5);
+        Triangle triangle = spread_triangle(random, ratio);
+        const int shape = random.integer(0, 9);
+        if (shape == 0)  // q/w constant
+            for (WindowVertex* vertex : support::vertices(triangle)) vertex->strq.w = vertex->clip_w;
+        if (shape == 1)  // one column of the Jacobian passes through 0
+            for (WindowVertex* vertex : support::vertices(triangle)) vertex->strq.y *= 0.01f;
+        const FragmentRect rect{random.integer(-100, 500), random.integer(-100, 500), random.integer(2, side),
+                                random.integer(2, side)};
+        const TexelsPerUnit texels = some_texels(random);
+        const FootprintSetup setup(setup_of(triangle), texels);
+        const auto extremes = setup.extremes(rect);
+        const std::size_t count = count_of(rect);
+        Footprints spans = out.spans();
+        Footprints of_derivatives = derivatives.spans();
+        const bool written = footprint(setup, rect,
+                                       {.dsdx = of_derivatives.dsdx.first(count),
+                                        .dtdx = of_derivatives.dtdx.first(count),
+                                        .dsdy = of_derivatives.dsdy.first(count),
+                                        .dtdy = of_derivatives.dtdy.first(count),
+                                        .level = spans.level.first(count),
+                                        .anisotropy = spans.anisotropy.first(count),
+                                        .major_s = {},
+                                        .major_t = {}});
+        if (!extremes || !written) {
+            REQUIRE(!written);
+            continue;
+        }
+        const ExactTriangle exact(triangle);
+        bool promised = true;
+        for (const int x : {rect.x, rect.x + rect.width - 1})
+            for (const int y : {rect.y, rect.y + rect.height - 1})
+                promised = promised && exact.has_positive_w(x, y) && exact.at(x, y).q.sign() > 0;
+        if (!promised) continue;
+        double least = infinity, largest = -infinity, neighbours = 0.0, thinnest = 0.0, area_least = infinity,
+               area_largest = 0.0;
+        for (std::size_t k = 0; k < count; ++k) {
+            const double here = out.at(level, k);
+            least = std::min(least, here);
+            largest = std::max(largest, here);
+            thinnest = std::max(thinnest, out.at(anisotropy, k));
+            const double area = std::fabs(derivatives.at(dsdx, k) * derivatives.at(dtdy, k) -
+                                          derivatives.at(dsdy, k) * derivatives.at(dtdx, k)) *
+                                texels.s * texels.t;
+            // What the subtraction of floats loses.
+            const double lost = 4e-7 *
+                                (std::fabs(derivatives.at(dsdx, k) * derivatives.at(dtdy, k)) +
+                                 std::fabs(derivatives.at(dsdy, k) * derivatives.at(dtdx, k))) *
+                                texels.s * texels.t;
+            area_least = std::min(area_least, area + lost);
+            area_largest = std::max(area_largest, area - lost);
+            if (k % static_cast<std::size_t>(rect.width) != 0)
+                neighbours = std::max(neighbours, std::fabs(here - out.at(level, k - 1)));
+            if (k >= static_cast<std::size_t>(rect.width))
+                neighbours =
+                    std::max(neighbours, std::fabs(here - out.at(level, k - static_cast<std::size_t>(rect.width))));
+        }
+        const std::string context = text(texels) + " " + hex(Shot{triangle, rect}) + " levels " + hex(least) + " " +
+                                    hex(largest) + " bounds " + hex(extremes->least_level) + " " +
+                                    hex(extremes->largest_level);
+        REQUIRE_MESSAGE(least >= extremes->least_level, context);
+        REQUIRE_MESSAGE(largest <= extremes->largest_level, context);
+        REQUIRE_MESSAGE(thinnest <= extremes->largest_anisotropy, context);
+        REQUIRE_MESSAGE(area_least >= extremes->least_area, context);
+        REQUIRE_MESSAGE(area_largest <= extremes->largest_area, context);
+        fragments += count;
+        ++rects;
+        // 1 % of rho, and what may lie between two fragments.
+        const double gap = std::max(least - extremes->least_level, extremes->largest_level - largest);
+        if (neighbours < 0.02) {
+            worst_gap = std::max(worst_gap, gap - neighbours);
+            REQUIRE_MESSAGE(gap <= 0.0144 + neighbours, context);
+            double corner_least = infinity, corner_largest = 0.0, corner_level = infinity;
+            for (const int x : {rect.x, rect.x + rect.width - 1}) {
+                for (const int y : {rect.y, rect.y + rect.height - 1}) {
+                    const Footprint at = setup.at(x, y).value();
+                    const double area = at.singular_values.x * at.singular_values.y;
+                    corner_level = std::min(corner_level, at.level);
+                    corner_least = std::min(corner_least, area);
+                    corner_largest = std::max(corner_largest, area);
+                }
+            }
+            REQUIRE_MESSAGE(extremes->largest_area <= 1.01 * corner_largest, context);
+            REQUIRE_MESSAGE(extremes->least_area >= 0.99 * corner_least, context);
+            REQUIRE_MESSAGE(extremes->largest_anisotropy <= thinnest * 1.01, context);
+            wide += largest - least > 1.0;
+            inner += least < corner_level - 0.01;
+        }
+    }
+    MESSAGE(fragments, " fragments in ", rects, " rectangles; largest gap of a level ", worst_gap);
+    CHECK(wide > 20);
+    CHECK(inner > 12);  // the least level is at no corner
+}
+
+TEST_CASE("the extremes of a triangle hold for all fragments inside it, and are reached") {
+    Random random(6600);
+    int triangles = 0;
+    for (int i = 0; i < 60; ++i) {
+        const Triangle triangle = spread_triangle(random, random.power_of_ten(0.0, 2.0));
+        const FragmentRect rect{-100, -100, 701, 701};
+        const TexelsPerUnit texels = some_texels(random);
+        const FootprintSetup setup(setup_of(triangle), texels);
+        const auto extremes = setup.extremes();
+        REQUIRE(extremes.has_value());
+        double least = infinity, largest = -infinity, thinnest = 0.0;
+        Batch row({0, 0, rect.width, 1}, (1u << level) | (1u << anisotropy));
+        for (int y = rect.y; y < rect.y + rect.height; ++y) {
+            if (!footprint(setup, {rect.x, y, rect.width, 1}, row.spans())) continue;
+            for (int x = rect.x; x < rect.x + rect.width; ++x) {
+                if (!contains_centre(triangle, x, y)) continue;
+                const auto k = static_cast<std::size_t>(x - rect.x);
+                least = std::min(least, row.at(level, k));
+                largest = std::max(largest, row.at(level, k));
+                thinnest = std::max(thinnest, row.at(anisotropy, k));
+            }
+        }
+        INFO(hex(triangle), " levels ", least, " ", largest, " bounds ", extremes->least_level, " ",
+             extremes->largest_level);
+        CHECK(least >= extremes->least_level);
+        CHECK(largest <= extremes->largest_level);
+        CHECK(thinnest <= extremes->largest_anisotropy);
+        // The vertices may be most of a pixel from a centre inside: here the level may change by more than 1 %.
+        const auto corner = support::vertices(triangle);
+        for (const WindowVertex* vertex : corner) {
+            const auto at = setup.at(static_cast<int>(std::floor(vertex->window.x)),
+                                     static_cast<int>(std::floor(vertex->window.y)));
+            if (at) least = std::min(least, at->level), largest = std::max(largest, at->level);
+        }
+        ++triangles;
+        CHECK(least - extremes->least_level < 0.15);
+        CHECK(extremes->largest_level - largest < 0.15);
+    }
+    CHECK(triangles == 60);
+}
+
+TEST_CASE("next to q = 0 and behind it the extremes say so") {
+    // q/w = (x - 100) / 100.
+    const Triangle triangle = flat({glm::vec2(0, 0), glm::vec2(200, 0), glm::vec2(0, 200)},
+                                   {glm::vec3(0.5f, 0, -1), glm::vec3(0.5f, 1, 1), glm::vec3(1, 0.5f, -1)});
+    const FootprintSetup setup(setup_of(triangle), {256.0, 256.0});
+    CHECK(!setup.extremes({0, 0, 90, 50}).has_value());
+    CHECK(!setup.at(50, 10).has_value());
+    const auto across = setup.extremes({50, 0, 100, 50});
+    REQUIRE(across.has_value());
+    CHECK(std::isinf(across->largest_level));
+    CHECK(std::isinf(across->largest_area));
+    const auto nearest = setup.at(100, 10);
+    REQUIRE(nearest.has_value());
+    const auto farthest = setup.at(149, 0);
+    REQUIRE(farthest.has_value());
+    CHECK(across->least_level <= farthest->level);
+    CHECK(nearest->level > farthest->level + 8.0);
+    CHECK(!setup.extremes({0, 0, 0, 5}).has_value());
+}
+
+TEST_CASE("a Jacobian of rank 1 or 0, and texels that are none, get what the header says") {
+    const std::array window{glm::vec2(0, 0), glm::vec2(64, 0), glm::vec2(0, 64)};
+    const FragmentRect rect{3, 4, 21, 5};
+    const Triangle constant =
+        flat(window, {glm::vec3(0.25f, 0.5f, 2), glm::vec3(0.25f, 0.5f, 1), glm::vec3(0.25f, 0.5f, 4)});
+    const Triangle line = flat(window, {glm::vec3(0, 0, 2), glm::vec3(1, 1, 1), glm::vec3(0.25f, 0.25f, 4)});
+    {
+        const FootprintSetup setup(setup_of(constant), {64.0, 64.0});
+        Batch out(rect);
+        REQUIRE(footprint(setup, rect, out.spans()));
+        for (std::size_t k = 0; k < count_of(rect); ++k) {
+            for (const std::size_t o : {dsdx, dtdx, dsdy, dtdy, major_s, major_t}) REQUIRE(out[o][k] == 0.0f);
+            REQUIRE(out.at(level, k) == -infinity);
+            REQUIRE(out[anisotropy][k] == 1.0f);
+        }
+        const auto extremes = setup.extremes(rect);
+        REQUIRE(extremes.has_value());
+        CHECK(extremes->least_level == -infinity);
+        CHECK(extremes->largest_area == 0.0);
+    }
+    {
+        const FootprintSetup setup(setup_of(line), {64.0, 64.0});
+        Batch out(rect);
+        REQUIRE(footprint(setup, rect, out.spans()));
+        for (std::size_t k = 0; k < count_of(rect); ++k) {
+            REQUIRE(out.at(anisotropy, k) == infinity);
+            REQUIRE(std::isfinite(out.at(level, k)));
+            REQUIRE(std::fabs(out.at(major_s, k) - out.at(major_t, k)) <= 1e-5 * std::fabs(out.at(major_s, k)));
+        }
+        const auto one = setup.at(5, 5);
+        REQUIRE(one.has_value());
+        CHECK(one->anisotropy == infinity);
+        CHECK(one->singular_values.y == 0.0);
+        CHECK(setup.extremes(rect)->largest_anisotropy == infinity);
+    }
+    for (const double bad : {0.0, -1.0, nan_double, infinity}) {
+        const TexelsPerUnit texels = bad > 0.0 ? TexelsPerUnit{bad, 64.0} : TexelsPerUnit{64.0, bad};
+        const FootprintSetup setup(setup_of(line), texels), good(setup_of(line), {64.0, 64.0});
+        Batch out(rect), right(rect);
+        REQUIRE(footprint(setup, rect, out.spans()));
+        footprint(good, rect, right.spans());
+        for (std::size_t k = 0; k < count_of(rect); ++k) {
+            for (const std::size_t o : {dsdx, dtdx, dsdy, dtdy})
+                REQUIRE(std::fabs(out.at(o, k) - right.at(o, k)) <= 1e-6 * std::fabs(right.at(o, k)));
+            for (const std::size_t o : {level, anisotropy, major_s, major_t}) REQUIRE(std::isnan(out[o][k]));
+        }
+        CHECK(std::isnan(setup.extremes(rect)->largest_level));
+        CHECK(std::isnan(setup.at(5, 5)->level));
+    }
+    const Footprint none = texgen::footprint_of({nan_double, 0.0}, {0.0, 1.0}, TexelsPerUnit{64.0, 64.0});
+    CHECK(std::isnan(none.level));
+    CHECK(std::isnan(none.anisotropy));
+}
+
+TEST_CASE("one texel a pixel is level 0, whatever the region's units") {
+    const std::array window{glm::vec2(0, 0), glm::vec2(256, 0), glm::vec2(0, 128)};
+    const auto level_of = [&](const texgen::TextureRegion& region, double width, double height) {
+        const glm::vec2 min(region.min()), max(region.max());
+        const Triangle triangle =
+            flat(window, {glm::vec3(min, 1), glm::vec3(max.x, min.y, 1), glm::vec3(min.x, max.y, 1)});
+        const FootprintSetup setup(setup_of(triangle, region), texgen::texels_per_unit(region, width, height));
+        return setup.at(10, 10).value();
+    };
+    for (const texgen::TextureRegion& region :
+         {texgen::whole_texture(), texgen::rectangle_texture(256, 128), texgen::atlas_tile({0.25, 0.5}, {0.5, 0.75})}) {
+        CHECK(level_of(region, 256, 128).level == doctest::Approx(0.0));
+        CHECK(level_of(region, 256, 128).anisotropy == doctest::Approx(1.0));
+        CHECK(level_of(region, 1024, 128).level == doctest::Approx(2.0));
+        CHECK(level_of(region, 1024, 128).anisotropy == doctest::Approx(4.0));
+        CHECK(level_of(region, 1024, 128).major.y == doctest::Approx(0.0));
+    }
+    CHECK(texgen::texels_per_unit(texgen::rectangle_texture(256, 128), 256, 128).s == 1.0);
+}
+
+TEST_CASE("OpenGL's level is that of the longer column, not of the larger singular value") {
+    const Footprint sheared = texgen::footprint_of({1.0, 1.0}, {1.0, 1.0 + 1e-9}, TexelsPerUnit{1.0, 1.0});
+    CHECK(sheared.level == doctest::Approx(0.5));
+    CHECK(sheared.singular_values.x == doctest::Approx(2.0));
+    CHECK(sheared.major.x == doctest::Approx(std::sqrt(2.0)));
+    CHECK(sheared.major.y == doctest::Approx(std::sqrt(2.0)));
+    const Footprint mirrored = texgen::footprint_of({-3.0, 0.0}, {0.0, 2.0}, TexelsPerUnit{2.0, 1.0});
+    CHECK(mirrored.singular_values.x == doctest::Approx(6.0));
+    CHECK(mirrored.singular_values.y == doctest::Approx(2.0));
+    CHECK(mirrored.anisotropy == doctest::Approx(3.0));
+    CHECK(std::fabs(mirrored.major.x) == doctest::Approx(3.0));
+}
+
+TEST_CASE(
+    "a projector that faces the camera has a positive score, a parallel one 0, one beside the camera a negative one") {
+    // A floor seen from (0, 2, 10) towards -z.
+    const auto camera = texgen::make_projector(
+        texgen::PerspectiveLens{.fovy = texgen::degrees(60), .aspect = 1, .z_near = 0.1, .z_far = 100},
+        texgen::Aim{.position = {0, 2, 10}, .target = {0, 0, -10}, .up = {0, 1, 0}}, texgen::opengl);
+    REQUIRE(camera.has_value());
+    const std::array<glm::vec3, 3> floor{glm::vec3(-3, 0, 6), glm::vec3(3, 0, 6), glm::vec3(0, 0, -20)};
+    const auto score = [&](const texgen::Projector& projector) {
+        std::array<glm::vec4, 3> strq;
+        texgen::generate(texgen::texture_from_world(projector), texgen::world_space(floor), std::span(strq));
+        Triangle triangle{};
+        const auto corner = support::vertices(triangle);
+        for (std::size_t i = 0; i < 3; ++i) {
+            const glm::dvec4 clip = camera->matrix().matrix() * glm::dvec4(floor[i], 1.0);
+            *corner[i] = {glm::vec2(256.0 + 256.0 * clip.x / clip.w, 256.0 + 256.0 * clip.y / clip.w),
+                          static_cast<float>(clip.w), strq[i]};
+        }
+        return texgen::headlights(triangle);
+    };
+    const texgen::PerspectiveLens lens{.fovy = texgen::degrees(40), .aspect = 1, .z_near = 0.1, .z_far = 100};
+    const texgen::Aim facing{.position = {0, 3, -25}, .target = {0, 0, 6}, .up = {0, 1, 0}};
+    const texgen::Aim beside{.position = {1, 2, 10}, .target = {0, 0, -10}, .up = {0, 1, 0}};
+    const texgen::OrthographicLens parallel{
+        .left = -9, .right = 9, .bottom = -9, .top = 9, .z_near = 0.1, .z_far = 100};
+    CHECK(score(texgen::make_projector(lens, facing, texgen::opengl).value()) > 3.0);
+    CHECK(score(texgen::make_projector(lens, beside, texgen::opengl).value()) < -3.0);
+    CHECK(std::fabs(score(texgen::make_projector(parallel, facing, texgen::opengl).value())) < 1e-6);
+    Triangle bad = flat({glm::vec2(0, 0), glm::vec2(1, 0), glm::vec2(0, 1)},
+                        {glm::vec3(0, 0, 1), glm::vec3(0, 1, 1), glm::vec3(1, 1, 1)});
+    bad.a.clip_w = 0.5f;
+    bad.c.clip_w = 2.0f;
+    bad.c.strq.w = -1.0f;
+    CHECK(texgen::headlights(bad) == infinity);
+    bad.a.strq.w = std::numeric_limits<float>::quiet_NaN();
+    CHECK(std::isnan(texgen::headlights(bad)));
+}
