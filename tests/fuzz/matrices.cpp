@@ -1,0 +1,255 @@
+// Everything that makes or takes a matrix, over raw bytes: what is empty and what is finite, which bad number stays
+// where, and relations that hold whatever the numbers are.
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "fuzz/input.hpp"
+#include "texgen/fixed_function.hpp"
+#include "texgen/linear.hpp"
+#include "texgen/projector.hpp"
+#include "texgen/scale_bias.hpp"
+#include "texgen/transform.hpp"
+
+namespace {
+
+using fuzz::all_finite;
+using fuzz::Input;
+using fuzz::must;
+using fuzz::same;
+using texgen::Coordinate;
+using texgen::TexGenMode;
+using texgen::TexGenUnit;
+
+bool all_in_range(const glm::dmat4& m, double least, double largest) {
+    for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 4; ++row)
+            if (const double size = std::fabs(m[column][row]); size != 0.0 && !(size >= least && size <= largest))
+                return false;
+    return true;
+}
+
+void inverses(Input& input) {
+    glm::dmat4 m = input.coin() ? glm::dmat4(input.matrix()) : input.wide_matrix();
+    const auto result = inverse(texgen::ModelMatrix(m));
+    must(!result || all_finite(result->matrix()), "an inverse is finite");
+    must(!result || all_finite(m), "what is not finite has no inverse");
+
+    // A power of two changes nothing but the exponents.
+    const int exponent = input.integer(-64, 64);
+    if (all_in_range(m, 0x1p-300, 0x1p300)) {
+        glm::dmat4 scaled = m;
+        for (int column = 0; column < 4; ++column)
+            for (int row = 0; row < 4; ++row) scaled[column][row] = std::ldexp(m[column][row], exponent);
+        const auto inverse_of_scaled = inverse(texgen::ModelMatrix(scaled));
+        if (result && inverse_of_scaled && all_in_range(result->matrix(), 0x1p-800, 0x1p800)) {
+            for (int column = 0; column < 4; ++column)
+                for (int row = 0; row < 4; ++row)
+                    must(
+                        std::ldexp(inverse_of_scaled->matrix()[column][row], exponent) == result->matrix()[column][row],
+                        "the inverse of a scaled matrix is scaled");
+        }
+    }
+    const auto planes = eye_planes_as_stored(texgen::ObjectTexgen(input.wide_matrix()), texgen::ModelviewMatrix(m));
+    must(!planes || all_finite(planes->matrix()), "stored planes are finite");
+    must(!planes || all_finite(m), "nothing is stored under what is not finite");
+
+    // Two equal rows, or columns, up to a power of two.
+    const int from = input.integer(0, 3), to = (from + input.integer(1, 3)) % 4;
+    const double factor = std::ldexp(1.0, input.integer(-20, 20));
+    const bool rows = input.coin();
+    for (int i = 0; i < 4; ++i)
+        if (rows)
+            m[i][to] = factor * m[i][from];
+        else
+            m[to][i] = factor * m[from][i];
+    if (all_in_range(m, 0x1p-900, 0x1p900)) {
+        must(!inverse(texgen::ModelMatrix(m)), "what is singular has no inverse");
+        must(!eye_planes_as_stored(texgen::ObjectTexgen(glm::dmat4(1.0)), texgen::ModelviewMatrix(m)),
+             "nothing is stored under what is singular");
+        TexGenUnit unit;
+        const glm::mat4 rounded(m);
+        if (glm::dmat4(rounded) == m) {
+            must(!unit.set_eye_plane(Coordinate::s, glm::vec4(5.0f), rounded), "a singular MODELVIEW is refused");
+            must(unit.eye_plane(Coordinate::s) == glm::vec4(1, 0, 0, 0), "a refused plane changes nothing");
+        }
+    }
+}
+
+void require_projection(const std::optional<texgen::ProjectorProjection>& projection, bool bad) {
+    must(!projection || all_finite(projection->matrix()), "a lens is finite");
+    must(!projection || !bad, "a lens out of range is empty");
+}
+
+void projectors(Input& input) {
+    const texgen::Conventions conventions = input.conventions();
+    const texgen::TextureRegion region = input.region();
+    const auto depth = input.coin() ? texgen::DepthMapping::ndc : texgen::DepthMapping::unit;
+    const texgen::Aim aim{input.wide_vector3(), input.wide_vector3(), input.wide_vector3()};
+    const auto view = look_at(aim);
+    if (view) {
+        must(!(texgen::detail::distance_from_rigid(view->matrix()) > 1e-14), "a view is rigid");
+        const auto back = inverse_rigid(*view);
+        must(texgen::detail::distance_from_rigid(back.matrix()) <= 1e-14, "and so is its inverse");
+    }
+    double field[6];
+    for (double& f : field) f = input.wide_number();
+    bool any_bad = false;
+    for (const double f : field) any_bad = any_bad || !std::isfinite(f);
+    const auto& [a, b, c, d, e, f] = field;
+    std::optional<texgen::Projector> projector;
+    switch (input.integer(0, 2)) {
+        case 0: {
+            const texgen::PerspectiveLens lens{input.coin() ? texgen::degrees(a) : texgen::radians(a), b, c, d,
+                                               input.coin()};
+            require_projection(perspective(lens, conventions), !(a > 0.0 && b > 0.0 && c > 0.0 && c < d));
+            projector = make_projector(lens, aim, conventions);
+            must(projector.has_value() == (view.has_value() && perspective(lens, conventions).has_value()),
+                 "a projector is there where its lens and its aim are");
+            break;
+        }
+        case 1: {
+            const texgen::FrustumLens lens{a, b, c, d, e, f};
+            require_projection(frustum(lens, conventions), any_bad || a == b || c == d || !(e > 0.0 && e < f));
+            projector = make_projector(lens, aim, conventions);
+            break;
+        }
+        default: {
+            const texgen::OrthographicLens lens{a, b, c, d, e, f};
+            require_projection(orthographic(lens, conventions), any_bad || a == b || c == d || !(e < f));
+            projector = make_projector(lens, aim, conventions);
+            break;
+        }
+    }
+    if (projector) {
+        const auto world = texture_from_world(*projector, region, depth);
+        const auto object = object_linear(*projector, texgen::ModelMatrix(glm::dmat4(1.0)), region, depth);
+        const auto eye = eye_linear(*projector, texgen::CameraPose(glm::dmat4(1.0)), region, depth);
+        (void)projector->matrix();
+        for (int column = 0; column < 4; ++column) {
+            for (int row = 0; row < 4; ++row) {
+                const double w = world.matrix()[column][row];
+                must((std::isnan(w) && std::isnan(object.matrix()[column][row])) ||
+                         (w == object.matrix()[column][row] && w == eye.matrix()[column][row]) || std::isnan(w),
+                     "with identities the three texgen matrices are one");
+            }
+        }
+        const auto rows = planes(world);
+        for (int row = 0; row < 4; ++row)
+            for (int column = 0; column < 4; ++column)
+                must(same(rows[static_cast<std::size_t>(row)][column], world.rounded()[column][row]),
+                     "planes are the rows");
+    }
+}
+
+void remaps(Input& input) {
+    const texgen::Conventions conventions = input.conventions();
+    const texgen::TextureRegion region = input.region();
+    const auto depth = input.coin() ? texgen::DepthMapping::ndc : texgen::DepthMapping::unit;
+    const glm::vec4 clip = input.vector4();
+    const glm::dmat4 s = scale_bias(conventions, region, depth).matrix();
+    const glm::vec4 texture = to_texture(clip, conventions, region, depth);
+    must(same(texture.w, clip.w), "the remap keeps q");
+    if (all_finite(clip) && all_finite(s)) {
+        const glm::dvec4 v(clip);
+        for (int k = 0; k < 2; ++k) {
+            const double side = std::fmax(std::fabs(region.min()[k]), std::fabs(region.max()[k]));
+            const double expected = s[0][k] * v.x + s[1][k] * v.y + s[2][k] * v.z + s[3][k] * v.w;
+            const double size = side * std::fmax(std::fabs(v[k]), std::fabs(v.w));
+            if (!(size < 0x1p127)) continue;
+            must(std::fabs(static_cast<double>(texture[k]) - expected) <=
+                     0x1.01p-24 * std::fabs(expected) + 0x1p-48 * size + 0x1p-149,
+                 "the remap is S times the clip coordinate");
+        }
+    }
+    // A bad x spoils s only.
+    glm::vec4 bad = clip;
+    const int component = input.integer(0, 2);
+    bad[component] = std::numeric_limits<float>::quiet_NaN();
+    const glm::vec4 after = to_texture(bad, conventions, region, depth);
+    for (int k = 0; k < 4; ++k)
+        if (k != component) must(same(after[k], texture[k]), "a bad value spoils its own component");
+}
+
+void fixed_function(Input& input) {
+    TexGenUnit unit;
+    for (int i = input.integer(0, 12); i > 0; --i) {
+        const auto coordinate = static_cast<Coordinate>(input.integer(-1, 5));
+        const bool is_one = static_cast<int>(coordinate) >= 0 && static_cast<int>(coordinate) <= 3;
+        switch (input.integer(0, 5)) {
+            case 0:
+                unit.enable(coordinate, input.coin());
+                must(is_one || !unit.enabled(coordinate), "no coordinate is not enabled");
+                break;
+            case 1: {
+                const auto mode = static_cast<TexGenMode>(input.integer(-1, 6));
+                const TexGenMode before = unit.mode(coordinate);
+                const bool taken = unit.set_mode(coordinate, mode);
+                must(unit.mode(coordinate) == (taken ? mode : before), "a mode is taken, or nothing changes");
+                break;
+            }
+            case 2: {
+                const glm::vec4 plane = input.vector4();
+                unit.set_object_plane(coordinate, plane);
+                if (is_one) must(same(unit.object_plane(coordinate), plane), "an object plane is stored as it is");
+                break;
+            }
+            case 3: {
+                const glm::vec4 before = unit.eye_plane(coordinate), plane = input.vector4();
+                const bool taken = unit.set_eye_plane(coordinate, plane, input.matrix());
+                must(all_finite(unit.eye_plane(coordinate)), "no plane is stored that is not finite");
+                must(taken || same(before, unit.eye_plane(coordinate)), "a refused plane changes nothing");
+                break;
+            }
+            case 4:
+                unit.set_texture_matrix(input.coin() ? glm::mat4(1.0f) : input.matrix());
+                break;
+            default:
+                unit.set_normal_scaling(static_cast<TexGenUnit::NormalScaling>(input.integer(-1, 4)));
+                break;
+        }
+    }
+    const glm::mat4 modelview = input.matrix();
+    std::vector<texgen::FixedFunctionVertex> vertices(1 + input.size(4));
+    for (auto& v : vertices) v = {input.vector4(), input.vector3(), input.vector4()};
+    std::vector<glm::vec4> out(vertices.size() + 2, glm::vec4(-7.0f));
+    unit.generate(vertices, modelview, std::span(out).subspan(1, vertices.size()));
+    must(out.front() == glm::vec4(-7.0f) && out.back() == glm::vec4(-7.0f), "generate writes its outputs only");
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        const glm::vec4 alone = unit.generate(vertices[i], modelview);
+        must(same(alone, out[1 + i]), "a batch has the bits of its vertices");
+        if (unit.texture_matrix() != glm::mat4(1.0f)) continue;
+        for (int k = 0; k < 4; ++k) {
+            const auto coordinate = static_cast<Coordinate>(k);
+            if (!unit.enabled(coordinate))
+                must(same(alone[k], vertices[i].texcoord[k]), "a coordinate that is off is the vertex's own");
+            else if (unit.mode(coordinate) == TexGenMode::sphere_map)
+                must(std::isnan(alone[k]) || (alone[k] >= 0.0f && alone[k] <= 1.0f), "the sphere map stays in [0, 1]");
+        }
+    }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    Input input(data, size);
+    switch (input.integer(0, 3)) {
+        case 0:
+            inverses(input);
+            break;
+        case 1:
+            projectors(input);
+            break;
+        case 2:
+            remaps(input);
+            break;
+        default:
+            fixed_function(input);
+            break;
+    }
+    return 0;
+}

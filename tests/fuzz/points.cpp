@@ -1,0 +1,211 @@
+// Points and segments over raw bytes: nothing but the outputs is written, a value is what it is alone (so that a NaN
+// spoils its own only), and values that are drawn for it are right by the exact judge.
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+#include "fuzz/input.hpp"
+#include "support/exact.hpp"
+#include "support/outputs.hpp"
+#include "support/verdict.hpp"
+#include "texgen/interpolate.hpp"
+#include "texgen/texcoord.hpp"
+
+namespace {
+
+using fuzz::Input;
+using fuzz::must;
+using fuzz::must_be_right;
+using fuzz::same;
+using support::Outputs;
+using texgen::ObjectTexgen;
+using texgen::Tolerance;
+
+// A count on both sides of the blocks of the kernels, and numbers that repeat, turned, until there are enough.
+std::vector<float> numbers(Input& input, std::size_t count) {
+    std::vector<float> few(1 + input.size(23));
+    for (float& number : few) number = input.number();
+    const std::size_t step = 1 + input.size(7);
+    std::vector<float> many(count);
+    for (std::size_t i = 0; i < count; ++i) many[i] = few[i * step % few.size()];
+    return many;
+}
+
+std::size_t count_of(Input& input) { return input.coin() ? input.size(40) : input.size(600); }
+
+// The points, in one of the layouts.
+struct Layout {
+    std::vector<glm::vec3> vectors;
+    std::array<std::vector<float>, 3> arrays;
+    std::vector<unsigned char> bytes;
+
+    texgen::Positions<texgen::Object> positions(Input& input, const std::vector<glm::vec3>& points) {
+        switch (points.empty() ? 1 : input.integer(0, 2)) {
+            case 0:
+                vectors = points;
+                return texgen::object_space(vectors);
+            case 1:
+                for (std::size_t k = 0; k < 3; ++k)
+                    for (const glm::vec3& point : points) arrays[k].push_back(point[static_cast<int>(k)]);
+                return texgen::object_space(arrays[0], arrays[1], arrays[2]);
+            default: {
+                const std::size_t offset = input.size(8), stride = 12 + input.size(16);
+                bytes.assign(offset + points.size() * stride + 12, 0xa5);
+                for (std::size_t i = 0; i < points.size(); ++i)
+                    std::memcpy(bytes.data() + offset + i * stride, &points[i].x, 12);
+                return texgen::object_space(reinterpret_cast<const float*>(bytes.data() + offset), points.size(),
+                                            stride);
+            }
+        }
+    }
+};
+
+void require_same(const Outputs& out, std::size_t i, const Outputs& alone, const char* promise) {
+    for (std::size_t k = 0; k < 4; ++k)
+        if (out.asked(k)) must(same(out[k][i], alone[k][0]), promise);
+}
+
+bool is_judged(const glm::dmat4& matrix, const glm::vec3& point) {
+    // Float matrices: the products of double ones may leave the range for which something is promised.
+    return fuzz::all_finite(matrix) && fuzz::all_finite(point) && glm::dmat4(glm::mat4(matrix)) == matrix;
+}
+
+void project_points(Input& input) {
+    const glm::dmat4 matrix = input.coin() ? glm::dmat4(input.matrix()) : input.wide_matrix();
+    const ObjectTexgen texgen(matrix);
+    const texgen::TextureRegion region = input.region();
+    const Tolerance tolerance = input.tolerance();
+    const std::size_t count = count_of(input);
+    const unsigned asked = input.raw<std::uint8_t>() & 15u;
+    Outputs out(count, asked, input.size(7));
+    const std::size_t judged[2] = {input.size(600), input.size(600)};
+    const std::size_t spoilt = input.size(600);
+    const std::vector<float> xyz = numbers(input, 3 * count);
+    std::vector<glm::vec3> points(count);
+    for (std::size_t i = 0; i < count; ++i) points[i] = {xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]};
+    Layout layout;
+    project(texgen, layout.positions(input, points), region, out.spans(), tolerance);
+    must(out.pads_are_intact(), "project writes its outputs only");
+    if (count == 0) return;
+
+    for (const std::size_t i : {judged[0] % count, judged[1] % count}) {
+        Outputs alone(1, asked);
+        project(texgen, texgen::object_space(std::span(&points[i], 1)), region, alone.spans(), texgen::exact);
+        if (!(tolerance.value > 0.0)) require_same(out, i, alone, "a point's bits are those that it has alone");
+        if (out.asked(3)) must(out.lit()[i] == 0.0f || out.lit()[i] == 1.0f, "lit is 0 or 1");
+        if (is_judged(matrix, points[i]))
+            must_be_right(what_is_wrong(support::exactly_at(matrix, points[i]), region, tolerance, out, i));
+    }
+
+    // The same without a mask, as pairs.
+    std::vector<glm::vec2> pairs(count + 2, glm::vec2(-7.0f));
+    project(texgen, texgen::object_space(points), std::span(pairs).subspan(1, count), tolerance);
+    must(pairs.front() == glm::vec2(-7.0f) && pairs.back() == glm::vec2(-7.0f), "project writes its pairs only");
+    if (!(tolerance.value > 0.0) && (asked & 3u) == 3u)
+        for (std::size_t i = 0; i < count; ++i)
+            must(same(pairs[1 + i].x, out.s()[i]) && same(pairs[1 + i].y, out.t()[i]), "pairs are s and t");
+
+    // A point that is no number spoils nothing but itself.
+    const std::size_t bad = spoilt % count;
+    points[bad][static_cast<int>(bad % 3)] = bad % 2 == 0 ? std::numeric_limits<float>::quiet_NaN() : HUGE_VALF;
+    Outputs after(count, asked);
+    project(texgen, texgen::object_space(points), region, after.spans(), texgen::exact);
+    for (const std::size_t i : {judged[0] % count, judged[1] % count}) {
+        if (i == bad) continue;
+        Outputs alone(1, asked);
+        project(texgen, texgen::object_space(std::span(&points[i], 1)), region, alone.spans(), texgen::exact);
+        require_same(after, i, alone, "a bad point spoils itself only");
+    }
+    if (after.asked(3)) must(after.lit()[bad] == 0.0f || bad % 2 != 0, "a NaN is not lit");
+}
+
+void generate_points(Input& input) {
+    const glm::dmat4 matrix = input.coin() ? glm::dmat4(input.matrix()) : input.wide_matrix();
+    const ObjectTexgen texgen(matrix);
+    const std::size_t count = count_of(input);
+    const unsigned asked = input.raw<std::uint8_t>() & 15u;
+    const std::size_t judged = input.size(600);
+    const std::vector<float> xyz = numbers(input, 3 * count);
+    std::vector<glm::vec3> points(count);
+    for (std::size_t i = 0; i < count; ++i) points[i] = {xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]};
+    Layout layout;
+    Outputs out(count, asked, input.size(7));
+    const texgen::Texcoords spans = out.spans();
+    generate(texgen, layout.positions(input, points), {.s = spans.s, .t = spans.t, .r = spans.r, .q = spans.lit});
+    must(out.pads_are_intact(), "generate writes its outputs only");
+    std::vector<glm::vec4> quads(count + 2, glm::vec4(-7.0f));
+    generate(texgen, layout.positions(input, points), std::span(quads).subspan(1, count));
+    must(quads.front() == glm::vec4(-7.0f) && quads.back() == glm::vec4(-7.0f), "generate writes its quads only");
+    if (count == 0) return;
+
+    const std::size_t i = judged % count;
+    glm::vec4 alone(0.0f);
+    generate(texgen, texgen::object_space(std::span(&points[i], 1)), std::span(&alone, 1));
+    must(same(alone, quads[1 + i]), "generated coordinates are those that the point has alone");
+    for (std::size_t k = 0; k < 4; ++k)
+        if (out.asked(k)) must(same(out[k][i], alone[static_cast<int>(k)]), "arrays hold what quads do");
+    const auto st = texgen::divide(alone);
+    must(st.has_value() == (alone.w > 0.0f), "divide is empty behind, and for a NaN");
+    if (!is_judged(matrix, points[i])) return;
+
+    // |value - exact| <= 1/2 ulp + 2^-50 sum |T_ij v_j|.
+    const support::Homogeneous exact = support::exactly_at(matrix, points[i]);
+    const support::Dyadic values[4] = {exact.s, exact.t, exact.r, exact.q};
+    for (int k = 0; k < 4; ++k) {
+        support::Dyadic slack = magnitude(support::Dyadic(matrix[3][k]));
+        for (int j = 0; j < 3; ++j)
+            slack = slack + magnitude(support::Dyadic(matrix[j][k]) * support::Dyadic(points[i][j]));
+        slack = slack * support::Dyadic(0x1p-50);
+        const float value = alone[k];
+        must(!std::isnan(value) && support::Dyadic(support::detail::middle(value, false)) <= values[k] + slack &&
+                 values[k] - slack <= support::Dyadic(support::detail::middle(value, true)),
+             "generate keeps its bound");
+    }
+}
+
+void interpolate_segment(Input& input) {
+    const texgen::Segment segment{input.vector4(), input.vector4()};
+    const texgen::TextureRegion region = input.region();
+    const Tolerance tolerance = input.tolerance();
+    const std::size_t count = count_of(input);
+    const unsigned asked = input.raw<std::uint8_t>() & 15u;
+    Outputs out(count, asked, input.size(7));
+    const std::size_t judged[2] = {input.size(600), input.size(600)};
+    std::vector<float> alpha = numbers(input, count);
+    for (float& a : alpha)
+        if (!std::isnan(a)) a = std::clamp(a, 0.0f, 1.0f);
+    interpolate(segment, alpha, region, out.spans(), tolerance);
+    must(out.pads_are_intact(), "interpolate writes its outputs only");
+    if (count == 0) return;
+    for (const std::size_t i : {judged[0] % count, judged[1] % count}) {
+        Outputs alone(1, asked);
+        interpolate(segment, std::span(&alpha[i], 1), region, alone.spans(), texgen::exact);
+        if (!(tolerance.value > 0.0)) require_same(out, i, alone, "a value's bits are those that it has alone");
+        if (out.asked(3)) must(out.lit()[i] == 0.0f || out.lit()[i] == 1.0f, "lit is 0 or 1");
+        if (std::isnan(alpha[i]) && out.asked(3)) must(out.lit()[i] == 0.0f, "an alpha that is NaN is not lit");
+        if (!std::isnan(alpha[i]) && fuzz::all_finite(segment.a) && fuzz::all_finite(segment.b))
+            must_be_right(what_is_wrong(support::exactly_at(segment, alpha[i]), region, tolerance, out, i));
+    }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    Input input(data, size);
+    switch (input.integer(0, 2)) {
+        case 0:
+            project_points(input);
+            break;
+        case 1:
+            generate_points(input);
+            break;
+        default:
+            interpolate_segment(input);
+            break;
+    }
+    return 0;
+}

@@ -1,0 +1,177 @@
+// Triangles, their rectangles and the clip over raw bytes: nothing but the outputs is written, `nothing` means that
+// nothing is lit, fragments that are drawn for it are right by the exact judge, and what is clipped keeps its contract.
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "fuzz/input.hpp"
+#include "support/exact.hpp"
+#include "support/fragments.hpp"
+#include "support/outputs.hpp"
+#include "support/verdict.hpp"
+#include "texgen/clip.hpp"
+#include "texgen/interpolate.hpp"
+#include "texgen/reference.hpp"
+
+namespace {
+
+using fuzz::Input;
+using fuzz::must;
+using fuzz::must_be_right;
+using support::Outputs;
+using texgen::ClipVertex;
+using texgen::FragmentRect;
+using texgen::Tolerance;
+using texgen::TriangleSetup;
+using texgen::Work;
+
+texgen::WindowVertex vertex(Input& input) {
+    const float x = input.number(), y = input.number();
+    return {{x, y}, input.coin() ? 1.0f + static_cast<float>(input.integer(0, 255)) : input.number(), input.vector4()};
+}
+
+bool is_usable(const texgen::WindowVertex& v) {
+    return std::isfinite(v.window.x) && std::isfinite(v.window.y) && std::isfinite(v.clip_w) && v.clip_w > 0.0f &&
+           fuzz::all_finite(v.strq);
+}
+
+// The precondition of the reference in double.
+bool has_exact_differences(const texgen::Triangle& triangle) {
+    for (const texgen::WindowVertex* v : support::vertices(triangle))
+        for (int k = 0; k < 2; ++k)
+            if (const float size = std::fabs(v->window[k]); size != 0.0f && !(size >= 0x1p-13f && size < 0x1p17f))
+                return false;
+    return true;
+}
+
+void interpolate_triangle(Input& input) {
+    const texgen::Triangle triangle{vertex(input), vertex(input), vertex(input)};
+    const texgen::TextureRegion region = input.region();
+    const Tolerance tolerance = input.tolerance();
+    const auto setup = TriangleSetup::of(triangle, region, tolerance);
+    const bool usable = is_usable(triangle.a) && is_usable(triangle.b) && is_usable(triangle.c);
+    must(usable || !setup, "no setup comes of a bad number");
+    if (!setup) return;
+
+    FragmentRect rect{input.integer(-300, 300), input.integer(-300, 300), input.integer(0, 80), input.integer(0, 10)};
+    if (input.integer(0, 3) == 0) rect = {rect.x, rect.y, input.integer(1, 1200), 1};
+    if (input.integer(0, 3) == 0) rect.width = 32 + input.integer(0, 40), rect.height = 8 + input.integer(0, 40);
+    if (input.integer(0, 7) == 0) rect.x = input.raw<int>(), rect.y = input.raw<int>();
+    const std::size_t count = support::count_of(rect);
+    const unsigned asked = input.raw<std::uint8_t>() & 15u;
+    Outputs out(count, asked, input.size(7));
+    const Work work = interpolate(*setup, rect, out.spans());
+    must(out.pads_are_intact(), "interpolate writes its outputs only");
+    must(work == setup->work(rect), "interpolate does what work() says");
+    const glm::dvec2 bound = setup->error_bound(rect);
+    must(bound.x >= 0.0 && bound.y >= 0.0, "an error bound is no NaN, and not negative");
+    if (count == 0) return;
+
+    const support::Shot shot{triangle, rect};
+    const support::ExactTriangle exact(triangle);
+    support::Seen seen;
+    for (int drawn = 0; drawn < 3; ++drawn) {
+        const std::size_t i = input.raw<std::uint16_t>() % count;
+        must_be_right(what_is_wrong(shot, exact, region, tolerance, work, out, i, seen));
+        const std::int64_t x = shot.x(static_cast<std::int64_t>(i) % rect.width);
+        const std::int64_t y = shot.y(static_cast<std::int64_t>(i) / rect.width);
+        if (!exact.has_positive_w(x, y)) continue;
+        const support::Homogeneous at = exact.at(x, y);
+        if (work == Work::nothing) {
+            const bool is_lit = at.q.sign() > 0 && support::contains(region, support::nearest_float(at.over_q(0)),
+                                                                     support::nearest_float(at.over_q(1)));
+            must(!is_lit, "nothing is done only where nothing is lit");
+        } else if (at.q.sign() > 0) {
+            for (std::size_t k = 0; k < 2; ++k)
+                if (out.asked(k) && std::isfinite(bound[static_cast<int>(k)]))
+                    must(support::is_within(out[k][i], at.over_q(k), bound[static_cast<int>(k)]),
+                         "no error is larger than error_bound says");
+        }
+    }
+    if (support::Outputs one(1, asked); !(tolerance.value > 0.0) && work != Work::nothing) {
+        const std::size_t i = input.raw<std::uint16_t>() % count;
+        const std::int64_t x = shot.x(static_cast<std::int64_t>(i) % rect.width);
+        const std::int64_t y = shot.y(static_cast<std::int64_t>(i) / rect.width);
+        if (x > 0x7fffffff || y > 0x7fffffff || !exact.has_positive_w(x, y)) return;
+        const Work alone =
+            interpolate(*setup, FragmentRect{static_cast<int>(x), static_cast<int>(y), 1, 1}, one.spans());
+        for (std::size_t k = 0; k < 4; ++k)
+            if (out.asked(k) && (k == 3 || alone != Work::nothing))
+                must(fuzz::same(one[k][0], out[k][i]), "a fragment's bits are those that it has alone");
+    }
+    if (support::Outputs reference(count, asked); count <= 100 && has_exact_differences(triangle)) {
+        texgen::reference::interpolate(triangle, region, rect, reference.spans());
+        must(reference.pads_are_intact(), "the reference writes its outputs only");
+    }
+}
+
+std::vector<ClipVertex> polygon_of(Input& input) {
+    std::vector<ClipVertex> polygon(input.size(9));
+    for (ClipVertex& v : polygon) v = {input.vector4(), input.vector4()};
+    return polygon;
+}
+
+void clip_near(Input& input) {
+    const std::vector<ClipVertex> polygon = polygon_of(input);
+    const auto range = input.coin() ? texgen::DepthRange::zero_to_one : texgen::DepthRange::negative_one_to_one;
+    const bool reversed = input.coin();
+    const texgen::Viewport viewport{input.raw<int>(), input.raw<int>(), input.raw<int>(), input.raw<int>()};
+    std::vector<ClipVertex> out(polygon.size() + 1 + input.size(2));
+    const std::size_t count = clip_to_near(polygon, out, range, reversed);
+    must(count <= out.size() && (count == 0 || count >= 3), "a polygon has three vertices, or there is none");
+    for (std::size_t i = 0; i < count; ++i) {
+        const glm::vec4& p = out[i].position;
+        must(p.w > 0.0f, "what comes out is in front of the eye");
+        const double z = static_cast<double>(p.z), w = static_cast<double>(p.w);
+        must(reversed                                   ? z <= w
+             : range == texgen::DepthRange::zero_to_one ? z >= 0.0
+                                                        : z + w >= 0.0,
+             "what comes out is in front of the near plane");
+        const texgen::WindowVertex window = to_window(out[i], viewport);
+        must(!std::isnan(window.window.x) && !std::isnan(window.window.y), "to_window makes no NaN of numbers");
+        must(fuzz::same(window.strq, out[i].strq) && fuzz::same(window.clip_w, p.w), "to_window keeps strq and w");
+    }
+}
+
+void clip_slide(Input& input) {
+    const std::vector<ClipVertex> polygon = polygon_of(input);
+    const texgen::TextureRegion region = input.region();
+    std::vector<ClipVertex> out(polygon.size() + 5 + input.size(4));
+    const std::size_t count = clip_to_slide(polygon, region, out);
+    must(count <= out.size() && (count == 0 || count >= 3), "a polygon has three vertices, or there is none");
+    for (std::size_t i = 0; i < count; ++i) {
+        const glm::vec4& strq = out[i].strq;
+        must(strq.w > 0.0f, "what comes out is in front of the projector");
+        const auto q = static_cast<double>(strq.w);
+        for (int k = 0; k < 2; ++k) {
+            const double u = static_cast<double>(strq[k]);
+            const double min = region.min()[k], max = region.max()[k];
+            const double room = texgen::slide_clip_error * std::fmax(std::fabs(min), std::fabs(max)) * q;
+            // Products that leave the normal floats are promised nothing.
+            if (!(room < 0x1p120) || !(q > 0x1p-100) || !(room > 0x1p-120)) continue;
+            must(min * q - u <= room && u - max * q <= room, "what comes out is inside the region");
+        }
+    }
+    for (const glm::vec4& plane : clip_planes(texgen::ObjectTexgen(input.wide_matrix()), region)) (void)plane;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    Input input(data, size);
+    switch (input.integer(0, 3)) {
+        case 0:
+            clip_near(input);
+            break;
+        case 1:
+            clip_slide(input);
+            break;
+        default:
+            interpolate_triangle(input);
+            break;
+    }
+    return 0;
+}
