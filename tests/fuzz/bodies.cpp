@@ -37,7 +37,7 @@ bool is_lit(const glm::dmat4& matrix, const texgen::TextureRegion& region, const
 }
 
 void agrees(Coverage coverage, const glm::dmat4& matrix, const texgen::TextureRegion& region, const glm::vec3& point) {
-    if (coverage == Coverage::partial) return;
+    if (coverage == Coverage::partial || !fuzz::all_finite(point)) return;
     must(is_lit(matrix, region, point) == (coverage == Coverage::inside),
          coverage == Coverage::inside ? "inside, all points are lit" : "outside, no point is lit");
 }
@@ -106,8 +106,8 @@ void cover_spheres(Input& input, const texgen::ObjectTexgen& texgen, const texge
             for (const float sign : {-1.0f, 1.0f}) {
                 glm::vec3 point = sphere.centre;
                 point[axis] += sign * sphere.radius;
-                const Dyadic distance = magnitude(Dyadic(point[axis]) - Dyadic(sphere.centre[axis]));
-                if (std::isfinite(point[axis]) && distance <= Dyadic(sphere.radius))
+                if (!std::isfinite(point[axis])) continue;
+                if (magnitude(Dyadic(point[axis]) - Dyadic(sphere.centre[axis])) <= Dyadic(sphere.radius))
                     agrees(alone, matrix, region, point);
             }
         }
