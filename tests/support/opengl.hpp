@@ -39,6 +39,7 @@ inline constexpr Enum eye_linear = 0x2400, object_linear = 0x2401, sphere_map = 
 inline constexpr Enum normal_map = 0x8511, reflection_map = 0x8512;
 inline constexpr Enum normalize = 0x0BA1, rescale_normal = 0x803A;
 inline constexpr Enum texture_2d = 0x0DE1, texture_mag_filter = 0x2800, texture_min_filter = 0x2801, nearest = 0x2600;
+inline constexpr Enum linear = 0x2601, linear_mipmap_linear = 0x2703;
 inline constexpr Enum framebuffer = 0x8D40, color_attachment0 = 0x8CE0, framebuffer_complete = 0x8CD5;
 inline constexpr Enum color_buffer_bit = 0x4000;
 inline constexpr Enum fragment_shader = 0x8B30, compile_status = 0x8B81, link_status = 0x8B82;
