@@ -13,6 +13,11 @@
 #error "texgen computes with proved error bounds, which need arithmetic as written: compile the files that include it with -fno-fast-math after -ffast-math or -Ofast (they link with files that have it)."
 #endif
 
+// A sum that is kept in an 80-bit register and rounded twice is not the sum that the bounds are about.
+#if defined(__FLT_EVAL_METHOD__) && (__FLT_EVAL_METHOD__ < 0 || __FLT_EVAL_METHOD__ == 2)
+#error "texgen computes with proved error bounds, which need float and double arithmetic in their own precision, not in that of the x87: compile with -msse2 -mfpmath=sse."
+#endif
+
 namespace texgen::detail {
 
 inline constexpr double unit_roundoff_float = 0x1p-24;
