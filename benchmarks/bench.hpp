@@ -24,6 +24,7 @@ void add_k1p();
 void add_k2();
 void add_k3();
 void add_coverage();
+void add_scenes();
 
 constexpr std::size_t l1_count = 1024, l2_count = 32768, dram_count = std::size_t{1} << 24;
 

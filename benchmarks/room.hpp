@@ -24,7 +24,7 @@ struct RoomReport {
     double lit_share;        // of fragment and projector, among the covered fragments of the objects in view
     double dark_pair_share;  // of the pairs that are kept and in view, those without a lit fragment
     double update_microseconds, first_update_microseconds;  // of the scene, as part of a frame
-    std::vector<RoomRow> rows;                              // none of the rules first, then some, then all
+    std::vector<RoomRow> rows;                              // none of the rules first, those that pay last
     Picture picture, work_picture;
 
     bool is_same_picture() const;

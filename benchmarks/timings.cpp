@@ -80,6 +80,7 @@ constexpr const char* product = "GLM, mat4 * vec4";
 constexpr const char* mix = "GLM, mix";
 constexpr const char* batch = "texgen, a batch";
 constexpr const char* five_planes = "GLM, five planes";
+constexpr const char* every_pair = "T_o and coverage() of every pair";
 constexpr const char* stores = "floor: two store streams";
 constexpr const char* copying = "floor: copying as many bytes";
 
@@ -113,6 +114,8 @@ constexpr Promise promises[] = {
     {0, "Coverage, 4096 boxes, scattered", batch, five_planes, 4},
     {0, "Coverage, 4096 boxes, dense", batch, five_planes, 4},
     {0, "Coverage, 4096 boxes, 1e5 from the origin", batch, five_planes, 4},
+    {0, "Scene, 2 000 objects x 64", "texgen, 1 % of the objects move", every_pair, 20},
+    {0, "Frame, 2 000 objects x 100, of 256 points each", "texgen, 1 % lit", "texgen, 100 % lit", 1 / 0.03},
     {1, "Coverage, 4096 boxes, scattered", batch, five_planes, 4},
     {1, "Coverage, 4096 boxes, dense", batch, five_planes, 4},
     {1, "Coverage, 4096 boxes, 1e5 from the origin", batch, five_planes, 4},
@@ -207,7 +210,8 @@ constexpr const char* explanation =
     "t/q. "
     "K2: a segment at an array of alpha to s, t. K3: fragments of a triangle to s, t; q/w grows along the rows by the "
     "given factor, or not at all (parallel); set-up counts only where it says so. Coverage: a box or a sphere "
-    "against one projector. Errors are the largest, in texels of "
+    "against one projector. Scene: an update, from frame to frame. Frame: an update and the coordinates of what is "
+    "lit. Errors are the largest, in texels of "
     "4096 and in units in the last place of float. Speed is relative to the first GLM row of the scene in the same "
     "run. "
     "Floors only move bytes.";

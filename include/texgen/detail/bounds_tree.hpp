@@ -153,9 +153,9 @@ public:
         // Room for half as much again, so that objects which come one by one do not sort each time.
         if (grows) bounds_.resize(count + count / 2, WorldBounds::none());
         for (const std::uint32_t object : objects) bounds_[object] = bounds_of(object);
-        // What moved is no longer where it was sorted in. Sorting costs as much as a few moves an object.
+        // What moved is no longer where it was sorted in. Sorting costs less than as many moves.
         moves_ += objects.size();
-        if (grows || moves_ > 4 * bounds_.size()) sort();
+        if (grows || moves_ > bounds_.size()) sort();
         for (const std::uint32_t object : objects) mark(object);
         if (height_ > 0) refit(height_ - 1, 0);
     }
