@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <cstdlib>
 #include <limits>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -45,7 +47,7 @@ std::string hex(const Sphere& sphere) { return "sphere " + hex(sphere.centre) + 
 // How many boxes the test of the hostile families takes: TEXGEN_COVERAGE_BOXES says otherwise.
 long hostile_box_count() {
     const char* text = std::getenv("TEXGEN_COVERAGE_BOXES");
-    return text != nullptr ? std::atol(text) : 150000;
+    return text != nullptr ? std::atol(text) : 300000;
 }
 
 // c[0] x + c[1] y + c[2] z + c[3] >= 0, or > 0.
@@ -232,6 +234,7 @@ std::string what_is_wrong(Coverage answer, const Judge& judge, bool is_exact, co
 struct Slide {
     glm::dmat4 matrix;
     TextureRegion region;
+    std::optional<glm::vec3> touched = {};  // a point on a side, or on an edge, to within an ulp of double or two
 };
 
 std::string hex(const Slide& slide) {
@@ -251,7 +254,7 @@ Slide ordinary_slide(Random& random, double distance_from_origin) {
         const auto projector = texgen::make_projector(lens, aim, random.coin() ? texgen::opengl : texgen::direct3d);
         if (!projector) return {};
         const TextureRegion of_slide = random.coin() ? region : whole_texture();
-        return Slide{texgen::texture_from_world(*projector, of_slide).matrix(), region};
+        return Slide{texgen::texture_from_world(*projector, of_slide).matrix(), region, {}};
     };
     std::optional<Slide> slide;
     switch (random.integer(0, 3)) {
@@ -338,6 +341,25 @@ Slide hostile_slide(Random& random) {
     return slide;
 }
 
+// Moves one or two sides of the slide into a point, so that their forms cancel there as far as double can say.
+void touch(Slide& slide, const glm::vec3& point, Random& random) {
+    const auto linear = [&](int k) {
+        long double sum = 0;
+        for (int j = 0; j < 3; ++j) sum += static_cast<long double>(slide.matrix[j][k]) * point[j];
+        return sum;
+    };
+    const long double q = linear(3) + slide.matrix[3][3];
+    for (const int k : {0, 1}) {
+        const double side = (random.coin() ? slide.region.min() : slide.region.max())[k];
+        if (std::isinf(side) || random.integer(0, 3) == 0) continue;
+        double moved = static_cast<double>(side * q - linear(k));
+        for (int steps = random.integer(-2, 2); steps != 0; steps += steps < 0 ? 1 : -1)
+            moved = std::nextafter(moved, steps < 0 ? -infinite : infinite);
+        slide.matrix[3][k] = moved;
+        slide.touched = point;
+    }
+}
+
 // A point where `forms` of them are 0, as far as double goes: on a side, on an edge, at the apex.
 glm::dvec3 point_on(const Slide& slide, int forms, Random& random, const glm::dvec3& about) {
     const auto row = [&](int k) {
@@ -392,6 +414,8 @@ Box hostile_box(const Slide& slide, Family family, Random& random) {
         return result;
     };
     const double size = random.power_of_ten(-2.0, 2.0);
+    if (slide.touched && (family == Family::at_side || family == Family::at_edge) && random.integer(0, 3) != 0)
+        return box_from(*slide.touched, size);
     switch (family) {
         case Family::ordinary:
             return box_from(glm::vec3(about), size);
@@ -459,7 +483,8 @@ TEST_CASE("no box of a hostile family is outside or inside that is not, and the 
     std::array<Counts, family_count> counts{};
     long done = 0;
     while (done < total) {
-        const Slide slide = hostile_slide(random);
+        Slide slide = hostile_slide(random);
+        if (random.coin()) touch(slide, random.vector3(random.power_of_ten(-1.0, 5.0)), random);
         const WorldTexgen transform(slide.matrix);
         const Judge judge(slide.matrix, slide.region);
         const bool is_exact = has_moderate_exponents(slide.matrix, slide.region);
@@ -637,7 +662,7 @@ TEST_CASE("no sphere is outside or inside that is not, and few of a scene are pa
     Random random(43);
     Counts counts;
     int tested = 0, judged_partial = 0, clearly_inside = 0, clearly_outside = 0;
-    for (int scene = 0; scene < 60; ++scene) {
+    for (int scene = 0; scene < 100; ++scene) {
         const Slide slide = scene % 3 == 2 ? hostile_slide(random) : ordinary_slide(random, scene % 6 == 0 ? 1e5 : 0.0);
         const DistanceJudge judge(Judge(slide.matrix, slide.region));
         const bool is_ordinary = scene % 3 != 2;
@@ -655,6 +680,20 @@ TEST_CASE("no sphere is outside or inside that is not, and few of a scene are pa
                 sphere.radius = support::neighbour(distance, random.integer(-2, 2));
                 if (!(sphere.radius >= 0.0f && sphere.radius < infinity)) sphere.radius = 0.0f;
             }
+            if (i % 4 == 2) {  // touching the nearest side
+                double nearest = infinite;
+                for (const int k : {0, 1, 0, 1}) {
+                    const double side = (random.coin() ? slide.region.min() : slide.region.max())[k];
+                    glm::dvec4 f;
+                    for (int j = 0; j < 4; ++j)
+                        f[j] = std::isinf(side) ? slide.matrix[j][3] : slide.matrix[j][k] - side * slide.matrix[j][3];
+                    const glm::dvec3 c(sphere.centre);
+                    nearest = std::min(nearest, std::fabs(f.x * c.x + f.y * c.y + f.z * c.z + f.w) /
+                                                    std::sqrt(f.x * f.x + f.y * f.y + f.z * f.z));
+                }
+                if (nearest < 1e6)
+                    sphere.radius = support::neighbour(support::to_float(nearest), random.integer(-2, 2));
+            }
             if (i % 20 == 1) sphere.radius = 0.0f;
             spheres.push_back(sphere);
         }
@@ -666,7 +705,7 @@ TEST_CASE("no sphere is outside or inside that is not, and few of a scene are pa
             std::string wrong;
             if (answers[i] == Coverage::outside) {
                 ++counts.outside;
-                if (!judge.is_outside_a_plane(sphere)) {
+                if (is_a_region(slide.region) && !judge.is_outside_a_plane(sphere)) {
                     ++counts.separated;
                     if (judge.reaches(sphere)) wrong = "a false outside";
                 }
@@ -675,7 +714,7 @@ TEST_CASE("no sphere is outside or inside that is not, and few of a scene are pa
                 if (!judge.is_inside(sphere)) wrong = "a false inside";
             } else {
                 ++counts.partial;
-                if (is_ordinary && i % 4 != 0) {
+                if (is_ordinary && i % 2 != 0) {
                     ++judged_partial;
                     counts.false_partial += !judge.reaches(sphere);
                     Sphere a_little_larger = sphere;
@@ -684,7 +723,7 @@ TEST_CASE("no sphere is outside or inside that is not, and few of a scene are pa
                     clearly_outside += judge.is_outside_a_plane(a_little_larger);
                 }
             }
-            tested += is_ordinary && i % 4 != 0;
+            tested += is_ordinary && i % 2 != 0;
             if (volume.coverage(sphere) != answers[i]) wrong = "one sphere alone is something else";
             REQUIRE_MESSAGE(wrong.empty(), wrong << ": " << hex(slide) << ", " << hex(sphere));
         }
