@@ -3,7 +3,7 @@
 
 namespace texgen::detail::TEXGEN_ISA {
 
-// A row of a TileJob: functions of the fragment's index alone. With Lit there are two numerators, s and t.
+// A row of a TileJob: functions of the fragment's index alone. Where there is a mask, the numerators are s and t.
 template <std::size_t Numerators>
 struct TileRow {
     double base[Numerators];
@@ -20,28 +20,32 @@ struct TileRow {
     }
 };
 
+// Whether a mask is asked for, the layout of points and that of their coordinates are looked at vector by vector: a branch
+// that is always the same costs next to nothing, and a loop for each combination would be most of what a user compiles.
+
 // Stores one vector of coordinates from out[k] + x on, and its mask from lit + x on.
-template <bool Lit, std::size_t Numerators, class Vector>
+template <std::size_t Numerators, class Vector>
 TEXGEN_INLINE void store_all(const TileJob& job, const TileRow<Numerators>& row, int x,
                              const Vector (&value)[Numerators]) noexcept {
     for (std::size_t k = 0; k < Numerators; ++k) store(row.out[k] + x, value[k]);
-    if constexpr (Lit)
-        store(row.lit + x,
-              one_where(inside(value[0], job.min[0], job.max[0]) & inside(value[1], job.min[1], job.max[1])));
+    if constexpr (Numerators == 2)
+        if (job.lit != nullptr)
+            store(row.lit + x,
+                  one_where(inside(value[0], job.min[0], job.max[0]) & inside(value[1], job.min[1], job.max[1])));
 }
 
 // The same for the first `count` lanes of a vector: nothing beyond them is touched.
-template <bool Lit, std::size_t Numerators, class Vector>
+template <std::size_t Numerators, class Vector>
 TEXGEN_INLINE void store_first(const TileJob& job, const TileRow<Numerators>& row, int x, int count,
                                const Vector (&value)[Numerators]) noexcept {
-    float buffer[Numerators + 1][sizeof(Vector) / sizeof(float)];
+    float buffer[Numerators + 1][sizeof(Vector) / sizeof(float)]{};
     TileRow<Numerators> buffered = row;
     for (std::size_t k = 0; k < Numerators; ++k) buffered.out[k] = buffer[k];
     buffered.lit = buffer[Numerators];
-    store_all<Lit>(job, buffered, 0, value);
+    store_all(job, buffered, 0, value);
     for (int i = 0; i < count; ++i) {
         for (std::size_t k = 0; k < Numerators; ++k) row.out[k][x + i] = buffer[k][i];
-        if constexpr (Lit) row.lit[x + i] = buffer[Numerators][i];
+        if (job.lit != nullptr) row.lit[x + i] = buffer[Numerators][i];
     }
 }
 
@@ -70,7 +74,7 @@ TEXGEN_INLINE void divide_vector(const TileJob& job, const TileRow<Numerators>& 
 
 // The units of the job from `unit` on, up to the first one with a doubtful value (it is written all the same). A last
 // vector that is not full overlaps the one before it, or is stored in part.
-template <bool ConstantQ, bool Nearest, std::size_t Numerators, bool Lit>
+template <bool ConstantQ, bool Nearest, std::size_t Numerators>
 TEXGEN_INLINE TileJob::Unit divide_units(const TileJob& job, TileJob::Unit unit) noexcept {
     const Doubles reciprocal = Doubles{} + (ConstantQ ? 1.0 / job.q.base : 0.0);
     for (; !job.is_done(unit); unit = job.unit_after(unit)) {
@@ -82,7 +86,7 @@ TEXGEN_INLINE TileJob::Unit divide_units(const TileJob& job, TileJob::Unit unit)
             int x = unit.x_begin;
             for (; x <= unit.x_end - lanes; x += lanes) {
                 divide_vector<ConstantQ, Nearest>(job, row, index, reciprocal, quotient, doubtful);
-                store_all<Lit>(job, row, x, quotient);
+                store_all(job, row, x, quotient);
                 index += static_cast<double>(lanes);
             }
             if (x == unit.x_end) continue;
@@ -90,9 +94,9 @@ TEXGEN_INLINE TileJob::Unit divide_units(const TileJob& job, TileJob::Unit unit)
             index = indices<Doubles>() + static_cast<double>(first);
             divide_vector<ConstantQ, Nearest>(job, row, index, reciprocal, quotient, doubtful);
             if (unit.x_end >= lanes)
-                store_all<Lit>(job, row, first, quotient);
+                store_all(job, row, first, quotient);
             else
-                store_first<Lit>(job, row, 0, unit.x_end, quotient);
+                store_first(job, row, 0, unit.x_end, quotient);
         }
         if (!Nearest || !any(doubtful)) continue;
         // The overlapping vector may have rewritten the end of the unit before, and the doubt may be there.
@@ -106,29 +110,23 @@ TEXGEN_INLINE TileJob::Unit divide_units(const TileJob& job, TileJob::Unit unit)
 inline TileJob::Unit divide_nearest(const TileJob& original, TileJob::Unit first) noexcept {
     const TileJob job = original;
     if (job.q_is_constant)
-        return job.lit != nullptr    ? divide_units<true, true, 2, true>(job, first)
-               : job.numerators == 2 ? divide_units<true, true, 2, false>(job, first)
-                                     : divide_units<true, true, 1, false>(job, first);
-    return job.lit != nullptr    ? divide_units<false, true, 2, true>(job, first)
-           : job.numerators == 2 ? divide_units<false, true, 2, false>(job, first)
-                                 : divide_units<false, true, 1, false>(job, first);
+        return job.numerators == 2 ? divide_units<true, true, 2>(job, first) : divide_units<true, true, 1>(job, first);
+    return job.numerators == 2 ? divide_units<false, true, 2>(job, first) : divide_units<false, true, 1>(job, first);
 }
 
 inline void divide_rounded(const TileJob& original) noexcept {
     const TileJob job = original;
     const TileJob::Unit first = job.unit_at(0, 0);
-    if (job.lit != nullptr)
-        divide_units<false, false, 2, true>(job, first);
-    else if (job.numerators == 2)
-        divide_units<false, false, 2, false>(job, first);
+    if (job.numerators == 2)
+        divide_units<false, false, 2>(job, first);
     else
-        divide_units<false, false, 1, false>(job, first);
+        divide_units<false, false, 1>(job, first);
 }
 
 // ---- Division in float -----------------------------------------------------------------------------------------
 
 // Linear functions in float about the middle of a chunk of the row, so that the index stays small.
-template <std::size_t Numerators, bool Lit>
+template <std::size_t Numerators>
 TEXGEN_INLINE void divide_float_rows(const TileJob& job) noexcept {
     const auto q_dx = static_cast<float>(job.q.dx);
     float dx[Numerators];
@@ -149,10 +147,10 @@ TEXGEN_INLINE void divide_float_rows(const TileJob& job) noexcept {
                 WideFloats quotient[Numerators];
                 for (std::size_t k = 0; k < Numerators; ++k) quotient[k] = (index * dx[k] + base[k]) * reciprocal;
                 if (x + wide_lanes > end) {
-                    store_first<Lit>(job, row, x, end - x, quotient);
+                    store_first(job, row, x, end - x, quotient);
                     break;
                 }
-                store_all<Lit>(job, row, x, quotient);
+                store_all(job, row, x, quotient);
                 if (x + wide_lanes == end) break;
                 // A last vector that is not full overlaps the one before it.
                 x = x + 2 * wide_lanes <= end ? x + wide_lanes : end - wide_lanes;
@@ -163,12 +161,10 @@ TEXGEN_INLINE void divide_float_rows(const TileJob& job) noexcept {
 
 inline void divide_float(const TileJob& original) noexcept {
     const TileJob job = original;
-    if (job.lit != nullptr)
-        divide_float_rows<2, true>(job);
-    else if (job.numerators == 2)
-        divide_float_rows<2, false>(job);
+    if (job.numerators == 2)
+        divide_float_rows<2>(job);
     else
-        divide_float_rows<1, false>(job);
+        divide_float_rows<1>(job);
 }
 
 // ---- Polynomials -----------------------------------------------------------------------------------------------
@@ -245,7 +241,7 @@ TEXGEN_INLINE void polynomial(const WideFloats (&c)[Numerators][3], const WideFl
 }
 
 // Evaluates chunk i of the group over fragments begin to end of the row.
-template <bool Affine, bool Lit, std::size_t Numerators>
+template <bool Affine, std::size_t Numerators>
 TEXGEN_INLINE void evaluate(const ChunkGroup<Numerators>& group, int i, const TileJob& job,
                             const TileRow<Numerators>& row, WideFloats index, int begin, int end) noexcept {
     WideFloats c[Numerators][3];
@@ -258,25 +254,25 @@ TEXGEN_INLINE void evaluate(const ChunkGroup<Numerators>& group, int i, const Ti
     WideFloats next_index = index + static_cast<float>(wide_lanes);
     for (const int last = end - 2 * wide_lanes; x <= last; x += 2 * wide_lanes) {
         polynomial<Affine>(c, index, value);
-        store_all<Lit>(job, row, x, value);
+        store_all(job, row, x, value);
         polynomial<Affine>(c, next_index, value);
-        store_all<Lit>(job, row, x + wide_lanes, value);
+        store_all(job, row, x + wide_lanes, value);
         index += static_cast<float>(2 * wide_lanes);
         next_index += static_cast<float>(2 * wide_lanes);
     }
     for (; x < end; x += wide_lanes) {
         polynomial<Affine>(c, index, value);
         if (x + wide_lanes <= end)
-            store_all<Lit>(job, row, x, value);
+            store_all(job, row, x, value);
         else
-            store_first<Lit>(job, row, x, end - x, value);
+            store_first(job, row, x, end - x, value);
         index += static_cast<float>(wide_lanes);
     }
 }
 
 // Does the rows of the job from `first` on. Stops at chunks that the certificate does not cover and returns them, a part
 // of one row; the empty unit if there are none. The next call starts after them.
-template <bool Affine, std::size_t Numerators, bool Lit>
+template <bool Affine, std::size_t Numerators>
 TEXGEN_INLINE TileJob::Unit polynomial_rows(const TileJob& job, const TileJob::Unit& first) noexcept {
     constexpr int group_size = ChunkGroup<Numerators>::size;
     const WideFloats index = indices<WideFloats>() + static_cast<float>(-job.chunk / 2);
@@ -292,7 +288,7 @@ TEXGEN_INLINE TileJob::Unit polynomial_rows(const TileJob& job, const TileJob::U
                 const int begin = (chunk + i) * job.chunk;
                 int end = begin + job.chunk;
                 if (group.room[i] >= 0.0) {
-                    evaluate<Affine, Lit>(group, i, job, row, index, begin, end < job.width ? end : job.width);
+                    evaluate<Affine>(group, i, job, row, index, begin, end < job.width ? end : job.width);
                     continue;
                 }
                 for (int j = i + 1; j < count && !(group.room[j] >= 0.0); ++j) end += job.chunk;
@@ -305,23 +301,19 @@ TEXGEN_INLINE TileJob::Unit polynomial_rows(const TileJob& job, const TileJob::U
 
 inline TileJob::Unit quadratic(const TileJob& original, TileJob::Unit first) noexcept {
     const TileJob job = original;
-    return job.lit != nullptr    ? polynomial_rows<false, 2, true>(job, first)
-           : job.numerators == 2 ? polynomial_rows<false, 2, false>(job, first)
-                                 : polynomial_rows<false, 1, false>(job, first);
+    return job.numerators == 2 ? polynomial_rows<false, 2>(job, first) : polynomial_rows<false, 1>(job, first);
 }
 
 inline TileJob::Unit affine(const TileJob& original, TileJob::Unit first) noexcept {
     const TileJob job = original;
-    return job.lit != nullptr    ? polynomial_rows<true, 2, true>(job, first)
-           : job.numerators == 2 ? polynomial_rows<true, 2, false>(job, first)
-                                 : polynomial_rows<true, 1, false>(job, first);
+    return job.numerators == 2 ? polynomial_rows<true, 2>(job, first) : polynomial_rows<true, 1>(job, first);
 }
 
 // ---- Points ----------------------------------------------------------------------------------------------------
 
-template <bool Triples, class Vector, class Job>
+template <class Vector, class Job>
 TEXGEN_INLINE void load_points(const Job& job, std::size_t i, Vector& x, Vector& y, Vector& z) noexcept {
-    if constexpr (Triples) {
+    if (job.triples) {
         load_triples(job.x + 3 * i, x, y, z);
     } else {
         x = load<Vector>(job.x + i);
@@ -330,18 +322,17 @@ TEXGEN_INLINE void load_points(const Job& job, std::size_t i, Vector& x, Vector&
     }
 }
 
-// Stores a vector of results from index i on, and with Lit their mask: inside the region and in front.
-template <bool Pairs, bool Lit, std::size_t Numerators, class Vector, class Mask>
+// Stores a vector of results from index i on, and their mask: inside the region and in front.
+template <std::size_t Numerators, class Vector, class Mask>
 TEXGEN_INLINE void store_points(const DividedOutput& output, std::size_t i, const Vector (&value)[Numerators],
                                 const Mask& in_front) noexcept {
-    if constexpr (Pairs) {
-        store_pairs(output.out[0] + 2 * i, value[0], value[1]);
-    } else {
-        for (std::size_t k = 0; k < Numerators; ++k) store(output.out[k] + i, value[k]);
+    if constexpr (Numerators == 2) {
+        if (output.lit != nullptr)
+            store(output.lit + i, one_where(in_front & inside(value[0], output.min[0], output.max[0]) &
+                                            inside(value[1], output.min[1], output.max[1])));
+        if (output.pairs) return store_pairs(output.out[0] + 2 * i, value[0], value[1]);
     }
-    if constexpr (Lit)
-        store(output.lit + i, one_where(in_front & inside(value[0], output.min[0], output.max[0]) &
-                                        inside(value[1], output.min[1], output.max[1])));
+    for (std::size_t k = 0; k < Numerators; ++k) store(output.out[k] + i, value[k]);
 }
 
 // Lanes that cannot be vouched for: where value - error and value + error do not round to one float, and where it is not
@@ -392,18 +383,17 @@ struct PointExtent {
     }
 };
 
-template <bool Triples>
 TEXGEN_INLINE PointExtent extent_of(const PointJob& job, std::size_t begin, std::size_t end) noexcept {
     WideWords x{};
     WideWords y{};
     WideWords z{};
     for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(wide_lanes)) {
         const float* const from = job.x + 3 * i;
-        x = maximum(magnitude_bits(load<WideFloats>(Triples ? from : job.x + i)), x);
-        y = maximum(magnitude_bits(load<WideFloats>(Triples ? from + wide_lanes : job.y + i)), y);
-        z = maximum(magnitude_bits(load<WideFloats>(Triples ? from + 2 * wide_lanes : job.z + i)), z);
+        x = maximum(magnitude_bits(load<WideFloats>(job.triples ? from : job.x + i)), x);
+        y = maximum(magnitude_bits(load<WideFloats>(job.triples ? from + wide_lanes : job.y + i)), y);
+        z = maximum(magnitude_bits(load<WideFloats>(job.triples ? from + 2 * wide_lanes : job.z + i)), z);
     }
-    if constexpr (Triples) x = y = z = maximum(maximum(x, y), z);
+    if (job.triples) x = y = z = maximum(maximum(x, y), z);
     return {x, y, z};
 }
 
@@ -412,13 +402,13 @@ TEXGEN_INLINE Doubles at(const PointForm& form, const Doubles& x, const Doubles&
 }
 
 // A block of points. False where a value is in doubt (it is written all the same).
-template <bool Signed, bool Triples, bool Pairs, std::size_t Numerators, bool Lit>
+template <bool Signed, std::size_t Numerators>
 TEXGEN_INLINE bool divide_points_block(const PointJob& job, std::size_t begin, std::size_t end,
                                        const double (&numerator_error)[Numerators], double q_error) noexcept {
     Doubt doubt;
     for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(lanes)) {
         Floats xs, ys, zs;
-        load_points<Triples>(job, i, xs, ys, zs);
+        load_points(job, i, xs, ys, zs);
         const Doubles x = to_doubles(xs);
         const Doubles y = to_doubles(ys);
         const Doubles z = to_doubles(zs);
@@ -427,41 +417,33 @@ TEXGEN_INLINE bool divide_points_block(const PointJob& job, std::size_t begin, s
         Floats value[Numerators];
         const LongWords in_front =
             divide_certainly<Signed>(numerator, numerator_error, at(job.q, x, y, z), q_error, value, doubt);
-        store_points<Pairs, Lit>(job, i, value, narrow(in_front));
+        store_points(job, i, value, narrow(in_front));
     }
     return !doubt.any_lane();
 }
 
 // Most blocks are all in front; one that is not is done again for both signs of q.
-template <bool Triples, bool Pairs, std::size_t Numerators, bool Lit>
+template <std::size_t Numerators>
 TEXGEN_INLINE std::size_t divide_points_nearest_of(const PointJob& job, std::size_t first) noexcept {
     for (std::size_t begin = first; begin < job.count;) {
         const std::size_t next = begin / nearest_block * nearest_block + nearest_block;
         const std::size_t end = next < job.count ? next : job.count;
-        const PointExtent extent = extent_of<Triples>(job, begin, end);
+        const PointExtent extent = extent_of(job, begin, end);
         double numerator_error[Numerators];
         for (std::size_t k = 0; k < Numerators; ++k)
             numerator_error[k] = gamma(5) * extent.magnitude_of(job.numerator[k]);
         const double q_error = gamma(5) * extent.magnitude_of(job.q);
-        if (!divide_points_block<false, Triples, Pairs, Numerators, Lit>(job, begin, end, numerator_error, q_error) &&
-            !divide_points_block<true, Triples, Pairs, Numerators, Lit>(job, begin, end, numerator_error, q_error))
+        if (!divide_points_block<false>(job, begin, end, numerator_error, q_error) &&
+            !divide_points_block<true>(job, begin, end, numerator_error, q_error))
             return begin;
         begin = end;
     }
     return job.count;
 }
 
-template <bool Triples>
-TEXGEN_INLINE std::size_t divide_points_nearest_from(const PointJob& job, std::size_t first) noexcept {
-    if (job.pairs) return divide_points_nearest_of<Triples, true, 2, false>(job, first);
-    if (job.lit != nullptr) return divide_points_nearest_of<Triples, false, 2, true>(job, first);
-    if (job.numerators == 2) return divide_points_nearest_of<Triples, false, 2, false>(job, first);
-    return divide_points_nearest_of<Triples, false, 1, false>(job, first);
-}
-
 inline std::size_t divide_points_nearest(const PointJob& original, std::size_t first) noexcept {
     const PointJob job = original;
-    return job.triples ? divide_points_nearest_from<true>(job, first) : divide_points_nearest_from<false>(job, first);
+    return job.numerators == 2 ? divide_points_nearest_of<2>(job, first) : divide_points_nearest_of<1>(job, first);
 }
 
 // The forms of q and of the numerators in float, in the order in which they are computed.
@@ -509,7 +491,7 @@ struct DoubleForms {
 // found on the way, then bound the error of every point as in certain_quotient(), with 2 u for the reciprocal and the
 // product. Returns where the first block begins that is not inside the tolerance (it is written all the same), or the
 // count. A NaN makes the largest quotient one, and fails.
-template <template <std::size_t> class Forms, bool Triples, bool Pairs, std::size_t Numerators, bool Lit>
+template <template <std::size_t> class Forms, std::size_t Numerators>
 TEXGEN_INLINE std::size_t divide_points_within_of(const PointJob& job, std::size_t first) noexcept {
     constexpr bool in_float = std::is_same_v<Forms<1>, FloatForms<1>>;
     constexpr double form_error = in_float ? 5.01 * unit_roundoff_float : gamma(5);
@@ -524,7 +506,7 @@ TEXGEN_INLINE std::size_t divide_points_within_of(const PointJob& job, std::size
         WideWords q_least = signed_bits(WideFloats{} + 0x1p100f);
         for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(wide_lanes)) {
             WideFloats x, y, z;
-            load_points<Triples>(job, i, x, y, z);
+            load_points(job, i, x, y, z);
             x_largest = maximum(magnitude_bits(x), x_largest);
             y_largest = maximum(magnitude_bits(y), y_largest);
             z_largest = maximum(magnitude_bits(z), z_largest);
@@ -536,7 +518,7 @@ TEXGEN_INLINE std::size_t divide_points_within_of(const PointJob& job, std::size
                 value[k] = forms.at(1 + k, x, y, z) * reciprocal;
                 largest[k] = maximum(magnitude_bits(value[k]), largest[k]);
             }
-            store_points<Pairs, Lit>(job, i, value, ~WideWords{});
+            store_points(job, i, value, ~WideWords{});
         }
         const PointExtent extent(x_largest, y_largest, z_largest);
         const double underflow = 0x1p-124 * (extent.x + extent.y + extent.z + 1.0);
@@ -555,19 +537,11 @@ TEXGEN_INLINE std::size_t divide_points_within_of(const PointJob& job, std::size
     return job.count;
 }
 
-template <template <std::size_t> class Forms, bool Triples>
-TEXGEN_INLINE std::size_t divide_points_within_from(const PointJob& job, std::size_t first) noexcept {
-    if (job.pairs) return divide_points_within_of<Forms, Triples, true, 2, false>(job, first);
-    if (job.lit != nullptr) return divide_points_within_of<Forms, Triples, false, 2, true>(job, first);
-    if (job.numerators == 2) return divide_points_within_of<Forms, Triples, false, 2, false>(job, first);
-    return divide_points_within_of<Forms, Triples, false, 1, false>(job, first);
-}
-
 template <template <std::size_t> class Forms>
 TEXGEN_INLINE std::size_t divide_points_within(const PointJob& original, std::size_t first) noexcept {
     const PointJob job = original;
-    return job.triples ? divide_points_within_from<Forms, true>(job, first)
-                       : divide_points_within_from<Forms, false>(job, first);
+    return job.numerators == 2 ? divide_points_within_of<Forms, 2>(job, first)
+                               : divide_points_within_of<Forms, 1>(job, first);
 }
 
 inline std::size_t divide_points_float(const PointJob& job, std::size_t first) noexcept {
@@ -579,15 +553,15 @@ inline std::size_t divide_points_rounded(const PointJob& job, std::size_t first)
 }
 
 // The forms at points, in double, rounded once.
-template <bool Triples, bool Quads>
-TEXGEN_INLINE void generate_points_of(const GenerateJob& job) noexcept {
+inline void generate_points(const GenerateJob& original) noexcept {
+    const GenerateJob job = original;
     for (std::size_t i = 0; i < job.count; i += static_cast<std::size_t>(lanes)) {
         Floats xs, ys, zs;
-        load_points<Triples>(job, i, xs, ys, zs);
+        load_points(job, i, xs, ys, zs);
         const Doubles x = to_doubles(xs);
         const Doubles y = to_doubles(ys);
         const Doubles z = to_doubles(zs);
-        if constexpr (Quads) {
+        if (job.quads != nullptr) {
             store_quads(job.quads + 4 * i, to_floats(at(job.form[0], x, y, z)), to_floats(at(job.form[1], x, y, z)),
                         to_floats(at(job.form[2], x, y, z)), to_floats(at(job.form[3], x, y, z)));
         } else {
@@ -597,19 +571,11 @@ TEXGEN_INLINE void generate_points_of(const GenerateJob& job) noexcept {
     }
 }
 
-inline void generate_points(const GenerateJob& original) noexcept {
-    const GenerateJob job = original;
-    if (job.quads != nullptr)
-        job.triples ? generate_points_of<true, true>(job) : generate_points_of<false, true>(job);
-    else
-        job.triples ? generate_points_of<true, false>(job) : generate_points_of<false, false>(job);
-}
-
 // ---- Segments --------------------------------------------------------------------------------------------------
 
 // (1 - a) A + a B in double, in blocks as for points. 1 - a, the products and the sum are rounded once each. Where the
 // whole segment is in front one bound serves all values; only an alpha that is NaN is in doubt about its side.
-template <bool InFront, std::size_t Numerators, bool Lit>
+template <bool InFront, std::size_t Numerators>
 TEXGEN_INLINE std::size_t divide_segment_nearest_of(const SegmentJob& job, std::size_t first) noexcept {
     double numerator_error[Numerators];
     for (std::size_t k = 0; k < Numerators; ++k)
@@ -634,10 +600,10 @@ TEXGEN_INLINE std::size_t divide_segment_nearest_of(const SegmentJob& job, std::
                     value[k] = to_floats(quotient - job.quotient_error[k]);
                     doubt.rounding |= bits(value[k]) ^ bits(to_floats(quotient + job.quotient_error[k]));
                 }
-                store_points<false, Lit>(job, i, value, ~Words{});
+                store_points(job, i, value, ~Words{});
             } else {
                 const LongWords in_front = divide_certainly<true>(numerator, numerator_error, q, q_error, value, doubt);
-                store_points<false, Lit>(job, i, value, narrow(in_front));
+                store_points(job, i, value, narrow(in_front));
             }
         }
         if (doubt.any_lane()) return begin;
@@ -646,21 +612,17 @@ TEXGEN_INLINE std::size_t divide_segment_nearest_of(const SegmentJob& job, std::
     return job.count;
 }
 
-template <bool InFront>
-TEXGEN_INLINE std::size_t divide_segment_nearest_with(const SegmentJob& job, std::size_t first) noexcept {
-    if (job.lit != nullptr) return divide_segment_nearest_of<InFront, 2, true>(job, first);
-    if (job.numerators == 2) return divide_segment_nearest_of<InFront, 2, false>(job, first);
-    return divide_segment_nearest_of<InFront, 1, false>(job, first);
-}
-
 inline std::size_t divide_segment_nearest(const SegmentJob& original, std::size_t first) noexcept {
     const SegmentJob job = original;
-    return job.in_front ? divide_segment_nearest_with<true>(job, first)
-                        : divide_segment_nearest_with<false>(job, first);
+    if (job.numerators == 2)
+        return job.in_front ? divide_segment_nearest_of<true, 2>(job, first)
+                            : divide_segment_nearest_of<false, 2>(job, first);
+    return job.in_front ? divide_segment_nearest_of<true, 1>(job, first)
+                        : divide_segment_nearest_of<false, 1>(job, first);
 }
 
 // A + a (B - A) would lose the small end next to a large one; A - a A does not.
-template <std::size_t Numerators, bool Lit>
+template <std::size_t Numerators>
 TEXGEN_INLINE void divide_segment_float_of(const SegmentJob& job) noexcept {
     float a[Numerators];
     float b[Numerators];
@@ -675,18 +637,16 @@ TEXGEN_INLINE void divide_segment_float_of(const SegmentJob& job) noexcept {
         const WideFloats reciprocal = 1.0f / (alpha * q_b + (q_a - alpha * q_a));
         WideFloats value[Numerators];
         for (std::size_t k = 0; k < Numerators; ++k) value[k] = (alpha * b[k] + (a[k] - alpha * a[k])) * reciprocal;
-        store_points<false, Lit>(job, i, value, ~WideWords{});
+        store_points(job, i, value, ~WideWords{});
     }
 }
 
 inline void divide_segment_float(const SegmentJob& original) noexcept {
     const SegmentJob job = original;
-    if (job.lit != nullptr)
-        divide_segment_float_of<2, true>(job);
-    else if (job.numerators == 2)
-        divide_segment_float_of<2, false>(job);
+    if (job.numerators == 2)
+        divide_segment_float_of<2>(job);
     else
-        divide_segment_float_of<1, false>(job);
+        divide_segment_float_of<1>(job);
 }
 
 }  // namespace texgen::detail::TEXGEN_ISA
