@@ -140,6 +140,7 @@ class TileFootprinter;
 
 class FootprintSetup;
 inline namespace TEXGEN_BUILD {
+template <class = void>
 bool footprint(const FootprintSetup&, FragmentRect, Footprints) noexcept;
 }
 
@@ -208,6 +209,7 @@ public:
 
 private:
     friend class detail::TileFootprinter;
+    template <class>
     friend bool TEXGEN_BUILD::footprint(const FootprintSetup&, FragmentRect, Footprints) noexcept;
 
     detail::Corners corners(const detail::Tile& tile) const noexcept { return triangle_.corners(tile); }
@@ -274,8 +276,9 @@ inline namespace TEXGEN_BUILD {
 // by one.
 class TileFootprinter {
 public:
-    TileFootprinter(const FootprintSetup& setup, FragmentRect rect, const Footprints& out) noexcept
-        : setup_(setup), rect_(rect), out_(out) {}
+    TileFootprinter(const FootprintKernels& kernels, const FootprintSetup& setup, FragmentRect rect,
+                    const Footprints& out) noexcept
+        : kernels_(kernels), setup_(setup), rect_(rect), out_(out) {}
 
     void fill_all(const Tile& tile, const Corners& at) noexcept {
         if (at.all_behind()) return store_rows(tile, nothing);
@@ -337,9 +340,8 @@ private:
         job.dx[1] = array(out_.dtdx);
         job.dy[0] = array(out_.dsdy);
         job.dy[1] = array(out_.dtdy);
-        const Kernels& kernels = chosen_kernels();
         if (job.dx[0] != nullptr || job.dx[1] != nullptr || job.dy[0] != nullptr || job.dy[1] != nullptr)
-            kernels.differentiate(job);
+            kernels_.differentiate(job);
         if (!filters) return true;
 
         const double back = q_scale_squared / texel_scale;  // from a length of the job to texels, but for 1 / Q^2
@@ -352,7 +354,7 @@ private:
         job.anisotropy = array(out_.anisotropy);
         job.major[0] = array(out_.major_s);
         job.major[1] = array(out_.major_t);
-        for (int row = 0; (row = kernels.filter(job, row)) < tile.height; ++row)
+        for (int row = 0; (row = kernels_.filter(job, row)) < tile.height; ++row)
             fill_one_by_one({tile.x, tile.y + row, tile.width, 1});
         return true;
     }
@@ -410,6 +412,7 @@ private:
         return static_cast<std::size_t>((y - rect_.y) * rect_.width + (x - rect_.x));
     }
 
+    const FootprintKernels& kernels_;
     const FootprintSetup& setup_;
     FragmentRect rect_;
     Footprints out_;
@@ -432,7 +435,8 @@ inline namespace TEXGEN_BUILD {
 // values of its plane; where the interpolated 1/w is not positive nothing is promised.
 // Bad input: an empty rectangle does nothing. With bad texels level, anisotropy and major are NaN, the derivatives right. A
 // Jacobian that is 0 has level -infinity, anisotropy 1 and major 0.
-inline bool footprint(const FootprintSetup& setup, FragmentRect rect, Footprints out) noexcept {
+template <class>
+bool footprint(const FootprintSetup& setup, FragmentRect rect, Footprints out) noexcept {
     TEXGEN_ASSERT(rect.width >= 0 && rect.height >= 0);
     if (rect.width <= 0 || rect.height <= 0) return false;
     const std::size_t count = static_cast<std::size_t>(rect.width) * static_cast<std::size_t>(rect.height);
@@ -442,7 +446,7 @@ inline bool footprint(const FootprintSetup& setup, FragmentRect rect, Footprints
     const detail::Tile tile{rect.x, rect.y, rect.width, rect.height};
     const detail::Corners at = setup.corners(tile);
     if (setup.is_dark(at)) return false;
-    detail::TileFootprinter(setup, rect, out).fill_all(tile, at);
+    detail::TileFootprinter(detail::chosen<detail::FootprintKernels>(), setup, rect, out).fill_all(tile, at);
     return true;
 }
 

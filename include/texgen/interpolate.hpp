@@ -150,6 +150,7 @@ class TileInterpolator;
 class TriangleSetup;
 class FootprintSetup;
 inline namespace TEXGEN_BUILD {
+template <class = void>
 Work interpolate(const TriangleSetup&, FragmentRect, Texcoords) noexcept;
 }
 
@@ -193,6 +194,7 @@ public:
 private:
     friend class FootprintSetup;
     friend class detail::TileInterpolator;
+    template <class>
     friend Work TEXGEN_BUILD::interpolate(const TriangleSetup&, FragmentRect, Texcoords) noexcept;
 
     TriangleSetup(const detail::TrianglePlanes& planes, const TextureRegion& region, Tolerance tolerance) noexcept
@@ -303,7 +305,8 @@ class TileInterpolator {
 public:
     static constexpr int scratch_width = 512;
 
-    TileInterpolator(const TriangleSetup& setup, FragmentRect rect) noexcept : setup_(setup), rect_(rect) {}
+    TileInterpolator(const TileKernels& kernels, const TriangleSetup& setup, FragmentRect rect) noexcept
+        : kernels_(kernels), setup_(setup), rect_(rect) {}
 
     // A coordinate (0 to 3: s, t, r, q) and its plane; one that only the mask needs has no output.
     void add(int coordinate, const Plane& plane, std::span<float> output) noexcept {
@@ -345,11 +348,10 @@ private:
             TileJob job = this->job(tile, at);
             for (std::size_t k = 0; k < count_; ++k)
                 job.quotient_error[k] = at.quotient_error(k, at.largest_quotient(k));
-            const Kernels& kernels = chosen_kernels();
-            TileJob::Unit unit = kernels.divide_nearest(job, job.unit_at(0, 0));
+            TileJob::Unit unit = kernels_.divide_nearest(job, job.unit_at(0, 0));
             while (!job.is_done(unit)) {
                 shade_one_by_one(part(tile, unit));
-                unit = kernels.divide_nearest(job, job.unit_after(unit));
+                unit = kernels_.divide_nearest(job, job.unit_after(unit));
             }
             return;
         }
@@ -378,8 +380,7 @@ private:
         // The certificate multiplies three q and the tolerance: none may leave the range of double.
         job.least_q = larger(0x1p24 * at.q_error, 0x1p-200);
         for (std::size_t k = 0; k < count_; ++k) job.numerator_error[k] = at.numerator_error[k];
-        const Kernels& kernels = chosen_kernels();
-        const auto polynomial = plan.work == Work::affine ? kernels.affine : kernels.quadratic;
+        const auto polynomial = plan.work == Work::affine ? kernels_.affine : kernels_.quadratic;
         TileJob::Unit next{0, 0, 0, 0};
         while (true) {
             const TileJob::Unit refused = polynomial(job, next);
@@ -405,10 +406,10 @@ private:
             float_fits = float_fits && float_error(at, k, largest, job.chunk) <= setup_.tolerance_;
             rounded_fits = rounded_fits && rounded_error(at, k, largest) <= setup_.tolerance_;
         }
-        if (float_fits) return chosen_kernels().divide_float(job);
+        if (float_fits) return kernels_.divide_float(job);
         if (!rounded_fits) return shade_nearest(tile, at);
         job.scale(reciprocal_power_of_two(at.largest_q));
-        chosen_kernels().divide_rounded(job);
+        kernels_.divide_rounded(job);
     }
 
     // The error of F/Q with F and Q rounded to float, then the reciprocal and the product: 4 u |F/Q|, u = 2^-24. With
@@ -499,6 +500,7 @@ private:
         return static_cast<std::size_t>((y - rect_.y) * rect_.width + (x - rect_.x));
     }
 
+    const TileKernels& kernels_;
     const TriangleSetup& setup_;
     FragmentRect rect_;
     std::size_t count_ = 0;
@@ -524,7 +526,8 @@ inline namespace TEXGEN_BUILD {
 // values of its plane; where the interpolated 1/w is not positive nothing is promised.
 // Bad input: an empty rectangle does nothing.
 // Source: OpenGL compatibility specification, polygon rasterization; Everitt, Projective Texture Mapping, section 2.
-inline Work interpolate(const TriangleSetup& setup, FragmentRect rect, Texcoords out) noexcept {
+template <class>
+Work interpolate(const TriangleSetup& setup, FragmentRect rect, Texcoords out) noexcept {
     TEXGEN_ASSERT(rect.width >= 0 && rect.height >= 0);
     if (rect.width <= 0 || rect.height <= 0) return Work::nothing;
     const std::size_t count = static_cast<std::size_t>(rect.width) * static_cast<std::size_t>(rect.height);
@@ -543,10 +546,11 @@ inline Work interpolate(const TriangleSetup& setup, FragmentRect rect, Texcoords
     }
 
     if (!any_output) return plan.work;
+    const detail::TileKernels& kernels = detail::chosen<detail::TileKernels>();
 
     const bool both = !out.lit.empty() || (!out.s.empty() && !out.t.empty());
     if (both || !out.s.empty() || !out.t.empty()) {
-        detail::TileInterpolator interpolator(setup, rect);
+        detail::TileInterpolator interpolator(kernels, setup, rect);
         if (both || !out.s.empty()) interpolator.add(0, setup.s_, out.s);
         if (both || !out.t.empty()) interpolator.add(1, setup.t_, out.t);
         interpolator.add_lit(out.lit);
@@ -565,7 +569,7 @@ inline Work interpolate(const TriangleSetup& setup, FragmentRect rect, Texcoords
     }
     if (!out.r.empty()) {
         const detail::Plane r = setup.planes_.plane(2);
-        detail::TileInterpolator interpolator(setup, rect);
+        detail::TileInterpolator interpolator(kernels, setup, rect);
         interpolator.add(2, r, out.r);
         interpolator.shade(tile, interpolator.corners(tile), {Work::divide, 0, {}});
     }
@@ -644,17 +648,15 @@ inline namespace TEXGEN_BUILD {
 
 // In float where that stays inside the tolerance for the whole segment, else the nearest float: in vectors, and the
 // blocks that those cannot vouch for value by value.
-inline void interpolate_job(SegmentJob job, double tolerance) noexcept {
-    const Kernels& kernels = chosen_kernels();
+inline void interpolate_job(const SegmentKernels& kernels, SegmentJob job, double tolerance) noexcept {
     if (job.q_a > 0.0 && job.q_b > 0.0) {
         const SegmentBounds bounds(job);
-        if (tolerance > 0.0 && segment_float_fits(job, bounds, tolerance)) return kernels.divide_segment_float(job);
+        if (tolerance > 0.0 && segment_float_fits(job, bounds, tolerance)) return kernels.divide_float(job);
         job.in_front = bounds.is_well_in_front();
         for (int k = 0; k < job.numerators; ++k)
             job.quotient_error[k] = bounds.error(k, gamma(4), 4.0 * unit_roundoff_double);
     }
-    for (std::size_t i = kernels.divide_segment_nearest(job, 0); i < job.count;
-         i = kernels.divide_segment_nearest(job, i)) {
+    for (std::size_t i = kernels.divide_nearest(job, 0); i < job.count; i = kernels.divide_nearest(job, i)) {
         const std::size_t block_end = (i / nearest_block + 1) * nearest_block;
         for (; i < job.count && i < block_end; ++i) interpolate_one(job, i);
     }
@@ -672,10 +674,12 @@ inline namespace TEXGEN_BUILD {
 // Shapes: each output as long as alpha, or empty (asserted); alpha in [0, 1] (asserted).
 // Bad input: NaN and infinity spoil their own value only; an alpha that is NaN is never lit.
 // Source: the C_u note, (2).
-inline void interpolate(const Segment& segment, std::span<const float> alpha, TextureRegion region, Texcoords out,
-                        Tolerance tolerance = exact) noexcept {
+template <class = void>
+void interpolate(const Segment& segment, std::span<const float> alpha, TextureRegion region, Texcoords out,
+                 Tolerance tolerance = exact) noexcept {
     for ([[maybe_unused]] const float a : alpha) TEXGEN_ASSERT(!(a < 0.0f) && !(a > 1.0f));
     const double accepted = detail::accepted(tolerance);
+    const detail::SegmentKernels& kernels = detail::chosen<detail::SegmentKernels>();
     detail::for_each_group(out, alpha.size(), [&](int first, int numerators, const detail::PointOutputs& outputs) {
         detail::SegmentJob job{};
         job.numerators = numerators;
@@ -686,7 +690,7 @@ inline void interpolate(const Segment& segment, std::span<const float> alpha, Te
         job.q_a = detail::widened(segment.a.w);
         job.q_b = detail::widened(segment.b.w);
         detail::LitTest(region).copy_to(job.min, job.max);
-        const auto run = [accepted](const detail::SegmentJob& part) { detail::interpolate_job(part, accepted); };
+        const auto run = [&](const detail::SegmentJob& part) { detail::interpolate_job(kernels, part, accepted); };
 
         const std::size_t whole = alpha.size() / detail::point_quantum * detail::point_quantum;
         job.alpha = alpha.data();

@@ -91,6 +91,8 @@ inline namespace TEXGEN_BUILD {
 // Boxes that the five planes leave partial, gathered until they fill vectors.
 class PartialBoxes {
 public:
+    explicit PartialBoxes(const BoxKernels& kernels) noexcept : kernels_(kernels) {}
+
     void add_if_partial(const LitForms& forms, const Box& box, Coverage& out) noexcept {
         if (out != Coverage::partial || !is_proper(box) || !forms.are_usable()) return;
         for (int j = 0; j < 3; ++j) {
@@ -109,23 +111,26 @@ public:
         if (count_ == 0) return;
         double least_of_largest[box_block];
         const std::span<const BoundedForm> separating = forms.separating();
-        chosen_box_kernels().separate(separating.data(), separating.size(), block_, least_of_largest);
+        kernels_.separate(separating.data(), separating.size(), block_, least_of_largest);
         for (std::size_t i = 0; i < count_; ++i)
             *out_[i] = least_of_largest[i] < 0.0 ? Coverage::outside : Coverage::partial;
         count_ = 0;
     }
 
 private:
+    const BoxKernels& kernels_;
     BoxBlock block_{};
     Coverage* out_[box_block];
     std::size_t count_ = 0;
 };
 
-inline void cover(const LitForms& forms, const FloatForms& float_forms, std::span<const Box> boxes,
-                  std::span<Coverage> out) noexcept {
+template <class = void>
+void cover(const LitForms& forms, const FloatForms& float_forms, std::span<const Box> boxes,
+           std::span<Coverage> out) noexcept {
     static_assert(sizeof(Box) == 6 * sizeof(float));
     constexpr std::size_t chunk = 16 * box_quantum;
-    PartialBoxes partial;
+    const BoxKernels& kernels = chosen<BoxKernels>();
+    PartialBoxes partial(kernels);
     int classes[chunk];
     std::size_t open[chunk];
     for (std::size_t begin = 0; begin < boxes.size();) {
@@ -133,11 +138,11 @@ inline void cover(const LitForms& forms, const FloatForms& float_forms, std::spa
         const std::size_t left = boxes.size() - begin;
         const std::size_t count = left >= chunk ? chunk : left >= box_quantum ? left / box_quantum * box_quantum : left;
         if (count >= box_quantum) {
-            chosen_box_kernels().classify(float_forms, &boxes[begin].min.x, count, classes);
+            kernels.classify(float_forms, &boxes[begin].min.x, count, classes);
         } else {
             Box copy[box_quantum] = {};
             std::copy_n(boxes.begin() + static_cast<std::ptrdiff_t>(begin), count, copy);
-            chosen_box_kernels().classify(float_forms, &copy[0].min.x, box_quantum, classes);
+            kernels.classify(float_forms, &copy[0].min.x, box_quantum, classes);
         }
         // Without a branch: partial and doubtful are the odd ones.
         std::size_t open_count = 0;
@@ -158,10 +163,11 @@ inline void cover(const LitForms& forms, const FloatForms& float_forms, std::spa
 }
 
 // One box: the planes are decided exactly at once, which says what the floats would.
-inline Coverage coverage_of(const LitForms& forms, const Box& box) noexcept {
+template <class = void>
+Coverage coverage_of(const LitForms& forms, const Box& box) noexcept {
     Coverage result = exact_coverage(forms, box);
     if (result != Coverage::partial) return result;
-    PartialBoxes partial;
+    PartialBoxes partial(chosen<BoxKernels>());
     partial.add_if_partial(forms, box, result);
     partial.separate(forms);
     return result;

@@ -214,11 +214,9 @@ inline void project_one(const PointJob& job, std::size_t i) noexcept {
 inline namespace TEXGEN_BUILD {
 
 // Points begin to end of a job: in vectors; the blocks that those cannot vouch for point by point.
-inline void project_nearest(PointJob job, std::size_t begin, std::size_t end) noexcept {
+inline void project_nearest(const PointKernels& kernels, PointJob job, std::size_t begin, std::size_t end) noexcept {
     job.count = end;
-    const Kernels& kernels = chosen_kernels();
-    for (std::size_t i = kernels.divide_points_nearest(job, begin); i < end;
-         i = kernels.divide_points_nearest(job, i)) {
+    for (std::size_t i = kernels.divide_nearest(job, begin); i < end; i = kernels.divide_nearest(job, i)) {
         const std::size_t block_end = (i / nearest_block + 1) * nearest_block;
         for (; i < end && i < block_end; ++i) project_one(job, i);
     }
@@ -240,13 +238,15 @@ void project_within(Kernel kernel, PointJob job, std::size_t begin, std::size_t 
 }
 
 // The dial: forms and division in float, else forms in double divided in float, else as exact.
-inline void project_within_tolerance(const PointJob& points) noexcept {
-    if (points.tolerance == 0.0) return project_nearest(points, 0, points.count);
-    const Kernels& kernels = chosen_kernels();
-    const auto rounded = [&kernels](const PointJob& job, std::size_t begin, std::size_t end) {
-        project_within(kernels.divide_points_rounded, job, begin, end, project_nearest);
+inline void project_within_tolerance(const PointKernels& kernels, const PointJob& points) noexcept {
+    const auto nearest = [&kernels](const PointJob& job, std::size_t begin, std::size_t end) {
+        project_nearest(kernels, job, begin, end);
     };
-    project_within(kernels.divide_points_float, points, 0, points.count, rounded);
+    if (points.tolerance == 0.0) return nearest(points, 0, points.count);
+    const auto rounded = [&](const PointJob& job, std::size_t begin, std::size_t end) {
+        project_within(kernels.divide_rounded, job, begin, end, nearest);
+    };
+    project_within(kernels.divide_float, points, 0, points.count, rounded);
 }
 
 }  // namespace TEXGEN_BUILD
@@ -321,6 +321,7 @@ inline namespace TEXGEN_BUILD {
 
 template <class Space>
 void project_all(const Positions<Space>& positions, const PointJob& job, const PointOutputs& out) noexcept {
+    const PointKernels& kernels = chosen<PointKernels>();
     for_each_batch(positions, [&](const float* x, const float* y, const float* z, bool triples, std::size_t first,
                                   std::size_t count, std::size_t whole) {
         PointJob part = job;
@@ -328,7 +329,8 @@ void project_all(const Positions<Space>& positions, const PointJob& job, const P
         part.y = y;
         part.z = z;
         part.triples = triples;
-        run_batch(part, out, first, count, whole, project_within_tolerance);
+        run_batch(part, out, first, count, whole,
+                  [&](const PointJob& points) { project_within_tolerance(kernels, points); });
     });
 }
 
@@ -364,12 +366,12 @@ void generate_all(const glm::dmat4& matrix, const Positions<Space>& positions, f
         if (count == whole) {
             part.quads = quads != nullptr ? quads + 4 * first : nullptr;
             for (std::size_t k = 0; k < 4; ++k) part.out[k] = out[k] != nullptr ? out[k] + first : nullptr;
-            return chosen_kernels().generate_points(part);
+            return chosen<PointKernels>().generate(part);
         }
         // A padded part is at most as long as for_each_batch() copies.
         float buffer[4][256];
         for (std::size_t k = 0; k < 4; ++k) part.out[k] = buffer[k];
-        chosen_kernels().generate_points(part);
+        chosen<PointKernels>().generate(part);
         for (std::size_t i = 0; i < count; ++i) {
             for (std::size_t k = 0; k < 4; ++k) {
                 if (quads != nullptr) quads[4 * (first + i) + k] = buffer[k][i];

@@ -5,7 +5,8 @@ namespace texgen::detail::TEXGEN_ISA {
 
 // Where the largest value of a form is negative, the box is outside; where the least of all are positive, inside. An
 // infinity makes the error one, and nothing is certain. Where min <= max, the larger magnitude is that of -min or max.
-inline void classify(const FloatForms& original, const float* boxes, std::size_t count, int* classes) noexcept {
+template <class = void>
+void classify(const FloatForms& original, const float* boxes, std::size_t count, int* classes) noexcept {
     const FloatForms forms = original;
     for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(wide_lanes)) {
         WideFloats min[3];
@@ -40,8 +41,8 @@ inline void classify(const FloatForms& original, const float* boxes, std::size_t
 }
 
 // What a form does not use is skipped, whatever the box has there. A NaN (of an infinity) proves nothing.
-inline void separate(const BoundedForm* forms, std::size_t count, const BoxBlock& boxes,
-                     double* least_of_largest) noexcept {
+template <class = void>
+void separate(const BoundedForm* forms, std::size_t count, const BoxBlock& boxes, double* least_of_largest) noexcept {
     for (std::size_t i = 0; i < box_block; i += static_cast<std::size_t>(lanes)) {
         Doubles least = Doubles{} + 1.0;
         for (std::size_t k = 0; k < count; ++k) {
@@ -57,7 +58,5 @@ inline void separate(const BoundedForm* forms, std::size_t count, const BoxBlock
         store(least_of_largest + i, least);
     }
 }
-
-inline constexpr BoxKernels box_kernels{classify, separate};
 
 }  // namespace texgen::detail::TEXGEN_ISA

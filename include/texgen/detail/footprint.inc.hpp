@@ -52,7 +52,8 @@ TEXGEN_INLINE void differentiate_rows(const FootprintJob& job) noexcept {
     }
 }
 
-inline void differentiate(const FootprintJob& original) noexcept {
+template <class = void>
+void differentiate(const FootprintJob& original) noexcept {
     const FootprintJob job = original;
     if (job.in_float)
         differentiate_rows<WideFloats, float>(job);
@@ -161,7 +162,8 @@ TEXGEN_INLINE int filter_rows(const FootprintJob& job, int first) noexcept {
     return job.height;
 }
 
-inline int filter(const FootprintJob& original, int first) noexcept {
+template <class = void>
+int filter(const FootprintJob& original, int first) noexcept {
     const FootprintJob job = original;
     const bool shape = job.anisotropy != nullptr || job.major[0] != nullptr || job.major[1] != nullptr;
     if (job.in_float) return shape ? filter_rows<true, true>(job, first) : filter_rows<true, false>(job, first);

@@ -107,14 +107,16 @@ TEXGEN_INLINE TileJob::Unit divide_units(const TileJob& job, TileJob::Unit unit)
 }
 
 // The job is copied, here and below, so that the compiler knows that no store changes it.
-inline TileJob::Unit divide_nearest(const TileJob& original, TileJob::Unit first) noexcept {
+template <class = void>
+TileJob::Unit divide_nearest(const TileJob& original, TileJob::Unit first) noexcept {
     const TileJob job = original;
     if (job.q_is_constant)
         return job.numerators == 2 ? divide_units<true, true, 2>(job, first) : divide_units<true, true, 1>(job, first);
     return job.numerators == 2 ? divide_units<false, true, 2>(job, first) : divide_units<false, true, 1>(job, first);
 }
 
-inline void divide_rounded(const TileJob& original) noexcept {
+template <class = void>
+void divide_rounded(const TileJob& original) noexcept {
     const TileJob job = original;
     const TileJob::Unit first = job.unit_at(0, 0);
     if (job.numerators == 2)
@@ -159,7 +161,8 @@ TEXGEN_INLINE void divide_float_rows(const TileJob& job) noexcept {
     }
 }
 
-inline void divide_float(const TileJob& original) noexcept {
+template <class = void>
+void divide_float(const TileJob& original) noexcept {
     const TileJob job = original;
     if (job.numerators == 2)
         divide_float_rows<2>(job);
@@ -299,12 +302,14 @@ TEXGEN_INLINE TileJob::Unit polynomial_rows(const TileJob& job, const TileJob::U
     return {0, 0, job.height, job.height};
 }
 
-inline TileJob::Unit quadratic(const TileJob& original, TileJob::Unit first) noexcept {
+template <class = void>
+TileJob::Unit quadratic(const TileJob& original, TileJob::Unit first) noexcept {
     const TileJob job = original;
     return job.numerators == 2 ? polynomial_rows<false, 2>(job, first) : polynomial_rows<false, 1>(job, first);
 }
 
-inline TileJob::Unit affine(const TileJob& original, TileJob::Unit first) noexcept {
+template <class = void>
+TileJob::Unit affine(const TileJob& original, TileJob::Unit first) noexcept {
     const TileJob job = original;
     return job.numerators == 2 ? polynomial_rows<true, 2>(job, first) : polynomial_rows<true, 1>(job, first);
 }
@@ -441,17 +446,18 @@ TEXGEN_INLINE std::size_t divide_points_nearest_of(const PointJob& job, std::siz
     return job.count;
 }
 
-inline std::size_t divide_points_nearest(const PointJob& original, std::size_t first) noexcept {
+template <class = void>
+std::size_t divide_points_nearest(const PointJob& original, std::size_t first) noexcept {
     const PointJob job = original;
     return job.numerators == 2 ? divide_points_nearest_of<2>(job, first) : divide_points_nearest_of<1>(job, first);
 }
 
 // The forms of q and of the numerators in float, in the order in which they are computed.
 template <std::size_t Numerators>
-struct FloatForms {
+struct FormsInFloat {
     float coefficient[1 + Numerators][4];
 
-    TEXGEN_INLINE explicit FloatForms(const PointJob& job) noexcept {
+    TEXGEN_INLINE explicit FormsInFloat(const PointJob& job) noexcept {
         fill(coefficient[0], job.q);
         for (std::size_t k = 0; k < Numerators; ++k) fill(coefficient[1 + k], job.numerator[k]);
     }
@@ -472,10 +478,10 @@ private:
 
 // The same in double, rounded once.
 template <std::size_t Numerators>
-struct DoubleForms {
+struct FormsInDouble {
     const PointJob& job;
 
-    TEXGEN_INLINE explicit DoubleForms(const PointJob& points) noexcept : job(points) {}
+    TEXGEN_INLINE explicit FormsInDouble(const PointJob& points) noexcept : job(points) {}
     TEXGEN_INLINE WideFloats at(std::size_t k, const WideFloats& x, const WideFloats& y,
                                 const WideFloats& z) const noexcept {
         const PointForm& form = k == 0 ? job.q : job.numerator[k - 1];
@@ -493,7 +499,7 @@ struct DoubleForms {
 // count. A NaN makes the largest quotient one, and fails.
 template <template <std::size_t> class Forms, std::size_t Numerators>
 TEXGEN_INLINE std::size_t divide_points_within_of(const PointJob& job, std::size_t first) noexcept {
-    constexpr bool in_float = std::is_same_v<Forms<1>, FloatForms<1>>;
+    constexpr bool in_float = std::is_same_v<Forms<1>, FormsInFloat<1>>;
     constexpr double form_error = in_float ? 5.01 * unit_roundoff_float : gamma(5);
     constexpr double roundings = (in_float ? 2.01 : 4.01) * unit_roundoff_float;
     const Forms<Numerators> forms(job);
@@ -538,22 +544,15 @@ TEXGEN_INLINE std::size_t divide_points_within_of(const PointJob& job, std::size
 }
 
 template <template <std::size_t> class Forms>
-TEXGEN_INLINE std::size_t divide_points_within(const PointJob& original, std::size_t first) noexcept {
+std::size_t divide_points_within(const PointJob& original, std::size_t first) noexcept {
     const PointJob job = original;
     return job.numerators == 2 ? divide_points_within_of<Forms, 2>(job, first)
                                : divide_points_within_of<Forms, 1>(job, first);
 }
 
-inline std::size_t divide_points_float(const PointJob& job, std::size_t first) noexcept {
-    return divide_points_within<FloatForms>(job, first);
-}
-
-inline std::size_t divide_points_rounded(const PointJob& job, std::size_t first) noexcept {
-    return divide_points_within<DoubleForms>(job, first);
-}
-
 // The forms at points, in double, rounded once.
-inline void generate_points(const GenerateJob& original) noexcept {
+template <class = void>
+void generate_points(const GenerateJob& original) noexcept {
     const GenerateJob job = original;
     for (std::size_t i = 0; i < job.count; i += static_cast<std::size_t>(lanes)) {
         Floats xs, ys, zs;
@@ -612,7 +611,8 @@ TEXGEN_INLINE std::size_t divide_segment_nearest_of(const SegmentJob& job, std::
     return job.count;
 }
 
-inline std::size_t divide_segment_nearest(const SegmentJob& original, std::size_t first) noexcept {
+template <class = void>
+std::size_t divide_segment_nearest(const SegmentJob& original, std::size_t first) noexcept {
     const SegmentJob job = original;
     if (job.numerators == 2)
         return job.in_front ? divide_segment_nearest_of<true, 2>(job, first)
@@ -641,7 +641,8 @@ TEXGEN_INLINE void divide_segment_float_of(const SegmentJob& job) noexcept {
     }
 }
 
-inline void divide_segment_float(const SegmentJob& original) noexcept {
+template <class = void>
+void divide_segment_float(const SegmentJob& original) noexcept {
     const SegmentJob job = original;
     if (job.numerators == 2)
         divide_segment_float_of<2>(job);
@@ -651,13 +652,32 @@ inline void divide_segment_float(const SegmentJob& original) noexcept {
 
 }  // namespace texgen::detail::TEXGEN_ISA
 
+#include "boxes.inc.hpp"
 #include "footprint.inc.hpp"
 
 namespace texgen::detail::TEXGEN_ISA {
 
-inline constexpr Kernels kernels{divide_nearest,  divide_rounded,         divide_float,        quadratic,
-                                 affine,          divide_points_nearest,  divide_points_float, divide_points_rounded,
-                                 generate_points, divide_segment_nearest, divide_segment_float,
-                                 differentiate,   filter};
+// ---- The tables ------------------------------------------------------------------------------------------------
+
+template <class Table>
+const Table& kernels() noexcept {
+    if constexpr (std::is_same_v<Table, TileKernels>) {
+        static constexpr TileKernels table{divide_nearest<>, divide_rounded<>, divide_float<>, quadratic<>, affine<>};
+        return table;
+    } else if constexpr (std::is_same_v<Table, PointKernels>) {
+        static constexpr PointKernels table{divide_points_nearest<>, divide_points_within<FormsInFloat>,
+                                            divide_points_within<FormsInDouble>, generate_points<>};
+        return table;
+    } else if constexpr (std::is_same_v<Table, SegmentKernels>) {
+        static constexpr SegmentKernels table{divide_segment_nearest<>, divide_segment_float<>};
+        return table;
+    } else if constexpr (std::is_same_v<Table, FootprintKernels>) {
+        static constexpr FootprintKernels table{differentiate<>, filter<>};
+        return table;
+    } else {
+        static constexpr BoxKernels table{classify<>, separate<>};
+        return table;
+    }
+}
 
 }  // namespace texgen::detail::TEXGEN_ISA

@@ -3,9 +3,13 @@
 // Which vectors the inner loops run on. The only file with #if on instruction sets or compilers.
 //
 // With GCC or Clang the kernels are written on the vectors of the language, and compiled once for the instruction set of
-// the flags and, on x86-64, once more for AVX2 and for AVX-512; the machine decides which runs. Macros of the user:
-//   TEXGEN_SCALAR       plain loops, as for every other compiler
-//   TEXGEN_NO_DISPATCH  only the instruction set of the flags
+// the flags and, on x86-64, once more for AVX2 and for AVX-512; the machine decides which runs. A table of kernels is
+// reached by chosen<Table>(), and compiled only in files that call something which needs it: so all ways there are
+// templates. Macros of the user:
+//   TEXGEN_SCALAR            plain loops, as for every other compiler
+//   TEXGEN_NO_DISPATCH       only the instruction set of the flags
+//   TEXGEN_SEPARATE_KERNELS  the kernels are compiled in one file for all others of the same flags: in the file that
+//                            defines TEXGEN_DEFINE_KERNELS too, before it includes texgen
 
 #include <bit>
 #include <cmath>
@@ -157,20 +161,29 @@ struct FootprintJob {
     float* row(float* output, int y) const noexcept { return output == nullptr ? nullptr : output + y * pitch; }
 };
 
-struct Kernels {
+struct TileKernels {
     TileJob::Unit (*divide_nearest)(const TileJob&, TileJob::Unit first) noexcept;
     void (*divide_rounded)(const TileJob&) noexcept;
     void (*divide_float)(const TileJob&) noexcept;
     TileJob::Unit (*quadratic)(const TileJob&, TileJob::Unit first) noexcept;
     TileJob::Unit (*affine)(const TileJob&, TileJob::Unit first) noexcept;
+};
+
+struct PointKernels {
     // The first point from `first` on of a block with a doubtful value, or the count; blocks end at multiples of nearest_block.
-    std::size_t (*divide_points_nearest)(const PointJob&, std::size_t first) noexcept;
+    std::size_t (*divide_nearest)(const PointJob&, std::size_t first) noexcept;
     // The same for a block of float_block points that is not inside the tolerance.
-    std::size_t (*divide_points_float)(const PointJob&, std::size_t first) noexcept;
-    std::size_t (*divide_points_rounded)(const PointJob&, std::size_t first) noexcept;
-    void (*generate_points)(const GenerateJob&) noexcept;
-    std::size_t (*divide_segment_nearest)(const SegmentJob&, std::size_t first) noexcept;
-    void (*divide_segment_float)(const SegmentJob&) noexcept;
+    std::size_t (*divide_float)(const PointJob&, std::size_t first) noexcept;
+    std::size_t (*divide_rounded)(const PointJob&, std::size_t first) noexcept;
+    void (*generate)(const GenerateJob&) noexcept;
+};
+
+struct SegmentKernels {
+    std::size_t (*divide_nearest)(const SegmentJob&, std::size_t first) noexcept;
+    void (*divide_float)(const SegmentJob&) noexcept;
+};
+
+struct FootprintKernels {
     void (*differentiate)(const FootprintJob&) noexcept;
     // The first row from `first` on with a fragment that floats do not serve, or the height.
     int (*filter)(const FootprintJob&, int first) noexcept;
@@ -187,15 +200,16 @@ struct Kernels {
 #define TEXGEN_ISA scalar
 #include "loops.inc.hpp"
 
-#include "boxes.inc.hpp"
 #include "kernels.inc.hpp"
 #undef TEXGEN_ISA
 #undef TEXGEN_INLINE
 
 namespace texgen::detail {
 inline namespace TEXGEN_BUILD {
-inline const Kernels& chosen_kernels() noexcept { return scalar::kernels; }
-inline const BoxKernels& chosen_box_kernels() noexcept { return scalar::box_kernels; }
+template <class Table>
+const Table& chosen() noexcept {
+    return scalar::kernels<Table>();
+}
 }  // namespace TEXGEN_BUILD
 }  // namespace texgen::detail
 
@@ -240,7 +254,6 @@ inline const BoxKernels& chosen_box_kernels() noexcept { return scalar::box_kern
 #define TEXGEN_ISA TEXGEN_FLAGS(flags_)
 #include "vectors.inc.hpp"
 
-#include "boxes.inc.hpp"
 #include "kernels.inc.hpp"
 #undef TEXGEN_ISA
 #undef TEXGEN_LANE_BYTES
@@ -260,7 +273,6 @@ inline const BoxKernels& chosen_box_kernels() noexcept { return scalar::box_kern
 #endif
 #include "vectors.inc.hpp"
 
-#include "boxes.inc.hpp"
 #include "kernels.inc.hpp"
 #ifdef __clang__
 #pragma clang attribute pop
@@ -280,7 +292,6 @@ inline const BoxKernels& chosen_box_kernels() noexcept { return scalar::box_kern
 #endif
 #include "vectors.inc.hpp"
 
-#include "boxes.inc.hpp"
 #include "kernels.inc.hpp"
 #ifdef __clang__
 #pragma clang attribute pop
@@ -294,23 +305,19 @@ namespace texgen::detail {
 inline namespace TEXGEN_BUILD {
 
 template <class Table>
-const Table& choose(const Table& for_avx512, const Table& for_avx2, const Table& for_flags) noexcept {
+const Table& choose() noexcept {
     __builtin_cpu_init();
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq") &&
         __builtin_cpu_supports("avx512bw"))
-        return for_avx512;
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return for_avx2;
-    return for_flags;
+        return avx512::kernels<Table>();
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return avx2::kernels<Table>();
+    return TEXGEN_FLAGS(flags_)::kernels<Table>();
 }
 
-inline const Kernels& chosen_kernels() noexcept {
-    static const Kernels& chosen = choose(avx512::kernels, avx2::kernels, TEXGEN_FLAGS(flags_)::kernels);
-    return chosen;
-}
-
-inline const BoxKernels& chosen_box_kernels() noexcept {
-    static const BoxKernels& chosen = choose(avx512::box_kernels, avx2::box_kernels, TEXGEN_FLAGS(flags_)::box_kernels);
-    return chosen;
+template <class Table>
+const Table& chosen() noexcept {
+    static const Table& table = choose<Table>();
+    return table;
 }
 
 }  // namespace TEXGEN_BUILD
@@ -322,8 +329,10 @@ inline const BoxKernels& chosen_box_kernels() noexcept {
 
 namespace texgen::detail {
 inline namespace TEXGEN_BUILD {
-inline const Kernels& chosen_kernels() noexcept { return TEXGEN_FLAGS(flags_)::kernels; }
-inline const BoxKernels& chosen_box_kernels() noexcept { return TEXGEN_FLAGS(flags_)::box_kernels; }
+template <class Table>
+const Table& chosen() noexcept {
+    return TEXGEN_FLAGS(flags_)::kernels<Table>();
+}
 }  // namespace TEXGEN_BUILD
 }  // namespace texgen::detail
 
@@ -333,4 +342,22 @@ inline const BoxKernels& chosen_box_kernels() noexcept { return TEXGEN_FLAGS(fla
 #undef TEXGEN_EIGHT_DOUBLES
 #undef TEXGEN_INLINE
 
+#endif
+
+#ifdef TEXGEN_SEPARATE_KERNELS
+#ifdef TEXGEN_DEFINE_KERNELS
+#define TEXGEN_EXTERN
+#else
+#define TEXGEN_EXTERN extern
+#endif
+namespace texgen::detail {
+inline namespace TEXGEN_BUILD {
+TEXGEN_EXTERN template const TileKernels& chosen<TileKernels>() noexcept;
+TEXGEN_EXTERN template const PointKernels& chosen<PointKernels>() noexcept;
+TEXGEN_EXTERN template const SegmentKernels& chosen<SegmentKernels>() noexcept;
+TEXGEN_EXTERN template const FootprintKernels& chosen<FootprintKernels>() noexcept;
+TEXGEN_EXTERN template const BoxKernels& chosen<BoxKernels>() noexcept;
+}  // namespace TEXGEN_BUILD
+}  // namespace texgen::detail
+#undef TEXGEN_EXTERN
 #endif
