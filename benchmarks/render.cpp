@@ -1,13 +1,18 @@
 #include "render.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
+#include <optional>
+#include <span>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <texgen/footprint.hpp>
 #include <texgen/interpolate.hpp>
 #include <texgen/reference.hpp>
 
+#include "filters.hpp"
 #include "rasterizer.hpp"
 
 namespace report {
@@ -33,11 +38,29 @@ void divide_regardless(const texgen::Triangle& triangle, const texgen::TextureRe
     }
 }
 
+// The footprints of one rect, row by row.
+struct RectFootprints {
+    std::array<float, Workload::rect_area> level, anisotropy, major_s, major_t;
+
+    texgen::Footprints of(texgen::FragmentRect rect) {
+        const std::size_t count = static_cast<std::size_t>(rect.width) * static_cast<std::size_t>(rect.height);
+        return {.dsdx = {},
+                .dtdx = {},
+                .dsdy = {},
+                .dtdy = {},
+                .level = std::span(level).first(count),
+                .anisotropy = std::span(anisotropy).first(count),
+                .major_s = std::span(major_s).first(count),
+                .major_t = std::span(major_t).first(count)};
+    }
+};
+
 class Frame {
 public:
-    Frame(const Scene& scene, const View& view, int width, int height)
+    Frame(const Scene& scene, const View& view, const MipMap* filters, int width, int height)
         : scene_(scene),
           view_(view),
+          filters_(filters),
           colour_(width, height, backdrop),
           depth_(colour_.pixels.size(), std::numeric_limits<float>::infinity()) {}
 
@@ -46,6 +69,10 @@ public:
             const DrawnTriangle& triangle = work.triangles[job.triangle];
             const AttributePlane plane(triangle);
             const auto setup = texgen::TriangleSetup::of(triangle.window, scene_.region);
+            std::optional<texgen::FootprintSetup> footprints;
+            if (setup && filters_ != nullptr)
+                footprints.emplace(*setup,
+                                   texgen::texels_per_unit(scene_.region, view_.slide->width, view_.slide->height));
             for (std::size_t i = job.first_rect; i < job.first_rect + job.rect_count; ++i) {
                 const texgen::FragmentRect rect = work.rects[i];
                 const texgen::Texcoords out = coordinates_.of(rect);
@@ -55,6 +82,7 @@ public:
                     texgen::interpolate(*setup, rect, out);
                 else
                     std::ranges::fill(out.lit, 0.0f);
+                if (footprints) texgen::footprint(*footprints, rect, footprints_.of(rect));
                 draw_rect(rect, work.coverage[i], plane, triangle.colour);
             }
         }
@@ -85,8 +113,8 @@ private:
 
     glm::vec3 shade(const Attributes& at, glm::vec3 colour, std::size_t fragment) const {
         const bool lit = coordinates_.lit[fragment] != 0.0f;
-        const glm::vec3 slide =
-            lit ? view_.slide->sample(coordinates_.s[fragment], coordinates_.t[fragment]) : glm::vec3(0);
+        const glm::vec3 slide = lit ? sampled(fragment) : glm::vec3(0);
+        if (lit && is_false_colour()) return slide;
         if (scene_.shading == Shading::slide_alone) return lit ? slide : backdrop;
 
         const glm::vec3 to_camera = glm::normalize(glm::vec3(scene_.camera.position) - at.position);
@@ -101,20 +129,54 @@ private:
         return colour * (0.08f + 0.26f * headlight + 1.05f * diffuse * slide);
     }
 
+    bool is_false_colour() const {
+        return view_.sampling == Sampling::level_as_colour || view_.sampling == Sampling::anisotropy_as_colour;
+    }
+
+    glm::vec3 sampled(std::size_t fragment) const {
+        const glm::vec2 st(coordinates_.s[fragment], coordinates_.t[fragment]);
+        const FilterFootprint footprint{footprints_.level[fragment],
+                                        footprints_.anisotropy[fragment],
+                                        {footprints_.major_s[fragment], footprints_.major_t[fragment]}};
+        switch (view_.sampling) {
+            case Sampling::nearest:
+                return filters_->nearest(st);
+            case Sampling::trilinear:
+                return filters_->trilinear(st, footprint.level);
+            case Sampling::anisotropic:
+                return filters_->anisotropic(st, footprint);
+            case Sampling::level_as_colour:
+                return colour_of_level(footprint.level);
+            case Sampling::anisotropy_as_colour:
+                return colour_of_anisotropy(footprint.anisotropy);
+            case Sampling::bilinear:
+                break;
+        }
+        return view_.slide->sample(st.x, st.y);
+    }
+
     const Scene& scene_;
     const View& view_;
+    const MipMap* filters_;  // null where they are not asked for
     Picture colour_;
     std::vector<float> depth_;
     RectCoordinates coordinates_{};
+    RectFootprints footprints_{};
 };
 
 }  // namespace
 
 Picture render(const Scene& scene, const View& view, int width, int height) {
+    if (view.sampling != Sampling::bilinear) {
+        const MipMap filters(*view.slide);
+        Frame frame(scene, view, &filters, width, height);
+        frame.draw(rasterize(view.surfaces, scene.camera, width, height));
+        return frame.colour();
+    }
     Picture sum(width, height, glm::vec3(0));
     for (const glm::vec2 offset :
          {glm::vec2(-0.25f, -0.25f), glm::vec2(0.25f, -0.25f), glm::vec2(-0.25f, 0.25f), glm::vec2(0.25f, 0.25f)}) {
-        Frame frame(scene, view, width, height);
+        Frame frame(scene, view, nullptr, width, height);
         frame.draw(rasterize(view.surfaces, scene.camera, width, height, offset));
         for (std::size_t i = 0; i < sum.pixels.size(); ++i) sum.pixels[i] += 0.25f * frame.colour().pixels[i];
     }

@@ -9,9 +9,12 @@
 #include <glm/ext/matrix_transform.hpp>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
+#include <texgen/footprint.hpp>
 #include <texgen/linear.hpp>
 #include <texgen/projector.hpp>
 #include <texgen/texcoord.hpp>
+
+#include "html.hpp"
 
 namespace report {
 
@@ -221,12 +224,57 @@ Scene white_border(const Mesh& mesh, const std::shared_ptr<const Picture>& slide
                        .slide = slide}}};
 }
 
+// The projector stands at the far end of a floor and looks at the camera: where the camera sees the floor from near, the
+// slide is spread over many pixels a texel, and where it sees it from far, many texels fall on a pixel.
+Scene facing(const std::shared_ptr<const Picture>& slide, double aspect) {
+    const texgen::Aim aim{.position = {0.8, 2.2, -9}, .target = {-0.1, 0, -2.4}, .up = {0, 1, 0}};
+    const texgen::Projector projector =
+        texgen::make_projector(walk_through_lens(*slide, 34), aim, texgen::opengl).value();
+    const std::vector<Surface> surfaces{
+        projected(projector, parallelogram({-12, 0, 2.5f}, {24, 0, 0}, {0, 0, -10.5f}, 1), in_place, plaster)};
+    const Camera eye = camera({{0, 2.4, 5.0}, {0, 0, -4.2}, 40}, aspect);
+    double score = 0.0;
+    for (const DrawnTriangle& triangle : rasterize(surfaces, eye, 512, 512).triangles)
+        score = std::max(score, texgen::headlights(triangle.window));
+    const auto view = [&](const char* file, const std::string& caption, Sampling sampling) {
+        return View{.file = file, .caption = caption, .surfaces = surfaces, .slide = slide, .sampling = sampling};
+    };
+    return {
+        .name = "facing",
+        .title = "A projector that faces the camera: deer in headlights",
+        .camera = eye,
+        .shading = Shading::slide_alone,
+        .light = glm::vec4(aim.position, 1),
+        .region = texgen::whole_texture(),
+        .views = {view("facing_level.png",
+                       "The level of detail, from the footprints: blue where a texel covers many pixels, white at "
+                       "one texel a pixel, yellow to red where many texels fall on one; a line at each whole level. "
+                       "Between its nearest and its farthest corner the projector adds " +
+                           formatted("%.1f", score) + " levels to those of the camera.",
+                       Sampling::level_as_colour),
+                  view("facing_anisotropy.png",
+                       "The anisotropy: black where a pixel's footprint is round, white at 16 to 1, red beyond; a "
+                       "line at each power of two.",
+                       Sampling::anisotropy_as_colour),
+                  view("facing_nearest.png",
+                       "The nearest texel, one sample a pixel: towards the projector the slide falls apart into "
+                       "noise.",
+                       Sampling::nearest),
+                  view("facing_trilinear.png",
+                       "Trilinear, of the footprint's level: no noise, and no detail either, as the longer side of "
+                       "a footprint decides for both.",
+                       Sampling::trilinear),
+                  view("facing_anisotropic.png",
+                       "Anisotropic, up to 16 probes along the footprint's major axis: the detail across it is back.",
+                       Sampling::anisotropic)}};
+}
+
 }  // namespace
 
 std::vector<Scene> make_scenes(const Mesh& mesh, const Picture& slide, double aspect) {
     const auto shared = std::make_shared<const Picture>(slide);
     return {walk_through(mesh, shared, aspect), qcoord(shared, aspect), reverse(shared, aspect),
-            orthographic(mesh, shared, aspect), white_border(mesh, shared, aspect)};
+            orthographic(mesh, shared, aspect), facing(shared, aspect), white_border(mesh, shared, aspect)};
 }
 
 }  // namespace report

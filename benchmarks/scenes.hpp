@@ -27,12 +27,16 @@ enum class Coordinates {
     ignoring_sign_of_q,  // s/q and t/q wherever they fall: the reverse projection is not cured
 };
 
+// How the slide is looked up; or what footprints say of it, as colours. All but bilinear are drawn with one sample a pixel.
+enum class Sampling { bilinear, nearest, trilinear, anisotropic, level_as_colour, anisotropy_as_colour };
+
 // One picture.
 struct View {
     std::string file, caption;
     std::vector<Surface> surfaces;
     std::shared_ptr<const Picture> slide;
     Coordinates coordinates = Coordinates::library;
+    Sampling sampling = Sampling::bilinear;
 };
 
 // The first view is the one that is timed and checked; further ones show it next to what it would be otherwise.
