@@ -814,7 +814,7 @@ TEST_CASE("OpenGL's dFdx and dFdy lie between the derivatives of the fragments t
                     const auto at = setup.at(column, row);
                     return at ? (c < 2 ? at->dx : at->dy)[c % 2] : HUGE_VAL;
                 });
-                constexpr double allowed = 4e-6;  // of coordinates that are floats, of size 2 at most
+                constexpr double allowed = 1e-6;  // of coordinates that are floats, of size 2 at most
                 const double theirs = static_cast<double>(pixels[fragment][c]);
                 const double outside = std::max(range[0] - theirs, theirs - range[1]);
                 worst = std::max(worst, outside / allowed);
