@@ -65,7 +65,8 @@ struct SceneWork {
 // found costs a T_o and a coverage(); and the lit pairs are gone through once, at about a nanosecond each. Memory: 250
 // bytes an object, 700 a projector, 170 a lit pair, up to twice that where they came one by one.
 // Bad input: where a matrix or a box is not finite, the pair is partial and kept, as coverage() has it; an empty box is
-// never lit. Spans that disagree in size, and an index that names nothing, are asserted; beyond the shortest nothing is
+// never lit. Where exponents are so far apart that coverage() cannot say, a pair that is provably dark may be missing.
+// Spans that disagree in size, and an index that names nothing, are asserted; beyond the shortest nothing is
 // looked at. What changed without being named stays as it was; with assertions on, that is asserted too, as far as the
 // bounds in the world show it.
 // Source: Everitt, Projective Texture Mapping: T_o "must be updated every time the model matrix changes".
