@@ -205,7 +205,9 @@ TEST_CASE("a run writes the page and the pictures, and nothing else") {
         pictures.push_back(path.filename().string());
         CHECK(contents(path).starts_with(png_signature));
     }
-    CHECK(pictures == std::vector<std::string>{"border.png", "border_missing.png", "orthographic.png", "reverse.png",
+    CHECK(pictures == std::vector<std::string>{"border.png", "border_missing.png", "facing_anisotropic.png",
+                                               "facing_anisotropy.png", "facing_level.png", "facing_nearest.png",
+                                               "facing_trilinear.png", "orthographic.png", "reverse.png",
                                                "reverse_uncured.png", "room.png", "room_work.png", "teapot.png",
                                                "trapezoid.png", "trapezoid_real.png"});
     const std::string page = contents("deep/down/index.html");
