@@ -155,6 +155,7 @@ int main(int count, char** arguments) {
     bench::add_k3();
     bench::add_coverage();
     bench::add_scenes();
+    bench::add_footprints();
     bench::Reporter reporter;
     if (benchmark::RunSpecifiedBenchmarks(&reporter) != 0) return 0;
     std::fprintf(stderr, "texgen_bench: no row has such a name\n");

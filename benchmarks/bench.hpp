@@ -25,6 +25,7 @@ void add_k2();
 void add_k3();
 void add_coverage();
 void add_scenes();
+void add_footprints();
 
 constexpr std::size_t l1_count = 1024, l2_count = 32768, dram_count = std::size_t{1} << 24;
 
