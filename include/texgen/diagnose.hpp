@@ -54,13 +54,13 @@ enum class Defect {
     mirrored,
     aspect_inverted,
     not_of_this_set_up,
+    precision_lost,
     everything_behind,
     region_never_hit,
     smaller_than_texel,
-    precision_lost,
 };
 
-inline constexpr std::size_t defect_count = static_cast<std::size_t>(Defect::precision_lost) + 1;
+inline constexpr std::size_t defect_count = static_cast<std::size_t>(Defect::smaller_than_texel) + 1;
 
 struct Finding {
     Defect defect;
@@ -116,7 +116,7 @@ struct Setup {
     TextureRegion region = whole_texture();
     DepthMapping depth = DepthMapping::unit;
     std::optional<Conventions> conventions = std::nullopt;  // of a texgen matrix whose projector is not given
-    glm::dvec2 texels_per_unit{0.0, 0.0};  // the texture's size, or (1, 1) for a rectangle texture; 0 where not known
+    glm::dvec2 texels_per_unit{};  // the texture's size, or (1, 1) for a rectangle texture; 0 where not known
     LensFacts lens = {};
 };
 
@@ -161,12 +161,12 @@ inline constexpr std::array<Sentences, defect_count> sentences{{
     {"The aspect is inverted: height over width.", "Pass width / height."},
     {"The texgen matrix is not what this projector, pose and region compose.",
      "Make it anew whenever one of them changes, and diagnose it with those that it was made from."},
+    {"Precision is lost, far from the origin or in an extreme lens.",
+     "Compose in double, and generate from object or eye space: object_linear() or eye_linear()."},
     {"Every point is behind the projector.",
      "Check the aim, the side that the lens looks to, and the sign of the matrix."},
     {"No point can be inside the region: the slide misses all.", "Check the aim, the field of view and the region."},
     {"The picture is smaller than a texel there.", "Check the units of the scene, the region and the lens."},
-    {"Precision is lost, far from the origin or in an extreme lens.",
-     "Compose in double, and generate from object or eye space: object_linear() or eye_linear()."},
 }};
 
 // Whether a matrix holds numbers to go on with; if not, says why.
@@ -192,29 +192,34 @@ inline bool is_in_float(const glm::dmat4& m) noexcept {
     return true;
 }
 
-// A determinant of three rows and three columns, and whether it stands out of the rounding of its terms. That does not
-// depend on the scale of any row or column.
+// A determinant of three rows and three columns, and whether it stands out of the rounding of the elements and of its
+// own: with its cofactors C, an error e_ij of the elements changes it by sum e_ij C_ij at first order. That does not depend
+// on the scale of any row or column.
 struct Minor {
     double value;
     bool stands_out;
 };
 
 inline Minor minor(const glm::dmat4& m, const std::array<int, 3>& rows, const std::array<int, 3>& columns) noexcept {
-    double sum = 0.0;
-    double magnitude = 0.0;
-    const auto add = [&](double sign, std::size_t i, std::size_t j, std::size_t k) {
-        const double term = m[columns[i]][rows[0]] * m[columns[j]][rows[1]] * m[columns[k]][rows[2]];
-        sum += sign * term;
-        magnitude += std::fabs(term);
+    const auto row = [&](std::size_t i) {
+        return glm::dvec3(m[columns[0]][rows[i]], m[columns[1]][rows[i]], m[columns[2]][rows[i]]);
     };
-    add(1.0, 0, 1, 2);
-    add(1.0, 1, 2, 0);
-    add(1.0, 2, 0, 1);
-    add(-1.0, 2, 1, 0);
-    add(-1.0, 1, 0, 2);
-    add(-1.0, 0, 2, 1);
-    const double rounding = is_in_float(m) ? 0x1p-21 : 0x1p-44;
-    return {sum, std::fabs(sum) > rounding * magnitude};
+    const auto magnitude = [](const glm::dvec3& v) {
+        return glm::dvec3(std::fabs(v.x), std::fabs(v.y), std::fabs(v.z));
+    };
+    const auto dot = [](const glm::dvec3& a, const glm::dvec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; };
+    const auto cross = [](const glm::dvec3& a, const glm::dvec3& b, double sign) {
+        return glm::dvec3(a.y * b.z + sign * (a.z * b.y), a.z * b.x + sign * (a.x * b.z),
+                          a.x * b.y + sign * (a.y * b.x));
+    };
+    const glm::dvec3 a = row(0), b = row(1), c = row(2);
+    const glm::dvec3 of_a = cross(b, c, -1.0), of_b = cross(c, a, -1.0), of_c = cross(a, b, -1.0);
+    const double value = dot(a, of_a);
+    const double change =
+        dot(magnitude(a), magnitude(of_a)) + dot(magnitude(b), magnitude(of_b)) + dot(magnitude(c), magnitude(of_c));
+    const double terms = dot(magnitude(a), cross(magnitude(b), magnitude(c), 1.0));
+    const double rounding = is_in_float(m) ? 0x1p-22 : 0x1p-44;
+    return {value, std::fabs(value) > rounding * change + 0x1p-48 * terms};
 }
 
 inline constexpr std::array axes{0, 1, 2};
@@ -281,9 +286,11 @@ inline bool mistakes_unit(double focal_length, const Angle& fovy) noexcept {
     return !is_of(fovy.in_radians()) && (is_of(fovy.in_degrees()) || is_of(degrees(fovy.in_radians()).in_radians()));
 }
 
+inline constexpr double accepted_error_in_texels = 0.5;
+
 struct Picture {
-    TextureRegion region;
-    glm::dvec2 texels_per_unit;
+    TextureRegion region = whole_texture();
+    glm::dvec2 texels_per_unit{};
 
     bool is_empty() const noexcept { return region.min().x > region.max().x || region.min().y > region.max().y; }
     bool is_measured() const noexcept { return texels_per_unit.x > 0.0 && texels_per_unit.y > 0.0; }
@@ -360,8 +367,9 @@ inline void examine(const Projector& projector, const LensFacts& facts, const Pi
 // scale-bias included, and an affine pose on the right keeps it: the directions of the two rows are parallel. A
 // transposed matrix or a wrong order loses it. (An oblique near plane has it not: that needs its projector.)
 struct DepthRows {
-    bool parallel;
-    double limit;  // of r/q at infinity; empty light, q constant: 0
+    bool are_parallel;
+    bool is_parallel_light;  // q is constant
+    double limit;            // of r/q at infinity; 0 for parallel light
 };
 
 inline DepthRows depth_rows(const glm::dmat4& m) noexcept {
@@ -375,9 +383,10 @@ inline DepthRows depth_rows(const glm::dmat4& m) noexcept {
     const double rounding = is_in_float(m) ? 0x1p-20 : 0x1p-44;
     const double size_r = largest(r);
     const double size_q = largest(q);
-    const bool parallel = !(largest(cross) > (0x1p-14 * size_r + rounding * size_q) * size_q);
+    const bool are_parallel = !(largest(cross) > (0x1p-14 * size_r + rounding * size_q) * size_q);
     const double squared = q.x * q.x + q.y * q.y + q.z * q.z;
-    return {parallel, squared > 0.0 ? (r.x * q.x + r.y * q.y + r.z * q.z) / squared : 0.0};
+    const bool is_parallel_light = size_q == 0.0;
+    return {are_parallel, is_parallel_light, squared > 0.0 ? (r.x * q.x + r.y * q.y + r.z * q.z) / squared : 0.0};
 }
 
 inline void examine(const Composition& composition, bool in_eye_space, Diagnosis& diagnosis) noexcept {
@@ -412,25 +421,41 @@ struct Examined {
     bool in_float = false;
 };
 
+// What floats lose of s and t at every point that is lit: the rounding of the rows' constants, half its bound, where q is
+// largest, on the far plane. 0 where that is infinitely far, or row r does not say.
+inline double least_error_in_texels(const glm::dmat4& texgen, const Picture& picture, DepthMapping depth) noexcept {
+    const DepthRows rows = depth_rows(texgen);
+    const double constant = texgen[3].z - rows.limit * texgen[3].w;  // r = limit q + constant
+    const double far_end = rows.limit > 0.5 ? 1.0 : depth == DepthMapping::unit ? 0.0 : -1.0;
+    const double largest_q = rows.is_parallel_light ? texgen[3].w : constant / (far_end - rows.limit);
+    const glm::dvec2 texels = picture.texels();
+    const double error = 0.5 * unit_roundoff_float / largest_q *
+                         larger(std::fabs(texgen[3].x) * texels.x, std::fabs(texgen[3].y) * texels.y);
+    return rows.are_parallel && largest_q > 0.0 && is_finite(error) ? error : 0.0;
+}
+
 // What the points say. Each question is whether all of them are on one side of a plane, with the bound on the rounding:
 // then their convex hull is too, and no face between them is lit.
 class PointReport {
 public:
-    // examined.texgen is there.
-    PointReport(const Examined& examined, const Picture& picture) noexcept
-        : s_(form(*examined.texgen, 0)),
-          t_(form(*examined.texgen, 1)),
-          q_(form(*examined.texgen, 3)),
-          picture_(picture),
+    PointReport(const Examined& examined, const Picture& picture, DepthMapping depth) noexcept
+        : has_texgen_(examined.texgen),
+          has_right_(examined.right),
           in_float_(examined.in_float),
-          has_right_(examined.right) {
-        if (has_right_) right_ = {{form(*examined.right, 0), form(*examined.right, 1), form(*examined.right, 3)}};
+          texgen_(rows(examined.texgen)),
+          right_(rows(examined.right)),
+          picture_(picture) {
+        if (has_texgen_ && in_float_) error_in_texels_ = least_error_in_texels(*examined.texgen, picture, depth);
     }
 
     void add(const glm::dvec3& v) noexcept {
-        const Bounded s = value_at(s_, v);
-        const Bounded t = value_at(t_, v);
-        const Bounded q = value_at(q_, v);
+        if (!is_finite(v.x) || !is_finite(v.y) || !is_finite(v.z)) {
+            all_finite_ = false;
+            return;
+        }
+        const Bounded s = value_at(texgen_[0], v);
+        const Bounded t = value_at(texgen_[1], v);
+        const Bounded q = value_at(texgen_[2], v);
         ++count_;
         behind_ = behind_ && q.value <= -q.error;
         for (std::size_t side = 0; side < 4; ++side) {
@@ -465,7 +490,9 @@ public:
     }
 
     void conclude(Diagnosis& diagnosis) const noexcept {
-        if (count_ == 0) return;
+        if (!all_finite_) diagnosis.add(Defect::not_finite);
+        if (error_in_texels_ > accepted_error_in_texels) diagnosis.add(Defect::precision_lost, error_in_texels_);
+        if (count_ == 0 || !has_texgen_) return;
         if (behind_) diagnosis.add(Defect::everything_behind);
         for (const bool outside : outside_)
             if (outside) diagnosis.add(Defect::region_never_hit);
@@ -473,10 +500,15 @@ public:
         const double size = larger((most_.x - least_.x) * texels.x, (most_.y - least_.y) * texels.y);
         if (all_in_front_ && distinct_ && texels.x > 0.0 && texels.y > 0.0 && size < 1.0)
             diagnosis.add(Defect::smaller_than_texel, size);
-        if (error_in_texels_ > 0.5) diagnosis.add(Defect::precision_lost, error_in_texels_);
     }
 
 private:
+    // Rows s, t and q; zero where there is no matrix.
+    static std::array<PointForm, 3> rows(const std::optional<glm::dmat4>& m) noexcept {
+        if (!m) return {};
+        return {{form(*m, 0), form(*m, 1), form(*m, 3)}};
+    }
+
     static double at(const glm::dvec2& v, std::size_t component) noexcept { return component == 0 ? v.x : v.y; }
 
     bool is_lit(const glm::dvec2& st) const noexcept {
@@ -494,44 +526,27 @@ private:
         for (int k = 0; k < 2; ++k) raise(std::fabs(st[k] - right[k]), picture_.texels()[k]);
     }
 
-    PointForm s_, t_, q_;
-    std::array<PointForm, 3> right_{};
+    bool has_texgen_, has_right_, in_float_;
+    std::array<PointForm, 3> texgen_, right_;  // rows s, t and q
     Picture picture_;
-    bool in_float_, has_right_;
     std::size_t count_ = 0, in_front_ = 0;
-    bool behind_ = true, all_in_front_ = true, distinct_ = false;
+    bool all_finite_ = true, behind_ = true, all_in_front_ = true, distinct_ = false;
     std::array<bool, 4> outside_{true, true, true, true};
     glm::dvec3 first_{0.0};
     glm::dvec2 least_{0.0}, most_{0.0};
     double error_in_texels_ = 0.0;
 };
 
-// The middle of the slide on the far plane: the error of floats is least there, as their distance from the origin over q
-// is. Empty for an infinite far plane, or where row r does not say.
-inline std::optional<glm::dvec3> middle_of_far_plane(const glm::dmat4& texgen, const TextureRegion& region,
-                                                     DepthMapping depth) noexcept {
-    const CertifiedInverse inverse(texgen);
-    if (!inverse.regular()) return std::nullopt;
-    const bool reversed =
-        !(depth_rows(texgen).limit > 0.5) && (texgen[0].w != 0.0 || texgen[1].w != 0.0 || texgen[2].w != 0.0);
-    const double far_end = !reversed ? 1.0 : depth == DepthMapping::unit ? 0.0 : -1.0;
-    const glm::dvec2 middle = 0.5 * region.min() + 0.5 * region.max();
-    const glm::dvec4 v = inverse.matrix() * glm::dvec4(middle, far_end, 1.0);
-    const glm::dvec3 point = glm::dvec3(v) / v.w;
-    if (!(v.w > 0.0) || !is_finite(point.x) || !is_finite(point.y) || !is_finite(point.z)) return std::nullopt;
-    return point;
-}
-
 // All of a set-up but its points.
 struct SetupMatrices {
-    const Projector* projector;
-    const glm::dmat4* pose;    // null: not known, or the points are in the world
-    const glm::dmat4* texgen;  // null: what the projector and the pose compose
-    bool in_world_space, in_eye_space;
-    Picture picture;
-    DepthMapping depth;
-    std::optional<Conventions> conventions;
-    LensFacts lens;
+    const Projector* projector = nullptr;
+    const glm::dmat4* pose = nullptr;    // null: not known, or the points are in the world
+    const glm::dmat4* texgen = nullptr;  // null: what the projector and the pose compose
+    bool in_world_space = false, in_eye_space = false;
+    Picture picture = {};
+    DepthMapping depth = DepthMapping::unit;
+    std::optional<Conventions> conventions = std::nullopt;
+    LensFacts lens = {};
 };
 
 inline bool is_nan(double value) noexcept { return !(std::fabs(value) <= HUGE_VAL); }
@@ -569,8 +584,8 @@ inline bool is_mirrored(const glm::dmat4& texgen, const glm::dmat4& world_from_s
 inline bool examine_alone(const glm::dmat4& texgen, const SetupMatrices& setup, Diagnosis& diagnosis) noexcept {
     constexpr double margin = 0x1p-10;
     const DepthRows rows = depth_rows(texgen);
-    if (!rows.parallel) {
-        const bool is_transposed = depth_rows(transposed(texgen)).parallel;
+    if (!rows.are_parallel) {
+        const bool is_transposed = depth_rows(transposed(texgen)).are_parallel;
         diagnosis.add(is_transposed ? Defect::transposed : Defect::wrong_order);
         return is_transposed;
     }
@@ -629,11 +644,12 @@ inline Examined examine(const SetupMatrices& setup, Diagnosis& diagnosis) noexce
     const bool has_q = !is_zero_row(texgen, 3);
     const bool is_dependent = has_q && !are_independent(texgen, {0, 1, 3});
     bool was_transposed = false;
-    if (right && multiple_of(*right, texgen) > 0.0) {
-        examined.right = right->value;
-        if (is_dependent) diagnosis.add(Defect::rank_below_three);
-    } else if (const auto composition = right ? composition_of(texgen, *factors) : std::nullopt) {
+    const auto composition = right ? composition_of(texgen, *factors, *right, examined.in_float) : std::nullopt;
+    if (composition) {
         examine(*composition, setup.in_eye_space, diagnosis);
+        const bool is_right = mistakes(*composition) == 0 && composition->multiple > 0.0;
+        if (is_right) examined.right = right->value;
+        if (is_right && is_dependent) diagnosis.add(Defect::rank_below_three);
         was_transposed = composition->transposed;
     } else if (is_dependent) {
         diagnosis.add(Defect::rank_below_three);
@@ -686,27 +702,19 @@ Diagnosis diagnose(const Setup<Space>& setup) noexcept {
     Diagnosis diagnosis;
     const detail::SetupMatrices matrices = detail::matrices_of(setup);
     const detail::Examined examined = detail::examine(matrices, diagnosis);
-    if (!examined.texgen) return diagnosis;
-    detail::PointReport report(examined, matrices.picture);
-    if (setup.points) {
-        for (std::size_t i = 0; i < setup.points->size(); ++i) {
-            const glm::dvec3 point((*setup.points)[i]);
-            if (detail::is_finite(point.x) && detail::is_finite(point.y) && detail::is_finite(point.z))
-                report.add(point);
-            else
-                diagnosis.add(Defect::not_finite);
-        }
-    } else if (examined.in_float) {
-        const auto middle = detail::middle_of_far_plane(*examined.texgen, setup.region, setup.depth);
-        if (middle) report.add(*middle);
-    }
+    detail::PointReport report(examined, matrices.picture, matrices.depth);
+    const std::size_t count = setup.points ? setup.points->size() : 0;
+    for (std::size_t i = 0; i < count; ++i) report.add(glm::dvec3((*setup.points)[i]));
     report.conclude(diagnosis);
     return diagnosis;
 }
 
 // The same of a projector alone.
 inline Diagnosis diagnose(const Projector& projector) noexcept {
-    return diagnose(Setup<World>{.projector = projector});
+    Diagnosis diagnosis;
+    const detail::Examined examined = detail::examine({.projector = &projector, .in_world_space = true}, diagnosis);
+    detail::PointReport(examined, {}, DepthMapping::unit).conclude(diagnosis);
+    return diagnosis;
 }
 
 // The same of a texgen matrix, with what else is known.

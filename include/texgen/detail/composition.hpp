@@ -53,12 +53,21 @@ inline Product pose_factor(const glm::dmat4& m) noexcept {
     return result;
 }
 
+// What a matrix may differ from a product by: a share of the element, and of the magnitudes of its terms.
+struct Closeness {
+    double of_element, of_magnitude;
+};
+
+// Composed in double, of the same factors, and rounded once at most.
+inline constexpr Closeness composed_in_double{0.0, 0x1p-44};
+inline constexpr Closeness rounded_once{0x1p-23, 0x1p-44};
+// Three products in float of factors rounded to float err by 16 * 2^-24 at most; a float inverse may be among them.
+inline constexpr Closeness composed_in_float{0.0, 0x1p-16};
+
 // k where `given` is k times the product, in the rows (and, of what was read transposed, the columns) in which it is not
 // zero: planes that were never written say nothing. 0 where it is not.
-// The tolerance, 2^-16 of the magnitudes: three products in float of factors rounded to float err by 16 * 2^-24 at most,
-// a product in double that is rounded once by 2^-24.
-inline double multiple_of(const Product& product, const glm::dmat4& given, bool was_transposed = false) noexcept {
-    constexpr double tolerance = 0x1p-16;
+inline double multiple_of(const Product& product, const glm::dmat4& given, Closeness closeness,
+                          bool was_transposed = false) noexcept {
     const auto says_nothing = [&](int column) { return was_transposed && given[column] == glm::dvec4(0.0); };
     double along = 0.0;
     double norm = 0.0;
@@ -77,8 +86,10 @@ inline double multiple_of(const Product& product, const glm::dmat4& given, bool 
         if (is_zero_row(given, row)) continue;
         for (int column = 0; column < 4; ++column) {
             if (says_nothing(column)) continue;
-            const double distance = std::fabs(given[column][row] - multiple * product.value[column][row]);
-            if (!(distance <= tolerance * std::fabs(multiple) * product.magnitude[column][row])) return 0.0;
+            const double value = product.value[column][row];
+            const double accepted =
+                closeness.of_element * std::fabs(value) + closeness.of_magnitude * product.magnitude[column][row];
+            if (!(std::fabs(given[column][row] - multiple * value) <= std::fabs(multiple) * accepted)) return 0.0;
         }
     }
     return is_finite(multiple) ? multiple : 0.0;
@@ -168,10 +179,11 @@ inline constexpr std::array<std::array<std::size_t, 4>, 23> wrong_orders{
      {0, 2, 3, 1}, {0, 3, 2, 1}, {1, 0, 3, 2}, {1, 3, 0, 2}, {1, 3, 2, 0}, {2, 0, 1, 3}, {2, 0, 3, 1}, {2, 1, 0, 3},
      {2, 1, 3, 0}, {2, 3, 0, 1}, {2, 3, 1, 0}, {3, 0, 2, 1}, {3, 1, 0, 2}, {3, 1, 2, 0}, {3, 2, 0, 1}}};
 
-// The composition with the fewest mistakes, two at most, that gives the matrix; empty where none does.
-inline std::optional<Composition> composition_of(const glm::dmat4& texgen, const Factors& factors) noexcept {
+// The composition with the fewest mistakes that gives the matrix; empty where none with `most` does.
+inline std::optional<Composition> composition_of(const glm::dmat4& texgen, const Factors& factors, int most,
+                                                 Closeness closeness) noexcept {
     const std::array<glm::dmat4, 2> given{texgen, detail::transposed(texgen)};
-    for (int allowed = 0; allowed <= 2; ++allowed) {
+    for (int allowed = 0; allowed <= most; ++allowed) {
         for (const PoseUse pose : {PoseUse::right, PoseUse::inverted, PoseUse::left_out, PoseUse::doubled}) {
             const std::optional<Product> x = pose_factor(factors, pose);
             if (!x) continue;
@@ -188,7 +200,7 @@ inline std::optional<Composition> composition_of(const glm::dmat4& texgen, const
                     const auto gives = [&](const std::array<std::size_t, 4>& order) {
                         composition.multiple =
                             multiple_of(product[order[0]] * product[order[1]] * (product[order[2]] * product[order[3]]),
-                                        given[transposed], transposed);
+                                        given[transposed], closeness, transposed);
                         return composition.multiple != 0.0;
                     };
                     if (without_order == allowed) {
@@ -205,6 +217,18 @@ inline std::optional<Composition> composition_of(const glm::dmat4& texgen, const
         }
     }
     return std::nullopt;
+}
+
+// The same for any closeness. What was composed in float is near to the right product and to others as well, where they
+// differ by less than its rounding (as depth ranges do far from the origin): the closest decides.
+inline std::optional<Composition> composition_of(const glm::dmat4& texgen, const Factors& factors, const Product& right,
+                                                 bool is_in_float) noexcept {
+    const Closeness closest = is_in_float ? rounded_once : composed_in_double;
+    if (multiple_of(right, texgen, closest) > 0.0) return Composition{};
+    const bool is_near = multiple_of(right, texgen, composed_in_float) > 0.0;
+    const auto composition = composition_of(texgen, factors, is_near ? 1 : 2, closest);
+    if (composition) return composition;
+    return is_near ? Composition{} : composition_of(texgen, factors, 2, composed_in_float);
 }
 
 }  // namespace texgen::detail

@@ -1,0 +1,1066 @@
+// The diagnosis: every defect of a seeded corpus is found, alone and in pairs, and none in a million valid set-ups.
+
+#include "texgen/diagnose.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdlib>
+#include <limits>
+#include <new>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "support/hex.hpp"
+#include "support/random.hpp"
+#include "texgen/linear.hpp"
+#include "texgen/projector.hpp"
+
+namespace {
+
+std::size_t allocations = 0;
+
+}  // namespace
+
+[[gnu::noinline]] void* operator new(std::size_t size) {
+    ++allocations;
+    if (void* memory = std::malloc(size)) return memory;
+    std::abort();
+}
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+
+namespace {
+
+using support::hex;
+using support::Random;
+using texgen::Conventions;
+using texgen::Defect;
+using texgen::DepthMapping;
+using texgen::DepthRange;
+using texgen::Diagnosis;
+using texgen::Eye;
+using texgen::LensFacts;
+using texgen::NdcY;
+using texgen::Object;
+using texgen::Projector;
+using texgen::Setup;
+using texgen::TextureOrigin;
+using texgen::TextureRegion;
+using texgen::Transform;
+using texgen::World;
+
+constexpr double nan_double = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+enum class In { object, world, eye };
+
+enum class LensKind { perspective, infinite, reversed, reversed_infinite, frustum, orthographic };
+
+struct Lens {
+    LensKind kind;
+    double fovy, aspect, z_near, z_far;  // fovy in degrees
+    double left, right, bottom, top;     // of frusta and parallel light
+
+    bool is_symmetric() const { return kind < LensKind::frustum; }
+    bool is_reversed() const { return kind == LensKind::reversed || kind == LensKind::reversed_infinite; }
+};
+
+glm::dmat4 projection(const Lens& lens, Conventions conventions) {
+    const double l = lens.left, r = lens.right, b = lens.bottom, t = lens.top, n = lens.z_near, f = lens.z_far;
+    const auto result = lens.kind == LensKind::frustum        ? frustum({l, r, b, t, n, f}, conventions)
+                        : lens.kind == LensKind::orthographic ? orthographic({l, r, b, t, n, f}, conventions)
+                                                              : perspective({.fovy = texgen::degrees(lens.fovy),
+                                                                             .aspect = lens.aspect,
+                                                                             .z_near = n,
+                                                                             .z_far = f,
+                                                                             .reversed_depth = lens.is_reversed()},
+                                                                            conventions);
+    REQUIRE(result);
+    return result->matrix();
+}
+
+// What a user has, before something went wrong with it.
+struct Rig {
+    Conventions conventions = texgen::opengl;
+    Lens lens{};
+    texgen::Aim aim{};
+    glm::dmat4 view{1.0};
+    In in = In::object;
+    glm::dmat4 pose{1.0};
+    TextureRegion region = texgen::whole_texture();
+    DepthMapping depth = DepthMapping::unit;
+    bool mirrored = false;
+};
+
+// What is handed to the diagnosis.
+struct Parts {
+    std::optional<Projector> projector = std::nullopt;
+    std::optional<glm::dmat4> pose = std::nullopt, texgen = std::nullopt;
+    In in = In::object;
+    std::array<glm::vec3, 8> points{};
+    bool has_points = false;
+    TextureRegion region = texgen::whole_texture();
+    DepthMapping depth = DepthMapping::unit;
+    std::optional<Conventions> conventions = std::nullopt;
+    glm::dvec2 texels_per_unit{0.0, 0.0};
+    LensFacts lens = {};
+};
+
+template <class Space>
+Setup<Space> setup_of(const Parts& parts) {
+    Setup<Space> setup{.projector = parts.projector,
+                       .region = parts.region,
+                       .depth = parts.depth,
+                       .conventions = parts.conventions,
+                       .texels_per_unit = parts.texels_per_unit,
+                       .lens = parts.lens};
+    if (parts.pose) setup.world_from_space.emplace(*parts.pose);
+    if (parts.texgen) setup.texgen.emplace(*parts.texgen);
+    const glm::vec3& first = parts.points[0];
+    if (parts.has_points) setup.points.emplace(&first.x, &first.y, &first.z, parts.points.size(), sizeof first);
+    return setup;
+}
+
+Diagnosis diagnosis_of(const Parts& parts) {
+    if (parts.in == In::object) return diagnose(setup_of<Object>(parts));
+    if (parts.in == In::world) return diagnose(setup_of<World>(parts));
+    return diagnose(setup_of<Eye>(parts));
+}
+
+std::string text(const Diagnosis& diagnosis) {
+    std::string result = "found:";
+    for (const texgen::Finding& finding : diagnosis)
+        result += " [" + std::string(finding.what()) + " " + hex(finding.number) + "]";
+    return result;
+}
+
+std::string text(const Parts& parts) {
+    std::string result = "in space " + std::to_string(static_cast<int>(parts.in));
+    if (parts.projector) {
+        const Conventions& c = parts.projector->conventions;
+        result += " projection " + hex(parts.projector->projection.matrix()) + " view " +
+                  hex(parts.projector->view.matrix()) + " conventions " +
+                  std::to_string(static_cast<int>(c.depth.operator DepthRange())) +
+                  std::to_string(static_cast<int>(c.ndc_y.operator NdcY())) +
+                  std::to_string(static_cast<int>(c.origin.operator TextureOrigin()));
+    }
+    if (parts.pose) result += " pose " + hex(*parts.pose);
+    if (parts.texgen) result += " texgen " + hex(*parts.texgen);
+    result += " region " + hex(parts.region.min()) + " " + hex(parts.region.max()) + " texels " +
+              hex(parts.texels_per_unit) + " depth " + std::to_string(static_cast<int>(parts.depth));
+    if (parts.has_points)
+        for (const glm::vec3& point : parts.points) result += " " + hex(point);
+    return result;
+}
+
+glm::dmat4 transposed(const glm::dmat4& m) {
+    glm::dmat4 result(0.0);
+    for (int i = 0; i < 4; ++i)
+        for (int j = 0; j < 4; ++j) result[i][j] = m[j][i];
+    return result;
+}
+
+glm::dvec4 row(const glm::dmat4& m, int i) { return {m[0][i], m[1][i], m[2][i], m[3][i]}; }
+
+glm::dvec3 xyz(const glm::dvec4& v) { return {v.x, v.y, v.z}; }
+
+double dot3(const glm::dvec3& a, const glm::dvec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+// R^-1 (v - t) for a rotation times a scale and a translation.
+glm::dvec3 back_through(const glm::dmat4& pose, const glm::dvec3& v) {
+    const glm::dvec3 from = v - xyz(pose[3]);
+    glm::dvec3 result(0.0);
+    for (int i = 0; i < 3; ++i) result[i] = dot3(xyz(pose[i]), from) / dot3(xyz(pose[i]), xyz(pose[i]));
+    return result;
+}
+
+double depth_in(const Rig& rig, Random& random) {
+    const double far = std::min(rig.lens.z_far, 1000.0 * rig.lens.z_near);
+    return rig.lens.z_near * std::pow(far / rig.lens.z_near, random.uniform(0.1, 0.9));
+}
+
+// The point that the slide's (x, y) in [-1, 1] falls on at that depth, relative to the projector, in the world.
+glm::dvec3 in_the_light(const Rig& rig, const glm::dmat4& p, double x, double y, double depth) {
+    const double w = p[2][3] * -depth + p[3][3];
+    const glm::dvec3 eye{(x * w - p[2][0] * -depth - p[3][0]) / p[0][0], (y * w - p[2][1] * -depth - p[3][1]) / p[1][1],
+                         -depth};
+    const glm::dmat4 axes = transposed(rig.view);
+    return eye.x * xyz(axes[0]) + eye.y * xyz(axes[1]) + eye.z * xyz(axes[2]);
+}
+
+glm::vec3 in_space(const Rig& rig, const glm::dvec3& from_projector) {
+    if (rig.in == In::world) return glm::vec3(rig.aim.position + from_projector);
+    glm::dmat4 pose = rig.pose;
+    pose[3] = glm::dvec4(xyz(pose[3]) - rig.aim.position, 1.0);
+    return glm::vec3(back_through(pose, from_projector));
+}
+
+glm::dvec3 somewhere_lit(const Rig& rig, const glm::dmat4& p, Random& random) {
+    return in_the_light(rig, p, random.uniform(-0.95, 0.95), random.uniform(-0.95, 0.95), depth_in(rig, random));
+}
+
+Conventions any_conventions(Random& random) {
+    return {random.coin() ? DepthRange::negative_one_to_one : DepthRange::zero_to_one,
+            random.coin() ? NdcY::up : NdcY::down,
+            random.coin() ? TextureOrigin::bottom_left : TextureOrigin::top_left};
+}
+
+// How far out of the ordinary a rig may be.
+struct Range {
+    double least_fovy, most_fovy, distance, least_tile, far_decades, scale_decades;
+    bool parallel = true;
+};
+
+constexpr Range ordinary{5.0, 110.0, 4.0, 0.1, 4.0, 1.0};
+constexpr Range extreme{0.1, 179.9, 7.0, 0x1p-8, 9.0, 30.0};
+
+Lens random_lens(const Range& range, Random& random) {
+    Lens lens{};
+    lens.kind = static_cast<LensKind>(random.integer(0, range.parallel ? 5 : 4));
+    lens.fovy = random.uniform(range.least_fovy, range.most_fovy);
+    lens.aspect = random.coin() ? random.uniform(1.2, 3.0) : 1.0 / random.uniform(1.2, 3.0);
+    lens.z_near = random.power_of_ten(-2.0, 1.0);
+    lens.z_far = lens.z_near * random.power_of_ten(0.7, range.far_decades);
+    if (lens.kind == LensKind::infinite || lens.kind == LensKind::reversed_infinite) lens.z_far = infinity;
+    const double height = random.uniform(0.3, 2.0) * lens.z_near;
+    const double width = height * lens.aspect;
+    lens.left = random.uniform(-1.5, 0.5) * width;
+    lens.right = lens.left + width;
+    lens.bottom = random.uniform(-1.5, 0.5) * height;
+    lens.top = lens.bottom + height;
+    return lens;
+}
+
+Rig random_rig(const Range& range, Random& random) {
+    Rig rig;
+    rig.conventions = any_conventions(random);
+    rig.lens = random_lens(range, random);
+    const double distance = random.power_of_ten(0.0, range.distance);
+    rig.aim.position = distance * random.direction();
+    rig.aim.target = rig.aim.position + (1.0 + 0.01 * distance) * random.direction();
+    rig.aim.up = random.direction();
+    const auto view = texgen::look_at(rig.aim);
+    REQUIRE(view);
+    rig.view = view->matrix();
+    rig.in = static_cast<In>(random.integer(0, 2));
+    rig.depth = random.coin() ? DepthMapping::unit : DepthMapping::ndc;
+    const int region = random.integer(0, 2);
+    if (region == 1) rig.region = texgen::rectangle_texture(random.integer(16, 4096), random.integer(16, 4096));
+    if (region == 2) {
+        const glm::dvec2 least{random.uniform(0.0, 0.9), random.uniform(0.0, 0.9)};
+        const double side = range.least_tile * random.uniform(1.0, 2.0);
+        rig.region = texgen::atlas_tile(least, least + glm::dvec2(side, side * random.uniform(0.5, 2.0)));
+    }
+    if (rig.in == In::world) return rig;
+    // Beside what is lit. Models are scaled and may mirror; cameras are rigid, but for one that sees a reflection.
+    const glm::dvec3 place = rig.aim.position + somewhere_lit(rig, projection(rig.lens, rig.conventions), random);
+    rig.pose = random.rotation();
+    const double scale = rig.in == In::object ? random.power_of_ten(-range.scale_decades, range.scale_decades) : 1.0;
+    for (int i = 0; i < 3; ++i) {
+        const double unequal = rig.in == In::object ? random.uniform(0.5, 2.0) : 1.0;
+        rig.pose[i] *= scale * unequal * (random.integer(0, 3) == 0 ? -1.0 : 1.0);
+    }
+    rig.pose[3] = glm::dvec4(place, 1.0);
+    return rig;
+}
+
+std::array<glm::vec3, 8> lit_points(const Rig& rig, Random& random) {
+    const glm::dmat4 p = projection(rig.lens, rig.conventions);
+    std::array<glm::vec3, 8> points;
+    for (glm::vec3& point : points) point = in_space(rig, somewhere_lit(rig, p, random));
+    return points;
+}
+
+glm::dmat4 to_float(const glm::dmat4& m) { return glm::dmat4(support::rounded(m)); }
+
+// What the texture coordinates of a point are, and how much of a texel of 4096 floats may lose of them.
+struct Seen {
+    bool lit;
+    glm::dvec2 st;
+    double q, lost;
+};
+
+Seen seen(const glm::dmat4& texgen, const TextureRegion& region, const glm::vec3& point) {
+    const glm::dvec4 v(glm::dvec3(point), 1.0);
+    const glm::dvec4 strq = texgen * v;
+    const auto magnitude = [&](int i) {
+        double sum = 0.0;
+        for (int j = 0; j < 4; ++j) sum += std::fabs(texgen[j][i] * v[j]);
+        return sum;
+    };
+    const glm::dvec2 st{strq.x / strq.w, strq.y / strq.w};
+    const bool lit = strq.w > 0.0 && st.x >= region.min().x && st.x <= region.max().x && st.y >= region.min().y &&
+                     st.y <= region.max().y;
+    const glm::dvec2 extent = region.max() - region.min();
+    const double s_lost = (magnitude(0) + std::fabs(st.x) * magnitude(3)) / strq.w / extent.x;
+    const double t_lost = (magnitude(1) + std::fabs(st.y) * magnitude(3)) / strq.w / extent.y;
+    return {lit, st, strq.w, 4096.0 * 0x1p-24 * std::max(s_lost, t_lost)};
+}
+
+// S P V X, the poses first: as linear.hpp composes it.
+glm::dmat4 composed(const Rig& rig, const Projector& projector) {
+    if (rig.in == In::object)
+        return object_linear(projector, texgen::ModelMatrix(rig.pose), rig.region, rig.depth).matrix();
+    if (rig.in == In::eye) return eye_linear(projector, texgen::CameraPose(rig.pose), rig.region, rig.depth).matrix();
+    return texture_from_world(projector, rig.region, rig.depth).matrix();
+}
+
+// As a user of GLM does it, from the left in float.
+glm::dmat4 composed_in_float(const Rig& rig, const Projector& projector) {
+    const glm::mat4 s = scale_bias(projector.conventions, rig.region, rig.depth).rounded();
+    const glm::mat4 world = s * projector.projection.rounded() * projector.view.rounded();
+    return glm::dmat4(support::rounded(glm::dmat4(rig.in == In::world ? world : world * support::rounded(rig.pose))));
+}
+
+Projector projector_of(const Rig& rig, const glm::dmat4& p, const glm::dmat4& v) {
+    return {texgen::ProjectorProjection(p), texgen::ProjectorView(v), rig.conventions};
+}
+
+LensFacts all_facts(const Rig& rig) {
+    LensFacts facts{.z_near = rig.lens.z_near, .z_far = rig.lens.z_far, .mirrored = rig.mirrored};
+    if (rig.lens.is_symmetric()) {
+        facts.fovy = texgen::degrees(rig.lens.fovy);
+        facts.aspect = rig.lens.aspect;
+    }
+    return facts;
+}
+
+struct Classes {
+    int far = 0, narrow = 0, wide = 0, parallel = 0, reversed = 0, infinite = 0, off_axis = 0, mirrored = 0, tiles = 0,
+        rectangles = 0, mirrored_poses = 0, tiny = 0, huge = 0, in_float = 0, composed_in_float = 0,
+        float_projectors = 0, alone = 0, with_points = 0, of_points_with_float = 0;
+};
+
+void count(const Rig& rig, Classes& classes) {
+    const double scale = std::fabs(rig.pose[0][0]) + std::fabs(rig.pose[0][1]) + std::fabs(rig.pose[0][2]);
+    const glm::dvec3& p = rig.aim.position;
+    classes.far += std::sqrt(dot3(p, p)) > 1e6;
+    classes.narrow += rig.lens.is_symmetric() && rig.lens.fovy < 2.0;
+    classes.wide += rig.lens.is_symmetric() && rig.lens.fovy > 178.0;
+    classes.parallel += rig.lens.kind == LensKind::orthographic;
+    classes.reversed += rig.lens.is_reversed();
+    classes.infinite += rig.lens.z_far == infinity;
+    classes.off_axis += rig.lens.kind == LensKind::frustum;
+    classes.mirrored += rig.mirrored;
+    classes.tiles += rig.region.min().x > 0.0;
+    classes.rectangles += rig.region.max().x > 8.0;
+    classes.mirrored_poses +=
+        dot3(xyz(rig.pose[0]), {rig.pose[1][1] * rig.pose[2][2] - rig.pose[1][2] * rig.pose[2][1],
+                                rig.pose[1][2] * rig.pose[2][0] - rig.pose[1][0] * rig.pose[2][2],
+                                rig.pose[1][0] * rig.pose[2][1] - rig.pose[1][1] * rig.pose[2][0]}) < 0.0;
+    classes.tiny += scale < 1e-20;
+    classes.huge += scale > 1e20;
+}
+
+// A set-up that is as it should be, told in part or in whole.
+Parts valid_parts(Random& random, Classes& classes) {
+    Rig rig = random_rig(random.coin() ? extreme : ordinary, random);
+    if (!rig.lens.is_symmetric() && random.integer(0, 3) == 0) {
+        rig.mirrored = true;
+        if (random.coin()) std::swap(rig.lens.left, rig.lens.right);
+        if (random.coin()) std::swap(rig.lens.bottom, rig.lens.top);
+    }
+    count(rig, classes);
+
+    Parts parts{.in = rig.in, .region = rig.region, .depth = rig.depth};
+    if (random.coin()) parts.conventions = rig.conventions;
+    const bool is_rectangle = rig.region.max().x > 8.0;
+    if (is_rectangle && random.coin()) parts.texels_per_unit = {1.0, 1.0};
+    if (!is_rectangle && random.coin()) {
+        const double aspect = random.coin() ? 1.0 : rig.lens.aspect;
+        const double longer = random.uniform(2048.0, 4096.0);
+        parts.texels_per_unit = longer * glm::dvec2(std::min(1.0, aspect), std::min(1.0, 1.0 / aspect));
+    }
+    parts.lens.mirrored = rig.mirrored;
+    if (random.coin()) parts.lens = all_facts(rig);
+
+    // Of what is held in float: no more than half a texel of a picture of 4096 may be lost.
+    const glm::dmat4 p = projection(rig.lens, rig.conventions);
+    Projector projector = projector_of(rig, p, rig.view);
+    parts.points = lit_points(rig, random);
+    if (random.coin())
+        for (int i = random.integer(1, 7); i < 8; ++i) parts.points[static_cast<std::size_t>(i)] = random.vector3(1e3);
+    const auto loses = [&](const glm::dmat4& texgen) {
+        double lost = 0.0;
+        for (const glm::vec3& point : parts.points) {
+            const Seen at = seen(texgen, rig.region, point);
+            if (at.lit) lost = std::max(lost, at.lost);
+        }
+        // The first is before the far plane, if float could hold it.
+        return seen(texgen, rig.region, parts.points[0]).lit ? lost : infinity;
+    };
+    glm::dmat4 texgen = composed(rig, projector);
+    const bool fits_float = loses(texgen) < 0.5;
+    if (fits_float && random.integer(0, 3) == 0) {
+        const Projector rounded = projector_of(rig, to_float(p), to_float(rig.view));
+        if (rig.in == In::world || loses(composed({.conventions = rig.conventions, .in = In::world}, rounded)) < 0.5) {
+            projector = rounded;
+            texgen = composed(rig, projector);
+            ++classes.float_projectors;
+        }
+    }
+    const int form = random.integer(0, 2);
+    if (form == 1 && fits_float) {
+        texgen = to_float(texgen);
+        ++classes.in_float;
+    }
+    if (form == 2 && fits_float) {
+        const glm::dmat4 in_float = composed_in_float(rig, projector);
+        double distance = 0.0;
+        for (const glm::vec3& point : parts.points) {
+            if (!seen(texgen, rig.region, point).lit && !seen(in_float, rig.region, point).lit) continue;
+            const glm::dvec2 error = seen(in_float, rig.region, point).st - seen(texgen, rig.region, point).st;
+            const glm::dvec2 extent = rig.region.max() - rig.region.min();
+            distance = std::max({distance, std::fabs(error.x) / extent.x, std::fabs(error.y) / extent.y});
+        }
+        if (distance * 4096.0 < 0.5) {
+            texgen = in_float;
+            ++classes.composed_in_float;
+        }
+    }
+
+    // Of the points one is lit at least, and they are not all in one texel.
+    glm::dvec2 least(infinity), most(-infinity);
+    bool any_lit = false;
+    for (const glm::vec3& point : parts.points) {
+        const Seen at = seen(texgen, rig.region, point);
+        any_lit = any_lit || at.lit;
+        least = {std::min(least.x, at.st.x), std::min(least.y, at.st.y)};
+        most = {std::max(most.x, at.st.x), std::max(most.y, at.st.y)};
+    }
+    const glm::dvec2 texels =
+        parts.texels_per_unit.x > 0.0 ? parts.texels_per_unit : 4096.0 / (rig.region.max() - rig.region.min());
+    const bool is_seen = any_lit && std::max((most.x - least.x) * texels.x, (most.y - least.y) * texels.y) > 1.0;
+    parts.has_points = is_seen && random.integer(0, 3) != 0;
+
+    const int told = random.integer(0, 7);
+    if (told != 0) parts.projector = projector;
+    if (told != 1 && rig.in != In::world) parts.pose = rig.pose;
+    if (told > 2 || told == 0) parts.texgen = texgen;
+    classes.alone += told == 0;
+    classes.with_points += parts.has_points;
+    return parts;
+}
+
+// What can go wrong, the defect that it is to be found as, and the one thing about the set-up that it changes.
+enum class Thing {
+    numbers,
+    q,
+    transposition,
+    order,
+    pose,
+    scale_bias,
+    depth_of_scale_bias,
+    side_of_s,
+    side_of_t,
+    depth_of_lens,
+    signs,
+    aspect,
+    exchange,
+    transposed_projection,
+    transposed_view,
+    width,
+    age,
+    points,
+    precision,
+};
+
+struct Kind {
+    const char* name;
+    Defect defect;
+    Thing thing;
+};
+
+constexpr std::array kinds{
+    Kind{"a NaN", Defect::not_finite, Thing::numbers},
+    Kind{"never written", Defect::never_written, Thing::numbers},
+    Kind{"t written as s", Defect::rank_below_three, Thing::numbers},
+    Kind{"Q not written", Defect::q_row_zero, Thing::q},
+    Kind{"transposed", Defect::transposed, Thing::transposition},
+    Kind{"S V P X", Defect::view_projection_swapped, Thing::order},
+    Kind{"another order", Defect::wrong_order, Thing::order},
+    Kind{"V_e for its inverse", Defect::camera_not_inverted, Thing::pose},
+    Kind{"no V_e^-1", Defect::camera_left_out, Thing::pose},
+    Kind{"V_e^-1 twice", Defect::camera_inverse_doubled, Thing::pose},
+    Kind{"M^-1 for M", Defect::model_inverted, Thing::pose},
+    Kind{"no M", Defect::model_left_out, Thing::pose},
+    Kind{"M twice", Defect::model_doubled, Thing::pose},
+    Kind{"no S", Defect::scale_bias_missing, Thing::scale_bias},
+    Kind{"S twice", Defect::scale_bias_doubled, Thing::scale_bias},
+    Kind{"S of the other range", Defect::depth_range_mismatch, Thing::depth_of_scale_bias},
+    Kind{"s turned", Defect::mirrored, Thing::side_of_s},
+    Kind{"S of the other origin", Defect::upside_down, Thing::side_of_t},
+    Kind{"a lens of the other range", Defect::depth_range_mismatch, Thing::depth_of_lens},
+    Kind{"degrees for radians", Defect::angle_unit_mistaken, Thing::signs},
+    Kind{"a mirrored lens", Defect::mirrored, Thing::signs},
+    Kind{"a lens upside-down", Defect::upside_down, Thing::signs},
+    Kind{"height over width", Defect::aspect_inverted, Thing::aspect},
+    Kind{"view and projection exchanged", Defect::view_projection_swapped, Thing::exchange},
+    Kind{"a projection of rows", Defect::transposed, Thing::transposed_projection},
+    Kind{"a view of rows", Defect::transposed, Thing::transposed_view},
+    Kind{"a lens without width", Defect::rank_below_three, Thing::width},
+    Kind{"made before the projector moved", Defect::not_of_this_set_up, Thing::age},
+    Kind{"all behind", Defect::everything_behind, Thing::points},
+    Kind{"beside the slide", Defect::region_never_hit, Thing::points},
+    Kind{"in one texel", Defect::smaller_than_texel, Thing::points},
+    Kind{"float far from the origin", Defect::precision_lost, Thing::precision},
+};
+
+bool is_composition(Thing thing) {
+    return thing == Thing::transposition || thing == Thing::order || thing == Thing::pose ||
+           thing == Thing::scale_bias || thing == Thing::depth_of_scale_bias || thing == Thing::side_of_s ||
+           thing == Thing::side_of_t;
+}
+
+// Why one of two hides the other; null where both can be seen.
+const char* one_hides(Thing a, Thing b) {
+    if (a == b) return "they are two states of one thing";
+    if (a == Thing::numbers) {
+        if (is_composition(b) || b == Thing::q || b == Thing::age || b == Thing::points || b == Thing::precision)
+            return "what was lost of the matrix cannot be read";
+    }
+    if (a == Thing::age && (is_composition(b) || b == Thing::precision))
+        return "of other factors nobody knows the product";
+    if (a == Thing::scale_bias && (b == Thing::depth_of_scale_bias || b == Thing::side_of_s || b == Thing::side_of_t))
+        return "there is no one scale-bias to be wrong in itself";
+    if (a == Thing::q && (b == Thing::points || b == Thing::precision)) return "without q no point has coordinates";
+    if (a == Thing::width) {
+        if (b == Thing::signs || b == Thing::aspect || b == Thing::depth_of_lens)
+            return "a lens without width is no lens, upright or not";
+        if (is_composition(b) || b == Thing::points || b == Thing::precision || b == Thing::age)
+            return "the line that it lights is that of many products";
+    }
+    if (a == Thing::exchange && (b == Thing::transposed_projection || b == Thing::transposed_view))
+        return "a transposed matrix is neither a lens nor a pose, in whose place it may stand";
+    if (a == Thing::precision) {
+        if (is_composition(b) || b == Thing::exchange || b == Thing::transposed_projection ||
+            b == Thing::transposed_view || b == Thing::points)
+            return "the error is that of what is lit, and the slide falls elsewhere";
+    }
+    return nullptr;
+}
+
+class Faults {
+public:
+    explicit Faults(std::vector<const Kind*> faults) : faults_(std::move(faults)) {}
+
+    bool has(const char* name) const {
+        REQUIRE(
+            std::any_of(kinds.begin(), kinds.end(), [&](const Kind& kind) { return std::string(kind.name) == name; }));
+        return std::any_of(faults_.begin(), faults_.end(),
+                           [&](const Kind* kind) { return std::string(kind->name) == name; });
+    }
+    bool has(Thing thing) const {
+        return std::any_of(faults_.begin(), faults_.end(), [&](const Kind* kind) { return kind->thing == thing; });
+    }
+    bool has(Defect defect) const {
+        return std::any_of(faults_.begin(), faults_.end(), [&](const Kind* kind) { return kind->defect == defect; });
+    }
+
+private:
+    std::vector<const Kind*> faults_;
+};
+
+Rig rig_for(const Faults& faults, Random& random) {
+    Range range = ordinary;
+    if (faults.has(Thing::precision)) range.distance = 6.5;
+    if (faults.has(Thing::points)) range.parallel = false;
+    for (;;) {
+        const Rig rig = random_rig(range, random);
+        const bool needs_eye = faults.has(Defect::camera_not_inverted) || faults.has(Defect::camera_left_out) ||
+                               faults.has(Defect::camera_inverse_doubled);
+        if (needs_eye && rig.in != In::eye) continue;
+        if (faults.has(Thing::pose) && !needs_eye && rig.in != In::object) continue;
+        const bool needs_lens = faults.has(Thing::aspect) || faults.has("degrees for radians");
+        if (needs_lens && !rig.lens.is_symmetric()) continue;
+        if (faults.has(Thing::precision) && dot3(rig.aim.position, rig.aim.position) < 1e10) continue;
+        return rig;
+    }
+}
+
+Conventions of_other_range(Conventions c) {
+    return {c.depth == DepthRange::zero_to_one ? DepthRange::negative_one_to_one : DepthRange::zero_to_one, c.ndc_y,
+            c.origin};
+}
+
+// The projector's two matrices, with what is wrong with them.
+Projector spoilt_projector(const Rig& rig, const Faults& faults) {
+    Lens lens = rig.lens;
+    if (faults.has(Thing::aspect)) lens.aspect = 1.0 / lens.aspect;
+    glm::dmat4 p =
+        projection(lens, faults.has(Thing::depth_of_lens) ? of_other_range(rig.conventions) : rig.conventions);
+    glm::dmat4 v = rig.view;
+    if (faults.has("degrees for radians")) {
+        const double focal_length = 1.0 / std::tan(0.5 * lens.fovy);
+        p[0][0] = focal_length / lens.aspect;
+        p[1][1] = std::copysign(1.0, p[1][1]) * focal_length;
+    }
+    for (int i = 0; i < 4; ++i) {
+        if (faults.has("a mirrored lens")) p[i][0] = -p[i][0];
+        if (faults.has("a lens upside-down")) p[i][1] = -p[i][1];
+    }
+    if (faults.has(Thing::width)) p[0][0] = 0.0;
+    if (faults.has(Thing::transposed_projection)) p = transposed(p);
+    if (faults.has(Thing::transposed_view)) v = transposed(v);
+    if (faults.has(Thing::exchange)) std::swap(p, v);
+    return projector_of(rig, p, v);
+}
+
+// An order of S (0), P (1), V (2), X (3) of which those that are there stand neither right nor with V and P exchanged.
+std::optional<std::array<int, 4>> wrong_order(bool has_s, bool has_x, Random& random) {
+    std::array<int, 4> order{0, 1, 2, 3};
+    for (int i = 3; i > 0; --i)
+        std::swap(order[static_cast<std::size_t>(i)], order[static_cast<std::size_t>(random.integer(0, i))]);
+    std::vector<int> left;
+    for (const int factor : order)
+        if ((factor != 0 || has_s) && (factor != 3 || has_x)) left.push_back(factor);
+    std::vector<int> swapped = left;
+    for (int& factor : swapped) factor = factor == 1 ? 2 : factor == 2 ? 1 : factor;
+    if (std::is_sorted(left.begin(), left.end()) || std::is_sorted(swapped.begin(), swapped.end())) return std::nullopt;
+    return order;
+}
+
+// The texgen matrix, with what is wrong with it; empty where chance made it right, or the wrongs cancel.
+std::optional<glm::dmat4> spoilt_texgen(const Rig& rig, const Projector& given, const Faults& faults, Random& random) {
+    Projector projector = given;
+    if (faults.has(Thing::age)) projector.view = texgen::ProjectorView(random.rigid(5.0) * projector.view.matrix());
+    if (faults.has(Thing::precision))
+        return rig.in == In::world ? to_float(composed(rig, projector)) : composed_in_float(rig, projector);
+
+    const Conventions c = faults.has(Thing::depth_of_scale_bias) ? of_other_range(rig.conventions) : rig.conventions;
+    const bool halves = faults.has(Thing::depth_of_scale_bias) && rig.conventions.depth == DepthRange::zero_to_one;
+    glm::dmat4 s = scale_bias(c, rig.region, halves ? DepthMapping::unit : rig.depth).matrix();
+    if (faults.has(Thing::depth_of_scale_bias) && s == scale_bias(rig.conventions, rig.region, rig.depth).matrix())
+        return std::nullopt;  // depth in NDC is the same for both
+    if (faults.has(Thing::side_of_s)) s[0][0] = -s[0][0];
+    if (faults.has(Thing::side_of_t)) s[1][1] = -s[1][1];
+    if (faults.has(Defect::scale_bias_missing)) s = glm::dmat4(1.0);
+    if (faults.has(Defect::scale_bias_doubled)) s = s * s;
+
+    glm::dmat4 x = rig.in == In::world ? glm::dmat4(1.0) : rig.pose;
+    const bool left_out = faults.has(Defect::camera_left_out) || faults.has(Defect::model_left_out);
+    if (left_out) x = glm::dmat4(1.0);
+    if (faults.has(Defect::camera_not_inverted) || faults.has(Defect::model_inverted)) {
+        const auto inverted = inverse(texgen::ModelMatrix(x));
+        REQUIRE(inverted);
+        x = inverted->matrix();
+    }
+    if (faults.has(Defect::camera_inverse_doubled) || faults.has(Defect::model_doubled)) x = x * x;
+
+    std::optional<std::array<int, 4>> order = std::array{0, 1, 2, 3};
+    if (faults.has("S V P X")) order = std::array{0, 2, 1, 3};
+    if (faults.has("another order"))
+        order = wrong_order(!faults.has(Defect::scale_bias_missing), rig.in != In::world && !left_out, random);
+    if (!order) return std::nullopt;
+    const std::array<glm::dmat4, 4> factors{s, projector.projection.matrix(), projector.view.matrix(), x};
+    const auto factor = [&](std::size_t i) { return factors[static_cast<std::size_t>((*order)[i])]; };
+    glm::dmat4 texgen = factor(0) * factor(1) * (factor(2) * factor(3));
+    // Far planes do not tell one range of depth from the other, so that in float it may be lost.
+    if (random.coin() && !faults.has(Thing::points) && !faults.has(Thing::depth_of_scale_bias))
+        texgen = to_float(texgen);
+
+    const bool transpose_last = random.coin();
+    if (faults.has(Thing::transposition) && !transpose_last) texgen = transposed(texgen);
+    const bool keeps_r = faults.has(Thing::depth_of_scale_bias) || random.coin();
+    for (int i = 0; i < 4 && faults.has(Thing::q); ++i) {
+        if (!keeps_r) texgen[i][2] = 0.0;
+        texgen[i][3] = 0.0;
+    }
+    if (faults.has(Thing::transposition) && transpose_last) texgen = transposed(texgen);
+    for (int i = 0; i < 4 && faults.has("t written as s"); ++i) texgen[i][1] = texgen[i][0];
+    if (faults.has("a NaN")) texgen[random.integer(0, 3)][random.integer(0, 3)] = random.coin() ? nan_double : infinity;
+    if (faults.has("never written")) {
+        texgen = glm::dmat4(0.0);
+        if (random.coin()) texgen[0][0] = texgen[1][1] = 1.0;
+    }
+    return texgen;
+}
+
+// Moves a point to where the form is `value`, along its gradient.
+glm::vec3 moved(const glm::vec3& point, const glm::dvec4& form, double value) {
+    const glm::dvec3 gradient = xyz(form), from = glm::dvec3(point);
+    return glm::vec3(from + (value - dot3(gradient, from) - form.w) / dot3(gradient, gradient) * gradient);
+}
+
+// Whether the points could be had.
+bool place_points(const Rig& rig, const glm::dmat4& texgen, const Faults& faults, Random& random, Parts& parts) {
+    const glm::dvec4 q = row(texgen, 3);
+    const double size = std::fabs(q.w) + std::sqrt(dot3(xyz(q), xyz(q)));
+    if (faults.has("all behind")) {
+        for (glm::vec3& point : parts.points) {
+            point = moved(random.vector3(10.0), q, -random.uniform(0.1, 10.0) * size);
+            if (!(seen(texgen, rig.region, point).q < -1e-3 * size)) return false;
+        }
+    }
+    if (faults.has("beside the slide")) {
+        const bool right = random.coin();
+        const glm::dvec4 side =
+            right ? row(texgen, 0) - rig.region.max().x * q : rig.region.min().y * q - row(texgen, 1);
+        const double unit = std::fabs(side.w) + std::sqrt(dot3(xyz(side), xyz(side)));
+        for (glm::vec3& point : parts.points) {
+            point = moved(random.vector3(10.0), side, random.uniform(0.1, 10.0) * unit);
+            if (!(dot3(xyz(side), glm::dvec3(point)) + side.w > 1e-3 * unit)) return false;
+        }
+        if (!(seen(texgen, rig.region, parts.points[0]).q > 0.0)) return false;
+    }
+    if (faults.has("in one texel")) {
+        const glm::vec3 centre = seen(texgen, rig.region, parts.points[0]).lit
+                                     ? parts.points[0]
+                                     : moved(random.vector3(10.0), q, random.uniform(0.5, 5.0) * size);
+        const Seen at = seen(texgen, rig.region, centre);
+        double most = 0.0;
+        for (glm::vec3& point : parts.points) {
+            point = centre + random.vector3(1e-5 * static_cast<double>(std::fabs(centre.x) + std::fabs(centre.y)));
+            if (!(seen(texgen, rig.region, point).q > 1e-3 * size)) return false;
+            const glm::dvec2 away = seen(texgen, rig.region, point).st - at.st;
+            const glm::dvec2 extent = rig.region.max() - rig.region.min();
+            most = std::max({most, std::fabs(away.x) / extent.x, std::fabs(away.y) / extent.y});
+        }
+        if (!(4096.0 * most < 0.4) || parts.points[0] == parts.points[1]) return false;
+    }
+    return true;
+}
+
+// The largest error of the coordinates that the matrix gives to lit points, in texels of a picture of 4096.
+double measured_error(const Rig& rig, const Projector& projector, const Parts& parts) {
+    const glm::dmat4 right = composed(rig, projector);
+    const glm::dvec2 extent = rig.region.max() - rig.region.min();
+    double worst = 0.0;
+    for (const glm::vec3& point : parts.points) {
+        const Seen at = seen(right, rig.region, point);
+        const glm::dvec2 error = seen(*parts.texgen, rig.region, point).st - at.st;
+        if (at.lit)
+            worst = std::max({worst, 4096.0 * std::fabs(error.x) / extent.x, 4096.0 * std::fabs(error.y) / extent.y});
+    }
+    return worst;
+}
+
+struct Spoilt {
+    Parts parts;
+    double error_in_texels = 0.0;
+};
+
+Spoilt spoilt(const Faults& faults, Random& random) {
+    for (int attempt = 0; attempt < 1000; ++attempt) {
+        const Rig rig = rig_for(faults, random);
+        const Projector projector = spoilt_projector(rig, faults);
+        Spoilt result{{.projector = projector, .in = rig.in, .region = rig.region, .depth = rig.depth}};
+        Parts& parts = result.parts;
+        parts.texgen = spoilt_texgen(rig, projector, faults, random);
+        if (!parts.texgen) continue;
+        if (rig.in != In::world) parts.pose = rig.pose;
+        if (random.coin()) parts.lens = all_facts(rig);
+        if (faults.has(Thing::depth_of_lens)) {
+            parts.lens.z_near = rig.lens.z_near;
+            parts.lens.z_far = rig.lens.z_far;
+        }
+        if (faults.has(Thing::aspect)) {
+            parts.lens.aspect = std::nullopt;
+            const glm::dvec2 extent = rig.region.max() - rig.region.min();
+            if (random.coin() || faults.has(Thing::precision) || faults.has(Thing::points))
+                parts.lens.aspect = rig.lens.aspect;
+            else
+                parts.texels_per_unit = 1000.0 * glm::dvec2(rig.lens.aspect, 1.0) / extent;
+        }
+        if (faults.has("degrees for radians")) {
+            // Where the tangent is positive, only the angle that was meant can tell.
+            const double tangent = std::tan(0.5 * rig.lens.fovy);
+            if (tangent > 0.0 || random.coin()) parts.lens.fovy = texgen::degrees(rig.lens.fovy);
+            if (std::fabs(tangent) < 1e-3 || std::fabs(tangent) > 1e3) continue;
+        }
+        if (faults.has(Thing::points) || faults.has(Thing::precision) || random.coin()) {
+            parts.has_points = true;
+            parts.points = lit_points(rig, random);
+            if (!place_points(rig, *parts.texgen, faults, random, parts)) continue;
+        }
+        if (faults.has(Thing::precision)) {
+            result.error_in_texels = measured_error(rig, projector, parts);
+            if (!(result.error_in_texels > 1.0 && result.error_in_texels < 1e6)) continue;
+        }
+        return result;
+    }
+    FAIL("no such set-up");
+    return {};
+}
+
+}  // namespace
+
+TEST_CASE("no valid set-up of a million is found fault with") {
+    Random random(600);
+    Classes classes;
+    for (int i = 0; i < 1000000; ++i) {
+        const Parts parts = valid_parts(random, classes);
+        const Diagnosis diagnosis = diagnosis_of(parts);
+        if (!diagnosis.empty()) FAIL(i, " ", text(diagnosis), " in ", text(parts));
+    }
+    for (const int seen_so_often :
+         {classes.far, classes.narrow, classes.wide, classes.parallel, classes.reversed, classes.infinite,
+          classes.off_axis, classes.mirrored, classes.tiles, classes.rectangles, classes.mirrored_poses, classes.tiny,
+          classes.huge, classes.in_float, classes.composed_in_float, classes.float_projectors, classes.alone,
+          classes.with_points})
+        CHECK(seen_so_often > 1000);
+}
+
+TEST_CASE("every defect of the corpus is found, and stands first") {
+    for (const Kind& kind : kinds) {
+        Random random(601);
+        for (int i = 0; i < 100; ++i) {
+            const Spoilt set_up = spoilt(Faults({&kind}), random);
+            const Diagnosis diagnosis = diagnosis_of(set_up.parts);
+            const auto context = [&] { return kind.name + (": " + text(diagnosis)) + " in " + text(set_up.parts); };
+            REQUIRE_MESSAGE(!diagnosis.empty(), context());
+            REQUIRE_MESSAGE(diagnosis[0].defect == kind.defect, context());
+            if (kind.thing == Thing::precision)
+                REQUIRE_MESSAGE(diagnosis[0].number > 0.99 * set_up.error_in_texels, context());
+        }
+    }
+}
+
+// A set-up without its projector, or with nothing else.
+Diagnosis diagnosis_alone(Parts parts) {
+    parts.projector = std::nullopt;
+    parts.pose = std::nullopt;
+    return diagnosis_of(parts);
+}
+
+TEST_CASE("a texgen matrix alone shows what its rows can show") {
+    for (const Kind& kind : kinds) {
+        const bool is_shown = kind.thing == Thing::numbers || kind.thing == Thing::q ||
+                              kind.thing == Thing::transposition || kind.thing == Thing::order ||
+                              kind.thing == Thing::points || kind.thing == Thing::precision;
+        if (!is_shown) continue;
+        Random random(603);
+        for (int i = 0; i < 100; ++i) {
+            const Spoilt set_up = spoilt(Faults({&kind}), random);
+            // Of a product alone nobody knows its factors: with rows r and q that belong together it could be right.
+            const Diagnosis diagnosis = diagnosis_alone(set_up.parts);
+            const auto context = [&] { return kind.name + (": " + text(diagnosis)) + " in " + text(set_up.parts); };
+            if (kind.thing == Thing::order) {
+                const glm::dmat4& m = *set_up.parts.texgen;
+                const glm::dvec3 r = xyz(row(m, 2)), q = xyz(row(m, 3));
+                const double along = dot3(r, q) * dot3(r, q) / (dot3(r, r) * dot3(q, q));
+                if (along < 0.9)
+                    REQUIRE_MESSAGE((diagnosis.contains(Defect::wrong_order) || diagnosis.contains(Defect::transposed)),
+                                    context());
+                continue;
+            }
+            // What was lost before the matrix was made has left no trace in it.
+            if (kind.thing == Thing::precision && set_up.parts.in != In::world) continue;
+            REQUIRE_MESSAGE(!diagnosis.empty(), context());
+            REQUIRE_MESSAGE(diagnosis[0].defect == kind.defect, context());
+            // As planes, all the same.
+            if (kind.thing != Thing::numbers && kind.thing != Thing::q) continue;
+            const Diagnosis of_planes = texgen::diagnose(planes(texgen::WorldTexgen(*set_up.parts.texgen)));
+            REQUIRE_MESSAGE(of_planes.contains(kind.defect), context());
+        }
+    }
+}
+
+TEST_CASE("a projector alone shows what its matrices can show") {
+    for (const Kind& kind : kinds) {
+        const bool is_shown = kind.thing == Thing::signs || kind.thing == Thing::exchange ||
+                              kind.thing == Thing::transposed_projection || kind.thing == Thing::transposed_view ||
+                              kind.thing == Thing::width || kind.thing == Thing::depth_of_lens;
+        if (!is_shown) continue;
+        Random random(604);
+        int found = 0;
+        for (int i = 0; i < 100; ++i) {
+            const Spoilt set_up = spoilt(Faults({&kind}), random);
+            const glm::dmat4& p = set_up.parts.projector->projection.matrix();
+            // A positive tangent is that of some angle, and a depth that is not reversed that of some near plane.
+            if (kind.defect == Defect::angle_unit_mistaken && p[0][0] > 0.0) continue;
+            if (kind.thing == Thing::depth_of_lens &&
+                !(p[2][3] != 0.0 && p[3][2] > 0.0 &&
+                  set_up.parts.projector->conventions.depth == DepthRange::negative_one_to_one))
+                continue;
+            ++found;
+            const Diagnosis diagnosis = diagnose(*set_up.parts.projector);
+            const auto context = [&] { return kind.name + (": " + text(diagnosis)) + " in " + text(set_up.parts); };
+            REQUIRE_MESSAGE(!diagnosis.empty(), context());
+            REQUIRE_MESSAGE(diagnosis[0].defect == kind.defect, context());
+        }
+        CHECK_MESSAGE(found > 5, kind.name);
+    }
+}
+
+TEST_CASE("reversed depth in the wrong range, and a mirrored picture in the world, show in the matrix alone") {
+    Random random(605);
+    int reversed = 0, mirrored = 0;
+    while (reversed < 100 || mirrored < 100) {
+        Rig rig = random_rig(ordinary, random);
+        const glm::dmat4 p = projection(rig.lens, rig.conventions);
+        if (rig.lens.is_reversed() && rig.conventions.depth == DepthRange::zero_to_one) {
+            // OpenGL's scale-bias on depth in [0, 1].
+            Rig opengl_depth = rig;
+            opengl_depth.conventions = of_other_range(rig.conventions);
+            opengl_depth.depth = DepthMapping::unit;
+            const glm::dmat4 texgen = composed(opengl_depth, projector_of(opengl_depth, p, rig.view));
+            const Diagnosis diagnosis = diagnosis_of({.texgen = texgen, .in = rig.in});
+            REQUIRE_MESSAGE(diagnosis.size() == 1, text(diagnosis));
+            REQUIRE_MESSAGE(diagnosis.contains(Defect::depth_range_mismatch), text(diagnosis));
+            ++reversed;
+        }
+        if (rig.lens.kind != LensKind::orthographic) {
+            glm::dmat4 turned = p;
+            for (int i = 0; i < 4; ++i) turned[i][0] = -turned[i][0];
+            Parts parts{.texgen = composed(rig, projector_of(rig, turned, rig.view)),
+                        .in = rig.in,
+                        .region = rig.region,
+                        .conventions = rig.conventions};
+            if (rig.in != In::world) parts.pose = rig.pose;
+            const Diagnosis diagnosis = diagnosis_of(parts);
+            REQUIRE_MESSAGE(diagnosis.size() == 1, text(diagnosis));
+            REQUIRE_MESSAGE(diagnosis.contains(Defect::mirrored), text(diagnosis));
+            parts.lens.mirrored = true;
+            REQUIRE(diagnosis_of(parts).empty());
+            ++mirrored;
+        }
+    }
+}
+
+TEST_CASE("of two defects of the corpus both are found, where neither hides the other") {
+    int pairs = 0, hidden = 0;
+    for (const Kind& first : kinds) {
+        for (const Kind& second : kinds) {
+            if (&first >= &second) continue;
+            if (one_hides(first.thing, second.thing) != nullptr || one_hides(second.thing, first.thing) != nullptr) {
+                ++hidden;
+                continue;
+            }
+            ++pairs;
+            Random random(602);
+            for (int i = 0; i < 10; ++i) {
+                const Spoilt set_up = spoilt(Faults({&first, &second}), random);
+                const Diagnosis diagnosis = diagnosis_of(set_up.parts);
+                const auto context = [&] {
+                    return first.name + std::string(" and ") + second.name + ": " + text(diagnosis) + " in " +
+                           text(set_up.parts);
+                };
+                CHECK_MESSAGE((diagnosis.contains(first.defect) && diagnosis.contains(second.defect)), context());
+            }
+        }
+    }
+    MESSAGE(pairs, " pairs, ", hidden, " hidden");
+    CHECK(pairs > hidden);
+}
+
+TEST_CASE("what is not finite is said of every argument, and what can be seen beside it as well") {
+    Random random(606);
+    for (const double bad : {nan_double, infinity, -infinity}) {
+        for (int i = 0; i < 300; ++i) {
+            const Rig rig = random_rig(ordinary, random);
+            const Projector good = projector_of(rig, projection(rig.lens, rig.conventions), rig.view);
+            Parts parts{.projector = good,
+                        .pose = rig.pose,
+                        .texgen = composed(rig, good),
+                        .in = rig.in,
+                        .points = lit_points(rig, random),
+                        .has_points = true,
+                        .region = rig.region,
+                        .depth = rig.depth,
+                        .lens = all_facts(rig)};
+            if (rig.in == In::world) parts.pose = std::nullopt;
+            REQUIRE_MESSAGE(diagnosis_of(parts).empty(), text(diagnosis_of(parts)), " in ", text(parts));
+            const auto spoil = [&](glm::dmat4 m) {
+                m[random.integer(0, 3)][random.integer(0, 3)] = bad;
+                return m;
+            };
+            Parts spoilt_parts = parts;
+            const int which = random.integer(0, 9);
+            if (which == 0)
+                spoilt_parts.projector->projection = texgen::ProjectorProjection(spoil(good.projection.matrix()));
+            if (which == 1) spoilt_parts.projector->view = texgen::ProjectorView(spoil(rig.view));
+            if (which == 2) spoilt_parts.pose = spoil(rig.pose);
+            if (which == 3) spoilt_parts.texgen = spoil(*parts.texgen);
+            if (which == 4)
+                spoilt_parts.points[static_cast<std::size_t>(random.integer(0, 7))].y = static_cast<float>(bad);
+            if (which == 5) spoilt_parts.region = texgen::atlas_tile({0.0, bad}, {1.0, 1.0});
+            if (which == 6) spoilt_parts.texels_per_unit = {512.0, bad};
+            if (which == 7) spoilt_parts.lens.z_near = bad;
+            if (which == 8) spoilt_parts.lens.aspect = bad;
+            if (which == 9) spoilt_parts.lens.fovy = texgen::radians(bad);
+            const Diagnosis diagnosis = diagnosis_of(spoilt_parts);
+            REQUIRE_MESSAGE(diagnosis.contains(Defect::not_finite), which, " ", text(diagnosis));
+            REQUIRE_MESSAGE(diagnosis[0].defect == Defect::not_finite, which, " ", text(diagnosis));
+        }
+    }
+    // Any bits whatever: an answer, and no more.
+    for (int i = 0; i < 20000; ++i) {
+        const auto any_matrix = [&] {
+            glm::dmat4 m(0.0);
+            for (int j = 0; j < 16; ++j) m[j / 4][j % 4] = static_cast<double>(random.any_float());
+            return m;
+        };
+        Parts parts{.in = static_cast<In>(random.integer(0, 2)), .has_points = random.coin()};
+        if (random.coin())
+            parts.projector = Projector{texgen::ProjectorProjection(any_matrix()), texgen::ProjectorView(any_matrix()),
+                                        any_conventions(random)};
+        if (random.coin()) parts.pose = any_matrix();
+        if (random.coin()) parts.texgen = any_matrix();
+        for (glm::vec3& point : parts.points) point = {random.any_float(), random.any_float(), random.any_float()};
+        const Diagnosis diagnosis = diagnosis_of(parts);
+        REQUIRE(diagnosis.size() <= texgen::defect_count);
+    }
+}
+
+TEST_CASE("a region without points or below a texel is said without any point") {
+    const auto of_region = [](const TextureRegion& region) {
+        return diagnose(Setup<Object>{.region = region, .texels_per_unit = {256.0, 256.0}});
+    };
+    CHECK(of_region(texgen::whole_texture()).empty());
+    CHECK(of_region(texgen::atlas_tile({0.5, 0.0}, {0.25, 1.0})).contains(Defect::region_never_hit));
+    const Diagnosis small = of_region(texgen::atlas_tile({0.5, 0.0}, {0.501, 1.0}));
+    REQUIRE(small.contains(Defect::smaller_than_texel));
+    CHECK(small[0].number == doctest::Approx(0.256));
+}
+
+TEST_CASE("a fan whose vertices all miss the slide may be lit in its middle, and is not found fault with") {
+    const glm::vec3 around[] = {{-9.0f, -9.0f, -2.0f}, {9.0f, -9.0f, -2.0f}, {9.0f, 9.0f, -2.0f}, {-9.0f, 9.0f, -2.0f}};
+    const texgen::PerspectiveLens lens{.fovy = texgen::degrees(30), .aspect = 1, .z_near = 0.2, .z_far = 1000};
+    const auto projector =
+        make_projector(lens, {.position = {0, 0, 0}, .target = {0, 0, -1}, .up = {0, 1, 0}}, texgen::opengl);
+    REQUIRE(projector);
+    Setup<World> setup{.projector = projector, .points = texgen::world_space(around)};
+    CHECK(diagnose(setup).empty());
+    setup.points = texgen::world_space(std::span(around).first(2));
+    CHECK(diagnose(setup).contains(Defect::region_never_hit));
+}
+
+TEST_CASE("findings keep their order, each once, and each has two sentences") {
+    Diagnosis diagnosis;
+    Random random(607);
+    for (int i = 0; i < 1000; ++i)
+        diagnosis.add(static_cast<Defect>(random.integer(0, static_cast<int>(texgen::defect_count) - 1)), i);
+    REQUIRE(diagnosis.size() == texgen::defect_count);
+    for (std::size_t i = 0; i < diagnosis.size(); ++i) {
+        CHECK(static_cast<std::size_t>(diagnosis[i].defect) == i);
+        CHECK(diagnosis[i].what().ends_with('.'));
+        CHECK(diagnosis[i].remedy().ends_with('.'));
+        for (std::size_t j = 0; j < i; ++j) CHECK(diagnosis[i].what() != diagnosis[j].what());
+    }
+}
+
+TEST_CASE("the diagnosis allocates nothing") {
+    Random random(608);
+    std::vector<Parts> set_ups;
+    for (const Kind& kind : kinds) set_ups.push_back(spoilt(Faults({&kind}), random).parts);
+    const std::size_t before = allocations;
+    std::size_t findings = 0;
+    for (const Parts& parts : set_ups) findings += diagnosis_of(parts).size() + diagnose(*parts.projector).size();
+    const std::size_t after = allocations;
+    CHECK(after == before);
+    CHECK(findings >= kinds.size());
+    CHECK(allocations > 0);
+}
+
+static_assert(noexcept(diagnose(std::declval<const Projector&>())));
+static_assert(noexcept(diagnose(std::declval<const Setup<Object>&>())));
+static_assert(noexcept(diagnose(std::declval<const texgen::EyeTexgen&>())));
+static_assert(noexcept(texgen::diagnose(std::declval<const std::array<glm::vec4, 4>&>())));
+static_assert(noexcept(std::declval<const texgen::Finding&>().what()));
