@@ -4,12 +4,12 @@
 // window, so polygons are cut at the near plane while they are homogeneous, and only then divided; likewise with what is
 // behind the projector or outside its slide. The slide's planes, for hardware that clips, stand here too.
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <span>
+#include <utility>
 
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
@@ -81,6 +81,12 @@ inline ClipVertex between(double weight_a, const ClipVertex& a, double weight_b,
     return result;
 }
 
+// The w, or q, at which an edge is cut that leads behind: a small part of that of its end in front, and above 0.
+inline float just_in_front(float inside) noexcept {
+    constexpr float least = std::numeric_limits<float>::denorm_min();
+    return 0x1p-20f * inside > least ? 0x1p-20f * inside : least;
+}
+
 // Cuts the convex polygon in storage[0, count) and returns the new count. cut(inside, outside) makes the new vertex of
 // an edge: given its ends by their sides, and not by the order of the walk, it makes the same one for both neighbours.
 template <class Cut>
@@ -100,8 +106,13 @@ std::size_t cut_convex(std::span<ClipVertex> storage, std::size_t count, const C
     if (inside == count) return count;
     // Otherwise nothing is inside, or the polygon is not convex, or there is no room.
     if (entries != 1 || inside + 2 > storage.size()) return 0;
-    const auto first = storage.begin();
-    std::rotate(first, first + static_cast<std::ptrdiff_t>(entry), first + static_cast<std::ptrdiff_t>(count));
+    // A rotation; <algorithm> would take every user longer to compile than all of this header.
+    const auto reverse = [storage](std::size_t begin, std::size_t end) {
+        for (; begin + 1 < end; ++begin, --end) std::swap(storage[begin], storage[end - 1]);
+    };
+    reverse(0, entry);
+    reverse(entry, count);
+    reverse(0, count);
 
     // Now storage[0] is outside, storage[1 .. inside] are inside, and the rest is outside.
     const ClipVertex before = storage[0];
@@ -171,7 +182,7 @@ inline std::size_t clip_to_near(std::span<const ClipVertex> polygon, std::span<C
     // The terms of w are at most 2^20 of it, so that double errs by 2^-33 of it and the nearest float is the w aimed at;
     // for the same reason z stays in front of the near plane, as that of both ends is.
     const auto cut_before_eye = [](const ClipVertex& inside, const ClipVertex& outside) {
-        const float w = std::max(0x1p-20f * inside.position.w, std::numeric_limits<float>::denorm_min());
+        const float w = detail::just_in_front(inside.position.w);
         return detail::between(w - detail::widened(outside.position.w), inside, detail::widened(inside.position.w) - w,
                                outside);
     };
@@ -264,11 +275,11 @@ inline ClipVertex cut_at(const SlideDistance& side, const ClipVertex& inside, co
 // written at its begin grows into the room that is free.
 template <class Sign, class Cut>
 std::size_t cut_edges(std::span<ClipVertex> storage, std::size_t count, const Sign& sign, const Cut& cut) noexcept {
-    const auto begin = storage.begin();
-    const auto end = begin + static_cast<std::ptrdiff_t>(count);
-    if (std::all_of(begin, end, [&](const ClipVertex& v) { return sign(v) >= 0; })) return count;
-    std::copy_backward(begin, end, storage.end());
+    std::size_t inside = 0;
+    while (inside < count && sign(storage[inside]) >= 0) ++inside;
+    if (inside == count) return count;
     const std::size_t first = storage.size() - count;
+    for (std::size_t i = count; i-- > 0;) storage[first + i] = storage[i];
     const ClipVertex first_vertex = storage[first];
     ClipVertex to = first_vertex;
     int to_sign = sign(to);
@@ -358,7 +369,7 @@ inline std::size_t clip_to_slide(std::span<const ClipVertex> polygon, TextureReg
     }
     const auto in_front = [](const ClipVertex& v) { return v.strq.w > 0.0f ? 1 : -1; };
     const auto cut_before_projector = [](const ClipVertex& inside, const ClipVertex& outside) {
-        const float q = std::max(0x1p-20f * inside.strq.w, std::numeric_limits<float>::denorm_min());
+        const float q = detail::just_in_front(inside.strq.w);
         return detail::between(q, inside, detail::widened(inside.strq.w) - q, outside);
     };
     return detail::cut_edges(out, count, in_front, cut_before_projector);

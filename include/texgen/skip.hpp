@@ -2,7 +2,6 @@
 
 // Floor 6: what a primitive, a batch or a box needs. Work that is not needed is not done.
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -141,7 +140,7 @@ void cover(const LitForms& forms, const FloatForms& float_forms, std::span<const
             kernels.classify(float_forms, &boxes[begin].min.x, count, classes);
         } else {
             Box copy[box_quantum] = {};
-            std::copy_n(boxes.begin() + static_cast<std::ptrdiff_t>(begin), count, copy);
+            for (std::size_t i = 0; i < count; ++i) copy[i] = boxes[begin + i];
             kernels.classify(float_forms, &copy[0].min.x, box_quantum, classes);
         }
         // Without a branch: partial and doubtful are the odd ones.

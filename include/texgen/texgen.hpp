@@ -1,6 +1,7 @@
 #pragma once
 
-// The umbrella: everything but reference.hpp and eigen.hpp, which need Eigen.
+// The umbrella: everything but reference.hpp and eigen.hpp, which need Eigen, and scene.hpp, which needs std::vector: what
+// the umbrella costs every file to compile is kept below three times GLM's own headers.
 
 #include "clip.hpp"
 #include "conventions.hpp"
@@ -12,7 +13,6 @@
 #include "primitives.hpp"
 #include "projector.hpp"
 #include "scale_bias.hpp"
-#include "scene.hpp"
 #include "skip.hpp"
 #include "texcoord.hpp"
 #include "transform.hpp"
