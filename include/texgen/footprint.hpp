@@ -327,7 +327,7 @@ private:
         job.width = tile.width;
         job.height = tile.height;
         job.q = {at.q_ramp.base * q_scale, at.q_ramp.dx * q_scale, at.q_ramp.dy * q_scale};
-        job.in_float = float_fits(tile, at, numerator);
+        job.derivatives_in_float = float_fits(tile, at, numerator);
         job.pitch = rect_.width;
         const std::size_t offset = this->offset(tile.x, tile.y);
         const auto array = [offset](std::span<float> span) { return span.empty() ? nullptr : span.data() + offset; };
@@ -346,7 +346,8 @@ private:
 
         const double back = q_scale_squared / texel_scale;  // from a length of the job to texels, but for 1 / Q^2
         const double determinant = std::fabs(setup_.determinant_ * texels.s * texels.t);
-        job.level_offset = static_cast<float>(2.0 * std::log2(q_scale) - std::log2(texel_scale));
+        job.filters_in_float = job.derivatives_in_float || float_serves_filters(tile, at, job.texels);
+        job.level_offset = static_cast<float>(2 * exponent_of(q_scale) - exponent_of(texel_scale));
         job.anisotropy_factor = factor_of(q_scale / (texel_scale * texel_scale * determinant));
         job.major_factor[0] = factor_of(back / texels.s);
         job.major_factor[1] = factor_of(back / texels.t);
@@ -360,6 +361,25 @@ private:
     }
 
     static float factor_of(double factor) noexcept { return static_cast<float>(factor); }
+
+    static int exponent_of(double power_of_two) noexcept {
+        return static_cast<int>(std::bit_cast<std::uint64_t>(power_of_two) >> 52) - 1023;
+    }
+
+    // Whether columns of J Q^2 and Q in float are within 2^-19 of themselves, which leaves level, anisotropy and major within
+    // 2^-16. With u = 2^-24 base, slope, product and sum of a component N are rounded: u (2 |N| + 2 |twist| width), where |N|
+    // is at most about 1; and one of the columns is nowhere shorter than at the first fragment less what the twist takes.
+    static bool float_serves_filters(const Tile& tile, const Corners& at,
+                                     const FootprintJob::Slope (&texels)[2]) noexcept {
+        constexpr double u = 1.001 * unit_roundoff_float;
+        const auto length = [](double s, double t) { return std::sqrt(s * s + t * t); };
+        const double twist = length(texels[0].twist, texels[1].twist);
+        const double least = larger(length(texels[0].dx, texels[1].dx) - tile.height * twist,
+                                    length(texels[0].dy, texels[1].dy) - tile.width * twist);
+        const double error = 1.5 * u * (4.0 + 2.0 * tile.width * twist);
+        const double q_error = u * (2.0 * at.largest_q + 2.0 * tile.width * std::fabs(at.q_ramp.dx));
+        return error <= 0x1p-19 * least && q_error <= 0x1p-19 * at.least_q;
+    }
 
     // The error of N/Q^2 in float, with u = 2^-24: base, slope, product and sum of both are rounded, then the reciprocal,
     // its square and the product.
@@ -427,8 +447,8 @@ inline namespace TEXGEN_BUILD {
 // The footprints of a rectangle. Returns whether the slide may light any of its fragments; where it lights none, nothing is
 // written, as interpolate() does not for Work::nothing.
 // Guarantee: in front of the projector the derivatives are within setup.error_bound(rect): with `exact` next to half an ulp,
-// with a tolerance within max(tolerance, that), in units of s and t a pixel. level is within 2^-18 max(1, |level| / 32) of
-// that of derivatives within the bound, anisotropy and major within 2^-18 of theirs (major relative to its length; where
+// with a tolerance within max(tolerance, that), in units of s and t a pixel. level is within 2^-16 max(1, |level| / 32) of
+// that of derivatives within the bound, anisotropy and major within 2^-16 of theirs (major relative to its length; where
 // the anisotropy is near 1 its direction means nothing). Behind, all are 0, the sign of q decided exactly. No allocation,
 // noexcept.
 // Shapes: each output has width * height floats, row-major, or none (asserted). Fragments outside the triangle get the
@@ -482,7 +502,7 @@ inline std::optional<FootprintExtremes> FootprintSetup::extremes(const detail::W
     if (!detail::is_usable(texels_)) return FootprintExtremes{nan, nan, nan, nan, nan};
 
     // What the bounds leave for the roundings of the footprints themselves, of level and of area and anisotropy.
-    constexpr double slack = 0x1p-17;
+    constexpr double slack = 0x1p-15;
     const auto level = [&](double square, double outward) {
         const double middle = 0.5 * std::log2(square);
         return middle + outward * slack * detail::larger(1.0, std::fabs(middle) / 32.0);

@@ -13,23 +13,24 @@ TEXGEN_INLINE void store_some(float* to, int count, const Vector& values) noexce
     for (int i = 0; i < count; ++i) to[i] = buffer[i];
 }
 
-// Calls do_vector(x, count) over a row, whole vectors as long as there is room for one: the last overlaps the one before.
-template <int Lanes, class DoVector>
-TEXGEN_INLINE void for_each_vector(int width, const DoVector& do_vector) noexcept {
-    const int count = width < Lanes ? width : Lanes;
-    for (int x = 0; x < width; x += Lanes) do_vector(x + count <= width ? x : width - count, count);
+// A row is done in vectors of `count` fragments, as many as there are up to the lanes; the last overlaps the one before.
+TEXGEN_INLINE int start_of_vector(int x, int count, int width) noexcept {
+    return x + count <= width ? x : width - count;
 }
 
 // (dx + y twist, dy - x twist) / Q^2 of s and of t.
 template <class Vector, class Scalar>
 TEXGEN_INLINE void differentiate_rows(const FootprintJob& job) noexcept {
     using Result = std::remove_cvref_t<decltype(to_floats(Vector()))>;
+    constexpr int vector_size = static_cast<int>(sizeof(Result) / sizeof(float));
+    const int count = job.width < vector_size ? job.width : vector_size;
+    const Vector lane = indices<Vector>();
     const auto q_dx = static_cast<Scalar>(job.q.dx);
     const auto s_dy = static_cast<Scalar>(job.slope[0].dy);
     const auto t_dy = static_cast<Scalar>(job.slope[1].dy);
     const auto s_twist = static_cast<Scalar>(-job.slope[0].twist);
     const auto t_twist = static_cast<Scalar>(-job.slope[1].twist);
-    const auto put = [](float* to, int x, int count, const Vector& values) {
+    const auto put = [count](float* to, int x, const Vector& values) {
         if (to != nullptr) store_some<Result>(to + x, count, to_floats(values));
     };
     for (int y = 0; y < job.height; ++y) {
@@ -40,22 +41,23 @@ TEXGEN_INLINE void differentiate_rows(const FootprintJob& job) noexcept {
         float* const dtdx = job.row(job.dx[1], y);
         float* const dsdy = job.row(job.dy[0], y);
         float* const dtdy = job.row(job.dy[1], y);
-        for_each_vector<static_cast<int>(sizeof(Result) / sizeof(float))>(job.width, [&](int x, int count) {
-            const Vector index = indices<Vector>() + static_cast<Scalar>(x);
+        for (int begin = 0; begin < job.width; begin += count) {
+            const int x = start_of_vector(begin, count, job.width);
+            const Vector index = lane + static_cast<Scalar>(x);
             const Vector reciprocal = Scalar(1) / (index * q_dx + q);
             const Vector squared = reciprocal * reciprocal;
-            put(dsdx, x, count, squared * s_dx);
-            put(dtdx, x, count, squared * t_dx);
-            put(dsdy, x, count, squared * (index * s_twist + s_dy));
-            put(dtdy, x, count, squared * (index * t_twist + t_dy));
-        });
+            put(dsdx, x, squared * s_dx);
+            put(dtdx, x, squared * t_dx);
+            put(dsdy, x, squared * (index * s_twist + s_dy));
+            put(dtdy, x, squared * (index * t_twist + t_dy));
+        }
     }
 }
 
 template <class = void>
 void differentiate(const FootprintJob& original) noexcept {
     const FootprintJob job = original;
-    if (job.in_float)
+    if (job.derivatives_in_float)
         differentiate_rows<WideFloats, float>(job);
     else
         differentiate_rows<Doubles, double>(job);
@@ -102,6 +104,8 @@ TEXGEN_INLINE WideFloats inverse_square_root(const WideFloats& x) noexcept {
 template <bool InFloat, bool Shape>
 TEXGEN_INLINE int filter_rows(const FootprintJob& job, int first) noexcept {
     constexpr int smallest = std::bit_cast<int>(FootprintJob::smallest_square);
+    const int count = job.width < wide_lanes ? job.width : wide_lanes;
+    const WideFloats lane = indices<WideFloats>();
     for (int y = first; y < job.height; ++y) {
         const double q_base = job.q.base + y * job.q.dy;
         const double s_dx = job.texels[0].dx + y * job.texels[0].twist;
@@ -112,8 +116,9 @@ TEXGEN_INLINE int filter_rows(const FootprintJob& job, int first) noexcept {
         float* const major_s = job.row(job.major[0], y);
         float* const major_t = job.row(job.major[1], y);
         WideWords too_small{};
-        for_each_vector<wide_lanes>(job.width, [&](int x, int count) {
-            const WideFloats index = indices<WideFloats>() + static_cast<float>(x);
+        for (int begin = 0; begin < job.width; begin += count) {
+            const int x = start_of_vector(begin, count, job.width);
+            const WideFloats index = lane + static_cast<float>(x);
             const auto linear = [](const auto& i, double base, double dx, auto scalar) {
                 return i * static_cast<decltype(scalar)>(dx) + static_cast<decltype(scalar)>(base);
             };
@@ -156,7 +161,7 @@ TEXGEN_INLINE int filter_rows(const FootprintJob& job, int first) noexcept {
                         store_some(major_t + x, count, select(swapped, along, b) * length * job.major_factor[1]);
                 }
             }
-        });
+        }
         if (largest_lane(too_small) > 0) return y;
     }
     return job.height;
@@ -166,7 +171,7 @@ template <class = void>
 int filter(const FootprintJob& original, int first) noexcept {
     const FootprintJob job = original;
     const bool shape = job.anisotropy != nullptr || job.major[0] != nullptr || job.major[1] != nullptr;
-    if (job.in_float) return shape ? filter_rows<true, true>(job, first) : filter_rows<true, false>(job, first);
+    if (job.filters_in_float) return shape ? filter_rows<true, true>(job, first) : filter_rows<true, false>(job, first);
     return shape ? filter_rows<false, true>(job, first) : filter_rows<false, false>(job, first);
 }
 

@@ -149,7 +149,7 @@ struct FootprintJob {
     Ramp q;
     Slope slope[2];
     Slope texels[2];  // the same in texels, times a factor that level_offset and the factors below make good
-    bool in_float;
+    bool derivatives_in_float, filters_in_float;
     float level_offset, anisotropy_factor, major_factor[2];
     float* dx[2];
     float* dy[2];
