@@ -45,6 +45,7 @@ enum class DepthMapping { unit, ndc };
 
 // The closed rectangle of texture coordinates that the slide covers. min() is the corner that TextureOrigin addresses.
 // A rectangle with min() > max() in a component, or with a NaN, contains no point, so nothing is lit in it.
+// Its functions are constexpr where GLM's are: not under GLM_FORCE_INTRINSICS.
 class TextureRegion {
 public:
     constexpr const glm::dvec2& min() const noexcept { return min_; }
@@ -54,27 +55,27 @@ public:
         return a.min_.x == b.min_.x && a.min_.y == b.min_.y && a.max_.x == b.max_.x && a.max_.y == b.max_.y;
     }
 
-    friend constexpr TextureRegion whole_texture() noexcept;
-    friend constexpr TextureRegion rectangle_texture(double width, double height) noexcept;
-    friend constexpr TextureRegion atlas_tile(glm::dvec2 min, glm::dvec2 max) noexcept;
+    friend GLM_CONSTEXPR TextureRegion whole_texture() noexcept;
+    friend GLM_CONSTEXPR TextureRegion rectangle_texture(double width, double height) noexcept;
+    friend GLM_CONSTEXPR TextureRegion atlas_tile(glm::dvec2 min, glm::dvec2 max) noexcept;
 
 private:
-    constexpr TextureRegion(glm::dvec2 min, glm::dvec2 max) noexcept : min_(min), max_(max) {}
+    GLM_CONSTEXPR TextureRegion(glm::dvec2 min, glm::dvec2 max) noexcept : min_(min), max_(max) {}
 
     glm::dvec2 min_;
     glm::dvec2 max_;
 };
 
 // [0, 1] x [0, 1].
-constexpr TextureRegion whole_texture() noexcept { return {glm::dvec2(0.0, 0.0), glm::dvec2(1.0, 1.0)}; }
+inline GLM_CONSTEXPR TextureRegion whole_texture() noexcept { return {glm::dvec2(0.0, 0.0), glm::dvec2(1.0, 1.0)}; }
 
 // [0, width] x [0, height] in texels, as GL_TEXTURE_RECTANGLE addresses its image.
-constexpr TextureRegion rectangle_texture(double width, double height) noexcept {
+inline GLM_CONSTEXPR TextureRegion rectangle_texture(double width, double height) noexcept {
     return {glm::dvec2(0.0, 0.0), glm::dvec2(width, height)};
 }
 
 // A tile of a larger texture, in the units of that texture.
-constexpr TextureRegion atlas_tile(glm::dvec2 min, glm::dvec2 max) noexcept { return {min, max}; }
+inline GLM_CONSTEXPR TextureRegion atlas_tile(glm::dvec2 min, glm::dvec2 max) noexcept { return {min, max}; }
 
 // An angle that knows its unit: made by radians() or degrees() only, so that a bare number does not convert.
 class Angle {

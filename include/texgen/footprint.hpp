@@ -281,7 +281,7 @@ public:
         : kernels_(kernels), setup_(setup), rect_(rect), out_(out) {}
 
     void fill_all(const Tile& tile, const Corners& at) noexcept {
-        if (at.all_behind()) return store_rows(tile, nothing);
+        if (at.all_behind()) return store_rows(tile, nothing());
         if (at.well_in_front() && at.least_q > 0x1p-12 * at.largest_q && fill_in_vectors(tile, at)) return;
         if (tile.width <= 8 && tile.height <= 8) return fill_one_by_one(tile);
         Tile first = tile;
@@ -300,7 +300,7 @@ public:
     }
 
 private:
-    static constexpr Footprint nothing{{0.0, 0.0}, {0.0, 0.0}, 0.0, {0.0, 0.0}, 0.0, {0.0, 0.0}};
+    static Footprint nothing() noexcept { return {{0.0, 0.0}, {0.0, 0.0}, 0.0, {0.0, 0.0}, 0.0, {0.0, 0.0}}; }
 
     bool needs_filter() const noexcept {
         return !out_.level.empty() || !out_.anisotropy.empty() || !out_.major_s.empty() || !out_.major_t.empty();
@@ -404,7 +404,7 @@ private:
         for (std::int64_t y = tile.y; y < tile.y + tile.height; ++y) {
             for (std::int64_t x = tile.x; x < tile.x + tile.width; ++x) {
                 const std::optional<Footprint> footprint = setup_.footprint_at(x, y);
-                store_rows({x, y, 1, 1}, footprint ? *footprint : nothing);
+                store_rows({x, y, 1, 1}, footprint ? *footprint : nothing());
             }
         }
     }

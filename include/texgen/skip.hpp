@@ -126,8 +126,10 @@ private:
 template <class = void>
 void cover(const LitForms& forms, const FloatForms& float_forms, std::span<const Box> boxes,
            std::span<Coverage> out) noexcept {
-    static_assert(sizeof(Box) == 6 * sizeof(float));
     constexpr std::size_t chunk = 16 * box_quantum;
+    // Six floats follow one another, but where the user aligns GLM's vectors.
+    constexpr bool is_dense = sizeof(Box) == 6 * sizeof(float);
+    constexpr std::size_t copied = is_dense ? box_quantum : chunk;
     const BoxKernels& kernels = chosen<BoxKernels>();
     PartialBoxes partial(kernels);
     int classes[chunk];
@@ -136,12 +138,19 @@ void cover(const LitForms& forms, const FloatForms& float_forms, std::span<const
         // Whole quanta where they are, the rest from a copy.
         const std::size_t left = boxes.size() - begin;
         const std::size_t count = left >= chunk ? chunk : left >= box_quantum ? left / box_quantum * box_quantum : left;
-        if (count >= box_quantum) {
+        if (is_dense && count >= box_quantum) {
             kernels.classify(float_forms, &boxes[begin].min.x, count, classes);
         } else {
-            Box copy[box_quantum] = {};
-            for (std::size_t i = 0; i < count; ++i) copy[i] = boxes[begin + i];
-            kernels.classify(float_forms, &copy[0].min.x, box_quantum, classes);
+            float copy[copied][6] = {};
+            for (std::size_t i = 0; i < count; ++i) {
+                const Box& box = boxes[begin + i];
+                for (int j = 0; j < 3; ++j) {
+                    copy[i][j] = box.min[j];
+                    copy[i][3 + j] = box.max[j];
+                }
+            }
+            const std::size_t whole = (count + box_quantum - 1) / box_quantum * box_quantum;
+            kernels.classify(float_forms, copy[0], whole, classes);
         }
         // Without a branch: partial and doubtful are the odd ones.
         std::size_t open_count = 0;

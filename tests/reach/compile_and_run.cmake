@@ -1,7 +1,7 @@
 cmake_minimum_required(VERSION 3.25)
 
 # Compiles PROGRAM by COMPILER with FLAGS, in DIRECTORY, and runs it, by RUNNER where that is said; it must return 0.
-# With REFUSED_WITH it must not compile, with a message that matches.
+# With REFUSED_WITH it must not compile, with a message that matches. What it prints goes to PRINT_TO, or must be in PRINTS.
 function(skip reason)
     message(STATUS "Skipped: ${reason}")
 endfunction()
@@ -43,9 +43,18 @@ if(NOT result EQUAL 0)
     message(FATAL_ERROR "${messages}")
 endif()
 
-execute_process(COMMAND ${runner} ${DIRECTORY}/program.exe RESULT_VARIABLE result)
+execute_process(COMMAND ${runner} ${DIRECTORY}/program.exe RESULT_VARIABLE result OUTPUT_VARIABLE output)
 if(result EQUAL 77)
     skip("this processor has not the instructions")
 elseif(NOT result EQUAL 0)
-    message(FATAL_ERROR "It returned ${result}.")
+    message(FATAL_ERROR "It returned ${result}.\n${output}")
+elseif(PRINT_TO)
+    file(WRITE ${PRINT_TO} "${output}")
+elseif(PRINTS)
+    file(READ ${PRINTS} expected)
+    if(NOT output STREQUAL expected OR output STREQUAL "")
+        message(FATAL_ERROR "It does not print what is in ${PRINTS} but\n${output}")
+    endif()
+else()
+    message(STATUS "\n${output}")
 endif()

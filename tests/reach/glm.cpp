@@ -1,0 +1,138 @@
+// Results that must not depend on how the user configured GLM, in hexadecimal, one a line.
+
+#include <array>
+#include <cstddef>
+#include <cstdio>
+#include <span>
+
+#include <texgen/texgen.hpp>
+
+namespace {
+
+void print(const char* what, double value) { std::printf("%s %a\n", what, value); }
+
+template <glm::length_t N, class T, glm::qualifier Q>
+void print(const char* what, const glm::vec<N, T, Q>& v) {
+    for (glm::length_t i = 0; i < N; ++i) print(what, static_cast<double>(v[i]));
+}
+
+template <class To, class From>
+void print(const char* what, const texgen::Transform<To, From>& transform) {
+    for (glm::length_t column = 0; column < 4; ++column) {
+        print(what, transform.matrix()[column]);
+        print(what, transform.rounded()[column]);
+    }
+}
+
+// One projector with all that is made from it.
+void print_projector(const texgen::Projector& projector) {
+    using namespace texgen;
+    print("P_p", projector.projection);
+    print("V_p", projector.view);
+    print("P_p V_p", projector.matrix());
+    print("S", scale_bias(projector.conventions));
+    const glm::vec4 clip(0.25f, -0.5f, 0.75f, 2.0f);
+    print("remapped", to_texture(clip, projector.conventions));
+    const ViewMatrix view(look_at(Aim{.position = {1, 2, 30}, .target = {0, 1, 0}, .up = {0.5, 1, 0}})->matrix());
+    const CameraPose pose = inverse_rigid(view);
+    print("V_e^-1", pose);
+    print("inverse", *inverse(view));
+    print("T_e", eye_linear(projector, pose));
+    glm::dmat4 model(1.0);
+    model[0] = glm::dvec4(0.0, 2.0, 0.0, 0.0);
+    model[1] = glm::dvec4(-2.0, 0.0, 0.0, 0.0);
+    model[3] = glm::dvec4(0.1, 0.2, 0.3, 1.0);
+    const ObjectTexgen texgen = object_linear(projector, ModelMatrix(model));
+    print("T_o", texgen);
+    for (const glm::vec4& plane : planes(texgen)) print("plane", plane);
+    for (const glm::vec4& plane : clip_planes(texgen, whole_texture())) print("clip plane", plane);
+
+    std::array<glm::vec3, 37> points;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const auto k = static_cast<float>(i);
+        points[i] = glm::vec3(0.37f * k - 5.0f, 0.11f * k - 2.0f, 3.0f - 0.53f * k);
+    }
+    const auto positions = object_space(points);
+    std::array<glm::vec4, points.size()> strq;
+    generate(texgen, positions, strq);
+    std::array<glm::vec2, points.size()> st;
+    project(texgen, positions, st);
+    std::array<float, points.size()> s, t, r, lit;
+    project(texgen, positions, whole_texture(), {s, t, r, lit});
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        print("strq", strq[i]);
+        print("st", st[i]);
+        print("s", static_cast<double>(s[i]));
+        print("t", static_cast<double>(t[i]));
+        print("r", static_cast<double>(r[i]));
+        print("lit", static_cast<double>(lit[i]));
+        if (const auto divided = divide(strq[i])) print("divided", *divided);
+    }
+
+    // Boxes, in whole vectors and a rest.
+    std::array<Box, 200> boxes;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        const glm::vec3& point = points[i % points.size()];
+        boxes[i] = {point, point + glm::vec3(0.02f * static_cast<float>(i))};
+    }
+    std::array<Coverage, boxes.size()> covered;
+    coverage(texgen, whole_texture(), boxes, covered);
+    for (const Coverage answer : covered) print("coverage", static_cast<double>(answer));
+
+    // A polygon that reaches behind the camera.
+    const ClipVertex polygon[] = {{glm::vec4(-0.5f, -0.5f, 0.5f, 1.0f), strq[0]},
+                                  {glm::vec4(0.5f, -0.25f, 0.25f, 2.0f), strq[9]},
+                                  {glm::vec4(0.25f, 0.5f, -3.0f, -1.0f), strq[20]}};
+    std::array<ClipVertex, 4> visible;
+    const std::size_t count = clip_to_near(polygon, visible, projector.conventions.depth);
+    for (std::size_t i = 0; i < count; ++i) {
+        print("clipped", visible[i].position);
+        print("clipped strq", visible[i].strq);
+        print("window", to_window(visible[i], {0, 0, 64, 64}).window);
+    }
+    if (count < 3) return;
+    const Triangle triangle{to_window(visible[0], {0, 0, 64, 64}), to_window(visible[1], {0, 0, 64, 64}),
+                            to_window(visible[2], {0, 0, 64, 64})};
+    const auto setup = TriangleSetup::of(triangle, whole_texture());
+    std::array<float, 60> fragment_s{}, fragment_t{};
+    if (setup) interpolate(*setup, {10, 20, 20, 3}, {fragment_s, fragment_t, {}, {}});
+    for (const float value : fragment_s) print("fragment s", static_cast<double>(value));
+    for (const float value : fragment_t) print("fragment t", static_cast<double>(value));
+}
+
+void print_fixed_function() {
+    using namespace texgen;
+    TexGenUnit unit;
+    glm::mat4 modelview(1.0f);
+    modelview[0] = glm::vec4(0.6f, 0.8f, 0.0f, 0.0f);
+    modelview[1] = glm::vec4(-0.8f, 0.6f, 0.0f, 0.0f);
+    modelview[3] = glm::vec4(1.0f, 2.0f, -5.0f, 1.0f);
+    for (const TexGenMode mode : {TexGenMode::object_linear, TexGenMode::eye_linear, TexGenMode::sphere_map}) {
+        for (const Coordinate coordinate : {Coordinate::s, Coordinate::t}) {
+            unit.enable(coordinate);
+            if (!unit.set_mode(coordinate, mode)) std::puts("not this mode");
+            if (!unit.set_eye_plane(coordinate, glm::vec4(0.5f, 1.0f, -2.0f, 0.25f), modelview)) std::puts("singular");
+        }
+        const FixedFunctionVertex vertex{glm::vec4(1.0f, 2.0f, 3.0f, 1.0f), glm::vec3(0.0f, 0.6f, 0.8f),
+                                         glm::vec4(0.0f, 0.0f, 0.5f, 1.0f)};
+        print("unit", unit.generate(vertex, modelview));
+        print("eye plane", unit.eye_plane(Coordinate::s));
+    }
+}
+
+}  // namespace
+
+int main() {
+    using namespace texgen;
+#if defined(__x86_64__) && defined(__AVX2__)
+    if (!__builtin_cpu_supports("avx2")) return 77;
+#endif
+    const Aim aim{.position = {2, 5, 5}, .target = {-2, -4, 0}, .up = {0, 1, 0}};
+    const PerspectiveLens lens{.fovy = degrees(30), .aspect = 1, .z_near = 0.2, .z_far = 1000};
+    const FrustumLens off_centre{.left = -1, .right = 2, .bottom = -0.5, .top = 1.5, .z_near = 1, .z_far = 50};
+    for (const Conventions& conventions : {opengl, direct3d, vulkan}) {
+        print_projector(*make_projector(lens, aim, conventions));
+        print_projector(*make_projector(off_centre, aim, conventions));
+    }
+    print_fixed_function();
+}
