@@ -2,6 +2,7 @@ cmake_minimum_required(VERSION 3.25)
 
 # Compiles PROGRAM by COMPILER with FLAGS, in DIRECTORY, and runs it, by RUNNER where that is said; it must return 0.
 # With REFUSED_WITH it must not compile, with a message that matches. What it prints goes to PRINT_TO, or must be in PRINTS.
+# With ASSEMBLY_WITHOUT it is not run, but its assembly must not match.
 function(skip reason)
     message(STATUS "Skipped: ${reason}")
 endfunction()
@@ -28,6 +29,9 @@ file(MAKE_DIRECTORY ${DIRECTORY})
 separate_arguments(flags UNIX_COMMAND "${FLAGS}")
 string(REPLACE "|" ";-isystem;" includes "-I;${INCLUDES}")
 set(warnings -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Werror)
+if(ASSEMBLY_WITHOUT)
+    list(APPEND flags -S)
+endif()
 execute_process(COMMAND ${compiler} ${flags} ${warnings} ${includes} ${PROGRAM} -o program.exe
     WORKING_DIRECTORY ${DIRECTORY} RESULT_VARIABLE result ERROR_VARIABLE messages)
 if(REFUSED_WITH)
@@ -41,6 +45,13 @@ if(REFUSED_WITH)
 endif()
 if(NOT result EQUAL 0)
     message(FATAL_ERROR "${messages}")
+endif()
+if(ASSEMBLY_WITHOUT)
+    file(STRINGS ${DIRECTORY}/program.exe found REGEX "${ASSEMBLY_WITHOUT}" LIMIT_COUNT 3)
+    if(found)
+        message(FATAL_ERROR "The assembly has ${found}")
+    endif()
+    return()
 endif()
 
 execute_process(COMMAND ${runner} ${DIRECTORY}/program.exe RESULT_VARIABLE result OUTPUT_VARIABLE output)

@@ -238,6 +238,13 @@ const Table& chosen() noexcept {
 #define TEXGEN_LANE_BYTES 16
 #endif
 
+// The stack of Win64 is aligned to 16 bytes, but GCC keeps wider vectors there as if it were to theirs (its bug 54412).
+#if defined(_WIN64) && !defined(__clang__)
+#define TEXGEN_STACK_HOLDS_NARROW_VECTORS
+#undef TEXGEN_LANE_BYTES
+#define TEXGEN_LANE_BYTES 16
+#endif
+
 #define TEXGEN_INLINE [[gnu::always_inline]] inline
 
 // GCC 12 converts eight floats the generic way in two halves.
@@ -258,7 +265,8 @@ const Table& chosen() noexcept {
 #undef TEXGEN_ISA
 #undef TEXGEN_LANE_BYTES
 
-#if defined(__x86_64__) && !defined(TEXGEN_NO_DISPATCH) && !defined(__AVX512F__)
+#if defined(__x86_64__) && !defined(TEXGEN_NO_DISPATCH) && !defined(__AVX512F__) && \
+    !defined(TEXGEN_STACK_HOLDS_NARROW_VECTORS)
 
 #define TEXGEN_BUILD TEXGEN_FLAGS(build_dispatched_)
 
@@ -339,6 +347,7 @@ const Table& chosen() noexcept {
 #endif
 
 #pragma GCC diagnostic pop
+#undef TEXGEN_STACK_HOLDS_NARROW_VECTORS
 #undef TEXGEN_EIGHT_DOUBLES
 #undef TEXGEN_INLINE
 
