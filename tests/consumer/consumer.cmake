@@ -8,6 +8,8 @@ cmake_minimum_required(VERSION 3.25)
 #   fetched_package   the same project where one is: nothing is fetched
 #   pkg-config        the compiler alone, with the flags of pkg-config
 #   copy              the compiler alone, with a copy of include/
+#   engine            add_subdirectory() into a unity build, with a precompiled header, hidden symbols, an assertion
+#   header_unit       import, where the compiler can
 #   single_header     the compiler alone, with the generated header
 # Nothing but GLM can be found meanwhile.
 function(run)
@@ -61,6 +63,33 @@ set(main ${CMAKE_CURRENT_LIST_DIR}/main.cpp)
 
 if(WAY STREQUAL subdirectory)
     build_project(-DSUBDIRECTORY=${SOURCE})
+
+elseif(WAY STREQUAL engine)
+    build_project(-DSUBDIRECTORY=${SOURCE} -DENGINE=ON -DTWO_UNITS=${SOURCE}/tests/two_units)
+    foreach(program IN ITEMS unity precompiled hidden own_assert)
+        message(STATUS ${program})
+        run(${DIRECTORY}/build/${program})
+    endforeach()
+    # What the shared library shows: one function, and nothing of the library.
+    find_program(nm NAMES nm REQUIRED)
+    run_for(symbols ${nm} --dynamic --defined-only --demangle ${DIRECTORY}/build/libtwo.so)
+    if(NOT symbols MATCHES "numbers_of_two" OR symbols MATCHES "texgen::")
+        message(FATAL_ERROR "the shared library shows\n${symbols}")
+    endif()
+
+elseif(WAY STREQUAL header_unit)
+    # Of Debian 12's compilers g++ alone knows header units; of the umbrella it writes one that it cannot read.
+    execute_process(COMMAND ${COMPILER} --version OUTPUT_VARIABLE version)
+    if(NOT version MATCHES "Free Software Foundation")
+        message(STATUS "Skipped: this compiler has no header units")
+        return()
+    endif()
+    file(MAKE_DIRECTORY ${DIRECTORY})
+    set(modules -std=c++20 -fmodules-ts ${without} -I ${SOURCE}/include)
+    run(${COMPILER} ${modules} -x c++-system-header texgen/linear.hpp WORKING_DIRECTORY ${DIRECTORY})
+    run(${COMPILER} ${modules} ${CMAKE_CURRENT_LIST_DIR}/header_unit.cpp -o header_unit
+        WORKING_DIRECTORY ${DIRECTORY})
+    run(${DIRECTORY}/header_unit)
 
 elseif(WAY STREQUAL subdirectory_glm)
     file(WRITE ${DIRECTORY}/glm/CMakeLists.txt

@@ -1,5 +1,9 @@
 #include "numbers.hpp"
 
-Numbers numbers_of_two();
+#ifndef EXPORTED
+#define EXPORTED
+#endif
+
+EXPORTED Numbers numbers_of_two();
 
 Numbers numbers_of_two() { return numbers(); }
