@@ -1,6 +1,6 @@
 cmake_minimum_required(VERSION 3.25)
 
-# Writes the umbrella header, with all that it includes from the library, into one file:
+# Writes every header that needs no Eigen into one file:
 #   cmake -DOUTPUT=texgen.hpp -P include/single_header.cmake
 # A header with #pragma once is written where it is included first; the kernels (*.inc.hpp) each time.
 if(NOT OUTPUT)
@@ -46,7 +46,13 @@ function(inline file result)
     set(${result} "${whole}${text}" PARENT_SCOPE)
 endfunction()
 
-inline(${CMAKE_CURRENT_LIST_DIR}/texgen/texgen.hpp whole)
+set(whole "")
+file(GLOB headers ${CMAKE_CURRENT_LIST_DIR}/texgen/*.hpp)
+list(FILTER headers EXCLUDE REGEX "/(reference|eigen|texgen)\\.hpp$")
+foreach(header IN LISTS headers)
+    inline(${header} inlined)
+    string(APPEND whole "${inlined}")
+endforeach()
 file(READ ${CMAKE_CURRENT_LIST_DIR}/../LICENSE licence)
 string(STRIP "${licence}" licence)
 string(REPLACE "\n" "\n// " licence "// ${licence}")
