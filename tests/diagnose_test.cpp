@@ -807,6 +807,62 @@ TEST_CASE("no valid set-up of a million is found fault with") {
         CHECK(seen_so_often > 1000);
 }
 
+TEST_CASE("no valid set-up of round numbers is found fault with, where factors commute and elements vanish") {
+    Random random(609);
+    const auto axis = [&] {
+        glm::dvec3 result(0.0);
+        result[random.integer(0, 2)] = random.coin() ? 1.0 : -1.0;
+        return result;
+    };
+    const auto whole = [&](int most) { return static_cast<double>(random.integer(-most, most)); };
+    int far = 0, empty_poses = 0;
+    for (int i = 0; i < 50000; ++i) {
+        Rig rig;
+        rig.conventions = any_conventions(random);
+        rig.lens = {static_cast<LensKind>(random.integer(0, 5)),
+                    random.coin() ? 90.0 : 60.0,
+                    random.coin() ? 1.0 : 2.0,
+                    1.0,
+                    4.0,
+                    -1.0,
+                    1.0,
+                    random.coin() ? -1.0 : 0.0,
+                    1.0};
+        if (rig.lens.kind == LensKind::infinite || rig.lens.kind == LensKind::reversed_infinite)
+            rig.lens.z_far = infinity;
+        const int most = random.integer(0, 2) == 0 ? 10000000 : random.integer(0, 3);
+        rig.aim.position = {whole(most), whole(most), whole(most)};
+        rig.aim.up = axis();
+        glm::dvec3 direction = axis();
+        while (std::fabs(dot3(direction, rig.aim.up)) > 0.5) direction = axis();
+        rig.aim.target = rig.aim.position + direction;
+        rig.view = texgen::look_at(rig.aim)->matrix();
+        rig.in = static_cast<In>(random.integer(0, 2));
+        if (rig.in != In::world && random.coin()) {
+            rig.pose[3] = glm::dvec4(rig.aim.position + 2.0 * direction, 1.0);
+            if (random.coin()) std::swap(rig.pose[0], rig.pose[2]);
+        }
+        if (random.coin()) rig.region = texgen::rectangle_texture(256, 128);
+        rig.depth = random.coin() ? DepthMapping::unit : DepthMapping::ndc;
+        far += most > 1000;
+        empty_poses += rig.in != In::world && rig.pose == glm::dmat4(1.0);
+        Parts parts{.projector = projector_of(rig, projection(rig.lens, rig.conventions), rig.view),
+                    .in = rig.in,
+                    .region = rig.region,
+                    .depth = rig.depth,
+                    .lens = all_facts(rig)};
+        if (rig.in != In::world) parts.pose = rig.pose;
+        if (random.coin()) parts.texgen = composed(rig, *parts.projector);
+        const Diagnosis diagnosis = diagnosis_of(parts);
+        REQUIRE_MESSAGE(diagnosis.empty(), i, " ", text(diagnosis), " in ", text(parts));
+        parts.projector = std::nullopt;
+        const Diagnosis alone = diagnosis_of(parts);
+        REQUIRE_MESSAGE(alone.empty(), i, " ", text(alone), " in ", text(parts));
+    }
+    CHECK(far > 1000);
+    CHECK(empty_poses > 1000);
+}
+
 TEST_CASE("every defect of the corpus is found, and stands first") {
     for (const Kind& kind : kinds) {
         Random random(601);
@@ -1064,3 +1120,20 @@ static_assert(noexcept(diagnose(std::declval<const Setup<Object>&>())));
 static_assert(noexcept(diagnose(std::declval<const texgen::EyeTexgen&>())));
 static_assert(noexcept(texgen::diagnose(std::declval<const std::array<glm::vec4, 4>&>())));
 static_assert(noexcept(std::declval<const texgen::Finding&>().what()));
+
+TEST_CASE("a matrix of the other sign lights what is behind") {
+    Random random(610);
+    for (int i = 0; i < 100; ++i) {
+        const Rig rig = random_rig(ordinary, random);
+        Parts parts{.projector = projector_of(rig, projection(rig.lens, rig.conventions), rig.view),
+                    .in = rig.in,
+                    .region = rig.region,
+                    .depth = rig.depth};
+        if (rig.in != In::world) parts.pose = rig.pose;
+        parts.texgen = composed(rig, *parts.projector);
+        for (int j = 0; j < 4; ++j) (*parts.texgen)[j] = -(*parts.texgen)[j];
+        const Diagnosis diagnosis = diagnosis_of(parts);
+        REQUIRE_MESSAGE(diagnosis.size() == 1, text(diagnosis), " in ", text(parts));
+        CHECK(diagnosis.contains(Defect::everything_behind));
+    }
+}

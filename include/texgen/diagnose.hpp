@@ -4,10 +4,8 @@
 // set-up can carry, so it keeps silent where it cannot know: the more it is told, the more it sees.
 
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <string_view>
 #include <type_traits>
@@ -21,6 +19,7 @@
 #include "conventions.hpp"
 #include "detail/composition.hpp"
 #include "detail/inverse.hpp"
+#include "detail/marks.hpp"
 #include "detail/rounding.hpp"
 #include "detail/widen.hpp"
 #include "linear.hpp"
@@ -182,110 +181,6 @@ inline bool is_usable(const glm::dmat4& m, Diagnosis& diagnosis) noexcept {
     return true;
 }
 
-inline bool is_float(double value) noexcept { return (std::bit_cast<std::uint64_t>(value) & 0x1fffffff) == 0; }
-
-// Whether the matrix was rounded to float on its way.
-inline bool is_in_float(const glm::dmat4& m) noexcept {
-    for (int column = 0; column < 4; ++column)
-        for (int row = 0; row < 4; ++row)
-            if (!is_float(m[column][row])) return false;
-    return true;
-}
-
-// A determinant of three rows and three columns, and whether it stands out of the rounding of the elements and of its
-// own: with its cofactors C, an error e_ij of the elements changes it by sum e_ij C_ij at first order. That does not depend
-// on the scale of any row or column.
-struct Minor {
-    double value;
-    bool stands_out;
-};
-
-inline Minor minor(const glm::dmat4& m, const std::array<int, 3>& rows, const std::array<int, 3>& columns) noexcept {
-    const auto row = [&](std::size_t i) {
-        return glm::dvec3(m[columns[0]][rows[i]], m[columns[1]][rows[i]], m[columns[2]][rows[i]]);
-    };
-    const auto magnitude = [](const glm::dvec3& v) {
-        return glm::dvec3(std::fabs(v.x), std::fabs(v.y), std::fabs(v.z));
-    };
-    const auto dot = [](const glm::dvec3& a, const glm::dvec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; };
-    const auto cross = [](const glm::dvec3& a, const glm::dvec3& b, double sign) {
-        return glm::dvec3(a.y * b.z + sign * (a.z * b.y), a.z * b.x + sign * (a.x * b.z),
-                          a.x * b.y + sign * (a.y * b.x));
-    };
-    const glm::dvec3 a = row(0), b = row(1), c = row(2);
-    const glm::dvec3 of_a = cross(b, c, -1.0), of_b = cross(c, a, -1.0), of_c = cross(a, b, -1.0);
-    const double value = dot(a, of_a);
-    const double change =
-        dot(magnitude(a), magnitude(of_a)) + dot(magnitude(b), magnitude(of_b)) + dot(magnitude(c), magnitude(of_c));
-    const double terms = dot(magnitude(a), cross(magnitude(b), magnitude(c), 1.0));
-    const double rounding = is_in_float(m) ? 0x1p-22 : 0x1p-44;
-    return {value, std::fabs(value) > rounding * change + 0x1p-48 * terms};
-}
-
-inline constexpr std::array axes{0, 1, 2};
-
-// Whether three rows have rank 3. Valid ones do by their axes, or by two axes and the constants where light is parallel;
-// translations enter neither.
-inline bool are_independent(const glm::dmat4& m, const std::array<int, 3>& rows) noexcept {
-    return minor(m, rows, axes).stands_out || minor(m, rows, {0, 1, 3}).stands_out ||
-           minor(m, rows, {0, 2, 3}).stands_out || minor(m, rows, {1, 2, 3}).stands_out;
-}
-
-// An affine matrix for row vectors: the translation stands in the last row. An affine one has (0, 0, 0, 1) there.
-inline bool is_affine_transposed(const glm::dmat4& m) noexcept {
-    return m[3].x == 0.0 && m[3].y == 0.0 && m[3].z == 0.0 && m[3].w != 0.0 &&
-           (m[0].w != 0.0 || m[1].w != 0.0 || m[2].w != 0.0);
-}
-
-inline bool is_affine(const glm::dmat4& m) noexcept {
-    return m[0].w == 0.0 && m[1].w == 0.0 && m[2].w == 0.0 && m[3].w != 0.0;
-}
-
-// The form that every lens has, on the axis or off it: x and y cross neither into one another nor into depth and w.
-inline bool is_lens(const glm::dmat4& p) noexcept {
-    const bool apart =
-        p[0].y == 0.0 && p[0].z == 0.0 && p[0].w == 0.0 && p[1].x == 0.0 && p[1].z == 0.0 && p[1].w == 0.0;
-    const bool perspective = p[2].w != 0.0 && p[3].w == 0.0 && p[3].x == 0.0 && p[3].y == 0.0;
-    const bool parallel = p[2].w == 0.0 && p[3].w != 0.0 && p[2].x == 0.0 && p[2].y == 0.0;
-    return apart && (perspective || parallel);
-}
-
-inline bool is_perspective(const glm::dmat4& p) noexcept { return is_lens(p) && p[2].w != 0.0; }
-
-// A projection for row vectors. Row w of a perspective is (0, 0, -1, 0), (0, 0, 1, 0) if it is left-handed: the
-// transposed has that in its last column, and the depth offset, which is hardly ever 1, in its row w.
-inline bool is_lens_transposed(const glm::dmat4& p) noexcept {
-    const bool perspective = p[3].x == 0.0 && p[3].y == 0.0 && std::fabs(p[3].z) == 1.0 && p[3].w == 0.0 &&
-                             p[0].w == 0.0 && p[1].w == 0.0 && p[2].w != 0.0 && std::fabs(p[2].w) != 1.0;
-    return perspective || (is_affine_transposed(p) && is_lens(transposed(p)));
-}
-
-// near and far land on the ends of the range, and infinity beyond the far end: at 1 or more, or reversed at the low end
-// or less. So nothing valid has infinity between the ends, or a plane at the low end of the other range.
-inline bool mistakes_depth(const glm::dmat4& p, DepthRange range, const LensFacts& facts) noexcept {
-    constexpr double rounding = 0x1p-12;
-    const double low = range == DepthRange::negative_one_to_one ? -1.0 : 0.0;
-    const double other_low = -1.0 - low;
-    const double at_infinity = p[2].z / p[2].w;
-    if (is_perspective(p) && at_infinity > low + rounding && at_infinity < 1.0 - rounding) return true;
-    const auto lands_on_other = [&](const std::optional<double>& distance) {
-        if (!distance) return false;
-        const double z = p[2].w > 0.0 ? *distance : -*distance;
-        const double depth = is_finite(z) ? (p[2].z * z + p[3].z) / (p[2].w * z + p[3].w) : at_infinity;
-        return std::fabs(depth - other_low) < rounding;
-    };
-    return lands_on_other(facts.z_near) || lands_on_other(facts.z_far);
-}
-
-// Whether the focal length is that of an angle whose number was taken for one of the other unit, and not that of fovy.
-inline bool mistakes_unit(double focal_length, const Angle& fovy) noexcept {
-    const auto is_of = [&](double angle) {
-        const double expected = std::cos(0.5 * angle) / std::sin(0.5 * angle);
-        return std::fabs(focal_length - expected) <= 0x1p-16 * std::fabs(expected);
-    };
-    return !is_of(fovy.in_radians()) && (is_of(fovy.in_degrees()) || is_of(degrees(fovy.in_radians()).in_radians()));
-}
-
 inline constexpr double accepted_error_in_texels = 0.5;
 
 struct Picture {
@@ -306,7 +201,7 @@ inline void examine_lens(const glm::dmat4& p, bool view_reflects, Conventions co
     const double width = p[0].x / unit;
     const double height = (conventions.ndc_y == NdcY::up ? p[1].y : -p[1].y) / unit;
     if (unit < 0.0) diagnosis.add(Defect::everything_behind);
-    if (mistakes_depth(p, conventions.depth, facts)) diagnosis.add(Defect::depth_range_mismatch);
+    if (mistakes_depth(p, conventions.depth, facts.z_near, facts.z_far)) diagnosis.add(Defect::depth_range_mismatch);
     if (is_perspective(p) && facts.fovy && mistakes_unit(height, *facts.fovy))
         diagnosis.add(Defect::angle_unit_mistaken);
 
@@ -326,8 +221,9 @@ inline void examine_lens(const glm::dmat4& p, bool view_reflects, Conventions co
     const glm::dvec2 size = picture.extent() * picture.texels_per_unit;
     const double meant = facts.aspect ? *facts.aspect : picture.is_measured() ? size.x / size.y : 1.0;
     const double aspect = std::fabs(height / width);
-    // Texels need not be square, so that only the very inverse is a mark.
-    if (std::fabs(meant - 1.0) > 0x1p-10 && std::fabs(aspect * meant - 1.0) <= 0x1p-22)
+    // Texels need not be square: without the aspect that was meant only the very inverse, in floats, is a mark.
+    const double rounding = facts.aspect ? 0x1p-12 : 0x1p-22;
+    if (std::fabs(meant - 1.0) > 0x1p-10 && std::fabs(aspect * meant - 1.0) <= rounding)
         diagnosis.add(Defect::aspect_inverted);
 }
 
@@ -361,32 +257,6 @@ inline void examine(const Projector& projector, const LensFacts& facts, const Pi
         const bool view_reflects = has_view && is_affine(v) && minor(v, axes, axes).value < 0.0;
         if (regular && is_lens(p)) examine_lens(p, view_reflects, projector.conventions, facts, picture, diagnosis);
     }
-}
-
-// Row r against row q. Every lens has (0, 0, e, f) in row z and (0, 0, w, h) in row w, so that r = limit q + constant, the
-// scale-bias included, and an affine pose on the right keeps it: the directions of the two rows are parallel. A
-// transposed matrix or a wrong order loses it. (An oblique near plane has it not: that needs its projector.)
-struct DepthRows {
-    bool are_parallel;
-    bool is_parallel_light;  // q is constant
-    double limit;            // of r/q at infinity; 0 for parallel light
-};
-
-inline DepthRows depth_rows(const glm::dmat4& m) noexcept {
-    const glm::dvec3 r{m[0].z, m[1].z, m[2].z};
-    const glm::dvec3 q{m[0].w, m[1].w, m[2].w};
-    const auto largest = [](const glm::dvec3& v) {
-        return larger(std::fabs(v.x), larger(std::fabs(v.y), std::fabs(v.z)));
-    };
-    const glm::dvec3 cross{r.y * q.z - r.z * q.y, r.z * q.x - r.x * q.z, r.x * q.y - r.y * q.x};
-    // Where the limit is 0 by cancellation, r is what q's rounding has left.
-    const double rounding = is_in_float(m) ? 0x1p-20 : 0x1p-44;
-    const double size_r = largest(r);
-    const double size_q = largest(q);
-    const bool are_parallel = !(largest(cross) > (0x1p-14 * size_r + rounding * size_q) * size_q);
-    const double squared = q.x * q.x + q.y * q.y + q.z * q.z;
-    const bool is_parallel_light = size_q == 0.0;
-    return {are_parallel, is_parallel_light, squared > 0.0 ? (r.x * q.x + r.y * q.y + r.z * q.z) / squared : 0.0};
 }
 
 inline void examine(const Composition& composition, bool in_eye_space, Diagnosis& diagnosis) noexcept {
@@ -542,6 +412,7 @@ struct SetupMatrices {
     const Projector* projector = nullptr;
     const glm::dmat4* pose = nullptr;    // null: not known, or the points are in the world
     const glm::dmat4* texgen = nullptr;  // null: what the projector and the pose compose
+    bool are_planes = false;             // texgen is what hardware holds, in float whatever its numbers
     bool in_world_space = false, in_eye_space = false;
     Picture picture = {};
     DepthMapping depth = DepthMapping::unit;
@@ -562,22 +433,6 @@ inline bool are_numbers(const SetupMatrices& setup) noexcept {
     return is_side(region.min()) && is_side(region.max()) && is_finite(setup.picture.texels_per_unit.x) &&
            is_finite(setup.picture.texels_per_unit.y) && is_given_finite(lens.aspect) && is_given_finite(lens.z_near) &&
            !(lens.z_far && is_nan(*lens.z_far)) && !(lens.fovy && !is_finite(lens.fovy->in_radians()));
-}
-
-// OpenGL's initial planes: S = (1, 0, 0, 0), T = (0, 1, 0, 0), R and Q zero.
-inline bool is_opengl_default(const glm::dmat4& m) noexcept {
-    glm::dmat4 initial(0.0);
-    initial[0][0] = initial[1][1] = 1.0;
-    return m == initial;
-}
-
-// Whether the picture is mirrored in the world: to the right, up and forwards, as s, t and q say it, are a left-handed
-// system. Parallel light does not say which way is forwards.
-inline bool is_mirrored(const glm::dmat4& texgen, const glm::dmat4& world_from_space, TextureOrigin origin) noexcept {
-    const Minor picture = minor(texgen, {0, 1, 3}, axes);
-    const Minor pose = minor(world_from_space, axes, axes);
-    if (!picture.stands_out || !pose.stands_out) return false;
-    return ((picture.value > 0.0) == (pose.value > 0.0)) == (origin == TextureOrigin::bottom_left);
 }
 
 // Returns whether it is transposed.
@@ -640,7 +495,7 @@ inline Examined examine(const SetupMatrices& setup, Diagnosis& diagnosis) noexce
         return examined;
     }
     examined.texgen = texgen;
-    examined.in_float = is_in_float(texgen);
+    examined.in_float = setup.are_planes || is_in_float(texgen);
     const bool has_q = !is_zero_row(texgen, 3);
     const bool is_dependent = has_q && !are_independent(texgen, {0, 1, 3});
     bool was_transposed = false;
@@ -664,16 +519,29 @@ inline Examined examine(const SetupMatrices& setup, Diagnosis& diagnosis) noexce
 }
 
 template <class Space>
-SetupMatrices matrices_of(const Setup<Space>& setup) noexcept {
+SetupMatrices matrices_of(const Setup<Space>& setup, bool are_planes) noexcept {
     return {setup.projector ? &*setup.projector : nullptr,
             setup.world_from_space ? &setup.world_from_space->matrix() : nullptr,
             setup.texgen ? &setup.texgen->matrix() : nullptr,
+            are_planes,
             std::is_same_v<Space, World>,
             std::is_same_v<Space, Eye>,
             {setup.region, setup.texels_per_unit},
             setup.depth,
             setup.conventions,
             setup.lens};
+}
+
+template <class Space>
+Diagnosis diagnose(const Setup<Space>& setup, bool are_planes) noexcept {
+    Diagnosis diagnosis;
+    const SetupMatrices matrices = matrices_of(setup, are_planes);
+    const Examined examined = examine(matrices, diagnosis);
+    PointReport report(examined, matrices.picture, matrices.depth);
+    const std::size_t count = setup.points ? setup.points->size() : 0;
+    for (std::size_t i = 0; i < count; ++i) report.add(glm::dvec3((*setup.points)[i]));
+    report.conclude(diagnosis);
+    return diagnosis;
 }
 
 }  // namespace detail
@@ -694,19 +562,12 @@ inline std::string_view Finding::remedy() const noexcept {
 // What it sees: of a projector alone, its matrices' own marks (transposed, exchanged, of rank below 3, mirrored, reversed
 // depth in the wrong range); with facts of the lens also its depth range, aspect and angle. Of a texgen matrix alone,
 // those of its rows r and q. With the projector, and the model or the camera, which of their products it is, of up to
-// two mistakes. Any but parallel light's depth needs a plane's distance, for each (e, f) in row z is that of some lens.
+// two mistakes. Depth that is not reversed needs the distance of a plane: any row z is that of some lens in both ranges.
 // Bad input: what is not finite is reported, and the rest is examined without it.
 // Source: Everitt, Projective Texture Mapping, (3) and (4), and what is made of them.
 template <class Space>
 Diagnosis diagnose(const Setup<Space>& setup) noexcept {
-    Diagnosis diagnosis;
-    const detail::SetupMatrices matrices = detail::matrices_of(setup);
-    const detail::Examined examined = detail::examine(matrices, diagnosis);
-    detail::PointReport report(examined, matrices.picture, matrices.depth);
-    const std::size_t count = setup.points ? setup.points->size() : 0;
-    for (std::size_t i = 0; i < count; ++i) report.add(glm::dvec3((*setup.points)[i]));
-    report.conclude(diagnosis);
-    return diagnosis;
+    return detail::diagnose(setup, false);
 }
 
 // The same of a projector alone.
@@ -731,7 +592,9 @@ template <class Space = Object>
 Diagnosis diagnose(const std::array<glm::vec4, 4>& planes, const Setup<Space>& setup = {}) noexcept {
     const glm::dmat4 rows(detail::widened(planes[0]), detail::widened(planes[1]), detail::widened(planes[2]),
                           detail::widened(planes[3]));
-    return diagnose(Transform<Texture, Space>(detail::transposed(rows)), setup);
+    Setup<Space> whole = setup;
+    whole.texgen.emplace(detail::transposed(rows));
+    return detail::diagnose(whole, true);
 }
 
 }  // namespace texgen

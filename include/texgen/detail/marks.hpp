@@ -1,0 +1,176 @@
+#pragma once
+
+// What a matrix shows by itself: the marks of lenses, poses and texgen matrices that no valid one lacks, and those that
+// none carries.
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+
+#include "../conventions.hpp"
+#include "composition.hpp"
+#include "inverse.hpp"
+#include "rounding.hpp"
+
+namespace texgen::detail {
+
+// Whether the matrix was rounded to float on its way: every element is a float, and of the axes one has more bits than
+// the round numbers of a scene that is aligned with them.
+inline bool is_in_float(const glm::dmat4& m) noexcept {
+    const auto has_bits = [&](int column, int row, std::uint64_t mask) {
+        return (std::bit_cast<std::uint64_t>(m[column][row]) & mask) != 0;
+    };
+    bool is_rounded = false;
+    for (int column = 0; column < 4; ++column) {
+        for (int row = 0; row < 4; ++row) {
+            if (has_bits(column, row, 0x1fffffff)) return false;  // the last 29 of the 52 bits behind the point
+            is_rounded = is_rounded || (column < 3 && has_bits(column, row, 0x1fffffffff));
+        }
+    }
+    return is_rounded;
+}
+
+// A determinant of three rows and three columns, and whether it stands out of the rounding of the elements and of its
+// own: with its cofactors C, an error e_ij of the elements changes it by sum e_ij C_ij at first order. That does not depend
+// on the scale of any row or column.
+struct Minor {
+    double value;
+    bool stands_out;
+};
+
+inline Minor minor(const glm::dmat4& m, const std::array<int, 3>& rows, const std::array<int, 3>& columns) noexcept {
+    const auto row = [&](std::size_t i) {
+        return glm::dvec3(m[columns[0]][rows[i]], m[columns[1]][rows[i]], m[columns[2]][rows[i]]);
+    };
+    const auto magnitude = [](const glm::dvec3& v) {
+        return glm::dvec3(std::fabs(v.x), std::fabs(v.y), std::fabs(v.z));
+    };
+    const auto dot = [](const glm::dvec3& a, const glm::dvec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; };
+    const auto cross = [](const glm::dvec3& a, const glm::dvec3& b, double sign) {
+        return glm::dvec3(a.y * b.z + sign * (a.z * b.y), a.z * b.x + sign * (a.x * b.z),
+                          a.x * b.y + sign * (a.y * b.x));
+    };
+    const glm::dvec3 a = row(0), b = row(1), c = row(2);
+    const glm::dvec3 of_a = cross(b, c, -1.0), of_b = cross(c, a, -1.0), of_c = cross(a, b, -1.0);
+    const double value = dot(a, of_a);
+    const double change =
+        dot(magnitude(a), magnitude(of_a)) + dot(magnitude(b), magnitude(of_b)) + dot(magnitude(c), magnitude(of_c));
+    const double terms = dot(magnitude(a), cross(magnitude(b), magnitude(c), 1.0));
+    const double rounding = is_in_float(m) ? 0x1p-22 : 0x1p-44;
+    return {value, std::fabs(value) > rounding * change + 0x1p-48 * terms};
+}
+
+inline constexpr std::array axes{0, 1, 2};
+
+// Whether three rows have rank 3. Valid ones do by their axes, or by two axes and the constants where light is parallel;
+// translations enter neither.
+inline bool are_independent(const glm::dmat4& m, const std::array<int, 3>& rows) noexcept {
+    return minor(m, rows, axes).stands_out || minor(m, rows, {0, 1, 3}).stands_out ||
+           minor(m, rows, {0, 2, 3}).stands_out || minor(m, rows, {1, 2, 3}).stands_out;
+}
+
+// An affine matrix for row vectors: the translation stands in the last row. An affine one has (0, 0, 0, 1) there.
+inline bool is_affine_transposed(const glm::dmat4& m) noexcept {
+    return m[3].x == 0.0 && m[3].y == 0.0 && m[3].z == 0.0 && m[3].w != 0.0 &&
+           (m[0].w != 0.0 || m[1].w != 0.0 || m[2].w != 0.0);
+}
+
+inline bool is_affine(const glm::dmat4& m) noexcept {
+    return m[0].w == 0.0 && m[1].w == 0.0 && m[2].w == 0.0 && m[3].w != 0.0;
+}
+
+// The form that every lens has, on the axis or off it: x and y cross neither into one another nor into depth and w.
+inline bool is_lens(const glm::dmat4& p) noexcept {
+    const bool apart =
+        p[0].y == 0.0 && p[0].z == 0.0 && p[0].w == 0.0 && p[1].x == 0.0 && p[1].z == 0.0 && p[1].w == 0.0;
+    const bool perspective = p[2].w != 0.0 && p[3].w == 0.0 && p[3].x == 0.0 && p[3].y == 0.0;
+    const bool parallel = p[2].w == 0.0 && p[3].w != 0.0 && p[2].x == 0.0 && p[2].y == 0.0;
+    return apart && (perspective || parallel);
+}
+
+inline bool is_perspective(const glm::dmat4& p) noexcept { return is_lens(p) && p[2].w != 0.0; }
+
+// A projection for row vectors. Row w of a perspective is (0, 0, -1, 0), (0, 0, 1, 0) if it is left-handed: the
+// transposed has that in its last column, and the depth offset, which is hardly ever 1, in its row w.
+inline bool is_lens_transposed(const glm::dmat4& p) noexcept {
+    const bool perspective = p[3].x == 0.0 && p[3].y == 0.0 && std::fabs(p[3].z) == 1.0 && p[3].w == 0.0 &&
+                             p[0].w == 0.0 && p[1].w == 0.0 && p[2].w != 0.0 && std::fabs(p[2].w) != 1.0;
+    return perspective || (is_affine_transposed(p) && is_lens(transposed(p)));
+}
+
+// near and far land on the ends of the range, and infinity beyond the far end: at 1 or more, or reversed at the low end
+// or less. So nothing valid has infinity between the ends, or a plane at the low end of the other range.
+inline bool mistakes_depth(const glm::dmat4& p, DepthRange range, const std::optional<double>& z_near,
+                           const std::optional<double>& z_far) noexcept {
+    constexpr double rounding = 0x1p-12;
+    const double low = range == DepthRange::negative_one_to_one ? -1.0 : 0.0;
+    const double other_low = -1.0 - low;
+    const double at_infinity = p[2].z / p[2].w;
+    if (is_perspective(p) && at_infinity > low + rounding && at_infinity < 1.0 - rounding) return true;
+    const auto lands_on_other = [&](const std::optional<double>& distance) {
+        if (!distance) return false;
+        const double z = p[2].w > 0.0 ? *distance : -*distance;
+        const double depth = is_finite(z) ? (p[2].z * z + p[3].z) / (p[2].w * z + p[3].w) : at_infinity;
+        return std::fabs(depth - other_low) < rounding;
+    };
+    return lands_on_other(z_near) || lands_on_other(z_far);
+}
+
+// Whether the focal length is that of an angle whose number was taken for one of the other unit, and not that of fovy.
+inline bool mistakes_unit(double focal_length, const Angle& fovy) noexcept {
+    const auto is_of = [&](double angle) {
+        const double expected = std::cos(0.5 * angle) / std::sin(0.5 * angle);
+        return std::fabs(focal_length - expected) <= 0x1p-16 * std::fabs(expected);
+    };
+    return !is_of(fovy.in_radians()) && (is_of(fovy.in_degrees()) || is_of(degrees(fovy.in_radians()).in_radians()));
+}
+
+// Row r against row q. Every lens has (0, 0, e, f) in row z and (0, 0, w, h) in row w, so that r = limit q + constant, the
+// scale-bias included, and an affine pose on the right keeps it: the directions of the two rows are parallel. A
+// transposed matrix or a wrong order loses it. (An oblique near plane has it not: that needs its projector.)
+struct DepthRows {
+    bool are_parallel;
+    bool is_parallel_light;  // q is constant
+    double limit;            // of r/q at infinity; 0 for parallel light
+};
+
+inline DepthRows depth_rows(const glm::dmat4& m) noexcept {
+    const glm::dvec3 r{m[0].z, m[1].z, m[2].z};
+    const glm::dvec3 q{m[0].w, m[1].w, m[2].w};
+    const auto largest = [](const glm::dvec3& v) {
+        return larger(std::fabs(v.x), larger(std::fabs(v.y), std::fabs(v.z)));
+    };
+    const glm::dvec3 cross{r.y * q.z - r.z * q.y, r.z * q.x - r.x * q.z, r.x * q.y - r.y * q.x};
+    // Where the limit is 0 by cancellation, r is what q's rounding has left.
+    const double rounding = is_in_float(m) ? 0x1p-20 : 0x1p-44;
+    const double size_r = largest(r);
+    const double size_q = largest(q);
+    const bool are_parallel = !(largest(cross) > (0x1p-14 * size_r + rounding * size_q) * size_q);
+    const double squared = q.x * q.x + q.y * q.y + q.z * q.z;
+    const bool is_parallel_light = size_q == 0.0;
+    return {are_parallel, is_parallel_light, squared > 0.0 ? (r.x * q.x + r.y * q.y + r.z * q.z) / squared : 0.0};
+}
+
+// OpenGL's initial planes: S = (1, 0, 0, 0), T = (0, 1, 0, 0), R and Q zero.
+inline bool is_opengl_default(const glm::dmat4& m) noexcept {
+    glm::dmat4 initial(0.0);
+    initial[0][0] = initial[1][1] = 1.0;
+    return m == initial;
+}
+
+// Whether the picture is mirrored in the world: to the right, up and forwards, as s, t and q say it, are a left-handed
+// system. Parallel light does not say which way is forwards.
+inline bool is_mirrored(const glm::dmat4& texgen, const glm::dmat4& world_from_space, TextureOrigin origin) noexcept {
+    const Minor picture = minor(texgen, {0, 1, 3}, axes);
+    const Minor pose = minor(world_from_space, axes, axes);
+    if (!picture.stands_out || !pose.stands_out) return false;
+    return ((picture.value > 0.0) == (pose.value > 0.0)) == (origin == TextureOrigin::bottom_left);
+}
+
+}  // namespace texgen::detail
