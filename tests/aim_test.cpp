@@ -174,6 +174,9 @@ TEST_CASE("an aim without a direction gives nothing") {
     CHECK_FALSE(look_at({position, target, target - position}));
     CHECK_FALSE(look_at({position, target, 0x1p-30 * (position - target)}));
     CHECK_FALSE(look_at({{0, 0, 0}, {1, 1, 1}, {-3, -3, -3}}));
+    // 2^-98 rad is the least angle that counts.
+    CHECK_FALSE(look_at({{0, 0, 0}, {0, 0, -1}, {0x1p-99, 0, -1}}));
+    CHECK(look_at({{0, 0, 0}, {0, 0, -1}, {0x1p-97, 0, -1}}));
     for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
                              -std::numeric_limits<double>::infinity()}) {
         for (int k = 0; k < 3; ++k) {

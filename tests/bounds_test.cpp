@@ -1,0 +1,132 @@
+// Inputs whose roundings all go the same way, so that an error comes as near to its bound as it can: a bound that is less
+// than the roundings add up to, does not hold here.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "support/exact.hpp"
+#include "support/fragments.hpp"
+#include "support/hex.hpp"
+#include "support/outputs.hpp"
+#include "support/random.hpp"
+#include "support/verdict.hpp"
+#include "texgen/interpolate.hpp"
+#include "texgen/texcoord.hpp"
+
+namespace {
+
+using support::everywhere;
+using support::hex;
+using support::Outputs;
+using support::Random;
+using texgen::Tolerance;
+
+constexpr double u = 0x1p-24;
+
+// The number of points that are not what exact gives: they came from a cheaper tier.
+int count_of_cheap(const glm::dmat4& matrix, const std::vector<glm::vec3>& points, Tolerance tolerance) {
+    Outputs out(points.size()), exact(points.size());
+    project(texgen::ObjectTexgen(matrix), texgen::object_space(points), everywhere(), out.spans(), tolerance);
+    project(texgen::ObjectTexgen(matrix), texgen::object_space(points), everywhere(), exact.spans());
+    int cheap = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const std::string wrong =
+            what_is_wrong(support::exactly_at(matrix, points[i]), everywhere(), tolerance, out, i);
+        REQUIRE_MESSAGE(wrong.empty(), wrong, " for ", hex(points[i]), " by ", hex(matrix), ", tolerance ",
+                        hex(tolerance.value));
+        cheap += !support::same_bits(out.s()[i], exact.s()[i]);
+    }
+    return cheap;
+}
+
+}  // namespace
+
+TEST_CASE("forms in float whose coefficients and sums are all rounded the same way stay inside the tolerance") {
+    // s: 1 + 2^-24 and three times 2^-24 are rounded down to 1, one by one; q: 1 + 3 * 2^-24 is rounded up, and three
+    // times -2^-24 leave it there. The quotient is 8 u too small.
+    glm::dmat4 matrix(0.0);
+    for (int j = 0; j < 3; ++j) matrix[j] = {u, u, u, -u};
+    matrix[3] = {1.0 + u, 1.0 + u, 1.0 + u, 1.0 + 3.0 * u};
+    const std::vector<glm::vec3> points(64, glm::vec3(1.0f));
+    int cheap = 0;
+    for (double units = 1.0; units < 40.0; units += 0.25) cheap += count_of_cheap(matrix, points, {units * u});
+    CHECK(cheap > 1000);
+}
+
+TEST_CASE("forms in double that are rounded to float and divided there stay inside the tolerance") {
+    Random random(6100);
+    int cheap = 0;
+    for (int i = 0; i < 400; ++i) {
+        // Terms that cancel in float, so that only the forms in double fit.
+        glm::dmat4 matrix(0.0);
+        matrix[0] = {1024.0, 1024.0, 1024.0, 1024.0};
+        matrix[1] = {-1024.0, -1024.0, -1024.0, -1024.0};
+        // Above a power of two roundings are largest beside the number.
+        const auto about_one = [&] { return random.uniform(1.0, 1.0 + 0x1p-6); };
+        matrix[2] = {about_one(), 0.0, 0.0, 0.0};
+        matrix[3] = {0.0, about_one(), about_one(), about_one()};
+        std::vector<glm::vec3> points(64);
+        for (glm::vec3& point : points) {
+            const float size = random.uniform_float(1.0, 1024.0);
+            point = {size, size, random.uniform_float(1.0, 1.0 + 0x1p-6)};
+        }
+        cheap += count_of_cheap(matrix, points, {random.uniform(1.0, 5.0) * u});
+    }
+    CHECK(cheap > 100);
+}
+
+TEST_CASE("float functions of a segment stay inside the tolerance at every multiple of the unit roundoff") {
+    Random random(6200);
+    int cheap = 0;
+    for (int i = 0; i < 3000; ++i) {
+        const auto about_one = [&] { return random.uniform_float(1.0, 1.0 + 40.0 * 0x1p-23); };
+        const float s = about_one(), t = about_one();
+        const texgen::Segment segment{{s, t, 0.0f, about_one()},
+                                      {random.coin() ? s : about_one(), t, 0.0f, about_one()}};
+        std::vector<float> alpha(64);
+        for (float& a : alpha) a = random.uniform_float(0.0, 1.0);
+        const Tolerance tolerance{random.uniform(2.0, 14.0) * u};
+        Outputs out(alpha.size()), exact(alpha.size());
+        interpolate(segment, alpha, everywhere(), out.spans(), tolerance);
+        interpolate(segment, alpha, everywhere(), exact.spans());
+        for (std::size_t k = 0; k < alpha.size(); ++k) {
+            const std::string wrong =
+                what_is_wrong(support::exactly_at(segment, alpha[k]), everywhere(), tolerance, out, k);
+            REQUIRE_MESSAGE(wrong.empty(), wrong, " at ", hex(alpha[k]), " of ", hex(segment.a), " ", hex(segment.b));
+            cheap += !support::same_bits(out.s()[k], exact.s()[k]);
+        }
+    }
+    CHECK(cheap > 100);
+}
+
+TEST_CASE("functions over a triangle in float, or in double and rounded, stay inside the tolerance") {
+    Random random(6300);
+    int cheap = 0;
+    for (int i = 0; i < 4000; ++i) {
+        const auto vertex = [&](float x, float y) {
+            const auto about = [&](double size) { return random.uniform_float(size, size * (1.0 + 0x1p-6)); };
+            return texgen::WindowVertex{{x, y}, 1.0f, {about(1.0), about(1.0), 0.0f, about(1.0)}};
+        };
+        const texgen::Triangle triangle{vertex(0.0f, 0.0f), vertex(64.0f, 0.0f), vertex(0.0f, 64.0f)};
+        const support::ExactTriangle exact(triangle);
+        // Rows of 15 are too short for float functions, and a row of 30 is too little for polynomials.
+        const bool is_float = random.coin();
+        const texgen::FragmentRect rect{random.integer(0, 20), random.integer(0, 20), is_float ? 30 : 15,
+                                        is_float ? 1 : 2};
+        const Tolerance tolerance{random.uniform(1.0, is_float ? 7.0 : 4.5) * u};
+        const texgen::TriangleSetup setup = support::setup_of(triangle, everywhere(), tolerance);
+        Outputs out(30), nearest(30);
+        const texgen::Work work = interpolate(setup, rect, out.spans());
+        interpolate(support::setup_of(triangle), rect, nearest.spans());
+        support::Seen seen;
+        const std::string wrong = first_wrong({triangle, rect}, exact, everywhere(), tolerance, work, out, seen);
+        REQUIRE_MESSAGE(wrong.empty(), wrong, " of ", support::hex(triangle), ", tolerance ", hex(tolerance.value));
+        for (std::size_t k = 0; k < out.size(); ++k) cheap += !support::same_bits(out.s()[k], nearest.s()[k]);
+    }
+    CHECK(cheap > 1000);
+}
