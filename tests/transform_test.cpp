@@ -139,6 +139,27 @@ TEST_CASE("exactly singular matrices are refused, 2000 of 2000") {
     CHECK(determinant_is_zero < 1900);
 }
 
+// A change of one element by 2 u of itself makes it singular: then the spectral radius of |A^-1| |A| is at least 1 / 2 u,
+// and 5 u norm(|X| |A|) above 1.
+TEST_CASE("a matrix one unit of one element from an exactly singular one is singular to working precision") {
+    Random random(71);
+    for (int i = 0; i < 2000; ++i) {
+        glm::dmat4 m = as_floats(random_matrix(random));
+        const int to = random.integer(0, 3), from = (to + 1) % 4, other = (to + 2) % 4;
+        for (int k = 0; k < 4; ++k) {
+            // In double the sum of two floats of these sizes is exact.
+            if (i % 2 == 0)
+                m[to][k] = m[from][k] - m[other][k];
+            else
+                m[k][to] = m[k][from] - m[k][other];
+        }
+        REQUIRE_MESSAGE(!inverse(ModelMatrix(m)), hex(m));
+        double& element = m[random.integer(0, 3)][random.integer(0, 3)];
+        element = std::nextafter(element, random.coin() ? HUGE_VAL : -HUGE_VAL);
+        REQUIRE_MESSAGE(!inverse(ModelMatrix(m)), hex(m));
+    }
+}
+
 TEST_CASE("a matrix of rank 0, 1 or 2 is refused") {
     Random random(44);
     CHECK_FALSE(inverse(ModelMatrix(glm::dmat4(0.0))));
