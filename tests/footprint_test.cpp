@@ -190,7 +190,7 @@ bool contains_centre(const Triangle& triangle, int x, int y) {
 
 TEST_CASE("derivatives are the exact ones within the stated bound, for every hard family") {
     std::uint64_t seed = 6000;
-    int checked = 0, behind = 0, unbounded = 0;
+    int checked = 0, behind = 0, unbounded = 0, next_to_zero = 0;
     double worst = 0.0;
     for (const support::HardFamily& family : support::hard_families) {
         Random random(++seed);
@@ -234,6 +234,11 @@ TEST_CASE("derivatives are the exact ones within the stated bound, for every har
                     unbounded += std::isinf(allowed);
                     if (!std::isinf(allowed)) worst = std::max(worst, error / allowed);
                     const auto norm = static_cast<double>(truth.norm(c));
+                    // Next to q = 0 there is no bound from doubles, but exact sums.
+                    if (std::isinf(allowed) && family.name[0] == 'q' && norm < 1e30) {
+                        ++next_to_zero;
+                        REQUIRE_MESSAGE(error <= 1e-5 * norm, context);
+                    }
                     if (zero > 1e-4 && norm > 1e-30) {
                         ++away;
                         worst_away = std::max(worst_away, error / norm);
@@ -253,6 +258,7 @@ TEST_CASE("derivatives are the exact ones within the stated bound, for every har
     CHECK(behind > 200);
     CHECK(worst > 0.5);
     CHECK(unbounded < checked / 3);
+    CHECK(next_to_zero > 200);
 }
 
 TEST_CASE("derivatives agree with 400-bit differences of the definition to 1e-5") {
@@ -286,6 +292,7 @@ TEST_CASE("derivatives agree with 400-bit differences of the definition to 1e-5"
             return Real(numerator / denominator);
         };
         if (!footprint) continue;
+        const bool well_away = distance_from_zero(triangle, x, y) > 0.1 && family != support::Family::sliver;
         const Real h = ldexp(Real(1), -90);
         for (int c = 0; c < 2; ++c) {
             const Real dx = (quotient(Real(x) + h, y, c) - quotient(Real(x) - h, y, c)) / (2 * h);
@@ -293,7 +300,8 @@ TEST_CASE("derivatives agree with 400-bit differences of the definition to 1e-5"
             const auto norm = static_cast<double>(sqrt(Real(dx * dx + dy * dy)));
             const double error = std::max(distance(footprint->dx[c], dx), distance(footprint->dy[c], dy)) / norm;
             worst = std::max(worst, error);
-            REQUIRE_MESSAGE(error <= 1e-5, hex(triangle) << " fragment " << pixel.x << " " << pixel.y);
+            REQUIRE_MESSAGE(error <= (well_away ? 1e-11 : 1e-5), hex(triangle)
+                                                                     << " fragment " << pixel.x << " " << pixel.y);
         }
         ++checked;
         mirrored += support::twice_area(triangle) < 0.0;
@@ -322,7 +330,10 @@ TEST_CASE("level, anisotropy and major axis are those of the exact Jacobian") {
             for (WindowVertex* vertex : support::vertices(triangle))
                 vertex->strq.y = vertex->strq.x * (1.0f + random.uniform_float(-1e-6, 1e-6));
         const FragmentRect pixel = support::pixel_near(triangle, random);
-        const Shot shot{triangle, {pixel.x - random.integer(0, 20), pixel.y, random.integer(1, 50), 2}};
+        const bool large = random.coin();
+        const Shot shot{triangle,
+                        {pixel.x - random.integer(0, 20), pixel.y - (large ? random.integer(0, 60) : 0),
+                         random.integer(1, large ? 600 : 50), large ? random.integer(1, 100) : 2}};
         const TexelsPerUnit texels = i % 11 == 0 ? TexelsPerUnit{256.0, 256.0} : some_texels(random);
         const ExactTriangle exact(triangle);
         const FootprintSetup setup(setup_of(triangle), texels);
@@ -389,6 +400,57 @@ TEST_CASE("level, anisotropy and major axis are those of the exact Jacobian") {
             worst_major);
     CHECK(checked > 1000);
     for (const int count : {circular, thin, magnified, minified}) CHECK(count > 40);
+}
+
+TEST_CASE("where the derivatives of a row nearly vanish at one fragment, it is as right as the others") {
+    // S = x - 200.5 and Q = y - (100.5 - 2^-20): along the row Q does not vary, and both columns vanish with the distance
+    // from a point 2^-20 of a pixel from the centre of fragment (200, 100).
+    Triangle triangle{};
+    const std::array window{glm::vec2(0, 100), glm::vec2(400, 100), glm::vec2(200, 101)};
+    const auto corner = support::vertices(triangle);
+    for (std::size_t i = 0; i < 3; ++i) {
+        const float s = window[i].x - 200.5f;
+        *corner[i] = {window[i], 1.0f, {s, 0.75f * s, 0.0f, (window[i].y - 100.5f) + 0x1p-20f}};
+    }
+    const Shot shot{triangle, {150, 100, 100, 1}};
+    const TexelsPerUnit texels{256.0, 128.0};
+    const ExactTriangle exact(triangle);
+    for (const Tolerance tolerance : {texgen::exact, Tolerance{1e-3}}) {
+        const FootprintSetup setup(setup_of(triangle, everywhere(), tolerance), texels);
+        Batch out(shot.rect);
+        REQUIRE(footprint(setup, shot.rect, out.spans()));
+        for (std::size_t k = 0; k < 100; ++k) {
+            const ExactFootprint truth(exact, 150 + static_cast<std::int64_t>(k), 100);
+            const ExactFootprint::Shape shape = truth.shape(texels);
+            INFO("fragment ", k);
+            REQUIRE(std::fabs(out.at(level, k) - std::log2(static_cast<double>(shape.rho))) <= 0x1p-16 * 2.0);
+            const double length = std::hypot(out.at(major_s, k) * texels.s, out.at(major_t, k) * texels.t);
+            REQUIRE(std::fabs(length / static_cast<double>(shape.largest) - 1.0) <= 0x1p-16);
+            REQUIRE(out.at(anisotropy, k) == infinity);
+        }
+    }
+}
+
+TEST_CASE("coordinates that are large everywhere leave the anisotropy its digits") {
+    Random random(6250);
+    double worst = 0.0;
+    int checked = 0;
+    for (int i = 0; i < 300; ++i) {
+        const Triangle triangle = support::make_triangle(support::Family::far_away, random);
+        const FragmentRect pixel = support::pixel_near(triangle, random);
+        const TexelsPerUnit texels{256.0, 256.0};
+        const FootprintSetup setup(setup_of(triangle), texels);
+        const auto one = setup.at(pixel.x, pixel.y);
+        const ExactTriangle exact(triangle);
+        if (!one || !exact.has_positive_w(pixel.x, pixel.y)) continue;
+        const ExactFootprint::Shape shape = ExactFootprint(exact, pixel.x, pixel.y).shape(texels);
+        const double error = std::fabs(one->anisotropy / static_cast<double>(shape.largest / shape.least) - 1.0);
+        worst = std::max(worst, error);
+        ++checked;
+        REQUIRE_MESSAGE(error <= 1e-9, hex(triangle) << " fragment " << pixel.x << " " << pixel.y);
+    }
+    MESSAGE(checked, " fragments, worst relative error of the anisotropy ", worst);
+    CHECK(checked > 200);
 }
 
 TEST_CASE("a tolerance is kept in units a pixel, and some of it is used") {
