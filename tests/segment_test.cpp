@@ -483,3 +483,39 @@ TEST_CASE("segments of random bits, not finite ones too, write nothing but their
         for (const float lit : out.lit()) REQUIRE((lit == 0.0f || lit == 1.0f));
     }
 }
+
+TEST_CASE("a segment needs nothing only where nothing is lit, and no test only where all is lit, in every family") {
+    std::uint64_t seed = 4700;
+    int counts[5] = {};
+    for (const SegmentFamily& family : families) {
+        CAPTURE(std::string(family.name));
+        Random random(++seed);
+        for (int i = 0; i < 400; ++i) {
+            Case c = family.make(random, 48);
+            if (random.integer(0, 3) == 0) c.segment.b.w = c.segment.a.w;
+            const texgen::TextureRegion region =
+                random.coin() ? any_region(c, random) : texgen::atlas_tile({-4.0, -4.0}, {4.0, 4.0});
+            const texgen::Tolerance tolerance = random.coin() ? texgen::exact : texgen::texels(1.0 / 16.0, 1024.0);
+            const texgen::Work work = texgen::work(c.segment, region, tolerance);
+            ++counts[static_cast<int>(work)];
+            CAPTURE(hex(c.segment));
+            std::vector<float> lit(c.alphas.size());
+            texgen::interpolate(c.segment, c.alphas, region, {.s = {}, .t = {}, .r = {}, .lit = lit}, tolerance);
+            for (const float value : lit) {
+                if (work == texgen::Work::nothing) REQUIRE(value == 0.0f);
+                if (work == texgen::Work::divide) REQUIRE(value == 1.0f);
+            }
+            const bool is_constant = c.segment.a.w == c.segment.b.w;
+            if (work == texgen::Work::affine) REQUIRE(is_constant);
+            REQUIRE(work != texgen::Work::quadratic);
+        }
+    }
+    for (const texgen::Work work :
+         {texgen::Work::nothing, texgen::Work::affine, texgen::Work::divide, texgen::Work::divide_and_test})
+        CHECK(counts[static_cast<int>(work)] > 50);
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    CHECK(texgen::work({{0.5f, 0.5f, 0.0f, nan}, {0.5f, 0.5f, 0.0f, 1.0f}}, texgen::whole_texture()) ==
+          texgen::Work::divide_and_test);
+    CHECK(texgen::work({{0.5f, 0.5f, 0.0f, -1.0f}, {0.5f, 0.5f, 0.0f, 0.0f}}, texgen::whole_texture()) ==
+          texgen::Work::nothing);
+}

@@ -578,6 +578,36 @@ Work interpolate(const TriangleSetup& setup, FragmentRect rect, Texcoords out) n
 
 }  // namespace TEXGEN_BUILD
 
+// The same of a segment, for all alpha in [0, 1].
+// Guarantee: never nothing where a value is lit, never less than divide_and_test where one is dark or behind; affine where
+// q is the same at both ends. noexcept.
+// Bad input: an end that is not finite needs divide_and_test.
+inline Work work(const Segment& segment, TextureRegion region, Tolerance tolerance = exact) noexcept {
+    const glm::dvec4 a = detail::widened(segment.a);
+    const glm::dvec4 b = detail::widened(segment.b);
+    // A product with 0 is 0 for numbers only.
+    if (!(0.0 * (a.x + a.y + a.w) == 0.0 && 0.0 * (b.x + b.y + b.w) == 0.0)) return Work::divide_and_test;
+    if (a.w <= 0.0 && b.w <= 0.0) return Work::nothing;
+
+    // A tile of one row whose corners are the ends: given, so without an error.
+    detail::Corners at{};
+    for (std::size_t i = 0; i < 4; ++i) {
+        const glm::dvec4& end = i % 2 == 0 ? a : b;
+        at.numerator[0][i] = end.x;
+        at.numerator[1][i] = end.y;
+        at.q[i] = end.w;
+    }
+    at.least_q = detail::smaller(a.w, b.w);
+    at.largest_q = detail::larger(a.w, b.w);
+    const detail::LitTest lit(region);
+    const double accepted = detail::accepted(tolerance);
+    const detail::Place s_place = detail::place_of(at, 0, lit.min(0), lit.max(0), accepted);
+    const detail::Place t_place = detail::place_of(at, 1, lit.min(1), lit.max(1), accepted);
+    if (s_place == detail::Place::outside || t_place == detail::Place::outside) return Work::nothing;
+    if (a.w == b.w) return Work::affine;
+    return s_place == detail::Place::inside && t_place == detail::Place::inside ? Work::divide : Work::divide_and_test;
+}
+
 namespace detail {
 
 // A float stands for the segment's value at alpha exactly: A - alpha A + alpha B.
