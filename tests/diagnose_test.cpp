@@ -662,8 +662,10 @@ std::optional<glm::dmat4> spoilt_texgen(const Rig& rig, const Projector& given, 
     const auto factor = [&](std::size_t i) { return factors[static_cast<std::size_t>((*order)[i])]; };
     glm::dmat4 texgen = factor(0) * factor(1) * (factor(2) * factor(3));
     // Far planes do not tell one range of depth from the other, so that in float it may be lost.
-    if (random.coin() && !faults.has(Thing::points) && !faults.has(Thing::depth_of_scale_bias))
-        texgen = to_float(texgen);
+    const bool tells_depth = !faults.has(Thing::depth_of_scale_bias) ||
+                             (dot3(rig.aim.position, rig.aim.position) < 1e4 && !faults.has(Thing::pose) &&
+                              !faults.has(Thing::order) && !faults.has(Thing::exchange));
+    if (random.coin() && !faults.has(Thing::points) && tells_depth) texgen = to_float(texgen);
 
     const bool transpose_last = random.coin();
     if (faults.has(Thing::transposition) && !transpose_last) texgen = transposed(texgen);
@@ -853,6 +855,13 @@ TEST_CASE("no valid set-up of round numbers is found fault with, where factors c
                     .lens = all_facts(rig)};
         if (rig.in != In::world) parts.pose = rig.pose;
         if (random.coin()) parts.texgen = composed(rig, *parts.projector);
+        if (most < 10 && rig.in != In::world && random.coin()) {
+            // The noise of an inverse, where the pose holds zeros.
+            Rig noisy = rig;
+            for (int j = 0; j < 3; ++j)
+                for (int k = 0; k < 3; ++k) noisy.pose[j][k] += random.uniform(-0x1p-26, 0x1p-26);
+            parts.texgen = composed(noisy, *parts.projector);
+        }
         const Diagnosis diagnosis = diagnosis_of(parts);
         REQUIRE_MESSAGE(diagnosis.empty(), i, " ", text(diagnosis), " in ", text(parts));
         parts.projector = std::nullopt;
@@ -1136,4 +1145,32 @@ TEST_CASE("a matrix of the other sign lights what is behind") {
         REQUIRE_MESSAGE(diagnosis.size() == 1, text(diagnosis), " in ", text(parts));
         CHECK(diagnosis.contains(Defect::everything_behind));
     }
+}
+
+TEST_CASE("a reflection in the view mirrors, and one more in the lens undoes it") {
+    Random random(611);
+    for (int i = 0; i < 100; ++i) {
+        const Rig rig = random_rig(ordinary, random);
+        glm::dmat4 p = projection(rig.lens, rig.conventions), reflected = rig.view;
+        for (int j = 0; j < 4; ++j) reflected[j][0] = -reflected[j][0];
+        const Diagnosis once = diagnose(projector_of(rig, p, reflected));
+        REQUIRE_MESSAGE(once.size() == 1, text(once));
+        CHECK(once.contains(Defect::mirrored));
+        const Diagnosis of_rows = diagnose(projector_of(rig, p, transposed(reflected)));
+        CHECK(of_rows.contains(Defect::mirrored));
+        CHECK(of_rows.contains(Defect::transposed));
+        for (int j = 0; j < 4; ++j) p[j][0] = -p[j][0];
+        CHECK(diagnose(projector_of(rig, p, reflected)).empty());
+    }
+}
+
+TEST_CASE("points on the side of the region are in it, and one point alone has no size") {
+    // s = x, t = y, q = 1.
+    const texgen::WorldTexgen texgen(glm::dmat4(1.0));
+    const glm::vec3 on_side[] = {{1.0f, 0.1f, 0.0f}, {1.0f, 0.9f, 0.0f}};
+    const glm::vec3 beyond[] = {{1.0001f, 0.1f, 0.0f}, {1.0001f, 0.9f, 0.0f}};
+    const glm::vec3 same[] = {{0.3f, 0.1f, 0.0f}, {0.3f, 0.1f, 0.0f}};
+    CHECK(diagnose(texgen, {.points = texgen::world_space(on_side)}).empty());
+    CHECK(diagnose(texgen, {.points = texgen::world_space(beyond)}).contains(Defect::region_never_hit));
+    CHECK(diagnose(texgen, {.points = texgen::world_space(same)}).empty());
 }
