@@ -447,7 +447,7 @@ TEST_CASE("coordinates that are large everywhere leave the anisotropy its digits
         const double error = std::fabs(one->anisotropy / static_cast<double>(shape.largest / shape.least) - 1.0);
         worst = std::max(worst, error);
         ++checked;
-        REQUIRE_MESSAGE(error <= 1e-9, hex(triangle) << " fragment " << pixel.x << " " << pixel.y);
+        REQUIRE_MESSAGE(error <= 1e-12, hex(triangle) << " fragment " << pixel.x << " " << pixel.y);
     }
     MESSAGE(checked, " fragments, worst relative error of the anisotropy ", worst);
     CHECK(checked > 200);
