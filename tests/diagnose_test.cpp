@@ -311,11 +311,11 @@ glm::dmat4 composed(const Rig& rig, const Projector& projector) {
     return texture_from_world(projector, rig.region, rig.depth).matrix();
 }
 
-// As a user of GLM does it, from the left in float.
-glm::dmat4 composed_in_float(const Rig& rig, const Projector& projector) {
+// As a user of GLM does it, in float, from the left or from the right.
+glm::dmat4 composed_in_float(const Rig& rig, const Projector& projector, bool from_left = true) {
     const glm::mat4 s = scale_bias(projector.conventions, rig.region, rig.depth).rounded();
-    const glm::mat4 world = s * projector.projection.rounded() * projector.view.rounded();
-    return glm::dmat4(support::rounded(glm::dmat4(rig.in == In::world ? world : world * support::rounded(rig.pose))));
+    const glm::mat4 p = projector.projection.rounded(), v = projector.view.rounded(), x = support::rounded(rig.pose);
+    return to_float(glm::dmat4(from_left ? s * p * v * x : s * (p * (v * x))));
 }
 
 Projector projector_of(const Rig& rig, const glm::dmat4& p, const glm::dmat4& v) {
@@ -411,7 +411,7 @@ Parts valid_parts(Random& random, Classes& classes) {
         ++classes.in_float;
     }
     if (form == 2 && fits_float) {
-        const glm::dmat4 in_float = composed_in_float(rig, projector);
+        const glm::dmat4 in_float = composed_in_float(rig, projector, random.coin());
         double distance = 0.0;
         for (const glm::vec3& point : parts.points) {
             if (!seen(texgen, rig.region, point).lit && !seen(in_float, rig.region, point).lit) continue;
