@@ -492,14 +492,18 @@ std::vector<texgen::ClipVertex> polygon_of(const Numbers& n) {
 Share clip_to_slide_share(const Numbers& n) {
     if (!is_in_range(n, 0x1p-60, 0x1p60)) return says_nothing;
     std::array<texgen::ClipVertex, 8> out{};
-    const std::size_t count = clip_to_slide(polygon_of(n), texgen::whole_texture(), out);
+    // Sides that are no floats: on those of the whole texture s, t and q are rounded alike.
+    const texgen::TextureRegion region = texgen::atlas_tile({0.1, 0.3}, {0.7, 0.9});
+    const std::size_t count = clip_to_slide(polygon_of(n), region, out);
     Share worst = says_nothing;
     for (std::size_t i = 0; i < count; ++i) {
         const glm::vec4& strq = out[i].strq;
         if (!(strq.w > 0.0f)) return broken;
         for (int k = 0; k < 2; ++k) {
             const auto u = static_cast<double>(strq[k]), q = static_cast<double>(strq.w);
-            worst = std::max(worst, share_of_error(std::max(-u, u - q) / (texgen::slide_clip_error * q)));
+            const double min = region.min()[k], max = region.max()[k];
+            worst = std::max(worst,
+                             share_of_error(std::max(min * q - u, u - max * q) / (texgen::slide_clip_error * max * q)));
         }
     }
     return worst;

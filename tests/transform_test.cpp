@@ -292,3 +292,22 @@ TEST_CASE("the rigid inverse transposes the rotation exactly and rounds the tran
     }
     CHECK(worst <= 1.0);
 }
+
+TEST_CASE("what is not rigid is some way from it: a shear, a scale, a mirror's last row, a NaN") {
+    Random random(99);
+    for (int i = 0; i < 50; ++i) CHECK(texgen::detail::distance_from_rigid(random.rigid(1e6)) < 1e-14);
+    for (int column = 0; column < 3; ++column) {
+        for (int row = 0; row < 3; ++row) {
+            glm::dmat4 m(1.0);
+            m[column][row] += 0.5;  // on the diagonal a scale, beside it a shear
+            CHECK(texgen::detail::distance_from_rigid(m) >= 0.5);
+            m[column][row] = nan_double;
+            CHECK(!(texgen::detail::distance_from_rigid(m) <= 1e-3));
+        }
+    }
+    for (int column = 0; column < 4; ++column) {
+        glm::dmat4 m(1.0);
+        m[column][3] += 0.5;
+        CHECK(texgen::detail::distance_from_rigid(m) >= 0.5);
+    }
+}
