@@ -1174,3 +1174,33 @@ TEST_CASE("points on the side of the region are in it, and one point alone has n
     CHECK(diagnose(texgen, {.points = texgen::world_space(beyond)}).contains(Defect::region_never_hit));
     CHECK(diagnose(texgen, {.points = texgen::world_space(same)}).empty());
 }
+
+TEST_CASE("far from the origin the rounding of float hides no depth range, where the matrix was rounded once") {
+    Random random(612);
+    int found = 0;
+    while (found < 100) {
+        Rig rig = random_rig({.least_fovy = 20.0,
+                              .most_fovy = 60.0,
+                              .distance = 5.0,
+                              .least_tile = 0.1,
+                              .far_decades = 4.0,
+                              .scale_decades = 0.0},
+                             random);
+        if (rig.in == In::world || rig.lens.kind != LensKind::infinite ||
+            dot3(rig.aim.position, rig.aim.position) < 1e8)
+            continue;
+        if (rig.lens.z_near < 0.5) continue;
+        rig.conventions = texgen::direct3d;
+        const Projector projector = projector_of(rig, projection(rig.lens, rig.conventions), rig.view);
+        glm::dmat4 texgen = composed(rig, projector);
+        for (int i = 0; i < 4; ++i) texgen[i][2] = 0.5 * texgen[i][2] + 0.5 * texgen[i][3];
+        const Diagnosis diagnosis = diagnosis_of({.projector = projector,
+                                                  .pose = rig.pose,
+                                                  .texgen = to_float(texgen),
+                                                  .in = rig.in,
+                                                  .region = rig.region,
+                                                  .depth = rig.depth});
+        REQUIRE_MESSAGE(diagnosis.contains(Defect::depth_range_mismatch), text(diagnosis));
+        ++found;
+    }
+}
