@@ -1,11 +1,10 @@
 #pragma once
 
-// The umbrella: everything but reference.hpp and eigen.hpp, which need Eigen, and scene.hpp, which needs std::vector: what
-// the umbrella costs every file to compile is kept below three times GLM's own headers.
+// The umbrella: everything but reference.hpp and eigen.hpp, which need Eigen, and scene.hpp and diagnose.hpp, which few
+// files need: what the umbrella costs every file to compile stays below three times GLM's own headers.
 
 #include "clip.hpp"
 #include "conventions.hpp"
-#include "diagnose.hpp"
 #include "fixed_function.hpp"
 #include "footprint.hpp"
 #include "interpolate.hpp"
