@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -129,4 +130,73 @@ TEST_CASE("functions over a triangle in float, or in double and rounded, stay in
         for (std::size_t k = 0; k < out.size(); ++k) cheap += !support::same_bits(out.s()[k], nearest.s()[k]);
     }
     CHECK(cheap > 1000);
+}
+
+TEST_CASE("the bounds of forms, of mixtures and of planes in double cover their errors, and not by much") {
+    Random random(6400);
+    double of_form = 0.0, of_mixture = 0.0, of_plane = 0.0;
+    const auto share = [](const texgen::detail::Bounded& bounded, const support::Dyadic& exact) {
+        return magnitude(support::Dyadic(bounded.value) - exact).estimate() / bounded.error;
+    };
+    const auto any = [&] { return random.uniform(0.5, 1.0) * (random.coin() ? 1.0 : -1.0); };
+    for (int i = 0; i < 20000; ++i) {
+        glm::dmat4 matrix(0.0);
+        for (int j = 0; j < 4; ++j) matrix[j][0] = any();
+        const glm::vec3 point(support::to_float(any()), support::to_float(any()), support::to_float(any()));
+        of_form = std::max(of_form, share(texgen::detail::value_at(texgen::detail::form(matrix, 0), glm::dvec3(point)),
+                                          support::exactly_at(matrix, point).s));
+
+        const texgen::Segment segment{glm::vec4(support::to_float(any())), glm::vec4(support::to_float(any()))};
+        const float alpha = random.uniform_float(0.0, 1.0);
+        of_mixture = std::max(
+            of_mixture, share(texgen::detail::mixed(static_cast<double>(segment.a.x), static_cast<double>(segment.b.x),
+                                                    static_cast<double>(alpha)),
+                              support::exactly_at(segment, alpha).s));
+    }
+    for (int i = 0; i < 20000; ++i) {
+        const auto vertex = [&] {
+            return texgen::WindowVertex{{random.uniform_float(-100.0, 100.0), random.uniform_float(-100.0, 100.0)},
+                                        random.uniform_float(0.5, 2.0),
+                                        {support::to_float(any()), 0.0f, 0.0f, support::to_float(any())}};
+        };
+        const texgen::Triangle triangle{vertex(), vertex(), vertex()};
+        const auto planes = texgen::detail::TrianglePlanes::of(triangle);
+        REQUIRE(planes);
+        const std::int64_t x = random.integer(-100, 100), y = random.integer(-100, 100);
+        // Both are known up to the same positive factor: s / q of one is that of the other, and so is s q' - s' q = 0.
+        const texgen::detail::Bounded s = planes->at(planes->plane(0), x, y), q = planes->at(planes->plane(3), x, y);
+        const support::Homogeneous exact = support::ExactTriangle(triangle).at(x, y);
+        const support::Dyadic cross = support::Dyadic(s.value) * exact.q - support::Dyadic(q.value) * exact.s;
+        const double room = s.error * std::fabs(exact.q.estimate()) + q.error * std::fabs(exact.s.estimate());
+        of_plane = std::max(of_plane, std::fabs(cross.estimate()) / room);
+    }
+    for (const double worst : {of_form, of_mixture, of_plane}) CHECK(worst <= 1.0);
+    CHECK(of_form > 0.3);
+    CHECK(of_mixture > 0.3);
+    CHECK(of_plane > 0.06);
+    MESSAGE(of_form, " ", of_mixture, " ", of_plane);
+}
+
+TEST_CASE("an area that the differences in double do not see is an area") {
+    const auto vertex = [](float x, float y, float s) {
+        return texgen::WindowVertex{{x, y}, 1.0f, {s, 0.25f, 0.0f, 1.0f}};
+    };
+    // c - a is a double only when it is rounded, to -a; c is above the line, on it, or below.
+    const auto triangle = [&](float c) {
+        return texgen::Triangle{vertex(0x1p60f, 0x1p60f, 1.0f), vertex(-0x1p60f, -0x1p60f, 2.0f),
+                                vertex(1.0f, c, 3.0f)};
+    };
+    CHECK_FALSE(texgen::TriangleSetup::of(triangle(1.0f), everywhere()));
+    for (const float c : {2.0f, 0.5f, -3.0f}) {
+        const auto setup = texgen::TriangleSetup::of(triangle(c), everywhere());
+        REQUIRE(setup);
+        const texgen::FragmentRect rect{-1, -1, 4, 4};
+        Outputs out(16);
+        support::Seen seen;
+        const texgen::Work work = interpolate(*setup, rect, out.spans());
+        const std::string wrong = first_wrong({triangle(c), rect}, support::ExactTriangle(triangle(c)), everywhere(),
+                                              texgen::exact, work, out, seen);
+        CHECK_MESSAGE(wrong.empty(), wrong);
+        CHECK(seen.in_front > 0);
+    }
 }
