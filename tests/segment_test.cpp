@@ -440,6 +440,19 @@ TEST_CASE("a NaN in alpha spoils its own value only") {
     }
 }
 
+TEST_CASE("an alpha that is NaN is behind, alone and in any company") {
+    const texgen::Segment segment{{0.5f, 0.5f, 0.5f, 1.0f}, {1.0f, 0.5f, 0.25f, 2.0f}};
+    for (const std::size_t count : {1u, 3u, 16u, 64u, 100u}) {
+        for (std::size_t bad = 0; bad < count; bad += 7) {
+            std::vector<float> alpha(count, 0.5f);
+            alpha[bad] = std::numeric_limits<float>::quiet_NaN();
+            Outputs out(count);
+            interpolate(segment, alpha, everywhere(), out.spans());
+            for (std::size_t k = 0; k < 4; ++k) REQUIRE(same_bits(out[k][bad], 0.0f));
+        }
+    }
+}
+
 TEST_CASE("a bad coordinate of an end spoils that coordinate only; a bad q, and everything is dark") {
     Random random(4700);
     for (const Tolerance tolerance : {texgen::exact, Tolerance{1e-4}}) {
