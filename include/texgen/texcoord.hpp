@@ -46,7 +46,7 @@ public:
 
     // Whether the layout is one that needs no gathering: one array of vectors, or three arrays of floats, aligned.
     bool is_interleaved() const noexcept {
-        return stride_bytes_ == 3 * sizeof(float) && y_ == x_ + 1 && z_ == x_ + 2 && is_aligned(x_);
+        return count_ != 0 && stride_bytes_ == 3 * sizeof(float) && y_ == x_ + 1 && z_ == x_ + 2 && is_aligned(x_);
     }
     bool is_planar() const noexcept {
         return stride_bytes_ == sizeof(float) && is_aligned(x_) && is_aligned(y_) && is_aligned(z_);

@@ -367,7 +367,8 @@ TEXGEN_INLINE LongWords divide_certainly(const Doubles (&numerator)[Numerators],
     for (std::size_t k = 0; k < Numerators; ++k) {
         Doubles quotient = numerator[k] * reciprocal;
         if constexpr (Signed) quotient = where(in_front, quotient);
-        const Doubles error = magnitude(quotient) * relative_error + reciprocal * (1.001 * numerator_error[k]);
+        Doubles error = magnitude(quotient) * relative_error + reciprocal * (1.001 * numerator_error[k]);
+        if constexpr (Signed) error = where(in_front, error);  // of a numerator that is no number
         value[k] = to_floats(quotient - error);
         doubt.rounding |= bits(value[k]) ^ bits(to_floats(quotient + error));
     }
@@ -532,7 +533,8 @@ TEXGEN_INLINE std::size_t divide_points_within_of(const PointJob& job, std::size
         // The bits of positive floats have their order; those of a negative one, and of -0, are below them all.
         const int least_bits = ~largest_lane(~q_least);
         const double q = static_cast<double>(std::bit_cast<float>(least_bits)) * (1.0 - roundings) - q_error;
-        bool certified = q > 0x1p-60;
+        // A q that overflowed in float would go unnoticed: it is not the least.
+        bool certified = q > 0x1p-60 && extent.magnitude_of(job.q) < 0x1p127;
         for (std::size_t k = 0; k < Numerators; ++k) {
             const auto bound = static_cast<double>(std::bit_cast<float>(largest_lane(largest[k])));
             const double error = form_error * extent.magnitude_of(job.numerator[k]) + underflow;
