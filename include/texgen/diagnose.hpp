@@ -336,11 +336,13 @@ public:
                 u.error + std::fabs(end) * q.error + gamma(3) * (std::fabs(u.value) + std::fabs(end * q.value));
             outside_[side] = outside_[side] && distance < -error;
         }
+        const glm::dvec2 st = glm::dvec2(s.value, t.value) / q.value;
+        // What floats have thrown behind the projector too.
+        if (has_right_ && q.value != 0.0) compare(v, st);
         if (!(q.value > q.error)) {
             all_in_front_ = false;
             return;
         }
-        const glm::dvec2 st = glm::dvec2(s.value, t.value) / q.value;
         if (in_front_++ == 0) {
             first_ = v;
             least_ = most_ = st;
@@ -350,7 +352,6 @@ public:
             least_[k] = smaller(least_[k], st[k]);
             most_[k] = larger(most_[k], st[k]);
         }
-        if (has_right_) compare(v, st);
         if (in_float_ && is_lit(st)) {
             // Half the bound on the rounding of the elements, each within 2^-24 of itself.
             const double per_error = 0.5 * unit_roundoff_float / gamma(5);
