@@ -65,12 +65,12 @@ constexpr const char* explanation =
 std::string text_of(const Report& report) {
     std::string text;
     for (const auto& [name, value] : report.circumstances) text += name + ": " + value + "\n";
-    text += formatted("\n%-14s %-24s %11s %10s %10s %11s %10s %11s %8s\n", "scene", "loop", "fragments", "ns each",
+    text += formatted("\n%-14s %-26s %11s %10s %10s %11s %10s %11s %8s\n", "scene", "loop", "fragments", "ns each",
                       "max texel", "p99.9 texel", "max ulp", "p99.9 ulp", "wrong");
     for (const SceneReport& scene : report.scenes) {
         for (const Measurement& measurement : scene.comparison.measurements) {
             const Errors& errors = measurement.errors;
-            text += formatted("%-14s %-24s %11zu %10.3f %10s %11s %10s %11s %8zu\n", scene.name.c_str(),
+            text += formatted("%-14s %-26s %11zu %10.3f %10s %11s %10s %11s %8zu\n", scene.name.c_str(),
                               measurement.method.c_str(), scene.comparison.evaluated_fragments, measurement.nanoseconds,
                               number(errors.max_texels).c_str(), number(errors.nearly_max_texels).c_str(),
                               number(errors.max_ulp).c_str(), number(errors.nearly_max_ulp).c_str(),
