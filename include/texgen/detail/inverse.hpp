@@ -80,14 +80,21 @@ inline CertifiedInverse::CertifiedInverse(const glm::dmat4& matrix) noexcept {
     refine();
 }
 
+// False where a row or a column is 0, or where an element is so small beside others that scaling could round it: then B
+// would be another matrix.
 inline bool CertifiedInverse::equilibrate() noexcept {
+    bool is_exact = true;
+    const auto scale = [&is_exact](double& element, int shift) {
+        is_exact = is_exact && (element == 0.0 || std::fabs(std::scalbn(element, shift)) >= 0x1p-900);
+        element = std::scalbn(element, shift);
+    };
     for (int pass = 0; pass < 3; ++pass) {
         for (std::size_t i = 0; i < 4; ++i) {
             double row_largest = 0.0;
             for (std::size_t k = 0; k < 4; ++k) row_largest = std::fmax(row_largest, std::fabs(scaled_[i][k]));
             if (row_largest == 0.0) return false;
             const int row_shift = -std::ilogb(row_largest);
-            for (std::size_t k = 0; k < 4; ++k) scaled_[i][k] = std::scalbn(scaled_[i][k], row_shift);
+            for (std::size_t k = 0; k < 4; ++k) scale(scaled_[i][k], row_shift);
             row_exponent_[i] += row_shift;
         }
         for (std::size_t k = 0; k < 4; ++k) {
@@ -95,11 +102,11 @@ inline bool CertifiedInverse::equilibrate() noexcept {
             for (std::size_t i = 0; i < 4; ++i) column_largest = std::fmax(column_largest, std::fabs(scaled_[i][k]));
             if (column_largest == 0.0) return false;
             const int column_shift = -std::ilogb(column_largest);
-            for (std::size_t i = 0; i < 4; ++i) scaled_[i][k] = std::scalbn(scaled_[i][k], column_shift);
+            for (std::size_t i = 0; i < 4; ++i) scale(scaled_[i][k], column_shift);
             column_exponent_[k] += column_shift;
         }
     }
-    return true;
+    return is_exact;
 }
 
 // Gauss-Jordan with partial pivoting.
