@@ -178,6 +178,24 @@ TEST_CASE("a matrix of rank 0, 1 or 2 is refused") {
     }
 }
 
+TEST_CASE("a singular matrix is refused where its scaling would round what makes it so") {
+    // Its first two columns are parallel; the large ones would push them out of the range of normal doubles.
+    constexpr double large = 0x1.d5d5d5d5d5d5dp+470;
+    constexpr double small = -0x1.b9b9b9b9b9b9bp-582;
+    const glm::dvec4 thin(-0x1.b9b9bff03bbffp-582, small, small, -0x1.b9b9b9b9b9b12p-582);
+    const glm::dmat4 m(thin, 0x1p-20 * thin, glm::dvec4(small, 0x1.d5d5d9b9b9b9bp+470, large, large),
+                       glm::dvec4(large, large, large, small));
+    CHECK_FALSE(inverse(ModelMatrix(m)));
+    CHECK_FALSE(inverse(ModelMatrix(glm::transpose(m))));
+
+    // As far apart as is allowed, and beyond.
+    for (const double ratio : {0.5 * texgen::detail::least_scaled, 2.0 * texgen::detail::least_scaled}) {
+        glm::dmat4 wide(1.0);
+        wide[1][0] = ratio;
+        CHECK(inverse(ModelMatrix(wide)).has_value() == (ratio > texgen::detail::least_scaled));
+    }
+}
+
 TEST_CASE("uniform scales from 1e-30 to 1e30 are regular, and inverted within 2 ulp of the largest term") {
     for (int exponent = -30; exponent <= 30; ++exponent) {
         const double size = std::pow(10.0, exponent);

@@ -284,19 +284,7 @@ public:
         if (at.all_behind()) return store_rows(tile, nothing());
         if (at.well_in_front() && at.least_q > 0x1p-12 * at.largest_q && fill_in_vectors(tile, at)) return;
         if (tile.width <= 8 && tile.height <= 8) return fill_one_by_one(tile);
-        Tile first = tile;
-        Tile second = tile;
-        if (tile.width >= tile.height) {
-            first.width = tile.width / 2;
-            second.x += first.width;
-            second.width -= first.width;
-        } else {
-            first.height = tile.height / 2;
-            second.y += first.height;
-            second.height -= first.height;
-        }
-        fill_all(first, setup_.corners(first));
-        fill_all(second, setup_.corners(second));
+        for (const Tile& half : tile.halves()) fill_all(half, setup_.corners(half));
     }
 
 private:
@@ -428,9 +416,7 @@ private:
         put(out_.major_t, value.major.y);
     }
 
-    std::size_t offset(std::int64_t x, std::int64_t y) const noexcept {
-        return static_cast<std::size_t>((y - rect_.y) * rect_.width + (x - rect_.x));
-    }
+    std::size_t offset(std::int64_t x, std::int64_t y) const noexcept { return offset_in(rect_, x, y); }
 
     const FootprintKernels& kernels_;
     const FootprintSetup& setup_;

@@ -356,19 +356,7 @@ private:
             return;
         }
         if (tile.width <= 8 && tile.height <= 8) return shade_one_by_one(tile);
-        Tile first = tile;
-        Tile second = tile;
-        if (tile.width >= tile.height) {
-            first.width = tile.width / 2;
-            second.x += first.width;
-            second.width -= first.width;
-        } else {
-            first.height = tile.height / 2;
-            second.y += first.height;
-            second.height -= first.height;
-        }
-        shade_nearest(first, corners(first));
-        shade_nearest(second, corners(second));
+        for (const Tile& half : tile.halves()) shade_nearest(half, corners(half));
     }
 
     // Chunks of a row by polynomials; what their certificates do not cover by division.
@@ -496,9 +484,7 @@ private:
         return {tile.x + unit.x_begin, tile.y + unit.y_begin, unit.x_end - unit.x_begin, unit.y_end - unit.y_begin};
     }
 
-    std::size_t offset(std::int64_t x, std::int64_t y) const noexcept {
-        return static_cast<std::size_t>((y - rect_.y) * rect_.width + (x - rect_.x));
-    }
+    std::size_t offset(std::int64_t x, std::int64_t y) const noexcept { return offset_in(rect_, x, y); }
 
     const TileKernels& kernels_;
     const TriangleSetup& setup_;

@@ -23,6 +23,10 @@ inline bool is_finite(const glm::dmat4& matrix) noexcept {
     return true;
 }
 
+// An element other than 0 that scaling makes smaller could be rounded there, and B would be another matrix: one of rank 3
+// could look regular.
+inline constexpr double least_scaled = 0x1p-900;
+
 class CertifiedInverse {
 public:
     // The matrix is first scaled by powers of two, B = R A C, so that rows and columns are near 1: this is exact and
@@ -80,12 +84,11 @@ inline CertifiedInverse::CertifiedInverse(const glm::dmat4& matrix) noexcept {
     refine();
 }
 
-// False where a row or a column is 0, or where an element is so small beside others that scaling could round it: then B
-// would be another matrix.
+// False where a row or a column is 0, or an element becomes smaller than least_scaled.
 inline bool CertifiedInverse::equilibrate() noexcept {
     bool is_exact = true;
     const auto scale = [&is_exact](double& element, int shift) {
-        is_exact = is_exact && (element == 0.0 || std::fabs(std::scalbn(element, shift)) >= 0x1p-900);
+        is_exact = is_exact && (element == 0.0 || std::fabs(std::scalbn(element, shift)) >= least_scaled);
         element = std::scalbn(element, shift);
     };
     for (int pass = 0; pass < 3; ++pass) {

@@ -7,6 +7,7 @@
 // numerator F = sum E_i c_i, up to a factor that s, t, r and q share. So s/q = S/Q, and neither 1/w nor the area is
 // ever formed.
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -29,7 +30,28 @@ namespace texgen::detail {
 struct Tile {
     std::int64_t x, y;
     int width, height;
+
+    // Across the longer side.
+    std::array<Tile, 2> halves() const noexcept {
+        Tile first = *this;
+        Tile second = *this;
+        if (width >= height) {
+            first.width = width / 2;
+            second.x += first.width;
+            second.width -= first.width;
+        } else {
+            first.height = height / 2;
+            second.y += first.height;
+            second.height -= first.height;
+        }
+        return {first, second};
+    }
 };
+
+// Where a fragment stands in the row-major outputs of a rectangle.
+inline std::size_t offset_in(const FragmentRect& rect, std::int64_t x, std::int64_t y) noexcept {
+    return static_cast<std::size_t>((y - rect.y) * rect.width + (x - rect.x));
+}
 
 // F(p) = base + (p - a) . (dx, dy), about the first vertex: far from the origin of the window nothing cancels that does
 // not cancel in the triangle itself. `magnitude` is the same with the absolute values of all terms: it bounds the
