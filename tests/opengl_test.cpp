@@ -12,6 +12,7 @@
 
 #include "support/hex.hpp"
 #include "support/opengl.hpp"
+#include "support/opengl_fragments.hpp"
 #include "support/random.hpp"
 #include "texgen/clip.hpp"
 #include "texgen/fixed_function.hpp"
@@ -24,6 +25,9 @@
 namespace {
 
 namespace gl = support::gl;
+using gl::fragment_tolerance;
+using gl::largest_terms;
+using gl::twice_area;
 using support::hex;
 using support::Random;
 using support::rounded;
@@ -39,14 +43,7 @@ constexpr std::array modes{TexGenMode::object_linear, TexGenMode::eye_linear, Te
 constexpr std::array scalings{NormalScaling::none, NormalScaling::rescale, NormalScaling::normalize};
 const glm::mat4 identity(1.0f);
 
-const gl::Context& opengl() {
-    const gl::Context* const context = gl::Context::instance();
-    if (!context) {
-        std::fprintf(stderr, "opengl_test: skipped: %s\n", gl::Context::reason().c_str());
-        std::exit(77);
-    }
-    return *context;
-}
+const gl::Context& opengl() { return gl::Context::or_skip(); }
 
 gl::Enum name(TexGenMode mode) {
     constexpr std::array names{gl::object_linear, gl::eye_linear, gl::sphere_map, gl::reflection_map, gl::normal_map};
@@ -476,12 +473,6 @@ std::vector<glm::vec4> draw_with_texcoords(const gl::Context& g, const texgen::T
     return g.pixels();
 }
 
-double twice_area(const texgen::Triangle& t) {
-    const glm::dvec2 ab = glm::dvec2(t.b.window) - glm::dvec2(t.a.window);
-    const glm::dvec2 ac = glm::dvec2(t.c.window) - glm::dvec2(t.a.window);
-    return ab.x * ac.y - ab.y * ac.x;
-}
-
 std::string hex(const texgen::Triangle& triangle) {
     std::string text;
     for (const texgen::WindowVertex* v : {&triangle.a, &triangle.b, &triangle.c})
@@ -510,27 +501,6 @@ struct Comparison {
     std::size_t fragments = 0, behind = 0;
     double worst = 0.0, worst_homogeneous = 0.0;
 };
-
-// OpenGL interpolates s/w, t/w, r/w and q/w by planes in float, so its errors are measured against the largest of the three
-// vertices: max |f_i / w_i|, times the w of the fragment. The error of u = s/q may be
-// tolerance * (S + |u| Q) / |q|: next to nothing is asked of a fragment at q = 0, and none is left out.
-glm::dvec4 largest_terms(const texgen::Triangle& triangle, double x, double y) {
-    const std::array<const texgen::WindowVertex*, 3> vertices{&triangle.a, &triangle.b, &triangle.c};
-    glm::dvec4 terms(0.0);
-    double one_over_w = 0.0;
-    for (std::size_t i = 0; i < 3; ++i) {
-        // Plain barycentrics: the definition must not judge itself.
-        const glm::dvec2 from = glm::dvec2(vertices[(i + 1) % 3]->window) - glm::dvec2(x, y);
-        const glm::dvec2 to = glm::dvec2(vertices[(i + 2) % 3]->window) - glm::dvec2(x, y);
-        const double w = static_cast<double>(vertices[i]->clip_w);
-        one_over_w += (from.x * to.y - from.y * to.x) / twice_area(triangle) / w;
-        for (int c = 0; c < 4; ++c)
-            terms[c] = std::max(terms[c], std::fabs(static_cast<double>(vertices[i]->strq[c])) / w);
-    }
-    return terms / one_over_w;
-}
-
-constexpr double fragment_tolerance = 1e-6;
 
 void compare(const std::vector<glm::vec4>& pixels, const texgen::Triangle& triangle, double tolerance,
              Comparison& result) {
@@ -719,20 +689,6 @@ TEST_CASE("a floor under a slide, drawn with OpenGL's own transforms and eye-lin
 
 // ---- Footprints ----
 
-// A program with this fragment shader; 0 where the shading language has not what it asks for.
-unsigned program_of(const gl::Context& g, const char* source) {
-    const unsigned shader = g.CreateShader(gl::fragment_shader);
-    g.ShaderSource(shader, 1, &source, nullptr);
-    g.CompileShader(shader);
-    int compiled = 0, linked = 0;
-    g.GetShaderiv(shader, gl::compile_status, &compiled);
-    const unsigned program = g.CreateProgram();
-    g.AttachShader(program, shader);
-    g.LinkProgram(program);
-    g.GetProgramiv(program, gl::link_status, &linked);
-    return compiled != 0 && linked != 0 ? program : 0;
-}
-
 constexpr int slide_width = 512, slide_height = 128;
 
 // Binds a texture of that size, with all its levels and trilinear filtering.
@@ -792,9 +748,9 @@ std::array<double, 2> range_in_block(int x, int y, const Value& value) {
 
 TEST_CASE("OpenGL's dFdx and dFdy lie between the derivatives of the fragments that it takes its differences of") {
     const gl::Context& g = opengl();
-    const unsigned program = program_of(g,
-                                        "#version 120\nvoid main() { vec2 c = gl_TexCoord[0].st / gl_TexCoord[0].q; "
-                                        "gl_FragColor = vec4(dFdx(c), dFdy(c)); }\n");
+    const unsigned program = g.program(nullptr,
+                                       "#version 120\nvoid main() { vec2 c = gl_TexCoord[0].st / gl_TexCoord[0].q; "
+                                       "gl_FragColor = vec4(dFdx(c), dFdy(c)); }\n");
     REQUIRE(program != 0);
     Random random(110);
     std::size_t compared = 0, steep = 0;
@@ -834,10 +790,10 @@ TEST_CASE("OpenGL's dFdx and dFdy lie between the derivatives of the fragments t
 TEST_CASE("OpenGL's textureQueryLod is the level of detail, within what its differences allow") {
     const gl::Context& g = opengl();
     const unsigned program =
-        program_of(g,
-                   "#version 400 compatibility\nuniform sampler2D slide;\n"
-                   "void main() { gl_FragColor = vec4(textureQueryLod(slide, gl_TexCoord[0].st / gl_TexCoord[0].q), "
-                   "0.0, 1.0); }\n");
+        g.program(nullptr,
+                  "#version 400 compatibility\nuniform sampler2D slide;\n"
+                  "void main() { gl_FragColor = vec4(textureQueryLod(slide, gl_TexCoord[0].st / gl_TexCoord[0].q), "
+                  "0.0, 1.0); }\n");
     if (program == 0) {
         MESSAGE("this OpenGL has no textureQueryLod");
         return;

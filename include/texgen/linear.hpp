@@ -80,7 +80,8 @@ std::optional<EyeTexgen> eye_planes_as_stored(const Transform<Texture, Space>& p
     return EyeTexgen(stored);
 }
 
-// The rows S, T, R, Q, each element rounded once: what glTexGenfv or a shader is given.
+// The rows S, T, R, Q, each element rounded once: what glTexGenfv is given. A shader gets rounded(), and what it does with
+// the matrix is in README.md, "In a shader".
 template <class Space>
 std::array<glm::vec4, 4> planes(const Transform<Texture, Space>& transform) noexcept {
     const glm::mat4 m = transform.rounded();

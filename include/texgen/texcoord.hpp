@@ -1,7 +1,7 @@
 #pragma once
 
-// Floor 4: texture coordinates of points. generate() gives the homogeneous (s, t, r, q) that a shader divides;
-// project() divides them here, and says which points the slide falls on.
+// Floor 4: texture coordinates of points. generate() gives the homogeneous (s, t, r, q) that a fragment shader divides (see
+// README.md, "In a shader"); project() divides them here, and says which points the slide falls on.
 
 #include <cmath>
 #include <cstddef>

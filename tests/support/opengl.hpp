@@ -12,6 +12,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <glm/mat4x4.hpp>
@@ -42,7 +43,12 @@ inline constexpr Enum texture_2d = 0x0DE1, texture_mag_filter = 0x2800, texture_
 inline constexpr Enum linear = 0x2601, linear_mipmap_linear = 0x2703;
 inline constexpr Enum framebuffer = 0x8D40, color_attachment0 = 0x8CE0, framebuffer_complete = 0x8CD5;
 inline constexpr Enum color_buffer_bit = 0x4000;
-inline constexpr Enum fragment_shader = 0x8B30, compile_status = 0x8B81, link_status = 0x8B82;
+inline constexpr Enum fragment_shader = 0x8B30, vertex_shader = 0x8B31, compile_status = 0x8B81, link_status = 0x8B82;
+inline constexpr Enum texture_wrap_s = 0x2802, texture_wrap_t = 0x2803, clamp_to_edge = 0x812F,
+                      clamp_to_border = 0x812D;
+inline constexpr Enum texture_border_color = 0x1004, depth_component = 0x1902, depth_component24 = 0x81A6;
+inline constexpr Enum texture_compare_mode = 0x884C, texture_compare_func = 0x884D, compare_ref_to_texture = 0x884E;
+inline constexpr Enum less_or_equal = 0x0203;
 inline constexpr Enum clamp_vertex_color = 0x891A, clamp_fragment_color = 0x891B, clamp_read_color = 0x891C;
 inline constexpr Enum renderer = 0x1F01, version = 0x1F02;
 
@@ -55,6 +61,15 @@ public:
         static const Context context;
         return context.usable_ ? &context : nullptr;
     }
+    // The same, or the end of the program, as skipped.
+    static const Context& or_skip() {
+        const Context* const context = instance();
+        if (context == nullptr) {
+            std::fprintf(stderr, "skipped: %s\n", reason().c_str());
+            std::exit(77);
+        }
+        return *context;
+    }
     static std::string& reason() {
         static std::string text;
         return text;
@@ -65,6 +80,7 @@ public:
 
     void (*Begin)(Enum) = nullptr;
     void (*End)() = nullptr;
+    void (*Vertex3fv)(const float*) = nullptr;
     void (*Vertex4fv)(const float*) = nullptr;
     void (*Normal3fv)(const float*) = nullptr;
     void (*TexCoord4fv)(const float*) = nullptr;
@@ -104,6 +120,14 @@ public:
     void (*LinkProgram)(unsigned) = nullptr;
     void (*GetProgramiv)(unsigned, Enum, int*) = nullptr;
     void (*UseProgram)(unsigned) = nullptr;
+    void (*GetShaderInfoLog)(unsigned, int, int*, char*) = nullptr;
+    void (*BindAttribLocation)(unsigned, unsigned, const char*) = nullptr;
+    int (*GetUniformLocation)(unsigned, const char*) = nullptr;
+    void (*Uniform1f)(int, float) = nullptr;
+    void (*Uniform3fv)(int, int, const float*) = nullptr;
+    void (*Uniform4fv)(int, int, const float*) = nullptr;
+    void (*UniformMatrix4fv)(int, int, unsigned char, const float*) = nullptr;
+    void (*TexParameterfv)(Enum, Enum, const float*) = nullptr;
 
     void load_matrix(Enum mode, const glm::mat4& matrix) const {
         MatrixMode(mode);
@@ -124,6 +148,33 @@ public:
         }
         Disable(normalize);
         Disable(rescale_normal);
+    }
+
+    // A program of these shaders, the fixed functions for vertices where there is none; 0 where one does not compile, and
+    // reason() has the log. Vec3 `position` is what Vertex3fv gives.
+    unsigned program(const char* vertex_source, const char* fragment_source) const {
+        const unsigned result = CreateProgram();
+        for (const auto& [kind, source] :
+             {std::pair(vertex_shader, vertex_source), std::pair(fragment_shader, fragment_source)}) {
+            if (source == nullptr) continue;
+            const unsigned shader = CreateShader(kind);
+            ShaderSource(shader, 1, &source, nullptr);
+            CompileShader(shader);
+            int compiled = 0;
+            GetShaderiv(shader, compile_status, &compiled);
+            if (compiled == 0) {
+                char log[1024] = {};
+                GetShaderInfoLog(shader, sizeof log, nullptr, log);
+                reason() = log;
+                return 0;
+            }
+            AttachShader(result, shader);
+        }
+        BindAttribLocation(result, 0, "position");
+        LinkProgram(result);
+        int linked = 0;
+        GetProgramiv(result, link_status, &linked);
+        return linked != 0 ? result : 0;
     }
 
     // Fragments get gl_TexCoord[0] as their color.
@@ -228,24 +279,28 @@ private:
 
     bool load_functions() {
         const bool all =
-            load(Begin, "glBegin") && load(End, "glEnd") && load(Vertex4fv, "glVertex4fv") &&
-            load(Normal3fv, "glNormal3fv") && load(TexCoord4fv, "glTexCoord4fv") && load(MatrixMode, "glMatrixMode") &&
-            load(LoadIdentity, "glLoadIdentity") && load(LoadMatrixf, "glLoadMatrixf") && load(Enable, "glEnable") &&
-            load(Disable, "glDisable") && load(TexGeni, "glTexGeni") && load(TexGenfv, "glTexGenfv") &&
-            load(GetTexGeniv, "glGetTexGeniv") && load(GetTexGenfv, "glGetTexGenfv") &&
-            load(IsEnabled, "glIsEnabled") && load(GetError, "glGetError") && load(GetString, "glGetString") &&
-            load(RenderMode, "glRenderMode") && load(FeedbackBuffer, "glFeedbackBuffer") &&
-            load(GenTextures, "glGenTextures") && load(BindTexture, "glBindTexture") &&
-            load(TexImage2D, "glTexImage2D") && load(TexParameteri, "glTexParameteri") &&
-            load(GenFramebuffers, "glGenFramebuffers") && load(BindFramebuffer, "glBindFramebuffer") &&
-            load(FramebufferTexture2D, "glFramebufferTexture2D") &&
+            load(Begin, "glBegin") && load(End, "glEnd") && load(Vertex3fv, "glVertex3fv") &&
+            load(Vertex4fv, "glVertex4fv") && load(Normal3fv, "glNormal3fv") && load(TexCoord4fv, "glTexCoord4fv") &&
+            load(MatrixMode, "glMatrixMode") && load(LoadIdentity, "glLoadIdentity") &&
+            load(LoadMatrixf, "glLoadMatrixf") && load(Enable, "glEnable") && load(Disable, "glDisable") &&
+            load(TexGeni, "glTexGeni") && load(TexGenfv, "glTexGenfv") && load(GetTexGeniv, "glGetTexGeniv") &&
+            load(GetTexGenfv, "glGetTexGenfv") && load(IsEnabled, "glIsEnabled") && load(GetError, "glGetError") &&
+            load(GetString, "glGetString") && load(RenderMode, "glRenderMode") &&
+            load(FeedbackBuffer, "glFeedbackBuffer") && load(GenTextures, "glGenTextures") &&
+            load(BindTexture, "glBindTexture") && load(TexImage2D, "glTexImage2D") &&
+            load(TexParameteri, "glTexParameteri") && load(GenFramebuffers, "glGenFramebuffers") &&
+            load(BindFramebuffer, "glBindFramebuffer") && load(FramebufferTexture2D, "glFramebufferTexture2D") &&
             load(CheckFramebufferStatus, "glCheckFramebufferStatus") && load(Viewport, "glViewport") &&
             load(ClampColor, "glClampColor") && load(ClearColor, "glClearColor") && load(Clear, "glClear") &&
             load(ReadPixels, "glReadPixels") && load(CreateShader, "glCreateShader") &&
             load(ShaderSource, "glShaderSource") && load(CompileShader, "glCompileShader") &&
             load(GetShaderiv, "glGetShaderiv") && load(CreateProgram, "glCreateProgram") &&
             load(AttachShader, "glAttachShader") && load(LinkProgram, "glLinkProgram") &&
-            load(GetProgramiv, "glGetProgramiv") && load(UseProgram, "glUseProgram");
+            load(GetProgramiv, "glGetProgramiv") && load(UseProgram, "glUseProgram") &&
+            load(GetShaderInfoLog, "glGetShaderInfoLog") && load(BindAttribLocation, "glBindAttribLocation") &&
+            load(GetUniformLocation, "glGetUniformLocation") && load(Uniform1f, "glUniform1f") &&
+            load(Uniform3fv, "glUniform3fv") && load(Uniform4fv, "glUniform4fv") &&
+            load(UniformMatrix4fv, "glUniformMatrix4fv") && load(TexParameterfv, "glTexParameterfv");
         return all || failed("OpenGL lacks a function");
     }
 
@@ -274,17 +329,8 @@ private:
     }
 
     bool create_program() {
-        const char* const source = "#version 120\nvoid main() { gl_FragColor = gl_TexCoord[0]; }\n";
-        const unsigned shader = CreateShader(fragment_shader);
-        ShaderSource(shader, 1, &source, nullptr);
-        CompileShader(shader);
-        int compiled = 0, linked = 0;
-        GetShaderiv(shader, compile_status, &compiled);
-        program_ = CreateProgram();
-        AttachShader(program_, shader);
-        LinkProgram(program_);
-        GetProgramiv(program_, link_status, &linked);
-        return (compiled != 0 && linked != 0 && GetError() == no_error) || failed("GLSL 1.20 does not compile");
+        program_ = program(nullptr, "#version 120\nvoid main() { gl_FragColor = gl_TexCoord[0]; }\n");
+        return (program_ != 0 && GetError() == no_error) || failed("GLSL 1.20 does not compile");
     }
 
     // Never given back: they last as long as the program.
