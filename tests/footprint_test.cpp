@@ -673,6 +673,79 @@ TEST_CASE("next to q = 0 and behind it the extremes say so") {
     CHECK(across->least_level <= farthest->level);
     CHECK(nearest->level > farthest->level + 8.0);
     CHECK(!setup.extremes({0, 0, 0, 5}).has_value());
+
+    // The same where q is 0 in the middle of a fragment, and only rounding could say that it is not: s and q vary with x
+    // alone, so that no part of the rectangle has other numerators.
+    const Triangle root = flat({glm::vec2(0.5f, 0), glm::vec2(200.5f, 0), glm::vec2(0.5f, 200)},
+                               {glm::vec3(0.5f, 0, -1), glm::vec3(0.25f, 0, 1), glm::vec3(0.5f, 0, -1)});
+    const FootprintSetup at_root(setup_of(root), {256.0, 256.0});
+    CHECK(!at_root.at(100, 2).has_value());
+    const auto on_root = at_root.extremes({100, 0, 1, 5});
+    REQUIRE(on_root.has_value());
+    CHECK(on_root->least_level > at_root.at(101, 2)->level);
+    CHECK(std::isinf(on_root->largest_level));
+
+    // q = 0 everywhere is behind.
+    const Triangle dark = flat({glm::vec2(0, 0), glm::vec2(200, 0), glm::vec2(0, 200)}, {});
+    CHECK(!FootprintSetup(setup_of(dark), {256.0, 256.0}).extremes({0, 0, 9, 5}).has_value());
+}
+
+TEST_CASE("footprints of any size have the shape of those near 1") {
+    Random random(6750);
+    int thin = 0;
+    for (int i = 0; i < 300; ++i) {
+        const glm::dvec2 dx(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
+        const glm::dvec2 dy = i % 3 == 0 ? dx * random.uniform(0.1, 1.0) + glm::dvec2(0x1p-40, 0.0)
+                                         : glm::dvec2(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
+        const TexelsPerUnit texels = some_texels(random);
+        const Footprint near = texgen::footprint_of(dx, dy, texels);
+        thin += near.anisotropy > 1e9;
+        const int exponent = random.integer(-900, 900);
+        const double size = std::ldexp(1.0, exponent);
+        const Footprint far = texgen::footprint_of(size * dx, size * dy, texels);
+        REQUIRE_MESSAGE(far.anisotropy == near.anisotropy, hex(dx.x) << " " << exponent);
+        REQUIRE(far.singular_values == size * near.singular_values);
+        REQUIRE(std::fabs(far.level - near.level - exponent) <= 1e-12 * std::max(1.0, std::fabs(far.level)));
+    }
+    CHECK(thin > 30);
+}
+
+TEST_CASE("triangles that double cannot hold the differences of keep their bounds and their extremes") {
+    // Corners that differ by 2^-142 of the third's distance; and a Q that grows to 2^269 over one pixel.
+    const auto corner = [](float x, float y, float w, const glm::vec4& strq) { return WindowVertex{{x, y}, w, strq}; };
+    const float tiny = 0x1.fcp-143f;
+    const Triangle close{corner(-1.0f, 1.0f, 256.0f, {-1.0f, 62.0f, 2.0f, -0.0f}),
+                         corner(-0.0f, -tiny, 165.0f, {tiny, 2.0f * tiny, -2.0f * tiny, 2.0f * tiny}),
+                         corner(-2.0f * tiny, 2.0f * tiny, 256.0f, {-2.0f * tiny, 2.0f * tiny, -tiny, 2.0f * tiny})};
+    const Triangle steep{corner(0.0f, 0.0f, 238.0f, {0.0f, 0.0f, 0.0f, 0.0f}),
+                         corner(0.0f, -tiny, 256.0f, {tiny, -tiny, tiny, -0x1.f5fffep+127f}),
+                         corner(-0x1p+80f, 0x1p+80f, 1.0f, {-0x1p+80f, 0x1p+80f, -0x1p+80f, -1.0f})};
+    int bounded = 0;
+    for (const Triangle& triangle : {close, steep}) {
+        const ExactTriangle exact(triangle);
+        const FootprintSetup setup(setup_of(triangle), {4096.0, 128.0});
+        for (int y = -300; y < 300; y += 13) {
+            for (int x = -300; x < 300; x += 7) {
+                const auto one = setup.at(x, y);
+                if (!exact.has_positive_w(x, y) || !one) continue;
+                const auto extremes = setup.extremes({x, y, 1, 1});
+                REQUIRE(extremes.has_value());
+                const std::string context = "fragment " + std::to_string(x) + " " + std::to_string(y);
+                REQUIRE_MESSAGE(one->level >= extremes->least_level, context);
+                REQUIRE_MESSAGE(one->level <= extremes->largest_level, context);
+                const glm::dvec2 bound = setup.error_bound({x, y, 1, 1});
+                const ExactFootprint truth(exact, x, y);
+                for (std::size_t c = 0; c < 2; ++c) {
+                    const double allowed = bound[static_cast<int>(c)];
+                    if (std::isinf(allowed)) continue;
+                    ++bounded;
+                    REQUIRE_MESSAGE(distance(one->dx[static_cast<int>(c)], truth.dx[c]) <= allowed, context);
+                    REQUIRE_MESSAGE(distance(one->dy[static_cast<int>(c)], truth.dy[c]) <= allowed, context);
+                }
+            }
+        }
+    }
+    CHECK(bounded > 1000);
 }
 
 TEST_CASE("a Jacobian of rank 1 or 0, and texels that are none, get what the header says") {
@@ -693,6 +766,7 @@ TEST_CASE("a Jacobian of rank 1 or 0, and texels that are none, get what the hea
         const auto extremes = setup.extremes(rect);
         REQUIRE(extremes.has_value());
         CHECK(extremes->least_level == -infinity);
+        CHECK(extremes->largest_level == -infinity);
         CHECK(extremes->largest_area == 0.0);
     }
     {
@@ -796,6 +870,15 @@ TEST_CASE(
     bad.c.clip_w = 2.0f;
     bad.c.strq.w = -1.0f;
     CHECK(texgen::headlights(bad) == infinity);
-    bad.a.strq.w = std::numeric_limits<float>::quiet_NaN();
-    CHECK(std::isnan(texgen::headlights(bad)));
+    const Triangle good = bad;
+    for (const float no_number : {std::numeric_limits<float>::quiet_NaN(), HUGE_VALF}) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            bad = good;
+            support::vertices(bad)[i]->strq.w = no_number;
+            CHECK(std::isnan(texgen::headlights(bad)));
+            bad = good;
+            support::vertices(bad)[i]->clip_w = no_number;
+            CHECK(std::isnan(texgen::headlights(bad)));
+        }
+    }
 }

@@ -81,10 +81,11 @@ inline bool is_usable(const TexelsPerUnit& texels) noexcept {
     return texels.s > 0x1p-200 && texels.s < 0x1p200 && texels.t > 0x1p-200 && texels.t < 0x1p200;
 }
 
-// All of a footprint from J and det J, which has digits that J has lost where J is almost singular. Lengths are brought
-// near 1, so that no square leaves the range of double.
-inline Footprint footprint_of(const glm::dvec2& dx, const glm::dvec2& dy, double determinant,
-                              const TexelsPerUnit& texels) noexcept {
+// All of a footprint from J and det J, which has digits that J has lost where J is almost singular: determinant(unit) is
+// unit^2 det J, for a power of two that brings J near 1. So no square leaves the range of double.
+template <class Determinant>
+Footprint footprint_of(const glm::dvec2& dx, const glm::dvec2& dy, const Determinant& determinant,
+                       const TexelsPerUnit& texels) noexcept {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     constexpr double infinity = std::numeric_limits<double>::infinity();
     const double s_dx = dx.x * texels.s;
@@ -106,7 +107,10 @@ inline Footprint footprint_of(const glm::dvec2& dx, const glm::dvec2& dy, double
     const double half = 0.5 * (a - c);
     const double root = std::sqrt(half * half + b * b);
     const double largest = 0.5 * (a + c) + root;  // the larger eigenvalue of J J^T, and det^2 over it the smaller
-    const double det = std::fabs(determinant * texels.s * scale * texels.t * scale);
+    const double largest_slope =
+        larger(larger(std::fabs(dx.x), std::fabs(dx.y)), larger(std::fabs(dy.x), std::fabs(dy.y)));
+    const double unit = reciprocal_power_of_two(smaller(larger(largest_slope, 0x1p-1000), 0x1p1000));
+    const double det = std::fabs(determinant(unit) * (texels.s * (scale / unit)) * (texels.t * (scale / unit)));
     const double length = std::sqrt(largest);
     glm::dvec2 major(1.0, 0.0);
     if (root > 0.0) {
@@ -129,7 +133,10 @@ inline Footprint footprint_of(const glm::dvec2& dx, const glm::dvec2& dy, double
 // Shapes: units of s and t a pixel.
 // Bad input: what is not finite makes all but dx and dy NaN.
 inline Footprint footprint_of(const glm::dvec2& dx, const glm::dvec2& dy, const TexelsPerUnit& texels) noexcept {
-    return detail::footprint_of(dx, dy, detail::difference_of_products(dx.x, dy.y, dy.x, dx.y), texels);
+    const auto determinant = [&](double unit) {
+        return detail::difference_of_products(unit * dx.x, unit * dy.y, unit * dy.x, unit * dx.y);
+    };
+    return detail::footprint_of(dx, dy, determinant, texels);
 }
 
 namespace detail {
@@ -236,9 +243,11 @@ private:
         const auto divided = [&](double numerator) { return numerator * reciprocal * reciprocal; };
         const auto& s = slope_[0].value;
         const auto& t = slope_[1].value;
-        return detail::footprint_of({divided(s.dx + p.y * s.twist), divided(t.dx + p.y * t.twist)},
-                                    {divided(s.dy - p.x * s.twist), divided(t.dy - p.x * t.twist)},
-                                    divided(determinant_) * reciprocal, texels_);
+        return detail::footprint_of(
+            {divided(s.dx + p.y * s.twist), divided(t.dx + p.y * t.twist)},
+            {divided(s.dy - p.x * s.twist), divided(t.dy - p.x * t.twist)},
+            [&](double unit) { return determinant_ * reciprocal * (reciprocal * unit) * (reciprocal * unit); },
+            texels_);
     }
 
     // The largest numerators, and bounds on their errors, over a tile.
@@ -461,40 +470,47 @@ bool footprint(const FootprintSetup& setup, FragmentRect rect, Footprints out) n
 inline std::optional<FootprintExtremes> FootprintSetup::extremes(const detail::WindowPolygon& polygon) const noexcept {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-    const auto texels = [&](double s, double t) { return glm::dvec2(s * texels_.s, t * texels_.t); };
     const auto& s = slope_[0];
     const auto& t = slope_[1];
     glm::dvec2 reach(0.0, 0.0);
     for (std::size_t i = 0; i < polygon.count(); ++i)
         for (int axis = 0; axis < 2; ++axis) reach[axis] = detail::larger(std::fabs(polygon[i][axis]), reach[axis]);
-    const auto error = [&](const detail::Slope::Terms& magnitude) {
-        return detail::gamma(24) *
-               detail::larger(magnitude.dx + reach.y * magnitude.twist, magnitude.dy + reach.x * magnitude.twist);
+    const auto size_of = [&](const detail::Slope::Terms& magnitude) {
+        return detail::larger(magnitude.dx + reach.y * magnitude.twist, magnitude.dy + reach.x * magnitude.twist);
     };
-    const glm::dvec2 errors = texels(error(s.magnitude), error(t.magnitude));
     const detail::Ramp& q = triangle_.q_.value;
     const detail::Ramp& q_magnitude = triangle_.q_.magnitude;
-    detail::FootprintField field{
-        texels(s.value.dx, t.value.dx),
-        texels(s.value.dy, t.value.dy),
-        texels(s.value.twist, t.value.twist),
-        q.base,
-        q.dx,
-        q.dy,
-        errors.x + errors.y,
-        detail::gamma(24) * (q_magnitude.base + reach.x * q_magnitude.dx + reach.y * q_magnitude.dy)};
+    const double size = size_of(s.magnitude) * texels_.s + size_of(t.magnitude) * texels_.t;
+    const double q_size = q_magnitude.base + reach.x * q_magnitude.dx + reach.y * q_magnitude.dy;
+    // Both are brought near 1, so that no fourth power leaves the range of double; J in texels is then `back` times
+    // what the field says.
+    const double scale = detail::reciprocal_power_of_two(detail::larger(size, 0x1p-700));
+    const double q_scale = detail::reciprocal_power_of_two(q_size);
+    const double back = q_scale * q_scale / scale;
+    const auto scaled = [&](double of_s, double of_t) {
+        return glm::dvec2(of_s * (texels_.s * scale), of_t * (texels_.t * scale));
+    };
+    const detail::FootprintField field{scaled(s.value.dx, t.value.dx),
+                                       scaled(s.value.dy, t.value.dy),
+                                       scaled(s.value.twist, t.value.twist),
+                                       q.base * q_scale,
+                                       q.dx * q_scale,
+                                       q.dy * q_scale,
+                                       detail::gamma(24) * size * scale,
+                                       detail::gamma(24) * q_size * q_scale};
     const detail::Range range = detail::range_of_q(field, polygon);
-    if (range.largest < -field.q_error) return std::nullopt;
+    if (range.largest <= -field.q_error) return std::nullopt;
     if (!detail::is_usable(texels_)) return FootprintExtremes{nan, nan, nan, nan, nan};
 
     // What the bounds leave for the roundings of the footprints themselves, of level and of area and anisotropy.
     constexpr double slack = 0x1p-15;
     const auto level = [&](double square, double outward) {
-        const double middle = 0.5 * std::log2(square);
+        if (square == 0.0) return -infinity;
+        const double middle = 0.5 * std::log2(square) + std::log2(back);
         return middle + outward * slack * detail::larger(1.0, std::fabs(middle) / 32.0);
     };
-    const double determinant = std::fabs(determinant_ * texels_.s * texels_.t);
-    const auto area = [&](double at_q) { return determinant / (at_q * at_q * at_q); };
+    const double determinant = std::fabs(determinant_ * (texels_.s * scale) * (texels_.t * scale)) / q_scale;
+    const auto area = [&](double at_q) { return determinant / (at_q * at_q * at_q) * back * back; };
     FootprintExtremes result{level(detail::least_square_of_rho(field, polygon), -1.0), infinity,
                              area(range.largest + field.q_error) * (1.0 - slack), infinity, infinity};
     const double least_q = range.least - field.q_error;
@@ -519,20 +535,23 @@ inline std::optional<FootprintExtremes> FootprintSetup::extremes(const detail::W
 // The latter is the score, in levels: 0 for a parallel projector, negative where the projector stands with the camera and
 // evens out what the camera does, positive where both add up; infinite where the projector's plane is reached.
 // No allocation, noexcept.
-// Bad input: NaN where a clip_w is not positive, a number not finite, or q is not positive at the vertex nearest to the
-// camera.
+// Bad input: NaN where a clip_w is not positive, a clip_w or q not finite, or q is not positive at the vertex nearest to
+// the camera.
 // Source: Everitt, Projective Texture Mapping; the dueling frusta of Stamminger and Drettakis, Perspective Shadow Maps,
 // SIGGRAPH 2002.
 inline double headlights(const Triangle& triangle) noexcept {
     const WindowVertex* near = &triangle.a;
     const WindowVertex* far = &triangle.a;
-    for (const WindowVertex* vertex : {&triangle.b, &triangle.c}) {
+    for (const WindowVertex* vertex : {&triangle.a, &triangle.b, &triangle.c}) {
+        const bool is_usable = vertex->clip_w > 0.0f && detail::is_finite(detail::widened(vertex->clip_w)) &&
+                               detail::is_finite(detail::widened(vertex->strq.w));
+        if (!is_usable) return std::numeric_limits<double>::quiet_NaN();
         if (vertex->clip_w < near->clip_w) near = vertex;
         if (vertex->clip_w > far->clip_w) far = vertex;
     }
     const double near_q = detail::widened(near->strq.w);
     const double far_q = detail::widened(far->strq.w);
-    if (!(near->clip_w > 0.0f) || !(near_q > 0.0)) return std::numeric_limits<double>::quiet_NaN();
+    if (!(near_q > 0.0)) return std::numeric_limits<double>::quiet_NaN();
     return far_q > 0.0 ? 1.5 * std::log2(near_q / far_q) : std::numeric_limits<double>::infinity();
 }
 

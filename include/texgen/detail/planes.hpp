@@ -109,7 +109,7 @@ public:
     // 5 u: gamma(16) of the magnitudes covers the values, and a step from the first vertex.
     Slope slope(int coordinate) const noexcept {
         const WindowVertex* const corner[] = {&triangle_.a, &triangle_.b, &triangle_.c};
-        const double area = difference_of_products(to_b_.x, to_c_.y, to_b_.y, to_c_.x);
+        const double area = this->area();
         const auto mu = [&](int i, int j) {
             return (widened(corner[i]->strq[coordinate]) * widened(corner[j]->strq.w) -
                     widened(corner[j]->strq[coordinate]) * widened(corner[i]->strq.w)) *
@@ -129,7 +129,7 @@ public:
     // the planes are M times the edge functions, whose determinant is area^2. Within 2^-46 of itself; its sign is exact.
     double jacobian_determinant() const noexcept {
         const WindowVertex* const corner[] = {&triangle_.a, &triangle_.b, &triangle_.c, &triangle_.a, &triangle_.b};
-        const double area = difference_of_products(to_b_.x, to_c_.y, to_b_.y, to_c_.x);
+        const double area = this->area();
         const double scale = (area * weight_[0]) * (area * weight_[1]) * weight_[2];
         double sum = 0.0;
         double magnitude = 0.0;
@@ -237,6 +237,15 @@ private:
         Expansion<6> sum;
         for (const double term : {a.x * b.y, -a.y * b.x, b.x * c.y, -b.y * c.x, c.x * a.y, -c.y * a.x}) sum.add(term);
         return sum;
+    }
+
+    // Twice the signed area within 4 u of itself; it may cancel below the rounding of the differences.
+    double area() const noexcept {
+        const glm::dvec2 b = window(triangle_.b);
+        const glm::dvec2 c = window(triangle_.c);
+        const auto is_exact = [](double to, double from) { return two_sum(to, -from).low == 0.0; };
+        const bool all_exact = is_exact(b.x, a_.x) && is_exact(b.y, a_.y) && is_exact(c.x, a_.x) && is_exact(c.y, a_.y);
+        return all_exact ? difference_of_products(to_b_.x, to_c_.y, to_b_.y, to_c_.x) : exact_area().estimate();
     }
 
     // Adds f w_j w_k E, E the edge function of vertices j and k at p.
