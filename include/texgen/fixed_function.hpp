@@ -17,6 +17,7 @@
 #include "detail/assert.hpp"
 #include "detail/inverse.hpp"
 #include "detail/rounding.hpp"
+#include "detail/widen.hpp"
 
 namespace texgen {
 
@@ -71,6 +72,15 @@ public:
     // result is beyond the largest float.
     // Far from the origin a float plane is itself the error; eye_linear() in linear.hpp composes in double.
     [[nodiscard]] bool set_eye_plane(Coordinate coordinate, glm::vec4 plane, const glm::mat4& modelview) noexcept;
+
+    // Guarantee: how far each component of the stored eye plane of this coordinate is from p M^-1, at most, the rounding to
+    // float included. Next to the error itself while the condition of M (rows and columns scaled) stays below 1e7.
+    // Bad input: infinite where set_eye_plane() refuses M; a NaN or an infinity of p stays one.
+    glm::dvec4 eye_plane_error_bound(Coordinate coordinate, glm::vec4 plane,
+                                     const glm::mat4& modelview) const noexcept {
+        return detail::CertifiedInverse(detail::widened(modelview))
+            .error_of(detail::widened(eye_plane(coordinate)), detail::widened(plane));
+    }
 
     // As glGetTexGenfv returns them: the eye plane is p M^-1, in eye space. Zero for no coordinate.
     glm::vec4 object_plane(Coordinate coordinate) const noexcept {

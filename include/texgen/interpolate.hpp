@@ -129,11 +129,6 @@ inline Place place_of(const Corners& at, std::size_t k, double min, double max, 
     return of_min.all_above && of_max.all_below && at.all_in_front() ? Place::inside : Place::across;
 }
 
-// Half an ulp of the largest value: the error of a nearest float.
-inline double half_ulp(double largest) noexcept {
-    return largest < 0x1p128 ? unit_roundoff_float * largest + 0x1p-150 : std::numeric_limits<double>::infinity();
-}
-
 // What a tile gets: the work, and for a polynomial the fragments of a chunk and a bound on the error of s and of t.
 struct Plan {
     Work work;
@@ -648,16 +643,27 @@ struct SegmentBounds {
     bool is_well_in_front() const noexcept { return q_least > 0x1p-20 * q_largest && q_largest < 0x1p1000; }
 };
 
-// Whether float arithmetic stays inside the tolerance for every alpha in [0, 1]: with u = 2^-24 the five roundings of
-// A - alpha A + alpha B are at most 5 u max(|A|, |B|), and the reciprocal and the product add 2 u.
-inline bool segment_float_fits(const SegmentJob& job, const SegmentBounds& bounds, double tolerance) noexcept {
-    bool fits = bounds.q_least > 0x1p-10 * bounds.q_largest && bounds.q_least > 0x1p-100 && bounds.q_largest < 0x1p100;
-    for (int k = 0; k < job.numerators; ++k) {
-        const double error = bounds.error(k, 5.01 * unit_roundoff_float, 2.01 * unit_roundoff_float) +
-                             0x1p-146 / bounds.q_least + 0x1p-149;
-        fits = fits && bounds.numerator[k] < 0x1p100 && error <= tolerance;
+// The error of float arithmetic for every alpha in [0, 1]: with u = 2^-24 the five roundings of A - alpha A + alpha B are
+// at most 5 u max(|A|, |B|), and the reciprocal and the product add 2 u. Infinite where a float could leave its range.
+inline double segment_float_error(const SegmentBounds& bounds, int k) noexcept {
+    const bool in_range = bounds.q_least > 0x1p-10 * bounds.q_largest && bounds.q_least > 0x1p-100 &&
+                          bounds.q_largest < 0x1p100 && bounds.numerator[k] < 0x1p100;
+    if (!in_range) return std::numeric_limits<double>::infinity();
+    return bounds.error(k, 5.01 * unit_roundoff_float, 2.01 * unit_roundoff_float) + 0x1p-146 / bounds.q_least +
+           0x1p-149;
+}
+
+// What the segments' kernels need, but for the alphas and the outputs: coordinates `first` and the next.
+inline SegmentJob segment_job(const Segment& segment, int first, int numerators) noexcept {
+    SegmentJob job{};
+    job.numerators = numerators;
+    for (int k = 0; k < numerators; ++k) {
+        job.a[k] = widened(segment.a[first + k]);
+        job.b[k] = widened(segment.b[first + k]);
     }
-    return fits;
+    job.q_a = widened(segment.a.w);
+    job.q_b = widened(segment.b.w);
+    return job;
 }
 
 inline namespace TEXGEN_BUILD {
@@ -667,7 +673,9 @@ inline namespace TEXGEN_BUILD {
 inline void interpolate_job(const SegmentKernels& kernels, SegmentJob job, double tolerance) noexcept {
     if (job.q_a > 0.0 && job.q_b > 0.0) {
         const SegmentBounds bounds(job);
-        if (tolerance > 0.0 && segment_float_fits(job, bounds, tolerance)) return kernels.divide_float(job);
+        bool float_fits = tolerance > 0.0;
+        for (int k = 0; k < job.numerators; ++k) float_fits = float_fits && segment_float_error(bounds, k) <= tolerance;
+        if (float_fits) return kernels.divide_float(job);
         job.in_front = bounds.is_well_in_front();
         for (int k = 0; k < job.numerators; ++k)
             job.quotient_error[k] = bounds.error(k, gamma(4), 4.0 * unit_roundoff_double);
@@ -681,6 +689,28 @@ inline void interpolate_job(const SegmentKernels& kernels, SegmentJob job, doubl
 }  // namespace TEXGEN_BUILD
 
 }  // namespace detail
+
+// Guarantee: |computed - exact| of s (x) and t (y) is at most this for every alpha in [0, 1] with q > 0, the rounding to
+// float included; infinite where q reaches 0 and no finite bound exists. noexcept.
+// Bad input: infinite where an s, t or q of an end is not finite.
+inline glm::dvec2 error_bound(const Segment& segment, Tolerance tolerance = exact) noexcept {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const detail::SegmentJob job = detail::segment_job(segment, 0, 2);
+    // A product with 0 is 0 for numbers only.
+    const double sum = job.a[0] + job.a[1] + job.b[0] + job.b[1] + job.q_a + job.q_b;
+    if (!(0.0 * sum == 0.0)) return {infinity, infinity};
+    if (job.q_a <= 0.0 && job.q_b <= 0.0) return {0.0, 0.0};
+    if (job.q_a <= 0.0 || job.q_b <= 0.0) return {infinity, infinity};
+    const detail::SegmentBounds bounds(job);
+    const auto bound = [&](int k) {
+        const double of_nearest = detail::half_ulp(bounds.quotient[k]);
+        const double of_float = detail::segment_float_error(bounds, k);
+        // Where both are next to one another, a file with other flags may have decided otherwise.
+        const bool may_be_float = of_float * (1.0 - 0x1p-40) <= detail::accepted(tolerance);
+        return may_be_float ? detail::larger(of_float, of_nearest) : of_nearest;
+    };
+    return {bound(0), bound(1)};
+}
 
 inline namespace TEXGEN_BUILD {
 
@@ -697,14 +727,7 @@ void interpolate(const Segment& segment, std::span<const float> alpha, TextureRe
     const double accepted = detail::accepted(tolerance);
     const detail::SegmentKernels& kernels = detail::chosen<detail::SegmentKernels>();
     detail::for_each_group(out, alpha.size(), [&](int first, int numerators, const detail::PointOutputs& outputs) {
-        detail::SegmentJob job{};
-        job.numerators = numerators;
-        for (int k = 0; k < numerators; ++k) {
-            job.a[k] = detail::widened(segment.a[first + k]);
-            job.b[k] = detail::widened(segment.b[first + k]);
-        }
-        job.q_a = detail::widened(segment.a.w);
-        job.q_b = detail::widened(segment.b.w);
+        detail::SegmentJob job = detail::segment_job(segment, first, numerators);
         detail::LitTest(region).copy_to(job.min, job.max);
         const auto run = [&](const detail::SegmentJob& part) { detail::interpolate_job(kernels, part, accepted); };
 

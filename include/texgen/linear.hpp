@@ -80,6 +80,18 @@ std::optional<EyeTexgen> eye_planes_as_stored(const Transform<Texture, Space>& p
     return EyeTexgen(stored);
 }
 
+// Guarantee: |stored - planes M^-1| is at most this, element by element, for any `stored`: what eye_planes_as_stored()
+// answers, the same rounded to float, or what glGetTexGen returned. Next to the error itself while the condition of M
+// (rows and columns scaled) stays below 1e7. No allocation, noexcept.
+// Shape: elements as in stored.matrix(), planes and M as for eye_planes_as_stored().
+// Bad input: infinite where M is refused; a NaN or an infinity of a plane, given or stored, stays in its row.
+// Source: see detail/inverse.hpp.
+template <class Space>
+glm::dmat4 eye_planes_error_bound(const Transform<Texture, Space>& planes, const Transform<Eye, Space>& modelview,
+                                  const EyeTexgen& stored) noexcept {
+    return detail::CertifiedInverse(modelview.matrix()).error_of(stored.matrix(), planes.matrix());
+}
+
 // The rows S, T, R, Q, each element rounded once: what glTexGenfv is given. A shader gets rounded(), and what it does with
 // the matrix is in README.md, "In a shader".
 template <class Space>

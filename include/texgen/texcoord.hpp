@@ -19,6 +19,7 @@
 #include "detail/assert.hpp"
 #include "detail/lanes.hpp"
 #include "detail/nearest.hpp"
+#include "detail/widen.hpp"
 #include "transform.hpp"
 
 namespace texgen {
@@ -138,11 +139,14 @@ inline PointForm form(const glm::dmat4& matrix, int row) noexcept {
     return {matrix[0][row], matrix[1][row], matrix[2][row], matrix[3][row]};
 }
 
+// The sum of the terms' magnitudes.
+inline double terms_at(const PointForm& form, const glm::dvec3& v) noexcept {
+    return std::fabs(form.x * v.x) + std::fabs(form.y * v.y) + std::fabs(form.z * v.z) + std::fabs(form.w);
+}
+
 // Three products and three sums: each term is rounded four times at most.
 inline Bounded value_at(const PointForm& form, const glm::dvec3& v) noexcept {
-    const double magnitude =
-        std::fabs(form.x * v.x) + std::fabs(form.y * v.y) + std::fabs(form.z * v.z) + std::fabs(form.w);
-    return {form.x * v.x + form.y * v.y + form.z * v.z + form.w, gamma(5) * magnitude};
+    return {form.x * v.x + form.y * v.y + form.z * v.z + form.w, gamma(5) * terms_at(form, v)};
 }
 
 inline Expansion<8> exactly_at(const PointForm& form, const glm::dvec3& v) noexcept {
@@ -152,6 +156,15 @@ inline Expansion<8> exactly_at(const PointForm& form, const glm::dvec3& v) noexc
     sum.add_product(form.z, v.z);
     sum.add(form.w);
     return sum;
+}
+
+// The value at a point, and a bound on its error that is small beside it: from the exact sum where the terms cancel.
+// A NaN or an infinity stays one in the error.
+inline Bounded closely_at(const PointForm& form, const glm::dvec3& v) noexcept {
+    const Bounded close = value_at(form, v);
+    if (std::fabs(close.value) > 0x1p20 * close.error || !(close.error < 0x1p1000)) return close;
+    const double value = exactly_at(form, v).estimate();
+    return {value, 0x1p-48 * std::fabs(value)};
 }
 
 inline bool is_computed(std::span<const float> output, std::size_t count) noexcept {
@@ -384,6 +397,55 @@ void generate_all(const glm::dmat4& matrix, const Positions<Space>& positions, f
 }  // namespace TEXGEN_BUILD
 
 }  // namespace detail
+
+// Guarantee: |computed - exact| of each coordinate (s, t, r, q) that generate() gives is at most this for every position,
+// the rounding to float included: 1/2 ulp + 2^-50 sum |T_ij v_j|, where that is largest. No allocation, noexcept; it looks
+// at every position.
+// Bad input: a NaN or an infinity of a matrix's row or of a position makes a NaN or an infinity of the bounds it reaches.
+template <class Space>
+glm::dvec4 generate_error_bound(const Transform<Texture, Space>& texture_from_space,
+                                Positions<Space> positions) noexcept {
+    glm::dvec4 largest(0.0);
+    for (int k = 0; k < 4; ++k) {
+        const detail::PointForm form = detail::form(texture_from_space.matrix(), k);
+        for (std::size_t i = 0; i < positions.size(); ++i) {
+            const detail::Bounded value = detail::value_at(form, detail::widened(positions[i]));
+            const double bound = value.error + detail::half_ulp(std::fabs(value.value) + 2.0 * value.error);
+            largest[k] = detail::larger_or_nan(largest[k], bound);
+        }
+    }
+    return largest;
+}
+
+// Guarantee: |computed - exact| of s (x) and t (y) that project() gives is at most this for every position with q > 0, the
+// rounding to float included; infinite where no finite bound exists. No allocation, noexcept; it looks at every position.
+// Bad input: a NaN or an infinity of the matrix or of a position makes the bounds infinite.
+template <class Space>
+glm::dvec2 project_error_bound(const Transform<Texture, Space>& texture_from_space, Positions<Space> positions,
+                               Tolerance tolerance = exact) noexcept {
+    const glm::dmat4& matrix = texture_from_space.matrix();
+    const detail::PointForm q_form = detail::form(matrix, 3);
+    glm::dvec2 largest(0.0);
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        const glm::dvec3 v = detail::widened(positions[i]);
+        const detail::Bounded q = detail::closely_at(q_form, v);
+        if (!(q.error < 0x1p1000)) return glm::dvec2(HUGE_VAL);
+        if (q.value <= 0.0) continue;
+        for (int k = 0; k < 2; ++k) {
+            const detail::PointForm form = detail::form(matrix, k);
+            const detail::Bounded s = detail::closely_at(form, v);
+            const double quotient = (std::fabs(s.value) + s.error) / (q.value - q.error) * (1.0 + detail::gamma(4));
+            const double of_nearest = detail::half_ulp(quotient);
+            // Of the three ways to divide, the one in float errs most.
+            const double of_float = detail::forms_in_float.error(detail::terms_at(form, v), detail::terms_at(q_form, v),
+                                                                 std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z) + 1.0,
+                                                                 q.value - q.error, quotient);
+            const double bound = detail::larger(detail::smaller(of_float, detail::accepted(tolerance)), of_nearest);
+            largest[k] = detail::larger_or_nan(largest[k], bound);
+        }
+    }
+    return largest;
+}
 
 inline namespace TEXGEN_BUILD {
 

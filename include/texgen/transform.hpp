@@ -70,6 +70,17 @@ std::optional<Transform<From, To>> inverse(const Transform<To, From>& transform)
     return detail::is_finite(result.matrix()) ? std::optional(result) : std::nullopt;
 }
 
+// Guarantee: |inverse - transform^-1| is at most this, element by element, for any `inverse`: that of inverse(), of
+// inverse_rigid(), a rounded one, or one from elsewhere. Next to the error itself while the condition (rows and columns
+// scaled) stays below 1e7. No allocation, noexcept; it costs about what inverse() does.
+// Shape: elements as in inverse.matrix().
+// Bad input: infinite where inverse() refuses the transform; a NaN or an infinity of the inverse stays in its row.
+// Source: see detail/inverse.hpp.
+template <class To, class From>
+glm::dmat4 inverse_error_bound(const Transform<To, From>& transform, const Transform<From, To>& inverse) noexcept {
+    return detail::CertifiedInverse(transform.matrix()).error_of(inverse.matrix(), glm::dmat4(1.0));
+}
+
 // Guarantee: exact transposition of the rotation; the translation -R^T t within 1 double ulp of its exact value for that
 // rotation, while its terms do not cancel below 2^-50 of the largest. No allocation, noexcept.
 // Precondition, asserted to 1e-3: the transform is rigid (an orthonormal rotation and a translation).

@@ -47,8 +47,16 @@ public:
     // row A^-1, solved and refined by itself: the product of row and a rounded inverse could cancel.
     glm::dvec4 solve_row(const glm::dvec4& row) const noexcept;
 
+    // A bound on |solution - rows A^-1|, element by element, for any solution: solve_row()'s, or matrix() for the rows of
+    // the identity, or one from elsewhere. A NaN or an infinity stays one; infinite where A is not regular.
+    glm::dmat4 error_of(const glm::dmat4& solution, const glm::dmat4& rows) const noexcept;
+    glm::dvec4 error_of(const glm::dvec4& solution, const glm::dvec4& row) const noexcept {
+        return error_of_row(solution, row, contraction());
+    }
+
 private:
-    using Square = std::array<std::array<double, 4>, 4>;  // [row][column]
+    using Row = std::array<double, 4>;
+    using Square = std::array<Row, 4>;  // [row][column]
 
     static DoubleDouble dot(const double* row, const Square& matrix, int column, double start) noexcept {
         DoubleDouble sum{start, 0.0};
@@ -57,10 +65,21 @@ private:
         return sum;
     }
 
+    // The same and a bound on its error: one rounding, four sums within 2^-104 of the terms, and products that underflow.
+    static Bounded bounded_dot(const double* row, const Square& matrix, int column, double start) noexcept {
+        const double value = dot(row, matrix, column, start).high;
+        double magnitude = std::fabs(start);
+        for (std::size_t k = 0; k < 4; ++k)
+            magnitude += std::fabs(row[k]) * std::fabs(matrix[k][static_cast<std::size_t>(column)]);
+        return {value, gamma(2) * std::fabs(value) + 0x1p-101 * magnitude + 0x1p-1000};
+    }
+
     bool equilibrate() noexcept;
     bool eliminate() noexcept;
     void refine() noexcept;
     double certificate() const noexcept;
+    double contraction() const noexcept;
+    glm::dvec4 error_of_row(const glm::dvec4& solution, const glm::dvec4& row, double contraction) const noexcept;
 
     Square scaled_{};                       // B
     Square inverse_{};                      // X
@@ -196,6 +215,64 @@ inline glm::dvec4 CertifiedInverse::solve_row(const glm::dvec4& row) const noexc
     }
     glm::dvec4 result(0.0);
     for (std::size_t j = 0; j < 4; ++j) result[static_cast<int>(j)] = std::scalbn(solution[j], row_exponent_[j]);
+    return result;
+}
+
+// The largest sum of a column of |I - B X|. Infinite where A is not regular.
+inline double CertifiedInverse::contraction() const noexcept {
+    if (!regular()) return HUGE_VAL;
+    double largest = 0.0;
+    for (std::size_t j = 0; j < 4; ++j) {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < 4; ++i) {
+            const Bounded residual = bounded_dot(scaled_[i].data(), inverse_, static_cast<int>(j), i == j ? 1.0 : 0.0);
+            sum += std::fabs(residual.value) + residual.error;
+        }
+        largest = larger_or_nan(largest, 1.001 * sum);
+    }
+    return largest;
+}
+
+// As in solve_row(), y B = target. With rho = target - y B and R = I - B X, what y lacks is rho B^-1 = d (I - R)^-1 with
+// d = rho X. Each |d R|_j is at most max|d| r, r the largest sum of a column of |R|: so |y_j - exact| <= |d_j| +
+// max|d| r / (1 - r).
+inline glm::dvec4 CertifiedInverse::error_of_row(const glm::dvec4& solution, const glm::dvec4& row,
+                                                 double contraction) const noexcept {
+    if (!(contraction < 1.0)) return glm::dvec4(HUGE_VAL);
+    Row scaled_solution{};
+    for (std::size_t k = 0; k < 4; ++k)
+        scaled_solution[k] = std::scalbn(solution[static_cast<int>(k)], -row_exponent_[k]);
+    Row lacking{};
+    Row error{};
+    for (std::size_t k = 0; k < 4; ++k) {
+        const double target = std::scalbn(row[static_cast<int>(k)], column_exponent_[k]);
+        const Bounded residual = bounded_dot(scaled_solution.data(), scaled_, static_cast<int>(k), target);
+        for (std::size_t j = 0; j < 4; ++j) {
+            lacking[j] += residual.value * inverse_[k][j];
+            error[j] += (residual.error + gamma(5) * std::fabs(residual.value)) * std::fabs(inverse_[k][j]);
+        }
+    }
+    double largest = 0.0;
+    for (std::size_t j = 0; j < 4; ++j) largest = larger_or_nan(largest, std::fabs(lacking[j]) + error[j]);
+    const double remainder = largest * (contraction / (1.0 - contraction));
+    glm::dvec4 result(0.0);
+    for (std::size_t j = 0; j < 4; ++j) {
+        const double bound = 1.001 * (std::fabs(lacking[j]) + error[j] + remainder) + 0x1p-1000;
+        result[static_cast<int>(j)] = std::scalbn(bound, row_exponent_[j]) + 0x1p-1074;
+    }
+    return result;
+}
+
+inline glm::dmat4 CertifiedInverse::error_of(const glm::dmat4& solution, const glm::dmat4& rows) const noexcept {
+    const double r = contraction();
+    glm::dmat4 result(0.0);
+    for (int row = 0; row < 4; ++row) {
+        const auto row_of = [row](const glm::dmat4& m) {
+            return glm::dvec4(m[0][row], m[1][row], m[2][row], m[3][row]);
+        };
+        const glm::dvec4 bound = error_of_row(row_of(solution), row_of(rows), r);
+        for (int column = 0; column < 4; ++column) result[column][row] = bound[column];
+    }
     return result;
 }
 

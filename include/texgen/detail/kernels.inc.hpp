@@ -493,16 +493,14 @@ struct FormsInDouble {
     }
 };
 
-// Divided in float, in blocks of float_block points. With u = 2^-24 the rounded forms and their four terms give
-// 5 u sum |T_j| max |v_j|, and forms in double gamma(5) of it and u of the value; the largest quotient and the least q,
-// found on the way, then bound the error of every point as in certain_quotient(), with 2 u for the reciprocal and the
-// product. Returns where the first block begins that is not inside the tolerance (it is written all the same), or the
-// count. A NaN makes the largest quotient one, and fails.
+// Divided in float, in blocks of float_block points. The largest |v_j| bound the terms of the forms, and with the largest
+// quotient and the least q, found on the way, the error of every point: see FloatDivision. Returns where the first block
+// begins that is not inside the tolerance (it is written all the same), or the count. A NaN makes the largest quotient
+// one, and fails.
 template <template <std::size_t> class Forms, std::size_t Numerators>
 TEXGEN_INLINE std::size_t divide_points_within_of(const PointJob& job, std::size_t first) noexcept {
     constexpr bool in_float = std::is_same_v<Forms<1>, FormsInFloat<1>>;
-    constexpr double form_error = in_float ? 5.01 * unit_roundoff_float : gamma(5);
-    constexpr double roundings = (in_float ? 2.01 : 4.01) * unit_roundoff_float;
+    constexpr FloatDivision division = in_float ? forms_in_float : forms_in_double;
     const Forms<Numerators> forms(job);
     for (std::size_t begin = first; begin < job.count; begin += float_block) {
         const std::size_t end = begin + float_block < job.count ? begin + float_block : job.count;
@@ -528,17 +526,17 @@ TEXGEN_INLINE std::size_t divide_points_within_of(const PointJob& job, std::size
             store_points(job, i, value, ~WideWords{});
         }
         const PointExtent extent(x_largest, y_largest, z_largest);
-        const double underflow = 0x1p-124 * (extent.x + extent.y + extent.z + 1.0);
-        const double q_error = form_error * extent.magnitude_of(job.q) + underflow;
-        // The bits of positive floats have their order; those of a negative one, and of -0, are below them all.
+        const double size = extent.x + extent.y + extent.z + 1.0;
+        // The bits of positive floats have their order; those of a negative one, and of -0, are below them all. A q that
+        // overflowed in float would go unnoticed, not being the least; its terms tell.
         const int least_bits = ~largest_lane(~q_least);
-        const double q = static_cast<double>(std::bit_cast<float>(least_bits)) * (1.0 - roundings) - q_error;
-        // A q that overflowed in float would go unnoticed: it is not the least.
-        bool certified = q > 0x1p-60 && extent.magnitude_of(job.q) < 0x1p127;
+        const auto least = static_cast<double>(std::bit_cast<float>(least_bits));
+        bool certified = true;
         for (std::size_t k = 0; k < Numerators; ++k) {
             const auto bound = static_cast<double>(std::bit_cast<float>(largest_lane(largest[k])));
-            const double error = form_error * extent.magnitude_of(job.numerator[k]) + underflow;
-            certified = certified && 1.001 * (error + bound * q_error) / q + roundings * bound <= job.tolerance;
+            const double error =
+                division.error(extent.magnitude_of(job.numerator[k]), extent.magnitude_of(job.q), size, least, bound);
+            certified = certified && error <= job.tolerance;
         }
         if (!certified) return begin;
     }

@@ -49,11 +49,6 @@ float nearest_quotient(const Expansion<N>& numerator, const Expansion<D>& denomi
     return static_cast<float>(middle);
 }
 
-// A double and a bound on its distance from the number that it stands for.
-struct Bounded {
-    double value, error;
-};
-
 // -1, 0 or 1: the sign of the number that `bounded` stands for, from exact() where the bound leaves it open.
 // What is not finite is in front of nothing: -1.
 template <class Exact>

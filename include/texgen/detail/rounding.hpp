@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 // A compiler that may reorder sums takes two_sum() for a and 0, and a reciprocal for a division: no bound would hold.
 #if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || \
@@ -41,6 +42,40 @@ inline double reciprocal_power_of_two(double value) noexcept {
 // The relative error of n roundings in sequence is at most gamma(n) = n u / (1 - n u). Source: Higham, Accuracy and
 // Stability of Numerical Algorithms, lemma 3.1.
 constexpr double gamma(int n) noexcept { return n * unit_roundoff_double / (1.0 - n * unit_roundoff_double); }
+
+// A double and a bound on its distance from the number that it stands for.
+struct Bounded {
+    double value, error;
+};
+
+// Half an ulp of the largest value: the error of a nearest float. From 2^128 - 2^103 on that is infinity.
+inline double half_ulp(double largest) noexcept {
+    return largest < 0x1.ffffffp127 ? unit_roundoff_float * largest + 0x1p-150
+                                    : std::numeric_limits<double>::infinity();
+}
+
+// How points are divided in float: the forms of s and q err by form_error of their terms, and what is rounded after them
+// adds `roundings` of the quotient.
+struct FloatDivision {
+    double form_error, roundings;
+
+    // A bound on the error of s/q. The terms are sum |T_j v_j|, size is |x| + |y| + |z| + 1; q is at least least_q, and
+    // |s/q| at most `largest`, both either exactly or as computed. With s^ = s + a, q^ = q + b, |s^/q^ - s/q| is
+    // |a - b s/q| / q^ = |a - b s^/q^| / q. Infinite where a float could leave its range.
+    constexpr double error(double s_terms, double q_terms, double size, double least_q, double largest) const noexcept {
+        const double underflow = 0x1p-124 * size;
+        const double s_error = form_error * s_terms + underflow;
+        const double q_error = form_error * q_terms + underflow;
+        const double q = least_q * (1.0 - roundings) - q_error;
+        if (!(q > 0x1p-60 && s_terms < 0x1p127 && q_terms < 0x1p127)) return std::numeric_limits<double>::infinity();
+        return 1.001 * (s_error + largest * q_error) / q + roundings * largest;
+    }
+};
+
+// With u = 2^-24: rounded coefficients and four terms, 5 u; the reciprocal and the product, 2 u. And forms in double,
+// with four roundings to float.
+inline constexpr FloatDivision forms_in_float{5.01 * unit_roundoff_float, 2.01 * unit_roundoff_float};
+inline constexpr FloatDivision forms_in_double{gamma(5), 4.01 * unit_roundoff_float};
 
 // An unevaluated sum; high is the sum rounded to double.
 struct DoubleDouble {

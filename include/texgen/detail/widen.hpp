@@ -6,6 +6,7 @@
 // arrays load their floats from memory, and need none of this.
 
 #include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
 namespace texgen::detail {
@@ -14,6 +15,8 @@ inline double widened(float value) noexcept {
     const volatile float given = value;
     return static_cast<double>(given);
 }
+
+inline glm::dvec3 widened(const glm::vec3& v) noexcept { return {widened(v.x), widened(v.y), widened(v.z)}; }
 
 inline glm::dvec4 widened(const glm::vec4& v) noexcept {
     return {widened(v.x), widened(v.y), widened(v.z), widened(v.w)};
