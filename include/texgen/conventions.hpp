@@ -7,8 +7,8 @@
 namespace texgen {
 
 enum class DepthRange { negative_one_to_one, zero_to_one };  // NDC depth of the near and of the far plane
-enum class NdcY { up, down };
-enum class TextureOrigin { bottom_left, top_left };  // the corner of the picture that (s, t) = (0, 0) addresses
+enum class NdcY { up, down };                                // where y grows to in NDC
+enum class TextureOrigin { bottom_left, top_left };          // the corner of the picture that (s, t) = (0, 0) addresses
 
 namespace detail {
 
@@ -34,6 +34,7 @@ struct Conventions {
     friend constexpr bool operator==(const Conventions&, const Conventions&) = default;
 };
 
+// What the graphics APIs do unless they are told otherwise.
 inline constexpr Conventions opengl{DepthRange::negative_one_to_one, NdcY::up, TextureOrigin::bottom_left};
 inline constexpr Conventions direct3d{DepthRange::zero_to_one, NdcY::up, TextureOrigin::top_left};
 inline constexpr Conventions metal{DepthRange::zero_to_one, NdcY::up, TextureOrigin::top_left};
@@ -94,6 +95,7 @@ private:
     double radians_;
 };
 
+// The two ways to say one.
 constexpr Angle radians(double value) noexcept { return Angle(value); }
 constexpr Angle degrees(double value) noexcept { return Angle(value * (3.14159265358979323846 / 180.0)); }
 
@@ -104,7 +106,7 @@ struct Tolerance {
     double value;
 };
 
-inline constexpr Tolerance exact{0.0};
+inline constexpr Tolerance exact{0.0};  // the nearest float
 
 namespace detail {
 

@@ -59,8 +59,10 @@ enum class Defect {
     smaller_than_texel,
 };
 
+// Of the defects above.
 inline constexpr std::size_t defect_count = static_cast<std::size_t>(Defect::smaller_than_texel) + 1;
 
+// A defect, and what to say of it.
 struct Finding {
     Defect defect;
     double number;  // precision_lost: the expected error, smaller_than_texel: the size, both in texels; otherwise 0
@@ -101,7 +103,8 @@ private:
 struct LensFacts {
     std::optional<Angle> fovy = std::nullopt;
     std::optional<double> aspect = std::nullopt;  // otherwise that of the region in texels, where they are given
-    std::optional<double> z_near = std::nullopt, z_far = std::nullopt;
+    std::optional<double> z_near = std::nullopt;
+    std::optional<double> z_far = std::nullopt;
     bool mirrored = false;  // left > right or bottom > top on purpose, as for projection from behind
 };
 

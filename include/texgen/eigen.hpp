@@ -108,6 +108,7 @@ Role from_eigen(const Matrix& matrix) {
     return Role(result);
 }
 
+// The same of an Eigen::Transform.
 template <class Role, detail::EigenTransform EigenTransform>
 Role from_eigen(const EigenTransform& transform) noexcept {
     return from_eigen<Role>(
@@ -149,6 +150,7 @@ Eigen::Matrix<Scalar, static_cast<int>(N), 1> to_eigen(const glm::vec<N, Scalar,
     return result;
 }
 
+// The way back.
 template <class Vector>
 requires detail::EigenDense<Vector> && detail::FloatOrDouble<typename Vector::Scalar> &&
     (Vector::ColsAtCompileTime == 1 && Vector::RowsAtCompileTime >= 2 &&
@@ -175,6 +177,7 @@ Positions<Object> object_space(X&& x, Y&& y, Z&& z) noexcept {
     return detail::positions_of<Object>(x, y, z);
 }
 
+// The same of points in the world.
 template <detail::EigenPoints Points>
 Positions<World> world_space(Points&& points) noexcept {
     return detail::positions_of<World>(points);
@@ -184,6 +187,7 @@ Positions<World> world_space(X&& x, Y&& y, Z&& z) noexcept {
     return detail::positions_of<World>(x, y, z);
 }
 
+// The same of points in the eye's space.
 template <detail::EigenPoints Points>
 Positions<Eye> eye_space(Points&& points) noexcept {
     return detail::positions_of<Eye>(points);

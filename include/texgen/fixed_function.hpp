@@ -21,6 +21,7 @@
 
 namespace texgen {
 
+// What glTexGen calls GL_OBJECT_LINEAR and so on, and GL_S to GL_Q.
 enum class TexGenMode { object_linear, eye_linear, sphere_map, reflection_map, normal_map };
 enum class Coordinate { s, t, r, q };
 

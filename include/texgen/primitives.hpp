@@ -21,6 +21,7 @@ struct WindowVertex {
     glm::vec4 strq;
 };
 
+// In either winding.
 struct Triangle {
     WindowVertex a, b, c;
 };

@@ -35,6 +35,7 @@ struct OrthographicLens {
     double left, right, bottom, top, z_near, z_far;
 };
 
+// Where it stands, what it looks at, and what is above, in the world.
 struct Aim {
     glm::dvec3 position, target, up;
 };
@@ -229,12 +230,10 @@ inline std::optional<Projector> make_projector(const PerspectiveLens& lens, cons
                                                Conventions conventions) noexcept {
     return detail::assemble(perspective(lens, conventions), look_at(aim), conventions);
 }
-
 inline std::optional<Projector> make_projector(const FrustumLens& lens, const Aim& aim,
                                                Conventions conventions) noexcept {
     return detail::assemble(frustum(lens, conventions), look_at(aim), conventions);
 }
-
 inline std::optional<Projector> make_projector(const OrthographicLens& lens, const Aim& aim,
                                                Conventions conventions) noexcept {
     return detail::assemble(orthographic(lens, conventions), look_at(aim), conventions);

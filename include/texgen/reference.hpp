@@ -20,6 +20,7 @@
 
 namespace texgen::reference {
 
+// Columns of a scalar.
 template <class Scalar>
 using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
 template <class Scalar>

@@ -113,6 +113,7 @@ inline Positions<Object> object_space(const float* first, std::size_t count, std
     return detail::strided<Object>(first, count, stride_bytes);
 }
 
+// The same of points in the world.
 inline Positions<World> world_space(std::span<const glm::vec3> points) noexcept {
     return detail::interleaved<World>(points);
 }
@@ -124,6 +125,7 @@ inline Positions<World> world_space(const float* first, std::size_t count, std::
     return detail::strided<World>(first, count, stride_bytes);
 }
 
+// The same of points in the eye's space.
 inline Positions<Eye> eye_space(std::span<const glm::vec3> points) noexcept { return detail::interleaved<Eye>(points); }
 inline Positions<Eye> eye_space(std::span<const float> x, std::span<const float> y, std::span<const float> z) noexcept {
     return detail::planar<Eye>(x, y, z);
