@@ -73,10 +73,10 @@ inline int largest_exponent(const glm::dvec3& v) noexcept {
     return std::ilogb(std::fmax(std::fabs(v.x), std::fmax(std::fabs(v.y), std::fabs(v.z))));
 }
 
-// v times a power of two, so that its largest component is in [1, 2); empty for zero and for what is not finite.
-inline std::optional<glm::dvec3> scaled_near_one(const glm::dvec3& v) noexcept {
-    if (!is_finite(v.x) || !is_finite(v.y) || !is_finite(v.z)) return std::nullopt;
-    if (v.x == 0.0 && v.y == 0.0 && v.z == 0.0) return std::nullopt;
+// v times a power of two, so that its largest component is in [1, 2); 0 for zero and for what is not finite.
+inline glm::dvec3 scaled_near_one(const glm::dvec3& v) noexcept {
+    if (!is_finite(v.x) || !is_finite(v.y) || !is_finite(v.z)) return glm::dvec3(0.0);
+    if (v.x == 0.0 && v.y == 0.0 && v.z == 0.0) return v;
     const int exponent = largest_exponent(v);
     return glm::dvec3(std::scalbn(v.x, -exponent), std::scalbn(v.y, -exponent), std::scalbn(v.z, -exponent));
 }
@@ -176,21 +176,21 @@ inline std::optional<ProjectorProjection> orthographic(const OrthographicLens& l
 // Bad input: empty where target equals position, up is zero or parallel to the view, or a number is not finite.
 // Source: Everitt, Projective Texture Mapping, V_p in (3); OpenGL utility library, gluLookAt.
 inline std::optional<ProjectorView> look_at(const Aim& aim) noexcept {
-    const auto forward = detail::scaled_near_one(aim.target - aim.position);
-    const auto up = detail::scaled_near_one(aim.up);
-    if (!forward || !up) return std::nullopt;
+    const glm::dvec3 forward = detail::scaled_near_one(aim.target - aim.position);
+    const glm::dvec3 up = detail::scaled_near_one(aim.up);
+    if (!(detail::length(forward) > 0.0 && detail::length(up) > 0.0)) return std::nullopt;
     // The rounding of target - position, in the same scale: where up is nearly parallel it would turn the picture.
     glm::dvec3 rounding(0.0);
     const int exponent = detail::largest_exponent(aim.target - aim.position);
     for (int i = 0; i < 3; ++i)
         rounding[i] = std::scalbn(detail::two_sum(aim.target[i], -aim.position[i]).low, -exponent);
-    const glm::dvec3 sideways = detail::cross(*forward, *up) + detail::cross(rounding, *up);
+    const glm::dvec3 sideways = detail::cross(forward, up) + detail::cross(rounding, up);
     if (!(detail::length(sideways) > 0x1p-98)) return std::nullopt;
-    const auto side_direction = detail::scaled_near_one(sideways);
-    if (!side_direction) return std::nullopt;
+    const glm::dvec3 side_direction = detail::scaled_near_one(sideways);
+    if (!(detail::length(side_direction) > 0.0)) return std::nullopt;
 
-    const glm::dvec3 side = *side_direction / detail::length(*side_direction);
-    const glm::dvec3 back = -*forward / detail::length(*forward);
+    const glm::dvec3 side = side_direction / detail::length(side_direction);
+    const glm::dvec3 back = -forward / detail::length(forward);
     const glm::dvec3 upright = detail::cross(back, side);
     glm::dmat4 matrix(1.0);
     for (int i = 0; i < 3; ++i) {

@@ -109,8 +109,7 @@ public:
     void separate(const LitForms& forms) noexcept {
         if (count_ == 0) return;
         double least_of_largest[box_block];
-        const std::span<const BoundedForm> separating = forms.separating();
-        kernels_.separate(separating.data(), separating.size(), block_, least_of_largest);
+        kernels_.separate(forms.separating(), forms.separating_count(), block_, least_of_largest);
         for (std::size_t i = 0; i < count_; ++i)
             *out_[i] = least_of_largest[i] < 0.0 ? Coverage::outside : Coverage::partial;
         count_ = 0;

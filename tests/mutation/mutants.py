@@ -69,7 +69,7 @@ MUTANTS = [
           "matrix[i][0] = upright[i];\n        matrix[i][1] = side[i];", "aim_test"),
          ("the translation loses its sign", "matrix[3][2] = -detail::dot(back, aim.position);",
           "matrix[3][2] = detail::dot(back, aim.position);", "aim_test"),
-         ("the rounding of target - position is forgotten", "+ detail::cross(rounding, *up);", ";", "aim_test"),
+         ("the rounding of target - position is forgotten", "+ detail::cross(rounding, up);", ";", "aim_test"),
          ("an up that is parallel is taken", "detail::length(sideways) > 0x1p-98", "detail::length(sideways) >= 0.0",
           "aim_test"),
          ("the projector's matrix is V P", "return projection * view; }",

@@ -11,7 +11,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <span>
 
 #include <glm/mat4x4.hpp>
 
@@ -37,7 +36,7 @@ public:
         const glm::dvec2& max = region.max();
         is_usable_ = take_matrix(matrix) && take_sides(min, max);
         lights_nothing_ =
-            is_finite(matrix) && (!(min.x <= max.x && min.y <= max.y) || (is_usable_ && rows_[2] == Row{}));
+            is_finite(matrix) && (!(min.x <= max.x && min.y <= max.y) || (is_usable_ && is_zero(rows_[2])));
         if (!is_usable_ || lights_nothing_) return;
         for (std::size_t k = 0; k < count; ++k) take_form(k);
         add_edge_forms();
@@ -103,11 +102,17 @@ public:
 
     // Further forms that are >= 0 wherever all five are: the planes that the theorem of separating axes asks about, each
     // a combination of the five with weights that are exactly >= 0. Where one of them is negative over all of a convex
-    // body, nothing of the body is lit.
-    std::span<const BoundedForm> separating() const noexcept { return std::span(separating_).first(separating_count_); }
+    // body, nothing of the body is lit. A pointer and a count: the constraints of a span's constructor would take every
+    // user longer to compile than all of this header.
+    const BoundedForm* separating() const noexcept { return separating_.data(); }
+    std::size_t separating_count() const noexcept { return separating_count_; }
 
 private:
     using Row = std::array<double, 4>;
+
+    static bool is_zero(const Row& row) noexcept {
+        return row[0] == 0.0 && row[1] == 0.0 && row[2] == 0.0 && row[3] == 0.0;
+    }
 
     // A power of two takes the largest element to 1: nothing changes but the range of the exponents.
     bool take_matrix(const glm::dmat4& matrix) noexcept {
