@@ -160,6 +160,9 @@ inline bool all_finite(const glm::vec4& v) { return all_finite(glm::vec3(v)) && 
 inline bool same(float a, float b) {
     return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b) || (std::isnan(a) && std::isnan(b));
 }
+inline bool same(double a, double b) {
+    return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b) || (std::isnan(a) && std::isnan(b));
+}
 inline bool same(const glm::vec4& a, const glm::vec4& b) {
     return same(a.x, b.x) && same(a.y, b.y) && same(a.z, b.z) && same(a.w, b.w);
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "fuzz/input.hpp"
+#include "texgen/eigen.hpp"
 #include "texgen/fixed_function.hpp"
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
@@ -175,6 +176,25 @@ void remaps(Input& input) {
         if (k != component) must(same(after[k], texture[k]), "a bad value spoils its own component");
 }
 
+void eigen(Input& input) {
+    const glm::dmat4 m = input.wide_matrix();
+    Eigen::Matrix4d given;
+    for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 4; ++row) given(row, column) = m[column][row];
+    const auto model = texgen::from_eigen<texgen::ModelMatrix>(given);
+    const Eigen::Matrix4d back = to_eigen(model);
+    const auto rounded = texgen::to_eigen<Eigen::Matrix4f>(model);
+    const bool is_affine = m[0][3] == 0.0 && m[1][3] == 0.0 && m[2][3] == 0.0 && m[3][3] == 1.0;
+    for (int column = 0; column < 4; ++column) {
+        for (int row = 0; row < 4; ++row) {
+            must(same(model.matrix()[column][row], m[column][row]) && same(back(row, column), m[column][row]),
+                 "Eigen's elements are kept");
+            must(same(rounded(row, column), model.rounded()[column][row]), "and rounded once");
+        }
+    }
+    must(to_eigen_affine(model).has_value() == is_affine, "what is affine is an Affine3d, and nothing else");
+}
+
 void fixed_function(Input& input) {
     TexGenUnit unit;
     for (int i = input.integer(0, 12); i > 0; --i) {
@@ -237,7 +257,7 @@ void fixed_function(Input& input) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     Input input(data, size);
-    switch (input.integer(0, 3)) {
+    switch (input.integer(0, 4)) {
         case 0:
             inverses(input);
             break;
@@ -246,6 +266,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             break;
         case 2:
             remaps(input);
+            break;
+        case 3:
+            eigen(input);
             break;
         default:
             fixed_function(input);

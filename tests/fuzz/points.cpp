@@ -1,5 +1,5 @@
 // Points and segments over raw bytes: nothing but the outputs is written, a value is what it is alone (so that a NaN
-// spoils its own only), and values that are drawn for it are right by the exact judge.
+// spoils its own only) in every layout, Eigen's too, and values that are drawn for it are right by the exact judge.
 
 #include <algorithm>
 #include <array>
@@ -12,6 +12,7 @@
 #include "support/exact.hpp"
 #include "support/outputs.hpp"
 #include "support/verdict.hpp"
+#include "texgen/eigen.hpp"
 #include "texgen/interpolate.hpp"
 #include "texgen/texcoord.hpp"
 
@@ -44,7 +45,7 @@ struct Layout {
     std::vector<unsigned char> bytes;
 
     texgen::Positions<texgen::Object> positions(Input& input, const std::vector<glm::vec3>& points) {
-        switch (points.empty() ? 1 : input.integer(0, 2)) {
+        switch (points.empty() ? 1 : input.integer(0, 4)) {
             case 0:
                 vectors = points;
                 return texgen::object_space(vectors);
@@ -52,6 +53,10 @@ struct Layout {
                 for (std::size_t k = 0; k < 3; ++k)
                     for (const glm::vec3& point : points) arrays[k].push_back(point[static_cast<int>(k)]);
                 return texgen::object_space(arrays[0], arrays[1], arrays[2]);
+            case 2:
+                return of_eigen(points, 3 + input.integer(0, 5));
+            case 3:
+                return of_eigen(points, 1 + input.integer(0, 5), input.coin());
             default: {
                 const std::size_t offset = input.size(8), stride = 12 + input.size(16);
                 bytes.assign(offset + points.size() * stride + 12, 0xa5);
@@ -61,6 +66,36 @@ struct Layout {
                                             stride);
             }
         }
+    }
+
+    // Columns of a matrix of Eigen's, so many floats apart.
+    texgen::Positions<texgen::Object> of_eigen(const std::vector<glm::vec3>& points, int stride) {
+        using Columns = Eigen::Map<Eigen::Matrix3Xf, 0, Eigen::OuterStride<>>;
+        const auto count = static_cast<Eigen::Index>(points.size());
+        arrays[0].assign(points.size() * static_cast<std::size_t>(stride), -7.0f);
+        Columns columns(arrays[0].data(), 3, count, Eigen::OuterStride<>(stride));
+        for (Eigen::Index i = 0; i < count; ++i) columns.col(i) = texgen::to_eigen(points[static_cast<std::size_t>(i)]);
+        return texgen::object_space(columns);
+    }
+
+    // Rows of a matrix of columns, and three vectors with gaps.
+    texgen::Positions<texgen::Object> of_eigen(const std::vector<glm::vec3>& points, int stride, bool in_rows) {
+        using Vector = Eigen::Map<Eigen::VectorXf, 0, Eigen::InnerStride<>>;
+        using Rows = Eigen::Map<Eigen::MatrixX3f, 0, Eigen::Stride<Eigen::Dynamic, Eigen::Dynamic>>;
+        const auto count = static_cast<Eigen::Index>(points.size());
+        const std::size_t size = points.size() * static_cast<std::size_t>(stride);
+        arrays[0].assign(3 * size, -7.0f);
+        const auto coordinate = [&](std::size_t k) {
+            return Vector(arrays[0].data() + k * size, count, Eigen::InnerStride<>(stride));
+        };
+        Vector x = coordinate(0), y = coordinate(1), z = coordinate(2);
+        for (Eigen::Index i = 0; i < count; ++i) {
+            const glm::vec3& point = points[static_cast<std::size_t>(i)];
+            x[i] = point.x, y[i] = point.y, z[i] = point.z;
+        }
+        if (!in_rows) return texgen::object_space(x, y, z);
+        const Eigen::Stride<Eigen::Dynamic, Eigen::Dynamic> strides(static_cast<Eigen::Index>(size), stride);
+        return texgen::object_space(Rows(arrays[0].data(), count, 3, strides));
     }
 };
 
