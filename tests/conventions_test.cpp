@@ -107,6 +107,8 @@ struct RegionCase {
     TextureRegion region;
 };
 
+TEST_CASE("TEXGEN_VERSION is the project's version") { CHECK(TEXGEN_VERSION == TEXGEN_PROJECT_VERSION); }
+
 }  // namespace
 
 TEST_CASE("corners, centre, near and far land where they should, for every lens, region and convention") {

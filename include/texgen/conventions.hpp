@@ -4,6 +4,9 @@
 
 #include <glm/vec2.hpp>
 
+// 0.1.0: 10000 major + 100 minor + patch.
+#define TEXGEN_VERSION 100
+
 namespace texgen {
 
 enum class DepthRange { negative_one_to_one, zero_to_one };  // NDC depth of the near and of the far plane
