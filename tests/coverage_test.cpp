@@ -526,6 +526,43 @@ TEST_CASE("no box of a hostile family is outside or inside that is not, and the 
         CHECK(of(family).inside > total / 3000);
 }
 
+TEST_CASE("a box that touches an edge of the pyramid at one point is not outside") {
+    // The apex in the origin, s = t = 0 exactly along the edge through P: rows P x A of integers have no rounding, but the
+    // plane through that edge parallel to an axis has. Each box has P on an edge parallel to the axis, and nothing
+    // beyond the plane.
+    Random random(320);
+    const auto integers = [&](int most) {
+        return glm::dvec3(random.integer(-most, most), random.integer(-most, most), random.integer(-most, most));
+    };
+    const auto cross = [](const glm::dvec3& a, const glm::dvec3& b) {
+        return glm::dvec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
+    };
+    int touching = 0;
+    for (int i = 0; i < 3000; ++i) {
+        const glm::dvec3 p = integers(1 << 20), of_s = cross(p, integers(1 << 30)), of_t = cross(p, integers(1 << 30));
+        glm::dvec3 of_q = integers(1 << 30);
+        if (of_q.x * p.x + of_q.y * p.y + of_q.z * p.z < 0.0) of_q = -of_q;
+        glm::dmat4 matrix(0.0);
+        for (int j = 0; j < 3; ++j) matrix[j] = {of_s[j], of_t[j], 0.0, of_q[j]};
+        REQUIRE(support::exactly_at(matrix, glm::vec3(p)).s.sign() == 0);
+        REQUIRE(support::exactly_at(matrix, glm::vec3(p)).t.sign() == 0);
+        for (int axis = 0; axis < 3; ++axis) {
+            if (!(of_s[axis] * of_t[axis] < 0.0)) continue;
+            Box box{glm::vec3(p), glm::vec3(p)};
+            for (int j = 0; j < 3; ++j) {
+                const float length = random.uniform_float(1.0, 1e6);
+                const double form = std::fabs(of_t[axis]) * of_s[j] + std::fabs(of_s[axis]) * of_t[j];
+                if (j == axis || form > 0.0) box.min[j] -= length;
+                if (j == axis || form < 0.0) box.max[j] += length;
+            }
+            ++touching;
+            REQUIRE_MESSAGE(coverage(WorldTexgen(matrix), whole_texture(), box) != Coverage::outside,
+                            hex(matrix) << " " << hex(box));
+        }
+    }
+    CHECK(touching > 2000);
+}
+
 TEST_CASE("of the boxes of random scenes less than 3 % are partial that could be outside") {
     Random random(42);
     Counts counts;

@@ -211,6 +211,35 @@ TEST_CASE("a tolerance at which a certificate just holds, or just fails, is kept
     CHECK(quadratic.largest_share > 0.5);
 }
 
+TEST_CASE(
+    "a tolerance that the rounding of a polynomial uses up is kept where coordinates are larger than in the middle") {
+    // The middle of a band says whether to try polynomials. Here s and t grow from 0 there to 1 at the ends, almost evenly,
+    // so that only the rounding of the coefficients and of the last sum tells the chunks apart.
+    Random random(2500);
+    Tally tally;
+    int tried = 0;
+    for (int i = 0; i < 40; ++i) {
+        const int width = 32 * random.integer(60, 128);
+        const double bend = random.power_of_ten(-5.0, -3.0), turn = random.uniform(0.9, 1.1);
+        texgen::Triangle triangle{};
+        const auto corner = support::vertices(triangle);
+        for (std::size_t v = 0; v < 3; ++v) {
+            const float x = v == 1 ? static_cast<float>(width) : 0.0f, y = v == 2 ? 64.0f : 0.0f;
+            const double across = 2.0 * static_cast<double>(x) / width - 1.0, q = 1.0 + bend * across;
+            *corner[v] = {{x, y}, 1.0f, glm::vec4(q * across, -turn * q * across, 0.5 * q, q)};
+        }
+        const Shot shot{triangle, {0, random.integer(0, 20), width, random.integer(1, 3)}};
+        // A unit below 1 is 2^-24: c0 and the sum may err by half of one each.
+        const Tolerance tolerance{random.uniform(0.55, 0.95) * 0x1p-24};
+        Outputs exact(count_of(shot.rect)), out(count_of(shot.rect));
+        interpolate(setup_of(triangle), shot.rect, exact.spans());
+        interpolate(setup_of(triangle, everywhere(), tolerance), shot.rect, out.spans());
+        tried += !same_bits(out.s(), exact.s());
+        require_right(shot, everywhere(), tolerance, Outputs::all, random, tally);
+    }
+    CHECK(tried > 20);
+}
+
 TEST_CASE("a tolerance that is not positive means exact; an infinite one is a tolerance") {
     Random random(2600);
     for (const HardFamily& family : support::hard_families) {
