@@ -72,6 +72,22 @@ std::string changed(const std::string& source, const Change& change) {
     return result.replace(at, change.from.size(), change.to);
 }
 
+TEST_CASE("the lines of GLSL in the headers are those of the README") {
+    std::size_t lines = 0;
+    for (const char* header : {"linear.hpp", "texcoord.hpp"}) {
+        std::ifstream text(std::string(TEXGEN_TEST_DATA "/../include/texgen/") + header);
+        for (std::string line; std::getline(text, line);) {
+            if (line.rfind("//     ", 0) != 0 || line.back() != ';') continue;
+            INFO(header, ": ", line);
+            ++lines;
+            CHECK(std::any_of(shaders().begin(), shaders().end(), [&](const std::string& shader) {
+                return shader.find("    " + line.substr(7)) != std::string::npos;
+            }));
+        }
+    }
+    CHECK(lines == 3);
+}
+
 // ---- What is drawn ----
 
 // A triangle of an object, and what falls on it.

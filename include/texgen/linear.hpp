@@ -39,7 +39,11 @@ inline WorldTexgen texture_from_world(const Projector& projector, TextureRegion 
 
 // Guarantee: T_o = S P_p V_p M in double. Rounded to float it is within 0.002 texel of a 4096 texture, at any distance
 // up to 1e7 from the origin, for a slide that the object is near to; no allocation, noexcept.
-// Shape: object points to homogeneous (s, t, r, q). It must be made anew whenever M, V_p or P_p changes.
+// Shape: object points to homogeneous (s, t, r, q). It must be made anew whenever M, V_p or P_p changes. In a vertex shader,
+// which gets rounded() and does not divide:
+//
+//     strq = texture_from_object * vec4(position, 1.0);
+//
 // Bad input: as texture_from_world().
 // Source: Everitt, Projective Texture Mapping, (3).
 inline ObjectTexgen object_linear(const Projector& projector, const ModelMatrix& world_from_object,
@@ -92,8 +96,7 @@ glm::dmat4 eye_planes_error_bound(const Transform<Texture, Space>& planes, const
     return detail::CertifiedInverse(modelview.matrix()).error_of(stored.matrix(), planes.matrix());
 }
 
-// The rows S, T, R, Q, each element rounded once: what glTexGenfv is given. A shader gets rounded(), and what it does with
-// the matrix is in README.md, "In a shader".
+// The rows S, T, R, Q, each element rounded once: what glTexGenfv is given.
 template <class Space>
 std::array<glm::vec4, 4> planes(const Transform<Texture, Space>& transform) noexcept {
     const glm::mat4 m = transform.rounded();

@@ -504,6 +504,11 @@ void project(const Transform<Texture, Space>& texture_from_space, Positions<Spac
 }  // namespace TEXGEN_BUILD
 
 // Guarantee: (s/q, t/q), each the nearest float; empty for q <= 0, behind the projector, and for a NaN q. noexcept.
+// A fragment shader does the same, and takes the light where it is lit (README.md has the whole of it):
+//
+//     vec3 light = textureProj(slide, strq).rgb;
+//     bool lit = strq.q > 0.0 && st == clamp(st, region.xy, region.zw);
+//
 inline std::optional<glm::vec2> divide(glm::vec4 strq) noexcept {
     if (!(strq.w > 0.0f)) return std::nullopt;
     return glm::vec2(strq.x / strq.w, strq.y / strq.w);
