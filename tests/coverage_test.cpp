@@ -20,6 +20,7 @@
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
 #include "texgen/skip.hpp"
+#include "texgen/texcoord.hpp"
 
 namespace {
 
@@ -96,36 +97,68 @@ bool have_a_solution(std::vector<Inequality> all) {
     return gap > 0 || (gap == 0 && !low->is_strict && !high->is_strict);
 }
 
-// The truth. A region with an infinite side must be open there.
+// A region of real numbers about those that are inside the given one, or whose nearest float is; and one in those whose
+// nearest float is inside, too. Subnormal numbers may count as 0.
+struct Rounded {
+    double outer, inner;
+
+    static Rounded of_min(double min) {
+        if (!std::isfinite(min)) return {min, min};
+        float first = support::to_float(min);
+        while (static_cast<double>(first) < min) first = std::nextafter(first, infinity);
+        const double middle = support::detail::middle(first, false);
+        const bool is_subnormal = std::fabs(min) < 0x1p-126;
+        return {std::min(min, is_subnormal ? -0x1p-126 : middle),
+                is_subnormal && first > 0.0f ? 0x1p-126 : static_cast<double>(first)};
+    }
+    static Rounded of_max(double max) {
+        const Rounded mirrored = of_min(-max);
+        return {-mirrored.outer, -mirrored.inner};
+    }
+};
+
+// The truth: of what is outside, of the outer region; of what is inside, of the inner one. An infinite side is none.
 class Judge {
 public:
     Judge(const glm::dmat4& matrix, const TextureRegion& region) {
+        const Rounded sides[4] = {Rounded::of_min(region.min().x), Rounded::of_max(region.max().x),
+                                  Rounded::of_min(region.min().y), Rounded::of_max(region.max().y)};
         const auto row = [&](int k) {
             std::array<Dyadic, 4> c;
             for (int j = 0; j < 4; ++j) c[static_cast<std::size_t>(j)] = Dyadic(matrix[j][k]);
             return c;
         };
         const std::array<Dyadic, 4> q = row(3);
-        const auto add = [&](const std::array<Dyadic, 4>& coordinate, double side, double sign) {
-            if (std::isinf(side)) return;
+        const auto form = [&](const std::array<Dyadic, 4>& coordinate, double side, double sign) {
             Inequality one{{}, false};
             for (std::size_t j = 0; j < 4; ++j) one.c[j] = Dyadic(sign) * (coordinate[j] - Dyadic(side) * q[j]);
-            forms_.push_back(one);
+            return one;
         };
-        add(row(0), region.min().x, 1.0);
-        add(row(0), region.max().x, -1.0);
-        add(row(1), region.min().y, 1.0);
-        add(row(1), region.max().y, -1.0);
+        for (int k = 0; k < 4; ++k) {
+            const double sign = k % 2 == 0 ? 1.0 : -1.0;
+            const auto& [outer, inner] = sides[k];
+            if (outer == -sign * infinite) continue;
+            forms_.push_back(form(row(k / 2), outer, sign));
+            if (std::isinf(inner)) {
+                no_float_is_inside_ = true;
+                inner_forms_.push_back(forms_.back());
+            } else {
+                inner_forms_.push_back(form(row(k / 2), inner, sign));
+            }
+        }
         forms_.push_back({q, true});
+        inner_forms_.push_back({q, true});
     }
 
     const std::vector<Inequality>& forms() const { return forms_; }
+    const std::vector<Inequality>& inner_forms() const { return inner_forms_; }
+    bool no_float_is_inside() const { return no_float_is_inside_; }
 
-    // The sign of form k where it is largest over the box (or least).
-    int extreme_sign(std::size_t k, const Box& box, bool largest) const {
-        Dyadic value = forms_[k].c[3];
+    // The sign of a form where it is largest over the box (or least).
+    static int extreme_sign(const Inequality& form, const Box& box, bool largest) {
+        Dyadic value = form.c[3];
         for (int j = 0; j < 3; ++j) {
-            const Dyadic& a = forms_[k].c[static_cast<std::size_t>(j)];
+            const Dyadic& a = form.c[static_cast<std::size_t>(j)];
             if (a.sign() == 0) continue;
             const float x = (a.sign() > 0) == largest ? box.max[j] : box.min[j];
             if (std::isinf(x)) return largest ? 1 : -1;
@@ -135,14 +168,19 @@ public:
     }
 
     bool is_outside_a_plane(const Box& box) const {
-        for (std::size_t k = 0; k < forms_.size(); ++k)
-            if (extreme_sign(k, box, true) < (forms_[k].is_strict ? 1 : 0)) return true;
-        return false;
+        return std::ranges::any_of(
+            forms_, [&](const Inequality& form) { return extreme_sign(form, box, true) < (form.is_strict ? 1 : 0); });
     }
     bool is_inside(const Box& box) const {
-        for (std::size_t k = 0; k < forms_.size(); ++k)
-            if (extreme_sign(k, box, false) < (forms_[k].is_strict ? 1 : 0)) return false;
-        return true;
+        return !no_float_is_inside_ && std::ranges::all_of(inner_forms_, [&](const Inequality& form) {
+            return extreme_sign(form, box, false) >= (form.is_strict ? 1 : 0);
+        });
+    }
+    // Whether it touches one of the inner planes: those of the region as it is given, where its sides are floats.
+    bool touches(const Box& box) const {
+        return std::ranges::any_of(inner_forms_, [&](const Inequality& form) {
+            return extreme_sign(form, box, true) == 0 || extreme_sign(form, box, false) == 0;
+        });
     }
     bool is_outside(const Box& box) const {
         std::vector<Inequality> all = forms_;
@@ -163,7 +201,8 @@ public:
     }
 
 private:
-    std::vector<Inequality> forms_;  // q is the last
+    std::vector<Inequality> forms_, inner_forms_;  // q is the last
+    bool no_float_is_inside_ = false;
 };
 
 bool has_nan(const Box& box) {
@@ -207,11 +246,7 @@ std::string what_is_wrong(Coverage answer, const Judge& judge, bool is_exact, co
     if (has_no_number(box)) return answer == Coverage::inside ? "no point of it is lit, and it is inside" : "";
     const bool outside_a_plane = judge.is_outside_a_plane(box);
     const bool inside = !outside_a_plane && judge.is_inside(box);
-    for (std::size_t k = 0; k < judge.forms().size(); ++k)
-        if (judge.extreme_sign(k, box, true) == 0 || judge.extreme_sign(k, box, false) == 0) {
-            ++counts.touching;
-            break;
-        }
+    counts.touching += judge.touches(box);
     switch (answer) {
         case Coverage::outside:
             ++counts.outside;
@@ -350,7 +385,11 @@ void touch(Slide& slide, const glm::vec3& point, Random& random) {
     };
     const long double q = linear(3) + slide.matrix[3][3];
     for (const int k : {0, 1}) {
-        const double side = (random.coin() ? slide.region.min() : slide.region.max())[k];
+        const bool is_min = random.coin();
+        const double given = (is_min ? slide.region.min() : slide.region.max())[k];
+        const Rounded rounded = is_min ? Rounded::of_min(given) : Rounded::of_max(given);
+        const int kind = random.integer(0, 2);
+        const double side = kind == 0 ? given : kind == 1 ? rounded.outer : rounded.inner;
         if (std::isinf(side) || random.integer(0, 3) == 0) continue;
         double moved = static_cast<double>(side * q - linear(k));
         for (int steps = random.integer(-2, 2); steps != 0; steps += steps < 0 ? 1 : -1)
@@ -609,13 +648,12 @@ using support::Rational;
 // planes of some of the forms, so it is the nearest of those projections that fulfil all of them.
 class DistanceJudge {
 public:
-    explicit DistanceJudge(const Judge& judge) {
-        for (const Inequality& form : judge.forms()) {
-            std::array<Rational, 4> f;
-            for (std::size_t j = 0; j < 4; ++j) f[j] = form.c[j].rational();
-            forms_.push_back(f);
-        }
-    }
+    using Form = std::array<Rational, 4>;
+
+    explicit DistanceJudge(const Judge& judge)
+        : forms_(rational(judge.forms())),
+          inner_forms_(rational(judge.inner_forms())),
+          no_float_is_inside_(judge.no_float_is_inside()) {}
 
     // Whether some point within the radius is lit, or would be with q = 0.
     bool reaches(const Sphere& sphere) const {
@@ -639,8 +677,7 @@ public:
     }
 
     // -1, 0, 1: f(centre) + sign |a| radius.
-    int extreme_sign(std::size_t k, const Sphere& sphere, int sign) const {
-        const auto& f = forms_[k];
+    static int extreme_sign(const Form& f, const Sphere& sphere, int sign) {
         const Rational at = value(f, {support::exactly(sphere.centre.x), support::exactly(sphere.centre.y),
                                       support::exactly(sphere.centre.z)});
         const Rational radius = support::exactly(sphere.radius);
@@ -653,16 +690,25 @@ public:
     }
     bool is_outside_a_plane(const Sphere& sphere) const {
         for (std::size_t k = 0; k < forms_.size(); ++k)
-            if (extreme_sign(k, sphere, 1) < (k + 1 == forms_.size() ? 1 : 0)) return true;
+            if (extreme_sign(forms_[k], sphere, 1) < (k + 1 == forms_.size() ? 1 : 0)) return true;
         return false;
     }
     bool is_inside(const Sphere& sphere) const {
-        for (std::size_t k = 0; k < forms_.size(); ++k)
-            if (extreme_sign(k, sphere, -1) < (k + 1 == forms_.size() ? 1 : 0)) return false;
-        return true;
+        for (std::size_t k = 0; k < inner_forms_.size(); ++k)
+            if (extreme_sign(inner_forms_[k], sphere, -1) < (k + 1 == inner_forms_.size() ? 1 : 0)) return false;
+        return !no_float_is_inside_;
     }
 
 private:
+    static std::vector<Form> rational(const std::vector<Inequality>& forms) {
+        std::vector<Form> result;
+        for (const Inequality& form : forms) {
+            Form f;
+            for (std::size_t j = 0; j < 4; ++j) f[j] = form.c[j].rational();
+            result.push_back(f);
+        }
+        return result;
+    }
     static Rational value(const std::array<Rational, 4>& f, const std::array<Rational, 3>& p) {
         return f[0] * p[0] + f[1] * p[1] + f[2] * p[2] + f[3];
     }
@@ -690,7 +736,8 @@ private:
         return point;
     }
 
-    std::vector<std::array<Rational, 4>> forms_;  // q is the last
+    std::vector<Form> forms_, inner_forms_;  // q is the last
+    bool no_float_is_inside_;
 };
 
 }  // namespace
@@ -774,6 +821,80 @@ TEST_CASE("no sphere is outside or inside that is not, and few of a scene are pa
     CHECK(clearly_inside == 0);
     CHECK(clearly_outside == 0);
     CHECK(counts.false_partial * 100 < tested * 3);
+}
+
+TEST_CASE("what rounds onto a side of the region is not outside, and what rounds off it is not inside") {
+    // s = x + offset, t = 0.5, q = 1.
+    const auto of = [](double offset, const TextureRegion& region, float x) {
+        glm::dmat4 matrix(0.0);
+        matrix[0][0] = 1.0;
+        matrix[3] = {offset, 0.5, 0.0, 1.0};
+        const WorldTexgen transform(matrix);
+        const glm::vec3 point(x, 0.0f, 0.0f);
+        float lit = -1.0f;
+        project(transform, texgen::world_space(std::span(&point, 1)), region,
+                {.s = {}, .t = {}, .r = {}, .lit = {&lit, 1}});
+        const Coverage answer = coverage(transform, region, Box{point, point});
+        const Coverage of_sphere = coverage(transform, region, Sphere{point, 0.0f});
+        CHECK((of_sphere == answer || of_sphere == Coverage::partial));
+        if (answer != Coverage::partial) CHECK(lit == (answer == Coverage::inside ? 1.0f : 0.0f));
+        return answer;
+    };
+    const TextureRegion whole = whole_texture();
+    CHECK(of(0x0.40p-23, whole, 1.0f) == Coverage::partial);  // a quarter of an ulp outside is lit
+    CHECK(of(0x0.80p-23, whole, 1.0f) == Coverage::partial);  // a tie that goes to the even 1
+    CHECK(of(0x0.81p-23, whole, 1.0f) == Coverage::outside);
+    CHECK(of(0.0, whole, 1.0f) == Coverage::inside);
+    CHECK(of(0.0, whole, 0.0f) == Coverage::inside);
+    CHECK(of(-0x0.80p-23, atlas_tile({1.0, 0.0}, {2.0, 1.0}), 1.0f) == Coverage::outside);
+    CHECK(of(-0x0.40p-23, atlas_tile({1.0, 0.0}, {2.0, 1.0}), 1.0f) == Coverage::partial);
+    CHECK(of(-0x1p-126, whole, 0.0f) == Coverage::partial);
+    CHECK(of(-0x1.00001p-126, whole, 0.0f) == Coverage::outside);
+
+    // The first float inside is half an ulp above 0.7, whose nearest is below.
+    const TextureRegion tile = atlas_tile({0.7, 0.0}, {1.0, 1.0});
+    const float below = 0.7f, above = std::nextafter(0.7f, 1.0f);
+    REQUIRE(static_cast<double>(below) < 0.7);
+    CHECK(of(0.0, tile, above) == Coverage::inside);
+    CHECK(of(0.7 - static_cast<double>(below), tile, below) == Coverage::partial);  // inside, and rounds to below
+    CHECK(of(0x0.78p-24, tile, below) == Coverage::partial);
+    CHECK(of(0.0, tile, below) == Coverage::outside);
+
+    // The same of points whose s is anywhere about a side.
+    Random random(44);
+    int outside = 0, inside = 0, lit_and_outside_in_reals = 0;
+    for (int i = 0; i < 30000; ++i) {
+        const double side = random.coin() ? random.uniform(-2.0, 2.0) : random.uniform_float(-2.0, 2.0);
+        const TextureRegion region =
+            random.coin() ? atlas_tile({side, 0.0}, {4.0, 1.0}) : atlas_tile({-4.0, 0.0}, {side, 1.0});
+        const float x = support::neighbour(support::to_float(side), random.integer(-1, 1));
+        const double offset = random.uniform(-0.8, 0.8) * 0x1p-23 * std::fabs(side);
+        const Coverage answer = of(offset, region, x);
+        outside += answer == Coverage::outside;
+        inside += answer == Coverage::inside;
+        const double s = static_cast<double>(x) + offset;
+        lit_and_outside_in_reals += answer == Coverage::partial && !(s >= region.min().x && s <= region.max().x);
+    }
+    CHECK(outside > 3000);
+    CHECK(inside > 3000);
+    CHECK(lit_and_outside_in_reals > 1000);
+}
+
+TEST_CASE(
+    "beyond the largest float nothing is inside, and what rounds to infinity is not outside of what begins there") {
+    const auto of = [](double s, const TextureRegion& region) {
+        glm::dmat4 matrix(0.0);
+        matrix[3] = {s, 0.5, 0.0, 1.0};
+        return coverage(WorldTexgen(matrix), region, Box{glm::vec3(0.0f), glm::vec3(1.0f)});
+    };
+    const TextureRegion far_away = atlas_tile({0x1p129, 0.0}, {0x1p131, 1.0});
+    CHECK(of(0x1p130, far_away) == Coverage::partial);
+    CHECK(of(0x1.ffffffp127, far_away) == Coverage::partial);
+    CHECK(of(0x1.fffffefp127, far_away) == Coverage::outside);
+    const TextureRegion to_there = atlas_tile({0.0, 0.0}, {0x1p130, 1.0});
+    CHECK(of(0x1.fffffep127, to_there) == Coverage::inside);
+    CHECK(of(0x1p129, to_there) == Coverage::partial);
+    CHECK(of(0x1p131, to_there) == Coverage::outside);
 }
 
 TEST_CASE("what is no body, no slide or no number gets a safe answer") {

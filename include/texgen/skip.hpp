@@ -2,6 +2,7 @@
 
 // Floor 6: what a primitive, a batch or a box needs. Work that is not needed is not done.
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -28,10 +29,11 @@ namespace texgen {
 // Where the region's border crosses an affine or quadratic rectangle, the mask is compared from the coordinates.
 enum class Work { nothing, affine, quadratic, divide, divide_and_test };
 
-// What the slide is to a body. A point is lit where q > 0 and (s, t) is in the closed region.
-//   outside  no point of the closed body is lit
+// What the slide is to a body. A point is lit where q > 0 and (s, t) is in the closed region, as real numbers or as the
+// floats nearest to them, which project() and interpolate() look at.
+//   outside  no point of the closed body is lit, in either way
 //   partial  neither of the others, or not provably one of them
-//   inside   all points are lit
+//   inside   all points are lit, in both ways
 enum class Coverage { outside, partial, inside };
 
 // The points between two corners, both included. Extents may be infinite.
@@ -52,6 +54,18 @@ inline bool is_proper(const Box& box) noexcept {
     return box.min.x <= box.max.x && box.min.y <= box.max.y && box.min.z <= box.max.z;
 }
 
+// Whether a box is inside the inner side k, exactly.
+inline bool is_inside_inner_side(const LitForms& forms, std::size_t k, const Box& box) noexcept {
+    const std::array<double, 4> form = forms.inner_side(k);
+    Point vertex{};
+    for (std::size_t j = 0; j < 3; ++j) {
+        if (form[j] == 0.0) continue;
+        vertex[j] = widened((form[j] > 0.0 ? box.min : box.max)[static_cast<int>(j)]);
+        if (!is_finite(vertex[j])) return false;
+    }
+    return forms.inner_sign_at(k, form, vertex) >= 0;
+}
+
 // What the five planes say of a box, exactly. For a NaN, and for forms of which nothing is known: partial.
 inline Coverage exact_coverage(const LitForms& forms, const Box& box) noexcept {
     constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -65,22 +79,34 @@ inline Coverage exact_coverage(const LitForms& forms, const Box& box) noexcept {
     for (int j = 0; j < 3; ++j)
         if (box.min[j] == infinity || box.max[j] == -infinity) return Coverage::partial;  // beyond all numbers
 
-    // The sign of a form at the vertex where it is largest, or least.
-    const auto sign_at_vertex = [&](std::size_t k, bool largest) {
-        Point vertex{};
+    // The vertex where a form is largest, or least; false where it is infinite there.
+    const auto take_vertex = [&](std::size_t k, bool largest, Point& vertex) {
         for (std::size_t j = 0; j < 3; ++j) {
             if (!forms[k].uses[j]) continue;
             const glm::vec3& corner = (forms[k].a[j] > 0.0) == largest ? box.max : box.min;
             vertex[j] = widened(corner[static_cast<int>(j)]);
-            if (!is_finite(vertex[j])) return largest ? 1 : -1;
+            if (!is_finite(vertex[j])) return false;
         }
-        return forms.sign_at(k, vertex);
+        return true;
+    };
+    const auto sign_at_vertex = [&](std::size_t k, bool largest) {
+        Point vertex{};
+        return take_vertex(k, largest, vertex) ? forms.sign_at(k, vertex) : largest ? 1 : -1;
+    };
+    // Almost always the outer side has room for the inner one.
+    const auto is_inside_side = [&](std::size_t k) {
+        Point vertex{};
+        double size = 0.0;
+        for (int j = 0; j < 3; ++j)
+            size += larger(std::fabs(static_cast<double>(box.min[j])), std::fabs(static_cast<double>(box.max[j])));
+        return (take_vertex(k, false, vertex) && forms.is_inside_at(k, vertex, size)) ||
+               is_inside_inner_side(forms, k, box);
     };
     if (sign_at_vertex(LitForms::q, true) <= 0) return Coverage::outside;
     bool is_inside = sign_at_vertex(LitForms::q, false) > 0;
     for (std::size_t k = 0; k < side_count; ++k) {
         if (sign_at_vertex(k, true) < 0) return Coverage::outside;
-        is_inside = is_inside && sign_at_vertex(k, false) >= 0;
+        is_inside = is_inside && is_inside_side(k);
     }
     return is_inside ? Coverage::inside : Coverage::partial;
 }
@@ -203,7 +229,8 @@ inline Coverage coverage_of(const LitForms& forms, const Sphere& sphere) noexcep
         error[k] = form.error_a * size + form.error_d;
         const double change = forms.slope(k) * radius;
         if (value[k] + change + (error[k] + gamma(4) * change) < 0.0) return Coverage::outside;
-        is_inside = is_inside && value[k] - change - (error[k] + gamma(4) * change) > 0.0;
+        const double narrowing = 1.1 * forms.narrowing(k, size + 2.0 * radius);
+        is_inside = is_inside && value[k] - change - (error[k] + gamma(4) * change) > narrowing;
     }
     if (is_inside) return Coverage::inside;
     for (std::size_t f = 0; f < 2; ++f) {
@@ -233,9 +260,11 @@ inline namespace TEXGEN_BUILD {
 
 // The points that a slide lights, prepared once for many questions: what the functions below prepare at every call.
 // Guarantee: `outside` and `inside` are never false: they hold for the exact values of the matrix, the region and the body
-// as they are given. A box is `partial` only where it is so, or touches a plane through an edge or through the apex of the
-// projector's pyramid within 2^-48 of the sizes involved; the pyramid's own planes are decided exactly. A batch answers as
-// the single question does. No allocation, noexcept.
+// as they are given, and for `lit` of project() with `exact`, whose s and t are rounded: by half an ulp a point beside the
+// region is lit, and `partial`. (What a tolerance moves across a side is not looked for here.) A box is `partial` only where
+// it is so, or touches a plane through an edge or through the apex of the projector's pyramid within 2^-48 of the sizes
+// involved; the pyramid's own planes are decided exactly. A batch answers as the single question does. No allocation,
+// noexcept.
 // Shape: bodies of Space, in order; both spans have one size (asserted).
 // Bad input: a NaN anywhere in a body, or a matrix that is not finite: partial. A box with min > max in some axis, a
 // sphere with a negative radius, an empty region (see TextureRegion) or a q that is 0 everywhere: outside. Exponents so

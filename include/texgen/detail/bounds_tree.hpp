@@ -20,6 +20,7 @@
 #include "../conventions.hpp"
 #include "../skip.hpp"
 #include "inverse.hpp"
+#include "nearest.hpp"
 #include "rounding.hpp"
 #include "widen.hpp"
 
@@ -68,7 +69,8 @@ inline WorldBounds world_bounds(const glm::dmat4& m, const Box& box) noexcept {
 // The five forms of a slide in the world (the sides as u - min q and max q - u, and q), with room for what any T_o that is
 // composed in double may differ by. With T = S P V, computed in double, each element of T, of T_o = (S P)(V M) and of a
 // form errs by at most gamma(16) of the same product of magnitudes, and so does the form's value at M v: in all by less than
-// slack = gamma(64) (|S P| |V|)_form (size, size, size, 1). Where a form is below -slack over the bounds, so is that
+// slack = gamma(64) (|S P| |V|)_form (size, size, size, 1). What rounding makes of a side (see RoundedSide) moves the form
+// by at most its width times |T_q| |v|, which is part of the slack. Where a form is below -slack over the bounds, so is that
 // of T_o over the box, and where all are above slack, so are those.
 class WorldForms {
 public:
@@ -81,11 +83,14 @@ public:
             for (int row = 0; row < 4; ++row)
                 for (int k = 0; k < 4; ++k)
                     magnitude[column][row] += std::fabs(texture_from_eye[k][row]) * std::fabs(view[column][k]);
-        set(0, matrix, magnitude, 0, 1.0, -region.min().x);
-        set(1, matrix, magnitude, 0, -1.0, region.max().x);
-        set(2, matrix, magnitude, 1, 1.0, -region.min().y);
-        set(3, matrix, magnitude, 1, -1.0, region.max().y);
-        set(4, matrix, magnitude, 3, 0.0, 1.0);
+        for (std::size_t k = 0; k < 2; ++k) {
+            const int row = static_cast<int>(k);
+            const double min = region.min()[row];
+            const double max = region.max()[row];
+            set(2 * k, matrix, magnitude, row, 1.0, -min, width_of(RoundedSide::of_min(min)));
+            set(2 * k + 1, matrix, magnitude, row, -1.0, max, width_of(RoundedSide::of_max(max)));
+        }
+        set(4, matrix, magnitude, 3, 0.0, 1.0, 0.0);
     }
 
     // outside and inside for certain. A form over bounds is its value in the middle, give or take that of half the extents;
@@ -111,9 +116,13 @@ public:
     }
 
 private:
-    // of_row * row + of_q * q, times a power of two: the sum of the magnitudes becomes about 1.
-    void set(std::size_t k, const glm::dmat4& matrix, const glm::dmat4& magnitude, int row, double of_row,
-             double of_q) noexcept {
+    // The given side is between the outer and the inner one.
+    static double width_of(const RoundedSide& side) noexcept { return std::fabs(side.inner - side.outer); }
+
+    // of_row * row + of_q * q, times a power of two: the sum of the magnitudes becomes about 1. The side may be off by
+    // `width`.
+    void set(std::size_t k, const glm::dmat4& matrix, const glm::dmat4& magnitude, int row, double of_row, double of_q,
+             double width) noexcept {
         Form form;
         double sizes[4];
         double coefficients[4];
@@ -127,8 +136,10 @@ private:
         const double scale = reciprocal_power_of_two(sum);
         for (std::size_t j = 0; j < 3; ++j) form.a[j] = scale * coefficients[j];
         form.d = scale * coefficients[3];
-        form.slack_per_size = gamma(64) * scale * (sizes[0] + sizes[1] + sizes[2]) + 0x1p-100;
-        form.slack = gamma(64) * scale * sizes[3] + 0x1p-100;
+        const double of_width = 1.1 * width * scale;
+        form.slack_per_size = gamma(64) * scale * (sizes[0] + sizes[1] + sizes[2]) + 0x1p-100 +
+                              of_width * (magnitude[0][3] + magnitude[1][3] + magnitude[2][3]);
+        form.slack = gamma(64) * scale * sizes[3] + 0x1p-100 + of_width * magnitude[3][3];
         forms_[k] = form;
     }
 

@@ -5,7 +5,8 @@
 //   T_s v - min.x T_q v >= 0,  max.x T_q v - T_s v >= 0,  the same for t,  and  T_q v > 0,
 //
 // which are the four sides of a pyramid (of a prism, where T_q is constant) and the plane of its apex. What is asked of
-// these forms is asked of their exact values, with the matrix and the region as they are given.
+// these forms is asked of their exact values, with the matrix as it is given. The sides are those beyond which nothing is
+// lit, its rounding to float included; where all is lit, the inner sides say (see RoundedSide).
 
 #include <array>
 #include <cmath>
@@ -40,7 +41,7 @@ public:
         if (!is_usable_ || lights_nothing_) return;
         for (std::size_t k = 0; k < count; ++k) take_form(k);
         add_edge_forms();
-        add_axis_forms(min, max);
+        add_axis_forms();
     }
 
     // Whether every point is dark: the region is empty or q is 0 everywhere.
@@ -56,21 +57,33 @@ public:
     // |a| of form k, or up to 2^-49 of it more.
     double slope(std::size_t k) const noexcept { return slopes_[k]; }
 
+    // How much less form k may be for its inner side, at points of this size: (side - inner side) T_q.
+    double narrowing(std::size_t k, double size) const noexcept {
+        return k < side_count ? narrowing_[k] * (largest_q_ * size + std::fabs(rows_[2][3])) : 0.0;
+    }
+
     // -1, 0, 1: the sign of form k at a finite point, exactly.
     int sign_at(std::size_t k, const Point& point) const noexcept {
         const BoundedForm& form = forms_[k];
-        double value = form.d;
-        double magnitude = std::fabs(form.d);
-        for (std::size_t j = 0; j < 3; ++j) {
-            value += form.a[j] * point[j];
-            magnitude += std::fabs(form.a[j] * point[j]);
-        }
-        return certain_sign({value, gamma(8) * magnitude}, [&] { return exactly_at(k, point); });
+        return certain_sign(value_of(form.a, form.d, point), [&] { return exactly_at(k, weight_[k], point); });
+    }
+
+    // Whether form k is so large at a finite point that its inner side is above 0 at every point of that size.
+    bool is_inside_at(std::size_t k, const Point& point, double size) const noexcept {
+        const Bounded value = value_of(forms_[k].a, forms_[k].d, point);
+        return value.value - value.error > 1.1 * narrowing(k, size);
+    }
+
+    // Side k, the inner one: its coefficients, each rounded once, and its sign at a finite point, exactly.
+    std::array<double, 4> inner_side(std::size_t k) const noexcept { return form_of(k, inner_weight_[k]); }
+    int inner_sign_at(std::size_t k, const std::array<double, 4>& form, const Point& point) const noexcept {
+        return certain_sign(value_of(form, form[3], point), [&] { return exactly_at(k, inner_weight_[k], point); });
     }
 
     // In float, scaled by powers of two so that one bound serves all. With u = 2^-24 a coefficient is rounded (1 u), as are
     // its product (1 u) and at most three sums (3 u): 5 u (max|a_j| size + |d|), and 0.1 u for the bound's own roundings.
-    // |a_j| and |d| are so small that nothing overflows before the size does.
+    // |a_j| and |d| are so small that nothing overflows before the size does. What holds with room for the inner sides
+    // holds for both, so one bound has that room, too.
     // A form is worth as much as it changes within the scene. How large that is, the distances of the sides from the
     // origin tell: a form that hardly changes there (q, nearly orthographic) is not scaled up to them.
     FloatForms in_float() const noexcept {
@@ -83,6 +96,7 @@ public:
         FloatForms result{};
         double largest_a = 0.0;
         double largest_d = 0.0;
+        double narrowing = 0.0;
         for (std::size_t k = 0; k < count; ++k) {
             const BoundedForm& form = forms_[k];
             const double size = larger(gradient(form), extent > 0.0 ? std::fabs(form.d) / extent : 0.0);
@@ -93,10 +107,13 @@ public:
             }
             result.form[k].d = static_cast<float>(scale * form.d);
             largest_d = larger(largest_d, scale * std::fabs(form.d));
+            if (k < side_count) narrowing = larger(narrowing, scale * narrowing_[k]);
         }
         if (!(largest_d < 0x1p100)) largest_d = infinity;  // nothing is certain
-        result.error_per_size = static_cast<float>(5.1 * unit_roundoff_float * largest_a + 0x1p-100);
-        result.error = static_cast<float>(5.1 * unit_roundoff_float * largest_d + 0x1p-100);
+        const double error_a = 5.1 * unit_roundoff_float * largest_a + 1.1 * narrowing * largest_q_;
+        const double error_d = 5.1 * unit_roundoff_float * largest_d + 1.1 * narrowing * std::fabs(rows_[2][3]);
+        result.error_per_size = static_cast<float>(error_a + 0x1p-100);
+        result.error = static_cast<float>(error_d + 0x1p-100);
         return result;
     }
 
@@ -113,6 +130,11 @@ private:
     static bool is_zero(const Row& row) noexcept {
         return row[0] == 0.0 && row[1] == 0.0 && row[2] == 0.0 && row[3] == 0.0;
     }
+
+    // Form k is of_row * (T_s or T_t) + of_q * T_q.
+    struct Weight {
+        double of_row, of_q;
+    };
 
     // A power of two takes the largest element to 1: nothing changes but the range of the exponents.
     bool take_matrix(const glm::dmat4& matrix) noexcept {
@@ -134,19 +156,27 @@ private:
                 if (!(std::fabs(element) >= 0x1p-400)) return false;
             }
         }
+        for (std::size_t j = 0; j < 3; ++j) largest_q_ = larger(largest_q_, std::fabs(rows_[2][j]));
         return true;
     }
 
-    // An infinite side is none, and q takes its place: it is one of the five all the same.
+    // An infinite side is none, and q takes its place: it is one of the five all the same. An inner side that no float is
+    // inside of is where -q is not below 0: nowhere in front.
     bool take_sides(const glm::dvec2& min, const glm::dvec2& max) noexcept {
         for (std::size_t k = 0; k < side_count; ++k) {
             const bool is_min = k % 2 == 0;
             const double side = (is_min ? min : max)[static_cast<int>(k / 2)];
             const double size = std::fabs(side);
             if (side == (is_min ? -infinity : infinity)) {
-                weight_[k] = {0.0, 1.0};
+                side_[k] = side;
+                weight_[k] = inner_weight_[k] = {0.0, 1.0};
             } else if (size == 0.0 || (size >= 0x1p-200 && size <= 0x1p200)) {
-                weight_[k] = is_min ? Weight{1.0, -side} : Weight{-1.0, side};
+                const auto weight = [is_min](double u) { return is_min ? Weight{1.0, -u} : Weight{-1.0, u}; };
+                const RoundedSide rounded = is_min ? RoundedSide::of_min(side) : RoundedSide::of_max(side);
+                side_[k] = rounded.outer;
+                weight_[k] = weight(rounded.outer);
+                inner_weight_[k] = is_finite(rounded.inner) ? weight(rounded.inner) : Weight{0.0, -1.0};
+                narrowing_[k] = std::fabs(rounded.inner - rounded.outer);
             } else {
                 return false;
             }
@@ -155,12 +185,27 @@ private:
         return true;
     }
 
+    template <class Coefficients>
+    static Bounded value_of(const Coefficients& a, double d, const Point& point) noexcept {
+        double value = d;
+        double magnitude = std::fabs(d);
+        for (std::size_t j = 0; j < 3; ++j) {
+            value += a[j] * point[j];
+            magnitude += std::fabs(a[j] * point[j]);
+        }
+        return {value, gamma(8) * magnitude};
+    }
+
     // Each coefficient is rounded once, so that its sign is right and it is 0 only if it is 0.
-    void take_form(std::size_t k) noexcept {
+    Row form_of(std::size_t k, const Weight& weight) const noexcept {
         const Row& row = rows_[k / 2 % 2];
         Row form;
-        for (std::size_t j = 0; j < 4; ++j)
-            form[j] = std::fma(weight_[k].of_q, rows_[2][j], weight_[k].of_row * row[j]);
+        for (std::size_t j = 0; j < 4; ++j) form[j] = std::fma(weight.of_q, rows_[2][j], weight.of_row * row[j]);
+        return form;
+    }
+
+    void take_form(std::size_t k) noexcept {
+        const Row form = form_of(k, weight_[k]);
         const double largest = larger(larger(std::fabs(form[0]), std::fabs(form[1])), std::fabs(form[2]));
         const double scale = reciprocal_power_of_two(largest > 0.0 ? largest : larger(std::fabs(form[3]), 0x1p-900));
         BoundedForm& bounded = forms_[k];
@@ -169,6 +214,7 @@ private:
             bounded.uses[j] = form[j] != 0.0;
         }
         bounded.d = scale * form[3];
+        if (k < side_count) narrowing_[k] *= scale;
         set_errors(bounded, {}, 0.0);
         const auto& [a, b, c] = bounded.a;
         slopes_[k] = (1.0 + gamma(8)) * std::sqrt(a * a + b * b + c * c);
@@ -184,13 +230,13 @@ private:
     }
 
     using Exact = Expansion<24>;
-    Exact exactly_at(std::size_t k, const Point& point) const noexcept {
+    Exact exactly_at(std::size_t k, const Weight& weight, const Point& point) const noexcept {
         const Row& row = rows_[k / 2 % 2];
         Exact sum;
         for (std::size_t j = 0; j < 4; ++j) {
             const double coordinate = j < 3 ? point[j] : 1.0;
-            const DoubleDouble of_q = two_product(weight_[k].of_q, rows_[2][j]);
-            sum.add_product(weight_[k].of_row * row[j], coordinate);
+            const DoubleDouble of_q = two_product(weight.of_q, rows_[2][j]);
+            sum.add_product(weight.of_row * row[j], coordinate);
             sum.add_product(of_q.low, coordinate);
             sum.add_product(of_q.high, coordinate);
         }
@@ -228,7 +274,7 @@ private:
     // The planes through the apex that have x, y or z alone. alpha T_s + beta T_t + gamma T_q with the cofactors of that
     // column of the 3x3 of the rows has no coefficient in the two others, and where alpha s + beta t + gamma has one sign
     // at the corners of the region, it has it in all of the pyramid.
-    void add_axis_forms(const glm::dvec2& min, const glm::dvec2& max) noexcept {
+    void add_axis_forms() noexcept {
         const auto minor_of = [this](std::size_t k, std::size_t l, std::size_t m, std::size_t n) {
             const double first = rows_[k][m] * rows_[l][n];
             const double second = rows_[k][n] * rows_[l][m];
@@ -247,8 +293,8 @@ private:
             };
             bool is_positive = true;
             bool is_negative = true;
-            for (const double s : {min.x, max.x}) {
-                for (const double t : {min.y, max.y}) {
+            for (const double s : {side_[0], side_[1]}) {
+                for (const double t : {side_[2], side_[3]}) {
                     const Bounded corner = dot(s, t, 1.0);
                     const bool is_certain = std::fabs(corner.value) >= corner.error && corner.error < 0x1p1000;
                     is_positive = is_positive && is_certain && corner.value > 0.0;
@@ -272,13 +318,12 @@ private:
 
     static constexpr double infinity = std::numeric_limits<double>::infinity();
 
-    // Form k is of_row * (T_s or T_t) + of_q * T_q.
-    struct Weight {
-        double of_row, of_q;
-    };
-
-    std::array<Row, 3> rows_{};  // T_s, T_t, T_q
+    std::array<Row, 3> rows_{};                   // T_s, T_t, T_q
+    std::array<double, side_count> side_{};       // min.x, max.x, min.y, max.y
+    std::array<double, side_count> narrowing_{};  // their distance from the inner ones, times the scale of the form
     std::array<Weight, count> weight_{};
+    std::array<Weight, side_count> inner_weight_{};
+    double largest_q_ = 0.0;  // of the three coefficients
     std::array<BoundedForm, count> forms_{};
     std::array<double, count> slopes_{};
     std::array<BoundedForm, 15> separating_{};
