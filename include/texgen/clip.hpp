@@ -74,7 +74,7 @@ inline float between(double weight_a, float a, double weight_b, float b) noexcep
 // compiler contracts the two products in different ways on the two sides of a shared edge.
 inline ClipVertex between(double weight_a, const ClipVertex& a, double weight_b, const ClipVertex& b) noexcept {
     ClipVertex result{};
-    for (int i = 0; i < 4; ++i) {
+    for (glm::length_t i = 0; i < 4; ++i) {
         result.position[i] = between(weight_a, a.position[i], weight_b, b.position[i]);
         result.strq[i] = between(weight_a, a.strq[i], weight_b, b.strq[i]);
     }
@@ -195,8 +195,12 @@ namespace detail {
 // in no unit; inside is >= 0.
 class SlideDistance {
 public:
-    static SlideDistance at_least(int coordinate, double side) noexcept { return {coordinate, 1.0, -usable(side)}; }
-    static SlideDistance at_most(int coordinate, double side) noexcept { return {coordinate, -1.0, usable(side)}; }
+    static SlideDistance at_least(glm::length_t coordinate, double side) noexcept {
+        return {coordinate, 1.0, -usable(side)};
+    }
+    static SlideDistance at_most(glm::length_t coordinate, double side) noexcept {
+        return {coordinate, -1.0, usable(side)};
+    }
     static SlideDistance in_front() noexcept { return {3, 1.0, 0.0}; }
 
     Bounded operator()(const ClipVertex& vertex) const noexcept {
@@ -217,7 +221,7 @@ public:
     }
 
 private:
-    SlideDistance(int coordinate, double sign, double per_q) noexcept
+    SlideDistance(glm::length_t coordinate, double sign, double per_q) noexcept
         : coordinate_(coordinate), sign_(sign), per_q_(per_q) {}
 
     // Floats have |u/q| in [2^-277, 2^277], or 0: a side that is brought into a wider range decides the same of them, and
@@ -227,7 +231,7 @@ private:
         return std::copysign(smaller(larger(std::fabs(side), 0x1p-300), 0x1p300), side);
     }
 
-    int coordinate_;
+    glm::length_t coordinate_;
     double sign_, per_q_;
 };
 
@@ -263,7 +267,7 @@ inline ClipVertex cut_at(const SlideDistance& side, const ClipVertex& inside, co
         return certain_quotient(sum, difference, exact_sum, exact_difference);
     };
     ClipVertex result{};
-    for (int k = 0; k < 4; ++k) {
+    for (glm::length_t k = 0; k < 4; ++k) {
         result.position[k] = component(inside.position[k], outside.position[k]);
         result.strq[k] = component(inside.strq[k], outside.strq[k]);
     }
@@ -311,10 +315,10 @@ std::size_t cut_edges(std::span<ClipVertex> storage, std::size_t count, const Si
 template <class Space>
 std::array<glm::vec4, 5> clip_planes(const Transform<Texture, Space>& texgen, TextureRegion region) noexcept {
     std::array<glm::vec4, 5> result;
-    for (int column = 0; column < 4; ++column) {
+    for (glm::length_t column = 0; column < 4; ++column) {
         const glm::dvec4& from = texgen.matrix()[column];
         result[0][column] = static_cast<float>(from.w);
-        for (int k = 0; k < 2; ++k) {
+        for (glm::length_t k = 0; k < 2; ++k) {
             const auto i = static_cast<std::size_t>(1 + 2 * k);
             result[i][column] = static_cast<float>(std::fma(-region.min()[k], from.w, from[k]));
             result[i + 1][column] = static_cast<float>(std::fma(region.max()[k], from.w, -from[k]));

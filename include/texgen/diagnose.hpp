@@ -351,14 +351,14 @@ public:
             least_ = most_ = st;
         }
         distinct_ = distinct_ || v != first_;
-        for (int k = 0; k < 2; ++k) {
+        for (glm::length_t k = 0; k < 2; ++k) {
             least_[k] = smaller(least_[k], st[k]);
             most_[k] = larger(most_[k], st[k]);
         }
         if (in_float_ && is_lit(st)) {
             // Half the bound on the rounding of the elements, each within 2^-24 of itself.
             const double per_error = 0.5 * unit_roundoff_float / gamma(5);
-            for (int k = 0; k < 2; ++k)
+            for (glm::length_t k = 0; k < 2; ++k)
                 raise((k == 0 ? s : t).error + std::fabs(st[k]) * q.error, per_error / q.value * picture_.texels()[k]);
         }
     }
@@ -397,7 +397,7 @@ private:
         const double q = value_at(right_[2], v).value;
         const glm::dvec2 right = glm::dvec2(value_at(right_[0], v).value, value_at(right_[1], v).value) / q;
         if (!(q > 0.0) || !is_lit(right)) return;
-        for (int k = 0; k < 2; ++k) raise(std::fabs(st[k] - right[k]), picture_.texels()[k]);
+        for (glm::length_t k = 0; k < 2; ++k) raise(std::fabs(st[k] - right[k]), picture_.texels()[k]);
     }
 
     bool has_texgen_, has_right_, in_float_;

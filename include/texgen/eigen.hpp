@@ -103,8 +103,9 @@ template <class Role, detail::EigenMatrix4 Matrix>
 Role from_eigen(const Matrix& matrix) {
     const Eigen::Matrix<typename Matrix::Scalar, 4, 4> value = matrix;
     glm::mat<4, 4, typename Matrix::Scalar> result;
-    for (int column = 0; column < 4; ++column)
-        for (int row = 0; row < 4; ++row) result[column][row] = value(row, column);
+    for (Eigen::Index column = 0; column < 4; ++column)
+        for (Eigen::Index row = 0; row < 4; ++row)
+            result[static_cast<glm::length_t>(column)][static_cast<glm::length_t>(row)] = value(row, column);
     return Role(result);
 }
 
@@ -124,8 +125,10 @@ Target to_eigen(const Transform<To, From>& transform) noexcept {
                       std::is_same_v<Target, Eigen::Transform<Scalar, 3, Eigen::Projective>>,
                   "Matrix4d, Matrix4f, Projective3d or Projective3f; to_eigen_affine() has the others");
     Target result;
-    for (int column = 0; column < 4; ++column)
-        for (int row = 0; row < 4; ++row) result(row, column) = static_cast<Scalar>(transform.matrix()[column][row]);
+    for (glm::length_t column = 0; column < 4; ++column)
+        for (glm::length_t row = 0; row < 4; ++row)
+            result(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column)) =
+                static_cast<Scalar>(transform.matrix()[column][row]);
     return result;
 }
 

@@ -224,7 +224,7 @@ inline bool TexGenUnit::set_eye_plane(Coordinate coordinate, glm::vec4 plane, co
     const detail::CertifiedInverse inverse{glm::dmat4(modelview)};
     if (!inverse.regular()) return false;
     const glm::vec4 stored(inverse.solve_row(glm::dvec4(plane)));
-    for (int i = 0; i < 4; ++i)
+    for (glm::length_t i = 0; i < 4; ++i)
         if (!(std::fabs(stored[i]) <= std::numeric_limits<float>::max())) return false;
     state(coordinate).eye_plane = stored;
     return true;
@@ -234,7 +234,7 @@ inline bool TexGenUnit::set_eye_plane(Coordinate coordinate, glm::vec4 plane, co
 // product of two floats is exact in double, so only the sum needs care.
 inline double TexGenUnit::cancelling_dot(const glm::vec4& a, const glm::vec4& b) noexcept {
     double sum = 0.0, lost = 0.0;
-    for (int i = 0; i < 4; ++i) {
+    for (glm::length_t i = 0; i < 4; ++i) {
         const detail::DoubleDouble next = detail::two_sum(sum, static_cast<double>(a[i]) * static_cast<double>(b[i]));
         sum = next.high;
         lost += next.low;
@@ -306,12 +306,12 @@ inline glm::vec4 TexGenUnit::generate(const FixedFunctionVertex& vertex, const E
         const glm::dvec3 to_vertex = direction(glm::dvec3(eye));
         const double n_dot_u = dot(n, to_vertex);
         const glm::dvec3 u = times_power_of_two(to_vertex, -2 * exponent);
-        for (int i = 0; i < 3; ++i) scaled_reflection[i] = std::fma(-2.0 * n[i], n_dot_u, u[i]);
+        for (glm::length_t i = 0; i < 3; ++i) scaled_reflection[i] = std::fma(-2.0 * n[i], n_dot_u, u[i]);
         sphere = direction(scaled_reflection + glm::dvec3(0.0, 0.0, std::scalbn(1.0, -2 * exponent)));
     }
 
     glm::dvec4 generated(vertex.texcoord);
-    for (int i = 0; i < 4; ++i) {
+    for (glm::length_t i = 0; i < 4; ++i) {
         const CoordinateState& coordinate = states_[static_cast<std::size_t>(i)];
         if (!coordinate.enabled) continue;
         switch (coordinate.mode) {

@@ -474,7 +474,8 @@ inline std::optional<FootprintExtremes> FootprintSetup::extremes(const detail::W
     const auto& t = slope_[1];
     glm::dvec2 reach(0.0, 0.0);
     for (std::size_t i = 0; i < polygon.count(); ++i)
-        for (int axis = 0; axis < 2; ++axis) reach[axis] = detail::larger(std::fabs(polygon[i][axis]), reach[axis]);
+        for (glm::length_t axis = 0; axis < 2; ++axis)
+            reach[axis] = detail::larger(std::fabs(polygon[i][axis]), reach[axis]);
     const auto size_of = [&](const detail::Slope::Terms& magnitude) {
         return detail::larger(magnitude.dx + reach.y * magnitude.twist, magnitude.dy + reach.x * magnitude.twist);
     };

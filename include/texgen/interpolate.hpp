@@ -304,7 +304,7 @@ public:
         : kernels_(kernels), setup_(setup), rect_(rect) {}
 
     // A coordinate (0 to 3: s, t, r, q) and its plane; one that only the mask needs has no output.
-    void add(int coordinate, const Plane& plane, std::span<float> output) noexcept {
+    void add(glm::length_t coordinate, const Plane& plane, std::span<float> output) noexcept {
         coordinate_[count_] = coordinate;
         plane_[count_] = &plane;
         output_[count_++] = output;
@@ -485,7 +485,7 @@ private:
     const TriangleSetup& setup_;
     FragmentRect rect_;
     std::size_t count_ = 0;
-    int coordinate_[2] = {};
+    glm::length_t coordinate_[2] = {};
     const Plane* plane_[2] = {};
     std::span<float> output_[2];
     std::span<float> lit_;
@@ -658,8 +658,9 @@ inline SegmentJob segment_job(const Segment& segment, int first, int numerators)
     SegmentJob job{};
     job.numerators = numerators;
     for (int k = 0; k < numerators; ++k) {
-        job.a[k] = widened(segment.a[first + k]);
-        job.b[k] = widened(segment.b[first + k]);
+        const auto coordinate = static_cast<glm::length_t>(first + k);
+        job.a[k] = widened(segment.a[coordinate]);
+        job.b[k] = widened(segment.b[coordinate]);
     }
     job.q_a = widened(segment.a.w);
     job.q_b = widened(segment.b.w);

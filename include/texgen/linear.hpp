@@ -74,11 +74,11 @@ std::optional<EyeTexgen> eye_planes_as_stored(const Transform<Texture, Space>& p
     const detail::CertifiedInverse inverse(modelview.matrix());
     if (!inverse.regular()) return std::nullopt;
     glm::dmat4 stored(0.0);
-    for (int row = 0; row < 4; ++row) {
+    for (glm::length_t row = 0; row < 4; ++row) {
         glm::dvec4 plane(0.0);
         for (int column = 0; column < 4; ++column) plane[column] = planes.matrix()[column][row];
         plane = inverse.solve_row(plane);
-        for (int column = 0; column < 4; ++column) stored[column][row] = plane[column];
+        for (glm::length_t column = 0; column < 4; ++column) stored[column][row] = plane[column];
     }
     if (!detail::is_finite(stored)) return std::nullopt;
     return EyeTexgen(stored);
@@ -101,7 +101,7 @@ template <class Space>
 std::array<glm::vec4, 4> planes(const Transform<Texture, Space>& transform) noexcept {
     const glm::mat4 m = transform.rounded();
     std::array<glm::vec4, 4> rows;
-    for (int row = 0; row < 4; ++row)
+    for (glm::length_t row = 0; row < 4; ++row)
         rows[static_cast<std::size_t>(row)] = {m[0][row], m[1][row], m[2][row], m[3][row]};
     return rows;
 }

@@ -63,7 +63,7 @@ inline DepthRow perspective_depth(double z_near, double z_far, bool reversed, De
 
 inline std::optional<ProjectorProjection> checked_projection(glm::dmat4 matrix, Conventions conventions) noexcept {
     if (conventions.ndc_y == NdcY::down) {
-        for (int column = 0; column < 4; ++column) matrix[column][1] = -matrix[column][1];
+        for (glm::length_t column = 0; column < 4; ++column) matrix[column][1] = -matrix[column][1];
     }
     const bool usable = is_finite(matrix) && matrix[0][0] != 0.0 && matrix[1][1] != 0.0;
     return usable ? std::optional(ProjectorProjection(matrix)) : std::nullopt;
@@ -91,7 +91,7 @@ inline glm::dvec3 cross(const glm::dvec3& a, const glm::dvec3& b) noexcept {
 // a . b, summed in doubled precision: far from the origin its terms cancel.
 inline double dot(const glm::dvec3& a, const glm::dvec3& b) noexcept {
     DoubleDouble sum{0.0, 0.0};
-    for (int i = 0; i < 3; ++i) sum = add_product(sum, a[i], b[i]);
+    for (glm::length_t i = 0; i < 3; ++i) sum = add_product(sum, a[i], b[i]);
     return sum.high;
 }
 
@@ -182,7 +182,7 @@ inline std::optional<ProjectorView> look_at(const Aim& aim) noexcept {
     // The rounding of target - position, in the same scale: where up is nearly parallel it would turn the picture.
     glm::dvec3 rounding(0.0);
     const int exponent = detail::largest_exponent(aim.target - aim.position);
-    for (int i = 0; i < 3; ++i)
+    for (glm::length_t i = 0; i < 3; ++i)
         rounding[i] = std::scalbn(detail::two_sum(aim.target[i], -aim.position[i]).low, -exponent);
     const glm::dvec3 sideways = detail::cross(forward, up) + detail::cross(rounding, up);
     if (!(detail::length(sideways) > 0x1p-98)) return std::nullopt;
@@ -193,7 +193,7 @@ inline std::optional<ProjectorView> look_at(const Aim& aim) noexcept {
     const glm::dvec3 back = -forward / detail::length(forward);
     const glm::dvec3 upright = detail::cross(back, side);
     glm::dmat4 matrix(1.0);
-    for (int i = 0; i < 3; ++i) {
+    for (glm::length_t i = 0; i < 3; ++i) {
         matrix[i][0] = side[i];
         matrix[i][1] = upright[i];
         matrix[i][2] = back[i];

@@ -60,7 +60,7 @@ inline bool is_inside_inner_side(const LitForms& forms, std::size_t k, const Box
     Point vertex{};
     for (std::size_t j = 0; j < 3; ++j) {
         if (form[j] == 0.0) continue;
-        vertex[j] = widened((form[j] > 0.0 ? box.min : box.max)[static_cast<int>(j)]);
+        vertex[j] = widened((form[j] > 0.0 ? box.min : box.max)[static_cast<glm::length_t>(j)]);
         if (!is_finite(vertex[j])) return false;
     }
     return forms.inner_sign_at(k, form, vertex) >= 0;
@@ -70,13 +70,13 @@ inline bool is_inside_inner_side(const LitForms& forms, std::size_t k, const Box
 inline Coverage exact_coverage(const LitForms& forms, const Box& box) noexcept {
     constexpr float infinity = std::numeric_limits<float>::infinity();
     bool is_empty = false;
-    for (int j = 0; j < 3; ++j) {
+    for (glm::length_t j = 0; j < 3; ++j) {
         if (!(box.min[j] <= box.max[j]) && !(box.min[j] > box.max[j])) return Coverage::partial;
         is_empty = is_empty || box.min[j] > box.max[j];
     }
     if (is_empty || forms.light_nothing()) return Coverage::outside;
     if (!forms.are_usable()) return Coverage::partial;
-    for (int j = 0; j < 3; ++j)
+    for (glm::length_t j = 0; j < 3; ++j)
         if (box.min[j] == infinity || box.max[j] == -infinity) return Coverage::partial;  // beyond all numbers
 
     // The vertex where a form is largest, or least; false where it is infinite there.
@@ -84,7 +84,7 @@ inline Coverage exact_coverage(const LitForms& forms, const Box& box) noexcept {
         for (std::size_t j = 0; j < 3; ++j) {
             if (!forms[k].uses[j]) continue;
             const glm::vec3& corner = (forms[k].a[j] > 0.0) == largest ? box.max : box.min;
-            vertex[j] = widened(corner[static_cast<int>(j)]);
+            vertex[j] = widened(corner[static_cast<glm::length_t>(j)]);
             if (!is_finite(vertex[j])) return false;
         }
         return true;
@@ -97,7 +97,7 @@ inline Coverage exact_coverage(const LitForms& forms, const Box& box) noexcept {
     const auto is_inside_side = [&](std::size_t k) {
         Point vertex{};
         double size = 0.0;
-        for (int j = 0; j < 3; ++j)
+        for (glm::length_t j = 0; j < 3; ++j)
             size += larger(std::fabs(static_cast<double>(box.min[j])), std::fabs(static_cast<double>(box.max[j])));
         return (take_vertex(k, false, vertex) && forms.is_inside_at(k, vertex, size)) ||
                is_inside_inner_side(forms, k, box);
@@ -120,7 +120,7 @@ public:
 
     void add_if_partial(const LitForms& forms, const Box& box, Coverage& out) noexcept {
         if (out != Coverage::partial || !is_proper(box) || !forms.are_usable()) return;
-        for (int j = 0; j < 3; ++j) {
+        for (glm::length_t j = 0; j < 3; ++j) {
             const auto min = static_cast<double>(box.min[j]);
             const auto max = static_cast<double>(box.max[j]);
             block_.min[j][count_] = min;
@@ -169,7 +169,7 @@ void cover(const LitForms& forms, const FloatForms& float_forms, std::span<const
             float copy[copied][6] = {};
             for (std::size_t i = 0; i < count; ++i) {
                 const Box& box = boxes[begin + i];
-                for (int j = 0; j < 3; ++j) {
+                for (glm::length_t j = 0; j < 3; ++j) {
                     copy[i][j] = box.min[j];
                     copy[i][3 + j] = box.max[j];
                 }

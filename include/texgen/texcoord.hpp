@@ -138,7 +138,8 @@ namespace detail {
 
 // A row of a texgen matrix as a linear form of points with w = 1.
 inline PointForm form(const glm::dmat4& matrix, int row) noexcept {
-    return {matrix[0][row], matrix[1][row], matrix[2][row], matrix[3][row]};
+    const auto i = static_cast<glm::length_t>(row);
+    return {matrix[0][i], matrix[1][i], matrix[2][i], matrix[3][i]};
 }
 
 // The sum of the terms' magnitudes.
@@ -408,7 +409,7 @@ template <class Space>
 glm::dvec4 generate_error_bound(const Transform<Texture, Space>& texture_from_space,
                                 Positions<Space> positions) noexcept {
     glm::dvec4 largest(0.0);
-    for (int k = 0; k < 4; ++k) {
+    for (glm::length_t k = 0; k < 4; ++k) {
         const detail::PointForm form = detail::form(texture_from_space.matrix(), k);
         for (std::size_t i = 0; i < positions.size(); ++i) {
             const detail::Bounded value = detail::value_at(form, detail::widened(positions[i]));
@@ -433,7 +434,7 @@ glm::dvec2 project_error_bound(const Transform<Texture, Space>& texture_from_spa
         const detail::Bounded q = detail::closely_at(q_form, v);
         if (!(q.error < 0x1p1000)) return glm::dvec2(HUGE_VAL);
         if (q.value <= 0.0) continue;
-        for (int k = 0; k < 2; ++k) {
+        for (glm::length_t k = 0; k < 2; ++k) {
             const detail::PointForm form = detail::form(matrix, k);
             const detail::Bounded s = detail::closely_at(form, v);
             const double quotient = (std::fabs(s.value) + s.error) / (q.value - q.error) * (1.0 + detail::gamma(4));

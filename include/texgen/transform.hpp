@@ -90,9 +90,9 @@ Transform<From, To> inverse_rigid(const Transform<To, From>& transform) noexcept
     const glm::dmat4& m = transform.matrix();
     TEXGEN_ASSERT(!(detail::distance_from_rigid(m) > 1e-3));
     glm::dmat4 result(1.0);
-    for (int column = 0; column < 3; ++column) {
+    for (glm::length_t column = 0; column < 3; ++column) {
         detail::DoubleDouble translation{0.0, 0.0};
-        for (int row = 0; row < 3; ++row) {
+        for (glm::length_t row = 0; row < 3; ++row) {
             result[column][row] = m[row][column];
             translation = detail::add_product(translation, -m[column][row], m[3][row]);
         }

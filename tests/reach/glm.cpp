@@ -4,8 +4,15 @@
 #include <cstddef>
 #include <cstdio>
 #include <span>
+#include <vector>
 
+#include <texgen/diagnose.hpp>
+#include <texgen/scene.hpp>
 #include <texgen/texgen.hpp>
+
+#if __has_include(<Eigen/Core>)
+#include <texgen/eigen.hpp>
+#endif
 
 namespace {
 
@@ -98,6 +105,41 @@ void print_projector(const texgen::Projector& projector) {
     if (setup) interpolate(*setup, {10, 20, 20, 3}, {fragment_s, fragment_t, {}, {}});
     for (const float value : fragment_s) print("fragment s", static_cast<double>(value));
     for (const float value : fragment_t) print("fragment t", static_cast<double>(value));
+    if (!setup) return;
+    const FootprintSetup footprints(*setup, {256.0, 256.0});
+    print("footprints within", footprints.error_bound({10, 20, 20, 3}));
+    if (const auto extremes = footprints.extremes()) print("largest level", extremes->largest_level);
+}
+
+// A scene of boxes and what is wrong with a projector.
+void print_scene(const texgen::Projector& projector) {
+    using namespace texgen;
+    std::vector<ModelMatrix> models;
+    std::vector<Box> bounds;
+    for (int i = 0; i < 40; ++i) {
+        glm::dmat4 model(1.0);
+        model[3] = glm::dvec4(0.5 * i - 10.0, 0.25 * i - 8.0, 3.0 - 0.3 * i, 1.0);
+        models.emplace_back(model);
+        bounds.push_back({glm::vec3(-0.5f), glm::vec3(0.5f)});
+    }
+    Scene scene;
+    scene.update({models, bounds, {&projector, 1}}, {});
+    for (const LitPair& pair : scene.pairs()) {
+        print("lit", pair.object);
+        print("T_o", scene.texgen(pair));
+    }
+    const ObjectTexgen texgen = object_linear(projector, models[20]);
+    for (const Finding& finding : diagnose(projector)) print("finding", static_cast<double>(finding.defect));
+    for (const Finding& finding : diagnose(planes(texgen))) print("finding", static_cast<double>(finding.defect));
+    std::array<glm::vec3, 5> points{};
+    for (const Finding& finding :
+         diagnose(Setup<Object>{.projector = projector, .texgen = texgen, .points = object_space(points)}))
+        print("finding", static_cast<double>(finding.defect));
+#if __has_include(<Eigen/Core>)
+    const Eigen::Matrix4d matrix = to_eigen(texgen);
+    print("from Eigen", from_eigen<ObjectTexgen>(matrix));
+    print("from Eigen", to_eigen(glm::dvec4(texgen.matrix()[2]))(2));
+#endif
 }
 
 void print_fixed_function() {
@@ -133,6 +175,7 @@ int main() {
     for (const Conventions& conventions : {opengl, direct3d, vulkan}) {
         print_projector(*make_projector(lens, aim, conventions));
         print_projector(*make_projector(off_centre, aim, conventions));
+        print_scene(*make_projector(lens, aim, conventions));
     }
     print_fixed_function();
 }

@@ -44,11 +44,11 @@ inline WorldBounds world_bounds(const glm::dmat4& m, const Box& box) noexcept {
     const glm::dvec3 low = glm::dvec3(widened(glm::vec4(box.min, 0.0f)));
     const glm::dvec3 high = glm::dvec3(widened(glm::vec4(box.max, 0.0f)));
     result.size = 0.0;
-    for (int i = 0; i < 3; ++i) {
+    for (glm::length_t i = 0; i < 3; ++i) {
         double least = m[3][i];
         double largest = m[3][i];
         double size = std::fabs(m[3][i]);
-        for (int j = 0; j < 3; ++j) {
+        for (glm::length_t j = 0; j < 3; ++j) {
             const double of_low = m[j][i] * low[j];
             const double of_high = m[j][i] * high[j];
             least += smaller(of_low, of_high);
@@ -79,12 +79,12 @@ public:
         const glm::dmat4 matrix = texture_from_eye * view;
         if (!is_finite(matrix)) return;
         glm::dmat4 magnitude(0.0);
-        for (int column = 0; column < 4; ++column)
-            for (int row = 0; row < 4; ++row)
-                for (int k = 0; k < 4; ++k)
+        for (glm::length_t column = 0; column < 4; ++column)
+            for (glm::length_t row = 0; row < 4; ++row)
+                for (glm::length_t k = 0; k < 4; ++k)
                     magnitude[column][row] += std::fabs(texture_from_eye[k][row]) * std::fabs(view[column][k]);
         for (std::size_t k = 0; k < 2; ++k) {
-            const int row = static_cast<int>(k);
+            const auto row = static_cast<glm::length_t>(k);
             const double min = region.min()[row];
             const double max = region.max()[row];
             set(2 * k, matrix, magnitude, row, 1.0, -min, width_of(RoundedSide::of_min(min)));
@@ -121,13 +121,13 @@ private:
 
     // of_row * row + of_q * q, times a power of two: the sum of the magnitudes becomes about 1. The side may be off by
     // `width`.
-    void set(std::size_t k, const glm::dmat4& matrix, const glm::dmat4& magnitude, int row, double of_row, double of_q,
-             double width) noexcept {
+    void set(std::size_t k, const glm::dmat4& matrix, const glm::dmat4& magnitude, glm::length_t row, double of_row,
+             double of_q, double width) noexcept {
         Form form;
         double sizes[4];
         double coefficients[4];
         double sum = 0.0;
-        for (int j = 0; j < 4; ++j) {
+        for (glm::length_t j = 0; j < 4; ++j) {
             coefficients[j] = of_row * matrix[j][row] + of_q * matrix[j][3];
             sizes[j] = std::fabs(of_row) * magnitude[j][row] + std::fabs(of_q) * magnitude[j][3];
             sum += sizes[j];
@@ -258,7 +258,7 @@ private:
     // Neighbours in the world become neighbours in the tree: by the Morton code of their middle.
     void sort() noexcept {
         moves_ = 0;
-        const auto middle = [this](std::size_t object, int axis) {
+        const auto middle = [this](std::size_t object, glm::length_t axis) {
             const auto j = static_cast<std::size_t>(axis);
             return 0.5 * bounds_[object].min[j] + 0.5 * bounds_[object].max[j];
         };
@@ -268,7 +268,7 @@ private:
             return bounds_[object].size >= 0.0 && bounds_[object].size < WorldBounds::unbounded_size;
         };
         for (std::size_t object = 0; object < bounds_.size(); ++object) {
-            for (int j = 0; j < 3 && is_somewhere(object); ++j) {
+            for (glm::length_t j = 0; j < 3 && is_somewhere(object); ++j) {
                 low[j] = smaller(low[j], middle(object, j));
                 high[j] = larger(high[j], middle(object, j));
             }
@@ -278,7 +278,7 @@ private:
             std::uint64_t code = 0x7fffffff;  // what is nowhere comes last
             if (is_somewhere(object)) {
                 code = 0;
-                for (int j = 0; j < 3; ++j) {
+                for (glm::length_t j = 0; j < 3; ++j) {
                     const double extent = high[j] - low[j];
                     const double along = extent > 0.0 ? (middle(object, j) - low[j]) / extent : 0.0;
                     code |= every_third_bit(static_cast<std::uint32_t>(1023.0 * along)) << j;

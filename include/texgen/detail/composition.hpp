@@ -18,12 +18,12 @@ namespace texgen::detail {
 
 inline glm::dmat4 transposed(const glm::dmat4& m) noexcept {
     glm::dmat4 result(0.0);
-    for (int column = 0; column < 4; ++column)
-        for (int row = 0; row < 4; ++row) result[row][column] = m[column][row];
+    for (glm::length_t column = 0; column < 4; ++column)
+        for (glm::length_t row = 0; row < 4; ++row) result[row][column] = m[column][row];
     return result;
 }
 
-inline bool is_zero_row(const glm::dmat4& m, int row) noexcept {
+inline bool is_zero_row(const glm::dmat4& m, glm::length_t row) noexcept {
     return m[0][row] == 0.0 && m[1][row] == 0.0 && m[2][row] == 0.0 && m[3][row] == 0.0;
 }
 
@@ -38,15 +38,15 @@ inline Product operator*(const Product& a, const Product& b) noexcept {
 
 inline Product lens_factor(const glm::dmat4& m) noexcept {
     Product result{m, m};
-    for (int column = 0; column < 4; ++column)
-        for (int row = 0; row < 4; ++row) result.magnitude[column][row] = std::fabs(m[column][row]);
+    for (glm::length_t column = 0; column < 4; ++column)
+        for (glm::length_t row = 0; row < 4; ++row) result.magnitude[column][row] = std::fabs(m[column][row]);
     return result;
 }
 
 // Rotations and inverses carry noise relative to the largest element of a column, also where they hold a zero.
 inline Product pose_factor(const glm::dmat4& m) noexcept {
     Product result = lens_factor(m);
-    for (int column = 0; column < 4; ++column) {
+    for (glm::length_t column = 0; column < 4; ++column) {
         glm::dvec4& c = result.magnitude[column];
         c.x = c.y = c.z = larger(c.x, larger(c.y, c.z));
     }
@@ -68,12 +68,12 @@ inline constexpr Closeness composed_in_float{0.0, 0x1p-16};
 // zero: planes that were never written say nothing. 0 where it is not.
 inline double multiple_of(const Product& product, const glm::dmat4& given, Closeness closeness,
                           bool was_transposed = false) noexcept {
-    const auto says_nothing = [&](int column) { return was_transposed && given[column] == glm::dvec4(0.0); };
+    const auto says_nothing = [&](glm::length_t column) { return was_transposed && given[column] == glm::dvec4(0.0); };
     double along = 0.0;
     double norm = 0.0;
-    for (int row = 0; row < 4; ++row) {
+    for (glm::length_t row = 0; row < 4; ++row) {
         if (is_zero_row(given, row)) continue;
-        for (int column = 0; column < 4; ++column) {
+        for (glm::length_t column = 0; column < 4; ++column) {
             const double magnitude = product.magnitude[column][row];
             if (!(magnitude > 0.0) || says_nothing(column)) continue;
             const double value = product.value[column][row] / magnitude;
@@ -82,9 +82,9 @@ inline double multiple_of(const Product& product, const glm::dmat4& given, Close
         }
     }
     const double multiple = along / norm;
-    for (int row = 0; row < 4; ++row) {
+    for (glm::length_t row = 0; row < 4; ++row) {
         if (is_zero_row(given, row)) continue;
-        for (int column = 0; column < 4; ++column) {
+        for (glm::length_t column = 0; column < 4; ++column) {
             if (says_nothing(column)) continue;
             const double value = product.value[column][row];
             const double accepted =

@@ -28,7 +28,7 @@ public:
     const glm::dvec2& after(std::size_t i) const noexcept { return corners_[i + 1 < count_ ? i + 1 : 0]; }
 
     // What has sign * p[axis] <= bound.
-    WindowPolygon cut(int axis, double sign, double bound) const noexcept {
+    WindowPolygon cut(glm::length_t axis, double sign, double bound) const noexcept {
         WindowPolygon result;
         for (std::size_t i = 0; i < count_; ++i) {
             const glm::dvec2& from = corners_[i];
@@ -149,7 +149,7 @@ public:
     double least() const noexcept { return least_; }
 
     // The part of the polygon inside, its coordinate `axis` being k. Precondition: v >= least().
-    WindowPolygon cut(const WindowPolygon& polygon, int axis, double v) const noexcept {
+    WindowPolygon cut(const WindowPolygon& polygon, glm::length_t axis, double v) const noexcept {
         if (!(size_ > 0.0)) return polygon;
         const double half = std::sqrt((v - least_) / size_) * (1.0 + 0x1p-40) + slack_;
         return polygon.cut(axis, 1.0, half + centre_).cut(axis, -1.0, half - centre_);

@@ -17,8 +17,8 @@ namespace texgen::detail {
 inline bool is_finite(double value) noexcept { return std::fabs(value) <= 1.7976931348623157e308; }
 
 inline bool is_finite(const glm::dmat4& matrix) noexcept {
-    for (int column = 0; column < 4; ++column)
-        for (int row = 0; row < 4; ++row)
+    for (glm::length_t column = 0; column < 4; ++column)
+        for (glm::length_t row = 0; row < 4; ++row)
             if (!is_finite(matrix[column][row])) return false;
     return true;
 }
@@ -89,8 +89,8 @@ private:
 };
 
 inline CertifiedInverse::CertifiedInverse(const glm::dmat4& matrix) noexcept {
-    for (int row = 0; row < 4; ++row) {
-        for (int column = 0; column < 4; ++column) {
+    for (glm::length_t row = 0; row < 4; ++row) {
+        for (glm::length_t column = 0; column < 4; ++column) {
             const double element = matrix[column][row];
             if (!is_finite(element)) return;
             scaled_[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)] = element;
@@ -196,7 +196,7 @@ inline glm::dmat4 CertifiedInverse::matrix() const noexcept {
     glm::dmat4 result(0.0);
     for (std::size_t i = 0; i < 4; ++i)
         for (std::size_t j = 0; j < 4; ++j)
-            result[static_cast<int>(j)][static_cast<int>(i)] =
+            result[static_cast<glm::length_t>(j)][static_cast<glm::length_t>(i)] =
                 std::scalbn(inverse_[i][j], column_exponent_[i] + row_exponent_[j]);
     return result;
 }
@@ -204,7 +204,8 @@ inline glm::dmat4 CertifiedInverse::matrix() const noexcept {
 inline glm::dvec4 CertifiedInverse::solve_row(const glm::dvec4& row) const noexcept {
     // y A = row with B = R A C is (y R^-1) B = row C.
     std::array<double, 4> target{};
-    for (std::size_t k = 0; k < 4; ++k) target[k] = std::scalbn(row[static_cast<int>(k)], column_exponent_[k]);
+    for (std::size_t k = 0; k < 4; ++k)
+        target[k] = std::scalbn(row[static_cast<glm::length_t>(k)], column_exponent_[k]);
     std::array<double, 4> solution{};
     std::array<double, 4> residual = target;
     for (int pass = 0; pass < 3; ++pass) {
@@ -214,7 +215,8 @@ inline glm::dvec4 CertifiedInverse::solve_row(const glm::dvec4& row) const noexc
             residual[j] = dot(solution.data(), scaled_, static_cast<int>(j), target[j]).high;
     }
     glm::dvec4 result(0.0);
-    for (std::size_t j = 0; j < 4; ++j) result[static_cast<int>(j)] = std::scalbn(solution[j], row_exponent_[j]);
+    for (std::size_t j = 0; j < 4; ++j)
+        result[static_cast<glm::length_t>(j)] = std::scalbn(solution[j], row_exponent_[j]);
     return result;
 }
 
@@ -241,11 +243,11 @@ inline glm::dvec4 CertifiedInverse::error_of_row(const glm::dvec4& solution, con
     if (!(contraction < 1.0)) return glm::dvec4(HUGE_VAL);
     Row scaled_solution{};
     for (std::size_t k = 0; k < 4; ++k)
-        scaled_solution[k] = std::scalbn(solution[static_cast<int>(k)], -row_exponent_[k]);
+        scaled_solution[k] = std::scalbn(solution[static_cast<glm::length_t>(k)], -row_exponent_[k]);
     Row lacking{};
     Row error{};
     for (std::size_t k = 0; k < 4; ++k) {
-        const double target = std::scalbn(row[static_cast<int>(k)], column_exponent_[k]);
+        const double target = std::scalbn(row[static_cast<glm::length_t>(k)], column_exponent_[k]);
         const Bounded residual = bounded_dot(scaled_solution.data(), scaled_, static_cast<int>(k), target);
         for (std::size_t j = 0; j < 4; ++j) {
             lacking[j] += residual.value * inverse_[k][j];
@@ -258,7 +260,7 @@ inline glm::dvec4 CertifiedInverse::error_of_row(const glm::dvec4& solution, con
     glm::dvec4 result(0.0);
     for (std::size_t j = 0; j < 4; ++j) {
         const double bound = 1.001 * (std::fabs(lacking[j]) + error[j] + remainder) + 0x1p-1000;
-        result[static_cast<int>(j)] = std::scalbn(bound, row_exponent_[j]) + 0x1p-1074;
+        result[static_cast<glm::length_t>(j)] = std::scalbn(bound, row_exponent_[j]) + 0x1p-1074;
     }
     return result;
 }
@@ -266,12 +268,12 @@ inline glm::dvec4 CertifiedInverse::error_of_row(const glm::dvec4& solution, con
 inline glm::dmat4 CertifiedInverse::error_of(const glm::dmat4& solution, const glm::dmat4& rows) const noexcept {
     const double r = contraction();
     glm::dmat4 result(0.0);
-    for (int row = 0; row < 4; ++row) {
+    for (glm::length_t row = 0; row < 4; ++row) {
         const auto row_of = [row](const glm::dmat4& m) {
             return glm::dvec4(m[0][row], m[1][row], m[2][row], m[3][row]);
         };
         const glm::dvec4 bound = error_of_row(row_of(solution), row_of(rows), r);
-        for (int column = 0; column < 4; ++column) result[column][row] = bound[column];
+        for (glm::length_t column = 0; column < 4; ++column) result[column][row] = bound[column];
     }
     return result;
 }
@@ -280,8 +282,8 @@ inline glm::dmat4 CertifiedInverse::error_of(const glm::dmat4& solution, const g
 inline double distance_from_rigid(const glm::dmat4& m) noexcept {
     double distance = 0.0;
     const auto include = [&distance](double deviation) { distance = larger_or_nan(distance, std::fabs(deviation)); };
-    for (int i = 0; i < 3; ++i) {
-        for (int j = 0; j <= i; ++j)
+    for (glm::length_t i = 0; i < 3; ++i) {
+        for (glm::length_t j = 0; j <= i; ++j)
             include(m[i][0] * m[j][0] + m[i][1] * m[j][1] + m[i][2] * m[j][2] - (i == j ? 1.0 : 0.0));
         include(m[i][3]);
     }

@@ -142,7 +142,7 @@ private:
         double largest = 0.0;
         for (std::size_t k = 0; k < 3; ++k) {
             for (std::size_t j = 0; j < 4; ++j) {
-                rows_[k][j] = matrix[static_cast<int>(j)][k == 2 ? 3 : static_cast<int>(k)];
+                rows_[k][j] = matrix[static_cast<glm::length_t>(j)][k == 2 ? 3 : static_cast<glm::length_t>(k)];
                 largest = larger(largest, std::fabs(rows_[k][j]));
             }
         }
@@ -165,7 +165,7 @@ private:
     bool take_sides(const glm::dvec2& min, const glm::dvec2& max) noexcept {
         for (std::size_t k = 0; k < side_count; ++k) {
             const bool is_min = k % 2 == 0;
-            const double side = (is_min ? min : max)[static_cast<int>(k / 2)];
+            const double side = (is_min ? min : max)[static_cast<glm::length_t>(k / 2)];
             const double size = std::fabs(side);
             if (side == (is_min ? -infinity : infinity)) {
                 side_[k] = side;

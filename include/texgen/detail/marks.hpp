@@ -23,12 +23,12 @@ namespace texgen::detail {
 // Whether the matrix was rounded to float on its way: every element is a float, and of the axes one has more bits than
 // the round numbers of a scene that is aligned with them.
 inline bool is_in_float(const glm::dmat4& m) noexcept {
-    const auto has_bits = [&](int column, int row, std::uint64_t mask) {
+    const auto has_bits = [&](glm::length_t column, glm::length_t row, std::uint64_t mask) {
         return (std::bit_cast<std::uint64_t>(m[column][row]) & mask) != 0;
     };
     bool is_rounded = false;
-    for (int column = 0; column < 4; ++column) {
-        for (int row = 0; row < 4; ++row) {
+    for (glm::length_t column = 0; column < 4; ++column) {
+        for (glm::length_t row = 0; row < 4; ++row) {
             if (has_bits(column, row, 0x1fffffff)) return false;  // the last 29 of the 52 bits behind the point
             is_rounded = is_rounded || (column < 3 && has_bits(column, row, 0x1fffffffff));
         }
@@ -44,7 +44,8 @@ struct Minor {
     bool stands_out;
 };
 
-inline Minor minor(const glm::dmat4& m, const std::array<int, 3>& rows, const std::array<int, 3>& columns) noexcept {
+inline Minor minor(const glm::dmat4& m, const std::array<glm::length_t, 3>& rows,
+                   const std::array<glm::length_t, 3>& columns) noexcept {
     const auto row = [&](std::size_t i) {
         return glm::dvec3(m[columns[0]][rows[i]], m[columns[1]][rows[i]], m[columns[2]][rows[i]]);
     };
@@ -66,11 +67,11 @@ inline Minor minor(const glm::dmat4& m, const std::array<int, 3>& rows, const st
     return {value, std::fabs(value) > rounding * change + 0x1p-48 * terms};
 }
 
-inline constexpr std::array axes{0, 1, 2};
+inline constexpr std::array<glm::length_t, 3> axes{0, 1, 2};
 
 // Whether three rows have rank 3. Valid ones do by their axes, or by two axes and the constants where light is parallel;
 // translations enter neither.
-inline bool are_independent(const glm::dmat4& m, const std::array<int, 3>& rows) noexcept {
+inline bool are_independent(const glm::dmat4& m, const std::array<glm::length_t, 3>& rows) noexcept {
     return minor(m, rows, axes).stands_out || minor(m, rows, {0, 1, 3}).stands_out ||
            minor(m, rows, {0, 2, 3}).stands_out || minor(m, rows, {1, 2, 3}).stands_out;
 }

@@ -87,7 +87,7 @@ public:
     }
 
     // The plane of one coordinate, 0 to 3 for s, t, r, q.
-    Plane plane(int coordinate) const noexcept {
+    Plane plane(glm::length_t coordinate) const noexcept {
         const auto corner = [&](const WindowVertex& vertex, double weight) {
             return widened(vertex.strq[coordinate]) * weight;
         };
@@ -107,7 +107,7 @@ public:
     // The slope of one coordinate, 0 to 2 for s, t, r. Each mu carries 3 u: products of two floats are exact, so s and t
     // that are large everywhere cancel without harm. The area carries 4 u, a difference of points 1 u, products and sums
     // 5 u: gamma(16) of the magnitudes covers the values, and a step from the first vertex.
-    Slope slope(int coordinate) const noexcept {
+    Slope slope(glm::length_t coordinate) const noexcept {
         const WindowVertex* const corner[] = {&triangle_.a, &triangle_.b, &triangle_.c};
         const double area = this->area();
         const auto mu = [&](int i, int j) {
@@ -180,7 +180,7 @@ public:
 
     // F at one fragment, exactly.
     using Exact = Expansion<144>;
-    Exact exactly_at(int coordinate, std::int64_t x, std::int64_t y) const noexcept {
+    Exact exactly_at(glm::length_t coordinate, std::int64_t x, std::int64_t y) const noexcept {
         const glm::dvec2 p(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5);
         const auto& [a, b, c] = triangle_;
         Exact sum;
@@ -191,7 +191,7 @@ public:
     }
 
     // The same within a few ulp of itself, and with the factor of the planes.
-    double closely_at(int coordinate, std::int64_t x, std::int64_t y) const noexcept {
+    double closely_at(glm::length_t coordinate, std::int64_t x, std::int64_t y) const noexcept {
         const double weight = orientation_ * (widened(triangle_.b.clip_w) * widened(triangle_.c.clip_w));
         return exactly_at(coordinate, x, y).estimate() * (weight_[0] / weight);
     }
