@@ -1,6 +1,7 @@
 // What the exact tier gives must not depend on the compiler, its flags, the machine or the kernel: a digest of the bits
-// of many results, against the one that is written here. The inputs are integers times powers of two, so that they are
-// the same floats everywhere, and of three kinds in turn: any; with a constant q and few bits, so that values stand in the
+// of many results, against the one that is written here; and so of what is decided exactly, and of inverses as they are
+// rounded. The inputs are integers times powers of two, so that they are the same floats everywhere, and of three kinds in
+// turn: any; with a constant q and few bits, so that values stand in the
 // middle of two floats; small, so that q is 0 now and then.
 
 #include <array>
@@ -9,8 +10,12 @@
 #include <cstdint>
 #include <cstdio>
 
+#include <texgen/clip.hpp>
 #include <texgen/interpolate.hpp>
+#include <texgen/linear.hpp>
+#include <texgen/skip.hpp>
 #include <texgen/texcoord.hpp>
+#include <texgen/transform.hpp>
 
 namespace {
 
@@ -92,6 +97,17 @@ const texgen::TextureRegion boundless = texgen::atlas_tile({-0x1p120, -0x1p120},
 
 bool same_in_all_layouts = true;
 
+// A matrix of the kind, with a q that is constant for `middles`.
+glm::dmat4 matrix(Random& random, Kind kind) {
+    glm::dmat4 m;
+    for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 4; ++row)
+            m[column][row] = kind == Kind::any                 ? random.integer(-(1 << 30), 1 << 30) * 0x1p-28
+                             : kind == Kind::zeros || row != 3 ? random.integer(-16, 16) * 0x1p-2
+                                                               : (column == 3 ? 1.0 : 0.0);
+    return m;
+}
+
 std::uint64_t points(Classes& classes) {
     Random random(1);
     Digest digest;
@@ -100,13 +116,7 @@ std::uint64_t points(Classes& classes) {
     std::array<float, 7 * most> strided;
     for (int round = 0; round < 12; ++round) {
         const Kind kind = kind_of(round);
-        glm::dmat4 m;
-        for (int column = 0; column < 4; ++column)
-            for (int row = 0; row < 4; ++row)
-                m[column][row] = kind == Kind::any                 ? random.integer(-(1 << 30), 1 << 30) * 0x1p-28
-                                 : kind == Kind::zeros || row != 3 ? random.integer(-16, 16) * 0x1p-2
-                                                                   : (column == 3 ? 1.0 : 0.0);
-        const texgen::WorldTexgen texgen(m);
+        const texgen::WorldTexgen texgen(matrix(random, kind));
         const auto count = static_cast<std::size_t>(random.integer(500, static_cast<int>(most)));
         for (std::size_t i = 0; i < count; ++i) {
             const auto coordinate = [&] {
@@ -223,6 +233,96 @@ std::uint64_t triangles(Classes& classes) {
     return digest.value();
 }
 
+// Polygons cut at the camera's near plane, then at the slide, and put into the window.
+std::uint64_t polygons(Classes& classes) {
+    Random random(5);
+    Digest digest;
+    for (int round = 0; round < 900; ++round) {
+        const Kind kind = kind_of(round);
+        std::array<texgen::ClipVertex, 12> polygon, storage;
+        const auto corners = static_cast<std::size_t>(random.integer(3, 4));
+        for (std::size_t i = 0; i < corners; ++i) {
+            const float x = random.unit(), y = random.unit(), z = random.unit();
+            const float w = kind == Kind::zeros ? random.small() : 0.5f + random.unit();
+            const glm::vec4 coordinates = strq(random, kind);
+            polygon[i] = {glm::vec4(x, y, kind == Kind::zeros ? random.small() : z, w),
+                          glm::vec4(coordinates.x + 0.5f, coordinates.y + 0.5f, coordinates.z, coordinates.w + 0.5f)};
+        }
+        const auto range = round % 2 == 0 ? texgen::DepthRange::zero_to_one : texgen::DepthRange::negative_one_to_one;
+        const auto add_all = [&](std::size_t count) {
+            digest.add(static_cast<float>(count));
+            for (std::size_t i = 0; i < count; ++i)
+                for (int k = 0; k < 4; ++k) digest.add(storage[i].position[k]), digest.add(storage[i].strq[k]);
+        };
+        const std::span<const texgen::ClipVertex> given(polygon.data(), corners);
+        add_all(clip_to_slide(given, texgen::whole_texture(), storage));
+        const std::size_t in_view = clip_to_near(given, storage, range, round % 5 == 0);
+        add_all(in_view);
+        for (std::size_t i = 0; i < in_view; ++i) {
+            const texgen::WindowVertex vertex = to_window(storage[i], {3, 5, 1001, -701});
+            digest.add(vertex.window.x);
+            digest.add(vertex.window.y);
+        }
+        const std::size_t on_slide = clip_to_slide({storage.data(), in_view}, texgen::whole_texture(), storage);
+        add_all(on_slide);
+        ++(on_slide == 0 ? classes.behind : on_slide > corners ? classes.dark : classes.lit);
+    }
+    return digest.value();
+}
+
+// Boxes, most of them about the border of what is lit.
+std::uint64_t bodies(Classes& classes) {
+    Random random(6);
+    Digest digest;
+    for (int round = 0; round < 60; ++round) {
+        const Kind kind = kind_of(round);
+        const texgen::LitVolume<texgen::World> volume(texgen::WorldTexgen(matrix(random, kind)),
+                                                      texgen::atlas_tile({-2.0, -2.0}, {2.0, 2.0}));
+        std::array<texgen::Box, 75> boxes;
+        for (texgen::Box& box : boxes) {
+            for (int k = 0; k < 3; ++k) {
+                const float middle = kind == Kind::any ? random.unit() : 0.25f * random.small();
+                const float size = kind == Kind::any ? 0.5f * random.positive() : 0.25f * random.small();
+                box.min[k] = middle - size;
+                box.max[k] = middle + size;
+            }
+        }
+        std::array<texgen::Coverage, 75> found;
+        volume.coverage(boxes, found);
+        for (const texgen::Coverage coverage : found) {
+            digest.add(static_cast<float>(static_cast<int>(coverage)));
+            ++(coverage == texgen::Coverage::outside   ? classes.behind
+               : coverage == texgen::Coverage::partial ? classes.dark
+                                                       : classes.lit);
+        }
+    }
+    return digest.value();
+}
+
+// Inverses and stored eye planes as they are rounded, which two units of double hardly ever change; and which matrices
+// are singular.
+std::uint64_t inverses(Classes& classes) {
+    Random random(7);
+    Digest digest;
+    for (int round = 0; round < 300; ++round) {
+        const texgen::WorldTexgen planes(matrix(random, Kind::any));
+        const glm::dmat4 regular = matrix(random, Kind::any);
+        glm::dmat4 singular = regular;
+        singular[3] = 2.0 * regular[0] - regular[1];
+        for (const glm::dmat4& given : {regular, singular}) {
+            const auto inverse = texgen::inverse(texgen::ModelMatrix(given));
+            const auto stored = eye_planes_as_stored(planes, texgen::ViewMatrix(given));
+            ++(inverse && stored ? classes.lit : classes.behind);
+            digest.add(inverse && stored ? 1.0f : 0.0f);
+            for (int k = 0; k < 16 && inverse && stored; ++k) {
+                digest.add(inverse->rounded()[k / 4][k % 4]);
+                digest.add(stored->rounded()[k / 4][k % 4]);
+            }
+        }
+    }
+    return digest.value();
+}
+
 bool holds = true;
 
 void compare(const char* what, std::uint64_t (&digest_of)(Classes&), std::uint64_t expected) {
@@ -245,6 +345,9 @@ int main() {
     compare("homogeneous points", homogeneous_points, 0x6ee2268fe67029b3);
     compare("segments", segments, 0x8e812146eabb3761);
     compare("triangles", triangles, 0xe2857cdbe2c5b2e3);
+    compare("polygons", polygons, 0xb5ee64d4066b8fae);
+    compare("bodies", bodies, 0x2e85bbd30985cf48);
+    compare("inverses", inverses, 0xdc50a6ad49ba5418);
     if (!same_in_all_layouts) std::puts("points: the layouts disagree");
     return holds && same_in_all_layouts ? 0 : 1;
 }
