@@ -12,6 +12,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <map>
+#include <span>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -22,8 +23,12 @@
 #include "support/outputs.hpp"
 #include "support/random.hpp"
 #include "support/rational_matrix.hpp"
+#include "support/real.hpp"
+#include "texgen/clip.hpp"
+#include "texgen/footprint.hpp"
 #include "texgen/interpolate.hpp"
 #include "texgen/linear.hpp"
+#include "texgen/projector.hpp"
 #include "texgen/texcoord.hpp"
 
 namespace {
@@ -31,6 +36,7 @@ namespace {
 using support::everywhere;
 using support::exactly;
 using support::Homogeneous;
+using support::operator*;
 using support::Outputs;
 using support::Quotient;
 using support::Random;
@@ -169,6 +175,45 @@ Worst of_triangles(const support::HardFamily& family, std::uint64_t seed) {
     return worst;
 }
 
+// The derivatives of the same triangles, whose numerators are the differences of neighbours.
+double of_footprints(const support::HardFamily& family, std::uint64_t seed) {
+    Random random(seed);
+    double worst = 0.0;
+    for (int i = 0; i < 30; ++i) {
+        const support::Shot shot = family.make(random);
+        const texgen::FootprintSetup setup(support::setup_of(shot.triangle), {256.0, 256.0});
+        Outputs out(support::count_of(shot.rect));
+        const texgen::Texcoords spans = out.spans();
+        const bool written = footprint(setup, shot.rect,
+                                       {.dsdx = spans.s,
+                                        .dtdx = spans.t,
+                                        .dsdy = spans.r,
+                                        .dtdy = spans.lit,
+                                        .level = {},
+                                        .anisotropy = {},
+                                        .major_s = {},
+                                        .major_t = {}});
+        const glm::dvec2 bound = setup.error_bound(shot.rect);
+        const support::ExactTriangle judge(shot.triangle);
+        for (std::size_t f = 0; f < out.size() && written; f += 7) {
+            const std::int64_t x = shot.x(static_cast<std::int64_t>(f) % shot.rect.width);
+            const std::int64_t y = shot.y(static_cast<std::int64_t>(f) / shot.rect.width);
+            const Homogeneous at = judge.at(x, y);
+            if (!judge.has_positive_w(x, y) || at.q.sign() <= 0) continue;
+            for (std::size_t k = 0; k < 4; ++k) {
+                const double b = bound[static_cast<int>(k % 2)];
+                const auto value = static_cast<double>(out[k][f]);
+                if (!std::isfinite(b) || !std::isfinite(value)) continue;
+                const Homogeneous next = k < 2 ? judge.at(x + 1, y) : judge.at(x, y + 1);
+                const support::Dyadic here = at.over_q(k % 2).n;
+                const support::Dyadic slope = (next.over_q(k % 2).n - here) * at.q - here * (next.q - at.q);
+                worst = std::max(worst, support::distance(value, {slope, at.q * at.q}) / b);
+            }
+        }
+    }
+    return worst;
+}
+
 struct SegmentFamily {
     const char* name;
     texgen::Segment (*make)(Random&);
@@ -197,6 +242,14 @@ const std::array segment_families{
                                              end(random, 2.0, random.uniform(-4.0, -0.5))};
                   },
                   [](Random& random) { return random.uniform(0.0, 1.0); }},
+    // q_a = -q_b, up to a few units: the root of q is within some units of 1/2.
+    SegmentFamily{
+        "at the root of q",
+        [](Random& random) {
+            const double q = random.uniform(0.5, 4.0);
+            return texgen::Segment{end(random, 2.0, q), end(random, 2.0, -q * (1.0 + random.integer(-4, 4) * 0x1p-23))};
+        },
+        [](Random& random) { return 0.5 + random.integer(-8, 8) * 0x1p-24; }},
 };
 
 Worst of_segments(const SegmentFamily& family, std::uint64_t seed) {
@@ -219,9 +272,10 @@ Worst of_segments(const SegmentFamily& family, std::uint64_t seed) {
 struct PointFamily {
     const char* name;
     double distance, noise;  // from the origin, and of the matrix's elements
+    bool at_root = false;    // the middle of the points has q = 0
 };
 const std::array point_families{PointFamily{"about the origin", 0.0, 1.0}, PointFamily{"1e5 from the origin", 1e5, 1.0},
-                                PointFamily{"orthographic", 0.0, 0.0}};
+                                PointFamily{"orthographic", 0.0, 0.0}, PointFamily{"about q = 0", 1.0, 1.0, true}};
 
 struct WorstPoints : Worst {
     double generate = 0.0;  // in ulps of the sum of the terms' magnitudes
@@ -238,9 +292,10 @@ WorstPoints of_points(const PointFamily& family, std::uint64_t seed) {
         const glm::dvec3 middle = family.distance * random.direction();
         matrix[3] = glm::dvec4(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), 0.0, random.uniform(1.0, 2.0)) -
                     matrix[0] * middle.x - matrix[1] * middle.y - matrix[2] * middle.z;
+        if (family.at_root) matrix[3].w = -(matrix[0].w * middle.x + matrix[1].w * middle.y + matrix[2].w * middle.z);
         std::vector<glm::vec3> points(64);
         for (glm::vec3& point : points) {
-            const glm::dvec3 p = middle + random.direction();
+            const glm::dvec3 p = middle + (family.at_root ? random.power_of_ten(-7.0, 0.0) : 1.0) * random.direction();
             point = {support::to_float(p.x), support::to_float(p.y), support::to_float(p.z)};
         }
         const Tolerance tolerance = tolerance_of(random.power_of_ten(-1.0, 2.0));
@@ -263,8 +318,12 @@ struct WorstMatrices {
     double inverse = 0.0, planes = 0.0;
 };
 
+enum class MatrixFamily { one_size, near_to_singular, scaled };
+constexpr std::array<const char*, 3> matrix_families{"elements of one size", "near to singular",
+                                                     "rows and columns from 1e-30 to 1e30"};
+
 // The inverse in double ulps of the largest term of X A X, and stored planes in float ulps of their largest component.
-WorstMatrices of_matrices(bool near_to_singular, std::uint64_t seed) {
+WorstMatrices of_matrices(MatrixFamily family, std::uint64_t seed) {
     Random random(seed);
     WorstMatrices worst;
     for (int i = 0; i < 60; ++i) {
@@ -272,8 +331,15 @@ WorstMatrices of_matrices(bool near_to_singular, std::uint64_t seed) {
         for (int column = 0; column < 4; ++column)
             for (int row = 0; row < 4; ++row) m[column][row] = random.uniform(-1.0, 1.0);
         const double distance = random.power_of_ten(-6.0, -2.0);
-        if (near_to_singular)
+        if (family == MatrixFamily::near_to_singular)
             for (int k = 0; k < 4; ++k) m[k][2] = m[k][0] + distance * m[k][2];
+        if (family == MatrixFamily::scaled) {
+            const double unit = random.power_of_ten(-10.0, 10.0);
+            for (int column = 0; column < 4; ++column) {
+                m[column] *= unit * random.power_of_ten(-10.0, 10.0);
+                for (int k = 0; k < 4; ++k) m[k][column] *= random.power_of_ten(-2.0, 2.0);
+            }
+        }
         const RationalMatrix a = exactly(m), exact = support::inverse(a).value();
         const RationalMatrix x = exactly(inverse(texgen::ModelMatrix(m)).value().matrix());
         const glm::mat4 stored =
@@ -295,6 +361,109 @@ WorstMatrices of_matrices(bool near_to_singular, std::uint64_t seed) {
                 const float element = stored[static_cast<int>(c)][static_cast<int>(r)];
                 worst.planes = std::max(worst.planes, in_units(support::magnitude(exactly(element) - exact[r][c]),
                                                                support::ulp_exponent<float>(largest_element)));
+            }
+        }
+    }
+    return worst;
+}
+
+// Lenses from 0.1 to 179.9 degrees: the focal lengths and the depth of the matrix, in its double ulps.
+double of_lenses(std::uint64_t seed) {
+    Random random(seed);
+    double worst = 0.0;
+    for (int i = 0; i < 300; ++i) {
+        const double fovy = (i % 3 == 0   ? random.power_of_ten(-1.0, 0.0)
+                             : i % 3 == 1 ? random.uniform(1.0, 179.0)
+                                          : 180.0 - random.power_of_ten(-1.0, 0.0)) *
+                            0.01745329251994329577;
+        const double aspect = random.uniform(0.3, 3.0), z_near = random.power_of_ten(-3.0, 0.0);
+        const double z_far = i % 4 == 0 ? HUGE_VAL : z_near * random.power_of_ten(0.5, 9.0);
+        const glm::dmat4 p =
+            perspective({texgen::radians(fovy), aspect, z_near, z_far}, texgen::opengl).value().matrix();
+        const support::RealMatrix exact = support::perspective(fovy, aspect, z_near, z_far);
+        for (int column = 0; column < 4; ++column)
+            for (int row = 0; row < 4; ++row)
+                worst = std::max(
+                    worst, support::error_in_ulps(
+                               p[column][row], exact[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)]));
+    }
+    return worst;
+}
+
+// Views whose `up` is that near to where they look, or any: the rotation in double ulps of 1.
+double of_views(bool nearly_parallel, std::uint64_t seed) {
+    Random random(seed);
+    double worst = 0.0;
+    for (int i = 0; i < 100; ++i) {
+        const glm::dvec3 position = random.power_of_ten(0.0, 6.0) * random.direction(), to = random.direction();
+        const glm::dvec3 up =
+            nearly_parallel ? to + random.power_of_ten(-7.0, -1.0) * random.direction() : random.direction();
+        const texgen::Aim aim{position, position + to, up};
+        const glm::dmat4 v = look_at(aim).value().matrix();
+        const support::RealMatrix exact = support::look_at(aim.position, aim.target, aim.up);
+        for (std::size_t row = 0; row < 3; ++row)
+            for (std::size_t column = 0; column < 3; ++column)
+                worst = std::max(
+                    worst, static_cast<double>(abs(support::Real(v[static_cast<int>(column)][static_cast<int>(row)]) -
+                                                   exact[row][column])) *
+                               0x1p52);
+    }
+    return worst;
+}
+
+// What a float T_o loses of s and t, in texels of 4096, where projector and object stand far from the origin and near to
+// one another.
+double of_poses(double distance, std::uint64_t seed) {
+    Random random(seed);
+    double worst = 0.0;
+    for (int i = 0; i < 60; ++i) {
+        const glm::dvec3 position = distance * random.direction(), to = random.direction();
+        const texgen::Aim aim{position, position + to, random.direction()};
+        const texgen::PerspectiveLens lens{texgen::degrees(40.0), 1.0, 0.1, 100.0};
+        const texgen::Projector projector = make_projector(lens, aim, texgen::opengl).value();
+        glm::dmat4 pose = random.rotation();
+        pose[3] = glm::dvec4(position + random.uniform(3.0, 10.0) * to, 1.0);
+        const glm::dmat4 t(object_linear(projector, texgen::ModelMatrix(pose)).rounded());
+        const support::RealMatrix exact = support::scale_bias() *
+                                          support::perspective(lens.fovy.in_radians(), 1.0, lens.z_near, lens.z_far) *
+                                          support::look_at(aim.position, aim.target, aim.up) * support::real(pose);
+        for (int k = 0; k < 8; ++k) {
+            const glm::dvec3 v = random.uniform(0.0, 1.0) * random.direction();
+            const auto coordinates = [&](const support::RealMatrix& m) {
+                std::array<support::Real, 4> strq;
+                for (std::size_t row = 0; row < 4; ++row)
+                    strq[row] = m[row][0] * v.x + m[row][1] * v.y + m[row][2] * v.z + m[row][3];
+                return strq;
+            };
+            const auto of_floats = coordinates(support::real(t)), right = coordinates(exact);
+            for (std::size_t c = 0; c < 2; ++c)
+                worst = std::max(worst,
+                                 4096.0 * static_cast<double>(abs(of_floats[c] / of_floats[3] - right[c] / right[3])));
+        }
+    }
+    return worst;
+}
+
+// How far vertices that clip_to_slide() makes are outside the region, as a share of slide_clip_error.
+double of_clips(bool about_apex, std::uint64_t seed) {
+    Random random(seed);
+    double worst = 0.0;
+    for (int i = 0; i < 3000; ++i) {
+        std::array<texgen::ClipVertex, 12> storage{};
+        for (std::size_t v = 0; v < 3; ++v) {
+            const double size = about_apex ? random.power_of_ten(-6.0, 0.0) : 1.0;
+            storage[v].position = glm::vec4(0.0f, 0.0f, 0.0f, 1.0f);
+            storage[v].strq = glm::vec4(size * random.uniform(-2.0, 3.0), size * random.uniform(-2.0, 3.0), 0.0,
+                                        size * random.uniform(-0.5, 1.0));
+        }
+        const texgen::TextureRegion region = texgen::atlas_tile({-0.1, 0.3}, {0.7, 1.1});
+        const std::size_t count = clip_to_slide(std::span(storage).first(3), region, storage);
+        for (std::size_t v = 0; v < count; ++v) {
+            for (int k = 0; k < 2; ++k) {
+                const double u = static_cast<double>(storage[v].strq[k]), q = static_cast<double>(storage[v].strq.w);
+                const double side = std::max(std::fabs(region.min()[k]), std::fabs(region.max()[k]));
+                worst = std::max(worst, std::max(region.min()[k] * q - u, u - region.max()[k] * q) /
+                                            (texgen::slide_clip_error * side * q));
             }
         }
     }
@@ -324,22 +493,34 @@ TEST_CASE("no ceiling is raised") {
         hold("triangle, share of the tolerance", family.name, false, worst.share);
         hold("triangle, share of error_bound", family.name, false, worst.bound);
     }
+    seed = 9018;
     for (const SegmentFamily& family : segment_families) {
         const Worst worst = of_segments(family, ++seed);
         hold("segment, exact, ulp", family.name, true, worst.exact);
         hold("segment, share of the tolerance", family.name, false, worst.share);
     }
+    seed = 9021;
     for (const PointFamily& family : point_families) {
         const WorstPoints worst = of_points(family, ++seed);
         hold("project, exact, ulp", family.name, true, worst.exact);
         hold("project, share of the tolerance", family.name, false, worst.share);
         hold("generate, ulp", family.name, false, worst.generate);
     }
-    for (const bool near_to_singular : {false, true}) {
-        const WorstMatrices worst = of_matrices(near_to_singular, ++seed);
-        const char* const family = near_to_singular ? "near to singular" : "elements of one size";
-        hold("inverse, ulp of the largest term", family, false, worst.inverse);
-        hold("stored eye planes, ulp of the largest", family, false, worst.planes);
+    seed = 9024;
+    for (std::size_t i = 0; i < matrix_families.size(); ++i) {
+        const WorstMatrices worst = of_matrices(static_cast<MatrixFamily>(i), ++seed);
+        hold("inverse, ulp of the largest term", matrix_families[i], false, worst.inverse);
+        hold("stored eye planes, ulp of the largest", matrix_families[i], false, worst.planes);
     }
+    for (const support::HardFamily& family : support::hard_families)
+        hold("footprint, share of error_bound", family.name, false, of_footprints(family, ++seed));
+    hold("perspective, ulp", "0.1 to 179.9 degrees", false, of_lenses(++seed));
+    hold("look_at, ulp of 1", "any up", false, of_views(false, ++seed));
+    hold("look_at, ulp of 1", "up within 1e-7 to 1e-1 of the view", false, of_views(true, ++seed));
+    for (const char* const distance : {"1", "1e3", "1e5", "1e7"})
+        hold("object_linear in float, texels of 4096", std::string(distance) + " from the origin", false,
+             of_poses(std::strtod(distance, nullptr), ++seed));
+    hold("clip_to_slide, share of slide_clip_error", "ordinary", true, of_clips(false, ++seed));
+    hold("clip_to_slide, share of slide_clip_error", "about the projector", true, of_clips(true, ++seed));
     if (lowered != nullptr) ceilings.write(lowered);
 }
