@@ -92,7 +92,7 @@ TEST_CASE("a bad option is refused in one line") {
     const Workplace place;
     place.check_refusal("--colour red", "--colour");
     place.check_refusal("teapot.obj", "teapot.obj");
-    for (const char* option : {"--mesh", "--slide", "--size", "--out", "--timings"}) {
+    for (const char* option : {"--mesh", "--slide", "--size", "--out", "--costs", "--timings"}) {
         place.check_refusal(option, option);
         place.check_refusal(option + std::string(" ''"), option);
     }
@@ -174,6 +174,32 @@ TEST_CASE("timings become a table and a plot of the page") {
     CHECK(page.find("<td>texgen, &lt;exact&gt;</td><td>1.250</td><td>2.00</td>") != std::string::npos);
 }
 
+TEST_CASE("costs that are none are refused in one line") {
+    const Workplace place;
+    place.check_refusal("--costs missing.txt", "missing.txt");
+    for (const char* text : {"not costs", "GLM||1|2", "GLM||1|2|3|4", "|GLM|1|2|3", "GLM|||2|3", "GLM||0|2|3",
+                             "GLM||-1|2|3", "GLM||1|two|3", "GLM||nan|2|3", "GLM||1|2|3\n\n"}) {
+        write("costs.txt", text);
+        place.check_refusal("--costs costs.txt", "costs.txt");
+    }
+}
+
+TEST_CASE("costs become a table of the terminal and of the page, none become nothing") {
+    const Workplace place;
+    write("costs.txt",
+          "GLM's "
+          "headers||200|800|0\nclip.hpp||300|900|\nclip_<near>()|clip.hpp|550|10900|7000\nodd()|nowhere.hpp|50|1|1\n");
+    const Outcome outcome = place.run("--size 16x16 --costs costs.txt");
+    CHECK(outcome.status == 0);
+    CHECK(outcome.output.find("1.50x GLM") != std::string::npos);
+    CHECK(contents("report/index.html")
+              .find("<td>clip_&lt;near&gt;()</td><td>0.55</td><td>+0.25 s</td><td>10.0</td><td>7.0</td>") !=
+          std::string::npos);
+    write("costs.txt", "");
+    CHECK(place.run("--size 16x16 --costs costs.txt").status == 0);
+    CHECK(contents("report/index.html").find("costs to compile") == std::string::npos);
+}
+
 TEST_CASE("a folder that cannot be written is refused in one line, and an old report survives") {
     const Workplace place;
     write("file", "mine");
@@ -244,7 +270,7 @@ TEST_CASE("--help says how, and writes nothing") {
     const Outcome outcome = place.run("--help");
     CHECK(outcome.status == 0);
     CHECK(outcome.error == "");
-    for (const char* option : {"--mesh", "--slide", "--size", "--out", "--timings"})
+    for (const char* option : {"--mesh", "--slide", "--size", "--out", "--costs", "--timings"})
         CHECK(outcome.output.find(option) != std::string::npos);
     CHECK(place.files().empty());
 }
