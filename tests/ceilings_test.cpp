@@ -453,8 +453,9 @@ double of_clips(bool about_apex, std::uint64_t seed) {
         for (std::size_t v = 0; v < 3; ++v) {
             const double size = about_apex ? random.power_of_ten(-6.0, 0.0) : 1.0;
             storage[v].position = glm::vec4(0.0f, 0.0f, 0.0f, 1.0f);
-            storage[v].strq = glm::vec4(size * random.uniform(-2.0, 3.0), size * random.uniform(-2.0, 3.0), 0.0,
-                                        size * random.uniform(-0.5, 1.0));
+            const double s = size * random.uniform(-2.0, 3.0), t = size * random.uniform(-2.0, 3.0);
+            const double q = size * random.uniform(-0.5, 1.0);
+            storage[v].strq = glm::vec4(s, t, 0.0, q);
         }
         const texgen::TextureRegion region = texgen::atlas_tile({-0.1, 0.3}, {0.7, 1.1});
         const std::size_t count = clip_to_slide(std::span(storage).first(3), region, storage);
