@@ -2,7 +2,7 @@ cmake_minimum_required(VERSION 3.25)
 
 # A header includes only from floors above its own (a smaller number), whether directly or through detail/. Outside the
 # library it includes the standard library and single GLM headers only; the two at Eigen's border include more.
-# Instruction sets and compilers are told apart in one file only.
+# Instruction sets and compilers are told apart in one file only, and extensions of the language stay with the vectors.
 set(floor_conventions 0)
 set(floor_transform 1)
 set(floor_scale_bias 2)
@@ -86,6 +86,16 @@ foreach(header IN LISTS headers)
         foreach(line IN LISTS platform)
             complain("${header}: ${line} belongs into detail/lanes.hpp")
         endforeach()
+    endif()
+    # Extensions of the language belong into the vectors, and into lanes.hpp behind its plain loops.
+    file(READ ${file} text)
+    if(header STREQUAL "detail/lanes.hpp")
+        string(REGEX REPLACE "\n#else\n.*" "" text "${text}")
+    endif()
+    string(REGEX REPLACE "//[^\n]*" "" text "${text}")
+    if(NOT header STREQUAL "detail/vectors.inc.hpp" AND text MATCHES
+       "__(builtin|attribute|extension|restrict|int128|asm|typeof|declspec|vector)[a-z_]*|\\[\\[(gnu|clang|msvc)::|# *pragma (GCC|clang)|_Pragma")
+        complain("${header}: ${CMAKE_MATCH_0} is an extension")
     endif()
     if(header MATCHES "^detail/")
         continue()

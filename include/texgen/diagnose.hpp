@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <string_view>
 #include <type_traits>
@@ -424,7 +425,7 @@ struct SetupMatrices {
     LensFacts lens = {};
 };
 
-inline bool is_nan(double value) noexcept { return !(std::fabs(value) <= HUGE_VAL); }
+inline bool is_nan(double value) noexcept { return !(std::fabs(value) <= std::numeric_limits<double>::infinity()); }
 
 inline bool are_numbers(const SetupMatrices& setup) noexcept {
     const TextureRegion& region = setup.picture.region;

@@ -541,17 +541,17 @@ inline std::optional<FootprintExtremes> FootprintSetup::extremes(const detail::W
 // Source: Everitt, Projective Texture Mapping; the dueling frusta of Stamminger and Drettakis, Perspective Shadow Maps,
 // SIGGRAPH 2002.
 inline double headlights(const Triangle& triangle) noexcept {
-    const WindowVertex* near = &triangle.a;
-    const WindowVertex* far = &triangle.a;
+    const WindowVertex* nearest = &triangle.a;
+    const WindowVertex* farthest = &triangle.a;
     for (const WindowVertex* vertex : {&triangle.a, &triangle.b, &triangle.c}) {
         const bool is_usable = vertex->clip_w > 0.0f && detail::is_finite(detail::widened(vertex->clip_w)) &&
                                detail::is_finite(detail::widened(vertex->strq.w));
         if (!is_usable) return std::numeric_limits<double>::quiet_NaN();
-        if (vertex->clip_w < near->clip_w) near = vertex;
-        if (vertex->clip_w > far->clip_w) far = vertex;
+        if (vertex->clip_w < nearest->clip_w) nearest = vertex;
+        if (vertex->clip_w > farthest->clip_w) farthest = vertex;
     }
-    const double near_q = detail::widened(near->strq.w);
-    const double far_q = detail::widened(far->strq.w);
+    const double near_q = detail::widened(nearest->strq.w);
+    const double far_q = detail::widened(farthest->strq.w);
     if (!(near_q > 0.0)) return std::numeric_limits<double>::quiet_NaN();
     return far_q > 0.0 ? 1.5 * std::log2(near_q / far_q) : std::numeric_limits<double>::infinity();
 }

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 
 #include <glm/mat4x4.hpp>
@@ -85,7 +86,7 @@ private:
     Square inverse_{};                      // X
     std::array<int, 4> row_exponent_{};     // R = diag(2^row_exponent)
     std::array<int, 4> column_exponent_{};  // C = diag(2^column_exponent)
-    double beta_ = HUGE_VAL;
+    double beta_ = std::numeric_limits<double>::infinity();
 };
 
 inline CertifiedInverse::CertifiedInverse(const glm::dmat4& matrix) noexcept {
@@ -222,7 +223,7 @@ inline glm::dvec4 CertifiedInverse::solve_row(const glm::dvec4& row) const noexc
 
 // The largest sum of a column of |I - B X|. Infinite where A is not regular.
 inline double CertifiedInverse::contraction() const noexcept {
-    if (!regular()) return HUGE_VAL;
+    if (!regular()) return std::numeric_limits<double>::infinity();
     double largest = 0.0;
     for (std::size_t j = 0; j < 4; ++j) {
         double sum = 0.0;
@@ -240,7 +241,7 @@ inline double CertifiedInverse::contraction() const noexcept {
 // max|d| r / (1 - r).
 inline glm::dvec4 CertifiedInverse::error_of_row(const glm::dvec4& solution, const glm::dvec4& row,
                                                  double contraction) const noexcept {
-    if (!(contraction < 1.0)) return glm::dvec4(HUGE_VAL);
+    if (!(contraction < 1.0)) return glm::dvec4(std::numeric_limits<double>::infinity());
     Row scaled_solution{};
     for (std::size_t k = 0; k < 4; ++k)
         scaled_solution[k] = std::scalbn(solution[static_cast<glm::length_t>(k)], -row_exponent_[k]);

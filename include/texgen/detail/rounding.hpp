@@ -10,15 +10,16 @@
 
 // A compiler that may reorder sums takes two_sum() for a and 0, and a reciprocal for a division: no bound would hold.
 #if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || \
-    (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
+    (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) || defined(_M_FP_FAST)
 #error \
-    "texgen computes with proved error bounds, which need arithmetic as written: compile the files that include it with -fno-fast-math after -ffast-math or -Ofast (they link with files that have it)."
+    "texgen computes with proved error bounds, which need arithmetic as written: compile the files that include it with -fno-fast-math after -ffast-math or -Ofast, with /fp:precise in place of /fp:fast (they link with files that have it)."
 #endif
 
 // A sum that is kept in an 80-bit register and rounded twice is not the sum that the bounds are about.
-#if defined(__FLT_EVAL_METHOD__) && (__FLT_EVAL_METHOD__ < 0 || __FLT_EVAL_METHOD__ == 2)
+#if (defined(__FLT_EVAL_METHOD__) && (__FLT_EVAL_METHOD__ < 0 || __FLT_EVAL_METHOD__ == 2)) || \
+    (defined(_M_IX86_FP) && _M_IX86_FP < 2)
 #error \
-    "texgen computes with proved error bounds, which need float and double arithmetic in their own precision, not in that of the x87: compile with -msse2 -mfpmath=sse."
+    "texgen computes with proved error bounds, which need float and double arithmetic in their own precision, not in that of the x87: compile with -msse2 -mfpmath=sse, or /arch:SSE2."
 #endif
 
 namespace texgen::detail {

@@ -1,0 +1,44 @@
+// All headers that need no Eigen, in one file: for compilers and dialects that the tests of their results do not reach.
+
+#ifdef _WIN32
+// It makes macros of short words.
+#define NOMINMAX
+#include <windows.h>
+#endif
+
+#include <texgen/clip.hpp>
+#include <texgen/conventions.hpp>
+#include <texgen/diagnose.hpp>
+#include <texgen/fixed_function.hpp>
+#include <texgen/footprint.hpp>
+#include <texgen/interpolate.hpp>
+#include <texgen/linear.hpp>
+#include <texgen/primitives.hpp>
+#include <texgen/projector.hpp>
+#include <texgen/scale_bias.hpp>
+#include <texgen/scene.hpp>
+#include <texgen/skip.hpp>
+#include <texgen/texcoord.hpp>
+#include <texgen/texgen.hpp>
+#include <texgen/transform.hpp>
+
+// What is a template is compiled for a call.
+void call(const texgen::ObjectTexgen& texgen, texgen::Positions<texgen::Object> points, const texgen::Texcoords& out,
+          const texgen::Footprints& footprints, std::span<const texgen::Box> boxes,
+          std::span<texgen::Coverage> coverages, std::span<texgen::ClipVertex> polygon) {
+    using namespace texgen;
+    project(texgen, points, whole_texture(), out);
+    generate(texgen, points, HomogeneousTexcoords{out.s, out.t, out.r, out.lit});
+    coverage(texgen, whole_texture(), boxes, coverages);
+    clip_to_slide(polygon.first(3), whole_texture(), polygon);
+    if (const auto setup = TriangleSetup::of({}, whole_texture(), exact)) {
+        interpolate(*setup, {0, 0, 1, 1}, out);
+        footprint(FootprintSetup(*setup, {1.0, 1.0}), {0, 0, 1, 1}, footprints);
+    }
+    interpolate(Segment{}, out.s, whole_texture(), out);
+    diagnose(texgen);
+    diagnose(planes(texgen));
+    Scene().update({}, {});
+}
+
+int main() { return 0; }
