@@ -27,6 +27,7 @@
 #include "support/rational_matrix.hpp"
 #include "support/verdict.hpp"
 #include "texgen/clip.hpp"
+#include "texgen/footprint.hpp"
 #include "texgen/interpolate.hpp"
 #include "texgen/linear.hpp"
 #include "texgen/skip.hpp"
@@ -159,6 +160,13 @@ Share share_of_tolerance(float value, const Quotient& u, double tolerance) {
     return is_nearest(value, u, false) ? 0.0 : distance(static_cast<double>(value), u) / tolerance;
 }
 
+// |value - n/d| <= bound. Where the bound is not finite, or there is no value, nothing is said.
+Share share_of_bound(double value, const Quotient& u, double bound) {
+    if (!std::isfinite(bound) || !std::isfinite(value)) return says_nothing;
+    if (!(magnitude(Dyadic(value) * u.d - u.n) <= Dyadic(bound) * u.d)) return broken;
+    return bound > 0.0 ? distance(value, u) / bound : 0.0;
+}
+
 glm::dmat4 float_matrix(const Numbers& n, std::size_t i) {
     return glm::dmat4(glm::mat4(floats4(n, i), floats4(n, i + 4), floats4(n, i + 8), floats4(n, i + 12)));
 }
@@ -191,6 +199,19 @@ Share generate_share(const Numbers& n) {
     const Dyadic beyond = magnitude(value - exact) - magnitude(middle - value);
     const double slack = 0x1p-50 * terms.estimate();
     return slack > 0.0 ? share_of_error(beyond.estimate() / slack) : says_nothing;
+}
+
+Share generate_bound_share(const Numbers& n) {
+    if (!is_in_range(n, 0x1p-500, 0x1p500)) return says_nothing;
+    const glm::vec3 point(floats4(n, 0));
+    glm::dmat4 matrix(0.0);
+    for (int j = 0; j < 4; ++j) matrix[j][0] = n[static_cast<std::size_t>(4 + j)];
+    const texgen::ObjectTexgen texgen(matrix);
+    const auto positions = texgen::object_space(std::span(&point, 1));
+    glm::vec4 strq(0.0f);
+    generate(texgen, positions, std::span(&strq, 1));
+    return share_of_bound(static_cast<double>(strq.x), {support::exactly_at(matrix, point).s, Dyadic(1.0)},
+                          generate_error_bound(texgen, positions).x);
 }
 
 struct Batch {
@@ -245,6 +266,25 @@ Share project_within_share(const Numbers& n) {
     return worst;
 }
 
+Share project_bound_share(const Numbers& n) {
+    const double tolerance = tolerance_of(n[25]);
+    if (!(tolerance > 1e-12 && tolerance < 1e6)) return says_nothing;
+    const Batch batch = batch_of(n, 16);
+    const texgen::ObjectTexgen texgen(batch.matrix);
+    const auto positions = texgen::object_space(batch.points);
+    Outputs out(16, 3u);
+    project(texgen, positions, texgen::whole_texture(), out.spans(), {tolerance});
+    const glm::dvec2 bound = project_error_bound(texgen, positions, {tolerance});
+    Share worst = says_nothing;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const Homogeneous at = support::exactly_at(batch.matrix, batch.points[i]);
+        for (std::size_t k = 0; k < 2 && at.q.sign() > 0; ++k)
+            worst = std::max(worst,
+                             share_of_bound(static_cast<double>(out[k][i]), at.over_q(k), bound[static_cast<int>(k)]));
+    }
+    return worst;
+}
+
 texgen::Segment segment_of(const Numbers& n) { return {floats4(n, 0), floats4(n, 4)}; }
 Numbers begin_segment(Random& random) {
     Numbers n = any_floats(random, 9);
@@ -274,6 +314,19 @@ Share segment_within_share(const Numbers& n) {
     if (at.q.sign() <= 0) return out.s()[0] == 0.0f ? says_nothing : broken;
     return std::max(share_of_tolerance(out.s()[0], at.over_q(0), tolerance),
                     share_of_tolerance(out.t()[0], at.over_q(1), tolerance));
+}
+
+Share segment_bound_share(const Numbers& n) {
+    const double tolerance = tolerance_of(n[9]);
+    const auto alpha = static_cast<float>(n[8]);
+    if (!(alpha >= 0.0f && alpha <= 1.0f && tolerance > 1e-12 && tolerance < 1e6)) return says_nothing;
+    Outputs out(1, 3u);
+    interpolate(segment_of(n), std::span(&alpha, 1), texgen::whole_texture(), out.spans(), {tolerance});
+    const Homogeneous at = support::exactly_at(segment_of(n), alpha);
+    if (at.q.sign() <= 0) return says_nothing;
+    const glm::dvec2 bound = error_bound(segment_of(n), {tolerance});
+    return std::max(share_of_bound(static_cast<double>(out.s()[0]), at.over_q(0), bound.x),
+                    share_of_bound(static_cast<double>(out.t()[0]), at.over_q(1), bound.y));
 }
 
 // Seven numbers a vertex: the window, w, and s, t, r, q.
@@ -345,6 +398,56 @@ Share triangle_within_share(const Numbers& n) {
                 worst = std::max(worst, is_within(out[k][i], at.over_q(k), of_bound)
                                             ? distance(static_cast<double>(out[k][i]), at.over_q(k)) / of_bound
                                             : broken);
+        }
+    }
+    return worst;
+}
+
+// Derivatives within their bound, whose numerators are the differences of neighbours; and each level of a fragment in
+// front inside the extremes of the rectangle: the share that rounding takes of the room that they leave for it.
+template <bool OfExtremes>
+Share footprint_share(const Numbers& n) {
+    const texgen::Triangle triangle = triangle_of(n);
+    const auto prepared = texgen::TriangleSetup::of(triangle, support::everywhere());
+    if (!prepared || !is_in_range(n, 0x1p-30, 0x1p30)) return says_nothing;
+    const texgen::FootprintSetup setup(*prepared, {256.0, 1000.0});
+    Outputs out(256), levels(256, 1u);
+    const texgen::Texcoords spans = out.spans();
+    if (!footprint(setup, wide,
+                   {.dsdx = spans.s,
+                    .dtdx = spans.t,
+                    .dsdy = spans.r,
+                    .dtdy = spans.lit,
+                    .level = levels.spans().s,
+                    .anisotropy = {},
+                    .major_s = {},
+                    .major_t = {}}))
+        return says_nothing;
+    const glm::dvec2 bound = setup.error_bound(wide);
+    const auto extremes = setup.extremes(wide);
+    const support::ExactTriangle exact(triangle);
+    Share worst = says_nothing;
+    for (const std::size_t i : looked_at) {
+        const auto x = static_cast<int>(i % 64), y = static_cast<int>(i / 64);
+        const Homogeneous at = exact.at(x, y);
+        if (!exact.has_positive_w(x, y) || at.q.sign() <= 0) continue;
+        if (OfExtremes) {
+            const auto one = setup.at(x, y);
+            if (!one || !extremes) return broken;
+            const auto level = static_cast<double>(levels.s()[i]);
+            if (!std::isfinite(level)) continue;
+            const double room = std::min(level - extremes->least_level, extremes->largest_level - level);
+            if (!(room >= 0.0) || !(one->anisotropy <= extremes->largest_anisotropy)) return broken;
+            worst = std::max(worst, share_of_error(1.0 - 0x1p15 * room / std::max(1.0, std::fabs(level) / 32.0)));
+            continue;
+        }
+        const Homogeneous next[] = {exact.at(x + 1, y), exact.at(x, y + 1)};
+        for (std::size_t k = 0; k < 4; ++k) {
+            const Dyadic here = at.over_q(k % 2).n;
+            const Homogeneous& neighbour = next[k / 2];
+            const Dyadic slope = (neighbour.over_q(k % 2).n - here) * at.q - here * (neighbour.q - at.q);
+            worst = std::max(worst, share_of_bound(static_cast<double>(out[k][i]), {slope, at.q * at.q},
+                                                   bound[static_cast<int>(k % 2)]));
         }
     }
     return worst;
@@ -452,6 +555,27 @@ Numbers begin_matrix(Random& random) {
     return n;
 }
 
+// Each element within inverse_error_bound(), whatever the condition.
+Share inverse_bound_share(const Numbers& n) {
+    if (!is_in_range(n, 0x1p-40, 0x1p40)) return says_nothing;
+    const texgen::ModelMatrix m(double_matrix(n, 0));
+    const auto computed = inverse(m);
+    const std::optional<RationalMatrix> exact = support::inverse(exactly(m.matrix()));
+    if (!computed || !exact) return says_nothing;
+    const glm::dmat4 bound = inverse_error_bound(m, *computed);
+    Share worst = 0.0;
+    for (int column = 0; column < 4; ++column) {
+        for (int row = 0; row < 4; ++row) {
+            const Rational right = (*exact)[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)];
+            const Rational error = support::magnitude(exactly(computed->matrix()[column][row]) - right);
+            if (!std::isfinite(bound[column][row])) continue;
+            if (error > exactly(bound[column][row])) return broken;
+            worst = std::max(worst, support::nearest<double>(error / exactly(bound[column][row])));
+        }
+    }
+    return worst;
+}
+
 // p M^-1, rounded to float, within 0.54 ulp of its largest component.
 Share eye_planes_share(const Numbers& n) {
     if (!is_in_range(n, 0x1p-40, 0x1p40)) return says_nothing;
@@ -552,12 +676,18 @@ const std::array promises{
                 return n;
             },
             generate_share},
+    Promise{"generate: generate_error_bound", 4, [](Random& random) { return any_floats(random, 8); },
+            generate_bound_share},
     Promise{"project, exact: the nearest float, a decision", 25, begin_batch, project_exact_share},
     Promise{"project: the tolerance", 25, [](Random& random) { return with_tolerance(begin_batch(random), random); },
             project_within_share},
+    Promise{"project: project_error_bound", 25,
+            [](Random& random) { return with_tolerance(begin_batch(random), random); }, project_bound_share},
     Promise{"segment, exact: the nearest float, a decision", 9, begin_segment, segment_exact_share},
     Promise{"segment: the tolerance", 9, [](Random& random) { return with_tolerance(begin_segment(random), random); },
             segment_within_share},
+    Promise{"segment: error_bound", 9, [](Random& random) { return with_tolerance(begin_segment(random), random); },
+            segment_bound_share},
     Promise{"triangle, exact: the nearest float, a decision", 21, begin_triangle, triangle_exact_share},
     Promise{"triangle: the tolerance", 21,
             [](Random& random) { return with_tolerance(begin_triangle(random), random); },
@@ -565,8 +695,11 @@ const std::array promises{
     Promise{"triangle: error_bound", 21, [](Random& random) { return with_tolerance(begin_triangle(random), random); },
             triangle_within_share<true>},
     Promise{"triangle: work, a decision", 21, begin_triangle, work_share},
+    Promise{"footprint: error_bound", 21, begin_triangle, footprint_share<false>},
+    Promise{"footprint: extremes", 21, begin_triangle, footprint_share<true>},
     Promise{"box: coverage, a decision", 25, begin_batch, coverage_share},
     Promise{"inverse: 2 ulp of the largest term", 0, begin_matrix, inverse_share},
+    Promise{"inverse: inverse_error_bound", 0, begin_matrix, inverse_bound_share},
     Promise{"eye planes: 0.54 ulp of the largest", 20, begin_planes, eye_planes_share},
     Promise{"clip to the slide: slide_clip_error", 24, [](Random& random) { return any_floats(random, 24); },
             clip_to_slide_share},
