@@ -66,7 +66,7 @@ if(WAY STREQUAL subdirectory)
 
 elseif(WAY STREQUAL engine)
     build_project(-DSUBDIRECTORY=${SOURCE} -DENGINE=ON -DTWO_UNITS=${SOURCE}/tests/two_units)
-    foreach(program IN ITEMS unity precompiled hidden own_assert)
+    foreach(program IN ITEMS unity unity_kernels precompiled hidden own_assert)
         message(STATUS ${program})
         run(${DIRECTORY}/build/${program})
     endforeach()

@@ -7,6 +7,8 @@
 inline constexpr std::size_t side = 16;
 using Plane = std::array<float, side * side>;
 struct Numbers {
+    texgen::Work (*interpolate)(const texgen::TriangleSetup&, texgen::FragmentRect,
+                                texgen::Texcoords) noexcept;  // its own
     Plane point_s, point_t, point_lit, fragment_s, fragment_t, fragment_lit;
 };
 
@@ -18,6 +20,7 @@ static Numbers numbers() {
                        Aim{.position = {2, 5, 5}, .target = {-2, -4, 0}, .up = {0, 1, 0}}, opengl);
     const WorldTexgen texture_from_floor = texture_from_world(*projector);
     Numbers result{};
+    result.interpolate = &interpolate<void>;
 
     std::array<glm::vec3, side * side> points;
     for (std::size_t i = 0; i < points.size(); ++i)

@@ -36,6 +36,9 @@ int main() {
 #endif
     const Numbers one = numbers();
     const Numbers two = numbers_of_two();
+#ifdef NEEDS_AVX2
+    expect(one.interpolate != two.interpolate, "each unit has the functions of its own flags");
+#endif
     expect(has_both(one.point_lit), "some points are lit and some are not");
     expect(has_both(one.fragment_lit), "some fragments are lit and some are not");
     expect(agree(one.point_s, two.point_s) && agree(one.point_t, two.point_t), "the units agree on points");
