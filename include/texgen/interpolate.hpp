@@ -6,14 +6,14 @@
 // The dial has three tiers. All begin with the homogeneous values at the corners of the rectangle, which decide whether
 // anything is lit at all (Work::nothing).
 //
-//   exact      divide in double and round to float with a certificate; a value whose error bound straddles the middle
-//              of two floats is decided exactly. Where q changes sign the rectangle is cut until its parts are on one
-//              side. Always the nearest float.                                              shade_nearest()
-//   polynomial along chunks of 32 to 256 fragments of a row, the line or the parabola through the exact values at the
-//              ends (and the middle), certified chunk by chunk.                             shade_polynomial()
-//   division   where a chunk's certificate fails: of float functions if their bound fits, else of double functions
-//              rounded to float, else as exact.
-//                                                                                           shade_division()
+//   exact       divide in double and round to float with a certificate; a value whose error bound straddles the middle
+//               of two floats is decided exactly. Always the nearest float.                    divide_nearest()
+//   tolerance   in float, along chunks of a row, about the value in the middle: by a line, a parabola, a polynomial of
+//               degree 4 or 8, or a division, the first whose bound fits.                      divide_chunks()
+//   between     where a chunk's bound does not fit: functions in double, rounded and divided in float, if that fits, else
+//               as exact.                                                                      divide_without_chunks()
+//
+// Where q changes sign the rectangle is cut until its parts are on one side.
 
 #include <cmath>
 #include <cstddef>
@@ -129,11 +129,13 @@ inline Place place_of(const Corners& at, std::size_t k, double min, double max, 
     return of_min.all_above && of_max.all_below && at.all_in_front() ? Place::inside : Place::across;
 }
 
-// What a tile gets: the work, and for a polynomial the fragments of a chunk and a bound on the error of s and of t.
+// What a tile gets: the work; under a tolerance the length of its chunks, and the factors that serve them all with a bound
+// on the error of s and of t, if there are such (kernels.inc.hpp, Chunks).
 struct Plan {
     Work work;
     int chunk;
-    double polynomial_error[2];
+    int factors;
+    double error[2];
 };
 
 inline namespace TEXGEN_BUILD {
@@ -179,7 +181,7 @@ public:
         if (at.all_behind()) return {0.0, 0.0};
         const detail::Plan plan = this->plan(tile, at);
         const auto bound = [&](std::size_t k) {
-            if (plan.chunk != 0) return plan.polynomial_error[k];
+            if (plan.factors != detail::TileJob::any_factors) return plan.error[k];
             if (!at.all_in_front()) return std::numeric_limits<double>::infinity();
             return detail::larger(tolerance_, detail::half_ulp(at.largest_quotient(k)));
         };
@@ -215,79 +217,72 @@ static_assert(sizeof(TriangleSetup) <= 512);
 
 namespace detail {
 
-// The longest chunk whose polynomial stays inside the tolerance over the whole tile (0 if there is none), and its error.
-// Over L fragments |u1 - u0| <= L |D| / Q^2 with D = F_x Q - F Q_x, constant along a row, and |q1 - q0| = L |Q_x|: these
-// in the bounds that the kernels apply to every chunk (see kernels.inc.hpp), with Q at its least: no chunk is refused that
-// was chosen here.
-struct ChunkChoice {
-    int chunk;
-    double error;
-};
-
-// Only a share of the room that rounding leaves is given to the polynomial, where the tile is a sample of a larger one.
-template <bool Affine>
-ChunkChoice choose_chunk(const Corners& at, std::size_t k, double largest, int width, double tolerance, int longest,
-                         double share = 1.0) noexcept {
-    constexpr int shortest = Affine ? 64 : 32;
-    const double f_x = at.numerator_ramp[k].dx;
-    const double q_x = at.q_ramp.dx;
-    const auto slope_times_q_squared = [&](std::size_t i) {
-        const double first = f_x * at.q[i];
-        const double second = at.numerator[k][i] * q_x;
-        return std::fabs(first - second) + gamma(4) * (std::fabs(first) + std::fabs(second));
-    };
-    const double steepest = larger(slope_times_q_squared(0), slope_times_q_squared(2));
-    const double without_slope = 0x1.01p-24 * (2.0 * largest) + 2.0 * at.quotient_error(k, largest) + 0x1p-133;
-    const auto error_of = [&](int chunk) {
-        // The last chunk may reach beyond the tile, where q is less by this share of itself, and 1/q greater.
-        const double beyond = (-width & (chunk - 1)) * std::fabs(q_x) * at.reciprocal;
-        if (!(beyond <= 0.5) || !(at.least_q * (1.0 - beyond) > larger(0x1p25 * at.q_error, 0x1p-199)))
-            return std::numeric_limits<double>::infinity();
-        const double largest_reciprocal = at.reciprocal * (1.0 + 2.0 * beyond);
-        const double du = steepest * chunk * largest_reciprocal * largest_reciprocal;
-        const double dq = std::fabs(q_x) * chunk * largest_reciprocal;
-        const double shape = Affine ? 0.25 * du * dq * (1.0 + 0.5 * dq) : 0.0482 * du * dq * dq;
-        return 1.001 * shape / share + 0x1.01p-24 * 6.0 * du + without_slope;
-    };
-    const double accepted = tolerance * (1.0 - 0x1p-18);
-    if (!(error_of(shortest) <= accepted)) return {0, 0.0};
-    for (int chunk = longest; chunk > shortest; chunk /= 2)
-        if (const double error = error_of(chunk); error <= accepted) return {chunk, error};
-    return {shortest, error_of(shortest)};
+// Short where q varies much, so that the ends of a chunk are not far from its middle. A chunk costs about as much as 32
+// fragments besides those that it has.
+inline int chunk_length(const Corners& at, int width) noexcept {
+    const double q = 0.25 * (at.q[0] + at.q[1] + at.q[2] + at.q[3]);
+    int longest = 256;
+    while (longest > 64 && std::fabs(at.q_ramp.dx) * longest > 0.25 * q) longest /= 2;
+    if (width <= longest) return width;
+    const int chunks = (width - 1) / longest + 1;
+    constexpr int lanes = 16;
+    return ((width - 1) / chunks / lanes + 1) * lanes;
 }
 
-// The nodes of a chunk cost as much as some twenty fragments, and choosing its length as much as some hundred: short
-// rows and small tiles get a division.
-inline bool pays_for_polynomials(const Tile& tile) noexcept {
-    return tile.width >= 32 && static_cast<std::int64_t>(tile.width) * tile.height >= 256;
+// The fewest factors that serve every chunk of a tile well in front, and the error that they leave: the bound of the
+// kernel with each of its terms at its largest. A step of i is i (F_x Q - F Q_x) / Q^2 by the product of the Q at both ends: the
+// difference is constant along a row.
+inline void choose_factors(Plan& plan, const Corners& at, double tolerance) noexcept {
+    const double half = 0.5 * (plan.chunk - 1);
+    const double q_x = std::fabs(at.q_ramp.dx);
+    const double extent = 1.001 * half * q_x * at.reciprocal;
+    if (!(extent <= 0.25)) return;
+    double reach[2], rest[2];
+    for (std::size_t k = 0; k < 2; ++k) {
+        const double f_x = at.numerator_ramp[k].dx;
+        const auto slope_times_q_squared = [&](std::size_t i) {
+            const double first = f_x * at.q[i];
+            const double second = at.numerator[k][i] * at.q_ramp.dx;
+            return std::fabs(first - second) + gamma(8) * (std::fabs(first) + std::fabs(second));
+        };
+        const double largest = at.largest_quotient(k);
+        reach[k] =
+            1.001 * half * larger(slope_times_q_squared(0), slope_times_q_squared(2)) * at.reciprocal * at.reciprocal;
+        rest[k] = 0x2.003p-24 * largest + 0x8.009p-24 * reach[k] + 0x1p-115 +
+                  1.001 * (at.numerator_error[k] + (largest + reach[k]) * at.q_error) * at.reciprocal;
+    }
+    double share = extent;
+    for (int factors = 0; factors <= 3; ++factors, share *= share) {
+        const double error[2] = {share * reach[0] + rest[0], share * reach[1] + rest[1]};
+        if (!(error[0] <= tolerance && error[1] <= tolerance)) continue;
+        plan.factors = factors;
+        plan.error[0] = error[0];
+        plan.error[1] = error[1];
+        return;
+    }
 }
 
 }  // namespace detail
 
 inline detail::Plan TriangleSetup::plan(const detail::Tile& tile, const detail::Corners& at) const noexcept {
     using detail::Place;
-    if (at.all_behind()) return {Work::nothing, 0, {}};
+    detail::Plan plan{Work::nothing, 0, detail::TileJob::any_factors, {}};
+    if (at.all_behind()) return plan;
     const Place s_place = detail::place_of(at, 0, lit_.min(0), lit_.max(0), tolerance_);
-    if (s_place == Place::outside) return {Work::nothing, 0, {}};
+    if (s_place == Place::outside) return plan;
     const Place t_place = detail::place_of(at, 1, lit_.min(1), lit_.max(1), tolerance_);
-    if (t_place == Place::outside) return {Work::nothing, 0, {}};
-    const bool all_lit = s_place == Place::inside && t_place == Place::inside;
+    if (t_place == Place::outside) return plan;
 
-    detail::Plan plan{all_lit ? Work::divide : Work::divide_and_test, 0, {}};
+    plan.work = s_place == Place::inside && t_place == Place::inside ? Work::divide : Work::divide_and_test;
+    if (tolerance_ > 0.0) plan.chunk = detail::chunk_length(at, tile.width);
     if (!at.well_in_front()) return plan;
     if (q_.is_constant()) plan.work = Work::affine;
-    if (tolerance_ == 0.0 || !detail::pays_for_polynomials(tile)) return plan;
-
-    const double largest[2] = {at.largest_quotient(0), at.largest_quotient(1)};
-    const auto choose = [&]<bool Affine>(Work work) {
-        const auto s = detail::choose_chunk<Affine>(at, 0, largest[0], tile.width, tolerance_, 256);
-        if (s.chunk == 0) return false;
-        const auto t = detail::choose_chunk<Affine>(at, 1, largest[1], tile.width, tolerance_, s.chunk);
-        if (t.chunk == 0) return false;
-        plan = {work, t.chunk, {s.error, t.error}};
-        return true;
-    };
-    if (!choose.operator()<true>(Work::affine) && plan.work != Work::affine) choose.operator()<false>(Work::quadratic);
+    if (tolerance_ == 0.0) return plan;
+    detail::choose_factors(plan, at, tolerance_ * (1.0 - 0x1p-18));
+    if (plan.factors == 0)
+        plan.work = Work::affine;
+    else if (plan.factors != detail::TileJob::any_factors && plan.work != Work::affine)
+        plan.work = Work::quadratic;
     return plan;
 }
 
@@ -315,114 +310,73 @@ public:
         return detail::corners(setup_.planes_, plane_, count_, setup_.q_, tile);
     }
 
+    void shade(const Tile& tile) noexcept {
+        const Corners at = corners(tile);
+        shade(tile, at, {Work::divide, chunk_length(at, tile.width), TileJob::any_factors, {}});
+    }
+
     void shade(const Tile& tile, const Corners& at, const Plan& plan) noexcept {
-        if (setup_.tolerance_ == 0.0) return shade_nearest(tile, at);
-        if (plan.chunk != 0) return shade_polynomial(tile, at, plan);
-        if (!pays_for_polynomials(tile) || setup_.q_.is_constant()) return shade_division(tile, at);
-        // No polynomial covers all of the tile. In bands of rows, let its own middle say which to try.
-        constexpr int band_height = 32;
-        Tile band = tile;
-        for (band.height = band_height; band.y < tile.y + tile.height; band.y += band_height) {
-            const std::int64_t rest = tile.y + tile.height - band.y;
-            if (rest < band_height) band.height = static_cast<int>(rest);
-            const int chunk = chunk_of_the_middle(band);
-            if (chunk != 0 && chunk <= 2 * band.width)
-                shade_polynomial(band, corners(band), {Work::quadratic, chunk, {}});
-            else
-                shade_division(band, corners(band));
-        }
+        if (setup_.tolerance_ == 0.0) return divide_nearest(tile, at);
+        if (at.well_in_front()) return divide_chunks(tile, at, plan);
+        divide_parts(tile, at, [&](const Tile& half) { shade(half); });
     }
 
 private:
-    // Exact: a tile that is well in front is divided in vectors, one behind is cleared; any other is halved, until it
-    // is so small that its fragments are decided one by one.
-    void shade_nearest(const Tile& tile, const Corners& at) noexcept {
+    // A tile behind is cleared; one that is in doubt is halved, until it is so small that its fragments are decided one by
+    // one.
+    template <class ShadeHalf>
+    void divide_parts(const Tile& tile, const Corners& at, const ShadeHalf& shade_half) noexcept {
         if (at.all_behind()) return clear(tile);
-        // Beyond a ratio of 2^12 the error bound of the largest quotient would make the smallest ones doubtful.
-        if (at.well_in_front() && at.least_q > 0x1p-12 * at.largest_q) {
-            TileJob job = this->job(tile, at);
-            for (std::size_t k = 0; k < count_; ++k)
-                job.quotient_error[k] = at.quotient_error(k, at.largest_quotient(k));
-            TileJob::Unit unit = kernels_.divide_nearest(job, job.unit_at(0, 0));
-            while (!job.is_done(unit)) {
-                shade_one_by_one(part(tile, unit));
-                unit = kernels_.divide_nearest(job, job.unit_after(unit));
-            }
-            return;
-        }
         if (tile.width <= 8 && tile.height <= 8) return shade_one_by_one(tile);
-        for (const Tile& half : tile.halves()) shade_nearest(half, corners(half));
+        for (const Tile& half : tile.halves()) shade_half(half);
     }
 
-    // Chunks of a row by polynomials; what their certificates do not cover by division.
-    void shade_polynomial(const Tile& tile, const Corners& at, const Plan& plan) noexcept {
+    void divide_nearest(const Tile& tile, const Corners& at) noexcept {
+        // Beyond a ratio of 2^12 the error bound of the largest quotient would make the smallest ones doubtful.
+        if (!at.well_in_front() || !(at.least_q > 0x1p-12 * at.largest_q))
+            return divide_parts(tile, at, [&](const Tile& half) { divide_nearest(half, corners(half)); });
+        TileJob job = this->job(tile, at);
+        for (std::size_t k = 0; k < count_; ++k) job.quotient_error[k] = at.quotient_error(k, at.largest_quotient(k));
+        TileJob::Unit unit = kernels_.divide_nearest(job, job.unit_at(0, 0));
+        while (!job.is_done(unit)) {
+            shade_one_by_one(part(tile, unit));
+            unit = kernels_.divide_nearest(job, job.unit_after(unit));
+        }
+    }
+
+    void divide_chunks(const Tile& tile, const Corners& at, const Plan& plan) noexcept {
         TileJob job = this->job(tile, at);
         job.chunk = plan.chunk;
+        job.factors = plan.factors;
         job.tolerance = setup_.tolerance_ * (1.0 - 0x1p-20);
         job.q_error = at.q_error;
-        // The certificate multiplies three q and the tolerance: none may leave the range of double.
-        job.least_q = larger(0x1p24 * at.q_error, 0x1p-200);
+        job.least_q = 0x1p24 * at.q_error;
         for (std::size_t k = 0; k < count_; ++k) job.numerator_error[k] = at.numerator_error[k];
-        const auto polynomial = plan.work == Work::affine ? kernels_.affine : kernels_.quadratic;
         TileJob::Unit next{0, 0, 0, 0};
         while (true) {
-            const TileJob::Unit refused = polynomial(job, next);
+            const TileJob::Unit refused = kernels_.divide_chunks(job, next);
             if (job.is_done(refused)) return;
             const Tile rest = part(tile, refused);
-            shade_division(rest, corners(rest));
+            divide_without_chunks(rest, corners(rest));
             next = refused.x_end < tile.width ? TileJob::Unit{refused.x_end, 0, refused.y_begin, 0}
                                               : TileJob::Unit{0, 0, refused.y_end, 0};
         }
     }
 
-    // A division a fragment: of linear functions in float where that stays inside the tolerance, else of those in double
-    // rounded to float, else as exact.
-    void shade_division(const Tile& tile, const Corners& at) noexcept {
-        if (!at.well_in_front()) return shade_nearest(tile, at);
+    void divide_without_chunks(const Tile& tile, const Corners& at) noexcept {
+        bool fits = at.well_in_front() && at.least_q > 0x1p-20 * at.largest_q;
+        for (std::size_t k = 0; k < count_ && fits; ++k) fits = rounded_error(at, k) <= setup_.tolerance_;
+        if (!fits) return divide_nearest(tile, at);
         TileJob job = this->job(tile, at);
-        job.chunk = tile.width < 256 ? tile.width : 256;
-        // A row of functions in float takes twice the lanes, if it has as many.
-        bool float_fits = tile.width >= 16;
-        bool rounded_fits = at.least_q > 0x1p-20 * at.largest_q;
-        for (std::size_t k = 0; k < count_; ++k) {
-            const double largest = at.largest_quotient(k);
-            float_fits = float_fits && float_error(at, k, largest, job.chunk) <= setup_.tolerance_;
-            rounded_fits = rounded_fits && rounded_error(at, k, largest) <= setup_.tolerance_;
-        }
-        if (float_fits) return kernels_.divide_float(job);
-        if (!rounded_fits) return shade_nearest(tile, at);
         job.scale(reciprocal_power_of_two(at.largest_q));
         kernels_.divide_rounded(job);
     }
 
     // The error of F/Q with F and Q rounded to float, then the reciprocal and the product: 4 u |F/Q|, u = 2^-24. With
     // 2^-21 <= Q <= 2 a float of F that is subnormal, or flushed to zero, adds less than 2^-104.
-    double rounded_error(const Corners& at, std::size_t k, double largest) const noexcept {
+    double rounded_error(const Corners& at, std::size_t k) const noexcept {
+        const double largest = at.largest_quotient(k);
         return 4.01 * unit_roundoff_float * largest + 0x1p-104 + at.quotient_error(k, largest);
-    }
-
-    // The error of F/Q by float functions F_b + i F_x, |i| <= chunk / 2, with u = 2^-24: F_b, F_x, the product and the
-    // sum are rounded, 2 u |F| + 2 u |F_x| chunk / 2, Q alike; the reciprocal, the product add 2 u |F/Q|. Infinite where
-    // a float could leave its range.
-    double float_error(const Corners& at, std::size_t k, double largest, int chunk) const noexcept {
-        constexpr double u = 1.001 * unit_roundoff_float;
-        const double numerator = at.largest_numerator(k);
-        const double numerator_error = u * (2.0 * numerator + chunk * std::fabs(plane_[k]->value.dx));
-        const double q_error = u * (2.0 * at.largest_q + chunk * std::fabs(setup_.q_.value.dx));
-        const bool in_range = numerator < 0x1p100 && at.largest_q < 0x1p100 && at.least_q > 0x1p-100;
-        if (!in_range || !(q_error < 0x1p-12 * at.least_q)) return std::numeric_limits<double>::infinity();
-        return 1.001 * (numerator_error + largest * q_error + 0x1p-140) / at.least_q + 2.0 * u * largest + 0x1p-149 +
-               at.quotient_error(k, largest);
-    }
-
-    int chunk_of_the_middle(const Tile& tile) const noexcept {
-        const Tile middle{tile.x + tile.width / 2, tile.y + tile.height / 2, 1, 1};
-        const Corners at = corners(middle);
-        if (!at.well_in_front()) return 0;
-        int chunk = 256;
-        for (std::size_t k = 0; k < count_ && chunk != 0; ++k)
-            chunk = choose_chunk<false>(at, k, at.largest_quotient(k), chunk, setup_.tolerance_, chunk, 0.4).chunk;
-        return chunk;
     }
 
     void shade_one_by_one(const Tile& tile) noexcept {
@@ -552,7 +506,7 @@ Work interpolate(const TriangleSetup& setup, FragmentRect rect, Texcoords out) n
         const detail::Plane r = setup.planes_.plane(2);
         detail::TileInterpolator interpolator(kernels, setup, rect);
         interpolator.add(2, r, out.r);
-        interpolator.shade(tile, interpolator.corners(tile), {Work::divide, 0, {}});
+        interpolator.shade(tile);
     }
     return plan.work;
 }

@@ -1,18 +1,23 @@
 // The inner loops. Included by lanes.hpp once per instruction set, inside that set's target region, so that one source
-// serves all of them. A kernel gets plain numbers; the only decision it makes is the certificate of a polynomial's chunk.
+// serves all of them. A kernel gets plain numbers; the only decision it makes is how a chunk of a row is divided.
 
 namespace texgen::detail::TEXGEN_ISA {
 
-// A row of a TileJob: functions of the fragment's index alone. Where there is a mask, the numerators are s and t.
+// A row of a TileJob: functions of the fragment's index alone, and where they go. Where there is a mask, the numerators
+// are s and t. A copy of its own, so that the compiler knows that no store changes it.
 template <std::size_t Numerators>
 struct TileRow {
     double base[Numerators];
     double q;
     float* out[Numerators];
     float* lit;
+    float min[2], max[2];
 
     TEXGEN_INLINE TileRow(const TileJob& job, int y) noexcept
-        : q(job.q.base + y * job.q.dy), lit(job.lit + y * job.lit_pitch) {
+        : q(job.q.base + y * job.q.dy),
+          lit(job.lit == nullptr ? nullptr : job.lit + y * job.lit_pitch),
+          min{job.min[0], job.min[1]},
+          max{job.max[0], job.max[1]} {
         for (std::size_t k = 0; k < Numerators; ++k) {
             base[k] = job.numerator[k].base + y * job.numerator[k].dy;
             out[k] = job.out[k] + y * job.pitch[k];
@@ -25,28 +30,38 @@ struct TileRow {
 
 // Stores one vector of coordinates from out[k] + x on, and its mask from lit + x on.
 template <std::size_t Numerators, class Vector>
-TEXGEN_INLINE void store_all(const TileJob& job, const TileRow<Numerators>& row, int x,
-                             const Vector (&value)[Numerators]) noexcept {
+TEXGEN_INLINE void store_all(const TileRow<Numerators>& row, int x, const Vector (&value)[Numerators]) noexcept {
     for (std::size_t k = 0; k < Numerators; ++k) store(row.out[k] + x, value[k]);
     if constexpr (Numerators == 2)
-        if (job.lit != nullptr)
+        if (row.lit != nullptr)
             store(row.lit + x,
-                  one_where(inside(value[0], job.min[0], job.max[0]) & inside(value[1], job.min[1], job.max[1])));
+                  one_where(inside(value[0], row.min[0], row.max[0]) & inside(value[1], row.min[1], row.max[1])));
 }
 
-// The same for the first `count` lanes of a vector: nothing beyond them is touched.
+// The first `count` lanes of a vector, fewer than all: nothing beyond them is touched.
+template <std::size_t Width>
+TEXGEN_INLINE void store_lanes(float* to, const float* from, std::size_t count) noexcept {
+    if ((count & Width) != 0) {
+        std::memcpy(to, from, Width * sizeof *from);
+        to += Width;
+        from += Width;
+    }
+    if constexpr (Width > 1) store_lanes<Width / 2>(to, from, count);
+}
+
+// The same as store_all() for these.
 template <std::size_t Numerators, class Vector>
-TEXGEN_INLINE void store_first(const TileJob& job, const TileRow<Numerators>& row, int x, int count,
+TEXGEN_INLINE void store_first(const TileRow<Numerators>& row, int x, int count,
                                const Vector (&value)[Numerators]) noexcept {
-    float buffer[Numerators + 1][sizeof(Vector) / sizeof(float)]{};
+    constexpr std::size_t size = sizeof(Vector) / sizeof(float);
+    const auto lanes_left = static_cast<std::size_t>(count);
+    float buffer[Numerators + 1][size]{};
     TileRow<Numerators> buffered = row;
     for (std::size_t k = 0; k < Numerators; ++k) buffered.out[k] = buffer[k];
-    buffered.lit = buffer[Numerators];
-    store_all(job, buffered, 0, value);
-    for (int i = 0; i < count; ++i) {
-        for (std::size_t k = 0; k < Numerators; ++k) row.out[k][x + i] = buffer[k][i];
-        if (job.lit != nullptr) row.lit[x + i] = buffer[Numerators][i];
-    }
+    if (row.lit != nullptr) buffered.lit = buffer[Numerators];
+    store_all(buffered, 0, value);
+    for (std::size_t k = 0; k < Numerators; ++k) store_lanes<size / 2>(row.out[k] + x, buffer[k], lanes_left);
+    if (row.lit != nullptr) store_lanes<size / 2>(row.lit + x, buffer[Numerators], lanes_left);
 }
 
 // ---- Division in double ----------------------------------------------------------------------------------------
@@ -86,7 +101,7 @@ TEXGEN_INLINE TileJob::Unit divide_units(const TileJob& job, TileJob::Unit unit)
             int x = unit.x_begin;
             for (; x <= unit.x_end - lanes; x += lanes) {
                 divide_vector<ConstantQ, Nearest>(job, row, index, reciprocal, quotient, doubtful);
-                store_all(job, row, x, quotient);
+                store_all(row, x, quotient);
                 index += static_cast<double>(lanes);
             }
             if (x == unit.x_end) continue;
@@ -94,9 +109,9 @@ TEXGEN_INLINE TileJob::Unit divide_units(const TileJob& job, TileJob::Unit unit)
             index = indices<Doubles>() + static_cast<double>(first);
             divide_vector<ConstantQ, Nearest>(job, row, index, reciprocal, quotient, doubtful);
             if (unit.x_end >= lanes)
-                store_all(job, row, first, quotient);
+                store_all(row, first, quotient);
             else
-                store_first(job, row, 0, unit.x_end, quotient);
+                store_first(row, 0, unit.x_end, quotient);
         }
         if (!Nearest || !any(doubtful)) continue;
         // The overlapping vector may have rewritten the end of the unit before, and the doubt may be there.
@@ -125,193 +140,207 @@ void divide_rounded(const TileJob& original) noexcept {
         divide_units<false, false, 1>(job, first);
 }
 
-// ---- Division in float -----------------------------------------------------------------------------------------
+// ---- Chunks ----------------------------------------------------------------------------------------------------
 
-// Linear functions in float about the middle of a chunk of the row, so that the index stays small.
-template <std::size_t Numerators>
-TEXGEN_INLINE void divide_float_rows(const TileJob& job) noexcept {
-    const auto q_dx = static_cast<float>(job.q.dx);
-    float dx[Numerators];
-    for (std::size_t k = 0; k < Numerators; ++k) dx[k] = static_cast<float>(job.numerator[k].dx);
-    for (int y = 0; y < job.height; ++y) {
-        const TileRow<Numerators> row(job, y);
-        for (int begin = 0; begin < job.width; begin += job.chunk) {
-            const int end = begin + job.chunk < job.width ? begin + job.chunk : job.width;
-            const int middle = begin + (end - begin) / 2;
-            const auto q = static_cast<float>(row.q + middle * job.q.dx);
-            float base[Numerators];
-            for (std::size_t k = 0; k < Numerators; ++k)
-                base[k] = static_cast<float>(row.base[k] + middle * job.numerator[k].dx);
-            int x = begin;
-            while (true) {
-                const WideFloats index = indices<WideFloats>() + static_cast<float>(x - middle);
-                const WideFloats reciprocal = 1.0f / (index * q_dx + q);
-                WideFloats quotient[Numerators];
-                for (std::size_t k = 0; k < Numerators; ++k) quotient[k] = (index * dx[k] + base[k]) * reciprocal;
-                if (x + wide_lanes > end) {
-                    store_first(job, row, x, end - x, quotient);
-                    break;
-                }
-                store_all(job, row, x, quotient);
-                if (x + wide_lanes == end) break;
-                // A last vector that is not full overlaps the one before it.
-                x = x + 2 * wide_lanes <= end ? x + wide_lanes : end - wide_lanes;
-            }
-        }
-    }
-}
+// About the middle of a chunk of a row, i fragments from it, F/Q is exactly
+//   u + d i / (1 + x),  u = F/Q and d = (F_x - u Q_x) / Q in the middle,  x = b i, b = Q_x / Q in the middle,
+// and 1 / (1 + x) = (1 - x) (1 + x^2) (1 + x^4) ..., which has a relative error of x^(2^n) after n factors: a line, a
+// parabola and on, until a division is cheaper.
+//
+// With h the largest |i|, X = |b| h <= 1/2 and 1/(1 - X) <= 1 + 2 X, no |d i / (1 + x)| is above D = h |d| (1 + 2 X). In
+// float, u = 2^-24, b and x change 1/(1 + x) by 2 u X/(1 - X) <= 2 u and are rounded with it, four roundings make the
+// rest of the factors (X <= 1/4 there) or the division, and the product with d: 8 u D cover them all with d's own; the
+// middle and the sum are rounded once each, 2 u (|u| + D) - of which one D is counted. Subnormals add less than 2^-116.
+// The doubles add (e_F + (|u| + D) e_Q) / Q.
+inline constexpr int divided = 4, refused = 5;
 
-template <class = void>
-void divide_float(const TileJob& original) noexcept {
-    const TileJob job = original;
-    if (job.numerators == 2)
-        divide_float_rows<2>(job);
-    else
-        divide_float_rows<1>(job);
-}
+TEXGEN_INLINE int chunks_of_row(const TileJob& job) noexcept { return (job.width - 1) / job.chunk + 1; }
 
-// ---- Polynomials -----------------------------------------------------------------------------------------------
-
-// A group of chunks of one row: the coefficients of u = c0 + i (c1 + i c2), i from the middle of the chunk, and the room
-// that the certificate leaves below the tolerance, times something positive: it holds where the room is not negative.
 template <std::size_t Numerators>
 struct ChunkGroup {
     static constexpr int size = 16;
 
-    double room[size];
-    float coefficient[Numerators][3][size];
-};
+    float bend[size];
+    float middle[Numerators][size], slope[Numerators][size];
+    double extent[size], least_q[size];                      // X, and what the least q has above job.least_q
+    double reach[Numerators][size], room[Numerators][size];  // D, and what is left of the tolerance for x^(2^n) D
 
-// Both polynomials go through the values at the two ends, the quadratic also through the one in the middle. With
-// du = |u1 - u0|, dq = |q1 - q0|, m = min(q0, q1) > 0 the largest error is at most
-//   affine     du dq (q0 + q1) / (q0^2 + 6 q0 q1 + q1^2)
-//   quadratic  du dq^2 (sqrt(3)/18) / (m (q0 + q1))
-// (the remainder of interpolation of a quotient of linear functions). Rounding to float adds 2^-24 (2 U + 4 du),
-// U = max(|u0|, |u1|): c0, the last sum, and five terms that are at most du; and 2^-134 where coefficients are subnormal.
-// The doubles add (e_s + U e_q) / m.
-template <bool Affine, std::size_t Numerators>
-TEXGEN_INLINE void fill(ChunkGroup<Numerators>& group, const TileJob& job, const TileRow<Numerators>& row, int first,
-                        int count) noexcept {
-    const double length = job.chunk;
-    const double per_length = 1.0 / length;
-    for (int i = 0; i < count; i += lanes) {
-        const Doubles begin = (indices<Doubles>() + static_cast<double>(first + i)) * length;
-        const Doubles middle = begin + 0.5 * length;
-        const Doubles end = begin + length;
-        const Doubles q0 = begin * job.q.dx + row.q;
-        const Doubles q1 = end * job.q.dx + row.q;
-        const Doubles reciprocal0 = 1.0 / q0;
-        const Doubles reciprocal1 = 1.0 / q1;
-        Doubles reciprocal_of_middle{};
-        if constexpr (!Affine) reciprocal_of_middle = 1.0 / (middle * job.q.dx + row.q);
-        const Doubles q_least = minimum(q0, q1);
-        const Doubles q_sum = q0 + q1;
-        const Doubles dq = magnitude(q1 - q0);
-        Doubles least_room = q_least - job.least_q;
-        for (std::size_t k = 0; k < Numerators; ++k) {
-            const Doubles u0 = (begin * job.numerator[k].dx + row.base[k]) * reciprocal0;
-            const Doubles u1 = (end * job.numerator[k].dx + row.base[k]) * reciprocal1;
-            const Doubles du = magnitude(u1 - u0);
-            const Doubles largest = maximum(magnitude(u0), magnitude(u1));
-            const Doubles beside_rounding = (job.tolerance - 0x1p-134 - largest * 0x2.002p-24) - du * 0x4.004p-24;
-            const Doubles room = beside_rounding * q_least - (largest * job.q_error + job.numerator_error[k]);
-            store(&group.coefficient[k][1][i], to_floats((u1 - u0) * per_length));
-            if constexpr (Affine) {
-                store(&group.coefficient[k][0][i], to_floats((u0 + u1) * 0.5));
-                least_room = minimum(
-                    least_room, room * (q_sum * q_sum + (q0 * q1) * 4.0) - ((du * dq) * (q_sum * q_least)) * 1.0001);
-            } else {
-                const Doubles u = (middle * job.numerator[k].dx + row.base[k]) * reciprocal_of_middle;
-                const Doubles bend = (u1 - u) - (u - u0);
-                store(&group.coefficient[k][0][i], to_floats(u));
-                store(&group.coefficient[k][2][i], to_floats(bend * (2.0 * per_length * per_length)));
-                least_room = minimum(least_room, room * q_sum - (du * (dq * dq)) * 0.0963);
+    // Of `count` chunks from the given one of row y on.
+    TEXGEN_INLINE void fill(const TileJob& job, int y, int chunk, int count) noexcept {
+        const double width = job.width;
+        const double length = job.chunk;
+        const double per_row = chunks_of_row(job);
+        const double rows_per_chunk = 1.0 / per_row;
+        for (int i = 0; i < count; i += lanes) {
+            // The nearest integer to number / per_row - (per_row - 1) / (2 per_row) is the quotient rounded down.
+            const Doubles number = indices<Doubles>() + static_cast<double>(chunk + i);
+            const Doubles row = (number * rows_per_chunk - (0.5 - 0.5 * rows_per_chunk) + 0x1.8p52) - 0x1.8p52;
+            const Doubles begin = (number - row * per_row) * length;
+            const Doubles half = (minimum(begin + length, Doubles{} + width) - begin) * 0.5 - 0.5;
+            const Doubles at_x = begin + half;
+            const Doubles at_y = row + static_cast<double>(y);
+            const auto value = [&](const Ramp& ramp) { return at_x * ramp.dx + (at_y * ramp.dy + ramp.base); };
+            const Doubles q = value(job.q);
+            const Doubles reciprocal = 1.0 / q;
+            const Doubles bends = reciprocal * job.q.dx;
+            store(&bend[i], to_floats(bends));
+            const Doubles extents = magnitude(bends) * half;
+            const Doubles stretch = extents * 2.0 + 1.0;
+            if (job.factors == TileJob::any_factors) {
+                store(&extent[i], extents);
+                store(&least_q[i], (q - q * extents) - job.least_q);
+            }
+            for (std::size_t k = 0; k < Numerators; ++k) {
+                const Doubles u = value(job.numerator[k]) * reciprocal;
+                const Doubles d = (u * -job.q.dx + job.numerator[k].dx) * reciprocal;
+                store(&middle[k][i], to_floats(u));
+                store(&slope[k][i], to_floats(d));
+                if (job.factors != TileJob::any_factors) continue;
+                const Doubles size_of_u = magnitude(u);
+                const Doubles size_of_step = magnitude(d) * half * stretch;
+                store(&reach[k][i], size_of_step);
+                store(&room[k][i], (job.tolerance - 0x1p-116) - (size_of_u * 0x2.002p-24 + size_of_step * 0x8.008p-24) -
+                                       ((size_of_u + size_of_step) * job.q_error + job.numerator_error[k]) *
+                                           (reciprocal * stretch) * 1.001);
             }
         }
-        store(&group.room[i], least_room);
     }
+
+    // The fewest factors with which chunk i stays inside the tolerance.
+    TEXGEN_INLINE int factors(int i) const noexcept {
+        const auto fits = [&](double error) {
+            bool all = true;
+            for (std::size_t k = 0; k < Numerators; ++k) all = all && error * reach[k][i] <= room[k][i];
+            return all;
+        };
+        if (!(extent[i] <= 0.5 && least_q[i] > 0.0 && fits(0.0))) return refused;
+        if (!(extent[i] <= 0.25)) return divided;
+        double error = extent[i];
+        for (int n = 0; n < divided; ++n, error *= error)
+            if (fits(error)) return n;
+        return divided;
+    }
+};
+
+// i / (1 + i bend), to so many factors.
+template <int Factors>
+TEXGEN_INLINE WideFloats bent(const WideFloats& i, const WideFloats& bend) noexcept {
+    if constexpr (Factors == 0) return i;
+    WideFloats x = i * bend;
+    if constexpr (Factors == divided) return i / (x + 1.0f);
+    WideFloats result = i - i * x;
+    for (int n = 1; n < Factors; ++n) {
+        x = x * x;
+        result = result + result * x;
+    }
+    return result;
 }
 
-template <bool Affine, std::size_t Numerators>
-TEXGEN_INLINE void polynomial(const WideFloats (&c)[Numerators][3], const WideFloats& index,
-                              WideFloats (&value)[Numerators]) noexcept {
+// Chunk i of the group: fragments begin to end of the row.
+template <int Factors, std::size_t Numerators>
+TEXGEN_INLINE void evaluate(const ChunkGroup<Numerators>& group, int i, const TileRow<Numerators>& row, int begin,
+                            int end) noexcept {
+    const WideFloats bend = WideFloats{} + group.bend[i];
+    WideFloats middle[Numerators], slope[Numerators];
     for (std::size_t k = 0; k < Numerators; ++k) {
-        if constexpr (Affine)
-            value[k] = index * c[k][1] + c[k][0];
-        else
-            value[k] = (index * c[k][2] + c[k][1]) * index + c[k][0];
+        middle[k] = WideFloats{} + group.middle[k][i];
+        slope[k] = WideFloats{} + group.slope[k][i];
     }
-}
-
-// Evaluates chunk i of the group over fragments begin to end of the row.
-template <bool Affine, std::size_t Numerators>
-TEXGEN_INLINE void evaluate(const ChunkGroup<Numerators>& group, int i, const TileJob& job,
-                            const TileRow<Numerators>& row, WideFloats index, int begin, int end) noexcept {
-    WideFloats c[Numerators][3];
-    for (std::size_t k = 0; k < Numerators; ++k)
-        for (std::size_t degree = 0; degree < (Affine ? 2 : 3); ++degree)
-            c[k][degree] = WideFloats{} + group.coefficient[k][degree][i];
-    int x = begin;
     WideFloats value[Numerators];
+    const auto evaluate_at = [&](const WideFloats& index) {
+        const WideFloats step = bent<Factors>(index, bend);
+        for (std::size_t k = 0; k < Numerators; ++k) value[k] = step * slope[k] + middle[k];
+    };
+    const float half = 0.5f * static_cast<float>(end - begin - 1);
+    const auto index_at = [&](int x) { return indices<WideFloats>() + (static_cast<float>(x - begin) - half); };
+    int x = begin;
     // Two vectors a turn, so that their indices do not wait for one another.
-    WideFloats next_index = index + static_cast<float>(wide_lanes);
-    for (const int last = end - 2 * wide_lanes; x <= last; x += 2 * wide_lanes) {
-        polynomial<Affine>(c, index, value);
-        store_all(job, row, x, value);
-        polynomial<Affine>(c, next_index, value);
-        store_all(job, row, x + wide_lanes, value);
+    WideFloats index = index_at(x);
+    WideFloats next_index = index_at(x + wide_lanes);
+    for (; x <= end - 2 * wide_lanes; x += 2 * wide_lanes) {
+        evaluate_at(index);
+        store_all(row, x, value);
+        evaluate_at(next_index);
+        store_all(row, x + wide_lanes, value);
         index += static_cast<float>(2 * wide_lanes);
         next_index += static_cast<float>(2 * wide_lanes);
     }
-    for (; x < end; x += wide_lanes) {
-        polynomial<Affine>(c, index, value);
-        if (x + wide_lanes <= end)
-            store_all(job, row, x, value);
-        else
-            store_first(job, row, x, end - x, value);
-        index += static_cast<float>(wide_lanes);
+    if (x == end) return;
+    // A last vector that is not full overlaps the one before it, or is stored in part.
+    if (x > begin && x + wide_lanes > end) {
+        x = end - wide_lanes;
+        index = index_at(x);
+    }
+    evaluate_at(index);
+    if (x + wide_lanes <= end) {
+        store_all(row, x, value);
+        if (x + wide_lanes == end) return;
+        x = end - wide_lanes;
+        evaluate_at(index_at(x));
+        store_all(row, x, value);
+    } else {
+        store_first(row, x, end - x, value);
     }
 }
 
-// Does the rows of the job from `first` on. Stops at chunks that the certificate does not cover and returns them, a part
-// of one row; the empty unit if there are none. The next call starts after them.
-template <bool Affine, std::size_t Numerators>
-TEXGEN_INLINE TileJob::Unit polynomial_rows(const TileJob& job, const TileJob::Unit& first) noexcept {
-    constexpr int group_size = ChunkGroup<Numerators>::size;
-    const WideFloats index = indices<WideFloats>() + static_cast<float>(-job.chunk / 2);
-    const int chunks = (job.width + job.chunk - 1) / job.chunk;
-    int chunk = first.x_begin / job.chunk;
-    for (int y = first.y_begin; y < job.height; ++y, chunk = 0) {
-        const TileRow<Numerators> row(job, y);
-        for (; chunk < chunks; chunk += group_size) {
-            ChunkGroup<Numerators> group;
-            const int count = chunks - chunk < group_size ? chunks - chunk : group_size;
-            fill<Affine>(group, job, row, chunk, count);
-            for (int i = 0; i < count; ++i) {
-                const int begin = (chunk + i) * job.chunk;
-                int end = begin + job.chunk;
-                if (group.room[i] >= 0.0) {
-                    evaluate<Affine>(group, i, job, row, index, begin, end < job.width ? end : job.width);
-                    continue;
+// Does the job from `first` on. Stops at chunks that no factors serve and returns them, a part of one row or whole rows;
+// the empty unit if there are none. The next call starts after them.
+template <std::size_t Numerators>
+TEXGEN_INLINE TileJob::Unit divide_chunks_of(const TileJob& job, const TileJob::Unit& first) noexcept {
+    const int width = job.width;
+    const int length = job.chunk;
+    const int height = job.height;
+    const int per_row = chunks_of_row(job);
+    const int all_factors = job.factors;
+    ChunkGroup<Numerators> group;
+    int chunk = first.x_begin / length;
+    int y = first.y_begin;
+    while (y < height) {
+        const std::int64_t left = static_cast<std::int64_t>(height - y) * per_row - chunk;
+        const int count = left < group.size ? static_cast<int>(left) : group.size;
+        group.fill(job, y, chunk, count);
+        for (int i = 0; i < count; ++i) {
+            const TileRow<Numerators> row(job, y);
+            const int begin = chunk * length;
+            const int end = begin + length < width ? begin + length : width;
+            switch (all_factors == TileJob::any_factors ? group.factors(i) : all_factors) {
+                case 0:
+                    evaluate<0>(group, i, row, begin, end);
+                    break;
+                case 1:
+                    evaluate<1>(group, i, row, begin, end);
+                    break;
+                case 2:
+                    evaluate<2>(group, i, row, begin, end);
+                    break;
+                case 3:
+                    evaluate<3>(group, i, row, begin, end);
+                    break;
+                case divided:
+                    evaluate<divided>(group, i, row, begin, end);
+                    break;
+                default: {
+                    int last = i;
+                    while (last + 1 < count && (per_row == 1 || chunk + (last - i) + 1 < per_row) &&
+                           group.factors(last + 1) == refused)
+                        ++last;
+                    if (per_row == 1) return {0, width, y, y + (last - i) + 1};
+                    const int end_of_last = (chunk + (last - i) + 1) * length;
+                    return {begin, end_of_last < width ? end_of_last : width, y, y + 1};
                 }
-                for (int j = i + 1; j < count && !(group.room[j] >= 0.0); ++j) end += job.chunk;
-                return {begin, end < job.width ? end : job.width, y, y + 1};
+            }
+            if (++chunk == per_row) {
+                chunk = 0;
+                ++y;
             }
         }
     }
-    return {0, 0, job.height, job.height};
+    return {0, 0, height, height};
 }
 
 template <class = void>
-TileJob::Unit quadratic(const TileJob& original, TileJob::Unit first) noexcept {
-    const TileJob job = original;
-    return job.numerators == 2 ? polynomial_rows<false, 2>(job, first) : polynomial_rows<false, 1>(job, first);
-}
-
-template <class = void>
-TileJob::Unit affine(const TileJob& original, TileJob::Unit first) noexcept {
-    const TileJob job = original;
-    return job.numerators == 2 ? polynomial_rows<true, 2>(job, first) : polynomial_rows<true, 1>(job, first);
+TileJob::Unit divide_chunks(const TileJob& job, TileJob::Unit first) noexcept {
+    return job.numerators == 2 ? divide_chunks_of<2>(job, first) : divide_chunks_of<1>(job, first);
 }
 
 // ---- Points ----------------------------------------------------------------------------------------------------
@@ -662,7 +691,7 @@ namespace texgen::detail::TEXGEN_ISA {
 template <class Table>
 const Table& kernels() noexcept {
     if constexpr (std::is_same_v<Table, TileKernels>) {
-        static constexpr TileKernels table{divide_nearest<>, divide_rounded<>, divide_float<>, quadratic<>, affine<>};
+        static constexpr TileKernels table{divide_nearest<>, divide_rounded<>, divide_chunks<>};
         return table;
     } else if constexpr (std::is_same_v<Table, PointKernels>) {
         static constexpr PointKernels table{divide_points_nearest<>, divide_points_within<FormsInFloat>,

@@ -33,12 +33,13 @@ struct Ramp {
 struct TileJob {
     int numerators;
     int width, height;
-    int chunk;  // fragments of a row that share a polynomial or a float base
+    int chunk;    // the most fragments of a row that share a middle
+    int factors;  // of divide_chunks, for all of them, or any
     Ramp numerator[2];
     Ramp q;
     bool q_is_constant;
     double quotient_error[2];   // for divide_nearest
-    double numerator_error[2];  // for the polynomials, as what follows
+    double numerator_error[2];  // for divide_chunks, as what follows
     double q_error;
     double least_q;  // below it no certificate holds
     double tolerance;
@@ -55,6 +56,7 @@ struct TileJob {
     };
 
     static constexpr int unit_size = 64;
+    static constexpr int any_factors = -1;
 
     Unit unit_at(int x, int y) const noexcept {
         const int rows = width >= unit_size ? 1 : unit_size / width;
@@ -164,9 +166,7 @@ struct FootprintJob {
 struct TileKernels {
     TileJob::Unit (*divide_nearest)(const TileJob&, TileJob::Unit first) noexcept;
     void (*divide_rounded)(const TileJob&) noexcept;
-    void (*divide_float)(const TileJob&) noexcept;
-    TileJob::Unit (*quadratic)(const TileJob&, TileJob::Unit first) noexcept;
-    TileJob::Unit (*affine)(const TileJob&, TileJob::Unit first) noexcept;
+    TileJob::Unit (*divide_chunks)(const TileJob&, TileJob::Unit first) noexcept;
 };
 
 struct PointKernels {
