@@ -160,11 +160,11 @@ TEST_CASE("the bounds of forms, of mixtures and of planes in double cover their 
                                         {support::to_float(any()), 0.0f, 0.0f, support::to_float(any())}};
         };
         const texgen::Triangle triangle{vertex(), vertex(), vertex()};
-        const auto planes = texgen::detail::TrianglePlanes::of(triangle);
-        REQUIRE(planes);
+        const texgen::detail::TrianglePlanes planes(triangle);
+        REQUIRE(planes.is_usable());
         const std::int64_t x = random.integer(-100, 100), y = random.integer(-100, 100);
         // Both are known up to the same positive factor: s / q of one is that of the other, and so is s q' - s' q = 0.
-        const texgen::detail::Bounded s = planes->at(planes->plane(0), x, y), q = planes->at(planes->plane(3), x, y);
+        const texgen::detail::Bounded s = planes.at(planes.plane(0), x, y), q = planes.at(planes.plane(3), x, y);
         const support::Homogeneous exact = support::ExactTriangle(triangle).at(x, y);
         const support::Dyadic cross = support::Dyadic(s.value) * exact.q - support::Dyadic(q.value) * exact.s;
         const double room = s.error * std::fabs(exact.q.estimate()) + q.error * std::fabs(exact.s.estimate());

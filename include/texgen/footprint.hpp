@@ -225,11 +225,8 @@ private:
     // Whether interpolate() does nothing there.
     bool is_dark(const detail::Corners& at) const noexcept {
         if (at.all_behind()) return true;
-        for (std::size_t k = 0; k < 2; ++k)
-            if (detail::place_of(at, k, triangle_.lit_.min(k), triangle_.lit_.max(k), triangle_.tolerance_) ==
-                detail::Place::outside)
-                return true;
-        return false;
+        const detail::Places places = detail::places_of(at, triangle_.lit_, triangle_.tolerance_);
+        return places.s == detail::Place::outside || places.t == detail::Place::outside;
     }
 
     std::optional<Footprint> footprint_at(std::int64_t x, std::int64_t y) const noexcept {

@@ -38,13 +38,16 @@ namespace texgen {
 
 namespace detail {
 
-// A tile of up to two numerators F and of Q: the linear functions, their values at the corner fragments and bounds on
-// their errors. What holds at the corners with a margin for rounding holds at every fragment.
+inline namespace TEXGEN_BUILD {
+
+// A tile of two numerators F and of Q: the linear functions, their values at the corner fragments and bounds on their
+// errors. What holds at the corners with a margin for rounding holds at every fragment.
 struct Corners {
-    Ramp numerator_ramp[2], q_ramp;
-    double numerator[2][4];
+    RampOf<Pair> numerator_ramp;
+    Ramp q_ramp;
+    Pair numerator[4];
     double q[4];
-    double numerator_error[2];
+    Pair numerator_error;
     double q_error;
     double least_q, largest_q;
     double reciprocal;  // the largest 1 / q, for a tile in front
@@ -54,44 +57,37 @@ struct Corners {
     // Far enough in front that the relative error of q is below 2^-24.
     bool well_in_front() const noexcept { return least_q > 0x1p24 * q_error; }
 
-    // The largest |F| and |F/Q|; the latter for a tile in front. Where Q varies little the quotient of the bounds will do;
-    // else the corners have it, u = F/Q being monotone along every line.
-    double largest_numerator(std::size_t k) const noexcept {
-        const double(&f)[4] = numerator[k];
-        return larger(larger(std::fabs(f[0]), std::fabs(f[1])), larger(std::fabs(f[2]), std::fabs(f[3]))) +
-               numerator_error[k];
-    }
-    double largest_quotient(std::size_t k) const noexcept {
-        if (largest_q < 1.25 * least_q) return largest_numerator(k) * reciprocal;
-        double largest = 0.0;
-        for (std::size_t i = 0; i < 4; ++i)
-            largest = larger(largest, (std::fabs(numerator[k][i]) + numerator_error[k]) / (q[i] - q_error));
-        return largest;
+    // The largest |F/Q| of a tile in front. Where Q varies little the quotient of the bounds will do; else the corners have
+    // it, u = F/Q being monotone along every line.
+    Pair largest_quotient() const noexcept {
+        Pair size[4];
+        for (std::size_t i = 0; i < 4; ++i) size[i] = magnitude(numerator[i]) + numerator_error;
+        if (!(largest_q < 1.25 * least_q))
+            for (std::size_t i = 0; i < 4; ++i) size[i] = size[i] / ((q[i] - q_error) * reciprocal);
+        return larger(larger(size[0], size[1]), larger(size[2], size[3])) * reciprocal;
     }
 
     // The error of F/Q in double for a tile well in front: as in certain_quotient(), where it is worst.
-    double quotient_error(std::size_t k, double largest) const noexcept {
-        return 1.0001 * (numerator_error[k] + q_error * largest) * reciprocal + 4.0 * unit_roundoff_double * largest;
+    Pair quotient_error(const Pair& largest) const noexcept {
+        return (numerator_error + largest * q_error) * (1.0001 * reciprocal) + largest * (4.0 * unit_roundoff_double);
     }
 };
 
-// The corners of a tile for one coordinate or two.
-inline Corners corners(const TrianglePlanes& planes, const Plane* const (&numerator)[2], std::size_t numerators,
-                       const Plane& q, const Tile& tile) noexcept {
-    Corners corners{};
-    const auto fill = [&](const Plane& plane, Ramp& ramp, double(&value)[4]) {
+inline Corners corners(const TrianglePlanes& planes, const PlaneOf<Pair>& numerator, const Plane& q,
+                       const Tile& tile) noexcept {
+    Corners corners;
+    const double right = tile.width - 1;
+    const double bottom = tile.height - 1;
+    const auto fill = [&](const auto& plane, auto& ramp, auto& value, auto& error) {
         ramp = planes.ramp(plane, tile);
-        const double across = (tile.width - 1) * ramp.dx;
-        const double down = (tile.height - 1) * ramp.dy;
+        error = planes.error(plane, tile);
         value[0] = ramp.base;
-        value[1] = ramp.base + across;
-        value[2] = ramp.base + down;
-        value[3] = value[2] + across;
-        return planes.error(plane, tile);
+        value[1] = ramp.base + ramp.dx * right;
+        value[2] = ramp.base + ramp.dy * bottom;
+        value[3] = value[2] + ramp.dx * right;
     };
-    for (std::size_t k = 0; k < numerators; ++k)
-        corners.numerator_error[k] = fill(*numerator[k], corners.numerator_ramp[k], corners.numerator[k]);
-    corners.q_error = fill(q, corners.q_ramp, corners.q);
+    fill(numerator, corners.numerator_ramp, corners.numerator, corners.numerator_error);
+    fill(q, corners.q_ramp, corners.q, corners.q_error);
     corners.least_q = smaller(smaller(corners.q[0], corners.q[1]), smaller(corners.q[2], corners.q[3]));
     corners.largest_q = larger(larger(corners.q[0], corners.q[1]), larger(corners.q[2], corners.q[3]));
     corners.reciprocal = 1.0 / (corners.least_q - corners.q_error);
@@ -100,34 +96,43 @@ inline Corners corners(const TrianglePlanes& planes, const Plane* const (&numera
 
 // Where the fragments in front lie as to one side of the region: G = F - bound Q is positive above it and negative below.
 struct SideOfBound {
-    bool all_below, all_above;
+    bool all_below[2], all_above[2];
 };
 
 // The float that is written may be on the other side of the bound than the exact value, by an ulp or by the tolerance:
 // so the answer must hold with that much slack.
-inline SideOfBound side_of(const Corners& at, std::size_t k, double bound, double tolerance) noexcept {
-    const double(&f)[4] = at.numerator[k];
-    const double g[4] = {f[0] - bound * at.q[0], f[1] - bound * at.q[1], f[2] - bound * at.q[2],
-                         f[3] - bound * at.q[3]};
-    const double least = smaller(smaller(g[0], g[1]), smaller(g[2], g[3]));
-    const double largest = larger(larger(g[0], g[1]), larger(g[2], g[3]));
-    const double slack = 0x1p-22 * std::fabs(bound) + 0x1p-148 + tolerance;
+inline SideOfBound side_of(const Corners& at, const Pair& bound, double tolerance) noexcept {
+    Pair g[4];
+    for (std::size_t i = 0; i < 4; ++i) g[i] = at.numerator[i] - bound * at.q[i];
+    const double slightly_less = 1.0 - gamma(4);
+    const Pair least = smaller(smaller(g[0], g[1]), smaller(g[2], g[3])) * slightly_less;
+    const Pair largest = larger(larger(g[0], g[1]), larger(g[2], g[3])) * slightly_less;
+    const Pair size = magnitude(bound);
+    const Pair slack = size * 0x1p-22 + (0x1p-148 + tolerance);
     const double q = larger(std::fabs(at.least_q), std::fabs(at.largest_q));
-    const double margin = 1.0001 * (at.numerator_error[k] + (std::fabs(bound) + slack) * at.q_error + slack * q +
-                                    gamma(4) * std::fabs(bound) * q);
-    return {largest * (1.0 - gamma(4)) < -margin, least * (1.0 - gamma(4)) > margin};
+    const Pair margin = (at.numerator_error + (size + slack) * at.q_error + slack * q + size * (gamma(4) * q)) * 1.0001;
+    return {{largest[0] < -margin[0], largest[1] < -margin[1]}, {least[0] > margin[0], least[1] > margin[1]}};
 }
 
-// Where one coordinate lies in the region, for all fragments at once.
+// Where a coordinate lies in the region, for all fragments at once.
 enum class Place { outside, across, inside };
 
-inline Place place_of(const Corners& at, std::size_t k, double min, double max, double tolerance) noexcept {
-    const SideOfBound of_min = side_of(at, k, min, tolerance);
-    if (of_min.all_below) return Place::outside;
-    const SideOfBound of_max = side_of(at, k, max, tolerance);
-    if (of_max.all_above) return Place::outside;
-    return of_min.all_above && of_max.all_below && at.all_in_front() ? Place::inside : Place::across;
+struct Places {
+    Place s, t;
+};
+
+inline Places places_of(const Corners& at, const LitTest& lit, double tolerance) noexcept {
+    const SideOfBound of_min = side_of(at, pair_of(lit.min(0), lit.min(1)), tolerance);
+    const SideOfBound of_max = side_of(at, pair_of(lit.max(0), lit.max(1)), tolerance);
+    const auto place = [&](std::size_t k) {
+        if (of_min.all_below[k]) return Place::outside;
+        if (of_max.all_above[k]) return Place::outside;
+        return of_min.all_above[k] && of_max.all_below[k] && at.all_in_front() ? Place::inside : Place::across;
+    };
+    return {place(0), place(1)};
 }
+
+}  // namespace TEXGEN_BUILD
 
 // What a tile gets: the work; under a tolerance the length of its chunks, and the factors that serve them all with a bound
 // on the error of s and of t, if there are such (kernels.inc.hpp, Chunks).
@@ -153,16 +158,28 @@ Work interpolate(const TriangleSetup&, FragmentRect, Texcoords) noexcept;
 
 // A triangle made ready for interpolation over any number of rectangles of fragments.
 class TriangleSetup {
+    struct Key {
+        explicit Key() = default;
+    };
+
 public:
     // Guarantee: everything in double about the first vertex; no allocation, noexcept.
     // Shapes: window positions in pixels, the camera's clip w, and homogeneous (s, t, r, q), in either winding.
     // Bad input: empty where a number is not finite, a clip_w is not positive, or the area is zero (decided exactly).
     static std::optional<TriangleSetup> of(const Triangle& triangle, TextureRegion region,
                                            Tolerance tolerance = exact) noexcept {
-        const std::optional<detail::TrianglePlanes> planes = detail::TrianglePlanes::of(triangle);
-        if (!planes) return std::nullopt;
-        return TriangleSetup(*planes, region, tolerance);
+        std::optional<TriangleSetup> setup(std::in_place, Key(), triangle, region, tolerance);
+        if (!setup->planes_.is_usable()) setup.reset();
+        return setup;
     }
+
+    // What of() makes in place.
+    TriangleSetup(Key, const Triangle& triangle, const TextureRegion& region, Tolerance tolerance) noexcept
+        : planes_(triangle),
+          st_(planes_.planes(0, 1)),
+          q_(planes_.plane(3)),
+          lit_(region),
+          tolerance_(detail::accepted(tolerance)) {}
 
     // Guarantee: the least work that is certified to stay inside the tolerance for every fragment of the rectangle;
     // never nothing where a fragment is lit. noexcept. An empty rectangle needs nothing.
@@ -183,7 +200,7 @@ public:
         const auto bound = [&](std::size_t k) {
             if (plan.factors != detail::TileJob::any_factors) return plan.error[k];
             if (!at.all_in_front()) return std::numeric_limits<double>::infinity();
-            return detail::larger(tolerance_, detail::half_ulp(at.largest_quotient(k)));
+            return detail::larger(tolerance_, detail::half_ulp(at.largest_quotient()[k]));
         };
         return {bound(0), bound(1)};
     }
@@ -194,21 +211,12 @@ private:
     template <class>
     friend Work TEXGEN_BUILD::interpolate(const TriangleSetup&, FragmentRect, Texcoords) noexcept;
 
-    TriangleSetup(const detail::TrianglePlanes& planes, const TextureRegion& region, Tolerance tolerance) noexcept
-        : planes_(planes),
-          s_(planes.plane(0)),
-          t_(planes.plane(1)),
-          q_(planes.plane(3)),
-          lit_(region),
-          tolerance_(detail::accepted(tolerance)) {}
-
-    detail::Corners corners(const detail::Tile& tile) const noexcept {
-        return detail::corners(planes_, {&s_, &t_}, 2, q_, tile);
-    }
+    detail::Corners corners(const detail::Tile& tile) const noexcept { return detail::corners(planes_, st_, q_, tile); }
     detail::Plan plan(const detail::Tile& tile, const detail::Corners& at) const noexcept;
 
     detail::TrianglePlanes planes_;
-    detail::Plane s_, t_, q_;
+    detail::PlaneOf<detail::Pair> st_;
+    detail::Plane q_;
     detail::LitTest lit_;
     double tolerance_;
 };
@@ -216,6 +224,8 @@ private:
 static_assert(sizeof(TriangleSetup) <= 512);
 
 namespace detail {
+
+inline namespace TEXGEN_BUILD {
 
 // Short where q varies much, so that the ends of a chunk are not far from its middle. A chunk costs about as much as 32
 // fragments besides those that it has.
@@ -229,31 +239,31 @@ inline int chunk_length(const Corners& at, int width) noexcept {
     return ((width - 1) / chunks / lanes + 1) * lanes;
 }
 
+// A chunk costs as much as some fragments, and the first of them as much as some tens.
+inline bool pays_for_chunks(const Tile& tile) noexcept {
+    return tile.width >= 16 && static_cast<std::int64_t>(tile.width) * tile.height > 64;
+}
+
 // The fewest factors that serve every chunk of a tile well in front, and the error that they leave: the bound of the
-// kernel with each of its terms at its largest. A step of i is i (F_x Q - F Q_x) / Q^2 by the product of the Q at both ends: the
-// difference is constant along a row.
+// kernel with each of its terms at its largest. A step of i is i (F_x Q - F Q_x) / Q^2 by the product of the Q at both ends:
+// the difference is constant along a row.
 inline void choose_factors(Plan& plan, const Corners& at, double tolerance) noexcept {
     const double half = 0.5 * (plan.chunk - 1);
-    const double q_x = std::fabs(at.q_ramp.dx);
-    const double extent = 1.001 * half * q_x * at.reciprocal;
+    const double extent = 1.001 * half * std::fabs(at.q_ramp.dx) * at.reciprocal;
     if (!(extent <= 0.25)) return;
-    double reach[2], rest[2];
-    for (std::size_t k = 0; k < 2; ++k) {
-        const double f_x = at.numerator_ramp[k].dx;
-        const auto slope_times_q_squared = [&](std::size_t i) {
-            const double first = f_x * at.q[i];
-            const double second = at.numerator[k][i] * at.q_ramp.dx;
-            return std::fabs(first - second) + gamma(8) * (std::fabs(first) + std::fabs(second));
-        };
-        const double largest = at.largest_quotient(k);
-        reach[k] =
-            1.001 * half * larger(slope_times_q_squared(0), slope_times_q_squared(2)) * at.reciprocal * at.reciprocal;
-        rest[k] = 0x2.003p-24 * largest + 0x8.009p-24 * reach[k] + 0x1p-115 +
-                  1.001 * (at.numerator_error[k] + (largest + reach[k]) * at.q_error) * at.reciprocal;
-    }
+    const auto slope_times_q_squared = [&](std::size_t i) {
+        const Pair first = at.numerator_ramp.dx * at.q[i];
+        const Pair second = at.numerator[i] * at.q_ramp.dx;
+        return magnitude(first - second) + (magnitude(first) + magnitude(second)) * gamma(8);
+    };
+    const Pair largest = at.largest_quotient();
+    const Pair reach =
+        larger(slope_times_q_squared(0), slope_times_q_squared(2)) * (1.001 * half * at.reciprocal * at.reciprocal);
+    const Pair rest = largest * 0x2.003p-24 + reach * 0xc.00dp-24 + 0x1p-115 +
+                      (at.numerator_error + (largest + reach) * at.q_error) * (1.001 * at.reciprocal);
     double share = extent;
     for (int factors = 0; factors <= 3; ++factors, share *= share) {
-        const double error[2] = {share * reach[0] + rest[0], share * reach[1] + rest[1]};
+        const Pair error = reach * share + rest;
         if (!(error[0] <= tolerance && error[1] <= tolerance)) continue;
         plan.factors = factors;
         plan.error[0] = error[0];
@@ -262,22 +272,22 @@ inline void choose_factors(Plan& plan, const Corners& at, double tolerance) noex
     }
 }
 
+}  // namespace TEXGEN_BUILD
+
 }  // namespace detail
 
 inline detail::Plan TriangleSetup::plan(const detail::Tile& tile, const detail::Corners& at) const noexcept {
     using detail::Place;
     detail::Plan plan{Work::nothing, 0, detail::TileJob::any_factors, {}};
     if (at.all_behind()) return plan;
-    const Place s_place = detail::place_of(at, 0, lit_.min(0), lit_.max(0), tolerance_);
-    if (s_place == Place::outside) return plan;
-    const Place t_place = detail::place_of(at, 1, lit_.min(1), lit_.max(1), tolerance_);
-    if (t_place == Place::outside) return plan;
+    const detail::Places places = detail::places_of(at, lit_, tolerance_);
+    if (places.s == Place::outside || places.t == Place::outside) return plan;
 
-    plan.work = s_place == Place::inside && t_place == Place::inside ? Work::divide : Work::divide_and_test;
-    if (tolerance_ > 0.0) plan.chunk = detail::chunk_length(at, tile.width);
+    plan.work = places.s == Place::inside && places.t == Place::inside ? Work::divide : Work::divide_and_test;
+    if (at.well_in_front() && is_constant(q_)) plan.work = Work::affine;
+    if (tolerance_ == 0.0 || !detail::pays_for_chunks(tile)) return plan;
+    plan.chunk = detail::chunk_length(at, tile.width);
     if (!at.well_in_front()) return plan;
-    if (q_.is_constant()) plan.work = Work::affine;
-    if (tolerance_ == 0.0) return plan;
     detail::choose_factors(plan, at, tolerance_ * (1.0 - 0x1p-18));
     if (plan.factors == 0)
         plan.work = Work::affine;
@@ -298,26 +308,47 @@ public:
     TileInterpolator(const TileKernels& kernels, const TriangleSetup& setup, FragmentRect rect) noexcept
         : kernels_(kernels), setup_(setup), rect_(rect) {}
 
-    // A coordinate (0 to 3: s, t, r, q) and its plane; one that only the mask needs has no output.
-    void add(glm::length_t coordinate, const Plane& plane, std::span<float> output) noexcept {
-        coordinate_[count_] = coordinate;
-        plane_[count_] = &plane;
-        output_[count_++] = output;
+    // s and t, of which one that only the mask needs has no output.
+    void add(std::span<float> s, std::span<float> t, std::span<float> lit) noexcept {
+        planes_ = setup_.st_;
+        count_ = 2;
+        coordinate_[1] = 1;
+        output_[0] = s;
+        output_[1] = t;
+        lit_ = lit;
     }
-    void add_lit(std::span<float> lit) noexcept { lit_ = lit; }
+    // One coordinate, 0 to 2 for s, t, r.
+    void add(glm::length_t coordinate, std::span<float> output) noexcept {
+        planes_ = setup_.planes_.planes(coordinate, coordinate);
+        count_ = 1;
+        coordinate_[0] = coordinate;
+        output_[0] = output;
+    }
 
     Corners corners(const Tile& tile) const noexcept {
-        return detail::corners(setup_.planes_, plane_, count_, setup_.q_, tile);
+        return detail::corners(setup_.planes_, planes_, setup_.q_, tile);
     }
 
     void shade(const Tile& tile) noexcept {
         const Corners at = corners(tile);
-        shade(tile, at, {Work::divide, chunk_length(at, tile.width), TileJob::any_factors, {}});
+        const int chunk = pays_for_chunks(tile) ? chunk_length(at, tile.width) : 0;
+        shade(tile, at, {Work::divide, chunk, TileJob::any_factors, {}});
+    }
+
+    // In parts that the scratch arrays hold.
+    void shade_in_strips(const Tile& tile, const Plan& plan) noexcept {
+        Tile strip = tile;
+        for (strip.width = scratch_width; strip.x < tile.x + tile.width; strip.x += scratch_width) {
+            const std::int64_t rest = tile.x + tile.width - strip.x;
+            if (rest < strip.width) strip.width = static_cast<int>(rest);
+            shade(strip, corners(strip), plan);
+        }
     }
 
     void shade(const Tile& tile, const Corners& at, const Plan& plan) noexcept {
         if (setup_.tolerance_ == 0.0) return divide_nearest(tile, at);
-        if (at.well_in_front()) return divide_chunks(tile, at, plan);
+        if (at.well_in_front())
+            return plan.chunk != 0 ? divide_chunks(tile, at, plan) : divide_without_chunks(tile, at);
         divide_parts(tile, at, [&](const Tile& half) { shade(half); });
     }
 
@@ -336,7 +367,8 @@ private:
         if (!at.well_in_front() || !(at.least_q > 0x1p-12 * at.largest_q))
             return divide_parts(tile, at, [&](const Tile& half) { divide_nearest(half, corners(half)); });
         TileJob job = this->job(tile, at);
-        for (std::size_t k = 0; k < count_; ++k) job.quotient_error[k] = at.quotient_error(k, at.largest_quotient(k));
+        const Pair error = at.quotient_error(at.largest_quotient());
+        for (std::size_t k = 0; k < 2; ++k) job.quotient_error[k] = error[k];
         TileJob::Unit unit = kernels_.divide_nearest(job, job.unit_at(0, 0));
         while (!job.is_done(unit)) {
             shade_one_by_one(part(tile, unit));
@@ -351,7 +383,7 @@ private:
         job.tolerance = setup_.tolerance_ * (1.0 - 0x1p-20);
         job.q_error = at.q_error;
         job.least_q = 0x1p24 * at.q_error;
-        for (std::size_t k = 0; k < count_; ++k) job.numerator_error[k] = at.numerator_error[k];
+        for (std::size_t k = 0; k < 2; ++k) job.numerator_error[k] = at.numerator_error[k];
         TileJob::Unit next{0, 0, 0, 0};
         while (true) {
             const TileJob::Unit refused = kernels_.divide_chunks(job, next);
@@ -364,19 +396,18 @@ private:
     }
 
     void divide_without_chunks(const Tile& tile, const Corners& at) noexcept {
-        bool fits = at.well_in_front() && at.least_q > 0x1p-20 * at.largest_q;
-        for (std::size_t k = 0; k < count_ && fits; ++k) fits = rounded_error(at, k) <= setup_.tolerance_;
+        const Pair error = rounded_error(at);
+        const bool fits = at.well_in_front() && at.least_q > 0x1p-20 * at.largest_q && error[0] <= setup_.tolerance_ &&
+                          error[1] <= setup_.tolerance_;
         if (!fits) return divide_nearest(tile, at);
-        TileJob job = this->job(tile, at);
-        job.scale(reciprocal_power_of_two(at.largest_q));
-        kernels_.divide_rounded(job);
+        kernels_.divide_rounded(job(tile, at, reciprocal_power_of_two(at.largest_q)));
     }
 
     // The error of F/Q with F and Q rounded to float, then the reciprocal and the product: 4 u |F/Q|, u = 2^-24. With
     // 2^-21 <= Q <= 2 a float of F that is subnormal, or flushed to zero, adds less than 2^-104.
-    double rounded_error(const Corners& at, std::size_t k) const noexcept {
-        const double largest = at.largest_quotient(k);
-        return 4.01 * unit_roundoff_float * largest + 0x1p-104 + at.quotient_error(k, largest);
+    Pair rounded_error(const Corners& at) const noexcept {
+        const Pair largest = at.largest_quotient();
+        return largest * (4.01 * unit_roundoff_float) + 0x1p-104 + at.quotient_error(largest);
     }
 
     void shade_one_by_one(const Tile& tile) noexcept {
@@ -390,10 +421,13 @@ private:
         const Bounded q = planes.at(setup_.q_, x, y);
         const auto exact_q = [&] { return planes.exactly_at(3, x, y); };
         const bool in_front = certain_sign(q, exact_q) > 0;
+        const Tile fragment{x, y, 1, 1};
+        const Pair numerator = planes.ramp(planes_, fragment).base;
+        const Pair error = planes.error(planes_, fragment);
         float value[2] = {0.0f, 0.0f};
         for (std::size_t k = 0; k < count_; ++k) {
             const auto exact_numerator = [&] { return planes.exactly_at(coordinate_[k], x, y); };
-            if (in_front) value[k] = certain_quotient(planes.at(*plane_[k], x, y), q, exact_numerator, exact_q);
+            if (in_front) value[k] = certain_quotient({numerator[k], error[k]}, q, exact_numerator, exact_q);
             if (!output_[k].empty()) output_[k][offset(x, y)] = value[k];
         }
         if (!lit_.empty()) lit_[offset(x, y)] = in_front ? setup_.lit_(value[0], value[1]) : 0.0f;
@@ -409,22 +443,27 @@ private:
         }
     }
 
-    // What every kernel needs.
-    TileJob job(const Tile& tile, const Corners& at) noexcept {
+    // What every kernel needs. A factor that the numerators and q share is free.
+    TileJob job(const Tile& tile, const Corners& at, double factor = 1.0) noexcept {
         TileJob job{};
         job.numerators = static_cast<int>(count_);
         job.width = tile.width;
         job.height = tile.height;
-        job.q = at.q_ramp;
-        job.q_is_constant = setup_.q_.is_constant();
+        job.q = {at.q_ramp.base * factor, at.q_ramp.dx * factor, at.q_ramp.dy * factor};
+        job.q_is_constant = is_constant(setup_.q_);
+        job.pitch = rect_.width;
+        job.is_contiguous = tile.width == rect_.width;
+        const Pair base = at.numerator_ramp.base * factor;
+        const Pair dx = at.numerator_ramp.dx * factor;
+        const Pair dy = at.numerator_ramp.dy * factor;
         for (std::size_t k = 0; k < count_; ++k) {
-            job.numerator[k] = at.numerator_ramp[k];
+            job.numerator[k] = {base[k], dx[k], dy[k]};
+            job.is_scratch[k] = output_[k].empty();
             job.out[k] = output_[k].empty() ? scratch_[k] : output_[k].data() + offset(tile.x, tile.y);
-            job.pitch[k] = output_[k].empty() ? 0 : rect_.width;
+            job.is_contiguous = job.is_contiguous && !job.is_scratch[k];
         }
         if (lit_.empty()) return job;
         job.lit = lit_.data() + offset(tile.x, tile.y);
-        job.lit_pitch = rect_.width;
         setup_.lit_.copy_to(job.min, job.max);
         return job;
     }
@@ -440,7 +479,7 @@ private:
     FragmentRect rect_;
     std::size_t count_ = 0;
     glm::length_t coordinate_[2] = {};
-    const Plane* plane_[2] = {};
+    PlaneOf<Pair> planes_;
     std::span<float> output_[2];
     std::span<float> lit_;
     float scratch_[2][scratch_width];  // coordinates that only the mask needs, a row at a time
@@ -483,31 +522,26 @@ Work interpolate(const TriangleSetup& setup, FragmentRect rect, Texcoords out) n
     if (!any_output) return plan.work;
     const detail::TileKernels& kernels = detail::chosen<detail::TileKernels>();
 
-    const bool both = !out.lit.empty() || (!out.s.empty() && !out.t.empty());
-    if (both || !out.s.empty() || !out.t.empty()) {
+    const auto interpolate_one = [&](glm::length_t coordinate, std::span<float> output) {
+        if (output.empty()) return;
         detail::TileInterpolator interpolator(kernels, setup, rect);
-        if (both || !out.s.empty()) interpolator.add(0, setup.s_, out.s);
-        if (both || !out.t.empty()) interpolator.add(1, setup.t_, out.t);
-        interpolator.add_lit(out.lit);
-        const bool needs_scratch = both && (out.s.empty() || out.t.empty());
-        if (both && !(needs_scratch && tile.width > detail::TileInterpolator::scratch_width)) {
+        interpolator.add(coordinate, output);
+        if (coordinate == 2) return interpolator.shade(tile);
+        interpolator.shade(tile, interpolator.corners(tile), plan);
+    };
+    const bool both = !out.s.empty() && !out.t.empty();
+    if (both || !out.lit.empty()) {
+        detail::TileInterpolator interpolator(kernels, setup, rect);
+        interpolator.add(out.s, out.t, out.lit);
+        if (both)
             interpolator.shade(tile, at, plan);
-        } else {
-            detail::Tile strip = tile;
-            for (strip.width = detail::TileInterpolator::scratch_width; strip.x < tile.x + tile.width;
-                 strip.x += detail::TileInterpolator::scratch_width) {
-                const std::int64_t rest = tile.x + tile.width - strip.x;
-                if (rest < strip.width) strip.width = static_cast<int>(rest);
-                interpolator.shade(strip, interpolator.corners(strip), plan);
-            }
-        }
+        else
+            interpolator.shade_in_strips(tile, plan);
+    } else {
+        interpolate_one(0, out.s);
+        interpolate_one(1, out.t);
     }
-    if (!out.r.empty()) {
-        const detail::Plane r = setup.planes_.plane(2);
-        detail::TileInterpolator interpolator(kernels, setup, rect);
-        interpolator.add(2, r, out.r);
-        interpolator.shade(tile);
-    }
+    interpolate_one(2, out.r);
     return plan.work;
 }
 
@@ -528,19 +562,16 @@ inline Work work(const Segment& segment, TextureRegion region, Tolerance toleran
     detail::Corners at{};
     for (std::size_t i = 0; i < 4; ++i) {
         const glm::dvec4& end = i % 2 == 0 ? a : b;
-        at.numerator[0][i] = end.x;
-        at.numerator[1][i] = end.y;
+        at.numerator[i] = detail::pair_of(end.x, end.y);
         at.q[i] = end.w;
     }
     at.least_q = detail::smaller(a.w, b.w);
     at.largest_q = detail::larger(a.w, b.w);
-    const detail::LitTest lit(region);
-    const double accepted = detail::accepted(tolerance);
-    const detail::Place s_place = detail::place_of(at, 0, lit.min(0), lit.max(0), accepted);
-    const detail::Place t_place = detail::place_of(at, 1, lit.min(1), lit.max(1), accepted);
-    if (s_place == detail::Place::outside || t_place == detail::Place::outside) return Work::nothing;
+    const detail::Places places = detail::places_of(at, detail::LitTest(region), detail::accepted(tolerance));
+    if (places.s == detail::Place::outside || places.t == detail::Place::outside) return Work::nothing;
     if (a.w == b.w) return Work::affine;
-    return s_place == detail::Place::inside && t_place == detail::Place::inside ? Work::divide : Work::divide_and_test;
+    return places.s == detail::Place::inside && places.t == detail::Place::inside ? Work::divide
+                                                                                  : Work::divide_and_test;
 }
 
 namespace detail {

@@ -3,25 +3,47 @@
 
 namespace texgen::detail::TEXGEN_ISA {
 
-// A row of a TileJob: functions of the fragment's index alone, and where they go. Where there is a mask, the numerators
-// are s and t. A copy of its own, so that the compiler knows that no store changes it.
+// Where a row of a TileJob goes. Where there is a mask, the numerators are s and t. A copy, so that the compiler knows that
+// no store changes it.
 template <std::size_t Numerators>
-struct TileRow {
+struct RowOutputs {
+    float* out[Numerators];
+    std::ptrdiff_t pitch[Numerators];
+    float* lit;
+    std::ptrdiff_t lit_pitch;
+    float min[2], max[2];
+    std::int64_t writable;  // from its first fragment on: where rows follow one another, the rows below too
+    std::int64_t writable_pitch;
+
+    TEXGEN_INLINE RowOutputs(const TileJob& job, int y) noexcept
+        : lit(job.lit == nullptr ? nullptr : job.lit + y * job.pitch),
+          lit_pitch(job.lit == nullptr ? 0 : job.pitch),
+          min{job.min[0], job.min[1]},
+          max{job.max[0], job.max[1]},
+          writable(job.is_contiguous ? (job.height - std::int64_t{y}) * job.width : job.width),
+          writable_pitch(job.is_contiguous ? job.width : 0) {
+        for (std::size_t k = 0; k < Numerators; ++k) {
+            pitch[k] = job.is_scratch[k] ? 0 : job.pitch;
+            out[k] = job.out[k] + y * pitch[k];
+        }
+    }
+
+    TEXGEN_INLINE void advance() noexcept {
+        for (std::size_t k = 0; k < Numerators; ++k) out[k] += pitch[k];
+        lit += lit_pitch;
+        writable -= writable_pitch;
+    }
+};
+
+// The functions of the row's index.
+template <std::size_t Numerators>
+struct TileRow : RowOutputs<Numerators> {
     double base[Numerators];
     double q;
-    float* out[Numerators];
-    float* lit;
-    float min[2], max[2];
 
     TEXGEN_INLINE TileRow(const TileJob& job, int y) noexcept
-        : q(job.q.base + y * job.q.dy),
-          lit(job.lit == nullptr ? nullptr : job.lit + y * job.lit_pitch),
-          min{job.min[0], job.min[1]},
-          max{job.max[0], job.max[1]} {
-        for (std::size_t k = 0; k < Numerators; ++k) {
-            base[k] = job.numerator[k].base + y * job.numerator[k].dy;
-            out[k] = job.out[k] + y * job.pitch[k];
-        }
+        : RowOutputs<Numerators>(job, y), q(job.q.base + y * job.q.dy) {
+        for (std::size_t k = 0; k < Numerators; ++k) base[k] = job.numerator[k].base + y * job.numerator[k].dy;
     }
 };
 
@@ -30,7 +52,7 @@ struct TileRow {
 
 // Stores one vector of coordinates from out[k] + x on, and its mask from lit + x on.
 template <std::size_t Numerators, class Vector>
-TEXGEN_INLINE void store_all(const TileRow<Numerators>& row, int x, const Vector (&value)[Numerators]) noexcept {
+TEXGEN_INLINE void store_all(const RowOutputs<Numerators>& row, int x, const Vector (&value)[Numerators]) noexcept {
     for (std::size_t k = 0; k < Numerators; ++k) store(row.out[k] + x, value[k]);
     if constexpr (Numerators == 2)
         if (row.lit != nullptr)
@@ -51,12 +73,12 @@ TEXGEN_INLINE void store_lanes(float* to, const float* from, std::size_t count) 
 
 // The same as store_all() for these.
 template <std::size_t Numerators, class Vector>
-TEXGEN_INLINE void store_first(const TileRow<Numerators>& row, int x, int count,
+TEXGEN_INLINE void store_first(const RowOutputs<Numerators>& row, int x, int count,
                                const Vector (&value)[Numerators]) noexcept {
     constexpr std::size_t size = sizeof(Vector) / sizeof(float);
     const auto lanes_left = static_cast<std::size_t>(count);
     float buffer[Numerators + 1][size]{};
-    TileRow<Numerators> buffered = row;
+    RowOutputs<Numerators> buffered = row;
     for (std::size_t k = 0; k < Numerators; ++k) buffered.out[k] = buffer[k];
     if (row.lit != nullptr) buffered.lit = buffer[Numerators];
     store_all(buffered, 0, value);
@@ -121,18 +143,15 @@ TEXGEN_INLINE TileJob::Unit divide_units(const TileJob& job, TileJob::Unit unit)
     return unit;
 }
 
-// The job is copied, here and below, so that the compiler knows that no store changes it.
 template <class = void>
-TileJob::Unit divide_nearest(const TileJob& original, TileJob::Unit first) noexcept {
-    const TileJob job = original;
+TileJob::Unit divide_nearest(const TileJob& job, TileJob::Unit first) noexcept {
     if (job.q_is_constant)
         return job.numerators == 2 ? divide_units<true, true, 2>(job, first) : divide_units<true, true, 1>(job, first);
     return job.numerators == 2 ? divide_units<false, true, 2>(job, first) : divide_units<false, true, 1>(job, first);
 }
 
 template <class = void>
-void divide_rounded(const TileJob& original) noexcept {
-    const TileJob job = original;
+void divide_rounded(const TileJob& job) noexcept {
     const TileJob::Unit first = job.unit_at(0, 0);
     if (job.numerators == 2)
         divide_units<false, false, 2>(job, first);
@@ -147,11 +166,11 @@ void divide_rounded(const TileJob& original) noexcept {
 // and 1 / (1 + x) = (1 - x) (1 + x^2) (1 + x^4) ..., which has a relative error of x^(2^n) after n factors: a line, a
 // parabola and on, until a division is cheaper.
 //
-// With h the largest |i|, X = |b| h <= 1/2 and 1/(1 - X) <= 1 + 2 X, no |d i / (1 + x)| is above D = h |d| (1 + 2 X). In
-// float, u = 2^-24, b and x change 1/(1 + x) by 2 u X/(1 - X) <= 2 u and are rounded with it, four roundings make the
-// rest of the factors (X <= 1/4 there) or the division, and the product with d: 8 u D cover them all with d's own; the
-// middle and the sum are rounded once each, 2 u (|u| + D) - of which one D is counted. Subnormals add less than 2^-116.
-// The doubles add (e_F + (|u| + D) e_Q) / Q.
+// With h the largest |i|, X = |b| h <= 3/4 and S = 1 + X + 4 X^2 >= 1/(1 - X), no step |d i / (1 + x)| is above
+// D = h |d| S. In float, with r = 2^-24, the roundings of b and of x change 1/(1 + x) by at most 2 r X/(1 - X), which is 6 r
+// where there is a division (its sum and quotient add 2 r), and 1 r where X <= 1/4 and there are factors (whose products
+// and sums add 3.5 r); d and its product add 2 r. Less than 11 r D, and the roundings of u and of the last sum,
+// 2 r |u| + r D. Subnormals, or what is flushed to zero, add less than 2^-116; the doubles (e_F + (|u| + D) e_Q) / Q.
 inline constexpr int divided = 4, refused = 5;
 
 TEXGEN_INLINE int chunks_of_row(const TileJob& job) noexcept { return (job.width - 1) / job.chunk + 1; }
@@ -172,9 +191,9 @@ struct ChunkGroup {
         const double per_row = chunks_of_row(job);
         const double rows_per_chunk = 1.0 / per_row;
         for (int i = 0; i < count; i += lanes) {
-            // The nearest integer to number / per_row - (per_row - 1) / (2 per_row) is the quotient rounded down.
+            // Half of one more keeps the quotient away from the integers.
             const Doubles number = indices<Doubles>() + static_cast<double>(chunk + i);
-            const Doubles row = (number * rows_per_chunk - (0.5 - 0.5 * rows_per_chunk) + 0x1.8p52) - 0x1.8p52;
+            const Doubles row = truncated((number + 0.5) * rows_per_chunk);
             const Doubles begin = (number - row * per_row) * length;
             const Doubles half = (minimum(begin + length, Doubles{} + width) - begin) * 0.5 - 0.5;
             const Doubles at_x = begin + half;
@@ -185,7 +204,7 @@ struct ChunkGroup {
             const Doubles bends = reciprocal * job.q.dx;
             store(&bend[i], to_floats(bends));
             const Doubles extents = magnitude(bends) * half;
-            const Doubles stretch = extents * 2.0 + 1.0;
+            const Doubles stretch = (extents * 4.0 + 1.0) * extents + 1.0;
             if (job.factors == TileJob::any_factors) {
                 store(&extent[i], extents);
                 store(&least_q[i], (q - q * extents) - job.least_q);
@@ -199,7 +218,7 @@ struct ChunkGroup {
                 const Doubles size_of_u = magnitude(u);
                 const Doubles size_of_step = magnitude(d) * half * stretch;
                 store(&reach[k][i], size_of_step);
-                store(&room[k][i], (job.tolerance - 0x1p-116) - (size_of_u * 0x2.002p-24 + size_of_step * 0x8.008p-24) -
+                store(&room[k][i], (job.tolerance - 0x1p-116) - (size_of_u * 0x2.002p-24 + size_of_step * 0xc.00cp-24) -
                                        ((size_of_u + size_of_step) * job.q_error + job.numerator_error[k]) *
                                            (reciprocal * stretch) * 1.001);
             }
@@ -213,7 +232,7 @@ struct ChunkGroup {
             for (std::size_t k = 0; k < Numerators; ++k) all = all && error * reach[k][i] <= room[k][i];
             return all;
         };
-        if (!(extent[i] <= 0.5 && least_q[i] > 0.0 && fits(0.0))) return refused;
+        if (!(extent[i] <= 0.75 && least_q[i] > 0.0 && fits(0.0))) return refused;
         if (!(extent[i] <= 0.25)) return divided;
         double error = extent[i];
         for (int n = 0; n < divided; ++n, error *= error)
@@ -236,50 +255,67 @@ TEXGEN_INLINE WideFloats bent(const WideFloats& i, const WideFloats& bend) noexc
     return result;
 }
 
-// Chunk i of the group: fragments begin to end of the row.
+// A chunk of a row, counted from the left.
+struct ChunkPlace {
+    int chunk, y;
+    int per_row;
+
+    TEXGEN_INLINE bool advance() noexcept {
+        const bool is_last = ++chunk == per_row;
+        chunk = is_last ? 0 : chunk;
+        y += is_last ? 1 : 0;
+        return is_last;
+    }
+};
+
+// Chunks first to last of the group.
 template <int Factors, std::size_t Numerators>
-TEXGEN_INLINE void evaluate(const ChunkGroup<Numerators>& group, int i, const TileRow<Numerators>& row, int begin,
-                            int end) noexcept {
-    const WideFloats bend = WideFloats{} + group.bend[i];
-    WideFloats middle[Numerators], slope[Numerators];
-    for (std::size_t k = 0; k < Numerators; ++k) {
-        middle[k] = WideFloats{} + group.middle[k][i];
-        slope[k] = WideFloats{} + group.slope[k][i];
-    }
-    WideFloats value[Numerators];
-    const auto evaluate_at = [&](const WideFloats& index) {
-        const WideFloats step = bent<Factors>(index, bend);
-        for (std::size_t k = 0; k < Numerators; ++k) value[k] = step * slope[k] + middle[k];
-    };
-    const float half = 0.5f * static_cast<float>(end - begin - 1);
-    const auto index_at = [&](int x) { return indices<WideFloats>() + (static_cast<float>(x - begin) - half); };
-    int x = begin;
-    // Two vectors a turn, so that their indices do not wait for one another.
-    WideFloats index = index_at(x);
-    WideFloats next_index = index_at(x + wide_lanes);
-    for (; x <= end - 2 * wide_lanes; x += 2 * wide_lanes) {
-        evaluate_at(index);
-        store_all(row, x, value);
-        evaluate_at(next_index);
-        store_all(row, x + wide_lanes, value);
-        index += static_cast<float>(2 * wide_lanes);
-        next_index += static_cast<float>(2 * wide_lanes);
-    }
-    if (x == end) return;
-    // A last vector that is not full overlaps the one before it, or is stored in part.
-    if (x > begin && x + wide_lanes > end) {
-        x = end - wide_lanes;
-        index = index_at(x);
-    }
-    evaluate_at(index);
-    if (x + wide_lanes <= end) {
-        store_all(row, x, value);
-        if (x + wide_lanes == end) return;
-        x = end - wide_lanes;
-        evaluate_at(index_at(x));
-        store_all(row, x, value);
-    } else {
-        store_first(row, x, end - x, value);
+TEXGEN_INLINE void evaluate(const ChunkGroup<Numerators>& group, int first, int last, const TileJob& job,
+                            ChunkPlace& place) noexcept {
+    const int width = job.width;
+    const int longest = job.chunk;
+    RowOutputs<Numerators> row(job, place.y);
+    int length = 0;
+    WideFloats first_index{};
+    for (int i = first; i < last; ++i) {
+        const int begin = place.chunk * longest;
+        const int end = begin + longest < width ? begin + longest : width;
+        if (end - begin != length) {
+            length = end - begin;
+            first_index = indices<WideFloats>() - 0.5f * static_cast<float>(length - 1);
+        }
+        const WideFloats bend = WideFloats{} + group.bend[i];
+        WideFloats middle[Numerators], slope[Numerators];
+        for (std::size_t k = 0; k < Numerators; ++k) {
+            middle[k] = WideFloats{} + group.middle[k][i];
+            slope[k] = WideFloats{} + group.slope[k][i];
+        }
+        WideFloats value[Numerators];
+        const auto evaluate_at = [&](const WideFloats& index) {
+            const WideFloats step = bent<Factors>(index, bend);
+            for (std::size_t k = 0; k < Numerators; ++k) value[k] = step * slope[k] + middle[k];
+        };
+        int x = begin;
+        WideFloats index = first_index;
+        // Two vectors a turn, so that their indices do not wait for one another.
+        WideFloats next_index = index + static_cast<float>(wide_lanes);
+        for (; x <= end - 2 * wide_lanes; x += 2 * wide_lanes) {
+            evaluate_at(index);
+            store_all(row, x, value);
+            evaluate_at(next_index);
+            store_all(row, x + wide_lanes, value);
+            index += static_cast<float>(2 * wide_lanes);
+            next_index += static_cast<float>(2 * wide_lanes);
+        }
+        // What a last vector writes beyond the chunk is written again by those that follow.
+        for (; x < end; x += wide_lanes, index = next_index) {
+            evaluate_at(index);
+            if (x + wide_lanes <= row.writable)
+                store_all(row, x, value);
+            else
+                store_first(row, x, end - x, value);
+        }
+        if (place.advance()) row.advance();
     }
 }
 
@@ -287,52 +323,46 @@ TEXGEN_INLINE void evaluate(const ChunkGroup<Numerators>& group, int i, const Ti
 // the empty unit if there are none. The next call starts after them.
 template <std::size_t Numerators>
 TEXGEN_INLINE TileJob::Unit divide_chunks_of(const TileJob& job, const TileJob::Unit& first) noexcept {
-    const int width = job.width;
-    const int length = job.chunk;
-    const int height = job.height;
-    const int per_row = chunks_of_row(job);
-    const int all_factors = job.factors;
+    ChunkPlace place{first.x_begin / job.chunk, first.y_begin, chunks_of_row(job)};
     ChunkGroup<Numerators> group;
-    int chunk = first.x_begin / length;
-    int y = first.y_begin;
-    while (y < height) {
-        const std::int64_t left = static_cast<std::int64_t>(height - y) * per_row - chunk;
+    const int height = job.height;
+    while (place.y < height) {
+        const std::int64_t left = static_cast<std::int64_t>(height - place.y) * place.per_row - place.chunk;
         const int count = left < group.size ? static_cast<int>(left) : group.size;
-        group.fill(job, y, chunk, count);
-        for (int i = 0; i < count; ++i) {
-            const TileRow<Numerators> row(job, y);
-            const int begin = chunk * length;
-            const int end = begin + length < width ? begin + length : width;
-            switch (all_factors == TileJob::any_factors ? group.factors(i) : all_factors) {
+        group.fill(job, place.y, place.chunk, count);
+        for (int i = 0; i < count;) {
+            // As many as the same factors serve.
+            int factors = job.factors;
+            int last = count;
+            if (factors == TileJob::any_factors) {
+                factors = group.factors(i);
+                for (last = i + 1; last < count && group.factors(last) == factors;) ++last;
+            }
+            switch (factors) {
                 case 0:
-                    evaluate<0>(group, i, row, begin, end);
+                    evaluate<0>(group, i, last, job, place);
                     break;
                 case 1:
-                    evaluate<1>(group, i, row, begin, end);
+                    evaluate<1>(group, i, last, job, place);
                     break;
                 case 2:
-                    evaluate<2>(group, i, row, begin, end);
+                    evaluate<2>(group, i, last, job, place);
                     break;
                 case 3:
-                    evaluate<3>(group, i, row, begin, end);
+                    evaluate<3>(group, i, last, job, place);
                     break;
                 case divided:
-                    evaluate<divided>(group, i, row, begin, end);
+                    evaluate<divided>(group, i, last, job, place);
                     break;
                 default: {
-                    int last = i;
-                    while (last + 1 < count && (per_row == 1 || chunk + (last - i) + 1 < per_row) &&
-                           group.factors(last + 1) == refused)
-                        ++last;
-                    if (per_row == 1) return {0, width, y, y + (last - i) + 1};
-                    const int end_of_last = (chunk + (last - i) + 1) * length;
-                    return {begin, end_of_last < width ? end_of_last : width, y, y + 1};
+                    if (place.per_row == 1) return {0, job.width, place.y, place.y + (last - i)};
+                    const int in_row =
+                        place.chunk + (last - i) < place.per_row ? place.chunk + (last - i) : place.per_row;
+                    const int end = in_row * job.chunk;
+                    return {place.chunk * job.chunk, end < job.width ? end : job.width, place.y, place.y + 1};
                 }
             }
-            if (++chunk == per_row) {
-                chunk = 0;
-                ++y;
-            }
+            i = last;
         }
     }
     return {0, 0, height, height};
@@ -476,6 +506,7 @@ TEXGEN_INLINE std::size_t divide_points_nearest_of(const PointJob& job, std::siz
     return job.count;
 }
 
+// The job is copied, here and below, so that the compiler knows that no store changes it.
 template <class = void>
 std::size_t divide_points_nearest(const PointJob& original, std::size_t first) noexcept {
     const PointJob job = original;

@@ -23,13 +23,15 @@
 
 namespace texgen::detail {
 
-// A linear function over a rectangle of fragments: base at its first fragment.
-struct Ramp {
-    double base, dx, dy;
+// Linear functions over a rectangle of fragments: base at its first fragment.
+template <class Number>
+struct RampOf {
+    Number base, dx, dy;
 };
+using Ramp = RampOf<double>;
 
-// numerator[k] / q over a rectangle; out[k] for k < numerators, and lit (or null) from the
-// closed region. Rows of the outputs are pitch apart.
+// numerator[k] / q over a rectangle; out[k] for k < numerators, and lit (or null) from the closed region. Rows of the
+// outputs are pitch apart; those of an output that only the mask needs are one and the same.
 struct TileJob {
     int numerators;
     int width, height;
@@ -44,9 +46,10 @@ struct TileJob {
     double least_q;  // below it no certificate holds
     double tolerance;
     float* out[2];
-    std::ptrdiff_t pitch[2];
+    bool is_scratch[2];
     float* lit;
-    std::ptrdiff_t lit_pitch;
+    std::ptrdiff_t pitch;
+    bool is_contiguous;    // rows follow one another in all outputs
     float min[2], max[2];  // the region
 
     // The job is done, checked and resumed in units of about 64 fragments: a part of a row, or several short rows.
@@ -66,15 +69,6 @@ struct TileJob {
         return unit.x_end < width ? unit_at(unit.x_end, unit.y_begin) : unit_at(0, unit.y_end);
     }
     bool is_done(const Unit& unit) const noexcept { return unit.y_begin >= height; }
-
-    // A factor that the numerators and q share is free.
-    void scale(double factor) noexcept {
-        const auto scaled = [factor](const Ramp& ramp) {
-            return Ramp{ramp.base * factor, ramp.dx * factor, ramp.dy * factor};
-        };
-        for (int k = 0; k < numerators; ++k) numerator[k] = scaled(numerator[k]);
-        q = scaled(q);
-    }
 };
 
 // A linear form of points (x, y, z, 1).
@@ -197,6 +191,29 @@ struct FootprintKernels {
 
 #define TEXGEN_BUILD build_scalar
 #define TEXGEN_INLINE inline
+
+namespace texgen::detail {
+
+// Two doubles at a time, for s and t. Laid out as those below.
+struct alignas(16) Pair {
+    double lane[2];
+
+    double operator[](std::size_t i) const noexcept { return lane[i]; }
+    friend Pair operator-(const Pair& a) noexcept { return {{-a.lane[0], -a.lane[1]}}; }
+    friend Pair operator+(const Pair& a, const Pair& b) noexcept { return {{a[0] + b[0], a[1] + b[1]}}; }
+    friend Pair operator-(const Pair& a, const Pair& b) noexcept { return {{a[0] - b[0], a[1] - b[1]}}; }
+    friend Pair operator*(const Pair& a, const Pair& b) noexcept { return {{a[0] * b[0], a[1] * b[1]}}; }
+    friend Pair operator+(const Pair& a, double b) noexcept { return {{a[0] + b, a[1] + b}}; }
+    friend Pair operator*(const Pair& a, double b) noexcept { return {{a[0] * b, a[1] * b}}; }
+    friend Pair operator/(const Pair& a, double b) noexcept { return {{a[0] / b, a[1] / b}}; }
+};
+inline Pair pair_of(double first, double second) noexcept { return {{first, second}}; }
+inline Pair magnitude(const Pair& a) noexcept { return {{magnitude(a[0]), magnitude(a[1])}}; }
+inline Pair smaller(const Pair& a, const Pair& b) noexcept { return {{smaller(a[0], b[0]), smaller(a[1], b[1])}}; }
+inline Pair larger(const Pair& a, const Pair& b) noexcept { return {{larger(a[0], b[0]), larger(a[1], b[1])}}; }
+
+}  // namespace texgen::detail
+
 #define TEXGEN_ISA scalar
 #include "loops.inc.hpp"
 
@@ -253,6 +270,17 @@ const Table& chosen() noexcept {
 #else
 #define TEXGEN_EIGHT_DOUBLES(values) __builtin_ia32_cvtps2pd512_mask(values, Doubles{}, char{-1}, 4)
 #endif
+
+namespace texgen::detail {
+
+// Two doubles at a time, for s and t.
+using Pair [[gnu::vector_size(16)]] = double;
+TEXGEN_INLINE Pair pair_of(double first, double second) noexcept { return Pair{first, second}; }
+TEXGEN_INLINE Pair smaller(const Pair& a, const Pair& b) noexcept { return a < b ? a : b; }
+TEXGEN_INLINE Pair larger(const Pair& a, const Pair& b) noexcept { return a > b ? a : b; }
+TEXGEN_INLINE Pair magnitude(const Pair& a) noexcept { return larger(a, -a); }
+
+}  // namespace texgen::detail
 
 // Vector arguments never cross a call that is not inlined, so their calling convention does not matter.
 #pragma GCC diagnostic push

@@ -92,6 +92,10 @@ TEXGEN_INLINE WideFloats in_double(const Function& f, const Vector&... values) n
     return to_floats(f(to_doubles(values)...));
 }
 
+TEXGEN_INLINE Doubles truncated(const Doubles& values) noexcept {
+    return Doubles::of([&](int i) { return static_cast<double>(static_cast<int>(values.lane[i])); });
+}
+
 using LongWords = Words;
 TEXGEN_INLINE LongWords greater(const Doubles& a, double b) noexcept {
     return LongWords::of([&](int i) { return a.lane[i] > b ? -1 : 0; });

@@ -12,7 +12,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <optional>
 
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
@@ -56,12 +55,14 @@ inline std::size_t offset_in(const FragmentRect& rect, std::int64_t x, std::int6
 // F(p) = base + (p - a) . (dx, dy), about the first vertex: far from the origin of the window nothing cancels that does
 // not cancel in the triangle itself. `magnitude` is the same with the absolute values of all terms: it bounds the
 // rounding errors.
-struct Plane {
-    Ramp value;
-    Ramp magnitude;
-
-    bool is_constant() const noexcept { return value.dx == 0.0 && value.dy == 0.0; }
+template <class Number>
+struct PlaneOf {
+    RampOf<Number> value;
+    RampOf<Number> magnitude;
 };
+using Plane = PlaneOf<double>;
+
+inline bool is_constant(const Plane& plane) noexcept { return plane.value.dx == 0.0 && plane.value.dy == 0.0; }
 
 // The derivatives of f/q by x and y, times Q^2, as functions of p - a. With mu_ij = (f_i q_j - f_j q_i) times the weights
 // of i and j, and twice the signed area,
@@ -78,30 +79,42 @@ struct Slope {
 
 class TrianglePlanes {
 public:
-    // Empty where a number is not finite, a clip_w is not positive, or the area is zero (decided exactly).
-    static std::optional<TrianglePlanes> of(const Triangle& triangle) noexcept {
-        const TrianglePlanes planes(triangle);
-        return is_usable(triangle.a) && is_usable(triangle.b) && is_usable(triangle.c) && planes.orientation_ != 0
-                   ? std::optional(planes)
-                   : std::nullopt;
+    explicit TrianglePlanes(const Triangle& triangle) noexcept
+        : triangle_(triangle), a_(window(triangle.a)), to_b_(window(triangle.b) - a_), to_c_(window(triangle.c) - a_) {
+        const double left = to_b_.x * to_c_.y;
+        const double right = to_b_.y * to_c_.x;
+        const Bounded area{left - right, gamma(4) * (std::fabs(left) + std::fabs(right))};
+        orientation_ = std::fabs(area.value) > area.error ? (area.value > 0.0 ? 1 : -1) : exact_area().sign();
+        area_ = area.value;
+        const double a = orientation_ * widened(triangle.a.clip_w);
+        const double b = widened(triangle.b.clip_w);
+        const double c = widened(triangle.c.clip_w);
+        weight_[0] = orientation_ * (b * c);
+        weight_[1] = a * c;
+        weight_[2] = a * b;
+        // The common factor is free: with this one F is about as large as its f, and products of several stay in range.
+        const double largest_weight =
+            larger(larger(std::fabs(weight_[0]), std::fabs(weight_[1])), std::fabs(weight_[2]));
+        const double factor = reciprocal_power_of_two((std::fabs(left) + std::fabs(right)) * largest_weight);
+        for (double& weight : weight_) weight *= factor;
     }
 
-    // The plane of one coordinate, 0 to 3 for s, t, r, q.
+    // False where a number is not finite, a clip_w is not positive, or the area is zero (decided exactly): then nothing
+    // that follows means anything.
+    bool is_usable() const noexcept {
+        return is_usable(triangle_.a) && is_usable(triangle_.b) && is_usable(triangle_.c) && orientation_ != 0;
+    }
+
+    // The plane of one coordinate, 0 to 3 for s, t, r, q, and of two.
     Plane plane(glm::length_t coordinate) const noexcept {
-        const auto corner = [&](const WindowVertex& vertex, double weight) {
-            return widened(vertex.strq[coordinate]) * weight;
+        const auto corner = [&](const WindowVertex& vertex) { return widened(vertex.strq[coordinate]); };
+        return plane_through(corner(triangle_.a), corner(triangle_.b), corner(triangle_.c));
+    }
+    PlaneOf<Pair> planes(glm::length_t first, glm::length_t second) const noexcept {
+        const auto corner = [&](const WindowVertex& vertex) {
+            return pair_of(widened(vertex.strq[first]), widened(vertex.strq[second]));
         };
-        const double a = corner(triangle_.a, weight_[0]);
-        const double b = corner(triangle_.b, weight_[1]);
-        const double c = corner(triangle_.c, weight_[2]);
-        const double b_minus_a = b - a;
-        const double c_minus_a = c - a;
-        const double b_and_a = std::fabs(b) + std::fabs(a);
-        const double c_and_a = std::fabs(c) + std::fabs(a);
-        return {{a * area_, b_minus_a * to_c_.y - c_minus_a * to_b_.y, c_minus_a * to_b_.x - b_minus_a * to_c_.x},
-                {std::fabs(a) * (std::fabs(to_b_.x * to_c_.y) + std::fabs(to_b_.y * to_c_.x)),
-                 b_and_a * std::fabs(to_c_.y) + c_and_a * std::fabs(to_b_.y),
-                 c_and_a * std::fabs(to_b_.x) + b_and_a * std::fabs(to_c_.x)}};
+        return plane_through(corner(triangle_.a), corner(triangle_.b), corner(triangle_.c));
     }
 
     // The slope of one coordinate, 0 to 2 for s, t, r. Each mu carries 3 u: products of two floats are exact, so s and t
@@ -158,18 +171,21 @@ public:
     const glm::dvec2& to_c() const noexcept { return to_c_; }
 
     // F at fragment (tile.x + i, tile.y + j) as a function of i and j.
-    Ramp ramp(const Plane& plane, const Tile& tile) const noexcept {
+    template <class Number>
+    RampOf<Number> ramp(const PlaneOf<Number>& plane, const Tile& tile) const noexcept {
         const glm::dvec2 p = from_a(tile);
-        return {plane.value.base + (p.x * plane.value.dx + p.y * plane.value.dy), plane.value.dx, plane.value.dy};
+        return {plane.value.base + (plane.value.dx * p.x + plane.value.dy * p.y), plane.value.dx, plane.value.dy};
     }
 
     // A bound on the error of ramp() at every fragment of the tile, its index applied in any order. With u = 2^-53 the
     // c_i carry 2 u, a difference of points 1 u, the gradients 6 u of their magnitude and the base 8 u; multiplying by
     // p - a adds 2 u, by the index 1 u, and the sums 4 u: 20 u of the magnitude cover them.
-    double error(const Plane& plane, const Tile& tile) const noexcept {
+    template <class Number>
+    Number error(const PlaneOf<Number>& plane, const Tile& tile) const noexcept {
         const glm::dvec2 p = from_a(tile);
-        return gamma(20) * (plane.magnitude.base + (std::fabs(p.x) + tile.width) * plane.magnitude.dx +
-                            (std::fabs(p.y) + tile.height) * plane.magnitude.dy);
+        return (plane.magnitude.base + plane.magnitude.dx * (std::fabs(p.x) + tile.width) +
+                plane.magnitude.dy * (std::fabs(p.y) + tile.height)) *
+               gamma(20);
     }
 
     // F at one fragment.
@@ -197,24 +213,22 @@ public:
     }
 
 private:
-    explicit TrianglePlanes(const Triangle& triangle) noexcept
-        : triangle_(triangle), a_(window(triangle.a)), to_b_(window(triangle.b) - a_), to_c_(window(triangle.c) - a_) {
-        const double left = to_b_.x * to_c_.y;
-        const double right = to_b_.y * to_c_.x;
-        const Bounded area{left - right, gamma(4) * (std::fabs(left) + std::fabs(right))};
-        orientation_ = std::fabs(area.value) > area.error ? (area.value > 0.0 ? 1 : -1) : exact_area().sign();
-        area_ = area.value;
-        const double a = orientation_ * widened(triangle.a.clip_w);
-        const double b = widened(triangle.b.clip_w);
-        const double c = widened(triangle.c.clip_w);
-        weight_[0] = orientation_ * (b * c);
-        weight_[1] = a * c;
-        weight_[2] = a * b;
-        // The common factor is free: with this one F is about as large as its f, and products of several stay in range.
-        const double largest_weight =
-            larger(larger(std::fabs(weight_[0]), std::fabs(weight_[1])), std::fabs(weight_[2]));
-        const double factor = reciprocal_power_of_two((std::fabs(left) + std::fabs(right)) * largest_weight);
-        for (double& weight : weight_) weight *= factor;
+    // The plane through values at the corners.
+    template <class Number>
+    PlaneOf<Number> plane_through(const Number& at_a, const Number& at_b, const Number& at_c) const noexcept {
+        const Number a = at_a * weight_[0];
+        const Number b = at_b * weight_[1];
+        const Number c = at_c * weight_[2];
+        const Number b_minus_a = b - a;
+        const Number c_minus_a = c - a;
+        const Number b_and_a = magnitude(b) + magnitude(a);
+        const Number c_and_a = magnitude(c) + magnitude(a);
+        const double b_x = std::fabs(to_b_.x);
+        const double b_y = std::fabs(to_b_.y);
+        const double c_x = std::fabs(to_c_.x);
+        const double c_y = std::fabs(to_c_.y);
+        return {{a * area_, b_minus_a * to_c_.y - c_minus_a * to_b_.y, c_minus_a * to_b_.x - b_minus_a * to_c_.x},
+                {magnitude(a) * (b_x * c_y + b_y * c_x), b_and_a * c_y + c_and_a * b_y, c_and_a * b_x + b_and_a * c_x}};
     }
 
     static glm::dvec2 window(const WindowVertex& vertex) noexcept {

@@ -30,6 +30,7 @@ inline constexpr double unit_roundoff_double = 0x1p-53;
 // The smaller and the larger of two, b where one is a NaN. Unlike std::fmin and std::fmax these are one instruction.
 constexpr double smaller(double a, double b) noexcept { return a < b ? a : b; }
 constexpr double larger(double a, double b) noexcept { return a > b ? a : b; }
+inline double magnitude(double a) noexcept { return std::fabs(a); }
 
 // The larger of two, and a NaN if either is one: for what must never be taken for small.
 constexpr double larger_or_nan(double a, double b) noexcept { return a > b || !(a == a) ? a : b; }

@@ -46,6 +46,11 @@ TEXGEN_INLINE WideFloats in_double(const Function& f, const Vector&... values) n
                   std::make_integer_sequence<int, wide_lanes>());
 }
 
+// Towards zero, of numbers that an int can hold.
+TEXGEN_INLINE Doubles truncated(const Doubles& values) noexcept {
+    return __builtin_convertvector(__builtin_convertvector(values, Words), Doubles);
+}
+
 // Masks of Doubles are 64 bits wide.
 using LongWords [[gnu::vector_size(TEXGEN_LANE_BYTES)]] = long long;
 TEXGEN_INLINE LongWords greater(const Doubles& a, double b) noexcept { return a > b; }
