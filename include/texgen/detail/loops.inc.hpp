@@ -46,6 +46,9 @@ struct Lanes {
     friend Lanes operator-(T a, const Lanes& b) noexcept {
         return of([&](int i) { return a - b.lane[i]; });
     }
+    friend Lanes operator/(const Lanes& a, const Lanes& b) noexcept {
+        return of([&](int i) { return a.lane[i] / b.lane[i]; });
+    }
     friend Lanes operator/(T a, const Lanes& b) noexcept {
         return of([&](int i) { return a / b.lane[i]; });
     }
