@@ -99,8 +99,8 @@ struct SideOfBound {
     bool all_below[2], all_above[2];
 };
 
-// The float that is written may be on the other side of the bound than the exact value, by an ulp or by the tolerance:
-// so the answer must hold with that much slack.
+// The float that is written may be on the other side of the bound than the exact value, by an ulp, by the tolerance (or
+// twice that: see detail/rounding.hpp), or as a 0 that was subnormal: so the answer must hold with that much slack.
 inline SideOfBound side_of(const Corners& at, const Pair& bound, double tolerance) noexcept {
     Pair g[4];
     for (std::size_t i = 0; i < 4; ++i) g[i] = at.numerator[i] - bound * at.q[i];
@@ -108,7 +108,7 @@ inline SideOfBound side_of(const Corners& at, const Pair& bound, double toleranc
     const Pair least = smaller(smaller(g[0], g[1]), smaller(g[2], g[3])) * slightly_less;
     const Pair largest = larger(larger(g[0], g[1]), larger(g[2], g[3])) * slightly_less;
     const Pair size = magnitude(bound);
-    const Pair slack = size * 0x1p-22 + (0x1p-148 + tolerance);
+    const Pair slack = size * 0x1p-22 + (0x1p-125 + 2.0 * tolerance);
     const double q = larger(std::fabs(at.least_q), std::fabs(at.largest_q));
     const Pair margin = (at.numerator_error + (size + slack) * at.q_error + slack * q + size * (gamma(4) * q)) * 1.0001;
     return {{largest[0] < -margin[0], largest[1] < -margin[1]}, {least[0] > margin[0], least[1] > margin[1]}};

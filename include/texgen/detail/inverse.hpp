@@ -66,13 +66,13 @@ private:
         return sum;
     }
 
-    // The same and a bound on its error: one rounding, four sums within 2^-104 of the terms, and products that underflow.
+    // The same and a bound on its error: one rounding, four sums within 2^-102 of the terms, and products that underflow.
     static Bounded bounded_dot(const double* row, const Square& matrix, int column, double start) noexcept {
         const double value = dot(row, matrix, column, start).high;
         double magnitude = std::fabs(start);
         for (std::size_t k = 0; k < 4; ++k)
             magnitude += std::fabs(row[k]) * std::fabs(matrix[k][static_cast<std::size_t>(column)]);
-        return {value, gamma(2) * std::fabs(value) + 0x1p-101 * magnitude + 0x1p-1000};
+        return {value, gamma(2) * std::fabs(value) + 0x1p-99 * magnitude + 0x1p-1000};
     }
 
     bool equilibrate() noexcept;

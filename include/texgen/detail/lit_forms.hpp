@@ -82,6 +82,9 @@ public:
 
     // In float, scaled by powers of two so that one bound serves all. With u = 2^-24 a coefficient is rounded (1 u), as are
     // its product (1 u) and at most three sums (3 u): 5 u (max|a_j| size + |d|), and 0.1 u for the bound's own roundings.
+    // In other directions a rounding is up to 2 u. But a sign is only wrong where the terms cancel: half of their
+    // magnitudes is then the most that is left to either of the first two sums, and the last one is small: 2 u for
+    // coefficients and for products, 1 u for each of the two.
     // |a_j| and |d| are so small that nothing overflows before the size does. What holds with room for the inner sides
     // holds for both, so one bound has that room, too.
     // A form is worth as much as it changes within the scene. How large that is, the distances of the sides from the
@@ -110,8 +113,8 @@ public:
             if (k < side_count) narrowing = larger(narrowing, scale * narrowing_[k]);
         }
         if (!(largest_d < 0x1p100)) largest_d = infinity;  // nothing is certain
-        const double error_a = 5.1 * unit_roundoff_float * largest_a + 1.1 * narrowing * largest_q_;
-        const double error_d = 5.1 * unit_roundoff_float * largest_d + 1.1 * narrowing * std::fabs(rows_[2][3]);
+        const double error_a = 6.1 * unit_roundoff_float * largest_a + 1.1 * narrowing * largest_q_;
+        const double error_d = 6.1 * unit_roundoff_float * largest_d + 1.1 * narrowing * std::fabs(rows_[2][3]);
         result.error_per_size = static_cast<float>(error_a + 0x1p-100);
         result.error = static_cast<float>(error_d + 0x1p-100);
         return result;
