@@ -2,7 +2,7 @@ cmake_minimum_required(VERSION 3.25)
 
 # Builds and runs the project beside this file in DIRECTORY, with texgen from SOURCE by the WAY:
 #   subdirectory      add_subdirectory()
-#   subdirectory_glm  the same where the system has no GLM: it is fetched (here from a stand-in, which needs no network)
+#   subdirectory_glm  the same where the system has no GLM: it is fetched (here OTHER_GLM or a stand-in, offline)
 #   package           find_package() after an installation that was moved
 #   fetched           FetchContent from a repository, where no package is installed
 #   fetched_package   the same project where one is: nothing is fetched
@@ -92,9 +92,13 @@ elseif(WAY STREQUAL header_unit)
     run(${DIRECTORY}/header_unit)
 
 elseif(WAY STREQUAL subdirectory_glm)
-    file(WRITE ${DIRECTORY}/glm/CMakeLists.txt
-        "add_library(glm INTERFACE)\nadd_library(glm::glm-header-only ALIAS glm)\n")
-    build_project(-DSUBDIRECTORY=${SOURCE} -DFETCHCONTENT_SOURCE_DIR_GLM=${DIRECTORY}/glm)
+    set(glm ${OTHER_GLM})
+    if(NOT glm)
+        set(glm ${DIRECTORY}/glm)
+        file(WRITE ${glm}/CMakeLists.txt
+            "add_library(glm INTERFACE)\nadd_library(glm::glm-header-only ALIAS glm)\n")
+    endif()
+    build_project(-DSUBDIRECTORY=${SOURCE} -DFETCHCONTENT_SOURCE_DIR_GLM=${glm})
 
 elseif(WAY STREQUAL package)
     install_to(${DIRECTORY}/prefix)
