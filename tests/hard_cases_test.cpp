@@ -15,10 +15,15 @@
 #include "support/hex.hpp"
 #include "support/json.hpp"
 #include "support/oracle.hpp"
+#include "support/random.hpp"
+#include "support/rational_matrix.hpp"
+#include "texgen/fixed_function.hpp"
 #include "texgen/interpolate.hpp"
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
 #include "texgen/reference.hpp"
+#include "texgen/scene.hpp"
+#include "texgen/skip.hpp"
 #include "texgen/texcoord.hpp"
 
 namespace {
@@ -61,13 +66,16 @@ Rational as_rational(const Json& json) {
     return Rational(negative ? support::Integer(-numerator) : numerator, denominator);
 }
 
+const texgen::TextureRegion everywhere = texgen::atlas_tile({-1e300, -1e300}, {1e300, 1e300});
+const texgen::TextureRegion open_everywhere = texgen::atlas_tile({-HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, HUGE_VAL});
+
 struct Divided {
     float s, lit;
 };
 
 Divided at(const Segment& segment, float alpha) {
     Divided result{-7.0f, -7.0f};
-    texgen::interpolate(segment, {&alpha, 1}, texgen::atlas_tile({-1e300, -1e300}, {1e300, 1e300}),
+    texgen::interpolate(segment, {&alpha, 1}, everywhere,
                         {.s = {&result.s, 1}, .t = {}, .r = {}, .lit = {&result.lit, 1}});
     return result;
 }
@@ -98,6 +106,12 @@ void cu(const Json& json) {
     const bool in_front = json["q_sign"].number() > 0.0;
     CHECK((exact[3] > 0) == in_front);
     CHECK(computed.s == (in_front ? as_float(json["f32"]) : 0.0f));
+    if (in_front && std::isfinite(computed.s)) {
+        CHECK(work(segment, everywhere) != texgen::Work::nothing);
+        const Rational error = support::magnitude(exactly(computed.s) - reference::quotient(exact)[0]);
+        const double bound = error_bound(segment).x;
+        if (std::isfinite(bound)) CHECK(error <= exactly(bound));
+    }
     CHECK(computed.lit == (in_front && std::isfinite(computed.s) ? 1.0f : 0.0f));
 }
 
@@ -138,9 +152,15 @@ void dot4(const Json& json) {
     const Rational half_ulp = support::power_of_two(support::ulp_exponent<float>(exact) - 1);
     CHECK(support::magnitude(exactly(strq.w) - exact) <= half_ulp + slack);
     Divided projected{-7.0f, -7.0f};
-    texgen::project(texture_from_object, points, texgen::atlas_tile({-1e300, -1e300}, {1e300, 1e300}),
+    texgen::project(texture_from_object, points, everywhere,
                     {.s = {&projected.s, 1}, .t = {}, .r = {}, .lit = {&projected.lit, 1}});
+    CHECK(support::magnitude(exactly(strq.w) - exact) <= exactly(generate_error_bound(texture_from_object, points).w));
     const bool in_front = json["sign"].number() > 0.0;
+    CHECK((coverage(texture_from_object, open_everywhere, texgen::Box{point, point}) == texgen::Coverage::outside) !=
+          in_front);
+    if (in_front && std::isfinite(projected.s))
+        CHECK(support::magnitude(exactly(projected.s) - 1 / exact) <=
+              exactly(project_error_bound(texture_from_object, points).x));
     CHECK(projected.s == (in_front ? support::nearest<float>(1 / exact) : 0.0f));
     CHECK(projected.lit == (in_front && std::isfinite(projected.s) ? 1.0f : 0.0f));
 }
@@ -174,14 +194,16 @@ void tri(const Json& json) {
     const auto exact = reference::strq(triangle, exactly(centre.x), exactly(centre.y));
     CHECK(reference::quotient(exact)[0] == as_rational(json["exact_hex_rational"]));
     const texgen::FragmentRect pixel{static_cast<int>(std::floor(px)), static_cast<int>(std::floor(py)), 1, 1};
-    const auto region = texgen::atlas_tile({-1e300, -1e300}, {1e300, 1e300});
     float by_reference = -7.0f, fast = -7.0f;
-    reference::interpolate(triangle, region, pixel, {.s = {&by_reference, 1}, .t = {}, .r = {}, .lit = {}});
-    const auto setup = texgen::TriangleSetup::of(triangle, region);
+    reference::interpolate(triangle, everywhere, pixel, {.s = {&by_reference, 1}, .t = {}, .r = {}, .lit = {}});
+    const auto setup = texgen::TriangleSetup::of(triangle, everywhere);
     REQUIRE(setup);
     texgen::interpolate(*setup, pixel, {.s = {&fast, 1}, .t = {}, .r = {}, .lit = {}});
     CHECK(by_reference == as_float(json["f32"]));
     CHECK(fast == as_float(json["f32"]));
+    CHECK(setup->work(pixel) != texgen::Work::nothing);
+    CHECK(support::magnitude(exactly(fast) - as_rational(json["exact_hex_rational"])) <=
+          exactly(setup->error_bound(pixel).x));
 }
 
 void eyeplane(const Json& json) {
@@ -191,7 +213,21 @@ void eyeplane(const Json& json) {
     for (int column = 0; column < 4; ++column) rows[column] = glm::dvec4(plane[column]);
     const auto stored = eye_planes_as_stored(texgen::ObjectTexgen(rows), modelview);
     REQUIRE(stored.has_value() != json["singular"].is_true());
-    if (!stored) return;
+    texgen::TexGenUnit unit;
+    const glm::mat4 in_float(modelview.rounded());
+    REQUIRE(unit.set_eye_plane(texgen::Coordinate::s, plane, in_float) == stored.has_value());
+    const glm::dvec4 bound = unit.eye_plane_error_bound(texgen::Coordinate::s, plane, in_float);
+    if (!stored) {
+        CHECK(std::isinf(bound.x));
+        return;
+    }
+    for (int k = 0; k < 4; ++k) {
+        const double kept = static_cast<double>(unit.eye_plane(texgen::Coordinate::s)[k]);
+        CHECK(unit.eye_plane(texgen::Coordinate::s)[k] == as_float(json["f32"][static_cast<std::size_t>(k)]));
+        // f64 is rounded itself.
+        const double exact = json["f64"][static_cast<std::size_t>(k)].number();
+        CHECK(std::fabs(kept - exact) <= bound[k] + 0x1p-52 * std::fabs(exact));
+    }
     double largest = 0.0;
     for (std::size_t k = 0; k < 4; ++k) largest = std::max(largest, std::fabs(json["f64"][k].number()));
     for (const glm::vec4& row : texgen::planes(*stored))
@@ -249,6 +285,12 @@ void te_from_poses(const Json& json) {
     const glm::dmat4 terms = s * magnitudes(projector->projection.matrix()) * magnitudes(projector->view.matrix()) *
                              magnitudes(pose.matrix());
     check_matrix(t_e.matrix(), terms, 24.0, json);
+    texgen::Scene scene;
+    const texgen::ModelMatrix model(glm::dmat4(1.0));
+    const texgen::Box bounds{glm::vec3(-1.0f), glm::vec3(1.0f)};
+    scene.update({.models = {&model, 1}, .bounds = {&bounds, 1}, .projectors = {&*projector, 1}}, {});
+    CHECK(scene.update_eye(pose) == 1);
+    check_matrix(scene.eye_texgens()[0].matrix(), terms, 24.0, json);
 }
 
 void perspective(const Json& json) {
@@ -283,6 +325,18 @@ void lookat(const Json& json) {
             CHECK(std::fabs(view->matrix()[column][row] - exact) <= 4.0 * 0x1p-52 * (column < 3 ? 1.0 : distance));
         }
     }
+    // And back: the pose, which is rigid but for the rounding of the view.
+    const auto pose = inverse(*view);
+    REQUIRE(pose);
+    const auto inverted = support::inverse(support::exactly(view->matrix()));
+    REQUIRE(inverted);
+    const glm::dmat4 bound = inverse_error_bound(*view, *pose);
+    for (int row = 0; row < 4; ++row) {
+        for (int column = 0; column < 4; ++column) {
+            const Rational& element = (*inverted)[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)];
+            CHECK(support::magnitude(exactly(pose->matrix()[column][row]) - element) <= exactly(bound[column][row]));
+        }
+    }
 }
 
 // How far a line through the divided ends is from the divided segment, at its worst of n steps: option (3) against (2).
@@ -301,6 +355,21 @@ void affine_dev(const Json& json) {
         worst = std::max(worst, support::magnitude(right - line));
     }
     CHECK(worst == as_rational(json["exact_hex_rational"]));
+
+    // A segment under half that tolerance is divided.
+    const Segment segment{{as_float(in["N0"]), 0, 0, as_float(in["Q0"])},
+                          {as_float(in["N1"]), 0, 0, as_float(in["Q1"])}};
+    const texgen::Tolerance tolerance{0.5 * support::nearest<double>(worst)};
+    std::vector<float> alpha, s(static_cast<std::size_t>(steps + 1));
+    for (int i = 0; i <= steps; ++i) alpha.push_back(support::to_float(static_cast<double>(i) / steps));
+    texgen::interpolate(segment, alpha, everywhere, {.s = s, .t = {}, .r = {}, .lit = {}}, tolerance);
+    for (std::size_t i = 0; i < alpha.size(); ++i) {
+        const Rational right = reference::quotient(reference::strq(segment, exactly(alpha[i])))[0];
+        const Rational error = support::magnitude(exactly(s[i]) - right);
+        CHECK(error <= std::max(exactly(tolerance.value),
+                                Rational(support::power_of_two(support::ulp_exponent<float>(right) - 1))));
+        CHECK(error <= exactly(error_bound(segment, tolerance).x));
+    }
 }
 
 }  // namespace
