@@ -51,7 +51,7 @@ public:
         return {1.0, range == DepthRange::negative_one_to_one ? 1.0 : 0.0, 0.0};
     }
     // In front of the eye, w > 0: the smallest float is the first.
-    static ClipDistance from_eye() noexcept { return {0.0, 1.0, std::numeric_limits<float>::denorm_min()}; }
+    static ClipDistance from_eye() noexcept { return {0.0, 1.0, widened(std::numeric_limits<float>::denorm_min())}; }
 
     double operator()(const ClipVertex& vertex) const noexcept {
         return z_ * widened(vertex.position.z) + w_ * widened(vertex.position.w) - offset_;
@@ -182,7 +182,7 @@ inline std::size_t clip_to_near(std::span<const ClipVertex> polygon, std::span<C
     // The terms of w are at most 2^20 of it, so that double errs by 2^-33 of it and the nearest float is the w aimed at;
     // for the same reason z stays in front of the near plane, as that of both ends is.
     const auto cut_before_eye = [](const ClipVertex& inside, const ClipVertex& outside) {
-        const float w = detail::just_in_front(inside.position.w);
+        const double w = detail::widened(detail::just_in_front(inside.position.w));
         return detail::between(w - detail::widened(outside.position.w), inside, detail::widened(inside.position.w) - w,
                                outside);
     };
@@ -373,7 +373,7 @@ inline std::size_t clip_to_slide(std::span<const ClipVertex> polygon, TextureReg
     }
     const auto in_front = [](const ClipVertex& v) { return v.strq.w > 0.0f ? 1 : -1; };
     const auto cut_before_projector = [](const ClipVertex& inside, const ClipVertex& outside) {
-        const float q = detail::just_in_front(inside.strq.w);
+        const double q = detail::widened(detail::just_in_front(inside.strq.w));
         return detail::between(q, inside, detail::widened(inside.strq.w) - q, outside);
     };
     return detail::cut_edges(out, count, in_front, cut_before_projector);

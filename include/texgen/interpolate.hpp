@@ -594,7 +594,7 @@ inline Bounded mixed(double a, double b, double alpha) noexcept {
 
 // One value of a job, every decision exact.
 inline void interpolate_one(const SegmentJob& job, std::size_t i) noexcept {
-    const double alpha = job.alpha[i];
+    const double alpha = widened(job.alpha[i]);
     const auto exact_q = [&] { return exactly_mixed(job.q_a, job.q_b, alpha); };
     const Bounded q = mixed(job.q_a, job.q_b, alpha);
     const bool in_front = certain_sign(q, exact_q) > 0;
