@@ -438,6 +438,40 @@ TEST_CASE("coverage and scenes answer as in the default state, or leave it open"
     });
 }
 
+TEST_CASE("what is outside is not lit, and what is inside is, in every direction of rounding") {
+    in_every_state([](const FloatState& state, Random& random) {
+        int outside = 0, inside = 0, lit_beside = 0;
+        for (int i = 0; i < 5000; ++i) {
+            const double side = random.coin() ? random.uniform(-2.0, 2.0) : random.integer(-1, 1);
+            const bool is_min = random.coin();
+            const TextureRegion region =
+                is_min ? texgen::atlas_tile({side, 0.0}, {4.0, 1.0}) : texgen::atlas_tile({-4.0, 0.0}, {side, 1.0});
+            // s = x + offset, about a float of the side.
+            const glm::vec3 point(support::neighbour(support::to_float(side), random.integer(-1, 1)), 0.0f, 0.0f);
+            glm::dmat4 matrix(0.0);
+            matrix[0][0] = 1.0;
+            matrix[3] = {random.uniform(-1.5, 1.5) * 0x1p-23 * std::fabs(side), 0.5, 0.0, 1.0};
+            const ObjectTexgen texgen(matrix);
+            Outputs out(1);
+            Coverage answer = Coverage::partial;
+            under(state, [&] {
+                project(texgen, texgen::object_space(std::span(&point, 1)), region, out.spans());
+                answer = coverage(texgen, region, Box{point, point});
+            });
+            const double s = static_cast<double>(point.x) + matrix[3][0];
+            const bool is_lit = out.lit()[0] == 1.0f;
+            lit_beside += is_lit && (is_min ? s < side : s > side);
+            outside += answer == Coverage::outside;
+            inside += answer == Coverage::inside;
+            if (answer != Coverage::partial)
+                REQUIRE_MESSAGE(is_lit == (answer == Coverage::inside), hex(point), hex(matrix), hex(side));
+        }
+        CHECK(outside > 300);
+        CHECK(inside > 300);
+        CHECK(lit_beside > 100);
+    });
+}
+
 TEST_CASE("a scene misses no pair that it has in the default state") {
     in_every_state([](const FloatState& state, Random& random) {
         std::size_t pairs = 0;

@@ -30,7 +30,7 @@ namespace texgen {
 enum class Work { nothing, affine, quadratic, divide, divide_and_test };
 
 // What the slide is to a body. A point is lit where q > 0 and (s, t) is in the closed region, as real numbers or as the
-// floats nearest to them, which project() and interpolate() look at.
+// floats that they are rounded to, which project() looks at.
 //   outside  no point of the closed body is lit, in either way
 //   partial  neither of the others, or not provably one of them
 //   inside   all points are lit, in both ways
@@ -260,11 +260,11 @@ inline namespace TEXGEN_BUILD {
 
 // The points that a slide lights, prepared once for many questions: what the functions below prepare at every call.
 // Guarantee: `outside` and `inside` are never false: they hold for the exact values of the matrix, the region and the body
-// as they are given, and for `lit` of project() with `exact`, whose s and t are rounded: by half an ulp a point beside the
-// region is lit, and `partial`. (What a tolerance moves across a side is not looked for here.) A box is `partial` only where
-// it is so, or touches a plane through an edge or through the apex of the projector's pyramid within 2^-48 of the sizes
-// involved; the pyramid's own planes are decided exactly. A batch answers as the single question does. No allocation,
-// noexcept.
+// as they are given, and for `lit` of project() with `exact`, whose s and t are rounded: within a float of a side a body is
+// `partial`. (What a tolerance moves across a side is not looked for here.) A box is `partial` only where it is so, or
+// touches a plane through an edge or through the apex of the projector's pyramid within 2^-48 of the sizes involved; the
+// pyramid's own planes, with its sides at the floats next to the region's, are decided exactly. A batch answers as the
+// single question does. No allocation, noexcept.
 // Shape: bodies of Space, in order; both spans have one size (asserted).
 // Bad input: a NaN anywhere in a body, or a matrix that is not finite: partial. A box with min > max in some axis, a
 // sphere with a negative radius, an empty region (see TextureRegion) or a q that is 0 everywhere: outside. Exponents so

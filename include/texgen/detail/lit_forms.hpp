@@ -170,16 +170,18 @@ private:
             const bool is_min = k % 2 == 0;
             const double side = (is_min ? min : max)[static_cast<glm::length_t>(k / 2)];
             const double size = std::fabs(side);
-            if (side == (is_min ? -infinity : infinity)) {
-                side_[k] = side;
-                weight_[k] = inner_weight_[k] = {0.0, 1.0};
-            } else if (size == 0.0 || (size >= 0x1p-200 && size <= 0x1p200)) {
-                const auto weight = [is_min](double u) { return is_min ? Weight{1.0, -u} : Weight{-1.0, u}; };
+            const double none = is_min ? -infinity : infinity;
+            if (side == none || size == 0.0 || (size >= 0x1p-200 && size <= 0x1p200)) {
                 const RoundedSide rounded = is_min ? RoundedSide::of_min(side) : RoundedSide::of_max(side);
+                const auto weight = [&](double u) {
+                    if (u == none) return Weight{0.0, 1.0};
+                    if (u == -none) return Weight{0.0, -1.0};
+                    return is_min ? Weight{1.0, -u} : Weight{-1.0, u};
+                };
                 side_[k] = rounded.outer;
                 weight_[k] = weight(rounded.outer);
-                inner_weight_[k] = is_finite(rounded.inner) ? weight(rounded.inner) : Weight{0.0, -1.0};
-                narrowing_[k] = std::fabs(rounded.inner - rounded.outer);
+                inner_weight_[k] = weight(rounded.inner);
+                narrowing_[k] = side == none ? 0.0 : std::fabs(rounded.inner - rounded.outer);
             } else {
                 return false;
             }

@@ -24,12 +24,6 @@ inline bool rounds_alone(double value, double error) noexcept {
     return low == high;
 }
 
-// A float as a number: beyond the largest stands 2^128.
-inline double unbounded(float value) noexcept {
-    return std::fabs(value) < std::numeric_limits<float>::infinity() ? static_cast<double>(value)
-                                                                     : std::copysign(0x1p128, value);
-}
-
 // The float nearest to numerator / denominator, ties to even; infinity beyond the range. denominator > 0.
 template <std::size_t N, std::size_t D>
 float nearest_quotient(const Expansion<N>& numerator, const Expansion<D>& denominator) noexcept {
@@ -42,6 +36,10 @@ float nearest_quotient(const Expansion<N>& numerator, const Expansion<D>& denomi
     if (low == high) return low;
     // Two neighbours are left. Their middle is a double (beyond the largest float stands 2^128), and the sign of
     // numerator - middle * denominator decides.
+    const auto unbounded = [](float value) {
+        return std::fabs(value) < std::numeric_limits<float>::infinity() ? static_cast<double>(value)
+                                                                         : std::copysign(0x1p128, value);
+    };
     const double middle = 0.5 * unbounded(low) + 0.5 * unbounded(high);
     Expansion<N + 2 * D> remainder;
     for (std::size_t i = 0; i < numerator.count(); ++i) remainder.add(numerator.term(i));
@@ -91,19 +89,18 @@ inline float float_at_least(double bound) noexcept {
     return static_cast<double>(nearest) < bound ? -float_before(-nearest) : nearest;
 }
 
-// What rounding makes of a side of a region. A number beyond `outer` is not inside the side, nor is the float nearest to
-// it; one not beyond `inner` is, and so is its float: with f the first float that is inside, `outer` is the middle of f
-// and the float before it, or the side itself where it is farther out, and `inner` is f, as rounding keeps the order.
-// Next to 0 both leave room for subnormal floats that count as 0. An infinite side stays where it is.
+// What rounding makes of a side of a region. A number beyond `outer` is not inside the side, nor is the float that it is
+// rounded to, in whichever direction; one not beyond `inner` is, and so is its float: they are the last float outside and
+// the first one inside, as rounding keeps the order and keeps floats. Next to 0 both leave room for subnormal floats that
+// count as 0. An infinite side stays where it is; one beyond all floats has no `outer`, as what is rounded towards 0 is inside.
 struct RoundedSide {
     double outer, inner;
 
     static RoundedSide of_min(double min) noexcept {
         if (!(std::fabs(min) < std::numeric_limits<double>::infinity())) return {min, min};
         const float first = float_at_least(min);
-        const double middle = 0.5 * unbounded(float_before(first)) + 0.5 * unbounded(first);
         if (std::fabs(min) < 0x1p-126) return {-0x1p-126, first > 0.0f ? 0x1p-126 : static_cast<double>(first)};
-        return {smaller(middle, min), static_cast<double>(first)};
+        return {static_cast<double>(float_before(first)), static_cast<double>(first)};
     }
     static RoundedSide of_max(double max) noexcept {
         const RoundedSide mirrored = of_min(-max);
