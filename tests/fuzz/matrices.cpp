@@ -55,6 +55,10 @@ void inverses(Input& input) {
                         "the inverse of a scaled matrix is scaled");
         }
     }
+    if (result) {
+        const glm::dmat4 bound = inverse_error_bound(texgen::ModelMatrix(m), *result);
+        for (int k = 0; k < 16; ++k) must(bound[k / 4][k % 4] >= 0.0, "an error bound is no NaN, and not negative");
+    }
     const auto planes = eye_planes_as_stored(texgen::ObjectTexgen(input.wide_matrix()), texgen::ModelviewMatrix(m));
     must(!planes || all_finite(planes->matrix()), "stored planes are finite");
     must(!planes || all_finite(m), "nothing is stored under what is not finite");

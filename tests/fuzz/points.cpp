@@ -118,6 +118,17 @@ bool is_judged(const glm::dmat4& matrix, const glm::vec3& point) {
     return fuzz::all_finite(matrix) && fuzz::all_finite(point) && glm::dmat4(glm::mat4(matrix)) == matrix;
 }
 
+// What is in front is within its bound of the exact value, where that is finite.
+void require_within(const Outputs& out, std::size_t i, const support::Homogeneous& at, const glm::dvec2& bound) {
+    for (std::size_t k = 0; k < 2 && at.q.sign() > 0; ++k) {
+        if (!out.asked(k) || !std::isfinite(bound[static_cast<int>(k)])) continue;
+        must(std::isfinite(out[k][i]), "where a bound is finite there is a number");
+        const support::Quotient u = at.over_q(k);
+        const support::Dyadic error = magnitude(support::Dyadic(static_cast<double>(out[k][i])) * u.d - u.n);
+        must(error <= support::Dyadic(bound[static_cast<int>(k)]) * u.d, "no error is larger than its bound");
+    }
+}
+
 void project_points(Input& input) {
     const glm::dmat4 matrix = input.coin() ? glm::dmat4(input.matrix()) : input.wide_matrix();
     const ObjectTexgen texgen(matrix);
@@ -136,7 +147,10 @@ void project_points(Input& input) {
     must(out.pads_are_intact(), "project writes its outputs only");
     if (count == 0) return;
 
+    const glm::dvec2 bound = project_error_bound(texgen, texgen::object_space(points), tolerance);
+    must(bound.x >= 0.0 && bound.y >= 0.0, "an error bound is no NaN, and not negative");
     for (const std::size_t i : {judged[0] % count, judged[1] % count}) {
+        if (is_judged(matrix, points[i])) require_within(out, i, support::exactly_at(matrix, points[i]), bound);
         Outputs alone(1, asked);
         project(texgen, texgen::object_space(std::span(&points[i], 1)), region, alone.spans(), texgen::exact);
         if (!(tolerance.value > 0.0) && has_promised_bits(matrix))
@@ -198,9 +212,14 @@ void generate_points(Input& input) {
     if (!is_judged(matrix, points[i])) return;
 
     // |value - exact| <= 1/2 ulp + 2^-50 sum |T_ij v_j|.
+    const glm::dvec4 bound = generate_error_bound(texgen, texgen::object_space(std::span(&points[i], 1)));
     const support::Homogeneous exact = support::exactly_at(matrix, points[i]);
     const support::Dyadic values[4] = {exact.s, exact.t, exact.r, exact.q};
     for (int k = 0; k < 4; ++k) {
+        if (std::isfinite(bound[k]))
+            must(std::isfinite(alone[k]) &&
+                     magnitude(support::Dyadic(static_cast<double>(alone[k])) - values[k]) <= support::Dyadic(bound[k]),
+                 "no error is larger than its bound");
         support::Dyadic slack = magnitude(support::Dyadic(matrix[3][k]));
         for (int j = 0; j < 3; ++j)
             slack = slack + magnitude(support::Dyadic(matrix[j][k]) * support::Dyadic(points[i][j]));
@@ -229,6 +248,8 @@ void interpolate_segment(Input& input) {
         if (!std::isnan(a)) a = std::clamp(a, 0.0f, 1.0f);
     interpolate(segment, alpha, region, out.spans(), tolerance);
     must(out.pads_are_intact(), "interpolate writes its outputs only");
+    const glm::dvec2 bound = error_bound(segment, tolerance);
+    must(bound.x >= 0.0 && bound.y >= 0.0, "an error bound is no NaN, and not negative");
     if (count == 0) return;
     for (const std::size_t i : {judged[0] % count, judged[1] % count}) {
         Outputs alone(1, asked);
@@ -238,6 +259,7 @@ void interpolate_segment(Input& input) {
             require_same(out, i, alone, "a value's bits are those that it has alone");
         if (out.asked(3)) must(out.lit()[i] == 0.0f || out.lit()[i] == 1.0f, "lit is 0 or 1");
         if (std::isnan(alpha[i]) && out.asked(3)) must(out.lit()[i] == 0.0f, "an alpha that is NaN is not lit");
+        if (!std::isnan(alpha[i]) && is_finite) require_within(out, i, support::exactly_at(segment, alpha[i]), bound);
         if (!std::isnan(alpha[i]) && is_finite)
             must_be_right(what_is_wrong(support::exactly_at(segment, alpha[i]), region, tolerance, out, i));
     }
