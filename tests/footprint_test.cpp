@@ -735,10 +735,14 @@ TEST_CASE("triangles that double cannot hold the differences of keep their bound
                 REQUIRE_MESSAGE(one->level <= extremes->largest_level, context);
                 const glm::dvec2 bound = setup.error_bound({x, y, 1, 1});
                 const ExactFootprint truth(exact, x, y);
+                Batch out({x, y, 1, 1});
+                REQUIRE(footprint(setup, {x, y, 1, 1}, out.spans()));
                 for (std::size_t c = 0; c < 2; ++c) {
                     const double allowed = bound[static_cast<int>(c)];
                     if (std::isinf(allowed)) continue;
                     ++bounded;
+                    REQUIRE_MESSAGE(distance(out.at(dsdx + c, 0), truth.dx[c]) <= allowed, context);
+                    REQUIRE_MESSAGE(distance(out.at(dsdy + c, 0), truth.dy[c]) <= allowed, context);
                     REQUIRE_MESSAGE(distance(one->dx[static_cast<int>(c)], truth.dx[c]) <= allowed, context);
                     REQUIRE_MESSAGE(distance(one->dy[static_cast<int>(c)], truth.dy[c]) <= allowed, context);
                 }
