@@ -8,8 +8,8 @@
 //
 //   exact       divide in double and round to float with a certificate; a value whose error bound straddles the middle
 //               of two floats is decided exactly. Always the nearest float.                    divide_nearest()
-//   tolerance   in float, along chunks of a row, about the value in the middle: by a line, a parabola, a polynomial of
-//               degree 4 or 8, or a division, the first whose bound fits.                      divide_chunks()
+//   tolerance   in float, along chunks of a row, about the value in the middle: by a polynomial of degree 2, 4 or 8, or
+//               by a division, the first whose bound fits.                                     divide_chunks()
 //   between     where a chunk's bound does not fit: functions in double, rounded and divided in float, if that fits, else
 //               as exact.                                                                      divide_without_chunks()
 //
@@ -244,9 +244,9 @@ inline bool pays_for_chunks(const Tile& tile) noexcept {
     return tile.width >= 16 && static_cast<std::int64_t>(tile.width) * tile.height > 64;
 }
 
-// The fewest factors that serve every chunk of a tile well in front, and the error that they leave: the bound of the
-// kernel with each of its terms at its largest. A step of i is i (F_x Q - F Q_x) / Q^2 by the product of the Q at both ends:
-// the difference is constant along a row.
+// The fewest factors that serve every chunk of a tile well in front, and the error that they leave; less work than a
+// division is said of it then, and affine where none were needed. The bound is that of the kernel with each of its terms at
+// its largest. A step of i is i (F_x Q - F Q_x) over the Q at both of its ends, and that difference is constant along a row.
 inline void choose_factors(Plan& plan, const Corners& at, double tolerance) noexcept {
     const double half = 0.5 * (plan.chunk - 1);
     const double extent = 1.001 * half * std::fabs(at.q_ramp.dx) * at.reciprocal;
@@ -261,13 +261,19 @@ inline void choose_factors(Plan& plan, const Corners& at, double tolerance) noex
         larger(slope_times_q_squared(0), slope_times_q_squared(2)) * (1.001 * half * at.reciprocal * at.reciprocal);
     const Pair rest = largest * 0x2.003p-24 + reach * 0xc.00dp-24 + 0x1p-115 +
                       (at.numerator_error + (largest + reach) * at.q_error) * (1.001 * at.reciprocal);
-    double share = extent;
-    for (int factors = 0; factors <= 3; ++factors, share *= share) {
+    const auto fits = [&](double share) {
         const Pair error = reach * share + rest;
-        if (!(error[0] <= tolerance && error[1] <= tolerance)) continue;
-        plan.factors = factors;
         plan.error[0] = error[0];
         plan.error[1] = error[1];
+        return error[0] <= tolerance && error[1] <= tolerance;
+    };
+    const bool is_affine = fits(extent);
+    double share = extent;
+    for (int factors = 1; factors <= 3; ++factors) {
+        share *= share;
+        if (!fits(share)) continue;
+        plan.factors = factors;
+        if (plan.work != Work::affine) plan.work = is_affine ? Work::affine : Work::quadratic;
         return;
     }
 }
@@ -289,10 +295,6 @@ inline detail::Plan TriangleSetup::plan(const detail::Tile& tile, const detail::
     plan.chunk = detail::chunk_length(at, tile.width);
     if (!at.well_in_front()) return plan;
     detail::choose_factors(plan, at, tolerance_ * (1.0 - 0x1p-18));
-    if (plan.factors == 0)
-        plan.work = Work::affine;
-    else if (plan.factors != detail::TileJob::any_factors && plan.work != Work::affine)
-        plan.work = Work::quadratic;
     return plan;
 }
 
@@ -456,10 +458,12 @@ private:
         const Pair base = at.numerator_ramp.base * factor;
         const Pair dx = at.numerator_ramp.dx * factor;
         const Pair dy = at.numerator_ramp.dy * factor;
-        for (std::size_t k = 0; k < count_; ++k) {
+        // One coordinate alone takes the place of both.
+        for (std::size_t k = 0; k < 2; ++k) {
+            const std::span<float>& output = output_[k < count_ ? k : 0];
             job.numerator[k] = {base[k], dx[k], dy[k]};
-            job.is_scratch[k] = output_[k].empty();
-            job.out[k] = output_[k].empty() ? scratch_[k] : output_[k].data() + offset(tile.x, tile.y);
+            job.is_scratch[k] = output.empty();
+            job.out[k] = output.empty() ? scratch_[k] : output.data() + offset(tile.x, tile.y);
             job.is_contiguous = job.is_contiguous && !job.is_scratch[k];
         }
         if (lit_.empty()) return job;

@@ -60,111 +60,86 @@ TEXGEN_INLINE void store_all(const RowOutputs<Numerators>& row, int x, const Vec
                   one_where(inside(value[0], row.min[0], row.max[0]) & inside(value[1], row.min[1], row.max[1])));
 }
 
-// The first `count` lanes of a vector, fewer than all: nothing beyond them is touched.
-template <std::size_t Width>
-TEXGEN_INLINE void store_lanes(float* to, const float* from, std::size_t count) noexcept {
-    if ((count & Width) != 0) {
-        std::memcpy(to, from, Width * sizeof *from);
-        to += Width;
-        from += Width;
-    }
-    if constexpr (Width > 1) store_lanes<Width / 2>(to, from, count);
-}
-
-// The same as store_all() for these.
+// A whole vector where it may be written, else up to `end`.
 template <std::size_t Numerators, class Vector>
-TEXGEN_INLINE void store_first(const RowOutputs<Numerators>& row, int x, int count,
-                               const Vector (&value)[Numerators]) noexcept {
+TEXGEN_INLINE void store_from(const RowOutputs<Numerators>& row, int x, int end,
+                              const Vector (&value)[Numerators]) noexcept {
     constexpr std::size_t size = sizeof(Vector) / sizeof(float);
-    const auto lanes_left = static_cast<std::size_t>(count);
+    if (x + static_cast<std::int64_t>(size) <= row.writable) return store_all(row, x, value);
     float buffer[Numerators + 1][size]{};
     RowOutputs<Numerators> buffered = row;
     for (std::size_t k = 0; k < Numerators; ++k) buffered.out[k] = buffer[k];
     if (row.lit != nullptr) buffered.lit = buffer[Numerators];
     store_all(buffered, 0, value);
-    for (std::size_t k = 0; k < Numerators; ++k) store_lanes<size / 2>(row.out[k] + x, buffer[k], lanes_left);
-    if (row.lit != nullptr) store_lanes<size / 2>(row.lit + x, buffer[Numerators], lanes_left);
+    for (std::size_t i = 0; i < size && x < end; ++i, ++x) {
+        for (std::size_t k = 0; k < Numerators; ++k) row.out[k][x] = buffer[k][i];
+        if (row.lit != nullptr) row.lit[x] = buffer[Numerators][i];
+    }
 }
 
 // ---- Division in double ----------------------------------------------------------------------------------------
 
 // One vector of quotients from `index` on. With Nearest, marks in `doubtful` where value - error and value + error do
 // not round to one float; else numerators and q are rounded to float and divided there.
-template <bool ConstantQ, bool Nearest, std::size_t Numerators>
+template <bool Nearest, std::size_t Numerators>
 TEXGEN_INLINE void divide_vector(const TileJob& job, const TileRow<Numerators>& row, const Doubles& index,
-                                 const Doubles& reciprocal_of_constant, Floats (&quotient)[Numerators],
-                                 Words& doubtful) noexcept {
+                                 Doubles& reciprocal, Floats (&quotient)[Numerators], Words& doubtful) noexcept {
     if constexpr (Nearest) {
-        Doubles reciprocal = reciprocal_of_constant;
-        if constexpr (!ConstantQ) reciprocal = 1.0 / (index * job.q.dx + row.q);
+        if (!job.q_is_constant) reciprocal = 1.0 / (index * job.q.dx + row.q);
         for (std::size_t k = 0; k < Numerators; ++k) {
             const Doubles value = (index * job.numerator[k].dx + row.base[k]) * reciprocal;
             quotient[k] = to_floats(value - job.quotient_error[k]);
             doubtful |= bits(quotient[k]) ^ bits(to_floats(value + job.quotient_error[k]));
         }
     } else {
-        const Floats reciprocal = 1.0f / to_floats(index * job.q.dx + row.q);
+        const Floats float_reciprocal = 1.0f / to_floats(index * job.q.dx + row.q);
         for (std::size_t k = 0; k < Numerators; ++k)
-            quotient[k] = to_floats(index * job.numerator[k].dx + row.base[k]) * reciprocal;
+            quotient[k] = to_floats(index * job.numerator[k].dx + row.base[k]) * float_reciprocal;
     }
 }
 
-// The units of the job from `unit` on, up to the first one with a doubtful value (it is written all the same). A last
-// vector that is not full overlaps the one before it, or is stored in part.
-template <bool ConstantQ, bool Nearest, std::size_t Numerators>
+// The units of the job from `unit` on, up to the first one with a doubtful value (it is written all the same). What a last
+// vector writes beyond its row is written again by those that follow, and may only cause a doubt too many.
+template <bool Nearest, std::size_t Numerators>
 TEXGEN_INLINE TileJob::Unit divide_units(const TileJob& job, TileJob::Unit unit) noexcept {
-    const Doubles reciprocal = Doubles{} + (ConstantQ ? 1.0 / job.q.base : 0.0);
+    Doubles reciprocal = Doubles{} + 1.0 / job.q.base;
     for (; !job.is_done(unit); unit = job.unit_after(unit)) {
         Words doubtful{};
         for (int y = unit.y_begin; y < unit.y_end; ++y) {
             const TileRow<Numerators> row(job, y);
-            Floats quotient[Numerators];
             Doubles index = indices<Doubles>() + static_cast<double>(unit.x_begin);
+            Floats quotient[Numerators];
             int x = unit.x_begin;
-            for (; x <= unit.x_end - lanes; x += lanes) {
-                divide_vector<ConstantQ, Nearest>(job, row, index, reciprocal, quotient, doubtful);
+            const std::int64_t last = row.writable - lanes;
+            for (; x < unit.x_end && x <= last; x += lanes, index += static_cast<double>(lanes)) {
+                divide_vector<Nearest>(job, row, index, reciprocal, quotient, doubtful);
                 store_all(row, x, quotient);
-                index += static_cast<double>(lanes);
             }
-            if (x == unit.x_end) continue;
-            const int first = unit.x_end >= lanes ? unit.x_end - lanes : 0;
-            index = indices<Doubles>() + static_cast<double>(first);
-            divide_vector<ConstantQ, Nearest>(job, row, index, reciprocal, quotient, doubtful);
-            if (unit.x_end >= lanes)
-                store_all(row, first, quotient);
-            else
-                store_first(row, 0, unit.x_end, quotient);
+            if (x >= unit.x_end) continue;
+            divide_vector<Nearest>(job, row, index, reciprocal, quotient, doubtful);
+            store_from(row, x, unit.x_end, quotient);
         }
-        if (!Nearest || !any(doubtful)) continue;
-        // The overlapping vector may have rewritten the end of the unit before, and the doubt may be there.
-        if (unit.x_end - lanes < unit.x_begin) unit.x_begin = unit.x_end > lanes ? unit.x_end - lanes : 0;
-        break;
+        if (Nearest && any(doubtful)) break;
     }
     return unit;
 }
 
 template <class = void>
 TileJob::Unit divide_nearest(const TileJob& job, TileJob::Unit first) noexcept {
-    if (job.q_is_constant)
-        return job.numerators == 2 ? divide_units<true, true, 2>(job, first) : divide_units<true, true, 1>(job, first);
-    return job.numerators == 2 ? divide_units<false, true, 2>(job, first) : divide_units<false, true, 1>(job, first);
+    return job.numerators == 2 ? divide_units<true, 2>(job, first) : divide_units<true, 1>(job, first);
 }
 
 template <class = void>
 void divide_rounded(const TileJob& job) noexcept {
-    const TileJob::Unit first = job.unit_at(0, 0);
-    if (job.numerators == 2)
-        divide_units<false, false, 2>(job, first);
-    else
-        divide_units<false, false, 1>(job, first);
+    divide_units<false, 2>(job, job.unit_at(0, 0));
 }
 
 // ---- Chunks ----------------------------------------------------------------------------------------------------
 
 // About the middle of a chunk of a row, i fragments from it, F/Q is exactly
 //   u + d i / (1 + x),  u = F/Q and d = (F_x - u Q_x) / Q in the middle,  x = b i, b = Q_x / Q in the middle,
-// and 1 / (1 + x) = (1 - x) (1 + x^2) (1 + x^4) ..., which has a relative error of x^(2^n) after n factors: a line, a
-// parabola and on, until a division is cheaper.
+// and 1 / (1 + x) = (1 - x) (1 + x^2) (1 + x^4) ..., which has a relative error of x^(2^n) after n factors: a
+// parabola and on, until a division is cheaper. (A line saves nothing beside the stores.)
 //
 // With h the largest |i|, X = |b| h <= 3/4 and S = 1 + X + 4 X^2 >= 1/(1 - X), no step |d i / (1 + x)| is above
 // D = h |d| S. In float, with r = 2^-24, the roundings of b and of x change 1/(1 + x) by at most 2 r X/(1 - X), which is 6 r
@@ -175,14 +150,13 @@ inline constexpr int divided = 4, refused = 5;
 
 TEXGEN_INLINE int chunks_of_row(const TileJob& job) noexcept { return (job.width - 1) / job.chunk + 1; }
 
-template <std::size_t Numerators>
 struct ChunkGroup {
     static constexpr int size = 16;
 
     float bend[size];
-    float middle[Numerators][size], slope[Numerators][size];
-    double extent[size], least_q[size];                      // X, and what the least q has above job.least_q
-    double reach[Numerators][size], room[Numerators][size];  // D, and what is left of the tolerance for x^(2^n) D
+    float middle[2][size], slope[2][size];
+    double extent[size], least_q[size];    // X, and what the least q has above job.least_q
+    double reach[2][size], room[2][size];  // D, and what is left of the tolerance for x^(2^n) D
 
     // Of `count` chunks from the given one of row y on.
     TEXGEN_INLINE void fill(const TileJob& job, int y, int chunk, int count) noexcept {
@@ -209,7 +183,7 @@ struct ChunkGroup {
                 store(&extent[i], extents);
                 store(&least_q[i], (q - q * extents) - job.least_q);
             }
-            for (std::size_t k = 0; k < Numerators; ++k) {
+            for (std::size_t k = 0; k < 2; ++k) {
                 const Doubles u = value(job.numerator[k]) * reciprocal;
                 const Doubles d = (u * -job.q.dx + job.numerator[k].dx) * reciprocal;
                 store(&middle[k][i], to_floats(u));
@@ -229,14 +203,16 @@ struct ChunkGroup {
     TEXGEN_INLINE int factors(int i) const noexcept {
         const auto fits = [&](double error) {
             bool all = true;
-            for (std::size_t k = 0; k < Numerators; ++k) all = all && error * reach[k][i] <= room[k][i];
+            for (std::size_t k = 0; k < 2; ++k) all = all && error * reach[k][i] <= room[k][i];
             return all;
         };
         if (!(extent[i] <= 0.75 && least_q[i] > 0.0 && fits(0.0))) return refused;
         if (!(extent[i] <= 0.25)) return divided;
         double error = extent[i];
-        for (int n = 0; n < divided; ++n, error *= error)
+        for (int n = 1; n < divided; ++n) {
+            error *= error;
             if (fits(error)) return n;
+        }
         return divided;
     }
 };
@@ -244,7 +220,6 @@ struct ChunkGroup {
 // i / (1 + i bend), to so many factors.
 template <int Factors>
 TEXGEN_INLINE WideFloats bent(const WideFloats& i, const WideFloats& bend) noexcept {
-    if constexpr (Factors == 0) return i;
     WideFloats x = i * bend;
     if constexpr (Factors == divided) return i / (x + 1.0f);
     WideFloats result = i - i * x;
@@ -269,12 +244,12 @@ struct ChunkPlace {
 };
 
 // Chunks first to last of the group.
-template <int Factors, std::size_t Numerators>
-TEXGEN_INLINE void evaluate(const ChunkGroup<Numerators>& group, int first, int last, const TileJob& job,
+template <int Factors>
+TEXGEN_INLINE void evaluate(const ChunkGroup& group, int first, int last, const TileJob& job,
                             ChunkPlace& place) noexcept {
     const int width = job.width;
     const int longest = job.chunk;
-    RowOutputs<Numerators> row(job, place.y);
+    RowOutputs<2> row(job, place.y);
     int length = 0;
     WideFloats first_index{};
     for (int i = first; i < last; ++i) {
@@ -285,35 +260,23 @@ TEXGEN_INLINE void evaluate(const ChunkGroup<Numerators>& group, int first, int 
             first_index = indices<WideFloats>() - 0.5f * static_cast<float>(length - 1);
         }
         const WideFloats bend = WideFloats{} + group.bend[i];
-        WideFloats middle[Numerators], slope[Numerators];
-        for (std::size_t k = 0; k < Numerators; ++k) {
+        WideFloats middle[2], slope[2];
+        for (std::size_t k = 0; k < 2; ++k) {
             middle[k] = WideFloats{} + group.middle[k][i];
             slope[k] = WideFloats{} + group.slope[k][i];
         }
-        WideFloats value[Numerators];
-        const auto evaluate_at = [&](const WideFloats& index) {
-            const WideFloats step = bent<Factors>(index, bend);
-            for (std::size_t k = 0; k < Numerators; ++k) value[k] = step * slope[k] + middle[k];
-        };
-        int x = begin;
+        // By turns, so that the next index does not wait for this one.
         WideFloats index = first_index;
-        // Two vectors a turn, so that their indices do not wait for one another.
         WideFloats next_index = index + static_cast<float>(wide_lanes);
-        for (; x <= end - 2 * wide_lanes; x += 2 * wide_lanes) {
-            evaluate_at(index);
-            store_all(row, x, value);
-            evaluate_at(next_index);
-            store_all(row, x + wide_lanes, value);
-            index += static_cast<float>(2 * wide_lanes);
-            next_index += static_cast<float>(2 * wide_lanes);
-        }
-        // What a last vector writes beyond the chunk is written again by those that follow.
-        for (; x < end; x += wide_lanes, index = next_index) {
-            evaluate_at(index);
-            if (x + wide_lanes <= row.writable)
-                store_all(row, x, value);
-            else
-                store_first(row, x, end - x, value);
+        for (int x = begin; x < end; x += wide_lanes) {
+            const WideFloats step = bent<Factors>(index, bend);
+            WideFloats value[2];
+            for (std::size_t k = 0; k < 2; ++k) value[k] = step * slope[k] + middle[k];
+            // What a last vector writes beyond the chunk is written again by those that follow.
+            store_from(row, x, end, value);
+            const WideFloats after_next = index + static_cast<float>(2 * wide_lanes);
+            index = next_index;
+            next_index = after_next;
         }
         if (place.advance()) row.advance();
     }
@@ -321,10 +284,10 @@ TEXGEN_INLINE void evaluate(const ChunkGroup<Numerators>& group, int first, int 
 
 // Does the job from `first` on. Stops at chunks that no factors serve and returns them, a part of one row or whole rows;
 // the empty unit if there are none. The next call starts after them.
-template <std::size_t Numerators>
-TEXGEN_INLINE TileJob::Unit divide_chunks_of(const TileJob& job, const TileJob::Unit& first) noexcept {
+template <class = void>
+TileJob::Unit divide_chunks(const TileJob& job, TileJob::Unit first) noexcept {
     ChunkPlace place{first.x_begin / job.chunk, first.y_begin, chunks_of_row(job)};
-    ChunkGroup<Numerators> group;
+    ChunkGroup group;
     const int height = job.height;
     while (place.y < height) {
         const std::int64_t left = static_cast<std::int64_t>(height - place.y) * place.per_row - place.chunk;
@@ -339,9 +302,6 @@ TEXGEN_INLINE TileJob::Unit divide_chunks_of(const TileJob& job, const TileJob::
                 for (last = i + 1; last < count && group.factors(last) == factors;) ++last;
             }
             switch (factors) {
-                case 0:
-                    evaluate<0>(group, i, last, job, place);
-                    break;
                 case 1:
                     evaluate<1>(group, i, last, job, place);
                     break;
@@ -366,11 +326,6 @@ TEXGEN_INLINE TileJob::Unit divide_chunks_of(const TileJob& job, const TileJob::
         }
     }
     return {0, 0, height, height};
-}
-
-template <class = void>
-TileJob::Unit divide_chunks(const TileJob& job, TileJob::Unit first) noexcept {
-    return job.numerators == 2 ? divide_chunks_of<2>(job, first) : divide_chunks_of<1>(job, first);
 }
 
 // ---- Points ----------------------------------------------------------------------------------------------------

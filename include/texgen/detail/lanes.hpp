@@ -30,8 +30,8 @@ struct RampOf {
 };
 using Ramp = RampOf<double>;
 
-// numerator[k] / q over a rectangle; out[k] for k < numerators, and lit (or null) from the closed region. Rows of the
-// outputs are pitch apart; those of an output that only the mask needs are one and the same.
+// numerator[k] / q over a rectangle; out[k], and lit (or null) from the closed region. With one numerator the second is the
+// same again. Rows of the outputs are pitch apart; those of an output that only the mask needs are one and the same.
 struct TileJob {
     int numerators;
     int width, height;

@@ -266,14 +266,11 @@ private:
     void add_corner(Exact& sum, const glm::dvec2& p, float f, const WindowVertex& j, const WindowVertex& k) const {
         const glm::dvec2 first = window(j);
         const glm::dvec2 second = window(k);
-        Expansion<10> edge;
-        edge.add(first.x * second.y);
-        edge.add(-first.y * second.x);
-        edge.add_product(p.x, first.y);
-        edge.add_product(-p.x, second.y);
-        edge.add_product(p.y, second.x);
-        edge.add_product(-p.y, first.x);
-        Expansion<20> weighted;
+        Expansion<12> edge;
+        const double factor[][2] = {{first.x, second.y}, {-first.y, second.x}, {p.x, first.y},
+                                    {-p.x, second.y},    {p.y, second.x},      {-p.y, first.x}};
+        for (const auto& [left, right] : factor) edge.add_product(left, right);
+        Expansion<24> weighted;
         weighted.add_scaled(edge, orientation_ * (widened(j.clip_w) * widened(k.clip_w)));
         sum.add_scaled(weighted, widened(f));
     }
