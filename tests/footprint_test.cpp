@@ -489,6 +489,78 @@ TEST_CASE("a tolerance is kept in units a pixel, and some of it is used") {
     CHECK(differ > 300);
 }
 
+TEST_CASE("a tolerance of a few units of the derivatives is kept, where floats just serve or just do not") {
+    Random random(6350);
+    int in_float = 0, in_double = 0;
+    for (int i = 0; i < 600; ++i) {
+        const Triangle triangle = spread_triangle(random, random.uniform(1.0, 2.0));
+        const FragmentRect pixel = support::pixel_near(triangle, random);
+        const Shot shot{triangle, {pixel.x, pixel.y, 24, 2}};
+        const ExactTriangle exact(triangle);
+        const FootprintSetup strict(setup_of(triangle), {1.0, 1.0});
+        const glm::dvec2 unit = strict.error_bound(shot.rect);
+        if (!std::isfinite(unit.x) || !std::isfinite(unit.y)) continue;
+        const Tolerance tolerance{std::max(unit.x, unit.y) * random.power_of_ten(0.0, 1.5)};
+        const FootprintSetup setup(setup_of(triangle, everywhere(), tolerance), {1.0, 1.0});
+        Batch out(shot.rect), of_exact(shot.rect);
+        if (!footprint(setup, shot.rect, out.spans())) continue;
+        footprint(strict, shot.rect, of_exact.spans());
+        bool differs = false;
+        for (std::size_t o = 0; o < 4; ++o) differs = differs || !same_bits(out[o], of_exact[o]);
+        ++(differs ? in_float : in_double);
+        const glm::dvec2 bound = setup.error_bound(shot.rect);
+        for (std::size_t k = 0; k < count_of(shot.rect); k += 5) {
+            const std::int64_t x = shot.x(static_cast<std::int64_t>(k) % shot.rect.width);
+            const std::int64_t y = shot.y(static_cast<std::int64_t>(k) / shot.rect.width);
+            if (!exact.has_positive_w(x, y) || exact.at(x, y).q.sign() <= 0) continue;
+            const ExactFootprint truth(exact, x, y);
+            for (std::size_t c = 0; c < 2; ++c) {
+                const double error =
+                    std::max(distance(out.at(dsdx + c, k), truth.dx[c]), distance(out.at(dsdy + c, k), truth.dy[c]));
+                REQUIRE_MESSAGE(error <= bound[static_cast<int>(c)], hex(tolerance.value) << " " << hex(shot));
+            }
+        }
+    }
+    CHECK(in_float > 100);
+    CHECK(in_double > 100);
+}
+
+TEST_CASE("where q has few digits left the bound of a derivative has them in it") {
+    // The third corner's q is some units from what would make q 0 at the fragment.
+    Random random(6360);
+    int close = 0;
+    for (int i = 0; i < 20000; ++i) {
+        Triangle triangle = spread_triangle(random, 3.0);
+        const FragmentRect pixel = support::pixel_near(triangle, random);
+        const double x = pixel.x + 0.5, y = pixel.y + 0.5;
+        const auto corner = support::vertices(triangle);
+        double part[3], rest = 0.0;
+        for (std::size_t v = 0; v < 3; ++v) {
+            const WindowVertex &j = *corner[(v + 1) % 3], &k = *corner[(v + 2) % 3];
+            part[v] = ((static_cast<double>(j.window.x) - x) * (static_cast<double>(k.window.y) - y) -
+                       (static_cast<double>(j.window.y) - y) * (static_cast<double>(k.window.x) - x)) /
+                      static_cast<double>(corner[v]->clip_w);
+            if (v < 2) rest += part[v] * static_cast<double>(corner[v]->strq.w);
+        }
+        const double unit = 0x1p-23 * random.integer(-4, 4);
+        triangle.c.strq.w = support::to_float(-rest / part[2] * (1.0 + unit));
+        const FootprintSetup setup(setup_of(triangle), {1.0, 1.0});
+        const glm::dvec2 bound = setup.error_bound(pixel);
+        Batch out(pixel);
+        if (!std::isfinite(bound.x) || !footprint(setup, pixel, out.spans())) continue;
+        const ExactTriangle exact(triangle);
+        if (!exact.has_positive_w(pixel.x, pixel.y) || exact.at(pixel.x, pixel.y).q.sign() <= 0) continue;
+        ++close;
+        const ExactFootprint truth(exact, pixel.x, pixel.y);
+        for (std::size_t c = 0; c < 2; ++c) {
+            const double error =
+                std::max(distance(out.at(dsdx + c, 0), truth.dx[c]), distance(out.at(dsdy + c, 0), truth.dy[c]));
+            if (std::isfinite(error)) REQUIRE_MESSAGE(error <= bound[static_cast<int>(c)], hex(triangle));
+        }
+    }
+    CHECK(close > 1000);
+}
+
 TEST_CASE("only what is asked for is written, the same whatever else is asked for, in any rectangle and alignment") {
     Random random(6400);
     for (int i = 0; i < 300; ++i) {
