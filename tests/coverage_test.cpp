@@ -891,6 +891,20 @@ TEST_CASE(
     CHECK(of(0x1p131, to_there) == Coverage::partial);  // lit where s is rounded towards 0
 }
 
+TEST_CASE("a batch has room for what rounds off the slide where s hardly changes") {
+    // s = 1 + 2^-20 x / z is rounded to 1 next to x = 0, and t = 1/2: only x >= 0 is inside [1, 2].
+    glm::dmat4 matrix(0.0);
+    matrix[0][0] = 0x1p-20;
+    matrix[2] = {1.0, 0.5, 0.0, 1.0};
+    const WorldTexgen transform(matrix);
+    const TextureRegion region = atlas_tile({1.0, 0.0}, {2.0, 1.0});
+    std::vector<Box> boxes;
+    for (const float x : {-0.2f, -0.01f, 0.0f, 0.01f}) boxes.push_back({{x, 0.0f, 1.0f}, {x, 1.0f, 1.5f}});
+    std::vector<Coverage> answers(boxes.size());
+    coverage(transform, region, boxes, answers);
+    CHECK(answers == std::vector{Coverage::outside, Coverage::partial, Coverage::inside, Coverage::inside});
+}
+
 TEST_CASE("what is no body, no slide or no number gets a safe answer") {
     const auto projector = texgen::make_projector(
         texgen::PerspectiveLens{.fovy = degrees(30), .aspect = 1, .z_near = 0.2, .z_far = 1000},

@@ -391,7 +391,7 @@ MUTANTS = [
          ("gamma is that of rounding to nearest", "u = 2.0 * unit_roundoff_double;", "u = unit_roundoff_double;",
           "float_state_test"),
          ("the points' float bound is halved", "forms_in_float{5.01 *", "forms_in_float{2.0 *", "bounds_test texcoord_test"),
-         ("the points' roundings are forgotten", "2.01 * unit_roundoff_float};", "0.0};", "bounds_test texcoord_test"),
+         ("the points' roundings are forgotten", "/ q + roundings * largest;", "/ q;", "texcoord_test bounds_test"),
          ("the points' rounded bound is halved", "4.01 * unit_roundoff_float};", "2.01 * unit_roundoff_float};",
           "bounds_test texcoord_test"),
          ("the points' double bound is forgotten", "forms_in_double{gamma(5),", "forms_in_double{0.0,", "texcoord_test"),
