@@ -2,9 +2,9 @@ cmake_minimum_required(VERSION 3.25)
 include(${CMAKE_CURRENT_LIST_DIR}/compile_cost.cmake)
 
 # What it costs to include each header of texgen and to call its main functions: compiles small programs with COMPILER and
-# writes to OUTPUT lines of name|header|milliseconds|bytes of the object|bytes of its code and constants. A line without a
-# header is one of a header alone, GLM's first; without the program `size` the last field is empty. Where there is no such
-# compiler OUTPUT is empty.
+# writes to OUTPUT lines of name|header|milliseconds|bytes of the object|bytes of its code. A line without a header is one of
+# a header alone, GLM's first; without the program `size` the last field is empty. Where there is no such compiler OUTPUT is
+# empty.
 file(REMOVE_RECURSE ${DIRECTORY})
 file(MAKE_DIRECTORY ${DIRECTORY})
 file(WRITE ${OUTPUT} "")
@@ -81,10 +81,12 @@ foreach(unit IN LISTS units)
     file(SIZE ${object} bytes)
     set(code "")
     if(size)
-        execute_process(COMMAND ${size} ${object} OUTPUT_VARIABLE sections ERROR_QUIET)
-        if(sections MATCHES "\n *([0-9]+)")
-            set(code ${CMAKE_MATCH_1})
-        endif()
+        execute_process(COMMAND ${size} -A ${object} OUTPUT_VARIABLE sections ERROR_QUIET)
+        string(REGEX MATCHALL "\n\\.text[^ ]* +[0-9]+" sections "${sections}")
+        list(TRANSFORM sections REPLACE ".* " "")
+        list(PREPEND sections 0)
+        list(JOIN sections " + " sum)
+        math(EXPR code "${sum}")
     endif()
     file(APPEND ${OUTPUT} "${name_${unit}}|${header_${unit}}|${milliseconds_${unit}}|${bytes}|${code}\n")
 endforeach()

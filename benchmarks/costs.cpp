@@ -82,7 +82,7 @@ std::string html_of(const std::vector<Cost>& costs) {
         "<h2>What it costs to compile</h2>\n<p>A file that includes a header alone, and one that calls a function, "
         "compiled with -O2: the compiler's processor time, the least of some runs in turns; what a header costs as a "
         "multiple of GLM's matrix headers, what a call adds to the header that has it; and the bytes that the object "
-        "gets, of these code and constants. Kernels are in it for each instruction set that the machine may "
+        "gets, of these machine code. Kernels are in it for each instruction set that the machine may "
         "choose.</p>\n"
         "<table>\n<tr><th>file</th><th>seconds</th><th>added</th><th>object kB</th><th>code kB</th></tr>\n";
     for (const Row& row : rows_of(costs))

@@ -12,7 +12,7 @@ struct Cost {
     std::string header;   // of a call, the one that has it; empty for a header alone
     double milliseconds;  // of the compiler's processor time
     double object_bytes;
-    double code_bytes;  // and constants; 0 where it is not known
+    double code_bytes;  // 0 where it is not known
 };
 
 // Lines of name|header|milliseconds|object bytes|code bytes, GLM's headers first; none where nothing could be measured.
