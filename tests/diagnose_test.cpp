@@ -1173,6 +1173,18 @@ TEST_CASE("points on the side of the region are in it, and one point alone has n
     CHECK(diagnose(texgen, {.points = texgen::world_space(on_side)}).empty());
     CHECK(diagnose(texgen, {.points = texgen::world_space(beyond)}).contains(Defect::region_never_hit));
     CHECK(diagnose(texgen, {.points = texgen::world_space(same)}).empty());
+
+    // q = x - y + 2^-60: in front where x = y, by less than the terms' rounding could take.
+    glm::dmat4 close(1.0);
+    close[0][3] = 1.0;
+    close[1][3] = -1.0;
+    close[3][3] = 0x1p-60;
+    const glm::vec3 in_doubt[] = {{1.0f, 1.0f, 0.0f}, {3.0f, 3.0f, 1.0f}};
+    const glm::vec3 behind[] = {{1.0f, 1.5f, 0.0f}, {3.0f, 3.5f, 1.0f}};
+    CHECK_FALSE(diagnose(texgen::WorldTexgen(close), {.points = texgen::world_space(in_doubt)})
+                    .contains(Defect::everything_behind));
+    CHECK(diagnose(texgen::WorldTexgen(close), {.points = texgen::world_space(behind)})
+              .contains(Defect::everything_behind));
 }
 
 TEST_CASE("far from the origin the rounding of float hides no depth range, where the matrix was rounded once") {

@@ -860,6 +860,17 @@ TEST_CASE("a Jacobian of rank 1 or 0, and texels that are none, get what the hea
         CHECK(one->singular_values.y == 0.0);
         CHECK(setup.extremes(rect)->largest_anisotropy == infinity);
     }
+    // t = 3/4 s at every corner, with all the digits that floats have for it: the rank is exact, sums of doubles are not.
+    Random random(6700);
+    for (int i = 0; i < 200; ++i) {
+        Triangle thin = spread_triangle(random, 4.0);
+        for (WindowVertex* vertex : support::vertices(thin)) {
+            vertex->strq.x = static_cast<float>(random.integer(-(1 << 21), 1 << 21)) * 0x1p-20f;
+            vertex->strq.y = 0.75f * vertex->strq.x;
+        }
+        const auto one = FootprintSetup(setup_of(thin), {64.0, 64.0}).at(200, 200);
+        if (one && one->singular_values.x > 0.0) REQUIRE_MESSAGE(one->anisotropy == infinity, hex(thin));
+    }
     for (const double bad : {0.0, -1.0, nan_double, infinity}) {
         const TexelsPerUnit texels = bad > 0.0 ? TexelsPerUnit{bad, 64.0} : TexelsPerUnit{64.0, bad};
         const FootprintSetup setup(setup_of(line), texels), good(setup_of(line), {64.0, 64.0});
