@@ -85,13 +85,15 @@ TEST_CASE("float functions of a segment stay inside the tolerance at every multi
     Random random(6200);
     int cheap = 0;
     for (int i = 0; i < 3000; ++i) {
-        const auto about_one = [&] { return random.uniform_float(1.0, 1.0 + 40.0 * 0x1p-23); };
+        // Ends that are almost one another, or not at all.
+        const double spread = random.coin() ? 40.0 * 0x1p-23 : 1.0;
+        const auto about_one = [&] { return random.uniform_float(1.0, 1.0 + spread); };
         const float s = about_one(), t = about_one();
         const texgen::Segment segment{{s, t, 0.0f, about_one()},
                                       {random.coin() ? s : about_one(), t, 0.0f, about_one()}};
         std::vector<float> alpha(64);
         for (float& a : alpha) a = random.uniform_float(0.0, 1.0);
-        const Tolerance tolerance{random.uniform(2.0, 14.0) * u};
+        const Tolerance tolerance{random.uniform(1.0, 14.0) * u};
         Outputs out(alpha.size()), exact(alpha.size());
         interpolate(segment, alpha, everywhere(), out.spans(), tolerance);
         interpolate(segment, alpha, everywhere(), exact.spans());

@@ -632,14 +632,33 @@ struct SegmentBounds {
     bool is_well_in_front() const noexcept { return q_least > 0x1p-20 * q_largest && q_largest < 0x1p1000; }
 };
 
-// The error of float arithmetic for every alpha in [0, 1]: with u = 2^-24 the five roundings of A - alpha A + alpha B are
-// at most 5 u max(|A|, |B|), and the reciprocal and the product add 2 u. Infinite where a float could leave its range.
-inline double segment_float_error(const SegmentBounds& bounds, int k) noexcept {
-    const bool in_range = bounds.q_least > 0x1p-10 * bounds.q_largest && bounds.q_least > 0x1p-100 &&
-                          bounds.q_largest < 0x1p100 && bounds.numerator[k] < 0x1p100;
-    if (!in_range) return std::numeric_limits<double>::infinity();
-    return bounds.error(k, 5.01 * unit_roundoff_float, 2.01 * unit_roundoff_float) + 0x1p-146 / bounds.q_least +
-           0x1p-149;
+// About the end where q is less, with i the alpha from there, u is exactly
+//   u0 + d i / (1 + b i),  b = (Q1 - Q0) / Q0 >= 0,  d = (u1 - u0) Q1 / Q0,
+// and the step lies between 0 and u1 - u0. With r = 2^-24: 1 - alpha, b, its product and the sum, the product of two sums,
+// its reciprocal, the products with the other sum and with i, d and its product are rounded, 10 r of the step at most; u0 and
+// the last sum once each. Infinite where a float could leave its range.
+inline double segment_float_error(const SegmentJob& job, int k) noexcept {
+    const double u_a = job.a[k] / job.q_a;
+    const double u_b = job.b[k] / job.q_b;
+    const double size_a = std::fabs(u_a);
+    const double size_b = std::fabs(u_b);
+    const double largest = larger_or_nan(size_a, size_b);
+    const double ratio = larger(job.q_a, job.q_b) / smaller(job.q_a, job.q_b);
+    if (!(largest < 0x1p60 && ratio < 0x1p60)) return std::numeric_limits<double>::infinity();
+    return 1.001 * unit_roundoff_float * (2.0 * largest + 11.0 * std::fabs(u_a - u_b)) + 0x1p-120;
+}
+
+inline void prepare_float(SegmentJob& job) noexcept {
+    job.about_b = job.q_b < job.q_a;
+    const double q = job.about_b ? job.q_b : job.q_a;
+    const double far_q = job.about_b ? job.q_a : job.q_b;
+    job.bend = static_cast<float>((far_q - q) / q);
+    for (int k = 0; k < job.numerators; ++k) {
+        const double u = (job.about_b ? job.b[k] : job.a[k]) / q;
+        const double far_u = (job.about_b ? job.a[k] : job.b[k]) / far_q;
+        job.base[k] = static_cast<float>(u);
+        job.slope[k] = static_cast<float>((far_u - u) * (far_q / q));
+    }
 }
 
 // What the segments' kernels need, but for the alphas and the outputs: coordinates `first` and the next.
@@ -658,22 +677,36 @@ inline SegmentJob segment_job(const Segment& segment, int first, int numerators)
 
 inline namespace TEXGEN_BUILD {
 
-// In float where that stays inside the tolerance for the whole segment, else the nearest float: in vectors, and the
-// blocks that those cannot vouch for value by value.
+// The nearest floats from `first` on: in vectors, and the blocks that those cannot vouch for value by value.
+inline void interpolate_nearest(const SegmentKernels& kernels, const SegmentJob& job, std::size_t first) noexcept {
+    for (std::size_t i = kernels.divide_nearest(job, first); i < job.count; i = kernels.divide_nearest(job, i)) {
+        const std::size_t block_end = (i / nearest_block + 1) * nearest_block;
+        for (; i < job.count && i < block_end; ++i) interpolate_one(job, i);
+    }
+}
+
+// In float where that stays inside the tolerance for the whole segment, else the nearest float.
 inline void interpolate_job(const SegmentKernels& kernels, SegmentJob job, double tolerance) noexcept {
     if (job.q_a > 0.0 && job.q_b > 0.0) {
         const SegmentBounds bounds(job);
         bool float_fits = tolerance > 0.0;
-        for (int k = 0; k < job.numerators; ++k) float_fits = float_fits && segment_float_error(bounds, k) <= tolerance;
-        if (float_fits) return kernels.divide_float(job);
+        for (int k = 0; k < job.numerators; ++k) float_fits = float_fits && segment_float_error(job, k) <= tolerance;
         job.in_front = bounds.is_well_in_front();
         for (int k = 0; k < job.numerators; ++k)
             job.quotient_error[k] = bounds.error(k, gamma(4), 4.0 * unit_roundoff_double);
+        if (float_fits) {
+            prepare_float(job);
+            const std::size_t count = job.count;
+            for (std::size_t i = kernels.divide_float(job, 0); i < count; i = kernels.divide_float(job, i)) {
+                job.count = count - i < float_block ? count : i + float_block;
+                interpolate_nearest(kernels, job, i);
+                i = job.count;
+                job.count = count;
+            }
+            return;
+        }
     }
-    for (std::size_t i = kernels.divide_nearest(job, 0); i < job.count; i = kernels.divide_nearest(job, i)) {
-        const std::size_t block_end = (i / nearest_block + 1) * nearest_block;
-        for (; i < job.count && i < block_end; ++i) interpolate_one(job, i);
-    }
+    interpolate_nearest(kernels, job, 0);
 }
 
 }  // namespace TEXGEN_BUILD
@@ -694,7 +727,7 @@ inline glm::dvec2 error_bound(const Segment& segment, Tolerance tolerance = exac
     const detail::SegmentBounds bounds(job);
     const auto bound = [&](int k) {
         const double of_nearest = detail::half_ulp(bounds.quotient[k]);
-        const double of_float = detail::segment_float_error(bounds, k);
+        const double of_float = detail::segment_float_error(job, k);
         // Where both are next to one another, a file with other flags may have decided otherwise.
         const bool may_be_float = of_float * (1.0 - 0x1p-40) <= detail::accepted(tolerance);
         return may_be_float ? detail::larger(of_float, of_nearest) : of_nearest;

@@ -636,33 +636,41 @@ std::size_t divide_segment_nearest(const SegmentJob& original, std::size_t first
                         : divide_segment_nearest_of<false, 1>(job, first);
 }
 
-// A + a (B - A) would lose the small end next to a large one; A - a A does not.
+// In float about one end, two vectors by one division, so that an alpha that is no number spoils its neighbour: its block
+// is left to divide_nearest.
 template <std::size_t Numerators>
-TEXGEN_INLINE void divide_segment_float_of(const SegmentJob& job) noexcept {
-    float a[Numerators];
-    float b[Numerators];
-    for (std::size_t k = 0; k < Numerators; ++k) {
-        a[k] = static_cast<float>(job.a[k]);
-        b[k] = static_cast<float>(job.b[k]);
-    }
-    const auto q_a = static_cast<float>(job.q_a);
-    const auto q_b = static_cast<float>(job.q_b);
-    for (std::size_t i = 0; i < job.count; i += static_cast<std::size_t>(wide_lanes)) {
-        const auto alpha = load<WideFloats>(job.alpha + i);
-        const WideFloats reciprocal = 1.0f / (alpha * q_b + (q_a - alpha * q_a));
+TEXGEN_INLINE std::size_t divide_segment_float_of(const SegmentJob& job, std::size_t first) noexcept {
+    // alpha, or 1 - alpha.
+    const WideFloats start = WideFloats{} + (job.about_b ? 1.0f : 0.0f);
+    const float direction = job.about_b ? -1.0f : 1.0f;
+    const auto store_value = [&job](std::size_t i, const WideFloats& step) {
         WideFloats value[Numerators];
-        for (std::size_t k = 0; k < Numerators; ++k) value[k] = (alpha * b[k] + (a[k] - alpha * a[k])) * reciprocal;
+        for (std::size_t k = 0; k < Numerators; ++k) value[k] = step * job.slope[k] + job.base[k];
         store_points(job, i, value, ~WideWords{});
+    };
+    for (std::size_t begin = first; begin < job.count; begin += float_block) {
+        const std::size_t end = begin + float_block < job.count ? begin + float_block : job.count;
+        WideFloats sum{};
+        for (std::size_t i = begin; i < end; i += 2 * static_cast<std::size_t>(wide_lanes)) {
+            const std::size_t next = i + static_cast<std::size_t>(wide_lanes);
+            const WideFloats from = load<WideFloats>(job.alpha + i) * direction + start;
+            const WideFloats next_from = load<WideFloats>(job.alpha + (next < end ? next : i)) * direction + start;
+            sum += from + next_from;
+            const WideFloats q = from * job.bend + 1.0f;
+            const WideFloats next_q = next_from * job.bend + 1.0f;
+            const WideFloats of_both = 1.0f / (q * next_q);
+            store_value(i, from * (of_both * next_q));
+            if (next < end) store_value(next, next_from * (of_both * q));
+        }
+        if (any_not_finite(sum)) return begin;
     }
+    return job.count;
 }
 
 template <class = void>
-void divide_segment_float(const SegmentJob& original) noexcept {
+std::size_t divide_segment_float(const SegmentJob& original, std::size_t first) noexcept {
     const SegmentJob job = original;
-    if (job.numerators == 2)
-        divide_segment_float_of<2>(job);
-    else
-        divide_segment_float_of<1>(job);
+    return job.numerators == 2 ? divide_segment_float_of<2>(job, first) : divide_segment_float_of<1>(job, first);
 }
 
 }  // namespace texgen::detail::TEXGEN_ISA

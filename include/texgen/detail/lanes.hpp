@@ -115,6 +115,9 @@ struct SegmentJob : DividedOutput {
     double q_a, q_b;
     bool in_front;  // all of it, well enough that quotient_error bounds the error in double of every value
     double quotient_error[2];
+    // For divide_float: about the end where q is less, base + slope i / (1 + bend i), i the alpha from there.
+    bool about_b;
+    float bend, base[2], slope[2];
 
     void advance(std::size_t values) noexcept { alpha += values; }
 };
@@ -174,7 +177,8 @@ struct PointKernels {
 
 struct SegmentKernels {
     std::size_t (*divide_nearest)(const SegmentJob&, std::size_t first) noexcept;
-    void (*divide_float)(const SegmentJob&) noexcept;
+    // The first value from `first` on of a block of float_block with an alpha that is no number, or the count.
+    std::size_t (*divide_float)(const SegmentJob&, std::size_t first) noexcept;
 };
 
 struct FootprintKernels {

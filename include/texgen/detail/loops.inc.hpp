@@ -142,6 +142,11 @@ TEXGEN_INLINE int largest_lane(const WideWords& a) noexcept {
     return largest;
 }
 
+TEXGEN_INLINE bool any_not_finite(const WideFloats& a) noexcept {
+    const WideFloats zero = a - a;
+    return largest_lane(magnitude_bits(zero)) != 0;
+}
+
 TEXGEN_INLINE WideFloats minimum(const WideFloats& a, const WideFloats& b) noexcept {
     return WideFloats::of([&](int i) { return a.lane[i] < b.lane[i] ? a.lane[i] : b.lane[i]; });
 }

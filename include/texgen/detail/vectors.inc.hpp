@@ -91,6 +91,10 @@ TEXGEN_INLINE int largest_lane(const WideWords& a) noexcept {
             maximum(a, rotated<Distance>(a, std::make_integer_sequence<int, wide_lanes>())));
 }
 
+TEXGEN_INLINE bool any_not_finite(const WideFloats& a) noexcept {
+    const WideFloats zero = a - a;
+    return largest_lane(magnitude_bits(zero)) != 0;
+}
 TEXGEN_INLINE WideFloats minimum(const WideFloats& a, const WideFloats& b) noexcept { return a < b ? a : b; }
 TEXGEN_INLINE WideFloats maximum(const WideFloats& a, const WideFloats& b) noexcept { return a > b ? a : b; }
 TEXGEN_INLINE WideWords less(const WideFloats& a, const WideFloats& b) noexcept { return a < b; }
