@@ -138,8 +138,8 @@ void divide_rounded(const TileJob& job) noexcept {
 
 // About the middle of a chunk of a row, i fragments from it, F/Q is exactly
 //   u + d i / (1 + x),  u = F/Q and d = (F_x - u Q_x) / Q in the middle,  x = b i, b = Q_x / Q in the middle,
-// and 1 / (1 + x) = (1 - x) (1 + x^2) (1 + x^4) ..., which has a relative error of x^(2^n) after n factors: a
-// parabola and on, until a division is cheaper. (A line saves nothing beside the stores.)
+// and 1 / (1 + x) = (1 - x) (1 + x^2) (1 + x^4) ..., which has a relative error of x^(2^n) after n factors: a parabola and
+// on, until a division is cheaper. (A line saves nothing beside the stores.)
 //
 // With h the largest |i|, X = |b| h <= 3/4 and S = 1 + X + 4 X^2 >= 1/(1 - X), no step |d i / (1 + x)| is above
 // D = h |d| S. In float, with r = 2^-24, the roundings of b and of x change 1/(1 + x) by at most 2 r X/(1 - X), which is 6 r
@@ -150,6 +150,8 @@ inline constexpr int divided = 4, refused = 5;
 
 TEXGEN_INLINE int chunks_of_row(const TileJob& job) noexcept { return (job.width - 1) / job.chunk + 1; }
 
+// Chunks that follow one another, over the ends of rows too: their coefficients, and where they are not chosen for all of
+// the job, what their certificates need.
 struct ChunkGroup {
     static constexpr int size = 16;
 
