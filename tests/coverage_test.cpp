@@ -735,6 +735,35 @@ private:
 
 }  // namespace
 
+TEST_CASE("a sphere that just reaches an edge far from the origin is not outside") {
+    // s = a (x - x of the edge) and t likewise, over q = 1: the rounding of a x is far above the ulp of a small distance.
+    Random random(47);
+    int touching = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const double a[2] = {random.uniform(0.1, 1.0), random.uniform(0.1, 1.0)};
+        const glm::vec3 centre(random.uniform_float(1e6, 2e6), random.uniform_float(1e6, 2e6), 0.0f);
+        glm::dmat4 matrix(0.0);
+        Rational squared = 0;
+        double distance = 0.0;
+        for (int k = 0; k < 2; ++k) {
+            matrix[k][k] = a[k];
+            matrix[3][k] = -a[k] * (static_cast<double>(centre[k]) + random.uniform(0.05, 0.2));
+            const Rational way = support::exactly(-matrix[3][k]) / support::exactly(a[k]) - support::exactly(centre[k]);
+            squared += way * way;
+            distance = std::hypot(distance, support::nearest<double>(way));
+        }
+        matrix[3][3] = 1.0;
+        const float radius = support::to_float(distance);
+        const Rational exact_radius = support::exactly(radius);
+        if (exact_radius * exact_radius < squared) continue;
+        ++touching;
+        const Sphere sphere{centre, radius};
+        REQUIRE_MESSAGE(coverage(WorldTexgen(matrix), texgen::whole_texture(), sphere) != Coverage::outside,
+                        hex(sphere));
+    }
+    CHECK(touching > 5000);
+}
+
 TEST_CASE("no sphere is outside or inside that is not, and few of a scene are partial that could be outside") {
     Random random(43);
     Counts counts;
