@@ -50,8 +50,9 @@ public:
         if (reversed_depth) return {-1.0, 1.0, 0.0};
         return {1.0, range == DepthRange::negative_one_to_one ? 1.0 : 0.0, 0.0};
     }
-    // In front of the eye, w > 0: the smallest float is the first.
-    static ClipDistance from_eye() noexcept { return {0.0, 1.0, widened(std::numeric_limits<float>::denorm_min())}; }
+    // In front of the eye, w > 0: the smallest float is the first. (As a double: where subnormal floats count as 0 it would
+    // be 0.)
+    static ClipDistance from_eye() noexcept { return {0.0, 1.0, 0x1p-149}; }
 
     double operator()(const ClipVertex& vertex) const noexcept {
         return z_ * widened(vertex.position.z) + w_ * widened(vertex.position.w) - offset_;

@@ -657,7 +657,7 @@ TEXGEN_INLINE std::size_t divide_segment_float_of(const SegmentJob& job, std::si
             const std::size_t next = i + static_cast<std::size_t>(wide_lanes);
             const WideFloats from = load<WideFloats>(job.alpha + i) * direction + start;
             const WideFloats next_from = load<WideFloats>(job.alpha + (next < end ? next : i)) * direction + start;
-            sum += from + next_from;
+            sum = sum + (from + next_from);
             const WideFloats q = from * job.bend + 1.0f;
             const WideFloats next_q = next_from * job.bend + 1.0f;
             const WideFloats of_both = 1.0f / (q * next_q);
