@@ -283,7 +283,7 @@ void judge(Shader shader, const std::vector<Change>& vertex_changes, const std::
     CHECK(right.compared > 100000);
     CHECK(right.lit > 10000);
     CHECK(right.compared - right.lit - right.behind > 10000);
-    CHECK(right.mirrored > 500);
+    CHECK(right.mirrored > 300);
     for (const Change& change : vertex_changes) {
         INFO("with ", change.to);
         CHECK(comparison(g, changed(vertex_source, change), source, expect, seed).wrong > 500);
