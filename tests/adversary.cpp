@@ -304,25 +304,34 @@ Share segment_exact_share(const Numbers& n) {
     return std::max(share_of_rounding(out.s()[0], at.over_q(0)), share_of_rounding(out.t()[0], at.over_q(1)));
 }
 
-Share segment_within_share(const Numbers& n) {
+// A value of a segment within a tolerance, and the truth; empty where the numbers ask for neither.
+struct SegmentAnswer {
+    double tolerance;
+    Outputs out;
+    Homogeneous at;
+};
+std::optional<SegmentAnswer> segment_answer(const Numbers& n) {
     const double tolerance = tolerance_of(n[9]);
     const auto alpha = static_cast<float>(n[8]);
-    if (!(alpha >= 0.0f && alpha <= 1.0f && tolerance > 1e-12 && tolerance < 1e6)) return says_nothing;
-    Outputs out(1, 3u);
-    interpolate(segment_of(n), std::span(&alpha, 1), texgen::whole_texture(), out.spans(), {tolerance});
-    const Homogeneous at = support::exactly_at(segment_of(n), alpha);
+    if (!(alpha >= 0.0f && alpha <= 1.0f && tolerance > 1e-12 && tolerance < 1e6)) return std::nullopt;
+    SegmentAnswer answer{tolerance, Outputs(1, 3u), support::exactly_at(segment_of(n), alpha)};
+    interpolate(segment_of(n), std::span(&alpha, 1), texgen::whole_texture(), answer.out.spans(), {tolerance});
+    return answer;
+}
+
+Share segment_within_share(const Numbers& n) {
+    const auto answer = segment_answer(n);
+    if (!answer) return says_nothing;
+    const auto& [tolerance, out, at] = *answer;
     if (at.q.sign() <= 0) return out.s()[0] == 0.0f ? says_nothing : broken;
     return std::max(share_of_tolerance(out.s()[0], at.over_q(0), tolerance),
                     share_of_tolerance(out.t()[0], at.over_q(1), tolerance));
 }
 
 Share segment_bound_share(const Numbers& n) {
-    const double tolerance = tolerance_of(n[9]);
-    const auto alpha = static_cast<float>(n[8]);
-    if (!(alpha >= 0.0f && alpha <= 1.0f && tolerance > 1e-12 && tolerance < 1e6)) return says_nothing;
-    Outputs out(1, 3u);
-    interpolate(segment_of(n), std::span(&alpha, 1), texgen::whole_texture(), out.spans(), {tolerance});
-    const Homogeneous at = support::exactly_at(segment_of(n), alpha);
+    const auto answer = segment_answer(n);
+    if (!answer) return says_nothing;
+    const auto& [tolerance, out, at] = *answer;
     if (at.q.sign() <= 0) return says_nothing;
     const glm::dvec2 bound = error_bound(segment_of(n), {tolerance});
     return std::max(share_of_bound(static_cast<double>(out.s()[0]), at.over_q(0), bound.x),

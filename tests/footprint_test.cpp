@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "support/footprint_outputs.hpp"
 #include "support/fragments.hpp"
 #include "support/hard_triangles.hpp"
 #include "support/hex.hpp"
@@ -30,6 +31,7 @@ using support::count_of;
 using support::Dyadic;
 using support::everywhere;
 using support::ExactTriangle;
+using support::FootprintOutputs;
 using support::hex;
 using support::Homogeneous;
 using support::Random;
@@ -53,39 +55,6 @@ constexpr double nan_double = std::numeric_limits<double>::quiet_NaN();
 
 // Where each output of a batch stands in the arrays below.
 enum Output : std::size_t { dsdx, dtdx, dsdy, dtdy, level, anisotropy, major_s, major_t };
-
-// The eight outputs of a rectangle, those of `asked` (a bit each) given to the library, all poisoned and padded.
-class Batch {
-public:
-    static constexpr unsigned all = 255;
-
-    explicit Batch(const FragmentRect& rect, unsigned asked = all, std::size_t misalignment = 0)
-        : first_{support::Outputs(count_of(rect), asked & 15u, misalignment)},
-          rest_{support::Outputs(count_of(rect), asked >> 4, misalignment)} {}
-
-    Footprints spans() {
-        const texgen::Texcoords a = first_.spans(), b = rest_.spans();
-        return {.dsdx = a.s,
-                .dtdx = a.t,
-                .dsdy = a.r,
-                .dtdy = a.lit,
-                .level = b.s,
-                .anisotropy = b.t,
-                .major_s = b.r,
-                .major_t = b.lit};
-    }
-    std::span<const float> operator[](std::size_t k) const { return k < 4 ? first_[k] : rest_[k - 4]; }
-    double at(std::size_t k, std::size_t i) const { return static_cast<double>((*this)[k][i]); }
-    bool is_untouched() const {
-        for (std::size_t k = 0; k < 8; ++k)
-            if (!support::Outputs::is_poison((*this)[k])) return false;
-        return true;
-    }
-    bool pads_are_intact() const { return first_.pads_are_intact() && rest_.pads_are_intact(); }
-
-private:
-    support::Outputs first_, rest_;
-};
 
 // The Jacobian exactly, but for its last division: numerators over q^2, in units of s and t.
 struct ExactFootprint {
@@ -204,7 +173,7 @@ TEST_CASE("derivatives are the exact ones within the stated bound, for every har
             const TexelsPerUnit texels = some_texels(random);
             const FootprintSetup setup(setup_of(shot.triangle), texels);
             const glm::dvec2 bound = setup.error_bound(shot.rect);
-            Batch out(shot.rect, Batch::all, static_cast<std::size_t>(random.integer(0, 15)));
+            FootprintOutputs out(shot.rect, FootprintOutputs::all, static_cast<std::size_t>(random.integer(0, 15)));
             const bool written = footprint(setup, shot.rect, out.spans());
             REQUIRE(out.pads_are_intact());
             if (!written) REQUIRE(out.is_untouched());
@@ -337,7 +306,7 @@ TEST_CASE("level, anisotropy and major axis are those of the exact Jacobian") {
         const TexelsPerUnit texels = i % 11 == 0 ? TexelsPerUnit{256.0, 256.0} : some_texels(random);
         const ExactTriangle exact(triangle);
         const FootprintSetup setup(setup_of(triangle), texels);
-        Batch out(shot.rect);
+        FootprintOutputs out(shot.rect);
         if (!footprint(setup, shot.rect, out.spans())) continue;
         for (std::size_t k = 0; k < count_of(shot.rect); k += 1 + count_of(shot.rect) / 5) {
             const std::int64_t x = shot.x(static_cast<std::int64_t>(k) % shot.rect.width);
@@ -417,7 +386,7 @@ TEST_CASE("where the derivatives of a row nearly vanish at one fragment, it is a
     const ExactTriangle exact(triangle);
     for (const Tolerance tolerance : {texgen::exact, Tolerance{1e-3}}) {
         const FootprintSetup setup(setup_of(triangle, everywhere(), tolerance), texels);
-        Batch out(shot.rect);
+        FootprintOutputs out(shot.rect);
         REQUIRE(footprint(setup, shot.rect, out.spans()));
         for (std::size_t k = 0; k < 100; ++k) {
             const ExactFootprint truth(exact, 150 + static_cast<std::int64_t>(k), 100);
@@ -464,7 +433,7 @@ TEST_CASE("a tolerance is kept in units a pixel, and some of it is used") {
             const double tolerance = random.power_of_ten(-8.0, -2.0);
             const FootprintSetup setup(setup_of(shot.triangle, everywhere(), Tolerance{tolerance}), {1024.0, 1024.0});
             const FootprintSetup strict(setup_of(shot.triangle), {1024.0, 1024.0});
-            Batch out(shot.rect), of_exact(shot.rect);
+            FootprintOutputs out(shot.rect), of_exact(shot.rect);
             if (!footprint(setup, shot.rect, out.spans())) continue;
             footprint(strict, shot.rect, of_exact.spans());
             const glm::dvec2 bound = setup.error_bound(shot.rect);
@@ -502,7 +471,7 @@ TEST_CASE("a tolerance of a few units of the derivatives is kept, where floats j
         if (!std::isfinite(unit.x) || !std::isfinite(unit.y)) continue;
         const Tolerance tolerance{std::max(unit.x, unit.y) * random.power_of_ten(0.0, 1.5)};
         const FootprintSetup setup(setup_of(triangle, everywhere(), tolerance), {1.0, 1.0});
-        Batch out(shot.rect), of_exact(shot.rect);
+        FootprintOutputs out(shot.rect), of_exact(shot.rect);
         if (!footprint(setup, shot.rect, out.spans())) continue;
         footprint(strict, shot.rect, of_exact.spans());
         bool differs = false;
@@ -546,7 +515,7 @@ TEST_CASE("where q has few digits left the bound of a derivative has them in it"
         triangle.c.strq.w = support::to_float(-rest / part[2] * (1.0 + unit));
         const FootprintSetup setup(setup_of(triangle), {1.0, 1.0});
         const glm::dvec2 bound = setup.error_bound(pixel);
-        Batch out(pixel);
+        FootprintOutputs out(pixel);
         if (!std::isfinite(bound.x) || !footprint(setup, pixel, out.spans())) continue;
         const ExactTriangle exact(triangle);
         if (!exact.has_positive_w(pixel.x, pixel.y) || exact.at(pixel.x, pixel.y).q.sign() <= 0) continue;
@@ -567,10 +536,10 @@ TEST_CASE("only what is asked for is written, the same whatever else is asked fo
         const Shot shot = support::detail::ordinary(
             support::families[static_cast<std::size_t>(i) % support::families.size()], random);
         const FootprintSetup setup(setup_of(shot.triangle), some_texels(random));
-        Batch all(shot.rect);
+        FootprintOutputs all(shot.rect);
         const bool written = footprint(setup, shot.rect, all.spans());
         const auto asked = static_cast<unsigned>(random.integer(0, 255));
-        Batch some(shot.rect, asked, static_cast<std::size_t>(random.integer(0, 15)));
+        FootprintOutputs some(shot.rect, asked, static_cast<std::size_t>(random.integer(0, 15)));
         REQUIRE(footprint(setup, shot.rect, some.spans()) == written);
         REQUIRE(some.pads_are_intact());
         for (std::size_t k = 0; k < 8; ++k)
@@ -589,8 +558,8 @@ TEST_CASE("no fragment of ten million is outside the extremes, and they are reac
     int rects = 0, wide = 0, inner = 0;
     double worst_gap = 0.0;
     constexpr int side = 128;
-    Batch out({0, 0, side, side}, (1u << level) | (1u << anisotropy));
-    Batch derivatives({0, 0, side, side}, 15u);
+    FootprintOutputs out({0, 0, side, side}, (1u << level) | (1u << anisotropy));
+    FootprintOutputs derivatives({0, 0, side, side}, 15u);
     while (fragments < 10'000'000u) {
         const double ratio = random.power_of_ten(0.0, 2.5);
         Triangle triangle = spread_triangle(random, ratio);
@@ -697,7 +666,7 @@ TEST_CASE("the extremes of a triangle hold for all fragments inside it, and are 
         const auto extremes = setup.extremes();
         REQUIRE(extremes.has_value());
         double least = infinity, largest = -infinity, thinnest = 0.0;
-        Batch row({0, 0, rect.width, 1}, (1u << level) | (1u << anisotropy));
+        FootprintOutputs row({0, 0, rect.width, 1}, (1u << level) | (1u << anisotropy));
         for (int y = rect.y; y < rect.y + rect.height; ++y) {
             if (!footprint(setup, {rect.x, y, rect.width, 1}, row.spans())) continue;
             for (int x = rect.x; x < rect.x + rect.width; ++x) {
@@ -807,7 +776,7 @@ TEST_CASE("triangles that double cannot hold the differences of keep their bound
                 REQUIRE_MESSAGE(one->level <= extremes->largest_level, context);
                 const glm::dvec2 bound = setup.error_bound({x, y, 1, 1});
                 const ExactFootprint truth(exact, x, y);
-                Batch out({x, y, 1, 1});
+                FootprintOutputs out({x, y, 1, 1});
                 REQUIRE(footprint(setup, {x, y, 1, 1}, out.spans()));
                 for (std::size_t c = 0; c < 2; ++c) {
                     const double allowed = bound[static_cast<int>(c)];
@@ -832,7 +801,7 @@ TEST_CASE("a Jacobian of rank 1 or 0, and texels that are none, get what the hea
     const Triangle line = flat(window, {glm::vec3(0, 0, 2), glm::vec3(1, 1, 1), glm::vec3(0.25f, 0.25f, 4)});
     {
         const FootprintSetup setup(setup_of(constant), {64.0, 64.0});
-        Batch out(rect);
+        FootprintOutputs out(rect);
         REQUIRE(footprint(setup, rect, out.spans()));
         for (std::size_t k = 0; k < count_of(rect); ++k) {
             for (const std::size_t o : {dsdx, dtdx, dsdy, dtdy, major_s, major_t}) REQUIRE(out[o][k] == 0.0f);
@@ -847,7 +816,7 @@ TEST_CASE("a Jacobian of rank 1 or 0, and texels that are none, get what the hea
     }
     {
         const FootprintSetup setup(setup_of(line), {64.0, 64.0});
-        Batch out(rect);
+        FootprintOutputs out(rect);
         REQUIRE(footprint(setup, rect, out.spans()));
         for (std::size_t k = 0; k < count_of(rect); ++k) {
             REQUIRE(out.at(anisotropy, k) == infinity);
@@ -874,7 +843,7 @@ TEST_CASE("a Jacobian of rank 1 or 0, and texels that are none, get what the hea
     for (const double bad : {0.0, -1.0, nan_double, infinity}) {
         const TexelsPerUnit texels = bad > 0.0 ? TexelsPerUnit{bad, 64.0} : TexelsPerUnit{64.0, bad};
         const FootprintSetup setup(setup_of(line), texels), good(setup_of(line), {64.0, 64.0});
-        Batch out(rect), right(rect);
+        FootprintOutputs out(rect), right(rect);
         REQUIRE(footprint(setup, rect, out.spans()));
         footprint(good, rect, right.spans());
         for (std::size_t k = 0; k < count_of(rect); ++k) {

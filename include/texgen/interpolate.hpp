@@ -259,7 +259,7 @@ inline void choose_factors(Plan& plan, const Corners& at, double tolerance) noex
     const Pair largest = at.largest_quotient();
     const Pair reach =
         larger(slope_times_q_squared(0), slope_times_q_squared(2)) * (1.001 * half * at.reciprocal * at.reciprocal);
-    const Pair rest = largest * 0x2.003p-24 + reach * 0xc.00dp-24 + 0x1p-115 +
+    const Pair rest = largest * chunk_middle_error + reach * chunk_step_error + chunk_underflow +
                       (at.numerator_error + (largest + reach) * at.q_error) * (1.001 * at.reciprocal);
     const auto fits = [&](double share) {
         const Pair error = reach * share + rest;

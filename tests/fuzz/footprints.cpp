@@ -11,8 +11,8 @@
 
 #include "fuzz/input.hpp"
 #include "support/exact.hpp"
+#include "support/footprint_outputs.hpp"
 #include "support/fragments.hpp"
-#include "support/outputs.hpp"
 #include "texgen/footprint.hpp"
 #include "texgen/interpolate.hpp"
 
@@ -23,7 +23,6 @@ using fuzz::must;
 using fuzz::same;
 using support::Dyadic;
 using support::Homogeneous;
-using support::Outputs;
 using texgen::Footprint;
 using texgen::footprint_of;
 using texgen::FootprintExtremes;
@@ -32,11 +31,6 @@ using texgen::FragmentRect;
 using texgen::TexelsPerUnit;
 using texgen::Triangle;
 using texgen::TriangleSetup;
-
-texgen::WindowVertex vertex(Input& input) {
-    const float x = input.number(), y = input.number();
-    return {{x, y}, input.coin() ? 1.0f + static_cast<float>(input.integer(0, 255)) : input.number(), input.vector4()};
-}
 
 TexelsPerUnit texels_of(Input& input) {
     if (input.integer(0, 3) == 0) return {input.wide_number(), input.wide_number()};
@@ -77,31 +71,6 @@ bool is_within(float value, const Dyadic& numerator, const Dyadic& q_squared, do
 }
 
 // The eight outputs of a footprint, those of `asked` (a bit each) given to the library.
-struct Batch {
-    Outputs derivatives, shapes;
-
-    Batch(std::size_t count, unsigned asked, std::size_t misalignment)
-        : derivatives(count, asked & 15u, misalignment), shapes(count, asked >> 4, misalignment) {}
-
-    texgen::Footprints spans() {
-        const texgen::Texcoords a = derivatives.spans(), b = shapes.spans();
-        return {.dsdx = a.s,
-                .dtdx = a.t,
-                .dsdy = a.r,
-                .dtdy = a.lit,
-                .level = b.s,
-                .anisotropy = b.t,
-                .major_s = b.r,
-                .major_t = b.lit};
-    }
-    bool pads_are_intact() const { return derivatives.pads_are_intact() && shapes.pads_are_intact(); }
-    bool is_untouched() const {
-        for (std::size_t k = 0; k < 4; ++k)
-            if (!Outputs::is_poison(derivatives[k]) || !Outputs::is_poison(shapes[k])) return false;
-        return true;
-    }
-};
-
 void require_inside(const Footprint& one, double error, const FootprintExtremes& extremes) {
     must(is_in(one.level, extremes.least_level, extremes.largest_level), "no level is outside the extremes");
     // The determinant has digits that an uncertain J has not; their product is the area where J has them too.
@@ -112,7 +81,7 @@ void require_inside(const Footprint& one, double error, const FootprintExtremes&
 }
 
 void footprints_of_triangles(Input& input) {
-    const Triangle triangle{vertex(input), vertex(input), vertex(input)};
+    const Triangle triangle{input.vertex(), input.vertex(), input.vertex()};
     const auto tolerance = input.tolerance();
     const auto prepared = TriangleSetup::of(triangle, input.region(), tolerance);
     const double score = headlights(triangle);
@@ -127,7 +96,7 @@ void footprints_of_triangles(Input& input) {
     if (input.integer(0, 7) == 0) rect = {rect.x, rect.y, input.integer(1, 1200), 1};
     if (input.integer(0, 7) == 0) rect.x = input.raw<int>(), rect.y = input.raw<int>();
     const std::size_t count = support::count_of(rect);
-    Batch out(count, input.raw<std::uint8_t>(), input.size(7));
+    support::FootprintOutputs out(rect, input.raw<std::uint8_t>(), input.size(7));
     const bool written = footprint(setup, rect, out.spans());
     must(out.pads_are_intact(), "footprint writes its outputs only");
     must(written || out.is_untouched(), "where nothing is lit, nothing is written");
@@ -150,34 +119,31 @@ void footprints_of_triangles(Input& input) {
         const auto one = setup.at(static_cast<int>(x), static_cast<int>(y));
         must(one.has_value() == (exact.at(x, y).q.sign() > 0), "a footprint is there exactly in front");
         if (!one) {
-            for (std::size_t k = 0; k < 4 && written; ++k) {
-                if (out.derivatives.asked(k)) must(same(out.derivatives[k][i], 0.0f), "behind, all are 0");
-                if (out.shapes.asked(k)) must(same(out.shapes[k][i], 0.0f), "behind, all are 0");
-            }
+            for (std::size_t k = 0; k < 8 && written; ++k)
+                if (out.asked(k)) must(same(out[k][i], 0.0f), "behind, all are 0");
             continue;
         }
         must(extremes.has_value(), "what is in front has extremes");
         const ExactSlopes slopes(exact, x, y);
         for (std::size_t k = 0; k < 2 && written; ++k) {
             const double allowed = bound[static_cast<int>(k)];
-            if (out.derivatives.asked(k))
-                must(is_within(out.derivatives[k][i], slopes.dx[k], slopes.q_squared, allowed), "d/dx is in its bound");
-            if (out.derivatives.asked(2 + k))
-                must(is_within(out.derivatives[2 + k][i], slopes.dy[k], slopes.q_squared, allowed),
-                     "d/dy is in its bound");
+            if (out.asked(k))
+                must(is_within(out[k][i], slopes.dx[k], slopes.q_squared, allowed), "d/dx is in its bound");
+            if (out.asked(2 + k))
+                must(is_within(out[2 + k][i], slopes.dy[k], slopes.q_squared, allowed), "d/dy is in its bound");
         }
         if (!are_good(texels)) {
             must(std::isnan(one->level) && std::isnan(one->anisotropy), "bad texels make no level");
-            for (std::size_t k = 0; k < 4 && written; ++k)
-                if (out.shapes.asked(k)) must(std::isnan(out.shapes[k][i]), "bad texels make no level");
+            for (std::size_t k = 4; k < 8 && written; ++k)
+                if (out.asked(k)) must(std::isnan(out[k][i]), "bad texels make no level");
             continue;
         }
         if (std::isnan(one->level)) continue;  // derivatives beyond the range of double
         must(one->anisotropy >= 1.0, "an anisotropy is at least 1");
         const glm::dvec2 alone = setup.error_bound({static_cast<int>(x), static_cast<int>(y), 1, 1});
         require_inside(*one, alone.x * texels.s + alone.y * texels.t, *extremes);
-        if (written && out.shapes.asked(0) && !(tolerance.value > 0.0))
-            must(is_in(static_cast<double>(out.shapes[0][i]), extremes->least_level, extremes->largest_level),
+        if (written && out.asked(4) && !(tolerance.value > 0.0))
+            must(is_in(static_cast<double>(out[4][i]), extremes->least_level, extremes->largest_level),
                  "no level is outside the extremes");
     }
 }

@@ -18,6 +18,7 @@
 #include <glm/vec4.hpp>
 
 #include "texgen/conventions.hpp"
+#include "texgen/primitives.hpp"
 
 namespace fuzz {
 
@@ -140,6 +141,11 @@ public:
             default:
                 return {wide_number()};
         }
+    }
+
+    texgen::WindowVertex vertex() {
+        const float x = number(), y = number();
+        return {{x, y}, coin() ? 1.0f + static_cast<float>(integer(0, 255)) : number(), vector4()};
     }
 
 private:

@@ -28,11 +28,6 @@ using texgen::Tolerance;
 using texgen::TriangleSetup;
 using texgen::Work;
 
-texgen::WindowVertex vertex(Input& input) {
-    const float x = input.number(), y = input.number();
-    return {{x, y}, input.coin() ? 1.0f + static_cast<float>(input.integer(0, 255)) : input.number(), input.vector4()};
-}
-
 bool is_usable(const texgen::WindowVertex& v) {
     return std::isfinite(v.window.x) && std::isfinite(v.window.y) && std::isfinite(v.clip_w) && v.clip_w > 0.0f &&
            fuzz::all_finite(v.strq);
@@ -48,7 +43,7 @@ bool has_exact_differences(const texgen::Triangle& triangle) {
 }
 
 void interpolate_triangle(Input& input) {
-    const texgen::Triangle triangle{vertex(input), vertex(input), vertex(input)};
+    const texgen::Triangle triangle{input.vertex(), input.vertex(), input.vertex()};
     const texgen::TextureRegion region = input.region();
     const Tolerance tolerance = input.tolerance();
     const auto setup = TriangleSetup::of(triangle, region, tolerance);

@@ -200,7 +200,7 @@ MUTANTS = [
           "bounds_test tolerance_test"),
          ("rounded_error forgets one rounding", "largest * (4.01 * unit_roundoff_float)",
           "largest * (3.0 * unit_roundoff_float)", "bounds_test tolerance_test"),
-         ("the middle's rounding is forgotten", "largest * 0x2.003p-24", "largest * 0x0.003p-24", "tolerance_test work_test"),
+         ("the middle's rounding is forgotten", "largest * chunk_middle_error", "largest * 0.001 * chunk_middle_error", "tolerance_test work_test"),
          ("the chunks' certificate has no margin of its own", "job.least_q = 0x1p24 * at.q_error;",
           "job.least_q = -1.0;", "tolerance_test work_test",
           {"survives": "Where q is not above its error the bound's term |u| e_Q / Q is above |u| itself: nothing passes but a "
@@ -335,7 +335,7 @@ MUTANTS = [
           "", "tolerance_test"),
          ("a chunk's remainder", "error * reach[k][i] <= room[k][i]", "0.2 * error * reach[k][i] <= room[k][i]",
           "tolerance_test"),
-         ("a chunk's roundings", "(size_of_u * 0x2.002p-24 + size_of_step * 0xc.00cp-24)", "size_of_u * 0.0", "tolerance_test"),
+         ("a chunk's roundings", "(size_of_u * chunk_middle_error + size_of_step * chunk_step_error)", "size_of_u * 0.0", "tolerance_test"),
          ("the middle of a chunk is its beginning", "const Doubles at_x = begin + half;", "const Doubles at_x = begin;",
           "tolerance_test interpolate_test"),
          ("the factors are not squared", "        x = x * x;\n", "", "tolerance_test"),

@@ -194,7 +194,8 @@ struct ChunkGroup {
                 const Doubles size_of_u = magnitude(u);
                 const Doubles size_of_step = magnitude(d) * half * stretch;
                 store(&reach[k][i], size_of_step);
-                store(&room[k][i], (job.tolerance - 0x1p-116) - (size_of_u * 0x2.002p-24 + size_of_step * 0xc.00cp-24) -
+                store(&room[k][i], (job.tolerance - chunk_underflow) -
+                                       (size_of_u * chunk_middle_error + size_of_step * chunk_step_error) -
                                        ((size_of_u + size_of_step) * job.q_error + job.numerator_error[k]) *
                                            (reciprocal * stretch) * 1.001);
             }
