@@ -13,8 +13,11 @@
 //   between     where a chunk's bound does not fit: functions in double, rounded and divided in float, if that fits, else
 //               as exact.                                                                      divide_without_chunks()
 //
-// Where q changes sign the rectangle is cut until its parts are on one side.
+// Where q changes sign the rectangle is cut until its parts are on one side. What is still in doubt (ties, and the last
+// parts) is decided to twice the precision of double, in vectors (divide_closely()); and what that leaves, fragment by
+// fragment, exactly.
 
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -26,6 +29,7 @@
 
 #include "conventions.hpp"
 #include "detail/assert.hpp"
+#include "detail/close_planes.hpp"
 #include "detail/lanes.hpp"
 #include "detail/nearest.hpp"
 #include "detail/planes.hpp"
@@ -54,6 +58,14 @@ struct Corners {
 
     bool all_behind() const noexcept { return largest_q < -q_error; }
     bool all_in_front() const noexcept { return least_q > q_error; }
+    // Whether so little is left of the functions' terms that many quotients would be in doubt: the planes are about a corner.
+    bool cancel() const noexcept {
+        constexpr double share = 0x1p-38;
+        const Pair largest = larger(larger(magnitude(numerator[0]), magnitude(numerator[1])),
+                                    larger(magnitude(numerator[2]), magnitude(numerator[3])));
+        return q_error > share * least_q || numerator_error[0] > share * largest[0] ||
+               numerator_error[1] > share * largest[1];
+    }
     // Far enough in front that the relative error of q is below 2^-24.
     bool well_in_front() const noexcept { return least_q > 0x1p24 * q_error; }
 
@@ -73,25 +85,44 @@ struct Corners {
     }
 };
 
-inline Corners corners(const TrianglePlanes& planes, const PlaneOf<Pair>& numerator, const Plane& q,
-                       const Tile& tile) noexcept {
+// Of a tile with these functions and errors.
+inline Corners corners_of(const RampOf<Pair>& numerator, const Ramp& q, const Pair& numerator_error, double q_error,
+                          const Tile& tile) noexcept {
     Corners corners;
     const double right = tile.width - 1;
     const double bottom = tile.height - 1;
-    const auto fill = [&](const auto& plane, auto& ramp, auto& value, auto& error) {
-        ramp = planes.ramp(plane, tile);
-        error = planes.error(plane, tile);
+    const auto fill = [&](const auto& ramp, auto& value) {
         value[0] = ramp.base;
         value[1] = ramp.base + ramp.dx * right;
         value[2] = ramp.base + ramp.dy * bottom;
         value[3] = value[2] + ramp.dx * right;
     };
-    fill(numerator, corners.numerator_ramp, corners.numerator, corners.numerator_error);
-    fill(q, corners.q_ramp, corners.q, corners.q_error);
+    corners.numerator_ramp = numerator;
+    corners.q_ramp = q;
+    corners.numerator_error = numerator_error;
+    corners.q_error = q_error;
+    fill(numerator, corners.numerator);
+    fill(q, corners.q);
     corners.least_q = smaller(smaller(corners.q[0], corners.q[1]), smaller(corners.q[2], corners.q[3]));
     corners.largest_q = larger(larger(corners.q[0], corners.q[1]), larger(corners.q[2], corners.q[3]));
     corners.reciprocal = 1.0 / (corners.least_q - corners.q_error);
     return corners;
+}
+inline Corners corners_of(const TrianglePlanes& planes, const PlaneOf<Pair>& numerator, const Plane& q,
+                          const Tile& tile) noexcept {
+    return corners_of(planes.ramp(numerator, tile), planes.ramp(q, tile), planes.error(numerator, tile),
+                      planes.error(q, tile), tile);
+}
+
+// Each coefficient is rounded to double; its product with an index and two sums are rounded once each.
+inline Corners corners_of(const CloseRamps& close) noexcept {
+    const auto pair = [&close](DoubleDouble CloseRamp::*part) {
+        return pair_of((close.numerator[0].*part).high, (close.numerator[1].*part).high);
+    };
+    const auto error = [&close](const CloseRamp& ramp) { return ramp.error + gamma(4) * ramp.size(close.tile); };
+    return corners_of({pair(&CloseRamp::base), pair(&CloseRamp::dx), pair(&CloseRamp::dy)},
+                      {close.q.base.high, close.q.dx.high, close.q.dy.high},
+                      pair_of(error(close.numerator[0]), error(close.numerator[1])), error(close.q), close.tile);
 }
 
 // Where the fragments in front lie as to one side of the region: G = F - bound Q is positive above it and negative below.
@@ -144,8 +175,17 @@ struct Plan {
 };
 
 inline namespace TEXGEN_BUILD {
+
+// What is known of a tile before it is divided.
+struct Examined {
+    Corners at;
+    Plan plan;
+    std::optional<CloseRamps> close;  // where the planes cancel
+};
+
 class TileInterpolator;
-}
+
+}  // namespace TEXGEN_BUILD
 
 }  // namespace detail
 
@@ -185,18 +225,17 @@ public:
     // never nothing where a fragment is lit. noexcept. An empty rectangle needs nothing.
     Work work(FragmentRect rect) const noexcept {
         if (rect.width <= 0 || rect.height <= 0) return Work::nothing;
-        const detail::Tile tile{rect.x, rect.y, rect.width, rect.height};
-        return plan(tile, corners(tile)).work;
+        return examine({rect.x, rect.y, rect.width, rect.height}).plan.work;
     }
 
     // Guarantee: |computed - exact| of s (x) and t (y) is at most this for every fragment of the rectangle with q > 0,
     // the rounding to float included; infinite where no finite bound exists, as next to q = 0. noexcept.
     glm::dvec2 error_bound(FragmentRect rect) const noexcept {
         if (rect.width <= 0 || rect.height <= 0) return {0.0, 0.0};
-        const detail::Tile tile{rect.x, rect.y, rect.width, rect.height};
-        const detail::Corners at = corners(tile);
+        const detail::Examined examined = examine({rect.x, rect.y, rect.width, rect.height});
+        const detail::Corners& at = examined.at;
+        const detail::Plan& plan = examined.plan;
         if (at.all_behind()) return {0.0, 0.0};
-        const detail::Plan plan = this->plan(tile, at);
         const auto bound = [&](std::size_t k) {
             if (plan.factors != detail::TileJob::any_factors) return plan.error[k];
             if (!at.all_in_front()) return std::numeric_limits<double>::infinity();
@@ -211,7 +250,8 @@ private:
     template <class>
     friend Work TEXGEN_BUILD::interpolate(const TriangleSetup&, FragmentRect, Texcoords) noexcept;
 
-    detail::Corners corners(const detail::Tile& tile) const noexcept { return detail::corners(planes_, st_, q_, tile); }
+    detail::Examined examine(const detail::Tile& tile) const noexcept;
+    detail::Corners corners(const detail::Tile& tile) const noexcept { return examine(tile).at; }
     detail::Plan plan(const detail::Tile& tile, const detail::Corners& at) const noexcept;
 
     detail::TrianglePlanes planes_;
@@ -290,12 +330,22 @@ inline detail::Plan TriangleSetup::plan(const detail::Tile& tile, const detail::
     if (places.s == Place::outside || places.t == Place::outside) return plan;
 
     plan.work = places.s == Place::inside && places.t == Place::inside ? Work::divide : Work::divide_and_test;
-    if (at.well_in_front() && is_constant(q_)) plan.work = Work::affine;
+    if (at.well_in_front() && is_constant(at.q_ramp)) plan.work = Work::affine;
     if (tolerance_ == 0.0 || !detail::pays_for_chunks(tile)) return plan;
     plan.chunk = detail::chunk_length(at, tile.width);
     if (!at.well_in_front()) return plan;
     detail::choose_factors(plan, at, tolerance_ * (1.0 - 0x1p-18));
     return plan;
+}
+
+inline detail::Examined TriangleSetup::examine(const detail::Tile& tile) const noexcept {
+    detail::Examined examined{detail::corners_of(planes_, st_, q_, tile), {}, std::nullopt};
+    examined.plan = plan(tile, examined.at);
+    if (examined.plan.work == Work::nothing || !examined.at.cancel()) return examined;
+    examined.close = detail::ClosePlanes(planes_, tile).ramps(0, 1);
+    examined.at = detail::corners_of(*examined.close);
+    examined.plan = plan(tile, examined.at);
+    return examined;
 }
 
 namespace detail {
@@ -307,8 +357,10 @@ class TileInterpolator {
 public:
     static constexpr int scratch_width = 512;
 
-    TileInterpolator(const TileKernels& kernels, const TriangleSetup& setup, FragmentRect rect) noexcept
-        : kernels_(kernels), setup_(setup), rect_(rect) {}
+    // `close` is what is known of the functions that add() says, or nothing yet.
+    TileInterpolator(const TileKernels& kernels, const TriangleSetup& setup, FragmentRect rect,
+                     std::optional<CloseRamps>& close) noexcept
+        : kernels_(kernels), setup_(setup), rect_(rect), close_(close) {}
 
     // s and t, of which one that only the mask needs has no output.
     void add(std::span<float> s, std::span<float> t, std::span<float> lit) noexcept {
@@ -327,8 +379,10 @@ public:
         output_[0] = output;
     }
 
-    Corners corners(const Tile& tile) const noexcept {
-        return detail::corners(setup_.planes_, planes_, setup_.q_, tile);
+    Corners corners(const Tile& tile) noexcept {
+        if (close_) return corners_of(close_->moved_to(tile));
+        const Corners at = corners_of(setup_.planes_, planes_, setup_.q_, tile);
+        return at.all_behind() || !at.cancel() ? at : corners_of(close().moved_to(tile));
     }
 
     void shade(const Tile& tile) noexcept {
@@ -355,12 +409,19 @@ public:
     }
 
 private:
-    // A tile behind is cleared; one that is in doubt is halved, until it is so small that its fragments are decided one by
-    // one.
+    // Made when a tile first needs it, for all of the rectangle.
+    const CloseRamps& close() noexcept {
+        const Tile tile{rect_.x, rect_.y, rect_.width, rect_.height};
+        if (!close_) close_ = ClosePlanes(setup_.planes_, tile).ramps(coordinate_[0], coordinate_[count_ - 1]);
+        return *close_;
+    }
+
+    // A tile behind is cleared; one that is in doubt is halved, until it is so small that it is divided closely.
     template <class ShadeHalf>
     void divide_parts(const Tile& tile, const Corners& at, const ShadeHalf& shade_half) noexcept {
         if (at.all_behind()) return clear(tile);
-        if (tile.width <= 8 && tile.height <= 8) return shade_one_by_one(tile);
+        if (tile.width <= 8 && tile.height <= 8)
+            return divide_closely(tile, job(tile, at), close().moved_to(tile).split(), {0, tile.width, 0, tile.height});
         for (const Tile& half : tile.halves()) shade_half(half);
     }
 
@@ -372,9 +433,60 @@ private:
         const Pair error = at.quotient_error(at.largest_quotient());
         for (std::size_t k = 0; k < 2; ++k) job.quotient_error[k] = error[k];
         TileJob::Unit unit = kernels_.divide_nearest(job, job.unit_at(0, 0));
-        while (!job.is_done(unit)) {
-            shade_one_by_one(part(tile, unit));
-            unit = kernels_.divide_nearest(job, job.unit_after(unit));
+        if (job.is_done(unit)) return;
+        const CloseFunctions functions = close().moved_to(tile).split();
+        if (take_exact_quotients(functions, job)) {
+            kernels_.divide_nearest(job, unit);
+            return;
+        }
+        // Doubt has company: twice as many units after each failure that follows another.
+        for (int many = 1; !job.is_done(unit);) {
+            for (int i = 0; i < many && !job.is_done(unit); ++i, unit = job.unit_after(unit))
+                divide_closely(tile, job, functions, unit);
+            const TileJob::Unit next = kernels_.divide_nearest(job, unit);
+            many = next.x_begin == unit.x_begin && next.y_begin == unit.y_begin ? 2 * many : 1;
+            unit = next;
+        }
+    }
+
+    // Where q is constant the quotients are linear; if doubles hold them exactly, every tie is decided by rounding to float.
+    static bool take_exact_quotients(const CloseFunctions& functions, TileJob& job) noexcept {
+        const auto is_zero = [](const Ramp& ramp) { return ramp.base == 0.0 && ramp.dx == 0.0 && ramp.dy == 0.0; };
+        const auto is_exact = [&](const CloseFunction& f) { return is_zero(f.low) && 4.0 * f.error < f.grain; };
+        const double q = functions.q.high.base;
+        if (!is_exact(functions.q) || functions.q.high.dx != 0.0 || functions.q.high.dy != 0.0) return false;
+        Ramp quotient[2];
+        for (std::size_t k = 0; k < 2; ++k) {
+            const Ramp& f = functions.numerator[k].high;
+            quotient[k] = {f.base / q, f.dx / q, f.dy / q};
+            const auto is_quotient = [q](double u, double numerator) {
+                const DoubleDouble product = two_product(u, q);
+                return product.high == numerator && product.low == 0.0;
+            };
+            const auto& [base, dx, dy] = quotient[k];
+            const double size = std::fabs(base) + job.width * std::fabs(dx) + job.height * std::fabs(dy);
+            const double bit = smaller(smaller(last_bit(base), last_bit(dx)), last_bit(dy));
+            if (!is_exact(functions.numerator[k]) || !(size < 0x1p52 * bit) || !is_quotient(base, f.base) ||
+                !is_quotient(dx, f.dx) || !is_quotient(dy, f.dy))
+                return false;
+        }
+        for (std::size_t k = 0; k < 2; ++k) {
+            job.numerator[k] = quotient[k];
+            job.quotient_error[k] = 0.0;
+        }
+        job.q = {1.0, 0.0, 0.0};
+        job.q_is_constant = true;
+        return true;
+    }
+
+    // A unit of a tile; fragments that stay in doubt one by one.
+    void divide_closely(const Tile& tile, const TileJob& job, const CloseFunctions& functions,
+                        const TileJob::Unit& unit) noexcept {
+        const int width = unit.x_end - unit.x_begin;
+        for (std::uint64_t doubtful = kernels_.divide_closely(job, functions, unit); doubtful != 0;
+             doubtful &= doubtful - 1) {
+            const int i = std::countr_zero(doubtful);
+            shade_one(tile.x + unit.x_begin + i % width, tile.y + unit.y_begin + i / width);
         }
     }
 
@@ -412,11 +524,6 @@ private:
         return largest * (4.01 * unit_roundoff_float) + 0x1p-104 + at.quotient_error(largest);
     }
 
-    void shade_one_by_one(const Tile& tile) noexcept {
-        for (std::int64_t y = tile.y; y < tile.y + tile.height; ++y)
-            for (std::int64_t x = tile.x; x < tile.x + tile.width; ++x) shade_one(x, y);
-    }
-
     // One fragment, every decision exact.
     void shade_one(std::int64_t x, std::int64_t y) noexcept {
         const TrianglePlanes& planes = setup_.planes_;
@@ -452,7 +559,7 @@ private:
         job.width = tile.width;
         job.height = tile.height;
         job.q = {at.q_ramp.base * factor, at.q_ramp.dx * factor, at.q_ramp.dy * factor};
-        job.q_is_constant = is_constant(setup_.q_);
+        job.q_is_constant = is_constant(at.q_ramp);
         job.pitch = rect_.width;
         job.is_contiguous = tile.width == rect_.width;
         const Pair base = at.numerator_ramp.base * factor;
@@ -484,6 +591,7 @@ private:
     std::size_t count_ = 0;
     glm::length_t coordinate_[2] = {};
     PlaneOf<Pair> planes_;
+    std::optional<CloseRamps>& close_;
     std::span<float> output_[2];
     std::span<float> lit_;
     float scratch_[2][scratch_width];  // coordinates that only the mask needs, a row at a time
@@ -516,8 +624,8 @@ Work interpolate(const TriangleSetup& setup, FragmentRect rect, Texcoords out) n
     }
 
     const detail::Tile tile{rect.x, rect.y, rect.width, rect.height};
-    const detail::Corners at = setup.corners(tile);
-    const detail::Plan plan = setup.plan(tile, at);
+    detail::Examined examined = setup.examine(tile);
+    const detail::Plan& plan = examined.plan;
     if (plan.work == Work::nothing) {
         for (float& lit : out.lit) lit = 0.0f;
         return plan.work;
@@ -528,17 +636,18 @@ Work interpolate(const TriangleSetup& setup, FragmentRect rect, Texcoords out) n
 
     const auto interpolate_one = [&](glm::length_t coordinate, std::span<float> output) {
         if (output.empty()) return;
-        detail::TileInterpolator interpolator(kernels, setup, rect);
+        std::optional<detail::CloseRamps> close;
+        detail::TileInterpolator interpolator(kernels, setup, rect, close);
         interpolator.add(coordinate, output);
         if (coordinate == 2) return interpolator.shade(tile);
         interpolator.shade(tile, interpolator.corners(tile), plan);
     };
     const bool both = !out.s.empty() && !out.t.empty();
     if (both || !out.lit.empty()) {
-        detail::TileInterpolator interpolator(kernels, setup, rect);
+        detail::TileInterpolator interpolator(kernels, setup, rect, examined.close);
         interpolator.add(out.s, out.t, out.lit);
         if (both)
-            interpolator.shade(tile, at, plan);
+            interpolator.shade(tile, examined.at, plan);
         else
             interpolator.shade_in_strips(tile, plan);
     } else {

@@ -50,27 +50,28 @@ struct TileRow : RowOutputs<Numerators> {
 // Whether a mask is asked for, the layout of points and that of their coordinates are looked at vector by vector: a branch
 // that is always the same costs next to nothing, and a loop for each combination would be most of what a user compiles.
 
-// Stores one vector of coordinates from out[k] + x on, and its mask from lit + x on.
-template <std::size_t Numerators, class Vector>
-TEXGEN_INLINE void store_all(const RowOutputs<Numerators>& row, int x, const Vector (&value)[Numerators]) noexcept {
+// Stores one vector of coordinates from out[k] + x on, and its mask from lit + x on: inside the region and in front.
+template <std::size_t Numerators, class Vector, class Mask>
+TEXGEN_INLINE void store_all(const RowOutputs<Numerators>& row, int x, const Vector (&value)[Numerators],
+                             const Mask& in_front) noexcept {
     for (std::size_t k = 0; k < Numerators; ++k) store(row.out[k] + x, value[k]);
     if constexpr (Numerators == 2)
         if (row.lit != nullptr)
-            store(row.lit + x,
-                  one_where(inside(value[0], row.min[0], row.max[0]) & inside(value[1], row.min[1], row.max[1])));
+            store(row.lit + x, one_where(in_front & inside(value[0], row.min[0], row.max[0]) &
+                                         inside(value[1], row.min[1], row.max[1])));
 }
 
 // A whole vector where it may be written, else up to `end`.
-template <std::size_t Numerators, class Vector>
-TEXGEN_INLINE void store_from(const RowOutputs<Numerators>& row, int x, int end,
-                              const Vector (&value)[Numerators]) noexcept {
+template <std::size_t Numerators, class Vector, class Mask>
+TEXGEN_INLINE void store_from(const RowOutputs<Numerators>& row, int x, int end, const Vector (&value)[Numerators],
+                              const Mask& in_front) noexcept {
     constexpr std::size_t size = sizeof(Vector) / sizeof(float);
-    if (x + static_cast<std::int64_t>(size) <= row.writable) return store_all(row, x, value);
+    if (x + static_cast<std::int64_t>(size) <= row.writable) return store_all(row, x, value, in_front);
     float buffer[Numerators + 1][size]{};
     RowOutputs<Numerators> buffered = row;
     for (std::size_t k = 0; k < Numerators; ++k) buffered.out[k] = buffer[k];
     if (row.lit != nullptr) buffered.lit = buffer[Numerators];
-    store_all(buffered, 0, value);
+    store_all(buffered, 0, value, in_front);
     for (std::size_t i = 0; i < size && x < end; ++i, ++x) {
         for (std::size_t k = 0; k < Numerators; ++k) row.out[k][x] = buffer[k][i];
         if (row.lit != nullptr) row.lit[x] = buffer[Numerators][i];
@@ -113,11 +114,11 @@ TEXGEN_INLINE TileJob::Unit divide_units(const TileJob& job, TileJob::Unit unit)
             const std::int64_t last = row.writable - lanes;
             for (; x < unit.x_end && x <= last; x += lanes, index += static_cast<double>(lanes)) {
                 divide_vector<Nearest>(job, row, index, reciprocal, quotient, doubtful);
-                store_all(row, x, quotient);
+                store_all(row, x, quotient, ~Words{});
             }
             if (x >= unit.x_end) continue;
             divide_vector<Nearest>(job, row, index, reciprocal, quotient, doubtful);
-            store_from(row, x, unit.x_end, quotient);
+            store_from(row, x, unit.x_end, quotient, ~Words{});
         }
         if (Nearest && any(doubtful)) break;
     }
@@ -132,6 +133,119 @@ TileJob::Unit divide_nearest(const TileJob& job, TileJob::Unit first) noexcept {
 template <class = void>
 void divide_rounded(const TileJob& job) noexcept {
     divide_units<false, 2>(job, job.unit_at(0, 0));
+}
+
+// ---- Division to twice the precision of double --------------------------------------------------------------------
+
+// A function of a row's index.
+struct CloseRow {
+    Doubles high, high_dx, low, low_dx;
+    double error, grain;
+    double least;  // a value below it is 0
+
+    TEXGEN_INLINE CloseRow(const CloseFunction& function, int y) noexcept
+        : high(Doubles{} + (function.high.base + y * function.high.dy)),
+          high_dx(Doubles{} + function.high.dx),
+          low(Doubles{} + (function.low.base + y * function.low.dy)),
+          low_dx(Doubles{} + function.low.dx),
+          error(1.01 * function.error),
+          grain(function.grain),
+          least(function.grain > 4.0 * function.error ? 0.5 * function.grain : 0.0) {}
+};
+
+// A vector of q, and what its quotients share. In what is left of a quotient, F - m Q, m is the middle of two floats, which
+// has 25 bits: with half of the high part of Q in two parts of 26 bits the products with 2 m are exact.
+struct CloseQ {
+    Doubles upper, lower, low, reciprocal, relative_error;
+    LongWords in_front, doubt;
+
+    TEXGEN_INLINE CloseQ(const CloseRow& row, double unit, const Doubles& index) noexcept {
+        const Doubles high = index * row.high_dx + row.high;
+        const Doubles rest = index * row.low_dx + row.low;
+        const Doubles q = high + rest;
+        in_front = greater(q, 256.0 * row.error);
+        doubt = ~(in_front | greater(q * -1.0, row.error) | greater(row.least - magnitude(q), 0.0));
+        reciprocal = where(in_front, 1.0 / q);
+        relative_error = reciprocal * row.error + 0x1p-50;
+        upper = (high + unit) - unit;
+        lower = (high - upper) * 0.5;
+        upper = upper * 0.5;
+        low = rest * 0.5;
+    }
+};
+
+// The quotients of a vector, 0 behind. Where value - error and value + error do not round to one float but to neighbours, the
+// sign of F - m Q decides. That is a multiple of the grain of its terms: what is certainly smaller is 0, and the tie is certain,
+// too. Returns the lanes that stay in doubt.
+TEXGEN_INLINE Words divide_closely(const CloseRow& row, const CloseQ& q, double half_q_error, double middle_grain,
+                                   const Doubles& index, Floats& value) noexcept {
+    const Doubles high = index * row.high_dx + row.high;
+    const Doubles low = index * row.low_dx + row.low;
+    const Doubles sum = high + low;
+    const Doubles quotient = sum * q.reciprocal;
+    const Doubles error = magnitude(quotient) * q.relative_error + q.reciprocal * row.error;
+    const Floats below = to_floats(quotient - error);
+    const Floats above = to_floats(quotient + error);
+    value = below;
+    const Words differ = bits(below) ^ bits(above);
+    if (!any(differ)) return Words{};
+    const Doubles middle = to_doubles(below) + to_doubles(above);  // twice it
+    const Doubles product = middle * q.upper;
+    const Doubles rest = high - product;
+    const Doubles taken = rest - high;
+    const Doubles lost = (high - (rest - taken)) - (product + taken);
+    const Doubles remainder = (rest - middle * q.lower) + (lost + (low - middle * q.low));
+    const Doubles unit = power_of_two_below(middle);
+    const Doubles bound = magnitude(middle) * half_q_error + row.error;
+    const LongWords is_open = greater(magnitude(remainder), bound);
+    const LongWords is_tie = greater(minimum(unit * middle_grain, Doubles{} + row.grain), bound * 4.0);
+    // A step from the middle that is less than half of what the floats are away.
+    const Doubles step = where(is_open, with_sign_of(unit * 0x1p-26, remainder));
+    const Floats nearest = to_floats((middle + step) * 0.5);
+    const Words decided = narrow(is_open | is_tie) & equal((bits(above) - bits(below) + 1) & ~2, 0) &
+                          ~equal(bits(below) & bits(above) & 0x7f800000, 0);
+    value = select(decided, nearest, below);
+    const Words doubt = ~(decided | equal(differ, 0));
+    if (!any(doubt)) return doubt;
+    const Words is_zero = narrow(greater(row.least - magnitude(sum), 0.0) & q.in_front) & doubt;
+    value = select(is_zero, Floats{}, value);
+    return doubt & ~is_zero;
+}
+
+template <std::size_t Numerators>
+TEXGEN_INLINE std::uint64_t divide_closely_of(const TileJob& job, const CloseFunctions& functions,
+                                              const TileJob::Unit& unit) noexcept {
+    const CloseFunctions close = functions;
+    std::uint64_t doubtful = 0;
+    int shift = 0;
+    for (int y = unit.y_begin; y < unit.y_end; ++y) {
+        const RowOutputs<Numerators> row(job, y);
+        const CloseRow q_row(close.q, y);
+        const CloseRow first(close.numerator[0], y);
+        const CloseRow second(close.numerator[1], y);
+        const double half_q_error = 0.5 * q_row.error;
+        const double middle_grain = 0x1p-25 * q_row.grain;
+        for (int x = unit.x_begin; x < unit.x_end; x += lanes) {
+            const Doubles index = indices<Doubles>() + static_cast<double>(x);
+            const CloseQ q(q_row, close.q_unit, index);
+            Floats value[Numerators];
+            Words doubt = narrow(q.doubt) | divide_closely(first, q, half_q_error, middle_grain, index, value[0]);
+            if constexpr (Numerators == 2)
+                doubt |= divide_closely(second, q, half_q_error, middle_grain, index, value[1]);
+            store_from(row, x, unit.x_end, value, narrow(q.in_front));
+            const int count = unit.x_end - x < lanes ? unit.x_end - x : lanes;
+            if (any(doubt))
+                for (int i = 0; i < count; ++i)
+                    if (lane(doubt, i) != 0) doubtful |= std::uint64_t{1} << (shift + i);
+            shift += count;
+        }
+    }
+    return doubtful;
+}
+
+template <class = void>
+std::uint64_t divide_closely(const TileJob& job, const CloseFunctions& close, TileJob::Unit unit) noexcept {
+    return job.numerators == 2 ? divide_closely_of<2>(job, close, unit) : divide_closely_of<1>(job, close, unit);
 }
 
 // ---- Chunks ----------------------------------------------------------------------------------------------------
@@ -276,7 +390,7 @@ TEXGEN_INLINE void evaluate(const ChunkGroup& group, int first, int last, const 
             WideFloats value[2];
             for (std::size_t k = 0; k < 2; ++k) value[k] = step * slope[k] + middle[k];
             // What a last vector writes beyond the chunk is written again by those that follow.
-            store_from(row, x, end, value);
+            store_from(row, x, end, value, ~WideWords{});
             const WideFloats after_next = index + static_cast<float>(2 * wide_lanes);
             index = next_index;
             next_index = after_next;
@@ -688,7 +802,7 @@ namespace texgen::detail::TEXGEN_ISA {
 template <class Table>
 const Table& kernels() noexcept {
     if constexpr (std::is_same_v<Table, TileKernels>) {
-        static constexpr TileKernels table{divide_nearest<>, divide_rounded<>, divide_chunks<>};
+        static constexpr TileKernels table{divide_nearest<>, divide_rounded<>, divide_chunks<>, divide_closely<>};
         return table;
     } else if constexpr (std::is_same_v<Table, PointKernels>) {
         static constexpr PointKernels table{divide_points_nearest<>, divide_points_within<FormsInFloat>,

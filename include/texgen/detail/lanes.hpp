@@ -14,6 +14,7 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <type_traits>
 #include <utility>
@@ -69,6 +70,19 @@ struct TileJob {
         return unit.x_end < width ? unit_at(unit.x_end, unit.y_begin) : unit_at(0, unit.y_end);
     }
     bool is_done(const Unit& unit) const noexcept { return unit.y_begin >= height; }
+};
+
+// The same functions of a tile to twice the precision: each is high + low, within `error` of the exact one, and a multiple of
+// `grain`. The coefficients of high are multiples of a unit in which no value of the tile needs more than 52 bits, so that
+// its arithmetic is exact; those of low are what is left below the unit.
+struct CloseFunction {
+    Ramp high, low;
+    double error, grain;
+};
+struct CloseFunctions {
+    CloseFunction numerator[2];
+    CloseFunction q;
+    double q_unit;  // adding and taking it rounds high of q to 26 bits
 };
 
 // A linear form of points (x, y, z, 1).
@@ -164,6 +178,8 @@ struct TileKernels {
     TileJob::Unit (*divide_nearest)(const TileJob&, TileJob::Unit first) noexcept;
     void (*divide_rounded)(const TileJob&) noexcept;
     TileJob::Unit (*divide_chunks)(const TileJob&, TileJob::Unit first) noexcept;
+    // A unit on either side of the projector. A bit for each fragment that stays in doubt, row by row.
+    std::uint64_t (*divide_closely)(const TileJob&, const CloseFunctions&, TileJob::Unit unit) noexcept;
 };
 
 struct PointKernels {

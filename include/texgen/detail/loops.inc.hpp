@@ -55,6 +55,9 @@ struct Lanes {
     friend Lanes operator&(const Lanes& a, const Lanes& b) noexcept {
         return of([&](int i) { return a.lane[i] & b.lane[i]; });
     }
+    friend Lanes operator&(const Lanes& a, T b) noexcept {
+        return of([&](int i) { return a.lane[i] & b; });
+    }
     friend Lanes operator|(const Lanes& a, const Lanes& b) noexcept {
         return of([&](int i) { return a.lane[i] | b.lane[i]; });
     }
@@ -103,10 +106,24 @@ using LongWords = Words;
 TEXGEN_INLINE LongWords greater(const Doubles& a, double b) noexcept {
     return LongWords::of([&](int i) { return a.lane[i] > b ? -1 : 0; });
 }
+TEXGEN_INLINE LongWords greater(const Doubles& a, const Doubles& b) noexcept {
+    return LongWords::of([&](int i) { return a.lane[i] > b.lane[i] ? -1 : 0; });
+}
 TEXGEN_INLINE Doubles where(const LongWords& mask, const Doubles& values) noexcept {
     return Doubles::of([&](int i) { return mask.lane[i] != 0 ? values.lane[i] : 0.0; });
 }
 TEXGEN_INLINE Words narrow(const LongWords& mask) noexcept { return mask; }
+TEXGEN_INLINE int lane(const Words& a, int i) noexcept { return a.lane[i]; }
+TEXGEN_INLINE Words equal(const Words& a, int b) noexcept {
+    return Words::of([&](int i) { return a.lane[i] == b ? -1 : 0; });
+}
+TEXGEN_INLINE Doubles with_sign_of(const Doubles& size, const Doubles& sign) noexcept {
+    return Doubles::of([&](int i) { return std::copysign(size.lane[i], sign.lane[i]); });
+}
+TEXGEN_INLINE Doubles power_of_two_below(const Doubles& a) noexcept {
+    return Doubles::of(
+        [&](int i) { return std::bit_cast<double>(std::bit_cast<std::uint64_t>(a.lane[i]) & 0x7ff0000000000000); });
+}
 
 TEXGEN_INLINE WideWords magnitude_bits(const WideFloats& a) noexcept {
     return WideWords::of([&](int i) { return std::bit_cast<int>(a.lane[i]) & 0x7fffffff; });

@@ -8,6 +8,7 @@
 // ever formed.
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -62,7 +63,7 @@ struct PlaneOf {
 };
 using Plane = PlaneOf<double>;
 
-inline bool is_constant(const Plane& plane) noexcept { return plane.value.dx == 0.0 && plane.value.dy == 0.0; }
+inline bool is_constant(const Ramp& ramp) noexcept { return ramp.dx == 0.0 && ramp.dy == 0.0; }
 
 // The derivatives of f/q by x and y, times Q^2, as functions of p - a. With mu_ij = (f_i q_j - f_j q_i) times the weights
 // of i and j, and twice the signed area,
@@ -80,15 +81,18 @@ struct Slope {
 class TrianglePlanes {
 public:
     explicit TrianglePlanes(const Triangle& triangle) noexcept
-        : triangle_(triangle), a_(window(triangle.a)), to_b_(window(triangle.b) - a_), to_c_(window(triangle.c) - a_) {
+        : triangle_(about_farthest(triangle)),
+          a_(window(triangle_.a)),
+          to_b_(window(triangle_.b) - a_),
+          to_c_(window(triangle_.c) - a_) {
         const double left = to_b_.x * to_c_.y;
         const double right = to_b_.y * to_c_.x;
         const Bounded area{left - right, gamma(4) * (std::fabs(left) + std::fabs(right))};
         orientation_ = std::fabs(area.value) > area.error ? (area.value > 0.0 ? 1 : -1) : exact_area().sign();
         area_ = area.value;
-        const double a = orientation_ * widened(triangle.a.clip_w);
-        const double b = widened(triangle.b.clip_w);
-        const double c = widened(triangle.c.clip_w);
+        const double a = orientation_ * widened(triangle_.a.clip_w);
+        const double b = widened(triangle_.b.clip_w);
+        const double c = widened(triangle_.c.clip_w);
         weight_[0] = orientation_ * (b * c);
         weight_[1] = a * c;
         weight_[2] = a * b;
@@ -163,6 +167,34 @@ public:
         return exact.estimate() * scale;
     }
 
+    // What F is made of, c_i = value weight: a coordinate of corner i, and w_j w_k times the common factor; both are exact.
+    const WindowVertex& vertex(std::size_t i) const noexcept {
+        return i == 0 ? triangle_.a : i == 1 ? triangle_.b : triangle_.c;
+    }
+    glm::dvec2 corner(std::size_t i) const noexcept { return window(vertex(i)); }
+    double value(std::size_t i, glm::length_t coordinate) const noexcept { return widened(vertex(i).strq[coordinate]); }
+    double weight(std::size_t i) const noexcept { return weight_[i]; }
+
+    // A power of two of which F is a multiple at every fragment: products and sums of floats are multiples of the products
+    // of their last bits. 0 where that is too small for a double.
+    double grain(glm::length_t coordinate) const noexcept {
+        double of_value = std::numeric_limits<double>::infinity();
+        double of_w = of_value;
+        double of_x = 0.5;
+        double of_y = 0.5;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const glm::dvec2 at = corner(i);
+            of_value = smaller(of_value, last_bit(value(i, coordinate)));
+            of_w = smaller(of_w, last_bit(widened(vertex(i).clip_w)));
+            of_x = smaller(of_x, last_bit(at.x));
+            of_y = smaller(of_y, last_bit(at.y));
+        }
+        const double of_weights = std::fabs(weight_[0]) / (widened(triangle_.b.clip_w) * widened(triangle_.c.clip_w));
+        return of_value < std::numeric_limits<double>::infinity()
+                   ? (of_weights * (of_w * of_w)) * (of_x * of_y) * of_value
+                   : 1.0;
+    }
+
     // The window, seen from the first vertex: the centre of a fragment, and the other vertices.
     glm::dvec2 from_a(const Tile& tile) const noexcept {
         return {(static_cast<double>(tile.x) + 0.5) - a_.x, (static_cast<double>(tile.y) + 0.5) - a_.y};
@@ -229,6 +261,15 @@ private:
         const double c_y = std::fabs(to_c_.y);
         return {{a * area_, b_minus_a * to_c_.y - c_minus_a * to_b_.y, c_minus_a * to_b_.x - b_minus_a * to_c_.x},
                 {magnitude(a) * (b_x * c_y + b_y * c_x), b_and_a * c_y + c_and_a * b_y, c_and_a * b_x + b_and_a * c_x}};
+    }
+
+    // A corner where the camera's w is small may be far outside of the window, where F is large: the planes stand about the
+    // one where w is largest.
+    static Triangle about_farthest(const Triangle& triangle) noexcept {
+        const auto& [a, b, c] = triangle;
+        if (b.clip_w > a.clip_w && b.clip_w >= c.clip_w) return {b, c, a};
+        if (c.clip_w > a.clip_w) return {c, a, b};
+        return triangle;
     }
 
     static glm::dvec2 window(const WindowVertex& vertex) noexcept {

@@ -49,6 +49,15 @@ inline double reciprocal_power_of_two(double value) noexcept {
     return std::bit_cast<double>((2046 - biased_exponent) << 52 & 0x7ff0000000000000);
 }
 
+// The last bit of a number that is set; infinity for 0.
+inline double last_bit(double value) noexcept {
+    const auto bits = std::bit_cast<std::uint64_t>(value);
+    if (bits << 1 == 0) return std::numeric_limits<double>::infinity();
+    const int zeros = std::countr_zero(bits | std::uint64_t{1} << 52);
+    return std::bit_cast<double>(bits & 0x7ff0000000000000) *
+           (0x1p-52 * static_cast<double>(std::uint64_t{1} << zeros));
+}
+
 // The relative error of n roundings in sequence is at most gamma(n) = n u / (1 - n u). Here u is twice the unit roundoff,
 // so that it holds whichever way the caller's state rounds. Source: Higham, Accuracy and Stability of Numerical
 // Algorithms, lemma 3.1.
@@ -146,6 +155,23 @@ inline DoubleDouble two_sum_in_any_direction(double a, double b) noexcept {
 inline DoubleDouble two_product(double a, double b) noexcept {
     const double product = a * b;
     return {product, std::fma(a, b, -product)};
+}
+
+inline DoubleDouble operator-(const DoubleDouble& a) noexcept { return {-a.high, -a.low}; }
+
+// a + b and a b within 2^-102 (|a| + |b|) and 2^-102 |a b|. Source: Dekker; Joldes, Muller, Popescu, Tight and Rigorous Error
+// Bounds for Basic Building Blocks of Double-Word Arithmetic, ACM TOMS 44 (2017).
+inline DoubleDouble sum(const DoubleDouble& a, const DoubleDouble& b) noexcept {
+    const DoubleDouble exact = two_sum(a.high, b.high);
+    const double low = exact.low + (a.low + b.low);
+    const double high = exact.high + low;
+    return {high, low - (high - exact.high)};
+}
+inline DoubleDouble product(const DoubleDouble& a, const DoubleDouble& b) noexcept {
+    const DoubleDouble exact = two_product(a.high, b.high);
+    const double low = exact.low + (a.high * b.low + a.low * b.high);
+    const double high = exact.high + low;
+    return {high, low - (high - exact.high)};
 }
 
 // a + b c within 2^-104 (|a| + |b c|).

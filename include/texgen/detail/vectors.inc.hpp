@@ -54,10 +54,25 @@ TEXGEN_INLINE Doubles truncated(const Doubles& values) noexcept {
 // Masks of Doubles are 64 bits wide.
 using LongWords [[gnu::vector_size(TEXGEN_LANE_BYTES)]] = long long;
 TEXGEN_INLINE LongWords greater(const Doubles& a, double b) noexcept { return a > b; }
+TEXGEN_INLINE LongWords greater(const Doubles& a, const Doubles& b) noexcept { return a > b; }
 TEXGEN_INLINE Doubles where(const LongWords& mask, const Doubles& values) noexcept {
     return __builtin_bit_cast(Doubles, mask & __builtin_bit_cast(LongWords, values));
 }
 TEXGEN_INLINE Words narrow(const LongWords& mask) noexcept { return __builtin_convertvector(mask, Words); }
+TEXGEN_INLINE int lane(const Words& a, int i) noexcept { return a[i]; }
+TEXGEN_INLINE Words equal(const Words& a, int b) noexcept { return a == b; }
+TEXGEN_INLINE Floats select(const Words& mask, const Floats& a, const Floats& b) noexcept {
+    return __builtin_bit_cast(Floats, (mask & bits(a)) | (~mask & bits(b)));
+}
+TEXGEN_INLINE Doubles with_sign_of(const Doubles& size, const Doubles& sign) noexcept {
+    constexpr auto bit = static_cast<long long>(0x8000000000000000);
+    return __builtin_bit_cast(Doubles,
+                              __builtin_bit_cast(LongWords, size) | (__builtin_bit_cast(LongWords, sign) & bit));
+}
+// The power of two at or below the magnitude of a normal number.
+TEXGEN_INLINE Doubles power_of_two_below(const Doubles& a) noexcept {
+    return __builtin_bit_cast(Doubles, __builtin_bit_cast(LongWords, a) & 0x7ff0000000000000);
+}
 
 // The bits of |a|, in the order of |a|; a NaN is beyond infinity, so that a largest magnitude keeps it.
 TEXGEN_INLINE WideWords magnitude_bits(const WideFloats& a) noexcept {
@@ -102,7 +117,9 @@ TEXGEN_INLINE WideWords at_most(const WideFloats& a, const WideFloats& b) noexce
 
 TEXGEN_INLINE Doubles minimum(const Doubles& a, const Doubles& b) noexcept { return a < b ? a : b; }
 TEXGEN_INLINE Doubles maximum(const Doubles& a, const Doubles& b) noexcept { return a > b ? a : b; }
-TEXGEN_INLINE Doubles magnitude(const Doubles& a) noexcept { return maximum(a, -a); }
+TEXGEN_INLINE Doubles magnitude(const Doubles& a) noexcept {
+    return __builtin_bit_cast(Doubles, __builtin_bit_cast(LongWords, a) & 0x7fffffffffffffff);
+}
 
 template <class Vector>
 TEXGEN_INLINE Vector load(const void* from) noexcept {
