@@ -24,6 +24,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include <glm/vec2.hpp>
 
@@ -59,11 +60,13 @@ struct Corners {
     bool all_behind() const noexcept { return largest_q < -q_error; }
     bool all_in_front() const noexcept { return least_q > q_error; }
     // Whether so little is left of the functions' terms that many quotients would be in doubt: the planes are about a corner.
+    // Where q has both signs there is doubt beside q = 0 in any case.
     bool cancel() const noexcept {
-        constexpr double share = 0x1p-38;
+        constexpr double share = 0x1p-36;
+        const double q = least_q > q_error ? least_q : larger(-least_q, largest_q);
         const Pair largest = larger(larger(magnitude(numerator[0]), magnitude(numerator[1])),
                                     larger(magnitude(numerator[2]), magnitude(numerator[3])));
-        return q_error > share * least_q || numerator_error[0] > share * largest[0] ||
+        return q_error > share * q || numerator_error[0] > share * largest[0] ||
                numerator_error[1] > share * largest[1];
     }
     // Far enough in front that the relative error of q is below 2^-24.
@@ -380,25 +383,40 @@ public:
     }
 
     Corners corners(const Tile& tile) noexcept {
-        if (close_) return corners_of(close_->moved_to(tile));
         const Corners at = corners_of(setup_.planes_, planes_, setup_.q_, tile);
         return at.all_behind() || !at.cancel() ? at : corners_of(close().moved_to(tile));
     }
 
-    void shade(const Tile& tile) noexcept {
+    // A coordinate whose plan nobody knows.
+    void interpolate(const Tile& tile) noexcept {
         const Corners at = corners(tile);
-        const int chunk = pays_for_chunks(tile) ? chunk_length(at, tile.width) : 0;
-        shade(tile, at, {Work::divide, chunk, TileJob::any_factors, {}});
+        interpolate(tile, at, plan(tile, at));
+    }
+
+    void interpolate(const Tile& tile, const Corners& at, const Plan& plan) noexcept {
+        whole_ = tile;
+        closely_.reset();
+        shade(tile, at, plan);
     }
 
     // In parts that the scratch arrays hold.
-    void shade_in_strips(const Tile& tile, const Plan& plan) noexcept {
+    void interpolate_in_strips(const Tile& tile, const Plan& plan) noexcept {
         Tile strip = tile;
         for (strip.width = scratch_width; strip.x < tile.x + tile.width; strip.x += scratch_width) {
             const std::int64_t rest = tile.x + tile.width - strip.x;
             if (rest < strip.width) strip.width = static_cast<int>(rest);
-            shade(strip, corners(strip), plan);
+            interpolate(strip, corners(strip), plan);
         }
+    }
+
+private:
+    static Plan plan(const Tile& tile, const Corners& at) noexcept {
+        return {Work::divide, pays_for_chunks(tile) ? chunk_length(at, tile.width) : 0, TileJob::any_factors, {}};
+    }
+
+    void shade(const Tile& tile) noexcept {
+        const Corners at = corners(tile);
+        shade(tile, at, plan(tile, at));
     }
 
     void shade(const Tile& tile, const Corners& at, const Plan& plan) noexcept {
@@ -408,7 +426,6 @@ public:
         divide_parts(tile, at, [&](const Tile& half) { shade(half); });
     }
 
-private:
     // Made when a tile first needs it, for all of the rectangle.
     const CloseRamps& close() noexcept {
         const Tile tile{rect_.x, rect_.y, rect_.width, rect_.height};
@@ -420,8 +437,7 @@ private:
     template <class ShadeHalf>
     void divide_parts(const Tile& tile, const Corners& at, const ShadeHalf& shade_half) noexcept {
         if (at.all_behind()) return clear(tile);
-        if (tile.width <= 8 && tile.height <= 8)
-            return divide_closely(tile, job(tile, at), close().moved_to(tile).split(), {0, tile.width, 0, tile.height});
+        if (tile.width <= 8 && tile.height <= 8) return divide_closely(tile, at);
         for (const Tile& half : tile.halves()) shade_half(half);
     }
 
@@ -442,7 +458,7 @@ private:
         // Doubt has company: twice as many units after each failure that follows another.
         for (int many = 1; !job.is_done(unit);) {
             for (int i = 0; i < many && !job.is_done(unit); ++i, unit = job.unit_after(unit))
-                divide_closely(tile, job, functions, unit);
+                shade_some(tile, unit, kernels_.divide_closely(job, functions, unit));
             const TileJob::Unit next = kernels_.divide_nearest(job, unit);
             many = next.x_begin == unit.x_begin && next.y_begin == unit.y_begin ? 2 * many : 1;
             unit = next;
@@ -479,13 +495,42 @@ private:
         return true;
     }
 
-    // A unit of a tile; fragments that stay in doubt one by one.
-    void divide_closely(const Tile& tile, const TileJob& job, const CloseFunctions& functions,
-                        const TileJob::Unit& unit) noexcept {
+    // A small tile, by one job for all that there are: with the planes as they are, and closely only if that leaves doubt. What
+    // a last vector writes beyond the tile is to its right, where the halves come later.
+    void divide_closely(const Tile& tile, const Corners& at) noexcept {
+        const int x = static_cast<int>(tile.x - whole_.x);
+        const int y = static_cast<int>(tile.y - whole_.y);
+        const TileJob::Unit unit{x, x + tile.width, y, y + tile.height};
+        if (!closely_) {
+            closely_.emplace(job(whole_, at), (close_ ? close_->moved_to(whole_) : plain_ramps()).split());
+            closely_->first.is_contiguous = false;
+        }
+        const auto& [job, functions] = *closely_;
+        std::uint64_t doubtful = kernels_.divide_closely(job, functions, unit);
+        if (doubtful != 0 && !close_) {
+            closely_->second = close().moved_to(whole_).split();
+            doubtful = kernels_.divide_closely(job, functions, unit);
+        }
+        shade_some(whole_, unit, doubtful);
+    }
+
+    CloseRamps plain_ramps() const noexcept {
+        const Corners at = corners_of(setup_.planes_, planes_, setup_.q_, whole_);
+        const auto plain = [](double base, double dx, double dy, double error) {
+            return CloseRamp{{base, 0.0}, {dx, 0.0}, {dy, 0.0}, error, 0.0};
+        };
+        const auto numerator = [&](std::size_t k) {
+            const auto& [base, dx, dy] = at.numerator_ramp;
+            return plain(base[k], dx[k], dy[k], at.numerator_error[k]);
+        };
+        return {whole_, {numerator(0), numerator(1)}, plain(at.q_ramp.base, at.q_ramp.dx, at.q_ramp.dy, at.q_error)};
+    }
+
+    // Fragments of a unit, one by one: a bit for each.
+    void shade_some(const Tile& tile, const TileJob::Unit& unit, std::uint64_t fragments) noexcept {
         const int width = unit.x_end - unit.x_begin;
-        for (std::uint64_t doubtful = kernels_.divide_closely(job, functions, unit); doubtful != 0;
-             doubtful &= doubtful - 1) {
-            const int i = std::countr_zero(doubtful);
+        for (; fragments != 0; fragments &= fragments - 1) {
+            const int i = std::countr_zero(fragments);
             shade_one(tile.x + unit.x_begin + i % width, tile.y + unit.y_begin + i / width);
         }
     }
@@ -592,6 +637,8 @@ private:
     glm::length_t coordinate_[2] = {};
     PlaneOf<Pair> planes_;
     std::optional<CloseRamps>& close_;
+    Tile whole_;  // what is being interpolated
+    std::optional<std::pair<TileJob, CloseFunctions>> closely_;
     std::span<float> output_[2];
     std::span<float> lit_;
     float scratch_[2][scratch_width];  // coordinates that only the mask needs, a row at a time
@@ -639,17 +686,17 @@ Work interpolate(const TriangleSetup& setup, FragmentRect rect, Texcoords out) n
         std::optional<detail::CloseRamps> close;
         detail::TileInterpolator interpolator(kernels, setup, rect, close);
         interpolator.add(coordinate, output);
-        if (coordinate == 2) return interpolator.shade(tile);
-        interpolator.shade(tile, interpolator.corners(tile), plan);
+        if (coordinate == 2) return interpolator.interpolate(tile);
+        interpolator.interpolate(tile, interpolator.corners(tile), plan);
     };
     const bool both = !out.s.empty() && !out.t.empty();
     if (both || !out.lit.empty()) {
         detail::TileInterpolator interpolator(kernels, setup, rect, examined.close);
         interpolator.add(out.s, out.t, out.lit);
         if (both)
-            interpolator.shade(tile, examined.at, plan);
+            interpolator.interpolate(tile, examined.at, plan);
         else
-            interpolator.shade_in_strips(tile, plan);
+            interpolator.interpolate_in_strips(tile, plan);
     } else {
         interpolate_one(0, out.s);
         interpolate_one(1, out.t);

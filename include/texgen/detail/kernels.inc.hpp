@@ -139,18 +139,21 @@ void divide_rounded(const TileJob& job) noexcept {
 
 // A function of a row's index.
 struct CloseRow {
-    Doubles high, high_dx, low, low_dx;
-    double error, grain;
+    Doubles high, high_dx, low, low_dx, error;
     double least;  // a value below it is 0
 
-    TEXGEN_INLINE CloseRow(const CloseFunction& function, int y) noexcept
-        : high(Doubles{} + (function.high.base + y * function.high.dy)),
+    TEXGEN_INLINE explicit CloseRow(const CloseFunction& function) noexcept
+        : high{},
           high_dx(Doubles{} + function.high.dx),
-          low(Doubles{} + (function.low.base + y * function.low.dy)),
+          low{},
           low_dx(Doubles{} + function.low.dx),
-          error(1.01 * function.error),
-          grain(function.grain),
+          error(Doubles{} + 1.01 * function.error),
           least(function.grain > 4.0 * function.error ? 0.5 * function.grain : 0.0) {}
+
+    TEXGEN_INLINE void move_to(const CloseFunction& function, int y) noexcept {
+        high = Doubles{} + (function.high.base + y * function.high.dy);
+        low = Doubles{} + (function.low.base + y * function.low.dy);
+    }
 };
 
 // A vector of q, and what its quotients share. In what is left of a quotient, F - m Q, m is the middle of two floats, which
@@ -163,7 +166,7 @@ struct CloseQ {
         const Doubles high = index * row.high_dx + row.high;
         const Doubles rest = index * row.low_dx + row.low;
         const Doubles q = high + rest;
-        in_front = greater(q, 256.0 * row.error);
+        in_front = greater(q, row.error * 256.0);
         doubt = ~(in_front | greater(q * -1.0, row.error) | greater(row.least - magnitude(q), 0.0));
         reciprocal = where(in_front, 1.0 / q);
         relative_error = reciprocal * row.error + 0x1p-50;
@@ -177,12 +180,12 @@ struct CloseQ {
 // The quotients of a vector, 0 behind. Where value - error and value + error do not round to one float but to neighbours, the
 // sign of F - m Q decides. That is a multiple of the grain of its terms: what is certainly smaller is 0, and the tie is certain,
 // too. Returns the lanes that stay in doubt.
-TEXGEN_INLINE Words divide_closely(const CloseRow& row, const CloseQ& q, double half_q_error, double middle_grain,
-                                   const Doubles& index, Floats& value) noexcept {
+TEXGEN_INLINE Words divide_closely(const CloseRow& row, double grain, const CloseQ& q, const Doubles& half_q_error,
+                                   double middle_grain, const Doubles& index, Floats& value) noexcept {
     const Doubles high = index * row.high_dx + row.high;
     const Doubles low = index * row.low_dx + row.low;
     const Doubles sum = high + low;
-    const Doubles quotient = sum * q.reciprocal;
+    const Doubles quotient = where(q.in_front, sum * q.reciprocal);  // no -0 behind
     const Doubles error = magnitude(quotient) * q.relative_error + q.reciprocal * row.error;
     const Floats below = to_floats(quotient - error);
     const Floats above = to_floats(quotient + error);
@@ -198,7 +201,7 @@ TEXGEN_INLINE Words divide_closely(const CloseRow& row, const CloseQ& q, double 
     const Doubles unit = power_of_two_below(middle);
     const Doubles bound = magnitude(middle) * half_q_error + row.error;
     const LongWords is_open = greater(magnitude(remainder), bound);
-    const LongWords is_tie = greater(minimum(unit * middle_grain, Doubles{} + row.grain), bound * 4.0);
+    const LongWords is_tie = greater(minimum(unit * middle_grain, Doubles{} + grain), bound * 4.0);
     // A step from the middle that is less than half of what the floats are away.
     const Doubles step = where(is_open, with_sign_of(unit * 0x1p-26, remainder));
     const Floats nearest = to_floats((middle + step) * 0.5);
@@ -216,22 +219,27 @@ template <std::size_t Numerators>
 TEXGEN_INLINE std::uint64_t divide_closely_of(const TileJob& job, const CloseFunctions& functions,
                                               const TileJob::Unit& unit) noexcept {
     const CloseFunctions close = functions;
+    CloseRow q_row(close.q);
+    CloseRow first(close.numerator[0]);
+    CloseRow second(close.numerator[1]);
+    RowOutputs<Numerators> row(job, unit.y_begin);
+    const Doubles half_q_error = q_row.error * 0.5;
+    const double middle_grain = 0x1p-25 * close.q.grain;
     std::uint64_t doubtful = 0;
     int shift = 0;
-    for (int y = unit.y_begin; y < unit.y_end; ++y) {
-        const RowOutputs<Numerators> row(job, y);
-        const CloseRow q_row(close.q, y);
-        const CloseRow first(close.numerator[0], y);
-        const CloseRow second(close.numerator[1], y);
-        const double half_q_error = 0.5 * q_row.error;
-        const double middle_grain = 0x1p-25 * q_row.grain;
+    for (int y = unit.y_begin; y < unit.y_end; ++y, row.advance()) {
+        q_row.move_to(close.q, y);
+        first.move_to(close.numerator[0], y);
+        second.move_to(close.numerator[1], y);
         for (int x = unit.x_begin; x < unit.x_end; x += lanes) {
             const Doubles index = indices<Doubles>() + static_cast<double>(x);
             const CloseQ q(q_row, close.q_unit, index);
             Floats value[Numerators];
-            Words doubt = narrow(q.doubt) | divide_closely(first, q, half_q_error, middle_grain, index, value[0]);
+            Words doubt = narrow(q.doubt) | divide_closely(first, close.numerator[0].grain, q, half_q_error,
+                                                           middle_grain, index, value[0]);
             if constexpr (Numerators == 2)
-                doubt |= divide_closely(second, q, half_q_error, middle_grain, index, value[1]);
+                doubt |=
+                    divide_closely(second, close.numerator[1].grain, q, half_q_error, middle_grain, index, value[1]);
             store_from(row, x, unit.x_end, value, narrow(q.in_front));
             const int count = unit.x_end - x < lanes ? unit.x_end - x : lanes;
             if (any(doubt))
