@@ -17,6 +17,7 @@
 
 #include "support/fragments.hpp"
 #include "support/hard_triangles.hpp"
+#include "support/near_cut.hpp"
 #include "support/outputs.hpp"
 #include "support/random.hpp"
 #include "texgen/reference.hpp"
@@ -126,6 +127,31 @@ TEST_CASE("every fragment is the nearest float of the exact rational, in every f
     CHECK(everything.infinite > 500);
     CHECK(everything.lit > 10000);
     CHECK(everything.dark > 10000);
+}
+
+TEST_CASE(
+    "what the near plane cuts is the nearest float in every order of the corners, and with a tolerance inside of it") {
+    Random random(4711);
+    Seen seen;
+    int far_first = 0;
+    for (int i = 0; i < 300; ++i) {
+        const auto [triangle, rect] = support::near_cut(random, random.integer(1, 70), random.integer(1, 3));
+        for (int order = 0; order < 3; ++order) {
+            const Shot shot{support::rotated(triangle, order), rect};
+            far_first += std::fabs(shot.triangle.a.window.x) > 1e4f;
+            for (const texgen::Tolerance tolerance : {texgen::exact, texgen::texels(1.0 / 512.0, 4096.0)}) {
+                Outputs out(count_of(rect));
+                const Work work = interpolate(setup_of(shot.triangle, everywhere(), tolerance), rect, out.spans());
+                const std::string wrong =
+                    first_wrong(shot, ExactTriangle(shot.triangle), everywhere(), tolerance, work, out, seen);
+                REQUIRE_MESSAGE(wrong.empty(), wrong, " in ", hex(shot));
+                REQUIRE_MESSAGE(out.pads_are_intact(), hex(shot));
+            }
+        }
+    }
+    CHECK(far_first > 100);
+    CHECK(seen.behind > 500);
+    CHECK(seen.in_front > 10000);
 }
 
 TEST_CASE("every fragment of a row whose values all lie between two floats is decided, at every width") {

@@ -63,10 +63,10 @@ struct Corners {
     // Where q has both signs there is doubt beside q = 0 in any case.
     bool cancel() const noexcept {
         constexpr double share = 0x1p-36;
-        const double q = least_q > q_error ? least_q : larger(-least_q, largest_q);
+        const double size = least_q > q_error ? least_q : larger(-least_q, largest_q);
         const Pair largest = larger(larger(magnitude(numerator[0]), magnitude(numerator[1])),
                                     larger(magnitude(numerator[2]), magnitude(numerator[3])));
-        return q_error > share * q || numerator_error[0] > share * largest[0] ||
+        return q_error > share * size || numerator_error[0] > share * largest[0] ||
                numerator_error[1] > share * largest[1];
     }
     // Far enough in front that the relative error of q is below 2^-24.
@@ -180,7 +180,7 @@ struct Plan {
 inline namespace TEXGEN_BUILD {
 
 // What is known of a tile before it is divided.
-struct Examined {
+struct TileSurvey {
     Corners at;
     Plan plan;
     std::optional<CloseRamps> close;  // where the planes cancel
@@ -228,16 +228,16 @@ public:
     // never nothing where a fragment is lit. noexcept. An empty rectangle needs nothing.
     Work work(FragmentRect rect) const noexcept {
         if (rect.width <= 0 || rect.height <= 0) return Work::nothing;
-        return examine({rect.x, rect.y, rect.width, rect.height}).plan.work;
+        return survey({rect.x, rect.y, rect.width, rect.height}).plan.work;
     }
 
     // Guarantee: |computed - exact| of s (x) and t (y) is at most this for every fragment of the rectangle with q > 0,
     // the rounding to float included; infinite where no finite bound exists, as next to q = 0. noexcept.
     glm::dvec2 error_bound(FragmentRect rect) const noexcept {
         if (rect.width <= 0 || rect.height <= 0) return {0.0, 0.0};
-        const detail::Examined examined = examine({rect.x, rect.y, rect.width, rect.height});
-        const detail::Corners& at = examined.at;
-        const detail::Plan& plan = examined.plan;
+        const detail::TileSurvey found = survey({rect.x, rect.y, rect.width, rect.height});
+        const detail::Corners& at = found.at;
+        const detail::Plan& plan = found.plan;
         if (at.all_behind()) return {0.0, 0.0};
         const auto bound = [&](std::size_t k) {
             if (plan.factors != detail::TileJob::any_factors) return plan.error[k];
@@ -253,8 +253,8 @@ private:
     template <class>
     friend Work TEXGEN_BUILD::interpolate(const TriangleSetup&, FragmentRect, Texcoords) noexcept;
 
-    detail::Examined examine(const detail::Tile& tile) const noexcept;
-    detail::Corners corners(const detail::Tile& tile) const noexcept { return examine(tile).at; }
+    detail::TileSurvey survey(const detail::Tile& tile) const noexcept;
+    detail::Corners corners(const detail::Tile& tile) const noexcept { return survey(tile).at; }
     detail::Plan plan(const detail::Tile& tile, const detail::Corners& at) const noexcept;
 
     detail::TrianglePlanes planes_;
@@ -341,14 +341,14 @@ inline detail::Plan TriangleSetup::plan(const detail::Tile& tile, const detail::
     return plan;
 }
 
-inline detail::Examined TriangleSetup::examine(const detail::Tile& tile) const noexcept {
-    detail::Examined examined{detail::corners_of(planes_, st_, q_, tile), {}, std::nullopt};
-    examined.plan = plan(tile, examined.at);
-    if (examined.plan.work == Work::nothing || !examined.at.cancel()) return examined;
-    examined.close = detail::ClosePlanes(planes_, tile).ramps(0, 1);
-    examined.at = detail::corners_of(*examined.close);
-    examined.plan = plan(tile, examined.at);
-    return examined;
+inline detail::TileSurvey TriangleSetup::survey(const detail::Tile& tile) const noexcept {
+    detail::TileSurvey found{detail::corners_of(planes_, st_, q_, tile), {}, std::nullopt};
+    found.plan = plan(tile, found.at);
+    if (found.plan.work == Work::nothing || !found.at.cancel()) return found;
+    found.close = detail::ClosePlanes(planes_, tile).ramps(0, 1);
+    found.at = detail::corners_of(*found.close);
+    found.plan = plan(tile, found.at);
+    return found;
 }
 
 namespace detail {
@@ -671,8 +671,8 @@ Work interpolate(const TriangleSetup& setup, FragmentRect rect, Texcoords out) n
     }
 
     const detail::Tile tile{rect.x, rect.y, rect.width, rect.height};
-    detail::Examined examined = setup.examine(tile);
-    const detail::Plan& plan = examined.plan;
+    detail::TileSurvey found = setup.survey(tile);
+    const detail::Plan& plan = found.plan;
     if (plan.work == Work::nothing) {
         for (float& lit : out.lit) lit = 0.0f;
         return plan.work;
@@ -691,10 +691,10 @@ Work interpolate(const TriangleSetup& setup, FragmentRect rect, Texcoords out) n
     };
     const bool both = !out.s.empty() && !out.t.empty();
     if (both || !out.lit.empty()) {
-        detail::TileInterpolator interpolator(kernels, setup, rect, examined.close);
+        detail::TileInterpolator interpolator(kernels, setup, rect, found.close);
         interpolator.add(out.s, out.t, out.lit);
         if (both)
-            interpolator.interpolate(tile, examined.at, plan);
+            interpolator.interpolate(tile, found.at, plan);
         else
             interpolator.interpolate_in_strips(tile, plan);
     } else {

@@ -35,8 +35,8 @@ struct CloseRamp {
         return std::fabs(base.high) + tile.width * std::fabs(dx.high) + tile.height * std::fabs(dy.high);
     }
 
-    // As high and low parts, see CloseFunction. The three sums of low, each below width + height + 1 units, are rounded in
-    // double, and so is every step of this.
+    // As high and low parts, see CloseFunction. The coefficients of low are at most half a unit: they, two products and two
+    // sums are rounded in double, 6 u of half of width + height + 1 units (2^-53 = u; 2^-50 has room for every direction).
     CloseFunction split(const Tile& tile) const noexcept {
         const double unit = unit_for(tile);
         const double rounder = 0x1.8p52 * unit;
@@ -48,7 +48,7 @@ struct CloseRamp {
         part(base, function.high.base, function.low.base);
         part(dx, function.high.dx, function.low.dx);
         part(dy, function.high.dy, function.low.dy);
-        function.error = error + 0x1p-49 * (1.0 + tile.width + tile.height) * unit;
+        function.error = error + 0x1p-50 * (1.0 + tile.width + tile.height) * unit;
         function.grain = grain;
         return function;
     }
@@ -75,9 +75,9 @@ struct CloseRamps {
     }
 };
 
-// What all functions of a triangle share over a tile. With double-double sums and products, each within 2^-100 of its
-// terms, E_i errs by 2^-99 of the two products that it is the difference of, a gradient and the value by 2^-98 of theirs:
-// 2^-94 leaves room for every direction of rounding.
+// What all functions of a triangle share over a tile. With double-double sums within 2^-103 of their terms and products
+// within 2^-103, E_i errs by 2^-102 of the two products that it is the difference of, and the value by 2^-100 of theirs
+// times the c_i: 2^-97 leaves room for every direction of rounding.
 class ClosePlanes {
 public:
     ClosePlanes(const TrianglePlanes& planes, const Tile& tile) noexcept : planes_(planes), tile_(tile) {
@@ -111,7 +111,7 @@ public:
             ramp.dy = sum(ramp.dy, product(edge_dy_[i], c));
             magnitude += magnitude_[i] * std::fabs(c.high);
         }
-        ramp.error = 0x1p-94 * magnitude + 0x1p-1000;
+        ramp.error = 0x1p-97 * magnitude + 0x1p-1000;
         ramp.grain = planes_.grain(coordinate);
         return ramp;
     }

@@ -159,7 +159,7 @@ inline DoubleDouble two_product(double a, double b) noexcept {
 
 inline DoubleDouble operator-(const DoubleDouble& a) noexcept { return {-a.high, -a.low}; }
 
-// a + b and a b within 2^-102 (|a| + |b|) and 2^-102 |a b|. Source: Dekker; Joldes, Muller, Popescu, Tight and Rigorous Error
+// a + b within 2^-103 (|a| + |b|), and a b within 2^-103 |a b|. Source: Joldes, Muller, Popescu, Tight and Rigorous Error
 // Bounds for Basic Building Blocks of Double-Word Arithmetic, ACM TOMS 44 (2017).
 inline DoubleDouble sum(const DoubleDouble& a, const DoubleDouble& b) noexcept {
     const DoubleDouble exact = two_sum(a.high, b.high);
