@@ -1,0 +1,61 @@
+#pragma once
+
+// Times of calls, as the least of several: what else runs on the machine can only add to them.
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <vector>
+
+namespace support {
+
+// So many calls of a function with one input; empty for an input that the function may not be given.
+using Calls = std::function<void(std::size_t)>;
+
+// The compiler has to make the value, and to forget what memory holds.
+template <class T>
+void keep(const T& value) {
+    asm volatile("" : : "r"(&value) : "memory");
+}
+
+// `body` as a loop of its own.
+template <class Body>
+Calls calls_of(Body body) {
+    return [body](std::size_t count) mutable {
+        for (std::size_t i = 0; i < count; ++i) {
+            keep(body);
+            body();
+        }
+    };
+}
+
+inline double nanoseconds_of(const Calls& calls, std::size_t count) {
+    using Clock = std::chrono::steady_clock;
+    const auto begin = Clock::now();
+    calls(count);
+    return std::chrono::duration<double, std::nano>(Clock::now() - begin).count() / static_cast<double>(count);
+}
+
+// As many calls as take about `nanoseconds`.
+inline std::size_t calls_in(double nanoseconds, const Calls& calls) {
+    std::size_t count = 1;
+    for (double one = 0.0; count < (std::size_t{1} << 20); count *= 2) {
+        one = nanoseconds_of(calls, count);
+        if (one * static_cast<double>(count) >= 0.5 * nanoseconds) break;
+    }
+    return count;
+}
+
+// The least time of a call of each, in turns.
+inline std::vector<double> least_times(const std::vector<Calls>& all, int turns, double nanoseconds = 2e4) {
+    std::vector<std::size_t> count;
+    for (const Calls& calls : all) count.push_back(calls_in(nanoseconds, calls));
+    std::vector<double> least(all.size(), std::numeric_limits<double>::infinity());
+    for (int turn = 0; turn < turns; ++turn)
+        for (std::size_t i = 0; i < all.size(); ++i) least[i] = std::min(least[i], nanoseconds_of(all[i], count[i]));
+    return least;
+}
+
+}  // namespace support

@@ -1,0 +1,1006 @@
+#pragma once
+
+// Every public function as a workload: a call with an ordinary input, and with inputs that are meant to take long. An input
+// is a list of numbers, floats first and doubles after them, so that a search can change their bits and print them.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include "near_cut.hpp"
+#include "random.hpp"
+#include "stopwatch.hpp"
+#include "texgen/clip.hpp"
+#include "texgen/diagnose.hpp"
+#include "texgen/fixed_function.hpp"
+#include "texgen/footprint.hpp"
+#include "texgen/interpolate.hpp"
+#include "texgen/linear.hpp"
+#include "texgen/projector.hpp"
+#include "texgen/scene.hpp"
+#include "texgen/skip.hpp"
+#include "texgen/texcoord.hpp"
+#include "triangles.hpp"
+
+namespace support {
+
+using Numbers = std::vector<double>;
+
+// How many times the ordinary time the worst input of a function may take.
+namespace limit {
+inline constexpr double any = 8.0;
+inline constexpr double near_plane = 16.0;           // a triangle that the camera's near plane has cut
+inline constexpr double near_plane_99_of_100 = 4.0;  // of such triangles
+inline constexpr double rotation = 3.0;              // between the orders of the corners of one triangle
+inline constexpr double q_is_zero = 24.0;            // a tile that q = 0 crosses
+inline constexpr double touching = 10.0;             // a body that touches a side
+inline constexpr double frame = 200.0;               // of Scene::update, over the median frame
+}  // namespace limit
+
+struct Workload {
+    const char* function;
+    std::size_t floats;                      // as many of an input's numbers
+    Numbers (*ordinary)(Random&);            // what a user's program gives it
+    Numbers (*hostile)(Random&);             // where a search begins
+    Calls (*calls)(const Numbers&);          // empty where the numbers break a precondition, or there is nothing to do
+    double (*limit)(const Numbers&);
+};
+
+namespace detail {
+
+// Takes numbers one after another.
+class Reader {
+public:
+    explicit Reader(const Numbers& numbers) : next_(numbers.data()) {}
+
+    double real() { return *next_++; }
+    float single() { return to_float(real()); }
+    glm::vec2 vec2() { return {single(), single()}; }
+    glm::vec3 vec3() {
+        const float x = single(), y = single(), z = single();
+        return {x, y, z};
+    }
+    glm::vec4 vec4() {
+        const float x = single(), y = single(), z = single(), w = single();
+        return {x, y, z, w};
+    }
+    glm::dvec3 dvec3() {
+        const double x = real(), y = real(), z = real();
+        return {x, y, z};
+    }
+    glm::dvec4 dvec4() {
+        const double x = real(), y = real(), z = real(), w = real();
+        return {x, y, z, w};
+    }
+    glm::dmat4 dmat4() {
+        const glm::dvec4 a = dvec4(), b = dvec4(), c = dvec4(), d = dvec4();
+        return {a, b, c, d};
+    }
+    glm::mat4 mat4() { return rounded(dmat4()); }
+
+private:
+    const double* next_;
+};
+
+inline void put(Numbers& n, float x) { n.push_back(static_cast<double>(x)); }
+inline void put(Numbers& n, double x) { n.push_back(x); }
+template <glm::length_t N, class T, glm::qualifier Q>
+void put(Numbers& n, const glm::vec<N, T, Q>& v) {
+    for (glm::length_t i = 0; i < N; ++i) put(n, v[i]);
+}
+template <class T, glm::qualifier Q>
+void put(Numbers& n, const glm::mat<4, 4, T, Q>& m) {
+    for (glm::length_t i = 0; i < 4; ++i) put(n, m[i]);
+}
+inline void put(Numbers& n, const texgen::Triangle& t) {
+    for (const texgen::WindowVertex* v : {&t.a, &t.b, &t.c}) {
+        put(n, v->window);
+        put(n, v->clip_w);
+        put(n, v->strq);
+    }
+}
+template <class... Parts>
+Numbers numbers(const Parts&... parts) {
+    Numbers n;
+    (put(n, parts), ...);
+    return n;
+}
+
+inline double always(const Numbers&) { return limit::any; }
+inline double of_touching(const Numbers&) { return limit::touching; }
+
+// ---- Numbers without a meaning -----------------------------------------------------------------------------------
+
+inline double any_float(Random& random) {
+    const double sign = random.coin() ? 1.0 : -1.0;
+    switch (random.integer(0, 9)) {
+        case 0:
+            return sign * static_cast<double>(to_float(random.power_of_ten(-44.0, 38.0)));
+        case 1:
+        case 2:
+            return sign * static_cast<double>(to_float(random.power_of_ten(-6.0, 6.0)));
+        case 3:
+        case 4:
+        case 5:
+            return 0.125 * static_cast<double>(random.integer(-16, 16));
+        default:
+            return static_cast<double>(random.uniform_float(-2.0, 2.0));
+    }
+}
+template <std::size_t Count>
+Numbers any_numbers(Random& random) {
+    Numbers n(Count);
+    for (double& x : n) x = any_float(random);
+    return n;
+}
+
+// ---- Projectors -----------------------------------------------------------------------------------------------------
+
+inline texgen::Aim ordinary_aim(Random& random) {
+    const glm::dvec3 position = 4.0 * random.direction();
+    return {position, 0.3 * random.direction(), glm::dvec3(0.1, 1.0, 0.2)};
+}
+inline texgen::Projector ordinary_projector(Random& random) {
+    const texgen::PerspectiveLens lens{texgen::degrees(random.uniform(30.0, 60.0)), 1.3, 0.5, 100.0};
+    return texgen::make_projector(lens, ordinary_aim(random), texgen::opengl).value();
+}
+inline glm::dmat4 ordinary_texgen(Random& random) {
+    return texgen::texture_from_world(ordinary_projector(random)).matrix();
+}
+// Along the axes, with small numbers: s = x / 8 + 1/2.
+inline glm::dmat4 aligned_texgen(Random& random) {
+    const double half = std::ldexp(1.0, random.integer(-1, 3));
+    const texgen::OrthographicLens lens{-half, half, -half, half, 0.0, 16.0};
+    const texgen::Aim aim{{0.0, 0.0, 8.0}, {0.0, 0.0, 0.0}, {0.0, 1.0, 0.0}};
+    const texgen::PerspectiveLens open{texgen::degrees(90.0), 1.0, 0.5, 64.0};
+    return texgen::texture_from_world(random.coin() ? texgen::make_projector(lens, aim, texgen::opengl).value()
+                                                    : texgen::make_projector(open, aim, texgen::opengl).value())
+        .matrix();
+}
+inline glm::dmat4 hostile_texgen(Random& random) {
+    switch (random.integer(0, 3)) {
+        case 0:
+            return ordinary_texgen(random);
+        case 1: {
+            glm::dmat4 m(0.0);
+            for (int i = 0; i < 4; ++i)
+                for (int k = 0; k < 4; ++k) m[i][k] = any_float(random);
+            return m;
+        }
+        default:
+            return aligned_texgen(random);
+    }
+}
+
+// ---- Points --------------------------------------------------------------------------------------------------------
+
+inline constexpr std::size_t pattern = 8;
+
+// Points that repeat until there are `Count`.
+template <std::size_t Count>
+std::vector<glm::vec3> points_of(Reader& reader) {
+    std::vector<glm::vec3> points;
+    for (std::size_t i = 0; i < Count; ++i) points.push_back(i < pattern ? reader.vec3() : points[i - pattern]);
+    for (std::size_t i = Count; i < pattern; ++i) reader.vec3();
+    return points;
+}
+inline Numbers ordinary_points(Random& random) {
+    Numbers n;
+    for (std::size_t i = 0; i < pattern; ++i) put(n, random.vector3(1.0));
+    put(n, ordinary_texgen(random));
+    return n;
+}
+inline Numbers hostile_points(Random& random) {
+    Numbers n;
+    const glm::dmat4 texgen = hostile_texgen(random);
+    for (std::size_t i = 0; i < pattern; ++i) {
+        glm::vec3 point = random.coin() ? random.vector3(2.0) : glm::vec3(0.0f);
+        if (random.coin()) point = random.vector3(4.0);
+        if (random.integer(0, 3) == 0)
+            for (int k = 0; k < 3; ++k) point[k] = to_float(any_float(random));
+        // On q = 0, but for the rounding.
+        if (random.integer(0, 3) == 0 && texgen[2].w != 0.0)
+            point.z = to_float(-(texgen[3].w + texgen[0].w * point.x + texgen[1].w * point.y) / texgen[2].w);
+        put(n, point);
+    }
+    put(n, texgen);
+    return n;
+}
+
+struct PointBatch {
+    std::vector<glm::vec3> points;
+    texgen::WorldTexgen texgen;
+    std::vector<float> out[4];
+    std::vector<glm::vec4> strq;
+};
+template <std::size_t Count>
+std::shared_ptr<PointBatch> batch_of(const Numbers& n) {
+    Reader reader(n);
+    std::vector<glm::vec3> points = points_of<Count>(reader);
+    auto batch = std::make_shared<PointBatch>(PointBatch{std::move(points), texgen::WorldTexgen(reader.dmat4()), {}, {}});
+    for (std::vector<float>& out : batch->out) out.resize(Count);
+    batch->strq.resize(Count);
+    return batch;
+}
+
+inline constexpr texgen::Tolerance tolerance = texgen::texels(1.0 / 512.0, 4096.0);
+
+template <std::size_t Count, bool IsExact>
+Calls project_calls(const Numbers& n) {
+    return calls_of([batch = batch_of<Count>(n)] {
+        texgen::project(batch->texgen, texgen::world_space(batch->points), texgen::whole_texture(),
+                        {.s = batch->out[0], .t = batch->out[1], .r = batch->out[2], .lit = batch->out[3]},
+                        IsExact ? texgen::exact : tolerance);
+    });
+}
+template <std::size_t Count>
+Calls project_pairs_calls(const Numbers& n) {
+    return calls_of([batch = batch_of<Count>(n), st = std::vector<glm::vec2>(Count)]() mutable {
+        texgen::project(batch->texgen, texgen::world_space(batch->points), st);
+        keep(st[0]);
+    });
+}
+template <std::size_t Count>
+Calls generate_calls(const Numbers& n) {
+    return calls_of([batch = batch_of<Count>(n)] {
+        texgen::generate(batch->texgen, texgen::world_space(batch->points), batch->strq);
+    });
+}
+inline Calls project_bound_calls(const Numbers& n) {
+    return calls_of([batch = batch_of<1024>(n)] {
+        keep(texgen::project_error_bound(batch->texgen, texgen::world_space(batch->points), tolerance));
+    });
+}
+inline Calls generate_bound_calls(const Numbers& n) {
+    return calls_of([batch = batch_of<1024>(n)] {
+        keep(texgen::generate_error_bound(batch->texgen, texgen::world_space(batch->points)));
+    });
+}
+inline Calls divide_calls(const Numbers& n) {
+    return calls_of([strq = Reader(n).vec4()] { keep(texgen::divide(strq)); });
+}
+inline Numbers ordinary_strq(Random& random) {
+    const float q = random.uniform_float(1.0, 4.0);
+    return numbers(q * random.uniform_float(0.2, 0.8), q * random.uniform_float(0.2, 0.8), 0.5f * q, q);
+}
+
+// ---- Segments --------------------------------------------------------------------------------------------------------
+
+inline Numbers ordinary_segment(Random& random) {
+    Numbers n = ordinary_strq(random);
+    for (const double x : ordinary_strq(random)) n.push_back(x);
+    for (std::size_t i = 0; i < pattern; ++i) put(n, random.uniform_float(0.0, 1.0));
+    return n;
+}
+inline Numbers hostile_segment(Random& random) {
+    Numbers n = random.coin() ? any_numbers<8>(random) : ordinary_segment(random);
+    n.resize(8);
+    if (random.coin()) n[3] = n[7] = 1.0;
+    if (random.integer(0, 2) == 0) {
+        n = {0.5, 0.25, 0.0, 1.0, 0.75, 0.75, 0.0, 1.0};
+        for (std::size_t i = 0; i < pattern; ++i) n.push_back(std::ldexp(2 * random.integer(0, 0x7fffff) + 1, -24));
+        return n;
+    }
+    for (std::size_t i = 0; i < pattern; ++i)
+        n.push_back(random.coin() ? static_cast<double>(random.uniform_float(0.0, 1.0))
+                                  : static_cast<double>(to_float(n[3] / (n[3] - n[7]))));
+    return n;
+}
+
+template <std::size_t Count, bool IsExact>
+Calls segment_calls(const Numbers& n) {
+    struct Job {
+        texgen::Segment segment;
+        std::vector<float> alpha;
+        std::vector<float> out[4];
+    };
+    Reader reader(n);
+    const auto job = std::make_shared<Job>();
+    job->segment.a = reader.vec4();
+    job->segment.b = reader.vec4();
+    for (std::size_t i = 0; i < Count; ++i) job->alpha.push_back(i < pattern ? reader.single() : job->alpha[i - pattern]);
+    for (const float alpha : job->alpha)
+        if (!(alpha >= 0.0f && alpha <= 1.0f)) return {};
+    for (std::vector<float>& out : job->out) out.resize(Count);
+    return calls_of([job] {
+        texgen::interpolate(job->segment, job->alpha, texgen::whole_texture(),
+                            {.s = job->out[0], .t = job->out[1], .r = job->out[2], .lit = job->out[3]},
+                            IsExact ? texgen::exact : tolerance);
+    });
+}
+inline texgen::Segment segment_of(const Numbers& n) {
+    Reader reader(n);
+    const glm::vec4 a = reader.vec4(), b = reader.vec4();
+    return {a, b};
+}
+inline Calls segment_work_calls(const Numbers& n) {
+    return calls_of([segment = segment_of(n)] { keep(texgen::work(segment, texgen::whole_texture(), tolerance)); });
+}
+inline Calls segment_bound_calls(const Numbers& n) {
+    return calls_of([segment = segment_of(n)] { keep(texgen::error_bound(segment, tolerance)); });
+}
+
+// ---- Triangles -------------------------------------------------------------------------------------------------------
+
+// Seven numbers a corner, and the first fragment of the rectangle.
+inline Numbers ordinary_triangle(Random& random) {
+    texgen::Triangle triangle{};
+    const glm::vec2 window[] = {{-10.0f, -20.0f}, {1400.0f, 40.0f}, {60.0f, 1200.0f}};
+    std::size_t i = 0;
+    for (texgen::WindowVertex* vertex : {&triangle.a, &triangle.b, &triangle.c}) {
+        const Numbers strq = ordinary_strq(random);
+        *vertex = {window[i++] + glm::vec2(random.uniform_float(-20.0, 20.0), random.uniform_float(-20.0, 20.0)),
+                   random.uniform_float(1.0, 4.0), Reader(strq).vec4()};
+    }
+    return numbers(triangle, static_cast<float>(random.integer(150, 300)), static_cast<float>(random.integer(150, 300)));
+}
+
+// u half-way between two floats at every fragment: s = 1/2 + 2^-24 x at w = q = 1, corners on the pixels' corners.
+inline Numbers triangle_of_ties(Random& random) {
+    texgen::Triangle triangle{};
+    const int dx = random.integer(0, 3), dy = random.integer(0, 3);
+    const float w = random.coin() ? 1.0f : std::ldexp(1.0f, random.integer(-3, 3));
+    for (texgen::WindowVertex* vertex : {&triangle.a, &triangle.b, &triangle.c}) {
+        const int x = random.integer(0, 1023), y = random.integer(0, 1023);
+        const double s = 0.5 + std::ldexp((2 * dx + 1) * x + 2 * dy * y, -24);
+        const double t = 0.5 + std::ldexp(2 * dy * x + (2 * dx + 1) * y, -24);
+        *vertex = {{static_cast<float>(x), static_cast<float>(y)}, w, {to_float(s), to_float(t), 0.25f, 1.0f}};
+    }
+    return numbers(triangle, static_cast<float>(random.integer(0, 900)), static_cast<float>(random.integer(0, 900)));
+}
+
+inline Numbers hostile_triangle(Random& random) {
+    switch (random.integer(0, 7)) {
+        case 0:
+        case 1: {
+            const NearCut cut = near_cut(random);
+            return numbers(cut.triangle, static_cast<float>(cut.rect.x), static_cast<float>(cut.rect.y));
+        }
+        case 2:
+            return triangle_of_ties(random);
+        case 3: {
+            Numbers n = ordinary_triangle(random);
+            n[21 + static_cast<std::size_t>(random.integer(0, 1))] = static_cast<double>(to_float(random.power_of_ten(4.0, 9.3)));
+            return n;
+        }
+        case 4: {  // all units of any size
+            Numbers n = ordinary_triangle(random);
+            for (std::size_t k = 0; k < 7; ++k) {
+                const double unit = random.coin() ? 1.0 : random.power_of_ten(-38.0, 30.0);
+                for (std::size_t i = 0; i < 3; ++i) n[7 * i + k] = static_cast<double>(to_float(n[7 * i + k] * unit));
+            }
+            return n;
+        }
+        case 5: {  // all corners far out
+            Numbers n = ordinary_triangle(random);
+            const double unit = random.power_of_ten(2.0, 6.0);
+            for (std::size_t k = 0; k < 2; ++k)
+                for (std::size_t i = 0; i < 3; ++i) n[7 * i + k] = static_cast<double>(to_float((n[7 * i + k] - 400.0) * unit));
+            return n;
+        }
+        default: {
+            const Family family = families[static_cast<std::size_t>(random.integer(0, static_cast<int>(families.size()) - 1))];
+            const texgen::Triangle triangle = make_triangle(family, random);
+            const texgen::FragmentRect pixel = pixel_near(triangle, random);
+            return numbers(triangle, static_cast<float>(pixel.x), static_cast<float>(pixel.y));
+        }
+    }
+}
+
+inline texgen::Triangle triangle_of(const Numbers& n) {
+    Reader reader(n);
+    const auto vertex = [&] {
+        const glm::vec2 window = reader.vec2();
+        const float w = reader.single();
+        return texgen::WindowVertex{window, w, reader.vec4()};
+    };
+    const texgen::WindowVertex a = vertex(), b = vertex(), c = vertex();
+    return {a, b, c};
+}
+template <int Width, int Height>
+texgen::FragmentRect rect_of(const Numbers& n) {
+    const auto pixel = [](double x) { return static_cast<int>(std::clamp(x, -2147480000.0, 2147480000.0)); };
+    return {pixel(n[21]), pixel(n[22]), Width, Height};
+}
+
+struct TileCall {
+    texgen::TriangleSetup setup;
+    texgen::FragmentRect rect;
+    std::vector<float> out[8];
+};
+template <int Width, int Height, bool IsExact>
+std::shared_ptr<TileCall> tile_call(const Numbers& n, texgen::TextureRegion region) {
+    const auto setup = texgen::TriangleSetup::of(triangle_of(n), region, IsExact ? texgen::exact : tolerance);
+    if (!setup) return nullptr;
+    auto call = std::make_shared<TileCall>(TileCall{*setup, rect_of<Width, Height>(n), {}});
+    for (std::vector<float>& out : call->out) out.resize(Width * Height);
+    return call;
+}
+inline texgen::TextureRegion wide_open() { return texgen::atlas_tile({-1e30, -1e30}, {1e30, 1e30}); }
+
+template <int Width, int Height, bool IsExact>
+Calls triangle_calls(const Numbers& n) {
+    const auto call = tile_call<Width, Height, IsExact>(n, texgen::whole_texture());
+    if (!call) return {};
+    return calls_of([call] {
+        keep(texgen::interpolate(call->setup, call->rect,
+                                 {.s = call->out[0], .t = call->out[1], .r = call->out[2], .lit = call->out[3]}));
+    });
+}
+// With a region that leaves no tile dark.
+template <int Width, int Height, bool IsExact>
+Calls open_triangle_calls(const Numbers& n) {
+    const auto call = tile_call<Width, Height, IsExact>(n, wide_open());
+    if (!call) return {};
+    return calls_of([call] {
+        keep(texgen::interpolate(call->setup, call->rect, {.s = call->out[0], .t = call->out[1], .r = {}, .lit = {}}));
+    });
+}
+inline Calls setup_calls(const Numbers& n) {
+    return calls_of([triangle = triangle_of(n)] {
+        keep(texgen::TriangleSetup::of(triangle, texgen::whole_texture(), tolerance));
+    });
+}
+inline Calls triangle_work_calls(const Numbers& n) {
+    const auto call = tile_call<64, 4, false>(n, texgen::whole_texture());
+    if (!call) return {};
+    return calls_of([call] { keep(call->setup.work(call->rect)); });
+}
+inline Calls triangle_bound_calls(const Numbers& n) {
+    const auto call = tile_call<64, 4, false>(n, texgen::whole_texture());
+    if (!call) return {};
+    return calls_of([call] { keep(call->setup.error_bound(call->rect)); });
+}
+
+// What the numbers of a triangle are, for the limit: q = 0 crosses the tile, or the near plane has left a corner.
+template <int Width, int Height>
+double triangle_limit(const Numbers& n) {
+    const texgen::Triangle t = triangle_of(n);
+    const texgen::FragmentRect rect = rect_of<Width, Height>(n);
+    const auto minor = [](const texgen::WindowVertex& a, const texgen::WindowVertex& b, double x, double y) {
+        return (static_cast<double>(a.window.x) - x) * (static_cast<double>(b.window.y) - y) -
+               (static_cast<double>(a.window.y) - y) * (static_cast<double>(b.window.x) - x);
+    };
+    const auto over_w = [](const texgen::WindowVertex& v) {
+        return static_cast<double>(v.strq.w) / static_cast<double>(v.clip_w);
+    };
+    bool is_positive = false, is_negative = false;
+    for (const double x : {rect.x - 0.5, rect.x + Width + 0.5}) {
+        for (const double y : {rect.y - 0.5, rect.y + Height + 0.5}) {
+            const double q = (minor(t.b, t.c, x, y) * over_w(t.a) + minor(t.c, t.a, x, y) * over_w(t.b) +
+                              minor(t.a, t.b, x, y) * over_w(t.c)) *
+                             twice_area(t);
+            is_positive = is_positive || q >= 0.0;
+            is_negative = is_negative || q <= 0.0;
+        }
+    }
+    if (is_positive && is_negative) return limit::q_is_zero;
+    const auto [least, largest] = std::minmax({t.a.clip_w, t.b.clip_w, t.c.clip_w});
+    return largest > 100.0f * least ? limit::near_plane : limit::any;
+}
+inline double wide_limit(const Numbers& n) { return triangle_limit<64, 4>(n); }
+
+// ---- Footprints ------------------------------------------------------------------------------------------------------
+
+template <int Width, int Height, bool IsExact, class Ask>
+Calls footprint_calls_of(const Numbers& n, Ask ask) {
+    const auto call = tile_call<Width, Height, IsExact>(n, wide_open());
+    if (!call) return {};
+    const texgen::FootprintSetup setup(call->setup, {1024.0, 768.0});
+    return calls_of([call, setup, ask] { ask(setup, *call); });
+}
+template <int Width, int Height, bool IsExact>
+Calls footprint_calls(const Numbers& n) {
+    return footprint_calls_of<Width, Height, IsExact>(n, [](const texgen::FootprintSetup& setup, TileCall& call) {
+        auto& out = call.out;
+        keep(texgen::footprint(setup, call.rect, {out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7]}));
+    });
+}
+inline Calls footprint_setup_calls(const Numbers& n) {
+    return footprint_calls_of<1, 1, true>(n, [](const texgen::FootprintSetup&, TileCall& call) {
+        keep(texgen::FootprintSetup(call.setup, {1024.0, 768.0}));
+    });
+}
+inline Calls footprint_at_calls(const Numbers& n) {
+    return footprint_calls_of<1, 1, true>(n, [](const texgen::FootprintSetup& setup, TileCall& call) {
+        keep(setup.at(call.rect.x, call.rect.y));
+    });
+}
+inline Calls footprint_bound_calls(const Numbers& n) {
+    return footprint_calls_of<64, 4, true>(
+        n, [](const texgen::FootprintSetup& setup, TileCall& call) { keep(setup.error_bound(call.rect)); });
+}
+inline Calls extremes_calls(const Numbers& n) {
+    return footprint_calls_of<64, 4, true>(
+        n, [](const texgen::FootprintSetup& setup, TileCall& call) { keep(setup.extremes(call.rect)); });
+}
+inline Calls all_extremes_calls(const Numbers& n) {
+    return footprint_calls_of<64, 4, true>(n,
+                                           [](const texgen::FootprintSetup& setup, TileCall&) { keep(setup.extremes()); });
+}
+inline Calls headlights_calls(const Numbers& n) {
+    return calls_of([triangle = triangle_of(n)] { keep(texgen::headlights(triangle)); });
+}
+inline Calls footprint_of_calls(const Numbers& n) {
+    return calls_of([dx = glm::dvec2(n[0], n[1]), dy = glm::dvec2(n[2], n[3]), texels = texgen::TexelsPerUnit{n[4], n[5]}] {
+        keep(texgen::footprint_of(dx, dy, texels));
+    });
+}
+
+// ---- Bodies ----------------------------------------------------------------------------------------------------------
+
+inline constexpr std::size_t bodies = 256;
+inline constexpr std::size_t body_pattern = 4;
+
+inline Numbers ordinary_boxes(Random& random) {
+    Numbers n;
+    for (std::size_t i = 0; i < body_pattern; ++i) {
+        const glm::vec3 centre = random.vector3(3.0), half(random.uniform_float(0.1, 0.4));
+        put(n, centre - half);
+        put(n, centre + half);
+    }
+    put(n, ordinary_texgen(random));
+    return n;
+}
+inline Numbers hostile_boxes(Random& random) {
+    Numbers n;
+    const glm::dmat4 texgen = hostile_texgen(random);
+    for (std::size_t i = 0; i < body_pattern; ++i) {
+        glm::vec3 a{}, b{};
+        for (int k = 0; k < 3; ++k) {
+            a[k] = random.coin() ? static_cast<float>(random.integer(-16, 15)) : random.uniform_float(-8.0, 8.0);
+            b[k] = a[k] + (random.coin() ? static_cast<float>(random.integer(0, 4)) : random.uniform_float(0.0, 2.0));
+        }
+        if (random.integer(0, 3) == 0) {
+            a.x = to_float(any_float(random));
+            b.x = a.x + std::fabs(to_float(any_float(random)));
+        }
+        put(n, a);
+        put(n, b);
+    }
+    put(n, texgen);
+    return n;
+}
+inline Numbers ordinary_spheres(Random& random) {
+    Numbers n;
+    for (std::size_t i = 0; i < body_pattern; ++i) {
+        put(n, random.vector3(3.0));
+        put(n, random.uniform_float(0.1, 0.4));
+    }
+    put(n, ordinary_texgen(random));
+    return n;
+}
+inline Numbers hostile_spheres(Random& random) {
+    Numbers n;
+    for (std::size_t i = 0; i < body_pattern; ++i)
+        for (const double x : any_numbers<4>(random)) n.push_back(x);
+    put(n, hostile_texgen(random));
+    return n;
+}
+
+template <class Body, std::size_t Count>
+Calls coverage_calls(const Numbers& n) {
+    Reader reader(n);
+    std::vector<Body> all;
+    for (std::size_t i = 0; i < body_pattern; ++i) {
+        if constexpr (std::is_same_v<Body, texgen::Box>) {
+            const glm::vec3 min = reader.vec3(), max = reader.vec3();
+            all.push_back({min, max});
+        } else {
+            const glm::vec3 centre = reader.vec3();
+            all.push_back({centre, reader.single()});
+        }
+    }
+    for (std::size_t i = body_pattern; i < Count; ++i) all.push_back(all[i - body_pattern]);
+    const texgen::LitVolume<texgen::World> volume(texgen::WorldTexgen(reader.dmat4()), texgen::whole_texture());
+    return calls_of([all, volume, out = std::vector<texgen::Coverage>(Count)]() mutable {
+        if constexpr (Count == 1)
+            keep(volume.coverage(all[0]));
+        else
+            volume.coverage(std::span<const Body>(all), out);
+    });
+}
+inline Numbers ordinary_volume(Random& random) { return numbers(ordinary_texgen(random), glm::dvec4(0.0, 0.0, 1.0, 1.0)); }
+inline Numbers hostile_volume(Random& random) {
+    Numbers n = numbers(hostile_texgen(random));
+    for (const double x : any_numbers<4>(random)) n.push_back(x);
+    return n;
+}
+inline Calls volume_calls(const Numbers& n) {
+    Reader reader(n);
+    const texgen::WorldTexgen texgen(reader.dmat4());
+    const glm::dvec4 sides = reader.dvec4();
+    const texgen::TextureRegion region = texgen::atlas_tile({sides.x, sides.y}, {sides.z, sides.w});
+    return calls_of([texgen, region] { keep(texgen::LitVolume<texgen::World>(texgen, region)); });
+}
+inline Calls planes_calls(const Numbers& n) {
+    Reader reader(n);
+    const texgen::WorldTexgen texgen(reader.dmat4());
+    const glm::dvec4 sides = reader.dvec4();
+    const texgen::TextureRegion region = texgen::atlas_tile({sides.x, sides.y}, {sides.z, sides.w});
+    return calls_of([texgen, region] { keep(texgen::clip_planes(texgen, region)); });
+}
+
+// ---- Clipping ----------------------------------------------------------------------------------------------------------
+
+inline Numbers ordinary_polygon(Random& random) {
+    Numbers n;
+    for (int i = 0; i < 3; ++i) {
+        const float w = random.uniform_float(1.0, 4.0);
+        put(n, glm::vec4(random.vector3(1.0) * w, w));
+        if (i == 0) n[2] = -1.5 * n[3];  // one corner behind
+        for (const double x : ordinary_strq(random)) n.push_back(x);
+        n[n.size() - 4] *= i == 0 ? 2.0 : 1.0;
+    }
+    for (double& x : n) x = static_cast<double>(to_float(x));
+    return n;
+}
+template <bool ToNear>
+Calls clip_calls(const Numbers& n) {
+    Reader reader(n);
+    std::array<texgen::ClipVertex, 3> polygon{};
+    for (texgen::ClipVertex& vertex : polygon) {
+        vertex.position = reader.vec4();
+        vertex.strq = reader.vec4();
+    }
+    return calls_of([polygon, out = std::array<texgen::ClipVertex, 12>{}]() mutable {
+        if constexpr (ToNear)
+            keep(texgen::clip_to_near(polygon, out, texgen::DepthRange::negative_one_to_one));
+        else
+            keep(texgen::clip_to_slide(polygon, texgen::whole_texture(), out));
+    });
+}
+inline Calls to_window_calls(const Numbers& n) {
+    Reader reader(n);
+    const glm::vec4 position = reader.vec4(), strq = reader.vec4();
+    if (!(position.w > 0.0f)) return {};
+    return calls_of([position, strq] { keep(texgen::to_window({position, strq}, {0, 0, 1024, 768})); });
+}
+
+// ---- Matrices -----------------------------------------------------------------------------------------------------------
+
+inline Numbers ordinary_matrix(Random& random) {
+    glm::dmat4 m = random.rigid(10.0);
+    m[0] *= 1.5;
+    return numbers(m, m);
+}
+inline Numbers hostile_matrix(Random& random) {
+    Numbers n(32);
+    const int kind = random.integer(0, 3);
+    const double distance = random.power_of_ten(-16.0, 0.0);
+    for (double& x : n) {
+        x = kind == 0 ? any_float(random) : random.uniform(-1.0, 1.0);
+        if (kind == 1) x = random.integer(0, 2) == 0 ? std::ldexp(x, random.integer(-120, 20)) : 0.0;
+    }
+    if (kind >= 2)
+        for (std::size_t k = 0; k < 4; ++k) n[4 * k + 2] = n[4 * k] + distance * n[4 * k + 2];
+    return n;
+}
+template <class Ask>
+Calls matrix_calls(const Numbers& n, Ask ask) {
+    Reader reader(n);
+    const glm::dmat4 a = reader.dmat4(), b = reader.dmat4();
+    return calls_of([a, b, ask] { ask(a, b); });
+}
+inline Calls inverse_calls(const Numbers& n) {
+    return matrix_calls(n, [](const glm::dmat4& m, const glm::dmat4&) { keep(inverse(texgen::ModelMatrix(m))); });
+}
+inline Calls inverse_bound_calls(const Numbers& n) {
+    return matrix_calls(n, [](const glm::dmat4& m, const glm::dmat4& x) {
+        keep(inverse_error_bound(texgen::ModelMatrix(m), texgen::Transform<texgen::Object, texgen::World>(x)));
+    });
+}
+inline Calls rigid_calls(const Numbers& n) {
+    if (!(texgen::detail::distance_from_rigid(Reader(n).dmat4()) <= 1e-3)) return {};
+    return matrix_calls(n, [](const glm::dmat4& m, const glm::dmat4&) { keep(inverse_rigid(texgen::ViewMatrix(m))); });
+}
+inline Numbers ordinary_rigid(Random& random) { return numbers(random.rigid(10.0), glm::dmat4(1.0)); }
+inline Numbers hostile_rigid(Random& random) { return numbers(random.rigid(random.power_of_ten(-300.0, 300.0)), glm::dmat4(1.0)); }
+inline Calls eye_planes_calls(const Numbers& n) {
+    return matrix_calls(n, [](const glm::dmat4& m, const glm::dmat4& planes) {
+        keep(eye_planes_as_stored(texgen::WorldTexgen(planes), texgen::ViewMatrix(m)));
+    });
+}
+inline Calls eye_planes_bound_calls(const Numbers& n) {
+    return matrix_calls(n, [](const glm::dmat4& m, const glm::dmat4& planes) {
+        keep(eye_planes_error_bound(texgen::WorldTexgen(planes), texgen::ViewMatrix(m), texgen::EyeTexgen(planes)));
+    });
+}
+inline Calls rounded_planes_calls(const Numbers& n) {
+    return matrix_calls(n, [](const glm::dmat4& m, const glm::dmat4&) { keep(planes(texgen::WorldTexgen(m))); });
+}
+template <bool OfObject>
+Calls composed_calls(const Numbers& n) {
+    Random random(5);
+    return matrix_calls(n, [projector = ordinary_projector(random)](const glm::dmat4& m, const glm::dmat4& view) {
+        const texgen::Projector with_view{projector.projection, texgen::ProjectorView(view), projector.conventions};
+        if constexpr (OfObject)
+            keep(object_linear(with_view, texgen::ModelMatrix(m)));
+        else
+            keep(eye_linear(with_view, texgen::CameraPose(m)));
+    });
+}
+inline Calls texture_from_world_calls(const Numbers& n) {
+    return matrix_calls(n, [](const glm::dmat4& projection, const glm::dmat4& view) {
+        keep(texgen::texture_from_world({texgen::ProjectorProjection(projection), texgen::ProjectorView(view), texgen::opengl}));
+    });
+}
+inline Calls to_texture_calls(const Numbers& n) {
+    return calls_of([strq = Reader(n).vec4()] { keep(texgen::to_texture(strq, texgen::opengl)); });
+}
+inline Calls scale_bias_calls(const Numbers& n) {
+    return calls_of([region = texgen::atlas_tile({n[0], n[1]}, {n[2], n[3]})] {
+        keep(region);
+        keep(texgen::scale_bias(texgen::opengl, region));
+    });
+}
+
+// ---- Projectors' own functions --------------------------------------------------------------------------------------
+
+inline Numbers ordinary_look(Random& random) {
+    const texgen::Aim aim = ordinary_aim(random);
+    return numbers(aim.position, aim.target, aim.up, glm::dvec3(0.7, 1.3, 0.5), glm::dvec4(-1.0, 1.1, -0.9, 1.0), 20.0);
+}
+inline Numbers hostile_look(Random& random) {
+    Numbers n = ordinary_look(random);
+    const int kind = random.integer(0, 3);
+    if (kind == 0)
+        for (double& x : n) x = any_float(random);
+    if (kind == 1)  // up almost along the view
+        for (std::size_t k = 0; k < 3; ++k) n[6 + k] = (n[3 + k] - n[k]) * (1.0 + random.power_of_ten(-17.0, -1.0));
+    if (kind == 2) {
+        const double unit = random.power_of_ten(-300.0, 300.0);
+        for (double& x : n) x *= random.coin() ? unit : 1.0;
+    }
+    return n;
+}
+inline texgen::Aim aim_of(Reader& reader) {
+    const glm::dvec3 position = reader.dvec3(), target = reader.dvec3();
+    return {position, target, reader.dvec3()};
+}
+inline Calls look_at_calls(const Numbers& n) {
+    Reader reader(n);
+    return calls_of([aim = aim_of(reader)] { keep(texgen::look_at(aim)); });
+}
+// The numbers behind an aim: an angle, an aspect, a near plane; four sides; a far plane.
+template <int Kind>
+Calls lens_calls(const Numbers& n) {
+    Reader reader(n);
+    const texgen::Aim aim = aim_of(reader);
+    const glm::dvec3 a = reader.dvec3();
+    const glm::dvec4 sides = reader.dvec4();
+    const double z_far = reader.real();
+    const texgen::PerspectiveLens perspective{texgen::radians(a.x), a.y, a.z, z_far};
+    const texgen::FrustumLens frustum{sides.x, sides.y, sides.z, sides.w, a.z, z_far};
+    const texgen::OrthographicLens orthographic{sides.x, sides.y, sides.z, sides.w, a.z, z_far};
+    return calls_of([aim, perspective, frustum, orthographic] {
+        if constexpr (Kind == 0) keep(texgen::perspective(perspective, texgen::opengl));
+        if constexpr (Kind == 1) keep(texgen::frustum(frustum, texgen::opengl));
+        if constexpr (Kind == 2) keep(texgen::orthographic(orthographic, texgen::opengl));
+        if constexpr (Kind == 3) keep(texgen::make_projector(perspective, aim, texgen::opengl));
+        if constexpr (Kind == 4) keep(texgen::make_projector(frustum, aim, texgen::opengl));
+        if constexpr (Kind == 5) keep(texgen::make_projector(orthographic, aim, texgen::opengl));
+    });
+}
+
+// ---- OpenGL's fixed function -------------------------------------------------------------------------------------------
+
+inline Numbers ordinary_vertex(Random& random) {
+    Numbers n = numbers(rounded(random.rigid(5.0)), random.vector4(1.0));
+    n.back() = 1.0;
+    put(n, random.vector3(1.0));
+    put(n, random.vector4(1.0));
+    return n;
+}
+inline Numbers hostile_vertex(Random& random) {
+    Numbers n = random.coin() ? any_numbers<27>(random) : ordinary_vertex(random);
+    if (random.coin())
+        for (std::size_t i = 16; i < 27; ++i) n[i] = any_float(random);
+    return n;
+}
+template <texgen::TexGenMode Mode>
+Calls unit_calls(const Numbers& n) {
+    using texgen::Coordinate;
+    Reader reader(n);
+    const glm::mat4 modelview = reader.mat4();
+    texgen::FixedFunctionVertex vertex{};
+    vertex.position = reader.vec4();
+    vertex.normal = reader.vec3();
+    const glm::vec4 plane = reader.vec4();
+    texgen::TexGenUnit unit;
+    unit.set_normal_scaling(texgen::TexGenUnit::NormalScaling::normalize);
+    for (const Coordinate coordinate : {Coordinate::s, Coordinate::t, Coordinate::r, Coordinate::q}) {
+        unit.enable(coordinate, unit.set_mode(coordinate, Mode));
+        unit.set_object_plane(coordinate, plane);
+        static_cast<void>(unit.set_eye_plane(coordinate, plane, modelview));
+    }
+    return calls_of([unit, vertex, modelview] { keep(unit.generate(vertex, modelview)); });
+}
+template <bool OfBound>
+Calls eye_plane_calls(const Numbers& n) {
+    using texgen::Coordinate;
+    Reader reader(n);
+    const glm::mat4 modelview = reader.mat4();
+    const glm::vec4 plane = reader.vec4();
+    return calls_of([modelview, plane, unit = texgen::TexGenUnit()]() mutable {
+        if constexpr (OfBound)
+            keep(unit.eye_plane_error_bound(Coordinate::s, plane, modelview));
+        else
+            keep(unit.set_eye_plane(Coordinate::s, plane, modelview));
+    });
+}
+
+// ---- Diagnosis ---------------------------------------------------------------------------------------------------------
+
+// A projection, a view, a model, and what claims to be their texgen matrix.
+inline Numbers ordinary_setup(Random& random) {
+    const texgen::Projector projector = ordinary_projector(random);
+    const texgen::ModelMatrix model(random.rigid(1.0));
+    return numbers(projector.projection.matrix(), projector.view.matrix(), model.matrix(),
+                   object_linear(projector, model).matrix());
+}
+inline Numbers hostile_setup(Random& random) {
+    Numbers n = ordinary_setup(random);
+    const int changes = random.integer(0, 6);
+    for (int i = 0; i < changes; ++i) n[static_cast<std::size_t>(random.integer(0, 63))] = any_float(random);
+    if (random.integer(0, 3) == 0) std::rotate(n.begin(), n.begin() + 16 * random.integer(1, 3), n.end());
+    return n;
+}
+template <bool OfProjector>
+Calls diagnose_calls(const Numbers& n) {
+    Reader reader(n);
+    const glm::dmat4 projection = reader.dmat4(), view = reader.dmat4(), model = reader.dmat4(), texgen = reader.dmat4();
+    const texgen::Projector projector{texgen::ProjectorProjection(projection), texgen::ProjectorView(view), texgen::opengl};
+    texgen::Setup<texgen::Object> setup;
+    setup.projector = projector;
+    setup.world_from_space = texgen::ModelMatrix(model);
+    setup.texgen = texgen::ObjectTexgen(texgen);
+    return calls_of([projector, setup] {
+        if constexpr (OfProjector)
+            keep(texgen::diagnose(projector));
+        else
+            keep(texgen::diagnose(setup));
+    });
+}
+
+}  // namespace detail
+
+// ---- All of them -------------------------------------------------------------------------------------------------------
+
+inline const std::array workloads{
+    Workload{"project, exact, 1024 points", 24, detail::ordinary_points, detail::hostile_points,
+             detail::project_calls<1024, true>, detail::always},
+    Workload{"project, tolerance, 1024 points", 24, detail::ordinary_points, detail::hostile_points,
+             detail::project_calls<1024, false>, detail::always},
+    Workload{"project, exact, 1 point", 24, detail::ordinary_points, detail::hostile_points,
+             detail::project_calls<1, true>, detail::always},
+    Workload{"project to pairs, 1024 points", 24, detail::ordinary_points, detail::hostile_points,
+             detail::project_pairs_calls<1024>, detail::always},
+    Workload{"generate, 1024 points", 24, detail::ordinary_points, detail::hostile_points, detail::generate_calls<1024>,
+             detail::always},
+    Workload{"generate, 1 point", 24, detail::ordinary_points, detail::hostile_points, detail::generate_calls<1>,
+             detail::always},
+    Workload{"project_error_bound, 1024 points", 24, detail::ordinary_points, detail::hostile_points,
+             detail::project_bound_calls, detail::always},
+    Workload{"generate_error_bound, 1024 points", 24, detail::ordinary_points, detail::hostile_points,
+             detail::generate_bound_calls, detail::always},
+    Workload{"divide", 4, detail::ordinary_strq, detail::any_numbers<4>, detail::divide_calls, detail::always},
+    Workload{"interpolate a segment, exact, 1024", 16, detail::ordinary_segment, detail::hostile_segment,
+             detail::segment_calls<1024, true>, detail::always},
+    Workload{"interpolate a segment, tolerance, 1024", 16, detail::ordinary_segment, detail::hostile_segment,
+             detail::segment_calls<1024, false>, detail::always},
+    Workload{"interpolate a segment, exact, 1", 16, detail::ordinary_segment, detail::hostile_segment,
+             detail::segment_calls<1, true>, detail::always},
+    Workload{"work of a segment", 16, detail::ordinary_segment, detail::hostile_segment, detail::segment_work_calls,
+             detail::always},
+    Workload{"error_bound of a segment", 16, detail::ordinary_segment, detail::hostile_segment,
+             detail::segment_bound_calls, detail::always},
+    Workload{"TriangleSetup::of", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::setup_calls,
+             detail::always},
+    Workload{"TriangleSetup::work, 64 x 4", 23, detail::ordinary_triangle, detail::hostile_triangle,
+             detail::triangle_work_calls, detail::always},
+    Workload{"TriangleSetup::error_bound, 64 x 4", 23, detail::ordinary_triangle, detail::hostile_triangle,
+             detail::triangle_bound_calls, detail::always},
+    Workload{"interpolate a triangle, exact, 64 x 4", 23, detail::ordinary_triangle, detail::hostile_triangle,
+             detail::open_triangle_calls<64, 4, true>, detail::triangle_limit<64, 4>},
+    Workload{"interpolate a triangle, tolerance, 64 x 4", 23, detail::ordinary_triangle, detail::hostile_triangle,
+             detail::open_triangle_calls<64, 4, false>, detail::triangle_limit<64, 4>},
+    Workload{"interpolate a triangle, exact, all outputs, 64 x 4", 23, detail::ordinary_triangle,
+             detail::hostile_triangle, detail::triangle_calls<64, 4, true>, detail::triangle_limit<64, 4>},
+    Workload{"interpolate a triangle, exact, 8 x 8", 23, detail::ordinary_triangle, detail::hostile_triangle,
+             detail::open_triangle_calls<8, 8, true>, detail::triangle_limit<8, 8>},
+    Workload{"interpolate a triangle, tolerance, 8 x 8", 23, detail::ordinary_triangle, detail::hostile_triangle,
+             detail::open_triangle_calls<8, 8, false>, detail::triangle_limit<8, 8>},
+    Workload{"interpolate a triangle, exact, 1 x 1", 23, detail::ordinary_triangle, detail::hostile_triangle,
+             detail::open_triangle_calls<1, 1, true>, detail::triangle_limit<1, 1>},
+    Workload{"FootprintSetup", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::footprint_setup_calls,
+             detail::always},
+    Workload{"FootprintSetup::at", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::footprint_at_calls,
+             detail::triangle_limit<1, 1>},
+    Workload{"FootprintSetup::error_bound, 64 x 4", 23, detail::ordinary_triangle, detail::hostile_triangle,
+             detail::footprint_bound_calls, detail::always},
+    Workload{"FootprintSetup::extremes, 64 x 4", 23, detail::ordinary_triangle, detail::hostile_triangle,
+             detail::extremes_calls, detail::always},
+    Workload{"FootprintSetup::extremes of the triangle", 23, detail::ordinary_triangle, detail::hostile_triangle,
+             detail::all_extremes_calls, detail::always},
+    Workload{"footprint, exact, 64 x 4", 23, detail::ordinary_triangle, detail::hostile_triangle,
+             detail::footprint_calls<64, 4, true>, detail::triangle_limit<64, 4>},
+    Workload{"footprint, tolerance, 8 x 8", 23, detail::ordinary_triangle, detail::hostile_triangle,
+             detail::footprint_calls<8, 8, false>, detail::triangle_limit<8, 8>},
+    Workload{"footprint_of", 0, [](Random& random) { return detail::numbers(random.direction(), random.direction()); },
+             detail::any_numbers<6>, detail::footprint_of_calls, detail::always},
+    Workload{"headlights", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::headlights_calls,
+             detail::always},
+    Workload{"LitVolume", 0, detail::ordinary_volume, detail::hostile_volume, detail::volume_calls, detail::always},
+    Workload{"coverage of a box", 24, detail::ordinary_boxes, detail::hostile_boxes,
+             detail::coverage_calls<texgen::Box, 1>, detail::of_touching},
+    Workload{"coverage of 256 boxes", 24, detail::ordinary_boxes, detail::hostile_boxes,
+             detail::coverage_calls<texgen::Box, detail::bodies>, detail::of_touching},
+    Workload{"coverage of a sphere", 16, detail::ordinary_spheres, detail::hostile_spheres,
+             detail::coverage_calls<texgen::Sphere, 1>, detail::of_touching},
+    Workload{"coverage of 256 spheres", 16, detail::ordinary_spheres, detail::hostile_spheres,
+             detail::coverage_calls<texgen::Sphere, detail::bodies>, detail::of_touching},
+    Workload{"clip_planes", 0, detail::ordinary_volume, detail::hostile_volume, detail::planes_calls, detail::always},
+    Workload{"clip_to_near", 24, detail::ordinary_polygon, detail::any_numbers<24>, detail::clip_calls<true>,
+             detail::always},
+    Workload{"clip_to_slide", 24, detail::ordinary_polygon, detail::any_numbers<24>, detail::clip_calls<false>,
+             detail::always},
+    Workload{"to_window", 8, detail::ordinary_polygon, detail::any_numbers<24>, detail::to_window_calls, detail::always},
+    Workload{"inverse", 0, detail::ordinary_matrix, detail::hostile_matrix, detail::inverse_calls, detail::always},
+    Workload{"inverse_error_bound", 0, detail::ordinary_matrix, detail::hostile_matrix, detail::inverse_bound_calls,
+             detail::always},
+    Workload{"inverse_rigid", 0, detail::ordinary_rigid, detail::hostile_rigid, detail::rigid_calls, detail::always},
+    Workload{"eye_planes_as_stored", 0, detail::ordinary_matrix, detail::hostile_matrix, detail::eye_planes_calls,
+             detail::always},
+    Workload{"eye_planes_error_bound", 0, detail::ordinary_matrix, detail::hostile_matrix,
+             detail::eye_planes_bound_calls, detail::always},
+    Workload{"planes", 0, detail::ordinary_matrix, detail::hostile_matrix, detail::rounded_planes_calls, detail::always},
+    Workload{"texture_from_world", 0, detail::ordinary_matrix, detail::hostile_matrix,
+             detail::texture_from_world_calls, detail::always},
+    Workload{"object_linear", 0, detail::ordinary_matrix, detail::hostile_matrix, detail::composed_calls<true>,
+             detail::always},
+    Workload{"eye_linear", 0, detail::ordinary_matrix, detail::hostile_matrix, detail::composed_calls<false>,
+             detail::always},
+    Workload{"scale_bias", 0, detail::ordinary_strq, detail::any_numbers<4>, detail::scale_bias_calls, detail::always},
+    Workload{"to_texture", 4, detail::ordinary_strq, detail::any_numbers<4>, detail::to_texture_calls, detail::always},
+    Workload{"look_at", 0, detail::ordinary_look, detail::hostile_look, detail::look_at_calls, detail::always},
+    Workload{"perspective", 0, detail::ordinary_look, detail::hostile_look, detail::lens_calls<0>, detail::always},
+    Workload{"frustum", 0, detail::ordinary_look, detail::hostile_look, detail::lens_calls<1>, detail::always},
+    Workload{"orthographic", 0, detail::ordinary_look, detail::hostile_look, detail::lens_calls<2>, detail::always},
+    Workload{"make_projector, perspective", 0, detail::ordinary_look, detail::hostile_look, detail::lens_calls<3>,
+             detail::always},
+    Workload{"make_projector, frustum", 0, detail::ordinary_look, detail::hostile_look, detail::lens_calls<4>,
+             detail::always},
+    Workload{"make_projector, orthographic", 0, detail::ordinary_look, detail::hostile_look, detail::lens_calls<5>,
+             detail::always},
+    Workload{"TexGenUnit::generate, object linear", 27, detail::ordinary_vertex, detail::hostile_vertex,
+             detail::unit_calls<texgen::TexGenMode::object_linear>, detail::always},
+    Workload{"TexGenUnit::generate, eye linear", 27, detail::ordinary_vertex, detail::hostile_vertex,
+             detail::unit_calls<texgen::TexGenMode::eye_linear>, detail::always},
+    Workload{"TexGenUnit::generate, sphere map", 27, detail::ordinary_vertex, detail::hostile_vertex,
+             detail::unit_calls<texgen::TexGenMode::sphere_map>, detail::always},
+    Workload{"TexGenUnit::generate, reflection map", 27, detail::ordinary_vertex, detail::hostile_vertex,
+             detail::unit_calls<texgen::TexGenMode::reflection_map>, detail::always},
+    Workload{"TexGenUnit::set_eye_plane", 27, detail::ordinary_vertex, detail::hostile_vertex,
+             detail::eye_plane_calls<false>, detail::always},
+    Workload{"TexGenUnit::eye_plane_error_bound", 27, detail::ordinary_vertex, detail::hostile_vertex,
+             detail::eye_plane_calls<true>, detail::always},
+    Workload{"diagnose a projector", 0, detail::ordinary_setup, detail::hostile_setup, detail::diagnose_calls<true>,
+             detail::always},
+    Workload{"diagnose a set-up", 0, detail::ordinary_setup, detail::hostile_setup, detail::diagnose_calls<false>,
+             detail::always},
+};
+
+}  // namespace support
