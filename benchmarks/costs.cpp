@@ -1,8 +1,6 @@
 #include "costs.hpp"
 
 #include <algorithm>
-#include <charconv>
-#include <sstream>
 
 #include "failure.hpp"
 #include "files.hpp"
@@ -12,13 +10,11 @@ namespace report {
 
 namespace {
 
-// A number from 0 on; an empty field is 0.
-double number_of(const std::string& field, const std::string& file) {
-    double value = 0;
-    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-    if (!field.empty() && (error != std::errc() || end != field.data() + field.size() || !(value >= 0) || value > 1e12))
-        throw Failure{"no costs in " + file};
-    return value;
+// An empty field is 0.
+double cost_of(const std::string& field, const std::string& file) {
+    const std::optional<double> value = field.empty() ? 0.0 : number_of(field);
+    if (!value) throw Failure{"no costs in " + file};
+    return *value;
 }
 
 // A row of the table, as text: the seconds, those that a call adds to its header or a header's as a multiple of GLM's, and
@@ -49,18 +45,10 @@ std::vector<Row> rows_of(const std::vector<Cost>& costs) {
 
 std::vector<Cost> read_costs(const std::string& file) {
     std::vector<Cost> costs;
-    std::istringstream lines(read_file(file));
-    for (std::string line; std::getline(lines, line);) {
-        std::vector<std::string> fields(1);
-        for (const char c : line) {
-            if (c == '|')
-                fields.emplace_back();
-            else if (c != '\r')
-                fields.back() += c;
-        }
+    for (const std::vector<std::string>& fields : read_fields(file)) {
         if (fields.size() != 5 || fields[0].empty() || fields[2].empty()) throw Failure{"no costs in " + file};
         costs.push_back(
-            {fields[0], fields[1], number_of(fields[2], file), number_of(fields[3], file), number_of(fields[4], file)});
+            {fields[0], fields[1], cost_of(fields[2], file), cost_of(fields[3], file), cost_of(fields[4], file)});
         if (!(costs.back().milliseconds > 0)) throw Failure{"no costs in " + file};
     }
     return costs;

@@ -1,5 +1,6 @@
 #include "files.hpp"
 
+#include <charconv>
 #include <fstream>
 #include <random>
 #include <sstream>
@@ -41,6 +42,29 @@ std::string read_file(const fs::path& file) {
     stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     if (!stream) throw Failure{"cannot read " + file.string()};
     return bytes;
+}
+
+std::vector<std::vector<std::string>> read_fields(const fs::path& file) {
+    std::vector<std::vector<std::string>> lines;
+    std::istringstream text(read_file(file));
+    for (std::string line; std::getline(text, line);) {
+        std::vector<std::string>& fields = lines.emplace_back(1);
+        for (const char c : line) {
+            if (c == '|')
+                fields.emplace_back();
+            else if (c != '\r')
+                fields.back() += c;
+        }
+    }
+    return lines;
+}
+
+std::optional<double> number_of(const std::string& field) {
+    double value = 0;
+    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+    if (error != std::errc() || end != field.data() + field.size() || !(value >= 0) || value > 1e12)
+        return std::nullopt;
+    return value;
 }
 
 Staging::Staging(const fs::path& destination) {

@@ -1,13 +1,21 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace report {
 
 // The whole of a regular file. Throws Failure for anything else, and beyond 1 GiB.
 std::string read_file(const std::filesystem::path& file);
+
+// Its lines, each as the fields between |.
+std::vector<std::vector<std::string>> read_fields(const std::filesystem::path& file);
+
+// A field that is a number from 0 to 1e12; empty for any other.
+std::optional<double> number_of(const std::string& field);
 
 // A hidden folder next to the report's final place, on the same file system. What is written there appears at the
 // final place by publish() or not at all: the destructor removes what was not published.

@@ -154,7 +154,7 @@ std::string html_of(const Report& report, const std::string& plot_svg, const std
                     base64(picture.png) + "\"><figcaption>" + escaped(picture.caption) + "</figcaption></figure>\n";
         html += "</div>\n<p>" +
                 formatted(
-                    "%s covered fragments checked; wherever the library promises 0.51 ulp, it is within %.6f. "
+                    "%s covered fragments checked; wherever the library promises 0.5 ulp, it is within %.6f. "
                     "The work of its exact tier: %s.",
                     grouped(scene.comparison.covered_fragments, "&#8239;").c_str(), scene.comparison.largest_ulp,
                     work_of(scene.comparison).c_str()) +

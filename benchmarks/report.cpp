@@ -25,6 +25,7 @@
 #include "room.hpp"
 #include "scenes.hpp"
 #include "timings.hpp"
+#include "worst_times.hpp"
 
 namespace report {
 
@@ -37,7 +38,7 @@ constexpr int largest_side = 4096;
 
 constexpr const char* usage =
     "usage: texgen_report [--mesh FILE.obj] [--slide FILE.png|.jpg] [--size WxH] [--out DIR] [--costs FILE]\n"
-    "                     [--timings FILE.json]...\n"
+    "                     [--worst FILE] [--timings FILE.json]...\n"
     "\n"
     "Renders texgen's scenes, checks every fragment against the reference, and writes pictures and index.html.\n"
     "\n"
@@ -46,6 +47,7 @@ constexpr const char* usage =
     "  --size WxH    the size of the pictures, 16 to 4096 a side (default: 1024x1024)\n"
     "  --out DIR     the folder of the report (default: report)\n"
     "  --costs FILE  what costs.cmake wrote: what it costs to compile the headers and calls\n"
+    "  --worst FILE  what texgen_worst wrote: the worst input found for each function\n"
     "  --timings FILE  what texgen_bench_o2, then what texgen_bench_native wrote with --benchmark_out\n"
     "  --help        this text\n"
     "\n"
@@ -55,7 +57,7 @@ struct Options {
     std::optional<fs::path> mesh, slide;
     int width = 1024, height = 1024;
     fs::path out = "report";
-    std::optional<std::string> costs;
+    std::optional<std::string> costs, worst;
     std::vector<std::string> timings;
     bool help = false;
 };
@@ -77,7 +79,7 @@ Options parse(const std::vector<std::string_view>& arguments) {
             continue;
         }
         if (option != "--mesh" && option != "--slide" && option != "--size" && option != "--out" &&
-            option != "--costs" && option != "--timings")
+            option != "--costs" && option != "--worst" && option != "--timings")
             throw Failure{"unknown option '" + std::string(option) + "'; --help lists them"};
         if (++i == arguments.size() || arguments[i].empty()) throw Failure{std::string(option) + " needs a value"};
         const std::string_view value = arguments[i];
@@ -85,6 +87,7 @@ Options parse(const std::vector<std::string_view>& arguments) {
         if (option == "--slide") options.slide = value;
         if (option == "--out") options.out = value;
         if (option == "--costs") options.costs = value;
+        if (option == "--worst") options.worst = value;
         if (option == "--timings") options.timings.emplace_back(value);
         if (option == "--size") {
             const std::size_t x = value.find('x');
@@ -177,6 +180,7 @@ int run(const Options& options) {
     std::vector<Timings> timings;
     for (const std::string& file : options.timings) timings.push_back(read_timings(file));
     const std::vector<Cost> costs = options.costs ? read_costs(*options.costs) : std::vector<Cost>();
+    const std::vector<WorstTime> worst = options.worst ? read_worst_times(*options.worst) : std::vector<WorstTime>();
     static_cast<void>(Staging(options.out));
 
     const Report report = make_report(options, mesh, slide);
@@ -193,11 +197,14 @@ int run(const Options& options) {
     const std::string room_png = encode_png(room.picture), work_png = encode_png(room.work_picture);
     staging.write("room.png", room_png);
     staging.write("room_work.png", work_png);
-    staging.write("index.html",
-                  html_of(report, plot, html_of(timings, plots) + html_of(costs) + html_of(room, room_png, work_png)));
+    staging.write("index.html", html_of(report, plot,
+                                        html_of(timings, plots) + html_of(worst) + html_of(costs) +
+                                            html_of(room, room_png, work_png)));
     staging.publish();
 
-    std::fputs((text_of(report) + "\n" + text_of(room) + "\n" + text_of(timings) + text_of(costs)).c_str(), stdout);
+    std::fputs(
+        (text_of(report) + "\n" + text_of(room) + "\n" + text_of(timings) + text_of(worst) + text_of(costs)).c_str(),
+        stdout);
     if (plot.empty()) std::puts("\nno plot: gnuplot is missing or failed");
     std::printf("\nwritten to %s\n", (options.out / "index.html").string().c_str());
     for (const SceneReport& scene : report.scenes) {

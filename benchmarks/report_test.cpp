@@ -92,7 +92,7 @@ TEST_CASE("a bad option is refused in one line") {
     const Workplace place;
     place.check_refusal("--colour red", "--colour");
     place.check_refusal("teapot.obj", "teapot.obj");
-    for (const char* option : {"--mesh", "--slide", "--size", "--out", "--costs", "--timings"}) {
+    for (const char* option : {"--mesh", "--slide", "--size", "--out", "--costs", "--worst", "--timings"}) {
         place.check_refusal(option, option);
         place.check_refusal(option + std::string(" ''"), option);
     }
@@ -200,6 +200,29 @@ TEST_CASE("costs become a table of the terminal and of the page, none become not
     CHECK(contents("report/index.html").find("costs to compile") == std::string::npos);
 }
 
+TEST_CASE("worst times that are none are refused in one line") {
+    const Workplace place;
+    place.check_refusal("--worst missing.txt", "missing.txt");
+    for (const char* text : {"", "not times", "f|x|1|2", "f|x|1|2|3|4", "|x|1|2|3", "f|x||2|3", "f|x|0|2|3",
+                             "f|x|1|-2|3", "f|x|1|two|3", "f|x|nan|2|3", "f|x|1|2|3\n\n"}) {
+        write("worst.txt", text);
+        place.check_refusal("--worst worst.txt", "worst.txt");
+    }
+}
+
+TEST_CASE("worst times become a table of the terminal and of the page that says which limits are met") {
+    const Workplace place;
+    write("worst.txt", "divide|<any>|2|9|8\nproject|ties everywhere|2|17|8\n");
+    const Outcome outcome = place.run("--size 16x16 --worst worst.txt");
+    CHECK(outcome.status == 0);
+    CHECK(outcome.output.find("8.5      8  NOT MET  ties everywhere") != std::string::npos);
+    const std::string page = contents("report/index.html");
+    CHECK(page.find("1 of 2 are within their limits") != std::string::npos);
+    CHECK(page.find("<td>divide</td><td>2.0</td><td>9.0</td><td>4.5</td><td>8</td><td>yes</td><td>&lt;any&gt;</td>") !=
+          std::string::npos);
+    CHECK(page.find("<td>project</td><td>2.0</td><td>17.0</td><td>8.5</td><td>8</td><td>no</td>") != std::string::npos);
+}
+
 TEST_CASE("a folder that cannot be written is refused in one line, and an old report survives") {
     const Workplace place;
     write("file", "mine");
@@ -270,7 +293,7 @@ TEST_CASE("--help says how, and writes nothing") {
     const Outcome outcome = place.run("--help");
     CHECK(outcome.status == 0);
     CHECK(outcome.error == "");
-    for (const char* option : {"--mesh", "--slide", "--size", "--out", "--costs", "--timings"})
+    for (const char* option : {"--mesh", "--slide", "--size", "--out", "--costs", "--worst", "--timings"})
         CHECK(outcome.output.find(option) != std::string::npos);
     CHECK(place.files().empty());
 }

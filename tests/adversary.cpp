@@ -2,7 +2,14 @@
 // of each stated bound, and towards the decisions that hang by the least. Exact integers and rationals judge. Prints, for
 // every promise, the worst input that it met; fails where a promise is broken.
 //
-//   adversary [--seconds N] [--seed N] [--only WORD]
+//   adversary [--seconds N] [--seed N] [--only WORD] [--towards error]
+//
+// Towards time it climbs to the inputs that a function takes longest for, as a multiple of what ordinary ones take, and
+// fails where that is above its limit (support/workloads.hpp). What it prints is a line of worst_inputs.txt, behind what it
+// measured; it begins with those. Functions of which the name begins with one of the words behind --but are searched, and
+// never fail.
+//
+//   adversary --towards time [--seconds N] [--seed N] [--only WORD] [--but WORD,WORD...]
 
 #include <algorithm>
 #include <array>
@@ -12,6 +19,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <limits>
 #include <optional>
 #include <string>
@@ -23,9 +31,11 @@
 #include "support/hard_triangles.hpp"
 #include "support/hex.hpp"
 #include "support/outputs.hpp"
+#include "support/race.hpp"
 #include "support/random.hpp"
 #include "support/rational_matrix.hpp"
 #include "support/verdict.hpp"
+#include "support/workloads.hpp"
 #include "texgen/clip.hpp"
 #include "texgen/footprint.hpp"
 #include "texgen/interpolate.hpp"
@@ -53,7 +63,7 @@ using Share = double;
 constexpr Share says_nothing = -1.0;
 
 // An input: numbers that are floats, and after them doubles.
-using Numbers = std::vector<double>;
+using support::Numbers;
 
 struct Promise {
     const char* name;
@@ -121,16 +131,16 @@ double moved(double number, bool is_float, Random& random) {
     return std::isfinite(value) ? value : number;
 }
 
-// One number changed, now and then two; or one taken from another place.
-Numbers moved(const Promise& promise, Numbers numbers, Random& random) {
+// One number changed, now and then two; or one taken from another place. The first of them are floats.
+Numbers moved(std::size_t floats, Numbers numbers, Random& random) {
     const int last = static_cast<int>(numbers.size()) - 1;
     const int changes = random.integer(0, 3) == 0 ? 2 : 1;
     for (int change = 0; change < changes; ++change) {
         const auto i = static_cast<std::size_t>(random.integer(0, last));
-        if (random.integer(0, 15) == 0 && i < promise.floats)
-            numbers[i] = numbers[static_cast<std::size_t>(random.integer(0, static_cast<int>(promise.floats) - 1))];
+        if (random.integer(0, 15) == 0 && i < floats)
+            numbers[i] = numbers[static_cast<std::size_t>(random.integer(0, static_cast<int>(floats) - 1))];
         else
-            numbers[i] = moved(numbers[i], i < promise.floats, random);
+            numbers[i] = moved(numbers[i], i < floats, random);
     }
     return numbers;
 }
@@ -734,7 +744,7 @@ Find search(const Promise& promise, double seconds, std::uint64_t seed) {
         Numbers here = best.share >= 0.0 && random.integer(0, 3) == 0 ? best.numbers : promise.begin(random);
         Share share = promise.share(here);
         for (int idle = 0; idle < 400 && !(share > 1.0) && Clock::now() < end; ++idle) {
-            const Numbers next = moved(promise, here, random);
+            const Numbers next = moved(promise.floats, here, random);
             if (!all_finite(next)) continue;
             const Share of_next = promise.share(next);
             ++best.tried;
@@ -751,18 +761,117 @@ Find search(const Promise& promise, double seconds, std::uint64_t seed) {
     return best;
 }
 
+// ---- Towards time ----------------------------------------------------------------------------------------------
+
+// Where a climb begins: the hard families of triangles serve as well.
+Numbers begin(const support::Workload& workload, Random& random) {
+    if (workload.hostile != support::detail::hostile_triangle || random.coin()) return workload.hostile(random);
+    const auto last = static_cast<int>(support::hard_families.size()) - 1;
+    const support::Shot shot = support::hard_families[static_cast<std::size_t>(random.integer(0, last))].make(random);
+    return support::detail::numbers(shot.triangle, static_cast<float>(shot.rect.x), static_cast<float>(shot.rect.y));
+}
+
+// Climbs from the slowest of some beginnings, or from the slowest input so far.
+std::vector<support::SlowInput> search(const support::Workload& workload,
+                                       const std::vector<support::RecordedInput>& recorded, double seconds,
+                                       std::uint64_t seed) {
+    using Clock = std::chrono::steady_clock;
+    const auto end = Clock::now() + std::chrono::duration<double>(seconds);
+    Random random(seed);
+    const support::Race race(workload);
+    support::Slowest slowest(workload, race);
+    const auto look = [&](const Numbers& numbers, const std::string& words = "found by a search") {
+        const double ratio = race.glance(numbers);
+        slowest.offer(numbers, ratio, words);
+        return ratio;
+    };
+    for (const support::RecordedInput& input : recorded)
+        if (input.function == workload.function) look(input.numbers, input.words);
+    do {
+        Numbers here = begin(workload, random);
+        double ratio = look(here);
+        for (int i = 0; i < 8 && Clock::now() < end; ++i) {
+            const auto known = static_cast<int>(slowest.inputs().size());
+            const Numbers other =
+                known == 0 || random.integer(0, 15) != 0
+                    ? begin(workload, random)
+                    : slowest.inputs()[static_cast<std::size_t>(random.integer(0, known - 1))].numbers;
+            const double of_other = look(other);
+            if (of_other <= ratio) continue;
+            here = other;
+            ratio = of_other;
+        }
+        for (int idle = 0; idle < 100 && Clock::now() < end; ++idle) {
+            const Numbers next = moved(workload.floats, here, random);
+            const double of_next = look(next);
+            if (of_next < 0.98 * ratio) continue;
+            if (of_next > 1.02 * ratio) idle = 0;
+            here = next;
+            ratio = std::max(ratio, of_next);
+        }
+    } while (Clock::now() < end);
+    return slowest.inputs();
+}
+
+// What is above its limit once has to be so again and again.
+bool is_above_limit(const support::Workload& workload, const support::SlowInput& input) {
+    if (!(input.slowness.ratio() > input.limit)) return false;
+    const support::Race race(workload);
+    for (int attempt = 0; attempt < 5; ++attempt)
+        if (!(race.measure(input.numbers, 40).ratio() > input.limit)) return false;
+    return true;
+}
+
+bool begins_with_one_of(std::string_view name, std::string_view words) {
+    while (!words.empty()) {
+        const std::string_view word = words.substr(0, words.find(','));
+        if (!word.empty() && name.starts_with(word)) return true;
+        words.remove_prefix(std::min(words.size(), word.size() + 1));
+    }
+    return false;
+}
+
+bool search_towards_time(double seconds, std::uint64_t seed, std::string_view only, std::string_view excepted) {
+    const auto is_asked_for = [&](const support::Workload& workload) {
+        return std::string_view(workload.function).find(only) != std::string_view::npos;
+    };
+    std::ifstream file(TEXGEN_TEST_DATA "/worst_inputs.txt");
+    const std::vector<support::RecordedInput> recorded = support::read_inputs(file);
+    if (recorded.empty()) return false;
+    const auto count = std::count_if(support::workloads.begin(), support::workloads.end(), is_asked_for);
+    bool all_kept = true;
+    for (const support::Workload& workload : support::workloads) {
+        if (!is_asked_for(workload)) continue;
+        const bool is_excepted = begins_with_one_of(workload.function, excepted);
+        for (const support::SlowInput& input : search(workload, recorded, seconds / static_cast<double>(count), seed)) {
+            const bool is_above = is_above_limit(workload, input);
+            all_kept = all_kept && (is_excepted || !is_above);
+            const char* verdict = is_above ? is_excepted ? "EXCEPTED," : "BROKEN," : "kept,";
+            std::printf("%s %.1f times the ordinary %.1f ns, limit %g: %s | %s |", verdict, input.slowness.ratio(),
+                        input.slowness.ordinary, input.limit, workload.function, input.words.c_str());
+            for (const double number : input.numbers) std::printf(" %a", number);
+            std::printf("\n");
+            std::fflush(stdout);
+        }
+    }
+    return all_kept;
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
     double seconds = 5.0;
     std::uint64_t seed = 1;
-    std::string_view only;
+    std::string_view only, excepted, towards = "error";
     for (int i = 1; i + 1 < count; i += 2) {
         const std::string_view option = arguments[i];
         if (option == "--seconds") seconds = std::atof(arguments[i + 1]);
         if (option == "--seed") seed = std::strtoull(arguments[i + 1], nullptr, 10);
         if (option == "--only") only = arguments[i + 1];
+        if (option == "--but") excepted = arguments[i + 1];
+        if (option == "--towards") towards = arguments[i + 1];
     }
+    if (towards == "time") return search_towards_time(seconds, seed, only, excepted) ? EXIT_SUCCESS : EXIT_FAILURE;
     bool all_kept = true;
     for (const Promise& promise : promises) {
         if (std::string_view(promise.name).find(only) == std::string_view::npos) continue;

@@ -38,12 +38,13 @@ inline double nanoseconds_of(const Calls& calls, std::size_t count) {
     return std::chrono::duration<double, std::nano>(Clock::now() - begin).count() / static_cast<double>(count);
 }
 
-// As many calls as take about `nanoseconds`.
+// As many calls as take about `nanoseconds`, were they interrupted once.
 inline std::size_t calls_in(double nanoseconds, const Calls& calls) {
     std::size_t count = 1;
-    for (double one = 0.0; count < (std::size_t{1} << 20); count *= 2) {
-        one = nanoseconds_of(calls, count);
-        if (one * static_cast<double>(count) >= 0.5 * nanoseconds) break;
+    while (count < (std::size_t{1} << 20)) {
+        const double least = std::min(nanoseconds_of(calls, count), nanoseconds_of(calls, count));
+        if (least * static_cast<double>(count) >= 0.5 * nanoseconds) break;
+        count *= 2;
     }
     return count;
 }

@@ -51,10 +51,10 @@ inline constexpr double frame = 200.0;               // of Scene::update, over t
 
 struct Workload {
     const char* function;
-    std::size_t floats;                      // as many of an input's numbers
-    Numbers (*ordinary)(Random&);            // what a user's program gives it
-    Numbers (*hostile)(Random&);             // where a search begins
-    Calls (*calls)(const Numbers&);          // empty where the numbers break a precondition, or there is nothing to do
+    std::size_t floats;              // as many of an input's numbers
+    Numbers (*ordinary)(Random&);    // what a user's program gives it
+    Numbers (*hostile)(Random&);     // where a search begins
+    Calls (*calls)(const Numbers&);  // empty where the numbers break a precondition, or there is nothing to do
     double (*limit)(const Numbers&);
 };
 
@@ -229,7 +229,8 @@ template <std::size_t Count>
 std::shared_ptr<PointBatch> batch_of(const Numbers& n) {
     Reader reader(n);
     std::vector<glm::vec3> points = points_of<Count>(reader);
-    auto batch = std::make_shared<PointBatch>(PointBatch{std::move(points), texgen::WorldTexgen(reader.dmat4()), {}, {}});
+    auto batch =
+        std::make_shared<PointBatch>(PointBatch{std::move(points), texgen::WorldTexgen(reader.dmat4()), {}, {}});
     for (std::vector<float>& out : batch->out) out.resize(Count);
     batch->strq.resize(Count);
     return batch;
@@ -310,7 +311,8 @@ Calls segment_calls(const Numbers& n) {
     const auto job = std::make_shared<Job>();
     job->segment.a = reader.vec4();
     job->segment.b = reader.vec4();
-    for (std::size_t i = 0; i < Count; ++i) job->alpha.push_back(i < pattern ? reader.single() : job->alpha[i - pattern]);
+    for (std::size_t i = 0; i < Count; ++i)
+        job->alpha.push_back(i < pattern ? reader.single() : job->alpha[i - pattern]);
     for (const float alpha : job->alpha)
         if (!(alpha >= 0.0f && alpha <= 1.0f)) return {};
     for (std::vector<float>& out : job->out) out.resize(Count);
@@ -344,7 +346,8 @@ inline Numbers ordinary_triangle(Random& random) {
         *vertex = {window[i++] + glm::vec2(random.uniform_float(-20.0, 20.0), random.uniform_float(-20.0, 20.0)),
                    random.uniform_float(1.0, 4.0), Reader(strq).vec4()};
     }
-    return numbers(triangle, static_cast<float>(random.integer(150, 300)), static_cast<float>(random.integer(150, 300)));
+    return numbers(triangle, static_cast<float>(random.integer(150, 300)),
+                   static_cast<float>(random.integer(150, 300)));
 }
 
 // u half-way between two floats at every fragment: s = 1/2 + 2^-24 x at w = q = 1, corners on the pixels' corners.
@@ -372,7 +375,8 @@ inline Numbers hostile_triangle(Random& random) {
             return triangle_of_ties(random);
         case 3: {
             Numbers n = ordinary_triangle(random);
-            n[21 + static_cast<std::size_t>(random.integer(0, 1))] = static_cast<double>(to_float(random.power_of_ten(4.0, 9.3)));
+            n[21 + static_cast<std::size_t>(random.integer(0, 1))] =
+                static_cast<double>(to_float(random.power_of_ten(4.0, 9.3)));
             return n;
         }
         case 4: {  // all units of any size
@@ -387,11 +391,13 @@ inline Numbers hostile_triangle(Random& random) {
             Numbers n = ordinary_triangle(random);
             const double unit = random.power_of_ten(2.0, 6.0);
             for (std::size_t k = 0; k < 2; ++k)
-                for (std::size_t i = 0; i < 3; ++i) n[7 * i + k] = static_cast<double>(to_float((n[7 * i + k] - 400.0) * unit));
+                for (std::size_t i = 0; i < 3; ++i)
+                    n[7 * i + k] = static_cast<double>(to_float((n[7 * i + k] - 400.0) * unit));
             return n;
         }
         default: {
-            const Family family = families[static_cast<std::size_t>(random.integer(0, static_cast<int>(families.size()) - 1))];
+            const Family family =
+                families[static_cast<std::size_t>(random.integer(0, static_cast<int>(families.size()) - 1))];
             const texgen::Triangle triangle = make_triangle(family, random);
             const texgen::FragmentRect pixel = pixel_near(triangle, random);
             return numbers(triangle, static_cast<float>(pixel.x), static_cast<float>(pixel.y));
@@ -449,9 +455,8 @@ Calls open_triangle_calls(const Numbers& n) {
     });
 }
 inline Calls setup_calls(const Numbers& n) {
-    return calls_of([triangle = triangle_of(n)] {
-        keep(texgen::TriangleSetup::of(triangle, texgen::whole_texture(), tolerance));
-    });
+    return calls_of(
+        [triangle = triangle_of(n)] { keep(texgen::TriangleSetup::of(triangle, texgen::whole_texture(), tolerance)); });
 }
 inline Calls triangle_work_calls(const Numbers& n) {
     const auto call = tile_call<64, 4, false>(n, texgen::whole_texture());
@@ -514,9 +519,8 @@ inline Calls footprint_setup_calls(const Numbers& n) {
     });
 }
 inline Calls footprint_at_calls(const Numbers& n) {
-    return footprint_calls_of<1, 1, true>(n, [](const texgen::FootprintSetup& setup, TileCall& call) {
-        keep(setup.at(call.rect.x, call.rect.y));
-    });
+    return footprint_calls_of<1, 1, true>(
+        n, [](const texgen::FootprintSetup& setup, TileCall& call) { keep(setup.at(call.rect.x, call.rect.y)); });
 }
 inline Calls footprint_bound_calls(const Numbers& n) {
     return footprint_calls_of<64, 4, true>(
@@ -527,16 +531,15 @@ inline Calls extremes_calls(const Numbers& n) {
         n, [](const texgen::FootprintSetup& setup, TileCall& call) { keep(setup.extremes(call.rect)); });
 }
 inline Calls all_extremes_calls(const Numbers& n) {
-    return footprint_calls_of<64, 4, true>(n,
-                                           [](const texgen::FootprintSetup& setup, TileCall&) { keep(setup.extremes()); });
+    return footprint_calls_of<64, 4, true>(
+        n, [](const texgen::FootprintSetup& setup, TileCall&) { keep(setup.extremes()); });
 }
 inline Calls headlights_calls(const Numbers& n) {
     return calls_of([triangle = triangle_of(n)] { keep(texgen::headlights(triangle)); });
 }
 inline Calls footprint_of_calls(const Numbers& n) {
-    return calls_of([dx = glm::dvec2(n[0], n[1]), dy = glm::dvec2(n[2], n[3]), texels = texgen::TexelsPerUnit{n[4], n[5]}] {
-        keep(texgen::footprint_of(dx, dy, texels));
-    });
+    return calls_of([dx = glm::dvec2(n[0], n[1]), dy = glm::dvec2(n[2], n[3]),
+                     texels = texgen::TexelsPerUnit{n[4], n[5]}] { keep(texgen::footprint_of(dx, dy, texels)); });
 }
 
 // ---- Bodies ----------------------------------------------------------------------------------------------------------
@@ -612,7 +615,9 @@ Calls coverage_calls(const Numbers& n) {
             volume.coverage(std::span<const Body>(all), out);
     });
 }
-inline Numbers ordinary_volume(Random& random) { return numbers(ordinary_texgen(random), glm::dvec4(0.0, 0.0, 1.0, 1.0)); }
+inline Numbers ordinary_volume(Random& random) {
+    return numbers(ordinary_texgen(random), glm::dvec4(0.0, 0.0, 1.0, 1.0));
+}
 inline Numbers hostile_volume(Random& random) {
     Numbers n = numbers(hostile_texgen(random));
     for (const double x : any_numbers<4>(random)) n.push_back(x);
@@ -707,7 +712,9 @@ inline Calls rigid_calls(const Numbers& n) {
     return matrix_calls(n, [](const glm::dmat4& m, const glm::dmat4&) { keep(inverse_rigid(texgen::ViewMatrix(m))); });
 }
 inline Numbers ordinary_rigid(Random& random) { return numbers(random.rigid(10.0), glm::dmat4(1.0)); }
-inline Numbers hostile_rigid(Random& random) { return numbers(random.rigid(random.power_of_ten(-300.0, 300.0)), glm::dmat4(1.0)); }
+inline Numbers hostile_rigid(Random& random) {
+    return numbers(random.rigid(random.power_of_ten(-300.0, 300.0)), glm::dmat4(1.0));
+}
 inline Calls eye_planes_calls(const Numbers& n) {
     return matrix_calls(n, [](const glm::dmat4& m, const glm::dmat4& planes) {
         keep(eye_planes_as_stored(texgen::WorldTexgen(planes), texgen::ViewMatrix(m)));
@@ -734,7 +741,8 @@ Calls composed_calls(const Numbers& n) {
 }
 inline Calls texture_from_world_calls(const Numbers& n) {
     return matrix_calls(n, [](const glm::dmat4& projection, const glm::dmat4& view) {
-        keep(texgen::texture_from_world({texgen::ProjectorProjection(projection), texgen::ProjectorView(view), texgen::opengl}));
+        keep(texgen::texture_from_world(
+            {texgen::ProjectorProjection(projection), texgen::ProjectorView(view), texgen::opengl}));
     });
 }
 inline Calls to_texture_calls(const Numbers& n) {
@@ -861,8 +869,10 @@ inline Numbers hostile_setup(Random& random) {
 template <bool OfProjector>
 Calls diagnose_calls(const Numbers& n) {
     Reader reader(n);
-    const glm::dmat4 projection = reader.dmat4(), view = reader.dmat4(), model = reader.dmat4(), texgen = reader.dmat4();
-    const texgen::Projector projector{texgen::ProjectorProjection(projection), texgen::ProjectorView(view), texgen::opengl};
+    const glm::dmat4 projection = reader.dmat4(), view = reader.dmat4(), model = reader.dmat4(),
+                     texgen = reader.dmat4();
+    const texgen::Projector projector{texgen::ProjectorProjection(projection), texgen::ProjectorView(view),
+                                      texgen::opengl};
     texgen::Setup<texgen::Object> setup;
     setup.projector = projector;
     setup.world_from_space = texgen::ModelMatrix(model);
@@ -939,7 +949,10 @@ inline const std::array workloads{
              detail::footprint_calls<64, 4, true>, detail::triangle_limit<64, 4>},
     Workload{"footprint, tolerance, 8 x 8", 23, detail::ordinary_triangle, detail::hostile_triangle,
              detail::footprint_calls<8, 8, false>, detail::triangle_limit<8, 8>},
-    Workload{"footprint_of", 0, [](Random& random) { return detail::numbers(random.direction(), random.direction()); },
+    Workload{"footprint_of", 0,
+             [](Random& random) {
+                 return detail::numbers(1e-3 * random.direction(), 1e-3 * random.uniform(0.5, 2.0), 1024.0, 768.0);
+             },
              detail::any_numbers<6>, detail::footprint_of_calls, detail::always},
     Workload{"headlights", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::headlights_calls,
              detail::always},
@@ -957,7 +970,8 @@ inline const std::array workloads{
              detail::always},
     Workload{"clip_to_slide", 24, detail::ordinary_polygon, detail::any_numbers<24>, detail::clip_calls<false>,
              detail::always},
-    Workload{"to_window", 8, detail::ordinary_polygon, detail::any_numbers<24>, detail::to_window_calls, detail::always},
+    Workload{"to_window", 8, detail::ordinary_polygon, detail::any_numbers<24>, detail::to_window_calls,
+             detail::always},
     Workload{"inverse", 0, detail::ordinary_matrix, detail::hostile_matrix, detail::inverse_calls, detail::always},
     Workload{"inverse_error_bound", 0, detail::ordinary_matrix, detail::hostile_matrix, detail::inverse_bound_calls,
              detail::always},
@@ -966,9 +980,10 @@ inline const std::array workloads{
              detail::always},
     Workload{"eye_planes_error_bound", 0, detail::ordinary_matrix, detail::hostile_matrix,
              detail::eye_planes_bound_calls, detail::always},
-    Workload{"planes", 0, detail::ordinary_matrix, detail::hostile_matrix, detail::rounded_planes_calls, detail::always},
-    Workload{"texture_from_world", 0, detail::ordinary_matrix, detail::hostile_matrix,
-             detail::texture_from_world_calls, detail::always},
+    Workload{"planes", 0, detail::ordinary_matrix, detail::hostile_matrix, detail::rounded_planes_calls,
+             detail::always},
+    Workload{"texture_from_world", 0, detail::ordinary_matrix, detail::hostile_matrix, detail::texture_from_world_calls,
+             detail::always},
     Workload{"object_linear", 0, detail::ordinary_matrix, detail::hostile_matrix, detail::composed_calls<true>,
              detail::always},
     Workload{"eye_linear", 0, detail::ordinary_matrix, detail::hostile_matrix, detail::composed_calls<false>,
