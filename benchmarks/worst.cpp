@@ -24,7 +24,6 @@
 
 namespace {
 
-using support::Calls;
 using support::Numbers;
 using support::Random;
 using support::Workload;
@@ -65,47 +64,17 @@ void add_rows(const Workload& workload, const std::vector<support::RecordedInput
 
 // ---- Triangles that the near plane has cut --------------------------------------------------------------------------
 
-template <bool IsExact>
-void add_near_cuts(const std::string& function, std::vector<Row>& rows) {
+void add_near_cuts(const Workload& workload, std::vector<Row>& rows) {
     constexpr int triangles = 240;
-    const auto calls_of = [](const texgen::Triangle& triangle, const texgen::FragmentRect& rect) {
-        return support::detail::open_triangle_calls<64, 4, IsExact>(
-            support::detail::numbers(triangle, static_cast<float>(rect.x), static_cast<float>(rect.y)));
+    const support::NearCutTimes times = support::race_near_cuts(workload.calls, triangles);
+    const auto add = [&](const std::string& input, const support::Slowness& slowness, double limit) {
+        rows.push_back({workload.function, input, slowness.ordinary, slowness.hostile, limit});
     };
-    Random random(3);
-    std::vector<Calls> ordinary;
-    for (int i = 0; i < 3; ++i)
-        ordinary.push_back(
-            support::detail::open_triangle_calls<64, 4, IsExact>(support::detail::ordinary_triangle(random)));
-    struct Time {
-        double ordinary, worst;
-        double ratio() const { return worst / ordinary; }
-    };
-    std::vector<Time> times, between;
-    for (int i = 0; i < triangles; ++i) {
-        const support::NearCut cut = support::near_cut(random);
-        std::vector<Calls> all = ordinary;
-        for (int by = 0; by < 3; ++by)
-            if (Calls calls = calls_of(support::rotated(cut.triangle, by), cut.rect)) all.push_back(std::move(calls));
-        const std::vector<double> least = support::least_times(all, 7, 5e3);
-        const auto first = least.begin() + 3;
-        for (auto time = first; time != least.end(); ++time)
-            times.push_back({(least[0] + least[1] + least[2]) / 3.0, *time});
-        if (first != least.end())
-            between.push_back({*std::min_element(first, least.end()), *std::max_element(first, least.end())});
-    }
-    const auto by_ratio = [](const Time& a, const Time& b) { return a.ratio() < b.ratio(); };
-    std::sort(times.begin(), times.end(), by_ratio);
-    const Time rotation = *std::max_element(between.begin(), between.end(), by_ratio);
-    const Time most = times[times.size() * 99 / 100];
-    const std::string count = std::to_string(triangles);
-    using namespace support::limit;
-    rows.push_back({function,
-                    "the slowest of " + count + " triangles that the near plane cut, in all orders of their corners",
-                    times.back().ordinary, times.back().worst, near_plane});
-    rows.push_back({function, "99 of 100 of those", most.ordinary, most.worst, near_plane_99_of_100});
-    rows.push_back({function, "the slowest order of the corners of one of those over the fastest", rotation.ordinary,
-                    rotation.worst, support::limit::rotation});
+    add("the slowest of " + std::to_string(triangles) +
+            " triangles that the near plane cut, in all orders of their corners",
+        times.slowest, support::limit::near_plane);
+    add("99 of 100 of those", times.of_99_in_100, support::limit::near_plane_99_of_100);
+    add("the slowest order of the corners of one of those over the fastest", times.rotation, support::limit::rotation);
 }
 
 // ---- Scenes ---------------------------------------------------------------------------------------------------------
@@ -185,8 +154,8 @@ int main(int count, char** arguments) {
     std::vector<Row> rows;
     const std::vector<support::RecordedInput> recorded = recorded_inputs();
     for (const Workload& workload : support::workloads) add_rows(workload, recorded, rows);
-    add_near_cuts<true>("interpolate a triangle, exact, 64 x 4", rows);
-    add_near_cuts<false>("interpolate a triangle, tolerance, 64 x 4", rows);
+    for (const Workload& workload : support::workloads)
+        if (workload.takes_near_cuts()) add_near_cuts(workload, rows);
     add_scenes(rows);
 
     std::ostringstream lines;

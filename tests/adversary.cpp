@@ -822,6 +822,21 @@ bool is_above_limit(const support::Workload& workload, const support::SlowInput&
     return true;
 }
 
+bool near_cuts_keep_limits(const support::Workload& workload) {
+    for (int attempt = 0;; ++attempt) {
+        const support::NearCutTimes times = support::race_near_cuts(workload.calls, 40);
+        const bool kept = times.slowest.ratio() <= support::limit::near_plane &&
+                          times.of_99_in_100.ratio() <= support::limit::near_plane_99_of_100 &&
+                          times.rotation.ratio() <= support::limit::rotation;
+        if (!kept && attempt < 2) continue;
+        std::printf(
+            "%s cut by the near plane: %.1f at most (%g), %.1f for 99 of 100 (%g), %.1f between rotations (%g)\n",
+            workload.function, times.slowest.ratio(), support::limit::near_plane, times.of_99_in_100.ratio(),
+            support::limit::near_plane_99_of_100, times.rotation.ratio(), support::limit::rotation);
+        return kept;
+    }
+}
+
 bool begins_with_one_of(std::string_view name, std::string_view words) {
     while (!words.empty()) {
         const std::string_view word = words.substr(0, words.find(','));
@@ -843,6 +858,7 @@ bool search_towards_time(double seconds, std::uint64_t seed, std::string_view on
     for (const support::Workload& workload : support::workloads) {
         if (!is_asked_for(workload)) continue;
         const bool is_excepted = begins_with_one_of(workload.function, excepted);
+        if (workload.takes_near_cuts() && !near_cuts_keep_limits(workload) && !is_excepted) all_kept = false;
         for (const support::SlowInput& input : search(workload, recorded, seconds / static_cast<double>(count), seed)) {
             const bool is_above = is_above_limit(workload, input);
             all_kept = all_kept && (is_excepted || !is_above);

@@ -93,6 +93,37 @@ private:
     std::vector<SlowInput> inputs_;
 };
 
+// Triangles that the near plane has cut, each in all orders of its corners: the slowest of them, the one that 99 of 100 do
+// not exceed, and the slowest order of a triangle's corners over its fastest.
+struct NearCutTimes {
+    Slowness slowest, of_99_in_100, rotation;
+};
+
+inline NearCutTimes race_near_cuts(Calls (*calls)(const Numbers&), int triangles) {
+    Random random(3);
+    constexpr std::size_t ordinary_count = 3;
+    std::vector<Calls> ordinary;
+    for (std::size_t i = 0; i < ordinary_count; ++i) ordinary.push_back(calls(detail::ordinary_triangle(random)));
+    const auto is_less = [](const Slowness& a, const Slowness& b) { return a.ratio() < b.ratio(); };
+    std::vector<Slowness> times, rotations;
+    for (int i = 0; i < triangles; ++i) {
+        const NearCut cut = near_cut(random);
+        std::vector<Calls> all = ordinary;
+        for (int by = 0; by < 3; ++by)
+            all.push_back(calls(detail::numbers(rotated(cut.triangle, by), static_cast<float>(cut.rect.x),
+                                                static_cast<float>(cut.rect.y))));
+        const std::vector<double> least = least_times(all, 7, 5e3);
+        const auto first = least.begin() + ordinary_count;
+        for (auto time = first; time != least.end(); ++time)
+            times.push_back({(least[0] + least[1] + least[2]) / 3.0, *time});
+        const auto [fastest, slowest] = std::minmax_element(first, least.end());
+        rotations.push_back({*fastest, *slowest});
+    }
+    std::sort(times.begin(), times.end(), is_less);
+    return {times.back(), times[times.size() * 99 / 100],
+            *std::max_element(rotations.begin(), rotations.end(), is_less)};
+}
+
 // An input that a search found: a line of function | words | numbers in hexadecimal.
 struct RecordedInput {
     std::string function, words;

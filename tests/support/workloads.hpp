@@ -11,7 +11,8 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <string>
+#include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -24,6 +25,7 @@
 #include "stopwatch.hpp"
 #include "texgen/clip.hpp"
 #include "texgen/diagnose.hpp"
+#include "texgen/eigen.hpp"
 #include "texgen/fixed_function.hpp"
 #include "texgen/footprint.hpp"
 #include "texgen/interpolate.hpp"
@@ -56,6 +58,12 @@ struct Workload {
     Numbers (*hostile)(Random&);     // where a search begins
     Calls (*calls)(const Numbers&);  // empty where the numbers break a precondition, or there is nothing to do
     double (*limit)(const Numbers&);
+
+    // Interpolates 64 x 4 fragments of a triangle.
+    bool takes_near_cuts() const {
+        const std::string_view name = function;
+        return name.starts_with("interpolate a triangle") && name.ends_with("64 x 4");
+    }
 };
 
 namespace detail {
@@ -208,6 +216,7 @@ inline Numbers hostile_points(Random& random) {
     for (std::size_t i = 0; i < pattern; ++i) {
         glm::vec3 point = random.coin() ? random.vector3(2.0) : glm::vec3(0.0f);
         if (random.coin()) point = random.vector3(4.0);
+        if (random.integer(0, 31) == 0) point.y = std::numeric_limits<float>::quiet_NaN();
         if (random.integer(0, 3) == 0)
             for (int k = 0; k < 3; ++k) point[k] = to_float(any_float(random));
         // On q = 0, but for the rounding.
@@ -257,6 +266,14 @@ template <std::size_t Count>
 Calls generate_calls(const Numbers& n) {
     return calls_of([batch = batch_of<Count>(n)] {
         texgen::generate(batch->texgen, texgen::world_space(batch->points), batch->strq);
+    });
+}
+template <std::size_t Count>
+Calls generate_planar_calls(const Numbers& n) {
+    return calls_of([batch = batch_of<Count>(n)] {
+        auto& out = batch->out;
+        texgen::generate(batch->texgen, texgen::world_space(batch->points),
+                         texgen::HomogeneousTexcoords{.s = out[0], .t = out[1], .r = out[2], .q = out[3]});
     });
 }
 inline Calls project_bound_calls(const Numbers& n) {
@@ -445,6 +462,18 @@ Calls triangle_calls(const Numbers& n) {
                                  {.s = call->out[0], .t = call->out[1], .r = call->out[2], .lit = call->out[3]}));
     });
 }
+// One output alone: r, or the mask.
+template <int Width, int Height, bool IsMask>
+Calls one_output_calls(const Numbers& n) {
+    const auto call = tile_call<Width, Height, true>(n, wide_open());
+    if (!call) return {};
+    return calls_of([call] {
+        const std::span<float> out(call->out[0]);
+        keep(texgen::interpolate(
+            call->setup, call->rect,
+            {.s = {}, .t = {}, .r = IsMask ? std::span<float>() : out, .lit = IsMask ? out : std::span<float>()}));
+    });
+}
 // With a region that leaves no tile dark.
 template <int Width, int Height, bool IsExact>
 Calls open_triangle_calls(const Numbers& n) {
@@ -495,7 +524,6 @@ double triangle_limit(const Numbers& n) {
     const auto [least, largest] = std::minmax({t.a.clip_w, t.b.clip_w, t.c.clip_w});
     return largest > 100.0f * least ? limit::near_plane : limit::any;
 }
-inline double wide_limit(const Numbers& n) { return triangle_limit<64, 4>(n); }
 
 // ---- Footprints ------------------------------------------------------------------------------------------------------
 
@@ -615,6 +643,19 @@ Calls coverage_calls(const Numbers& n) {
             volume.coverage(std::span<const Body>(all), out);
     });
 }
+// Asked once: the volume is made for it.
+template <class Body>
+Calls one_question_calls(const Numbers& n) {
+    Reader reader(n);
+    const glm::vec3 a = reader.vec3(), b = reader.vec3();
+    Numbers matrix(n.end() - 16, n.end());
+    return calls_of([a, b, texgen = texgen::WorldTexgen(Reader(matrix).dmat4())] {
+        if constexpr (std::is_same_v<Body, texgen::Box>)
+            keep(texgen::coverage(texgen, texgen::whole_texture(), texgen::Box{a, b}));
+        else
+            keep(texgen::coverage(texgen, texgen::whole_texture(), texgen::Sphere{a, b.x}));
+    });
+}
 inline Numbers ordinary_volume(Random& random) {
     return numbers(ordinary_texgen(random), glm::dvec4(0.0, 0.0, 1.0, 1.0));
 }
@@ -679,7 +720,7 @@ inline Calls to_window_calls(const Numbers& n) {
 inline Numbers ordinary_matrix(Random& random) {
     glm::dmat4 m = random.rigid(10.0);
     m[0] *= 1.5;
-    return numbers(m, m);
+    return numbers(m, random.rigid(10.0));
 }
 inline Numbers hostile_matrix(Random& random) {
     Numbers n(32);
@@ -752,6 +793,39 @@ inline Calls scale_bias_calls(const Numbers& n) {
     return calls_of([region = texgen::atlas_tile({n[0], n[1]}, {n[2], n[3]})] {
         keep(region);
         keep(texgen::scale_bias(texgen::opengl, region));
+    });
+}
+
+inline Calls product_calls(const Numbers& n) {
+    return matrix_calls(n, [](const glm::dmat4& view, const glm::dmat4& model) {
+        keep(texgen::ViewMatrix(view) * texgen::ModelMatrix(model));
+    });
+}
+inline Calls rounded_calls(const Numbers& n) {
+    return matrix_calls(n, [](const glm::dmat4& m, const glm::dmat4&) { keep(texgen::ViewMatrix(m).rounded()); });
+}
+inline Calls to_eigen_calls(const Numbers& n) {
+    return matrix_calls(n, [](const glm::dmat4& m, const glm::dmat4&) {
+        keep(texgen::to_eigen_affine<Eigen::Affine3d>(texgen::ViewMatrix(m)));
+        keep(texgen::to_eigen<Eigen::Matrix4f>(texgen::ViewMatrix(m)));
+    });
+}
+inline Calls from_eigen_calls(const Numbers& n) {
+    return calls_of([m = Eigen::Matrix4d(Eigen::Map<const Eigen::Matrix4d>(n.data()))] {
+        keep(texgen::from_eigen<texgen::ViewMatrix>(m));
+    });
+}
+// A camera that moves to and fro over 16 projectors.
+inline Calls update_eye_calls(const Numbers& n) {
+    const auto scene = std::make_shared<texgen::Scene>();
+    Random random(4);
+    const std::vector<texgen::Projector> projectors(16, ordinary_projector(random));
+    scene->update({{}, {}, projectors}, {});
+    Reader reader(n);
+    const texgen::CameraPose there(reader.dmat4()), back(reader.dmat4());
+    return calls_of([scene, there, back, is_back = false]() mutable {
+        keep(scene->update_eye(is_back ? back : there));
+        is_back = !is_back;
     });
 }
 
@@ -850,6 +924,24 @@ Calls eye_plane_calls(const Numbers& n) {
     });
 }
 
+// Of a batch, with the normals left as they are.
+inline Calls unit_batch_calls(const Numbers& n) {
+    using texgen::Coordinate;
+    Reader reader(n);
+    const glm::mat4 modelview = reader.mat4();
+    std::vector<texgen::FixedFunctionVertex> vertices(64);
+    vertices[0].position = reader.vec4();
+    vertices[0].normal = reader.vec3();
+    for (texgen::FixedFunctionVertex& vertex : vertices) vertex = vertices[0];
+    texgen::TexGenUnit unit;
+    for (const Coordinate coordinate : {Coordinate::s, Coordinate::t, Coordinate::r})
+        unit.enable(coordinate, unit.set_mode(coordinate, texgen::TexGenMode::normal_map));
+    return calls_of([unit, vertices, modelview, out = std::vector<glm::vec4>(64)]() mutable {
+        unit.generate(vertices, modelview, out);
+        keep(out[0]);
+    });
+}
+
 // ---- Diagnosis ---------------------------------------------------------------------------------------------------------
 
 // A projection, a view, a model, and what claims to be their texgen matrix.
@@ -866,7 +958,8 @@ inline Numbers hostile_setup(Random& random) {
     if (random.integer(0, 3) == 0) std::rotate(n.begin(), n.begin() + 16 * random.integer(1, 3), n.end());
     return n;
 }
-template <bool OfProjector>
+enum class Diagnosed { projector, setup, texgen, planes };
+template <Diagnosed What>
 Calls diagnose_calls(const Numbers& n) {
     Reader reader(n);
     const glm::dmat4 projection = reader.dmat4(), view = reader.dmat4(), model = reader.dmat4(),
@@ -878,10 +971,10 @@ Calls diagnose_calls(const Numbers& n) {
     setup.world_from_space = texgen::ModelMatrix(model);
     setup.texgen = texgen::ObjectTexgen(texgen);
     return calls_of([projector, setup] {
-        if constexpr (OfProjector)
-            keep(texgen::diagnose(projector));
-        else
-            keep(texgen::diagnose(setup));
+        if constexpr (What == Diagnosed::projector) keep(texgen::diagnose(projector));
+        if constexpr (What == Diagnosed::setup) keep(texgen::diagnose(setup));
+        if constexpr (What == Diagnosed::texgen) keep(texgen::diagnose(*setup.texgen));
+        if constexpr (What == Diagnosed::planes) keep(texgen::diagnose(planes(*setup.texgen)));
     });
 }
 
@@ -902,6 +995,8 @@ inline const std::array workloads{
              detail::always},
     Workload{"generate, 1 point", 24, detail::ordinary_points, detail::hostile_points, detail::generate_calls<1>,
              detail::always},
+    Workload{"generate to four arrays, 1024 points", 24, detail::ordinary_points, detail::hostile_points,
+             detail::generate_planar_calls<1024>, detail::always},
     Workload{"project_error_bound, 1024 points", 24, detail::ordinary_points, detail::hostile_points,
              detail::project_bound_calls, detail::always},
     Workload{"generate_error_bound, 1024 points", 24, detail::ordinary_points, detail::hostile_points,
@@ -935,6 +1030,10 @@ inline const std::array workloads{
              detail::open_triangle_calls<8, 8, false>, detail::triangle_limit<8, 8>},
     Workload{"interpolate a triangle, exact, 1 x 1", 23, detail::ordinary_triangle, detail::hostile_triangle,
              detail::open_triangle_calls<1, 1, true>, detail::triangle_limit<1, 1>},
+    Workload{"interpolate a triangle, exact, r alone, 64 x 4", 23, detail::ordinary_triangle, detail::hostile_triangle,
+             detail::one_output_calls<64, 4, false>, detail::triangle_limit<64, 4>},
+    Workload{"interpolate a triangle, exact, lit alone, 64 x 4", 23, detail::ordinary_triangle,
+             detail::hostile_triangle, detail::one_output_calls<64, 4, true>, detail::triangle_limit<64, 4>},
     Workload{"FootprintSetup", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::footprint_setup_calls,
              detail::always},
     Workload{"FootprintSetup::at", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::footprint_at_calls,
@@ -965,6 +1064,10 @@ inline const std::array workloads{
              detail::coverage_calls<texgen::Sphere, 1>, detail::of_touching},
     Workload{"coverage of 256 spheres", 16, detail::ordinary_spheres, detail::hostile_spheres,
              detail::coverage_calls<texgen::Sphere, detail::bodies>, detail::of_touching},
+    Workload{"coverage of a box, asked once", 24, detail::ordinary_boxes, detail::hostile_boxes,
+             detail::one_question_calls<texgen::Box>, detail::of_touching},
+    Workload{"coverage of a sphere, asked once", 16, detail::ordinary_spheres, detail::hostile_spheres,
+             detail::one_question_calls<texgen::Sphere>, detail::of_touching},
     Workload{"clip_planes", 0, detail::ordinary_volume, detail::hostile_volume, detail::planes_calls, detail::always},
     Workload{"clip_to_near", 24, detail::ordinary_polygon, detail::any_numbers<24>, detail::clip_calls<true>,
              detail::always},
@@ -990,6 +1093,16 @@ inline const std::array workloads{
              detail::always},
     Workload{"scale_bias", 0, detail::ordinary_strq, detail::any_numbers<4>, detail::scale_bias_calls, detail::always},
     Workload{"to_texture", 4, detail::ordinary_strq, detail::any_numbers<4>, detail::to_texture_calls, detail::always},
+    Workload{"product of transforms", 0, detail::ordinary_matrix, detail::hostile_matrix, detail::product_calls,
+             detail::always},
+    Workload{"Transform::rounded", 0, detail::ordinary_matrix, detail::hostile_matrix, detail::rounded_calls,
+             detail::always},
+    Workload{"to_eigen, to_eigen_affine", 0, detail::ordinary_rigid, detail::hostile_matrix, detail::to_eigen_calls,
+             detail::always},
+    Workload{"from_eigen", 0, detail::ordinary_matrix, detail::hostile_matrix, detail::from_eigen_calls,
+             detail::always},
+    Workload{"Scene::update_eye, 16 projectors", 0, detail::ordinary_matrix, detail::hostile_matrix,
+             detail::update_eye_calls, detail::always},
     Workload{"look_at", 0, detail::ordinary_look, detail::hostile_look, detail::look_at_calls, detail::always},
     Workload{"perspective", 0, detail::ordinary_look, detail::hostile_look, detail::lens_calls<0>, detail::always},
     Workload{"frustum", 0, detail::ordinary_look, detail::hostile_look, detail::lens_calls<1>, detail::always},
@@ -1008,14 +1121,20 @@ inline const std::array workloads{
              detail::unit_calls<texgen::TexGenMode::sphere_map>, detail::always},
     Workload{"TexGenUnit::generate, reflection map", 27, detail::ordinary_vertex, detail::hostile_vertex,
              detail::unit_calls<texgen::TexGenMode::reflection_map>, detail::always},
+    Workload{"TexGenUnit::generate, normal map, 64 vertices", 27, detail::ordinary_vertex, detail::hostile_vertex,
+             detail::unit_batch_calls, detail::always},
     Workload{"TexGenUnit::set_eye_plane", 27, detail::ordinary_vertex, detail::hostile_vertex,
              detail::eye_plane_calls<false>, detail::always},
     Workload{"TexGenUnit::eye_plane_error_bound", 27, detail::ordinary_vertex, detail::hostile_vertex,
              detail::eye_plane_calls<true>, detail::always},
-    Workload{"diagnose a projector", 0, detail::ordinary_setup, detail::hostile_setup, detail::diagnose_calls<true>,
-             detail::always},
-    Workload{"diagnose a set-up", 0, detail::ordinary_setup, detail::hostile_setup, detail::diagnose_calls<false>,
-             detail::always},
+    Workload{"diagnose a projector", 0, detail::ordinary_setup, detail::hostile_setup,
+             detail::diagnose_calls<detail::Diagnosed::projector>, detail::always},
+    Workload{"diagnose a set-up", 0, detail::ordinary_setup, detail::hostile_setup,
+             detail::diagnose_calls<detail::Diagnosed::setup>, detail::always},
+    Workload{"diagnose a texgen matrix", 0, detail::ordinary_setup, detail::hostile_setup,
+             detail::diagnose_calls<detail::Diagnosed::texgen>, detail::always},
+    Workload{"diagnose planes", 0, detail::ordinary_setup, detail::hostile_setup,
+             detail::diagnose_calls<detail::Diagnosed::planes>, detail::always},
 };
 
 }  // namespace support
