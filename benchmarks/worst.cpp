@@ -5,11 +5,12 @@
 //   texgen_worst [FILE]    writes lines of function|input|ordinary ns|worst ns|limit
 
 #include <algorithm>
-#include <array>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <fstream>
+#include <span>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -31,21 +32,9 @@ using support::Workload;
 struct Row {
     std::string function, input;
     double ordinary, worst, limit;
-
-    double ratio() const { return worst / ordinary; }
 };
 
 // ---- What searches found, and what they begin with ------------------------------------------------------------------
-
-std::vector<support::RecordedInput> recorded_inputs() {
-    std::ifstream file(TEXGEN_WORST_INPUTS);
-    std::vector<support::RecordedInput> inputs = support::read_inputs(file);
-    if (inputs.empty()) {
-        std::fprintf(stderr, "texgen_worst: no inputs in %s\n", TEXGEN_WORST_INPUTS);
-        std::exit(1);
-    }
-    return inputs;
-}
 
 void add_rows(const Workload& workload, const std::vector<support::RecordedInput>& recorded, std::vector<Row>& rows) {
     const support::Race race(workload);
@@ -55,8 +44,8 @@ void add_rows(const Workload& workload, const std::vector<support::RecordedInput
     Random random(11);
     const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(250);
     for (int i = 0; i < 400 && std::chrono::steady_clock::now() < end; ++i) {
-        const Numbers numbers = workload.hostile(random);
-        slowest.offer(numbers, race.glance(numbers), "one that searches begin with");
+        const Numbers numbers = workload.hostile.draw(random);
+        slowest.offer(numbers, race.glance(numbers), workload.hostile.words);
     }
     for (const support::SlowInput& input : slowest.inputs())
         rows.push_back({workload.function, input.words, input.slowness.ordinary, input.slowness.hostile, input.limit});
@@ -152,7 +141,8 @@ void add_scenes(std::vector<Row>& rows) {
 
 int main(int count, char** arguments) {
     std::vector<Row> rows;
-    const std::vector<support::RecordedInput> recorded = recorded_inputs();
+    std::ifstream inputs(TEXGEN_WORST_INPUTS);
+    const std::vector<support::RecordedInput> recorded = support::read_inputs(inputs);
     for (const Workload& workload : support::workloads) add_rows(workload, recorded, rows);
     for (const Workload& workload : support::workloads)
         if (workload.takes_near_cuts()) add_near_cuts(workload, rows);

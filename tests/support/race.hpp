@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdlib>
 #include <istream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -130,12 +131,13 @@ struct RecordedInput {
     Numbers numbers;
 };
 
+// Throws where there are none, or a line names no workload or has not as many numbers as it takes.
 inline std::vector<RecordedInput> read_inputs(std::istream& lines) {
     std::vector<RecordedInput> inputs;
     for (std::string line; std::getline(lines, line);) {
         const std::size_t first = line.find(" | ");
-        const std::size_t second = first == std::string::npos ? first : line.find(" | ", first + 3);
-        if (second == std::string::npos) continue;
+        const std::size_t second = line.find(" | ", first == std::string::npos ? first : first + 3);
+        if (second == std::string::npos) throw std::runtime_error("no recorded input: " + line);
         RecordedInput input{line.substr(0, first), line.substr(first + 3, second - first - 3), {}};
         const char* next = line.c_str() + second + 3;
         for (char* end = nullptr;; next = end) {
@@ -143,8 +145,14 @@ inline std::vector<RecordedInput> read_inputs(std::istream& lines) {
             if (end == next) break;
             input.numbers.push_back(number);
         }
+        const auto workload = std::find_if(workloads.begin(), workloads.end(),
+                                           [&](const Workload& w) { return input.function == w.function; });
+        Random random(1);
+        if (workload == workloads.end() || workload->hostile.draw(random).size() != input.numbers.size())
+            throw std::runtime_error("no recorded input: " + line);
         inputs.push_back(input);
     }
+    if (inputs.empty()) throw std::runtime_error("no recorded inputs");
     return inputs;
 }
 

@@ -51,11 +51,17 @@ inline constexpr double touching = 10.0;             // a body that touches a si
 inline constexpr double frame = 200.0;               // of Scene::update, over the median frame
 }  // namespace limit
 
+// Inputs that are meant to take long, where a search begins.
+struct Hostile {
+    Numbers (*draw)(Random&);
+    const char* words;
+};
+
 struct Workload {
     const char* function;
-    std::size_t floats;              // as many of an input's numbers
-    Numbers (*ordinary)(Random&);    // what a user's program gives it
-    Numbers (*hostile)(Random&);     // where a search begins
+    std::size_t floats;            // as many of an input's numbers
+    Numbers (*ordinary)(Random&);  // what a user's program gives it
+    Hostile hostile;
     Calls (*calls)(const Numbers&);  // empty where the numbers break a precondition, or there is nothing to do
     double (*limit)(const Numbers&);
 
@@ -154,6 +160,9 @@ Numbers any_numbers(Random& random) {
     return n;
 }
 
+template <std::size_t Count>
+inline constexpr Hostile hostile_numbers{any_numbers<Count>, "drawn: any numbers"};
+
 // ---- Projectors -----------------------------------------------------------------------------------------------------
 
 inline texgen::Aim ordinary_aim(Random& random) {
@@ -177,7 +186,7 @@ inline glm::dmat4 aligned_texgen(Random& random) {
                                                     : texgen::make_projector(open, aim, texgen::opengl).value())
         .matrix();
 }
-inline glm::dmat4 hostile_texgen(Random& random) {
+inline glm::dmat4 drawn_texgen(Random& random) {
     switch (random.integer(0, 3)) {
         case 0:
             return ordinary_texgen(random);
@@ -210,9 +219,9 @@ inline Numbers ordinary_points(Random& random) {
     put(n, ordinary_texgen(random));
     return n;
 }
-inline Numbers hostile_points(Random& random) {
+inline Numbers draw_points(Random& random) {
     Numbers n;
-    const glm::dmat4 texgen = hostile_texgen(random);
+    const glm::dmat4 texgen = drawn_texgen(random);
     for (std::size_t i = 0; i < pattern; ++i) {
         glm::vec3 point = random.coin() ? random.vector3(2.0) : glm::vec3(0.0f);
         if (random.coin()) point = random.vector3(4.0);
@@ -227,6 +236,8 @@ inline Numbers hostile_points(Random& random) {
     put(n, texgen);
     return n;
 }
+inline constexpr Hostile hostile_points{
+    draw_points, "drawn: points of any size, next to q = 0 or NaN, under an aligned projector or any matrix"};
 
 struct PointBatch {
     std::vector<glm::vec3> points;
@@ -302,7 +313,7 @@ inline Numbers ordinary_segment(Random& random) {
     for (std::size_t i = 0; i < pattern; ++i) put(n, random.uniform_float(0.0, 1.0));
     return n;
 }
-inline Numbers hostile_segment(Random& random) {
+inline Numbers draw_segment(Random& random) {
     Numbers n = random.coin() ? any_numbers<8>(random) : ordinary_segment(random);
     n.resize(8);
     if (random.coin()) n[3] = n[7] = 1.0;
@@ -316,6 +327,8 @@ inline Numbers hostile_segment(Random& random) {
                                   : static_cast<double>(to_float(n[3] / (n[3] - n[7]))));
     return n;
 }
+inline constexpr Hostile hostile_segment{draw_segment,
+                                         "drawn: halves between floats, alphas next to the root of q, or any numbers"};
 
 template <std::size_t Count, bool IsExact>
 Calls segment_calls(const Numbers& n) {
@@ -381,7 +394,7 @@ inline Numbers triangle_of_ties(Random& random) {
     return numbers(triangle, static_cast<float>(random.integer(0, 900)), static_cast<float>(random.integer(0, 900)));
 }
 
-inline Numbers hostile_triangle(Random& random) {
+inline Numbers draw_triangle(Random& random) {
     switch (random.integer(0, 7)) {
         case 0:
         case 1: {
@@ -421,6 +434,9 @@ inline Numbers hostile_triangle(Random& random) {
         }
     }
 }
+inline constexpr Hostile hostile_triangle{
+    draw_triangle,
+    "drawn: cut by the near plane, half-way between floats, far away, in mixed units, or of a hard family"};
 
 inline texgen::Triangle triangle_of(const Numbers& n) {
     Reader reader(n);
@@ -585,9 +601,9 @@ inline Numbers ordinary_boxes(Random& random) {
     put(n, ordinary_texgen(random));
     return n;
 }
-inline Numbers hostile_boxes(Random& random) {
+inline Numbers draw_boxes(Random& random) {
     Numbers n;
-    const glm::dmat4 texgen = hostile_texgen(random);
+    const glm::dmat4 texgen = drawn_texgen(random);
     for (std::size_t i = 0; i < body_pattern; ++i) {
         glm::vec3 a{}, b{};
         for (int k = 0; k < 3; ++k) {
@@ -604,6 +620,8 @@ inline Numbers hostile_boxes(Random& random) {
     put(n, texgen);
     return n;
 }
+inline constexpr Hostile hostile_boxes{
+    draw_boxes, "drawn: boxes with whole coordinates or of any size, under an aligned projector or any matrix"};
 inline Numbers ordinary_spheres(Random& random) {
     Numbers n;
     for (std::size_t i = 0; i < body_pattern; ++i) {
@@ -613,13 +631,15 @@ inline Numbers ordinary_spheres(Random& random) {
     put(n, ordinary_texgen(random));
     return n;
 }
-inline Numbers hostile_spheres(Random& random) {
+inline Numbers draw_spheres(Random& random) {
     Numbers n;
     for (std::size_t i = 0; i < body_pattern; ++i)
         for (const double x : any_numbers<4>(random)) n.push_back(x);
-    put(n, hostile_texgen(random));
+    put(n, drawn_texgen(random));
     return n;
 }
+inline constexpr Hostile hostile_spheres{draw_spheres,
+                                         "drawn: spheres of any numbers, under an aligned projector or any matrix"};
 
 template <class Body, std::size_t Count>
 Calls coverage_calls(const Numbers& n) {
@@ -659,11 +679,12 @@ Calls one_question_calls(const Numbers& n) {
 inline Numbers ordinary_volume(Random& random) {
     return numbers(ordinary_texgen(random), glm::dvec4(0.0, 0.0, 1.0, 1.0));
 }
-inline Numbers hostile_volume(Random& random) {
-    Numbers n = numbers(hostile_texgen(random));
+inline Numbers draw_volume(Random& random) {
+    Numbers n = numbers(drawn_texgen(random));
     for (const double x : any_numbers<4>(random)) n.push_back(x);
     return n;
 }
+inline constexpr Hostile hostile_volume{draw_volume, "drawn: an aligned projector or any matrix"};
 inline Calls volume_calls(const Numbers& n) {
     Reader reader(n);
     const texgen::WorldTexgen texgen(reader.dmat4());
@@ -722,7 +743,7 @@ inline Numbers ordinary_matrix(Random& random) {
     m[0] *= 1.5;
     return numbers(m, random.rigid(10.0));
 }
-inline Numbers hostile_matrix(Random& random) {
+inline Numbers draw_matrix(Random& random) {
     Numbers n(32);
     const int kind = random.integer(0, 3);
     const double distance = random.power_of_ten(-16.0, 0.0);
@@ -734,6 +755,7 @@ inline Numbers hostile_matrix(Random& random) {
         for (std::size_t k = 0; k < 4; ++k) n[4 * k + 2] = n[4 * k] + distance * n[4 * k + 2];
     return n;
 }
+inline constexpr Hostile hostile_matrix{draw_matrix, "drawn: almost singular, graded, or any numbers"};
 template <class Ask>
 Calls matrix_calls(const Numbers& n, Ask ask) {
     Reader reader(n);
@@ -753,9 +775,10 @@ inline Calls rigid_calls(const Numbers& n) {
     return matrix_calls(n, [](const glm::dmat4& m, const glm::dmat4&) { keep(inverse_rigid(texgen::ViewMatrix(m))); });
 }
 inline Numbers ordinary_rigid(Random& random) { return numbers(random.rigid(10.0), glm::dmat4(1.0)); }
-inline Numbers hostile_rigid(Random& random) {
+inline Numbers draw_rigid(Random& random) {
     return numbers(random.rigid(random.power_of_ten(-300.0, 300.0)), glm::dmat4(1.0));
 }
+inline constexpr Hostile hostile_rigid{draw_rigid, "drawn: a pose at any distance"};
 inline Calls eye_planes_calls(const Numbers& n) {
     return matrix_calls(n, [](const glm::dmat4& m, const glm::dmat4& planes) {
         keep(eye_planes_as_stored(texgen::WorldTexgen(planes), texgen::ViewMatrix(m)));
@@ -835,7 +858,7 @@ inline Numbers ordinary_look(Random& random) {
     const texgen::Aim aim = ordinary_aim(random);
     return numbers(aim.position, aim.target, aim.up, glm::dvec3(0.7, 1.3, 0.5), glm::dvec4(-1.0, 1.1, -0.9, 1.0), 20.0);
 }
-inline Numbers hostile_look(Random& random) {
+inline Numbers draw_look(Random& random) {
     Numbers n = ordinary_look(random);
     const int kind = random.integer(0, 3);
     if (kind == 0)
@@ -848,6 +871,7 @@ inline Numbers hostile_look(Random& random) {
     }
     return n;
 }
+inline constexpr Hostile hostile_look{draw_look, "drawn: up next to the view, or numbers of any size"};
 inline texgen::Aim aim_of(Reader& reader) {
     const glm::dvec3 position = reader.dvec3(), target = reader.dvec3();
     return {position, target, reader.dvec3()};
@@ -886,12 +910,13 @@ inline Numbers ordinary_vertex(Random& random) {
     put(n, random.vector4(1.0));
     return n;
 }
-inline Numbers hostile_vertex(Random& random) {
+inline Numbers draw_vertex(Random& random) {
     Numbers n = random.coin() ? any_numbers<27>(random) : ordinary_vertex(random);
     if (random.coin())
         for (std::size_t i = 16; i < 27; ++i) n[i] = any_float(random);
     return n;
 }
+inline constexpr Hostile hostile_vertex{draw_vertex, "drawn: any numbers"};
 template <texgen::TexGenMode Mode>
 Calls unit_calls(const Numbers& n) {
     using texgen::Coordinate;
@@ -951,13 +976,14 @@ inline Numbers ordinary_setup(Random& random) {
     return numbers(projector.projection.matrix(), projector.view.matrix(), model.matrix(),
                    object_linear(projector, model).matrix());
 }
-inline Numbers hostile_setup(Random& random) {
+inline Numbers draw_setup(Random& random) {
     Numbers n = ordinary_setup(random);
     const int changes = random.integer(0, 6);
     for (int i = 0; i < changes; ++i) n[static_cast<std::size_t>(random.integer(0, 63))] = any_float(random);
     if (random.integer(0, 3) == 0) std::rotate(n.begin(), n.begin() + 16 * random.integer(1, 3), n.end());
     return n;
 }
+inline constexpr Hostile hostile_setup{draw_setup, "drawn: a set-up with wrong elements"};
 enum class Diagnosed { projector, setup, texgen, planes };
 template <Diagnosed What>
 Calls diagnose_calls(const Numbers& n) {
@@ -1001,7 +1027,7 @@ inline const std::array workloads{
              detail::project_bound_calls, detail::always},
     Workload{"generate_error_bound, 1024 points", 24, detail::ordinary_points, detail::hostile_points,
              detail::generate_bound_calls, detail::always},
-    Workload{"divide", 4, detail::ordinary_strq, detail::any_numbers<4>, detail::divide_calls, detail::always},
+    Workload{"divide", 4, detail::ordinary_strq, detail::hostile_numbers<4>, detail::divide_calls, detail::always},
     Workload{"interpolate a segment, exact, 1024", 16, detail::ordinary_segment, detail::hostile_segment,
              detail::segment_calls<1024, true>, detail::always},
     Workload{"interpolate a segment, tolerance, 1024", 16, detail::ordinary_segment, detail::hostile_segment,
@@ -1052,7 +1078,7 @@ inline const std::array workloads{
              [](Random& random) {
                  return detail::numbers(1e-3 * random.direction(), 1e-3 * random.uniform(0.5, 2.0), 1024.0, 768.0);
              },
-             detail::any_numbers<6>, detail::footprint_of_calls, detail::always},
+             detail::hostile_numbers<6>, detail::footprint_of_calls, detail::always},
     Workload{"headlights", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::headlights_calls,
              detail::always},
     Workload{"LitVolume", 0, detail::ordinary_volume, detail::hostile_volume, detail::volume_calls, detail::always},
@@ -1069,11 +1095,11 @@ inline const std::array workloads{
     Workload{"coverage of a sphere, asked once", 16, detail::ordinary_spheres, detail::hostile_spheres,
              detail::one_question_calls<texgen::Sphere>, detail::of_touching},
     Workload{"clip_planes", 0, detail::ordinary_volume, detail::hostile_volume, detail::planes_calls, detail::always},
-    Workload{"clip_to_near", 24, detail::ordinary_polygon, detail::any_numbers<24>, detail::clip_calls<true>,
+    Workload{"clip_to_near", 24, detail::ordinary_polygon, detail::hostile_numbers<24>, detail::clip_calls<true>,
              detail::always},
-    Workload{"clip_to_slide", 24, detail::ordinary_polygon, detail::any_numbers<24>, detail::clip_calls<false>,
+    Workload{"clip_to_slide", 24, detail::ordinary_polygon, detail::hostile_numbers<24>, detail::clip_calls<false>,
              detail::always},
-    Workload{"to_window", 8, detail::ordinary_polygon, detail::any_numbers<24>, detail::to_window_calls,
+    Workload{"to_window", 8, detail::ordinary_polygon, detail::hostile_numbers<24>, detail::to_window_calls,
              detail::always},
     Workload{"inverse", 0, detail::ordinary_matrix, detail::hostile_matrix, detail::inverse_calls, detail::always},
     Workload{"inverse_error_bound", 0, detail::ordinary_matrix, detail::hostile_matrix, detail::inverse_bound_calls,
@@ -1091,8 +1117,10 @@ inline const std::array workloads{
              detail::always},
     Workload{"eye_linear", 0, detail::ordinary_matrix, detail::hostile_matrix, detail::composed_calls<false>,
              detail::always},
-    Workload{"scale_bias", 0, detail::ordinary_strq, detail::any_numbers<4>, detail::scale_bias_calls, detail::always},
-    Workload{"to_texture", 4, detail::ordinary_strq, detail::any_numbers<4>, detail::to_texture_calls, detail::always},
+    Workload{"scale_bias", 0, detail::ordinary_strq, detail::hostile_numbers<4>, detail::scale_bias_calls,
+             detail::always},
+    Workload{"to_texture", 4, detail::ordinary_strq, detail::hostile_numbers<4>, detail::to_texture_calls,
+             detail::always},
     Workload{"product of transforms", 0, detail::ordinary_matrix, detail::hostile_matrix, detail::product_calls,
              detail::always},
     Workload{"Transform::rounded", 0, detail::ordinary_matrix, detail::hostile_matrix, detail::rounded_calls,
