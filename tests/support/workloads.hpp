@@ -656,7 +656,8 @@ Calls coverage_calls(const Numbers& n) {
     }
     for (std::size_t i = body_pattern; i < Count; ++i) all.push_back(all[i - body_pattern]);
     const texgen::LitVolume<texgen::World> volume(texgen::WorldTexgen(reader.dmat4()), texgen::whole_texture());
-    return calls_of([all, volume, out = std::vector<texgen::Coverage>(Count)]() mutable {
+    std::vector<texgen::Coverage> out(Count);
+    return calls_of([=]() mutable {
         if constexpr (Count == 1)
             keep(volume.coverage(all[0]));
         else
@@ -891,7 +892,7 @@ Calls lens_calls(const Numbers& n) {
     const texgen::PerspectiveLens perspective{texgen::radians(a.x), a.y, a.z, z_far};
     const texgen::FrustumLens frustum{sides.x, sides.y, sides.z, sides.w, a.z, z_far};
     const texgen::OrthographicLens orthographic{sides.x, sides.y, sides.z, sides.w, a.z, z_far};
-    return calls_of([aim, perspective, frustum, orthographic] {
+    return calls_of([=] {
         if constexpr (Kind == 0) keep(texgen::perspective(perspective, texgen::opengl));
         if constexpr (Kind == 1) keep(texgen::frustum(frustum, texgen::opengl));
         if constexpr (Kind == 2) keep(texgen::orthographic(orthographic, texgen::opengl));
@@ -996,7 +997,7 @@ Calls diagnose_calls(const Numbers& n) {
     setup.projector = projector;
     setup.world_from_space = texgen::ModelMatrix(model);
     setup.texgen = texgen::ObjectTexgen(texgen);
-    return calls_of([projector, setup] {
+    return calls_of([=] {
         if constexpr (What == Diagnosed::projector) keep(texgen::diagnose(projector));
         if constexpr (What == Diagnosed::setup) keep(texgen::diagnose(setup));
         if constexpr (What == Diagnosed::texgen) keep(texgen::diagnose(*setup.texgen));
