@@ -231,7 +231,8 @@ private:
 
     std::optional<Footprint> footprint_at(std::int64_t x, std::int64_t y) const noexcept {
         const detail::TrianglePlanes& planes = triangle_.planes_;
-        const detail::Bounded bounded = planes.at(triangle_.q_, x, y);
+        detail::Bounded bounded = planes.at(triangle_.q_, x, y);
+        if (!(std::fabs(bounded.value) > 0x1p24 * bounded.error)) bounded = detail::close_to(planes, 3, x, y);
         const auto exact_q = [&] { return planes.exactly_at(3, x, y); };
         if (detail::certain_sign(bounded, exact_q) <= 0) return std::nullopt;
         const double q = bounded.value > 0x1p24 * bounded.error ? bounded.value : planes.closely_at(3, x, y);

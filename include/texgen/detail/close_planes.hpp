@@ -128,4 +128,13 @@ private:
     double magnitude_[3];
 };
 
+// F at one fragment.
+inline Bounded close_to(const TrianglePlanes& planes, glm::length_t coordinate, std::int64_t x,
+                        std::int64_t y) noexcept {
+    const CloseRamp ramp = ClosePlanes(planes, {x, y, 1, 1}).ramp(coordinate);
+    const double value = ramp.base.high + ramp.base.low;
+    if (4.0 * ramp.error < ramp.grain && std::fabs(value) < 0.5 * ramp.grain) return {0.0, 0.0};
+    return {value, ramp.error + 0x1p-52 * std::fabs(value)};
+}
+
 }  // namespace texgen::detail
