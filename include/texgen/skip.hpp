@@ -216,7 +216,7 @@ inline Coverage coverage_of(const LitForms& forms, const Sphere& sphere) noexcep
     const Point centre{widened(sphere.centre.x), widened(sphere.centre.y), widened(sphere.centre.z)};
     const double radius = widened(sphere.radius);
     const double size = std::fabs(centre[0]) + std::fabs(centre[1]) + std::fabs(centre[2]);
-    if (!(size >= 0.0 && (radius >= 0.0 || radius < 0.0))) return Coverage::partial;  // a NaN
+    if (!(size >= 0.0) || std::isnan(radius)) return Coverage::partial;  // a NaN
     if (radius < 0.0 || forms.light_nothing()) return Coverage::outside;
     if (!forms.are_usable() || !is_finite(size + radius)) return Coverage::partial;
     const auto dot = [](const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
