@@ -1,6 +1,7 @@
 cmake_minimum_required(VERSION 3.25)
 
-# Compiles PROGRAM by COMPILER with FLAGS, in DIRECTORY, and runs it, by RUNNER where that is said; it must return 0.
+# Compiles PROGRAM by COMPILER with FLAGS, in DIRECTORY, and runs it, by RUNNER (a command) where that is said; it must
+# return 0. It is skipped where a tool, or one of the files NEEDS, is not there.
 # With REFUSED_WITH it must not compile, with a message that matches. What it prints goes to PRINT_TO, or must be in PRINTS.
 # With ASSEMBLY_WITHOUT it is not run, but its assembly must not match.
 function(skip reason)
@@ -12,14 +13,22 @@ if(NOT compiler)
     skip("no ${COMPILER}")
     return()
 endif()
-set(runner "")
-if(RUNNER)
-    find_program(found_runner NAMES ${RUNNER}64 ${RUNNER} ${RUNNER}-static PATHS /usr/lib/wine)
-    if(NOT found_runner)
-        skip("no ${RUNNER}")
+string(REPLACE "|" ";" needs "${NEEDS}")
+foreach(file IN LISTS needs)
+    if(NOT EXISTS ${file})
+        skip("no ${file}")
         return()
     endif()
-    set(runner ${found_runner})
+endforeach()
+separate_arguments(runner UNIX_COMMAND "${RUNNER}")
+if(runner)
+    list(POP_FRONT runner name)
+    find_program(found_runner NAMES ${name}64 ${name} ${name}-static PATHS /usr/lib/wine)
+    if(NOT found_runner)
+        skip("no ${name}")
+        return()
+    endif()
+    list(PREPEND runner ${found_runner})
     set(ENV{WINEPREFIX} ${DIRECTORY}/wine)
     set(ENV{WINEDEBUG} -all)
 endif()
