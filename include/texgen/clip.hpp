@@ -4,6 +4,8 @@
 // window, so polygons are cut at the near plane while they are homogeneous, and only then divided; likewise with what is
 // behind the projector or outside its slide. The slide's planes, for hardware that clips, stand here too.
 
+#include "detail/language.hpp"
+
 #include <array>
 #include <cmath>
 #include <cstddef>

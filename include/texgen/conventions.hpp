@@ -2,6 +2,8 @@
 
 // Floor 0: what the numbers mean. Every convention is said once, here, and carried by the values that depend on it.
 
+#include "detail/language.hpp"
+
 #include <glm/vec2.hpp>
 
 // 0.1.0: 10000 major + 100 minor + patch.

@@ -3,6 +3,8 @@
 // Floor 7: what is wrong with a projector, a texgen matrix or a whole set-up, in words. It looks for marks that no valid
 // set-up can carry, so it keeps silent where it cannot know: the more it is told, the more it sees.
 
+#include "detail/language.hpp"
+
 #include <array>
 #include <cmath>
 #include <cstddef>

@@ -4,6 +4,8 @@
 // A view is made of the strides that the Eigen object reports; what has no such view (an expression, another scalar, a
 // temporary, a stride where none can be) does not compile, so nothing is copied and nothing is read at a wrong place.
 
+#include "detail/language.hpp"
+
 #include <concepts>
 #include <cstddef>
 #include <optional>

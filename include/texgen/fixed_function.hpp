@@ -3,6 +3,8 @@
 // Floor 3: the texture coordinate generation of one OpenGL texture unit, as the fixed function has it: per coordinate an
 // enable, a mode, an object plane and an eye plane; and the texture matrix behind them.
 
+#include "detail/language.hpp"
+
 #include <array>
 #include <cmath>
 #include <cstddef>

@@ -9,7 +9,8 @@
 //   det J = D / Q^3, D the determinant of the coefficients of S, T, Q.
 // The first column of J Q^2 is affine in y and does not depend on x, the second is affine in x and does not depend on y.
 
-#include <bit>
+#include "detail/language.hpp"
+
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -358,7 +359,7 @@ private:
     static float factor_of(double factor) noexcept { return static_cast<float>(factor); }
 
     static int exponent_of(double power_of_two) noexcept {
-        return static_cast<int>(std::bit_cast<std::uint64_t>(power_of_two) >> 52) - 1023;
+        return static_cast<int>(bit_cast<std::uint64_t>(power_of_two) >> 52) - 1023;
     }
 
     // Whether columns of J Q^2 and Q in float are within 2^-19 of themselves, which leaves level, anisotropy and major within

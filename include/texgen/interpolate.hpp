@@ -17,6 +17,8 @@
 // parts) is decided to twice the precision of double, in vectors (divide_closely()); and what that leaves, fragment by
 // fragment, exactly.
 
+#include "detail/language.hpp"
+
 #include <bit>
 #include <cmath>
 #include <cstddef>

@@ -4,6 +4,8 @@
 // that glTexGen stores. All are composed in double, nearest spaces first, and rounded once by whoever needs floats: far
 // from the origin the large translations of V_p and of M (or V_e^-1) cancel in one another before anything else.
 
+#include "detail/language.hpp"
+
 #include <array>
 #include <optional>
 

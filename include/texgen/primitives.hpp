@@ -2,6 +2,8 @@
 
 // Floor 5: the one input and output of every interpolator.
 
+#include "detail/language.hpp"
+
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 

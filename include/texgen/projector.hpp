@@ -3,6 +3,8 @@
 // Floor 2: the projector P_p V_p. A right-handed eye space that looks down -z, as OpenGL's; the conventions decide the
 // rest: where near and far land, and which way y points in NDC.
 
+#include "detail/language.hpp"
+
 #include <cmath>
 #include <optional>
 

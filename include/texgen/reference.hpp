@@ -5,6 +5,8 @@
 //
 // A Scalar needs an exact constructor from float, + - * / and comparisons, and Eigen::NumTraits.
 
+#include "detail/language.hpp"
+
 #include <cmath>
 #include <cstddef>
 #include <span>

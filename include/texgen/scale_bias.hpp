@@ -3,6 +3,8 @@
 // Floor 2: the scale-bias S of Everitt (3) and (4), which takes the projector's clip space to texture coordinates, and
 // the same remap without a matrix.
 
+#include "detail/language.hpp"
+
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
 

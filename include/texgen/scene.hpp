@@ -3,6 +3,8 @@
 // Floor 8: many projectors and many objects. From frame to frame a Scene says which object needs anything of which
 // projector, and has the texgen matrices for those alone, made anew only when a matrix in them changed.
 
+#include "detail/language.hpp"
+
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>

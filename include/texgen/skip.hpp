@@ -2,6 +2,8 @@
 
 // Floor 6: what a primitive, a batch or a box needs. Work that is not needed is not done.
 
+#include "detail/language.hpp"
+
 #include <array>
 #include <cmath>
 #include <cstddef>

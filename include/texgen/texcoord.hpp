@@ -3,6 +3,8 @@
 // Floor 4: texture coordinates of points. generate() gives the homogeneous (s, t, r, q) that a fragment shader divides (see
 // README.md, "In a shader"); project() divides them here, and says which points the slide falls on.
 
+#include "detail/language.hpp"
+
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

@@ -3,6 +3,8 @@
 // The umbrella: everything but reference.hpp and eigen.hpp, which need Eigen, and scene.hpp and diagnose.hpp, which few
 // files need: what the umbrella costs every file to compile stays below 2.75 times GLM's own headers.
 
+#include "detail/language.hpp"
+
 #include "clip.hpp"
 #include "conventions.hpp"
 #include "fixed_function.hpp"

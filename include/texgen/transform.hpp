@@ -2,6 +2,8 @@
 
 // Floor 1: a 4x4 matrix that knows the two spaces it joins.
 
+#include "detail/language.hpp"
+
 #include <optional>
 
 #include <glm/mat4x4.hpp>

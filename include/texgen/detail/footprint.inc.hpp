@@ -103,7 +103,7 @@ TEXGEN_INLINE WideFloats inverse_square_root(const WideFloats& x) noexcept {
 // all the same); the height if there is none.
 template <bool InFloat, bool Shape>
 TEXGEN_INLINE int filter_rows(const FootprintJob& job, int first) noexcept {
-    constexpr int smallest = std::bit_cast<int>(FootprintJob::smallest_square);
+    constexpr int smallest = bit_cast<int>(FootprintJob::smallest_square);
     const int count = job.width < wide_lanes ? job.width : wide_lanes;
     const WideFloats lane = indices<WideFloats>();
     for (int y = first; y < job.height; ++y) {

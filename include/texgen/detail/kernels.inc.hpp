@@ -519,9 +519,9 @@ struct PointExtent {
     double x, y, z;
 
     TEXGEN_INLINE PointExtent(const WideWords& x_bits, const WideWords& y_bits, const WideWords& z_bits) noexcept
-        : x(static_cast<double>(std::bit_cast<float>(largest_lane(x_bits)))),
-          y(static_cast<double>(std::bit_cast<float>(largest_lane(y_bits)))),
-          z(static_cast<double>(std::bit_cast<float>(largest_lane(z_bits)))) {}
+        : x(static_cast<double>(bit_cast<float>(largest_lane(x_bits)))),
+          y(static_cast<double>(bit_cast<float>(largest_lane(y_bits)))),
+          z(static_cast<double>(bit_cast<float>(largest_lane(z_bits)))) {}
 
     TEXGEN_INLINE double magnitude_of(const PointForm& form) const noexcept {
         return std::fabs(form.x) * x + std::fabs(form.y) * y + std::fabs(form.z) * z + std::fabs(form.w);
@@ -670,10 +670,10 @@ TEXGEN_INLINE std::size_t divide_points_within_of(const PointJob& job, std::size
         // The bits of positive floats have their order; those of a negative one, and of -0, are below them all. A q that
         // overflowed in float would go unnoticed, not being the least; its terms tell.
         const int least_bits = ~largest_lane(~q_least);
-        const auto least = static_cast<double>(std::bit_cast<float>(least_bits));
+        const auto least = static_cast<double>(bit_cast<float>(least_bits));
         bool certified = true;
         for (std::size_t k = 0; k < Numerators; ++k) {
-            const auto bound = static_cast<double>(std::bit_cast<float>(largest_lane(largest[k])));
+            const auto bound = static_cast<double>(bit_cast<float>(largest_lane(largest[k])));
             const double error =
                 division.error(extent.magnitude_of(job.numerator[k]), extent.magnitude_of(job.q), size, least, bound);
             certified = certified && error <= job.tolerance;

@@ -11,7 +11,6 @@
 //   TEXGEN_SEPARATE_KERNELS  the kernels are compiled in one file for all others of the same flags: in the file that
 //                            defines TEXGEN_DEFINE_KERNELS too, before it includes texgen
 
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -20,6 +19,7 @@
 #include <utility>
 
 #include "box_kernels.hpp"
+#include "language.hpp"
 #include "rounding.hpp"
 
 namespace texgen::detail {

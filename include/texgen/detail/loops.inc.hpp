@@ -85,7 +85,7 @@ TEXGEN_INLINE Floats to_floats(const Doubles& values) noexcept {
 }
 
 TEXGEN_INLINE Words bits(const Floats& values) noexcept {
-    return Words::of([&](int i) { return std::bit_cast<int>(values.lane[i]); });
+    return Words::of([&](int i) { return bit_cast<int>(values.lane[i]); });
 }
 
 TEXGEN_INLINE Doubles to_doubles(const Floats& values) noexcept {
@@ -126,13 +126,13 @@ TEXGEN_INLINE Doubles power_of_two_below(const Doubles& a) noexcept {
 }
 
 TEXGEN_INLINE WideWords magnitude_bits(const WideFloats& a) noexcept {
-    return WideWords::of([&](int i) { return std::bit_cast<int>(a.lane[i]) & 0x7fffffff; });
+    return WideWords::of([&](int i) { return bit_cast<int>(a.lane[i]) & 0x7fffffff; });
 }
 TEXGEN_INLINE WideWords signed_bits(const WideFloats& a) noexcept {
-    return WideWords::of([&](int i) { return std::bit_cast<int>(a.lane[i]); });
+    return WideWords::of([&](int i) { return bit_cast<int>(a.lane[i]); });
 }
 TEXGEN_INLINE WideFloats from_bits(const WideWords& words) noexcept {
-    return WideFloats::of([&](int i) { return std::bit_cast<float>(words.lane[i]); });
+    return WideFloats::of([&](int i) { return bit_cast<float>(words.lane[i]); });
 }
 TEXGEN_INLINE WideFloats to_numbers(const WideWords& words) noexcept {
     return WideFloats::of([&](int i) { return static_cast<float>(words.lane[i]); });

@@ -4,7 +4,6 @@
 // none carries.
 
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -16,6 +15,7 @@
 #include "../conventions.hpp"
 #include "composition.hpp"
 #include "inverse.hpp"
+#include "language.hpp"
 #include "rounding.hpp"
 
 namespace texgen::detail {
@@ -24,7 +24,7 @@ namespace texgen::detail {
 // the round numbers of a scene that is aligned with them.
 inline bool is_in_float(const glm::dmat4& m) noexcept {
     const auto has_bits = [&](glm::length_t column, glm::length_t row, std::uint64_t mask) {
-        return (std::bit_cast<std::uint64_t>(m[column][row]) & mask) != 0;
+        return (bit_cast<std::uint64_t>(m[column][row]) & mask) != 0;
     };
     bool is_rounded = false;
     for (glm::length_t column = 0; column < 4; ++column) {

@@ -4,7 +4,6 @@
 // the middle of two floats, the exact sums do. So the exact tier means the nearest float, and its bits depend on
 // neither compiler, flags, instruction set nor place in the batch.
 
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -12,6 +11,7 @@
 
 #include "../conventions.hpp"
 #include "expansion.hpp"
+#include "language.hpp"
 #include "rounding.hpp"
 
 namespace texgen::detail {
@@ -19,8 +19,8 @@ namespace texgen::detail {
 // Whether every real number within `error` of `value` rounds to one float; then that float is the nearest of them all.
 // Source: Ziv, Fast evaluation of elementary mathematical functions with correctly rounded last bit, ACM TOMS 17 (1991).
 inline bool rounds_alone(double value, double error) noexcept {
-    const auto low = std::bit_cast<std::uint32_t>(static_cast<float>(value - error));
-    const auto high = std::bit_cast<std::uint32_t>(static_cast<float>(value + error));
+    const auto low = bit_cast<std::uint32_t>(static_cast<float>(value - error));
+    const auto high = bit_cast<std::uint32_t>(static_cast<float>(value + error));
     return low == high;
 }
 
@@ -77,10 +77,10 @@ inline bool is_inside(float s, float t, const float (&min)[2], const float (&max
 
 // The float before a number other than -infinity, in a few instructions and without arithmetic.
 inline float float_before(float value) noexcept {
-    const auto bits = std::bit_cast<std::uint32_t>(value);
+    const auto bits = bit_cast<std::uint32_t>(value);
     constexpr std::uint32_t sign = 0x80000000u;
-    if ((bits & ~sign) == 0) return std::bit_cast<float>(sign | 1u);
-    return std::bit_cast<float>((bits & sign) != 0 ? bits + 1 : bits - 1);
+    if ((bits & ~sign) == 0) return bit_cast<float>(sign | 1u);
+    return bit_cast<float>((bits & sign) != 0 ? bits + 1 : bits - 1);
 }
 
 // The least float that is not below a bound.

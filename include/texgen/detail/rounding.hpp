@@ -11,10 +11,11 @@
 //   subnormal numbers taken as 0      (FTZ and DAZ on x86, FZ on Arm) a float below 2^-126 counts as 0, and is written as
 //                                     0; everything else has the same bits
 
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+
+#include "language.hpp"
 
 // A compiler that may reorder sums takes two_sum() for a and 0, and a reciprocal for a division: no bound would hold.
 #if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || \
@@ -45,8 +46,8 @@ constexpr double larger_or_nan(double a, double b) noexcept { return a > b || !(
 
 // A power of two within a factor 2 of 1 / value, for a value that is normal and below 2^1022.
 inline double reciprocal_power_of_two(double value) noexcept {
-    const std::uint64_t biased_exponent = std::bit_cast<std::uint64_t>(value) >> 52 & 0x7ff;
-    return std::bit_cast<double>((2046 - biased_exponent) << 52 & 0x7ff0000000000000);
+    const std::uint64_t biased_exponent = bit_cast<std::uint64_t>(value) >> 52 & 0x7ff;
+    return bit_cast<double>((2046 - biased_exponent) << 52 & 0x7ff0000000000000);
 }
 
 // The last bit of a number that is set; infinity for 0.
@@ -135,10 +136,10 @@ inline DoubleDouble two_sum_in_any_direction(double a, double b) noexcept {
         b = smaller_one;
     }
     if (b == 0.0 || !(std::fabs(a) < 0x1p1022)) return {a + b, 0.0};
-    const auto is_odd = [](double value) { return (std::bit_cast<std::uint64_t>(value) & 1) != 0; };
+    const auto is_odd = [](double value) { return (bit_cast<std::uint64_t>(value) & 1) != 0; };
     const auto neighbour = [](double value, double towards) {
-        const auto bits = std::bit_cast<std::uint64_t>(value);
-        return std::bit_cast<double>((value > 0.0) == (towards > 0.0) ? bits + 1 : bits - 1);
+        const auto bits = bit_cast<std::uint64_t>(value);
+        return bit_cast<double>((value > 0.0) == (towards > 0.0) ? bits + 1 : bits - 1);
     };
     const double gap = neighbour(a, b) - a;
     if (2.0 * std::fabs(b) < std::fabs(gap)) return {a, b};

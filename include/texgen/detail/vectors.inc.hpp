@@ -141,10 +141,10 @@ TEXGEN_INLINE WideWords inside(const WideFloats& values, float min, float max) n
 }
 
 TEXGEN_INLINE Floats one_where(const Words& mask) noexcept {
-    return __builtin_bit_cast(Floats, mask & std::bit_cast<int>(1.0f));
+    return __builtin_bit_cast(Floats, mask & bit_cast<int>(1.0f));
 }
 TEXGEN_INLINE WideFloats one_where(const WideWords& mask) noexcept {
-    return __builtin_bit_cast(WideFloats, mask & std::bit_cast<int>(1.0f));
+    return __builtin_bit_cast(WideFloats, mask & bit_cast<int>(1.0f));
 }
 
 // Element 3 i + Component, for every lane i, of the three vectors that follow one another at `from`.
