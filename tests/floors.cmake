@@ -91,7 +91,7 @@ foreach(header IN LISTS headers)
     # Extensions of the language belong into the vectors, and into lanes.hpp behind its plain loops.
     file(READ ${file} text)
     if(header STREQUAL "detail/lanes.hpp")
-        string(REGEX REPLACE "\n#else\n.*" "" text "${text}")
+        string(REGEX REPLACE "__has_builtin\\([^)]*\\)|\n#else\n.*" "" text "${text}")
     endif()
     string(REGEX REPLACE "//[^\n]*" "" text "${text}")
     if(header STREQUAL "detail/language.hpp")

@@ -122,11 +122,10 @@ public:
 
     // The pairs of one object: found by bisection.
     std::span<const LitPair> pairs_of(std::uint32_t object) const noexcept {
-        const auto first = std::partition_point(pairs_.begin(), pairs_.end(),
-                                                [=](const LitPair& pair) { return pair.object < object; });
-        const auto last =
-            std::partition_point(first, pairs_.end(), [=](const LitPair& pair) { return pair.object == object; });
-        return {first, last};
+        const LitPair* const end = pairs_.data() + pairs_.size();
+        const LitPair* const first =
+            std::partition_point(pairs_.data(), end, [=](const LitPair& pair) { return pair.object < object; });
+        return {first, std::partition_point(first, end, [=](const LitPair& pair) { return pair.object == object; })};
     }
 
     // T_o of the pairs, each at its own place: those that no pair names are of no meaning. A pair keeps its place until it

@@ -5,10 +5,10 @@
 // middle of two floats; small, so that q is 0 now and then.
 
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <cstring>
 
 #include <texgen/clip.hpp>
 #include <texgen/interpolate.hpp>
@@ -49,7 +49,8 @@ private:
 class Digest {
 public:
     void add(float value) {
-        const auto bits = std::bit_cast<std::uint32_t>(value);
+        std::uint32_t bits;
+        std::memcpy(&bits, &value, sizeof bits);
         for (int shift = 0; shift < 32; shift += 8) value_ = (value_ ^ (bits >> shift & 0xff)) * 0x100000001b3u;
     }
     std::uint64_t value() const { return value_; }

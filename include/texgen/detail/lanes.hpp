@@ -2,7 +2,7 @@
 
 // Which vectors the inner loops run on. The only file with #if on instruction sets or compilers.
 //
-// With GCC or Clang the kernels are written on the vectors of the language, and compiled once for the instruction set of
+// With GCC 12 or Clang the kernels are written on the vectors of the language, and compiled once for the instruction set of
 // the flags and, on x86-64, once more for AVX2 and for AVX-512; the machine decides which runs. A table of kernels is
 // reached by chosen<Table>(), and compiled only in files that call something which needs it: so all ways there are
 // templates. Macros of the user:
@@ -207,7 +207,13 @@ struct FootprintKernels {
 
 // TEXGEN_BUILD names what the flags decide. Every function that reaches the kernels stands in an inline namespace of that
 // name, so that translation units with different flags link, each with its own kernels.
-#if defined(TEXGEN_SCALAR) || !(defined(__GNUC__) || defined(__clang__))
+#if !defined(TEXGEN_SCALAR) && (defined(__GNUC__) || defined(__clang__)) && defined(__has_builtin)
+#if __has_builtin(__builtin_shufflevector)
+#define TEXGEN_HAS_VECTORS
+#endif
+#endif
+
+#ifndef TEXGEN_HAS_VECTORS
 
 #define TEXGEN_BUILD build_scalar
 #define TEXGEN_INLINE inline
@@ -313,8 +319,9 @@ TEXGEN_INLINE Pair magnitude(const Pair& a) noexcept { return larger(a, -a); }
 #undef TEXGEN_ISA
 #undef TEXGEN_LANE_BYTES
 
+// The compilers of CUDA and HIP read a file for the device too, as if its processor were this one.
 #if defined(__x86_64__) && !defined(TEXGEN_NO_DISPATCH) && !defined(__AVX512F__) && \
-    !defined(TEXGEN_STACK_HOLDS_NARROW_VECTORS)
+    !defined(TEXGEN_STACK_HOLDS_NARROW_VECTORS) && !defined(__CUDACC__) && !defined(__HIP__)
 
 #define TEXGEN_BUILD TEXGEN_FLAGS(build_dispatched_)
 
@@ -400,6 +407,7 @@ const Table& chosen() noexcept {
 #undef TEXGEN_INLINE
 
 #endif
+#undef TEXGEN_HAS_VECTORS
 
 #ifdef TEXGEN_SEPARATE_KERNELS
 #ifdef TEXGEN_DEFINE_KERNELS
