@@ -39,7 +39,7 @@ struct Viewport {
 namespace detail {
 
 inline bool is_finite(const glm::vec4& v) noexcept {
-    constexpr float largest = std::numeric_limits<float>::max();
+    constexpr float largest = (std::numeric_limits<float>::max)();
     return std::fabs(v.x) <= largest && std::fabs(v.y) <= largest && std::fabs(v.z) <= largest &&
            std::fabs(v.w) <= largest;
 }
@@ -323,8 +323,8 @@ std::array<glm::vec4, 5> clip_planes(const Transform<Texture, Space>& texgen, Te
         result[0][column] = static_cast<float>(from.w);
         for (glm::length_t k = 0; k < 2; ++k) {
             const auto i = static_cast<std::size_t>(1 + 2 * k);
-            result[i][column] = static_cast<float>(std::fma(-region.min()[k], from.w, from[k]));
-            result[i + 1][column] = static_cast<float>(std::fma(region.max()[k], from.w, -from[k]));
+            result[i][column] = static_cast<float>(std::fma(-(region.min)()[k], from.w, from[k]));
+            result[i + 1][column] = static_cast<float>(std::fma((region.max)()[k], from.w, -from[k]));
         }
     }
     return result;
@@ -357,7 +357,7 @@ inline std::size_t clip_to_slide(std::span<const ClipVertex> polygon, TextureReg
                                  std::span<ClipVertex> out) noexcept {
     TEXGEN_ASSERT(out.size() >= polygon.size() + 5);
     if (out.size() < polygon.size() + 5 || polygon.size() < 3) return 0;
-    if (!(region.min().x <= region.max().x && region.min().y <= region.max().y)) return 0;
+    if (!((region.min)().x <= (region.max)().x && (region.min)().y <= (region.max)().y)) return 0;
     for (std::size_t i = 0; i < polygon.size(); ++i) {
         const glm::vec4& strq = polygon[i].strq;
         if (!detail::is_finite(glm::vec4(strq.x, strq.y, 0.0f, strq.w))) return 0;
@@ -366,8 +366,8 @@ inline std::size_t clip_to_slide(std::span<const ClipVertex> polygon, TextureReg
 
     // q >= 0 comes first, so that what satisfies a side is a cone. Then q = 0 is left only where s = t = 0.
     using Side = detail::SlideDistance;
-    const Side sides[] = {Side::in_front(), Side::at_least(0, region.min().x), Side::at_most(0, region.max().x),
-                          Side::at_least(1, region.min().y), Side::at_most(1, region.max().y)};
+    const Side sides[] = {Side::in_front(), Side::at_least(0, (region.min)().x), Side::at_most(0, (region.max)().x),
+                          Side::at_least(1, (region.min)().y), Side::at_most(1, (region.max)().y)};
     std::size_t count = polygon.size();
     for (const Side& side : sides) {
         count = detail::cut_edges(

@@ -51,11 +51,12 @@ enum class DepthMapping { unit, ndc };
 
 // The closed rectangle of texture coordinates that the slide covers. min() is the corner that TextureOrigin addresses.
 // A rectangle with min() > max() in a component, or with a NaN, contains no point, so nothing is lit in it.
-// Its functions are constexpr where GLM's are: not under GLM_FORCE_INTRINSICS.
+// Its functions are constexpr where GLM's are: not under GLM_FORCE_INTRINSICS. The parentheses about the names of two of them
+// keep off the macros of <windows.h>; where those are, a call is (region.min)().
 class TextureRegion {
 public:
-    constexpr const glm::dvec2& min() const noexcept { return min_; }
-    constexpr const glm::dvec2& max() const noexcept { return max_; }
+    constexpr const glm::dvec2&(min)() const noexcept { return min_; }
+    constexpr const glm::dvec2&(max)() const noexcept { return max_; }
 
     friend constexpr bool operator==(const TextureRegion& a, const TextureRegion& b) noexcept {
         return a.min_.x == b.min_.x && a.min_.y == b.min_.y && a.max_.x == b.max_.x && a.max_.y == b.max_.y;

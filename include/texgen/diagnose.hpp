@@ -193,9 +193,11 @@ struct Picture {
     TextureRegion region = whole_texture();
     glm::dvec2 texels_per_unit{};
 
-    bool is_empty() const noexcept { return region.min().x > region.max().x || region.min().y > region.max().y; }
+    bool is_empty() const noexcept {
+        return (region.min)().x > (region.max)().x || (region.min)().y > (region.max)().y;
+    }
     bool is_measured() const noexcept { return texels_per_unit.x > 0.0 && texels_per_unit.y > 0.0; }
-    glm::dvec2 extent() const noexcept { return region.max() - region.min(); }
+    glm::dvec2 extent() const noexcept { return (region.max)() - (region.min)(); }
 
     // Of a picture of 4096 texels where the texture's size is not known.
     glm::dvec2 texels() const noexcept { return is_measured() ? texels_per_unit : 4096.0 / extent(); }
@@ -336,7 +338,7 @@ public:
         behind_ = behind_ && q.value <= -q.error;
         for (std::size_t side = 0; side < 4; ++side) {
             const Bounded& u = side < 2 ? s : t;
-            const double end = at(side % 2 == 0 ? picture_.region.min() : picture_.region.max(), side / 2);
+            const double end = at(side % 2 == 0 ? (picture_.region.min)() : (picture_.region.max)(), side / 2);
             const double distance = side % 2 == 0 ? u.value - end * q.value : end * q.value - u.value;
             const double error =
                 u.error + std::fabs(end) * q.error + gamma(3) * (std::fabs(u.value) + std::fabs(end * q.value));
@@ -389,8 +391,8 @@ private:
     static double at(const glm::dvec2& v, std::size_t component) noexcept { return component == 0 ? v.x : v.y; }
 
     bool is_lit(const glm::dvec2& st) const noexcept {
-        return st.x >= picture_.region.min().x && st.x <= picture_.region.max().x && st.y >= picture_.region.min().y &&
-               st.y <= picture_.region.max().y;
+        return st.x >= (picture_.region.min)().x && st.x <= (picture_.region.max)().x &&
+               st.y >= (picture_.region.min)().y && st.y <= (picture_.region.max)().y;
     }
 
     void raise(double error, double texels) noexcept { error_in_texels_ = larger(error * texels, error_in_texels_); }
@@ -437,7 +439,7 @@ inline bool are_numbers(const SetupMatrices& setup) noexcept {
         return setup.projector != nullptr ? is_finite(side.x) && is_finite(side.y) : !is_nan(side.x) && !is_nan(side.y);
     };
     const auto is_given_finite = [](const std::optional<double>& value) { return !value || is_finite(*value); };
-    return is_side(region.min()) && is_side(region.max()) && is_finite(setup.picture.texels_per_unit.x) &&
+    return is_side((region.min)()) && is_side((region.max)()) && is_finite(setup.picture.texels_per_unit.x) &&
            is_finite(setup.picture.texels_per_unit.y) && is_given_finite(lens.aspect) && is_given_finite(lens.z_near) &&
            !(lens.z_far && is_nan(*lens.z_far)) && !(lens.fovy && !is_finite(lens.fovy->in_radians()));
 }

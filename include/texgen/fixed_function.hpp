@@ -227,7 +227,7 @@ inline bool TexGenUnit::set_eye_plane(Coordinate coordinate, glm::vec4 plane, co
     if (!inverse.regular()) return false;
     const glm::vec4 stored(inverse.solve_row(glm::dvec4(plane)));
     for (glm::length_t i = 0; i < 4; ++i)
-        if (!(std::fabs(stored[i]) <= std::numeric_limits<float>::max())) return false;
+        if (!(std::fabs(stored[i]) <= (std::numeric_limits<float>::max)())) return false;
     state(coordinate).eye_plane = stored;
     return true;
 }
@@ -242,7 +242,7 @@ inline double TexGenUnit::cancelling_dot(const glm::vec4& a, const glm::vec4& b)
         lost += next.low;
     }
     // What is lost of an infinity is no number.
-    return std::fabs(sum) <= std::numeric_limits<double>::max() ? sum + lost : sum;
+    return std::fabs(sum) <= (std::numeric_limits<double>::max)() ? sum + lost : sum;
 }
 
 // v / |v|, and zero for zero. The power of two keeps the squares inside the range of double.
@@ -303,7 +303,7 @@ inline glm::vec4 TexGenUnit::generate(const FixedFunctionVertex& vertex, const E
     if (eye_space.wants_normal()) {
         normal = eye_space.normal(vertex.normal);
         const double size = largest(normal);
-        if (size > 1.0 && size <= std::numeric_limits<double>::max()) exponent = std::ilogb(size);
+        if (size > 1.0 && size <= (std::numeric_limits<double>::max)()) exponent = std::ilogb(size);
         const glm::dvec3 n = times_power_of_two(normal, -exponent);
         const glm::dvec3 to_vertex = direction(glm::dvec3(eye));
         const double n_dot_u = dot(n, to_vertex);

@@ -40,7 +40,7 @@ struct TexelsPerUnit {
 
 // The same for a region that covers width x height texels.
 constexpr TexelsPerUnit texels_per_unit(const TextureRegion& region, double width, double height) noexcept {
-    return {width / (region.max().x - region.min().x), height / (region.max().y - region.min().y)};
+    return {width / ((region.max)().x - (region.min)().x), height / ((region.max)().y - (region.min)().y)};
 }
 
 // The footprint of one fragment.

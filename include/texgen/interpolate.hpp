@@ -158,8 +158,8 @@ struct Places {
 };
 
 inline Places places_of(const Corners& at, const LitTest& lit, double tolerance) noexcept {
-    const SideOfBound of_min = side_of(at, pair_of(lit.min(0), lit.min(1)), tolerance);
-    const SideOfBound of_max = side_of(at, pair_of(lit.max(0), lit.max(1)), tolerance);
+    const SideOfBound of_min = side_of(at, pair_of(lit.least(0), lit.least(1)), tolerance);
+    const SideOfBound of_max = side_of(at, pair_of(lit.greatest(0), lit.greatest(1)), tolerance);
     const auto place = [&](std::size_t k) {
         if (of_min.all_below[k]) return Place::outside;
         if (of_max.all_above[k]) return Place::outside;

@@ -194,8 +194,8 @@ inline void interpolate(const Triangle& triangle, TextureRegion region, Fragment
             const auto divided = [&](int i) { return in_front ? static_cast<float>(strq[i] / strq[3]) : 0.0f; };
             const float s = divided(0);
             const float t = divided(1);
-            const bool lit =
-                in_front && s >= region.min().x && s <= region.max().x && t >= region.min().y && t <= region.max().y;
+            const bool lit = in_front && s >= (region.min)().x && s <= (region.max)().x && t >= (region.min)().y &&
+                             t <= (region.max)().y;
             const std::size_t fragment = row * width + column;
             if (!out.s.empty()) out.s[fragment] = s;
             if (!out.t.empty()) out.t[fragment] = t;

@@ -33,10 +33,10 @@ constexpr TextureRemap texture_remap(Conventions conventions, const TextureRegio
                                      DepthMapping depth) noexcept {
     // t grows with the clip y where the corner that (s, t) = (0, 0) addresses is where clip y is -w.
     const bool t_follows_y = (conventions.ndc_y == NdcY::up) == (conventions.origin == TextureOrigin::bottom_left);
-    const RemapEnds up{region.min().y, region.max().y};
-    const RemapEnds down{region.max().y, region.min().y};
+    const RemapEnds up{(region.min)().y, (region.max)().y};
+    const RemapEnds down{(region.max)().y, (region.min)().y};
     const bool halve_depth = depth == DepthMapping::unit && conventions.depth == DepthRange::negative_one_to_one;
-    return {{region.min().x, region.max().x},
+    return {{(region.min)().x, (region.max)().x},
             t_follows_y ? up : down,
             halve_depth ? RemapEnds{0.0, 1.0} : RemapEnds{-1.0, 1.0}};
 }

@@ -78,7 +78,7 @@ public:
 
     SceneWork update(const SceneView& view, const SceneChanges& changes) noexcept {
         SceneWork work;
-        const std::size_t objects = std::min(view.models.size(), view.bounds.size());
+        const std::size_t objects = (std::min)(view.models.size(), view.bounds.size());
         const std::size_t projectors = view.projectors.size();
         TEXGEN_ASSERT(view.models.size() == view.bounds.size());
         TEXGEN_ASSERT(view.regions.empty() || view.regions.size() == projectors);
@@ -159,7 +159,7 @@ private:
             if (count > is_changed_.size()) is_changed_.resize(count, 0);
             changed_.reserve(is_changed_.capacity());
             // New ones first, and in order: they are appended.
-            for (std::size_t i = std::min(count, count_); i < std::max(count, count_); ++i)
+            for (std::size_t i = (std::min)(count, count_); i < (std::max)(count, count_); ++i)
                 add(static_cast<std::uint32_t>(i));
             for (const std::uint32_t i : named) {
                 TEXGEN_ASSERT(i < count || i < count_);
@@ -222,7 +222,7 @@ private:
 
     template <class RegionOf>
     bool is_as_it_was(const SceneView& view, const RegionOf& region_of) const noexcept {
-        for (std::size_t i = 0; i < std::min(view.models.size(), view.bounds.size()); ++i) {
+        for (std::size_t i = 0; i < (std::min)(view.models.size(), view.bounds.size()); ++i) {
             if (objects_.is_changed(i)) continue;
             if (!(tree_[i] == detail::world_bounds(view.models[i].matrix(), view.bounds[i]))) return false;
         }

@@ -85,8 +85,8 @@ public:
                     magnitude[column][row] += std::fabs(texture_from_eye[k][row]) * std::fabs(view[column][k]);
         for (std::size_t k = 0; k < 2; ++k) {
             const auto row = static_cast<glm::length_t>(k);
-            const double min = region.min()[row];
-            const double max = region.max()[row];
+            const double min = (region.min)()[row];
+            const double max = (region.max)()[row];
             set(2 * k, matrix, magnitude, row, 1.0, -min, width_of(RoundedSide::of_min(min)));
             set(2 * k + 1, matrix, magnitude, row, -1.0, max, width_of(RoundedSide::of_max(max)));
         }
@@ -262,7 +262,7 @@ private:
             const auto j = static_cast<std::size_t>(axis);
             return 0.5 * bounds_[object].min[j] + 0.5 * bounds_[object].max[j];
         };
-        glm::dvec3 low(std::numeric_limits<double>::max());
+        glm::dvec3 low((std::numeric_limits<double>::max)());
         glm::dvec3 high(std::numeric_limits<double>::lowest());
         const auto is_somewhere = [this](std::size_t object) {
             return bounds_[object].size >= 0.0 && bounds_[object].size < WorldBounds::unbounded_size;

@@ -33,8 +33,8 @@ public:
     static constexpr std::size_t q = side_count;
 
     LitForms(const glm::dmat4& matrix, const TextureRegion& region) noexcept {
-        const glm::dvec2& min = region.min();
-        const glm::dvec2& max = region.max();
+        const glm::dvec2& min = (region.min)();
+        const glm::dvec2& max = (region.max)();
         is_usable_ = take_matrix(matrix) && take_sides(min, max);
         lights_nothing_ =
             is_finite(matrix) && (!(min.x <= max.x && min.y <= max.y) || (is_usable_ && is_zero(rows_[2])));

@@ -112,14 +112,14 @@ struct RoundedSide {
 class LitTest {
 public:
     explicit LitTest(const TextureRegion& region) noexcept
-        : min_{float_at_least(region.min().x), float_at_least(region.min().y)},
-          max_{-float_at_least(-region.max().x), -float_at_least(-region.max().y)} {}
+        : min_{float_at_least((region.min)().x), float_at_least((region.min)().y)},
+          max_{-float_at_least(-(region.max)().x), -float_at_least(-(region.max)().y)} {}
 
     float operator()(float s, float t) const noexcept { return is_inside(s, t, min_, max_) ? 1.0f : 0.0f; }
 
     // The bounds of s (0) and of t (1).
-    double min(std::size_t coordinate) const noexcept { return static_cast<double>(min_[coordinate]); }
-    double max(std::size_t coordinate) const noexcept { return static_cast<double>(max_[coordinate]); }
+    double least(std::size_t coordinate) const noexcept { return static_cast<double>(min_[coordinate]); }
+    double greatest(std::size_t coordinate) const noexcept { return static_cast<double>(max_[coordinate]); }
 
     // The same as the kernels take them.
     void copy_to(float (&min)[2], float (&max)[2]) const noexcept {

@@ -277,7 +277,7 @@ private:
     }
 
     static bool is_usable(const WindowVertex& vertex) noexcept {
-        constexpr float largest = std::numeric_limits<float>::max();
+        constexpr float largest = (std::numeric_limits<float>::max)();
         const auto is_finite = [](float value) { return std::fabs(value) <= largest; };
         return is_finite(vertex.window.x) && is_finite(vertex.window.y) && vertex.clip_w > 0.0f &&
                vertex.clip_w <= largest && is_finite(vertex.strq.x) && is_finite(vertex.strq.y) &&
