@@ -72,6 +72,9 @@ FILENAME ~ /\.md$/ {
     next
 }
 
+# The namespace of all, without GLM's aligned types.
+{ sub(/TEXGEN_NAMESPACE/, "texgen") }
+
 # What a namespace holds is described in its headers.
 /^namespace / { print "/// " ($2 ~ /reference/ ? "The definitions, for any scalar type." : "All of the library.") }
 

@@ -23,7 +23,7 @@
 #include "primitives.hpp"
 #include "transform.hpp"
 
-namespace texgen {
+namespace TEXGEN_NAMESPACE {
 
 // position: the camera's clip space. strq: homogeneous texture coordinates, which belong to it linearly.
 struct ClipVertex {
@@ -382,4 +382,4 @@ inline std::size_t clip_to_slide(std::span<const ClipVertex> polygon, TextureReg
     return detail::cut_edges(out, count, in_front, cut_before_projector);
 }
 
-}  // namespace texgen
+}  // namespace TEXGEN_NAMESPACE

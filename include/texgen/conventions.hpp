@@ -9,7 +9,7 @@
 // 0.1.0: 10000 major + 100 minor + patch.
 #define TEXGEN_VERSION 100
 
-namespace texgen {
+namespace TEXGEN_NAMESPACE {
 
 enum class DepthRange { negative_one_to_one, zero_to_one };  // NDC depth of the near and of the far plane
 enum class NdcY { up, down };                                // where y grows to in NDC
@@ -129,4 +129,4 @@ constexpr Tolerance texels(double fraction, double texture_size) noexcept {
     return texture_size > 0.0 && fraction < texture_size * 1e300 ? Tolerance{fraction / texture_size} : exact;
 }
 
-}  // namespace texgen
+}  // namespace TEXGEN_NAMESPACE

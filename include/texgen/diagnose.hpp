@@ -30,7 +30,7 @@
 #include "texcoord.hpp"
 #include "transform.hpp"
 
-namespace texgen {
+namespace TEXGEN_NAMESPACE {
 
 // In the order of the findings: numbers that mean nothing, how a product was made, what the lens does, and last what may
 // be no more than the consequence of those before it.
@@ -606,4 +606,4 @@ Diagnosis diagnose(const std::array<glm::vec4, 4>& planes, const Setup<Space>& s
     return detail::diagnose(whole, true);
 }
 
-}  // namespace texgen
+}  // namespace TEXGEN_NAMESPACE

@@ -23,7 +23,7 @@
 #include "texcoord.hpp"
 #include "transform.hpp"
 
-namespace texgen {
+namespace TEXGEN_NAMESPACE {
 
 namespace detail {
 
@@ -210,4 +210,4 @@ auto floats(Floats&& values) noexcept {
     return std::span(values.data(), static_cast<std::size_t>(values.size()));
 }
 
-}  // namespace texgen
+}  // namespace TEXGEN_NAMESPACE

@@ -21,7 +21,7 @@
 #include "detail/rounding.hpp"
 #include "detail/widen.hpp"
 
-namespace texgen {
+namespace TEXGEN_NAMESPACE {
 
 // What glTexGen calls GL_OBJECT_LINEAR and so on, and GL_S to GL_Q.
 enum class TexGenMode { object_linear, eye_linear, sphere_map, reflection_map, normal_map };
@@ -341,4 +341,4 @@ inline glm::vec4 TexGenUnit::generate(const FixedFunctionVertex& vertex, const E
             dot(texture_rows[3], generated)};
 }
 
-}  // namespace texgen
+}  // namespace TEXGEN_NAMESPACE

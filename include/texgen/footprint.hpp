@@ -30,7 +30,7 @@
 #include "primitives.hpp"
 #include "texcoord.hpp"
 
-namespace texgen {
+namespace TEXGEN_NAMESPACE {
 
 // How many texels one unit of s and of t spans: the size of the texture for normalised coordinates, those of an atlas_tile
 // too; 1 for a rectangle texture. Of level 0. Bad values (not positive, not finite) make what is measured in texels NaN.
@@ -555,4 +555,4 @@ inline double headlights(const Triangle& triangle) noexcept {
     return far_q > 0.0 ? 1.5 * std::log2(near_q / far_q) : std::numeric_limits<double>::infinity();
 }
 
-}  // namespace texgen
+}  // namespace TEXGEN_NAMESPACE

@@ -41,7 +41,7 @@
 #include "skip.hpp"
 #include "texcoord.hpp"
 
-namespace texgen {
+namespace TEXGEN_NAMESPACE {
 
 namespace detail {
 
@@ -926,4 +926,4 @@ void interpolate(const Segment& segment, std::span<const float> alpha, TextureRe
 
 }  // namespace TEXGEN_BUILD
 
-}  // namespace texgen
+}  // namespace TEXGEN_NAMESPACE

@@ -18,7 +18,7 @@
 #include "scale_bias.hpp"
 #include "transform.hpp"
 
-namespace texgen {
+namespace TEXGEN_NAMESPACE {
 
 namespace detail {
 
@@ -108,4 +108,4 @@ std::array<glm::vec4, 4> planes(const Transform<Texture, Space>& transform) noex
     return rows;
 }
 
-}  // namespace texgen
+}  // namespace TEXGEN_NAMESPACE

@@ -9,7 +9,7 @@
 
 #include "texcoord.hpp"
 
-namespace texgen {
+namespace TEXGEN_NAMESPACE {
 
 // (s, t, r, q) at alpha = 0 and at alpha = 1.
 struct Segment {
@@ -33,4 +33,4 @@ struct FragmentRect {
     int x, y, width, height;
 };
 
-}  // namespace texgen
+}  // namespace TEXGEN_NAMESPACE

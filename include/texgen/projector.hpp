@@ -16,7 +16,7 @@
 #include "detail/rounding.hpp"
 #include "transform.hpp"
 
-namespace texgen {
+namespace TEXGEN_NAMESPACE {
 
 // z_near and z_far are distances in front of the eye, in the units of the world. z_far may be infinite.
 // reversed_depth maps near to 1 and far to the other end of the range, so that r = 1 at near.
@@ -241,4 +241,4 @@ inline std::optional<Projector> make_projector(const OrthographicLens& lens, con
     return detail::assemble(orthographic(lens, conventions), look_at(aim), conventions);
 }
 
-}  // namespace texgen
+}  // namespace TEXGEN_NAMESPACE

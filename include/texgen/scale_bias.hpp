@@ -12,7 +12,7 @@
 #include "detail/widen.hpp"
 #include "transform.hpp"
 
-namespace texgen {
+namespace TEXGEN_NAMESPACE {
 
 namespace detail {
 
@@ -84,4 +84,4 @@ inline glm::vec4 to_texture(glm::vec4 projector_clip, Conventions conventions, T
     return {component(clip.x, remap.s), component(clip.y, remap.t), component(clip.z, remap.r), projector_clip.w};
 }
 
-}  // namespace texgen
+}  // namespace TEXGEN_NAMESPACE

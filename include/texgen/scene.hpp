@@ -23,7 +23,7 @@
 #include "skip.hpp"
 #include "transform.hpp"
 
-namespace texgen {
+namespace TEXGEN_NAMESPACE {
 
 // The engine's arrays, as they are now. An object or a projector is known by its index.
 struct SceneView {
@@ -293,4 +293,4 @@ private:
     std::optional<CameraPose> camera_;
 };
 
-}  // namespace texgen
+}  // namespace TEXGEN_NAMESPACE

@@ -19,7 +19,7 @@
 #include "detail/widen.hpp"
 #include "transform.hpp"
 
-namespace texgen {
+namespace TEXGEN_NAMESPACE {
 
 // What the fragments of a rectangle need, in the order of its cost.
 //   nothing          no fragment is lit: all are behind the projector, or outside one side of the region
@@ -320,4 +320,4 @@ void coverage(const Transform<Texture, Space>& texture_from_space, const Texture
 
 }  // namespace TEXGEN_BUILD
 
-}  // namespace texgen
+}  // namespace TEXGEN_NAMESPACE

@@ -25,7 +25,7 @@
 #include "detail/widen.hpp"
 #include "transform.hpp"
 
-namespace texgen {
+namespace TEXGEN_NAMESPACE {
 
 // Divided coordinates, planar. An empty span is not computed. lit is 1 where the slide falls and 0 elsewhere.
 struct Texcoords {
@@ -518,4 +518,4 @@ inline std::optional<glm::vec2> divide(glm::vec4 strq) noexcept {
     return glm::vec2(strq.x / strq.w, strq.y / strq.w);
 }
 
-}  // namespace texgen
+}  // namespace TEXGEN_NAMESPACE

@@ -13,7 +13,7 @@
 #include "detail/rounding.hpp"
 #include "detail/widen.hpp"
 
-namespace texgen {
+namespace TEXGEN_NAMESPACE {
 
 // The spaces. They are names only and stay incomplete.
 struct Object;
@@ -103,4 +103,4 @@ Transform<From, To> inverse_rigid(const Transform<To, From>& transform) noexcept
     return Transform<From, To>(result);
 }
 
-}  // namespace texgen
+}  // namespace TEXGEN_NAMESPACE

@@ -178,4 +178,5 @@ int main() {
         print_scene(*make_projector(lens, aim, conventions));
     }
     print_fixed_function();
+    return 0;
 }

@@ -6,7 +6,19 @@
 #include <texgen needs C++20: compile with -std=c++20 or later, MSVC with /std:c++20 or later>
 #endif
 
-namespace texgen::detail {
+#include <glm/vec2.hpp>
+
+// All of the library stands in this namespace. What GLM aligns by default has another layout: files that do and files that
+// do not link into one program, each with types and functions of its own.
+#if defined(GLM_FORCE_DEFAULT_ALIGNED_GENTYPES) && GLM_CONFIG_ALIGNED_GENTYPES == GLM_ENABLE
+#define TEXGEN_NAMESPACE texgen::inline aligned_gentypes
+static_assert(glm::defaultp == glm::aligned_highp, "GLM was configured otherwise when it was included first");
+#else
+#define TEXGEN_NAMESPACE texgen
+static_assert(glm::defaultp == glm::packed_highp, "GLM was configured otherwise when it was included first");
+#endif
+
+namespace TEXGEN_NAMESPACE::detail {
 
 // std::bit_cast, which standard libraries got later than the compilers that they come with.
 template <class To, class From>
@@ -15,4 +27,4 @@ constexpr To bit_cast(const From& from) noexcept {
     return __builtin_bit_cast(To, from);
 }
 
-}  // namespace texgen::detail
+}  // namespace TEXGEN_NAMESPACE::detail
