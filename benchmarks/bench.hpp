@@ -55,7 +55,7 @@ struct Scene {
 
 constexpr double promises_nothing = std::numeric_limits<double>::infinity();
 
-// The largest errors of a row, and whether they are within its promise: max(tolerance, 0.5 ulp).
+// The largest errors of a row, and whether they are within its promise: max(tolerance, 1/2 ulp).
 class Errors {
 public:
     explicit Errors(double tolerance) : tolerance_(tolerance) {}

@@ -152,13 +152,14 @@ std::string html_of(const Report& report, const std::string& plot_svg, const std
         for (const PictureOfScene& picture : scene.pictures)
             html += "<figure><img alt=\"" + escaped(picture.caption) + "\" src=\"data:image/png;base64," +
                     base64(picture.png) + "\"><figcaption>" + escaped(picture.caption) + "</figcaption></figure>\n";
-        html += "</div>\n<p>" +
-                formatted(
-                    "%s covered fragments checked; wherever the library promises 0.5 ulp, it is within %.6f. "
-                    "The work of its exact tier: %s.",
-                    grouped(scene.comparison.covered_fragments, "&#8239;").c_str(), scene.comparison.largest_ulp,
-                    work_of(scene.comparison).c_str()) +
-                "</p>\n<details><summary>The worst inputs</summary>\n";
+        html +=
+            "</div>\n<p>" +
+            formatted(
+                "%s covered fragments checked; wherever the library promises the nearest float, it is within %.6f ulp. "
+                "The work of its exact tier: %s.",
+                grouped(scene.comparison.covered_fragments, "&#8239;").c_str(), scene.comparison.largest_ulp,
+                work_of(scene.comparison).c_str()) +
+            "</p>\n<details><summary>The worst inputs</summary>\n";
         for (const Measurement& measurement : scene.comparison.measurements)
             html += "<p>" + escaped(measurement.method) + ", " + number(measurement.errors.max_texels) +
                     " texels:<br><code>" + in_hexadecimal(measurement.errors.worst) + "</code></p>\n";

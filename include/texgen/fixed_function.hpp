@@ -104,9 +104,9 @@ public:
     NormalScaling normal_scaling() const noexcept { return normal_scaling_; }
 
     // Guarantee: (s, t, r, q) in double from the float state and input, rounded once. With the identity as texture matrix
-    // a coordinate's error is at most 0.51 float ulp of its exact value and, below condition 1e6 of M (rows and columns
-    // scaled),
-    //     object_linear   nothing more
+    // a coordinate's error is at most 1/2 float ulp + 2^-50 of its exact value and, below condition 1e6 of M (rows and
+    // columns scaled),
+    //     object_linear   2^-100 sum |p_i v_i|
     //     eye_linear      2^-50 sum |p'_i e_i|
     //     normal_map      2^-48 k         with k the length of (sum_i |normal_i| |M^-1_ij|)_j under the normal scaling:
     //     reflection_map  2^-48 (1 + k)^2      |n| where nothing cancels
