@@ -34,7 +34,7 @@ function(install_to prefix)
     file(RENAME ${DIRECTORY}/first ${prefix})
 
     file(GLOB_RECURSE expected RELATIVE ${SOURCE} ${SOURCE}/include/texgen/*)
-    list(APPEND expected share/pkgconfig/texgen.pc)
+    list(APPEND expected share/pkgconfig/texgen.pc share/licenses/texgen/LICENSE)
     foreach(name IN ITEMS texgen-config texgen-config-version texgen-targets)
         list(APPEND expected share/cmake/texgen/${name}.cmake)
     endforeach()
