@@ -17,7 +17,7 @@ foreach(header IN LISTS headers)
     string(MAKE_C_IDENTIFIER ${header} name)
     set(file ${DIRECTORY}/${name}.cpp)
     file(WRITE ${file} "#include <${header}>\nconst auto region = texgen::whole_texture();\n")
-    foreach(language IN ITEMS -std=c++98 -std=c++17 "-std=c++20;-D_MSVC_LANG=201703L")
+    foreach(language IN ITEMS -std=c++17 "-std=c++20;-D_MSVC_LANG=201703L")
         execute_process(COMMAND ${compiler} ${language} ${includes} -fsyntax-only ${file}
                         RESULT_VARIABLE result ERROR_VARIABLE messages)
         string(REGEX MATCHALL "(error|warning):[^\n]*" complaints "${messages}")
@@ -32,4 +32,7 @@ endforeach()
 # MSVC's __cplusplus says C++98 unless it is told otherwise.
 file(WRITE ${DIRECTORY}/msvc.cpp "#undef __cplusplus\n#define __cplusplus 199711L\n#include <texgen/detail/language.hpp>\n")
 execute_process(COMMAND ${compiler} -w -D_MSVC_LANG=202002L ${includes} -E ${DIRECTORY}/msvc.cpp
-                OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+                OUTPUT_QUIET ERROR_VARIABLE messages)
+if(messages MATCHES "texgen needs")
+    message(FATAL_ERROR "MSVC's C++20 is refused:\n${messages}")
+endif()
