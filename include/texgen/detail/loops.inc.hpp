@@ -122,7 +122,7 @@ TEXGEN_INLINE Doubles with_sign_of(const Doubles& size, const Doubles& sign) noe
 }
 TEXGEN_INLINE Doubles power_of_two_below(const Doubles& a) noexcept {
     return Doubles::of(
-        [&](int i) { return std::bit_cast<double>(std::bit_cast<std::uint64_t>(a.lane[i]) & 0x7ff0000000000000); });
+        [&](int i) { return bit_cast<double>(bit_cast<std::uint64_t>(a.lane[i]) & 0x7ff0000000000000); });
 }
 
 TEXGEN_INLINE WideWords magnitude_bits(const WideFloats& a) noexcept {

@@ -52,11 +52,10 @@ inline double reciprocal_power_of_two(double value) noexcept {
 
 // The last bit of a number that is set; infinity for 0.
 inline double last_bit(double value) noexcept {
-    const auto bits = std::bit_cast<std::uint64_t>(value);
+    const auto bits = bit_cast<std::uint64_t>(value);
     if (bits << 1 == 0) return std::numeric_limits<double>::infinity();
     const int zeros = std::countr_zero(bits | std::uint64_t{1} << 52);
-    return std::bit_cast<double>(bits & 0x7ff0000000000000) *
-           (0x1p-52 * static_cast<double>(std::uint64_t{1} << zeros));
+    return bit_cast<double>(bits & 0x7ff0000000000000) * (0x1p-52 * static_cast<double>(std::uint64_t{1} << zeros));
 }
 
 // The relative error of n roundings in sequence is at most gamma(n) = n u / (1 - n u). Here u is twice the unit roundoff,
