@@ -11,6 +11,7 @@
 //   subnormal numbers taken as 0      (FTZ and DAZ on x86, FZ on Arm) a float below 2^-126 counts as 0, and is written as
 //                                     0; everything else has the same bits
 
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
