@@ -90,10 +90,8 @@ struct Corners {
     }
 };
 
-// Of a tile with these functions and errors.
-inline Corners corners_of(const RampOf<Pair>& numerator, const Ramp& q, const Pair& numerator_error, double q_error,
-                          const Tile& tile) noexcept {
-    Corners corners;
+// With its functions and errors known: the values at the corner fragments.
+inline void take_corners(Corners& corners, const Tile& tile) noexcept {
     const double right = tile.width - 1;
     const double bottom = tile.height - 1;
     const auto fill = [&](const auto& ramp, auto& value) {
@@ -102,32 +100,36 @@ inline Corners corners_of(const RampOf<Pair>& numerator, const Ramp& q, const Pa
         value[2] = ramp.base + ramp.dy * bottom;
         value[3] = value[2] + ramp.dx * right;
     };
-    corners.numerator_ramp = numerator;
-    corners.q_ramp = q;
-    corners.numerator_error = numerator_error;
-    corners.q_error = q_error;
-    fill(numerator, corners.numerator);
-    fill(q, corners.q);
+    fill(corners.numerator_ramp, corners.numerator);
+    fill(corners.q_ramp, corners.q);
     corners.least_q = smaller(smaller(corners.q[0], corners.q[1]), smaller(corners.q[2], corners.q[3]));
     corners.largest_q = larger(larger(corners.q[0], corners.q[1]), larger(corners.q[2], corners.q[3]));
     corners.reciprocal = 1.0 / (corners.least_q - corners.q_error);
-    return corners;
 }
+
 inline Corners corners_of(const TrianglePlanes& planes, const PlaneOf<Pair>& numerator, const Plane& q,
                           const Tile& tile) noexcept {
-    return corners_of(planes.ramp(numerator, tile), planes.ramp(q, tile), planes.error(numerator, tile),
-                      planes.error(q, tile), tile);
+    Corners corners;
+    corners.numerator_ramp = planes.ramp(numerator, tile);
+    corners.q_ramp = planes.ramp(q, tile);
+    corners.numerator_error = planes.error(numerator, tile);
+    corners.q_error = planes.error(q, tile);
+    take_corners(corners, tile);
+    return corners;
 }
 
 // Each coefficient is rounded to double; its product with an index and two sums are rounded once each.
 inline Corners corners_of(const CloseRamps& close) noexcept {
-    const auto pair = [&close](DoubleDouble CloseRamp::*part) {
-        return pair_of((close.numerator[0].*part).high, (close.numerator[1].*part).high);
-    };
+    const auto& [s, t] = close.numerator;
     const auto error = [&close](const CloseRamp& ramp) { return ramp.error + gamma(4) * ramp.size(close.tile); };
-    return corners_of({pair(&CloseRamp::base), pair(&CloseRamp::dx), pair(&CloseRamp::dy)},
-                      {close.q.base.high, close.q.dx.high, close.q.dy.high},
-                      pair_of(error(close.numerator[0]), error(close.numerator[1])), error(close.q), close.tile);
+    Corners corners;
+    corners.numerator_ramp = {pair_of(s.base.high, t.base.high), pair_of(s.dx.high, t.dx.high),
+                              pair_of(s.dy.high, t.dy.high)};
+    corners.q_ramp = {close.q.base.high, close.q.dx.high, close.q.dy.high};
+    corners.numerator_error = pair_of(error(s), error(t));
+    corners.q_error = error(close.q);
+    take_corners(corners, close.tile);
+    return corners;
 }
 
 // Where the fragments in front lie as to one side of the region: G = F - bound Q is positive above it and negative below.
@@ -344,13 +346,14 @@ inline detail::Plan TriangleSetup::plan(const detail::Tile& tile, const detail::
 }
 
 inline detail::TileSurvey TriangleSetup::survey(const detail::Tile& tile) const noexcept {
-    detail::TileSurvey found{detail::corners_of(planes_, st_, q_, tile), {}, std::nullopt};
-    found.plan = plan(tile, found.at);
-    if (found.plan.work == Work::nothing || !found.at.cancel()) return found;
-    found.close = detail::ClosePlanes(planes_, tile).ramps(0, 1);
-    found.at = detail::corners_of(*found.close);
-    found.plan = plan(tile, found.at);
-    return found;
+    detail::TileSurvey found;  // not {}: zeros would cost what a small tile does
+    found.at = detail::corners_of(planes_, st_, q_, tile);
+    for (;;) {
+        found.plan = plan(tile, found.at);
+        if (found.close || found.plan.work == Work::nothing || !found.at.cancel()) return found;
+        found.close = detail::ClosePlanes(planes_, tile).ramps(0, 1);
+        found.at = detail::corners_of(*found.close);
+    }
 }
 
 namespace detail {
