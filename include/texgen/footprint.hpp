@@ -326,7 +326,9 @@ private:
         job.derivatives_in_float = float_fits(tile, at, numerator);
         job.pitch = rect_.width;
         const std::size_t offset = this->offset(tile.x, tile.y);
-        const auto array = [offset](std::span<float> span) { return span.empty() ? nullptr : span.data() + offset; };
+        const auto array = [offset](const std::span<float>& span) {
+            return span.empty() ? nullptr : span.data() + offset;
+        };
         for (std::size_t k = 0; k < 2; ++k) {
             const Slope::Terms first = setup_.at_first(k, tile);
             job.slope[k] = scaled(first, q_scale_squared);
@@ -406,7 +408,7 @@ private:
     }
 
     void store_rows(const Tile& tile, const Footprint& value) noexcept {
-        const auto put = [&](std::span<float> output, double number) {
+        const auto put = [&](const std::span<float>& output, double number) {
             if (output.empty()) return;
             const auto rounded = static_cast<float>(number);
             for (std::int64_t y = tile.y; y < tile.y + tile.height; ++y) {

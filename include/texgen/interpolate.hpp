@@ -371,7 +371,7 @@ public:
         : kernels_(kernels), setup_(setup), rect_(rect), close_(close) {}
 
     // s and t, of which one that only the mask needs has no output.
-    void add(std::span<float> s, std::span<float> t, std::span<float> lit) noexcept {
+    void add(const std::span<float>& s, const std::span<float>& t, const std::span<float>& lit) noexcept {
         planes_ = setup_.st_;
         count_ = 2;
         coordinate_[1] = 1;
@@ -380,7 +380,7 @@ public:
         lit_ = lit;
     }
     // One coordinate, 0 to 2 for s, t, r.
-    void add(glm::length_t coordinate, std::span<float> output) noexcept {
+    void add(glm::length_t coordinate, const std::span<float>& output) noexcept {
         planes_ = setup_.planes_.planes(coordinate, coordinate);
         count_ = 1;
         coordinate_[0] = coordinate;
@@ -593,7 +593,7 @@ private:
     }
 
     void clear(const Tile& tile) noexcept {
-        for (const std::span<float> output : {output_[0], output_[1], lit_}) {
+        for (const std::span<float>& output : {output_[0], output_[1], lit_}) {
             if (output.empty()) continue;
             for (std::int64_t y = tile.y; y < tile.y + tile.height; ++y) {
                 float* const row = output.data() + offset(tile.x, y);
@@ -686,7 +686,7 @@ Work interpolate(const TriangleSetup& setup, FragmentRect rect, Texcoords out) n
     if (!any_output) return plan.work;
     const detail::TileKernels& kernels = detail::chosen<detail::TileKernels>();
 
-    const auto interpolate_one = [&](glm::length_t coordinate, std::span<float> output) {
+    const auto interpolate_one = [&](glm::length_t coordinate, const std::span<float>& output) {
         if (output.empty()) return;
         std::optional<detail::CloseRamps> close;
         detail::TileInterpolator interpolator(kernels, setup, rect, close);

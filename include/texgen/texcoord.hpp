@@ -173,9 +173,16 @@ inline Bounded closely_at(const PointForm& form, const glm::dvec3& v) noexcept {
     return {value, 0x1p-48 * std::fabs(value)};
 }
 
-inline bool is_computed(std::span<const float> output, std::size_t count) noexcept {
+inline bool is_computed(const std::span<float>& output, std::size_t count) noexcept {
     TEXGEN_ASSERT(output.empty() || output.size() == count);
     return !output.empty() && output.size() == count;
+}
+
+// The array of an output that is computed, or null. The span comes by reference, here and everywhere: where a function takes
+// it by value, out of an aggregate that the caller has by reference, and returns its pointer, GCC 12 at -O2 and -Os
+// forgets that what it points to is written, and the user's variables keep what they held (bug 115033 of GCC).
+inline float* array_of(const std::span<float>& output, std::size_t count) noexcept {
+    return is_computed(output, count) ? output.data() : nullptr;
 }
 
 // Calls batch(x, y, z, triples, first, count, whole) for parts of the positions that the kernels can read: arrays of
@@ -286,13 +293,10 @@ struct PointOutputs {
 // or the mask is, either one alone, and r.
 template <class Group>
 void for_each_group(const Texcoords& out, std::size_t count, const Group& group) noexcept {
-    const auto array = [count](std::span<float> output) {
-        return is_computed(output, count) ? output.data() : nullptr;
-    };
-    float* const s = array(out.s);
-    float* const t = array(out.t);
-    float* const r = array(out.r);
-    float* const lit = array(out.lit);
+    float* const s = array_of(out.s, count);
+    float* const t = array_of(out.t, count);
+    float* const r = array_of(out.r, count);
+    float* const lit = array_of(out.lit, count);
     if (lit != nullptr || (s != nullptr && t != nullptr))
         group(0, 2, PointOutputs{{s, t}, lit, nullptr});
     else if (s != nullptr)
@@ -471,9 +475,7 @@ void generate(const Transform<Texture, Space>& texture_from_space, Positions<Spa
 template <class Space>
 void generate(const Transform<Texture, Space>& texture_from_space, Positions<Space> positions,
               HomogeneousTexcoords out) noexcept {
-    const auto array = [&](std::span<float> output) {
-        return detail::is_computed(output, positions.size()) ? output.data() : nullptr;
-    };
+    const auto array = [&](const std::span<float>& output) { return detail::array_of(output, positions.size()); };
     detail::generate_all(texture_from_space.matrix(), positions,
                          {array(out.s), array(out.t), array(out.r), array(out.q)}, nullptr);
 }

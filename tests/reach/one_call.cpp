@@ -1,0 +1,308 @@
+// Programs of one call each, as a new user writes them: what the call writes are local variables, of which nothing else takes
+// the address, and they are printed by value. A compiler that loses sight of them in the call, as GCC 12 may (its bug
+// 115033), prints what they held before. Every public function that writes through a span is called.
+//
+// The calls are macros: the text of each is a part of every program. A function would hide what the compiler may lose.
+
+#include <cstddef>
+#include <cstdio>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <texgen/texgen.hpp>
+
+#if __has_include(<Eigen/Core>)
+#include <texgen/eigen.hpp>
+#include <texgen/reference.hpp>
+#endif
+
+namespace {
+
+using namespace texgen;
+
+// ---- What is read ----------------------------------------------------------------------------------------------
+
+glm::dmat4 matrix() {
+    return {0.75, 0.125, 0.0, 0.0625, 0.0, 0.5, 0.25, 0.125, 0.25, 0.0, 0.5, 0.0625, 0.125, 0.25, 0.375, 1.0};
+}
+
+// Inside the slide and outside of it, in front of the projector and behind it.
+glm::vec3 point(int i) {
+    const float number = 0.3f * static_cast<float>(i) - 0.25f;
+    return {number, 0.5f - 0.5f * number, 0.125f - (i % 4 == 3 ? 100.0f : 0.0f)};
+}
+
+Box box(int i) { return {point(i), point(i) + 0.5f}; }
+Sphere sphere(int i) { return {point(i), 0.25f}; }
+
+constexpr Triangle triangle{{{0.0f, 0.0f}, 1.0f, {0.1f, 0.2f, 0.3f, 1.0f}},
+                            {{40.0f, 0.0f}, 3.0f, {2.9f, 0.5f, 0.75f, 2.0f}},
+                            {{0.0f, 30.0f}, 2.0f, {0.5f, 1.5f, 0.25f, 1.5f}}};
+
+// ---- What is called, with `count` values an output, of four coordinates as `mask` says ---------------------------------
+
+#define GIVEN(bit) (mask >> (bit)&1) != 0 ? count : 0
+#define SPANS(s, t, r, lit) \
+    {s, GIVEN(0)}, {t, GIVEN(1)}, {r, GIVEN(2)}, { lit, GIVEN(3) }
+
+#define PROJECT(...)                                      \
+    glm::vec3 points[count];                              \
+    for (int i = 0; i < count; ++i) points[i] = point(i); \
+    project(WorldTexgen(matrix()), world_space(points), whole_texture(), {SPANS(__VA_ARGS__)}, tolerance)
+
+#define PROJECT_PLANAR(...)             \
+    float x[count], y[count], z[count]; \
+    for (int i = 0; i < count; ++i) {   \
+        x[i] = point(i).x;              \
+        y[i] = point(i).y;              \
+        z[i] = point(i).z;              \
+    }                                   \
+    project(EyeTexgen(matrix()), eye_space(x, y, z), whole_texture(), {SPANS(__VA_ARGS__)}, tolerance)
+
+#define PROJECT_STRIDED(...)                                                                               \
+    float vertices[count][4];                                                                              \
+    for (int i = 0; i < count; ++i)                                                                        \
+        for (glm::length_t k = 0; k < 3; ++k) vertices[i][k] = point(i)[k];                                \
+    project(ObjectTexgen(matrix()), object_space(vertices[0], count, sizeof vertices[0]), whole_texture(), \
+            {SPANS(__VA_ARGS__)}, tolerance)
+
+#define GENERATE(...)                                     \
+    glm::vec3 points[count];                              \
+    for (int i = 0; i < count; ++i) points[i] = point(i); \
+    generate(WorldTexgen(matrix()), world_space(points), HomogeneousTexcoords{SPANS(__VA_ARGS__)})
+
+#define INTERPOLATE(...)                                                        \
+    const auto setup = TriangleSetup::of(triangle, whole_texture(), tolerance); \
+    if (setup) interpolate(*setup, {3, 4, count, 1}, {SPANS(__VA_ARGS__)})
+
+#define INTERPOLATE_SEGMENT(...)                                                             \
+    float alpha[count];                                                                      \
+    for (int i = 0; i < count; ++i) alpha[i] = (static_cast<float>(i) + 0.3f) / (count + 1); \
+    interpolate({triangle.a.strq, triangle.b.strq}, alpha, whole_texture(), {SPANS(__VA_ARGS__)}, tolerance)
+
+#define DERIVATIVES(...)                                                        \
+    const auto setup = TriangleSetup::of(triangle, whole_texture(), tolerance); \
+    if (setup)                                                                  \
+    footprint(FootprintSetup(*setup, {1024.0, 512.0}), {3, 4, count, 1}, {SPANS(__VA_ARGS__), {}, {}, {}, {}})
+
+#define FILTERS(...)                                                            \
+    const auto setup = TriangleSetup::of(triangle, whole_texture(), tolerance); \
+    if (setup)                                                                  \
+    footprint(FootprintSetup(*setup, {1024.0, 512.0}), {3, 4, count, 1}, {{}, {}, {}, {}, SPANS(__VA_ARGS__)})
+
+#define REFERENCE(...) reference::interpolate(triangle, whole_texture(), {3, 4, count, 1}, {SPANS(__VA_ARGS__)})
+
+#define PROJECT_EIGEN(...)                  \
+    Eigen::Matrix<float, count, 1> x, y, z; \
+    for (int i = 0; i < count; ++i) {       \
+        x[i] = point(i).x;                  \
+        y[i] = point(i).y;                  \
+        z[i] = point(i).z;                  \
+    }                                       \
+    project(WorldTexgen(matrix()), world_space(x, y, z), whole_texture(), {SPANS(__VA_ARGS__)}, tolerance)
+
+// The same, with one output of another type.
+#define PROJECT_PAIRS(out)                                \
+    glm::vec3 points[count];                              \
+    for (int i = 0; i < count; ++i) points[i] = point(i); \
+    project(WorldTexgen(matrix()), world_space(points), std::span<glm::vec2>(out, count), tolerance)
+
+#define GENERATE_VECTORS(out)                             \
+    glm::vec3 points[count];                              \
+    for (int i = 0; i < count; ++i) points[i] = point(i); \
+    generate(WorldTexgen(matrix()), world_space(points), {out, count})
+
+#define FIXED_FUNCTION(out)                                                           \
+    FixedFunctionVertex vertices[count];                                              \
+    for (int i = 0; i < count; ++i) vertices[i].position = glm::vec4(point(i), 1.0f); \
+    TexGenUnit unit;                                                                  \
+    unit.enable(Coordinate::s);                                                       \
+    unit.generate(vertices, glm::mat4(2.0f), {out, count})
+
+#define COVERAGE(Body, body, out)                        \
+    Body bodies[count];                                  \
+    for (int i = 0; i < count; ++i) bodies[i] = body(i); \
+    coverage(WorldTexgen(matrix()), whole_texture(), bodies, {out, count})
+#define COVERAGE_OF_BOXES(out) COVERAGE(Box, box, out)
+#define COVERAGE_OF_SPHERES(out) COVERAGE(Sphere, sphere, out)
+
+#define VOLUME(Body, body, out)                          \
+    Body bodies[count];                                  \
+    for (int i = 0; i < count; ++i) bodies[i] = body(i); \
+    LitVolume<World>(WorldTexgen(matrix()), whole_texture()).coverage(bodies, {out, count})
+#define VOLUME_AND_BOXES(out) VOLUME(Box, box, out)
+#define VOLUME_AND_SPHERES(out) VOLUME(Sphere, sphere, out)
+
+// ---- Where a program keeps its outputs -------------------------------------------------------------------------
+
+constexpr float unwritten = 7.0f;
+
+// Whether all builds compute the same bits: not within a tolerance, nor of what filters make of derivatives.
+bool same_bits = true;
+
+void print(float value) { std::printf(same_bits ? " %a" : " %.1f", static_cast<double>(value)); }
+void print(glm::vec2 v) { print(v.x), print(v.y); }
+void print(glm::vec4 v) { print(v.x), print(v.y), print(v.z), print(v.w); }
+void print(Coverage coverage) { std::printf(" %d", static_cast<int>(coverage)); }
+
+void run(const char* name, unsigned mask, void (*program)(Tolerance), Tolerance tolerance, bool is_exact = true) {
+    same_bits = is_exact && tolerance.value == 0.0;
+    std::printf("%s %u %a", name, mask, tolerance.value);
+    program(tolerance);
+    std::printf("\n");
+}
+
+#define FOUR_OUTPUTS(CALL, is_exact)                                                                             \
+    template <unsigned mask>                                                                                     \
+    [[gnu::noinline]] void CALL##_scalars([[maybe_unused]] Tolerance tolerance) {                                \
+        constexpr int count = 1;                                                                                 \
+        float s = unwritten, t = unwritten, r = unwritten, lit = unwritten;                                      \
+        CALL(&s, &t, &r, &lit);                                                                                  \
+        print(s), print(t), print(r), print(lit);                                                                \
+    }                                                                                                            \
+    template <unsigned mask>                                                                                     \
+    [[gnu::noinline]] void CALL##_members([[maybe_unused]] Tolerance tolerance) {                                \
+        constexpr int count = 1;                                                                                 \
+        struct {                                                                                                 \
+            float x = 3.0f, s = unwritten, t = unwritten, r = unwritten, lit = unwritten;                        \
+        } vertex;                                                                                                \
+        CALL(&vertex.s, &vertex.t, &vertex.r, &vertex.lit);                                                      \
+        print(vertex.x), print(vertex.s), print(vertex.t), print(vertex.r), print(vertex.lit);                   \
+    }                                                                                                            \
+    template <unsigned mask>                                                                                     \
+    [[gnu::noinline]] void CALL##_arrays([[maybe_unused]] Tolerance tolerance) {                                 \
+        constexpr int count = 3;                                                                                 \
+        float s[3] = {unwritten, unwritten, unwritten}, t[3] = {unwritten, unwritten, unwritten};                \
+        float r[3] = {unwritten, unwritten, unwritten}, lit[3] = {unwritten, unwritten, unwritten};              \
+        CALL(s, t, r, lit);                                                                                      \
+        print(s[0]), print(s[1]), print(s[2]), print(t[0]), print(t[1]), print(t[2]);                            \
+        print(r[0]), print(r[1]), print(r[2]), print(lit[0]), print(lit[1]), print(lit[2]);                      \
+    }                                                                                                            \
+    template <unsigned mask>                                                                                     \
+    [[gnu::noinline]] void CALL##_vectors([[maybe_unused]] Tolerance tolerance) {                                \
+        constexpr int count = 17;                                                                                \
+        std::vector<float> s(count, unwritten), t(count, unwritten), r(count, unwritten), lit(count, unwritten); \
+        CALL(s.data(), t.data(), r.data(), lit.data());                                                          \
+        for (const auto* output : {&s, &t, &r, &lit})                                                            \
+            for (const float value : *output) print(value);                                                      \
+    }                                                                                                            \
+    template <unsigned... mask>                                                                                  \
+    void CALL##_masks(std::integer_sequence<unsigned, mask...>) {                                                \
+        for (const Tolerance tolerance : {exact, Tolerance{0x1p-12}}) {                                          \
+            (run(#CALL " scalars", mask + 1, CALL##_scalars<mask + 1>, tolerance, is_exact), ...);               \
+            (run(#CALL " members", mask + 1, CALL##_members<mask + 1>, tolerance, is_exact), ...);               \
+            (run(#CALL " arrays", mask + 1, CALL##_arrays<mask + 1>, tolerance, is_exact), ...);                 \
+            (run(#CALL " vectors", mask + 1, CALL##_vectors<mask + 1>, tolerance, is_exact), ...);               \
+        }                                                                                                        \
+    }
+
+#define ONE_OUTPUT(CALL, Value)                                                                    \
+    [[gnu::noinline]] void CALL##_scalar([[maybe_unused]] Tolerance tolerance) {                   \
+        constexpr int count = 1;                                                                   \
+        auto value = static_cast<Value>(unwritten);                                                \
+        CALL(&value);                                                                              \
+        print(value);                                                                              \
+    }                                                                                              \
+    [[gnu::noinline]] void CALL##_member([[maybe_unused]] Tolerance tolerance) {                   \
+        constexpr int count = 1;                                                                   \
+        struct {                                                                                   \
+            float x = 3.0f;                                                                        \
+            Value value = static_cast<Value>(unwritten);                                           \
+        } vertex;                                                                                  \
+        CALL(&vertex.value);                                                                       \
+        print(vertex.x), print(vertex.value);                                                      \
+    }                                                                                              \
+    [[gnu::noinline]] void CALL##_array([[maybe_unused]] Tolerance tolerance) {                    \
+        constexpr int count = 3;                                                                   \
+        constexpr auto none = static_cast<Value>(unwritten);                                       \
+        Value value[3] = {none, none, none};                                                       \
+        CALL(value);                                                                               \
+        print(value[0]), print(value[1]), print(value[2]);                                         \
+    }                                                                                              \
+    [[gnu::noinline]] void CALL##_vector([[maybe_unused]] Tolerance tolerance) {                   \
+        constexpr int count = 17;                                                                  \
+        std::vector<Value> values(count, static_cast<Value>(unwritten));                           \
+        CALL(values.data());                                                                       \
+        for (const Value value : values) print(value);                                             \
+    }                                                                                              \
+    void CALL##_all() {                                                                            \
+        for (const Tolerance tolerance : {exact, Tolerance{0x1p-12}})                              \
+            for (const auto program : {CALL##_scalar, CALL##_member, CALL##_array, CALL##_vector}) \
+                run(#CALL, 1, program, tolerance);                                                 \
+    }
+
+FOUR_OUTPUTS(PROJECT, true)
+FOUR_OUTPUTS(PROJECT_PLANAR, true)
+FOUR_OUTPUTS(PROJECT_STRIDED, true)
+FOUR_OUTPUTS(GENERATE, true)
+FOUR_OUTPUTS(INTERPOLATE, true)
+FOUR_OUTPUTS(INTERPOLATE_SEGMENT, true)
+FOUR_OUTPUTS(DERIVATIVES, true)
+FOUR_OUTPUTS(FILTERS, false)
+#if __has_include(<Eigen/Core>)
+FOUR_OUTPUTS(PROJECT_EIGEN, true)
+FOUR_OUTPUTS(REFERENCE, true)
+#endif
+ONE_OUTPUT(PROJECT_PAIRS, glm::vec2)
+ONE_OUTPUT(GENERATE_VECTORS, glm::vec4)
+ONE_OUTPUT(FIXED_FUNCTION, glm::vec4)
+ONE_OUTPUT(COVERAGE_OF_BOXES, Coverage)
+ONE_OUTPUT(COVERAGE_OF_SPHERES, Coverage)
+ONE_OUTPUT(VOLUME_AND_BOXES, Coverage)
+ONE_OUTPUT(VOLUME_AND_SPHERES, Coverage)
+
+// A corner is outside, so that two new vertices are written.
+constexpr ClipVertex polygon[] = {{{0.0f, 0.0f, 0.5f, 1.0f}, triangle.a.strq},
+                                  {{1.0f, 0.0f, 0.25f, 1.0f}, triangle.b.strq},
+                                  {{0.0f, 1.0f, -4.0f, 1.0f}, triangle.c.strq}};
+
+template <class Clip>
+void run_clip(const char* name, Clip clip) {
+    same_bits = true;
+    std::printf("%s", name);
+    clip();
+    std::printf("\n");
+}
+
+[[gnu::noinline]] void clip_near() {
+    ClipVertex out[4] = {};
+    const std::size_t count = clip_to_near(polygon, out, DepthRange::zero_to_one);
+    std::printf(" %zu", count);
+    print(out[0].position), print(out[1].strq), print(out[2].position), print(out[3].strq);
+}
+
+[[gnu::noinline]] void clip_slide() {
+    ClipVertex out[8] = {};
+    const std::size_t count = clip_to_slide(polygon, whole_texture(), out);
+    std::printf(" %zu", count);
+    print(out[0].position), print(out[1].strq), print(out[2].position), print(out[3].strq), print(out[4].strq);
+}
+
+}  // namespace
+
+int main() {
+    constexpr std::make_integer_sequence<unsigned, 15> masks;
+    PROJECT_masks(masks);
+    PROJECT_PLANAR_masks(masks);
+    PROJECT_STRIDED_masks(masks);
+    GENERATE_masks(masks);
+    INTERPOLATE_masks(masks);
+    INTERPOLATE_SEGMENT_masks(masks);
+    DERIVATIVES_masks(masks);
+    FILTERS_masks(masks);
+#if __has_include(<Eigen/Core>)
+    PROJECT_EIGEN_masks(masks);
+    REFERENCE_masks(masks);
+#endif
+    PROJECT_PAIRS_all();
+    GENERATE_VECTORS_all();
+    FIXED_FUNCTION_all();
+    COVERAGE_OF_BOXES_all();
+    COVERAGE_OF_SPHERES_all();
+    VOLUME_AND_BOXES_all();
+    VOLUME_AND_SPHERES_all();
+    run_clip("clip_to_near", clip_near);
+    run_clip("clip_to_slide", clip_slide);
+}
