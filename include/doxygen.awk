@@ -51,7 +51,7 @@ function follow(code,  i, c, declares) {
         c = substr(code, i, 1)
         if (c == "{") {
             scope[++depth] = declares && scope[depth - 1]
-            is_build[depth] = code ~ /TEXGEN_BUILD/
+            is_build[depth] = code ~ /^inline namespace TEXGEN_/
             is_described[depth] = count > 0 && code !~ /namespace /
         }
         if (c == "}") --depth
@@ -114,7 +114,8 @@ FILENAME ~ /\.md$/ {
         }
         if (declares) sub(/ \/\/ /, " ///< ", code)
         # The namespace that a macro names is transparent.
-        print code ~ /^inline namespace TEXGEN_BUILD [{]$/ || (is_build[depth] && code ~ /^}/) ? "" : code
+        if (code ~ /^namespace /) sub(/::inline TEXGEN_COMPILER/, "", code)
+        print code ~ /^inline namespace TEXGEN_[A-Z]+ [{]$/ || (is_build[depth] && code ~ /^}/) ? "" : code
     }
     sub(/ *\/\/.*/, "", code)
     is_continued = scope[depth] && (code ~ /^ *template </ || code !~ /[;{}:]$/) && code !~ /^#/

@@ -3,7 +3,7 @@ cmake_minimum_required(VERSION 3.25)
 # A header includes only from floors above its own (a smaller number), whether directly or through detail/. Outside the
 # library it includes the standard library and single GLM headers only; the two at Eigen's border include more. What refuses an
 # older language stands before all of it.
-# Instruction sets and compilers are told apart in one file only, and extensions of the language stay with the vectors.
+# Instruction sets are told apart in one file only and compilers in one more, and extensions of the language stay with the vectors.
 # Outputs are handed on by reference.
 set(floor_conventions 0)
 set(floor_transform 1)
@@ -83,10 +83,10 @@ foreach(header IN LISTS headers)
             endif()
         endforeach()
     endif()
-    if(NOT header MATCHES "^detail/lanes")
+    if(NOT header MATCHES "^detail/(lanes|compiler)")
         file(STRINGS ${file} platform REGEX "^[ \t]*#[ \t]*(el)?if.*(__AVX|__SSE|__FMA__|__ARM|__aarch64|__x86_64|__GNUC__|__clang__|_MSC_VER)")
         foreach(line IN LISTS platform)
-            complain("${header}: ${line} belongs into detail/lanes.hpp")
+            complain("${header}: ${line} belongs into detail/lanes.hpp or detail/compiler.hpp")
         endforeach()
     endif()
     # Extensions of the language belong into the vectors, and into lanes.hpp behind its plain loops.
@@ -140,7 +140,7 @@ foreach(header IN LISTS headers)
     if(name STREQUAL reference)
         direct_includes(${header} includes)
         foreach(include IN LISTS includes)
-            if(include MATCHES "^detail/" AND NOT include MATCHES "^detail/(assert|language)[.]hpp$")
+            if(include MATCHES "^detail/" AND NOT include MATCHES "^detail/(assert|compiler|language)[.]hpp$")
                 complain("reference.hpp shares arithmetic with the fast path: it includes ${include}")
             endif()
         endforeach()

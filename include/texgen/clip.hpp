@@ -36,7 +36,7 @@ struct Viewport {
     int x, y, width, height;
 };
 
-namespace detail {
+namespace detail::inline TEXGEN_COMPILER {
 
 inline bool is_finite(const glm::vec4& v) noexcept {
     constexpr float largest = (std::numeric_limits<float>::max)();
@@ -128,7 +128,9 @@ std::size_t cut_convex(std::span<ClipVertex> storage, std::size_t count, const C
     return written < 3 ? 0 : written;
 }
 
-}  // namespace detail
+}  // namespace detail::inline TEXGEN_COMPILER
+
+inline namespace TEXGEN_COMPILER {
 
 // The vertex in the window: x = viewport.x + (position.x / position.w + 1) width / 2, y likewise, so that y grows as the
 // clip y does.
@@ -192,7 +194,9 @@ inline std::size_t clip_to_near(std::span<const ClipVertex> polygon, std::span<C
     return detail::cut_convex(out, count, detail::ClipDistance::from_eye(), cut_before_eye);
 }
 
-namespace detail {
+}  // namespace TEXGEN_COMPILER
+
+namespace detail::inline TEXGEN_COMPILER {
 
 // The signed distance of (s, t, r, q) from a side of the slide, u >= min q or u <= max q for u = s or t, or from q >= 0:
 // in no unit; inside is >= 0.
@@ -305,7 +309,7 @@ std::size_t cut_edges(std::span<ClipVertex> storage, std::size_t count, const Si
     return written < 3 ? 0 : written;
 }
 
-}  // namespace detail
+}  // namespace detail::inline TEXGEN_COMPILER
 
 // The planes of the slide's region: q, s - min.x q, max.x q - s, t - min.y q, max.y q - t. A point of the space is lit
 // where all five are >= 0 (and q > 0): for gl_ClipDistance, or in eye space for glClipPlane.
@@ -337,6 +341,8 @@ std::array<glm::vec4, 5> clip_planes(const Transform<Texture, Space>& texgen, Te
 // as it is linear, and rounding u and q moves u - min q by 2^-24 (|u| + |min| q) <= 2^-23 max(|min|, |max|) q more.
 // The largest seen in four million triangles is 2^-22.
 inline constexpr double slide_clip_error = 0x1p-20;
+
+inline namespace TEXGEN_COMPILER {
 
 // The part of a convex polygon that the slide falls on, in the order of the polygon, though its first vertex may be another:
 // q > 0, and s and t in the region's four sides. Returns the count of vertices written to `out`; 0 where nothing with an
@@ -381,5 +387,7 @@ inline std::size_t clip_to_slide(std::span<const ClipVertex> polygon, TextureReg
     };
     return detail::cut_edges(out, count, in_front, cut_before_projector);
 }
+
+}  // namespace TEXGEN_COMPILER
 
 }  // namespace TEXGEN_NAMESPACE

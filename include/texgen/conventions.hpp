@@ -6,6 +6,7 @@
 
 #include <glm/vec2.hpp>
 
+
 // 0.1.0: 10000 major + 100 minor + patch.
 #define TEXGEN_VERSION 100
 
@@ -15,7 +16,7 @@ enum class DepthRange { negative_one_to_one, zero_to_one };  // NDC depth of the
 enum class NdcY { up, down };                                // where y grows to in NDC
 enum class TextureOrigin { bottom_left, top_left };          // the corner of the picture that (s, t) = (0, 0) addresses
 
-namespace detail {
+namespace detail::inline TEXGEN_COMPILER {
 
 // A member that has no default: leaving it out does not compile.
 template <class T>
@@ -28,7 +29,7 @@ private:
     T value_;
 };
 
-}  // namespace detail
+}  // namespace detail::inline TEXGEN_COMPILER
 
 // Three independent choices of a graphics API. There is no default: the caller says which one the numbers follow.
 struct Conventions {
@@ -114,14 +115,14 @@ struct Tolerance {
 
 inline constexpr Tolerance exact{0.0};  // the nearest float
 
-namespace detail {
+namespace detail::inline TEXGEN_COMPILER {
 
 // The error that a kernel may make: 0 for exact, and never so much that a float could leave its range.
 constexpr double accepted(Tolerance tolerance) noexcept {
     return tolerance.value > 0.0 ? (tolerance.value < 0x1p100 ? tolerance.value : 0x1p100) : 0.0;
 }
 
-}  // namespace detail
+}  // namespace detail::inline TEXGEN_COMPILER
 
 // A fraction of a texel of a texture of that size, for a region of one unit (a rectangle texture's unit is the texel:
 // Tolerance{fraction}). Exact where the size is not positive, or is so small that the quotient is no number.

@@ -125,7 +125,7 @@ struct Setup {
     LensFacts lens = {};
 };
 
-namespace detail {
+namespace detail::inline TEXGEN_COMPILER {
 
 struct Sentences {
     std::string_view what, remedy;
@@ -553,7 +553,7 @@ Diagnosis diagnose(const Setup<Space>& setup, bool are_planes) noexcept {
     return diagnosis;
 }
 
-}  // namespace detail
+}  // namespace detail::inline TEXGEN_COMPILER
 
 inline std::string_view Finding::what() const noexcept {
     return detail::sentences[static_cast<std::size_t>(defect)].what;

@@ -25,7 +25,7 @@
 
 namespace TEXGEN_NAMESPACE {
 
-namespace detail {
+namespace detail::inline TEXGEN_COMPILER {
 
 template <class T>
 concept FloatOrDouble = std::same_as<T, float> || std::same_as<T, double>;
@@ -93,7 +93,7 @@ Positions<Space> positions_of(const X& x, const Y& y, const Z& z) noexcept {
             static_cast<std::size_t>(next) * sizeof(float)};
 }
 
-}  // namespace detail
+}  // namespace detail::inline TEXGEN_COMPILER
 
 // ---- Matrices --------------------------------------------------------------------------------------------------
 

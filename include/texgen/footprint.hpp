@@ -76,7 +76,7 @@ struct FootprintExtremes {
     double largest_anisotropy;
 };
 
-namespace detail {
+namespace detail::inline TEXGEN_COMPILER {
 
 inline bool is_usable(const TexelsPerUnit& texels) noexcept {
     return texels.s > 0x1p-200 && texels.s < 0x1p200 && texels.t > 0x1p-200 && texels.t < 0x1p200;
@@ -126,7 +126,9 @@ Footprint footprint_of(const glm::dvec2& dx, const glm::dvec2& dy, const Determi
             glm::dvec2(major.x / texels.s, major.y / texels.t) * (length / scale)};
 }
 
-}  // namespace detail
+}  // namespace detail::inline TEXGEN_COMPILER
+
+inline namespace TEXGEN_COMPILER {
 
 // What filters make of derivatives that come from elsewhere.
 // Guarantee: singular values, level and anisotropy within 2^-48 of themselves (of the larger singular value for the smaller;
@@ -140,17 +142,23 @@ inline Footprint footprint_of(const glm::dvec2& dx, const glm::dvec2& dy, const 
     return detail::footprint_of(dx, dy, determinant, texels);
 }
 
-namespace detail {
+}  // namespace TEXGEN_COMPILER
+
+namespace detail::inline TEXGEN_COMPILER {
 inline namespace TEXGEN_BUILD {
 class TileFootprinter;
 }
-}  // namespace detail
+}  // namespace detail::inline TEXGEN_COMPILER
 
+inline namespace TEXGEN_COMPILER {
 class FootprintSetup;
+}
 inline namespace TEXGEN_BUILD {
 template <class = void>
 bool footprint(const FootprintSetup&, FragmentRect, Footprints) noexcept;
 }
+
+inline namespace TEXGEN_COMPILER {
 
 // A triangle made ready for footprints, beside the set-up for its coordinates.
 class FootprintSetup {
@@ -276,7 +284,9 @@ private:
     double determinant_;  // det J Q^3
 };
 
-namespace detail {
+}  // namespace TEXGEN_COMPILER
+
+namespace detail::inline TEXGEN_COMPILER {
 
 inline namespace TEXGEN_BUILD {
 
@@ -436,7 +446,7 @@ private:
 
 }  // namespace TEXGEN_BUILD
 
-}  // namespace detail
+}  // namespace detail::inline TEXGEN_COMPILER
 
 inline namespace TEXGEN_BUILD {
 

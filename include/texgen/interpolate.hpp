@@ -43,7 +43,7 @@
 
 namespace TEXGEN_NAMESPACE {
 
-namespace detail {
+namespace detail::inline TEXGEN_COMPILER {
 
 inline namespace TEXGEN_BUILD {
 
@@ -194,14 +194,18 @@ class TileInterpolator;
 
 }  // namespace TEXGEN_BUILD
 
-}  // namespace detail
+}  // namespace detail::inline TEXGEN_COMPILER
 
+inline namespace TEXGEN_COMPILER {
 class TriangleSetup;
 class FootprintSetup;
+}  // namespace TEXGEN_COMPILER
 inline namespace TEXGEN_BUILD {
 template <class = void>
 Work interpolate(const TriangleSetup&, FragmentRect, Texcoords) noexcept;
 }
+
+inline namespace TEXGEN_COMPILER {
 
 // A triangle made ready for interpolation over any number of rectangles of fragments.
 class TriangleSetup {
@@ -268,9 +272,11 @@ private:
     double tolerance_;
 };
 
+}  // namespace TEXGEN_COMPILER
+
 static_assert(sizeof(TriangleSetup) <= 512);
 
-namespace detail {
+namespace detail::inline TEXGEN_COMPILER {
 
 inline namespace TEXGEN_BUILD {
 
@@ -327,7 +333,7 @@ inline void choose_factors(Plan& plan, const Corners& at, double tolerance) noex
 
 }  // namespace TEXGEN_BUILD
 
-}  // namespace detail
+}  // namespace detail::inline TEXGEN_COMPILER
 
 inline detail::Plan TriangleSetup::plan(const detail::Tile& tile, const detail::Corners& at) const noexcept {
     using detail::Place;
@@ -356,7 +362,7 @@ inline detail::TileSurvey TriangleSetup::survey(const detail::Tile& tile) const 
     }
 }
 
-namespace detail {
+namespace detail::inline TEXGEN_COMPILER {
 
 inline namespace TEXGEN_BUILD {
 
@@ -651,7 +657,7 @@ private:
 
 }  // namespace TEXGEN_BUILD
 
-}  // namespace detail
+}  // namespace detail::inline TEXGEN_COMPILER
 
 inline namespace TEXGEN_BUILD {
 
@@ -739,7 +745,7 @@ inline Work work(const Segment& segment, TextureRegion region, Tolerance toleran
                                                                                   : Work::divide_and_test;
 }
 
-namespace detail {
+namespace detail::inline TEXGEN_COMPILER {
 
 // A float stands for the segment's value at alpha exactly: A - alpha A + alpha B.
 inline Expansion<5> exactly_mixed(double a, double b, double alpha) noexcept {
@@ -872,7 +878,9 @@ inline void interpolate_job(const SegmentKernels& kernels, SegmentJob job, doubl
 
 }  // namespace TEXGEN_BUILD
 
-}  // namespace detail
+}  // namespace detail::inline TEXGEN_COMPILER
+
+inline namespace TEXGEN_COMPILER {
 
 // Guarantee: |computed - exact| of s (x) and t (y) is at most this for every alpha in [0, 1] with q > 0, the rounding to
 // float included; infinite where q reaches 0 and no finite bound exists. noexcept.
@@ -895,6 +903,8 @@ inline glm::dvec2 error_bound(const Segment& segment, Tolerance tolerance = exac
     };
     return {bound(0), bound(1)};
 }
+
+}  // namespace TEXGEN_COMPILER
 
 inline namespace TEXGEN_BUILD {
 

@@ -20,7 +20,7 @@
 #include "primitives.hpp"
 #include "texcoord.hpp"
 
-namespace TEXGEN_NAMESPACE::reference {
+namespace TEXGEN_NAMESPACE::reference::inline TEXGEN_COMPILER {
 
 // Columns of a scalar.
 template <class Scalar>
@@ -205,4 +205,4 @@ inline void interpolate(const Triangle& triangle, TextureRegion region, Fragment
     }
 }
 
-}  // namespace TEXGEN_NAMESPACE::reference
+}  // namespace TEXGEN_NAMESPACE::reference::inline TEXGEN_COMPILER

@@ -56,6 +56,8 @@ struct SceneWork {
     std::size_t texgens_computed = 0;  // T_o
 };
 
+inline namespace TEXGEN_COMPILER {
+
 // Guarantee: after update() no pair is missing of which a point of the object's closed box is lit by T_o = object_linear()
 // of the engine's matrices, and pairs() are those that coverage() of T_o and the box does not call outside, with its
 // answer. They are in the order of the objects, and for each in that of the projectors, whatever happened before: two
@@ -292,5 +294,7 @@ private:
     std::vector<EyeTexgen> eye_texgens_;
     std::optional<CameraPose> camera_;
 };
+
+}  // namespace TEXGEN_COMPILER
 
 }  // namespace TEXGEN_NAMESPACE

@@ -49,7 +49,7 @@ struct Sphere {
     float radius;
 };
 
-namespace detail {
+namespace detail::inline TEXGEN_COMPILER {
 
 // Neither empty nor with a NaN.
 inline bool is_proper(const Box& box) noexcept {
@@ -256,7 +256,7 @@ inline Coverage coverage_of(const LitForms& forms, const Sphere& sphere) noexcep
     return Coverage::partial;
 }
 
-}  // namespace detail
+}  // namespace detail::inline TEXGEN_COMPILER
 
 inline namespace TEXGEN_BUILD {
 

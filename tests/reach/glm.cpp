@@ -1,4 +1,5 @@
-// Results that must not depend on how the user configured GLM, in hexadecimal, one a line.
+// Results of everything public that must not depend on how the user configured GLM, nor on what else is in the program, in
+// hexadecimal, one a line.
 
 #include <array>
 #include <cstddef>
@@ -12,6 +13,7 @@
 
 #if __has_include(<Eigen/Core>)
 #include <texgen/eigen.hpp>
+#include <texgen/reference.hpp>
 #endif
 
 namespace {
@@ -126,6 +128,7 @@ void print_scene(const texgen::Projector& projector) {
     scene.update({models, bounds, {&projector, 1}}, {});
     for (const LitPair& pair : scene.pairs()) {
         print("lit", pair.object);
+        print("pairs", static_cast<double>(scene.pairs_of(pair.object).size()));
         print("T_o", scene.texgen(pair));
     }
     const ObjectTexgen texgen = object_linear(projector, models[20]);
@@ -139,6 +142,10 @@ void print_scene(const texgen::Projector& projector) {
     const Eigen::Matrix4d matrix = to_eigen(texgen);
     print("from Eigen", from_eigen<ObjectTexgen>(matrix));
     print("from Eigen", to_eigen(glm::dvec4(texgen.matrix()[2]))(2));
+    float s[4];
+    reference::interpolate({{{0, 0}, 1, {0, 0, 0, 1}}, {{4, 0}, 2, {1, 0, 0, 2}}, {{0, 4}, 1, {0, 1, 0, 1}}},
+                           whole_texture(), {0, 0, 2, 2}, {s, {}, {}, {}});
+    for (const float value : s) print("reference", static_cast<double>(value));
 #endif
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 
+
 namespace TEXGEN_NAMESPACE::detail {
 
 // a . (x, y, z) + d, known to within error_a (|x| + |y| + |z|) + error_d when it is computed in double in any order. A

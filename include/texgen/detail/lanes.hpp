@@ -1,6 +1,6 @@
 #pragma once
 
-// Which vectors the inner loops run on. The only file with #if on instruction sets or compilers.
+// Which vectors the inner loops run on. The only file with #if on instruction sets.
 //
 // With GCC 12 or Clang the kernels are written on the vectors of the language, and compiled once for the instruction set of
 // the flags and, on x86-64, once more for AVX2 and for AVX-512; the machine decides which runs. A table of kernels is
@@ -8,8 +8,8 @@
 // templates. Macros of the user:
 //   TEXGEN_SCALAR            plain loops, as for every other compiler
 //   TEXGEN_NO_DISPATCH       only the instruction set of the flags
-//   TEXGEN_SEPARATE_KERNELS  the kernels are compiled in one file for all others of the same flags: in the file that
-//                            defines TEXGEN_DEFINE_KERNELS too, before it includes texgen
+//   TEXGEN_SEPARATE_KERNELS  the kernels are compiled in one file for all others of the same compiler and flags: in the
+//                            file that defines TEXGEN_DEFINE_KERNELS too, before it includes texgen
 
 #include <cmath>
 #include <cstddef>
@@ -205,8 +205,8 @@ struct FootprintKernels {
 
 }  // namespace TEXGEN_NAMESPACE::detail
 
-// TEXGEN_BUILD names what the flags decide. Every function that reaches the kernels stands in an inline namespace of that
-// name, so that translation units with different flags link, each with its own kernels.
+// TEXGEN_BUILD names the compiler and what the flags decide. Every function that reaches the kernels stands in an inline
+// namespace of that name, so that translation units of different ones link, each with its own kernels.
 #if !defined(TEXGEN_SCALAR) && (defined(__GNUC__) || defined(__clang__)) && defined(__has_builtin)
 #if __has_builtin(__builtin_shufflevector)
 #define TEXGEN_HAS_VECTORS
@@ -215,7 +215,7 @@ struct FootprintKernels {
 
 #ifndef TEXGEN_HAS_VECTORS
 
-#define TEXGEN_BUILD build_scalar
+#define TEXGEN_BUILD TEXGEN_NAMED(TEXGEN_COMPILER, _scalar)
 #define TEXGEN_INLINE inline
 
 namespace TEXGEN_NAMESPACE::detail {
@@ -323,7 +323,7 @@ TEXGEN_INLINE Pair magnitude(const Pair& a) noexcept { return larger(a, -a); }
 #if defined(__x86_64__) && !defined(TEXGEN_NO_DISPATCH) && !defined(__AVX512F__) && \
     !defined(TEXGEN_STACK_HOLDS_NARROW_VECTORS) && !defined(__CUDACC__) && !defined(__HIP__)
 
-#define TEXGEN_BUILD TEXGEN_FLAGS(build_dispatched_)
+#define TEXGEN_BUILD TEXGEN_NAMED(TEXGEN_COMPILER, TEXGEN_FLAGS(_dispatched_))
 
 #define TEXGEN_ISA avx512
 #define TEXGEN_LANE_BYTES 64
@@ -388,7 +388,7 @@ const Table& chosen() noexcept {
 
 #else
 
-#define TEXGEN_BUILD TEXGEN_FLAGS(build_)
+#define TEXGEN_BUILD TEXGEN_NAMED(TEXGEN_COMPILER, TEXGEN_FLAGS(_))
 
 namespace TEXGEN_NAMESPACE::detail {
 inline namespace TEXGEN_BUILD {

@@ -8,6 +8,8 @@
 
 #include <glm/vec2.hpp>
 
+#include "compiler.hpp"
+
 // All of the library stands in this namespace. What GLM aligns by default has another layout: files that do and files that
 // do not link into one program, each with types and functions of its own.
 #if defined(GLM_FORCE_DEFAULT_ALIGNED_GENTYPES) && GLM_CONFIG_ALIGNED_GENTYPES == GLM_ENABLE

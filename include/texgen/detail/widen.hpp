@@ -9,6 +9,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+
 namespace TEXGEN_NAMESPACE::detail {
 
 inline double widened(float value) noexcept {
