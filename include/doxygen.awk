@@ -114,7 +114,6 @@ FILENAME ~ /\.md$/ {
         }
         if (declares) sub(/ \/\/ /, " ///< ", code)
         # The namespace that a macro names is transparent.
-        if (code ~ /^namespace /) sub(/::inline TEXGEN_COMPILER/, "", code)
         print code ~ /^inline namespace TEXGEN_[A-Z]+ [{]$/ || (is_build[depth] && code ~ /^}/) ? "" : code
     }
     sub(/ *\/\/.*/, "", code)

@@ -1,3 +1,3 @@
-// The kernels of all tests: the one file of the macro's kind.
+// The kernels of all files of a program: the one file of the macro's kind.
 #define TEXGEN_DEFINE_KERNELS
 #include <texgen/texgen.hpp>

@@ -36,7 +36,8 @@ struct Viewport {
     int x, y, width, height;
 };
 
-namespace detail::inline TEXGEN_COMPILER {
+namespace detail {
+inline namespace TEXGEN_COMPILER {
 
 inline bool is_finite(const glm::vec4& v) noexcept {
     constexpr float largest = (std::numeric_limits<float>::max)();
@@ -128,7 +129,8 @@ std::size_t cut_convex(std::span<ClipVertex> storage, std::size_t count, const C
     return written < 3 ? 0 : written;
 }
 
-}  // namespace detail::inline TEXGEN_COMPILER
+}  // namespace TEXGEN_COMPILER
+}  // namespace detail
 
 inline namespace TEXGEN_COMPILER {
 
@@ -196,7 +198,8 @@ inline std::size_t clip_to_near(std::span<const ClipVertex> polygon, std::span<C
 
 }  // namespace TEXGEN_COMPILER
 
-namespace detail::inline TEXGEN_COMPILER {
+namespace detail {
+inline namespace TEXGEN_COMPILER {
 
 // The signed distance of (s, t, r, q) from a side of the slide, u >= min q or u <= max q for u = s or t, or from q >= 0:
 // in no unit; inside is >= 0.
@@ -309,7 +312,8 @@ std::size_t cut_edges(std::span<ClipVertex> storage, std::size_t count, const Si
     return written < 3 ? 0 : written;
 }
 
-}  // namespace detail::inline TEXGEN_COMPILER
+}  // namespace TEXGEN_COMPILER
+}  // namespace detail
 
 // The planes of the slide's region: q, s - min.x q, max.x q - s, t - min.y q, max.y q - t. A point of the space is lit
 // where all five are >= 0 (and q > 0): for gl_ClipDistance, or in eye space for glClipPlane.

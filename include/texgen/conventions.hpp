@@ -16,7 +16,8 @@ enum class DepthRange { negative_one_to_one, zero_to_one };  // NDC depth of the
 enum class NdcY { up, down };                                // where y grows to in NDC
 enum class TextureOrigin { bottom_left, top_left };          // the corner of the picture that (s, t) = (0, 0) addresses
 
-namespace detail::inline TEXGEN_COMPILER {
+namespace detail {
+inline namespace TEXGEN_COMPILER {
 
 // A member that has no default: leaving it out does not compile.
 template <class T>
@@ -29,7 +30,8 @@ private:
     T value_;
 };
 
-}  // namespace detail::inline TEXGEN_COMPILER
+}  // namespace TEXGEN_COMPILER
+}  // namespace detail
 
 // Three independent choices of a graphics API. There is no default: the caller says which one the numbers follow.
 struct Conventions {
@@ -115,14 +117,16 @@ struct Tolerance {
 
 inline constexpr Tolerance exact{0.0};  // the nearest float
 
-namespace detail::inline TEXGEN_COMPILER {
+namespace detail {
+inline namespace TEXGEN_COMPILER {
 
 // The error that a kernel may make: 0 for exact, and never so much that a float could leave its range.
 constexpr double accepted(Tolerance tolerance) noexcept {
     return tolerance.value > 0.0 ? (tolerance.value < 0x1p100 ? tolerance.value : 0x1p100) : 0.0;
 }
 
-}  // namespace detail::inline TEXGEN_COMPILER
+}  // namespace TEXGEN_COMPILER
+}  // namespace detail
 
 // A fraction of a texel of a texture of that size, for a region of one unit (a rectangle texture's unit is the texel:
 // Tolerance{fraction}). Exact where the size is not positive, or is so small that the quotient is no number.

@@ -125,7 +125,8 @@ struct Setup {
     LensFacts lens = {};
 };
 
-namespace detail::inline TEXGEN_COMPILER {
+namespace detail {
+inline namespace TEXGEN_COMPILER {
 
 struct Sentences {
     std::string_view what, remedy;
@@ -553,7 +554,8 @@ Diagnosis diagnose(const Setup<Space>& setup, bool are_planes) noexcept {
     return diagnosis;
 }
 
-}  // namespace detail::inline TEXGEN_COMPILER
+}  // namespace TEXGEN_COMPILER
+}  // namespace detail
 
 inline std::string_view Finding::what() const noexcept {
     return detail::sentences[static_cast<std::size_t>(defect)].what;

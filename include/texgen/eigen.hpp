@@ -25,7 +25,8 @@
 
 namespace TEXGEN_NAMESPACE {
 
-namespace detail::inline TEXGEN_COMPILER {
+namespace detail {
+inline namespace TEXGEN_COMPILER {
 
 template <class T>
 concept FloatOrDouble = std::same_as<T, float> || std::same_as<T, double>;
@@ -93,7 +94,8 @@ Positions<Space> positions_of(const X& x, const Y& y, const Z& z) noexcept {
             static_cast<std::size_t>(next) * sizeof(float)};
 }
 
-}  // namespace detail::inline TEXGEN_COMPILER
+}  // namespace TEXGEN_COMPILER
+}  // namespace detail
 
 // ---- Matrices --------------------------------------------------------------------------------------------------
 

@@ -76,7 +76,8 @@ struct FootprintExtremes {
     double largest_anisotropy;
 };
 
-namespace detail::inline TEXGEN_COMPILER {
+namespace detail {
+inline namespace TEXGEN_COMPILER {
 
 inline bool is_usable(const TexelsPerUnit& texels) noexcept {
     return texels.s > 0x1p-200 && texels.s < 0x1p200 && texels.t > 0x1p-200 && texels.t < 0x1p200;
@@ -126,7 +127,8 @@ Footprint footprint_of(const glm::dvec2& dx, const glm::dvec2& dy, const Determi
             glm::dvec2(major.x / texels.s, major.y / texels.t) * (length / scale)};
 }
 
-}  // namespace detail::inline TEXGEN_COMPILER
+}  // namespace TEXGEN_COMPILER
+}  // namespace detail
 
 inline namespace TEXGEN_COMPILER {
 
@@ -144,11 +146,13 @@ inline Footprint footprint_of(const glm::dvec2& dx, const glm::dvec2& dy, const 
 
 }  // namespace TEXGEN_COMPILER
 
-namespace detail::inline TEXGEN_COMPILER {
+namespace detail {
+inline namespace TEXGEN_COMPILER {
 inline namespace TEXGEN_BUILD {
 class TileFootprinter;
 }
-}  // namespace detail::inline TEXGEN_COMPILER
+}  // namespace TEXGEN_COMPILER
+}  // namespace detail
 
 inline namespace TEXGEN_COMPILER {
 class FootprintSetup;
@@ -286,7 +290,8 @@ private:
 
 }  // namespace TEXGEN_COMPILER
 
-namespace detail::inline TEXGEN_COMPILER {
+namespace detail {
+inline namespace TEXGEN_COMPILER {
 
 inline namespace TEXGEN_BUILD {
 
@@ -446,7 +451,8 @@ private:
 
 }  // namespace TEXGEN_BUILD
 
-}  // namespace detail::inline TEXGEN_COMPILER
+}  // namespace TEXGEN_COMPILER
+}  // namespace detail
 
 inline namespace TEXGEN_BUILD {
 

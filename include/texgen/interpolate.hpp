@@ -43,7 +43,8 @@
 
 namespace TEXGEN_NAMESPACE {
 
-namespace detail::inline TEXGEN_COMPILER {
+namespace detail {
+inline namespace TEXGEN_COMPILER {
 
 inline namespace TEXGEN_BUILD {
 
@@ -194,7 +195,8 @@ class TileInterpolator;
 
 }  // namespace TEXGEN_BUILD
 
-}  // namespace detail::inline TEXGEN_COMPILER
+}  // namespace TEXGEN_COMPILER
+}  // namespace detail
 
 inline namespace TEXGEN_COMPILER {
 class TriangleSetup;
@@ -276,7 +278,8 @@ private:
 
 static_assert(sizeof(TriangleSetup) <= 512);
 
-namespace detail::inline TEXGEN_COMPILER {
+namespace detail {
+inline namespace TEXGEN_COMPILER {
 
 inline namespace TEXGEN_BUILD {
 
@@ -333,7 +336,8 @@ inline void choose_factors(Plan& plan, const Corners& at, double tolerance) noex
 
 }  // namespace TEXGEN_BUILD
 
-}  // namespace detail::inline TEXGEN_COMPILER
+}  // namespace TEXGEN_COMPILER
+}  // namespace detail
 
 inline detail::Plan TriangleSetup::plan(const detail::Tile& tile, const detail::Corners& at) const noexcept {
     using detail::Place;
@@ -362,7 +366,8 @@ inline detail::TileSurvey TriangleSetup::survey(const detail::Tile& tile) const 
     }
 }
 
-namespace detail::inline TEXGEN_COMPILER {
+namespace detail {
+inline namespace TEXGEN_COMPILER {
 
 inline namespace TEXGEN_BUILD {
 
@@ -657,7 +662,8 @@ private:
 
 }  // namespace TEXGEN_BUILD
 
-}  // namespace detail::inline TEXGEN_COMPILER
+}  // namespace TEXGEN_COMPILER
+}  // namespace detail
 
 inline namespace TEXGEN_BUILD {
 
@@ -745,7 +751,8 @@ inline Work work(const Segment& segment, TextureRegion region, Tolerance toleran
                                                                                   : Work::divide_and_test;
 }
 
-namespace detail::inline TEXGEN_COMPILER {
+namespace detail {
+inline namespace TEXGEN_COMPILER {
 
 // A float stands for the segment's value at alpha exactly: A - alpha A + alpha B.
 inline Expansion<5> exactly_mixed(double a, double b, double alpha) noexcept {
@@ -878,7 +885,8 @@ inline void interpolate_job(const SegmentKernels& kernels, SegmentJob job, doubl
 
 }  // namespace TEXGEN_BUILD
 
-}  // namespace detail::inline TEXGEN_COMPILER
+}  // namespace TEXGEN_COMPILER
+}  // namespace detail
 
 inline namespace TEXGEN_COMPILER {
 

@@ -20,7 +20,8 @@
 
 namespace TEXGEN_NAMESPACE {
 
-namespace detail::inline TEXGEN_COMPILER {
+namespace detail {
+inline namespace TEXGEN_COMPILER {
 
 inline Transform<Texture, ProjectorEye> texture_from_projector_eye(const Projector& projector,
                                                                    const TextureRegion& region,
@@ -28,7 +29,8 @@ inline Transform<Texture, ProjectorEye> texture_from_projector_eye(const Project
     return scale_bias(projector.conventions, region, depth) * projector.projection;
 }
 
-}  // namespace detail::inline TEXGEN_COMPILER
+}  // namespace TEXGEN_COMPILER
+}  // namespace detail
 
 // Guarantee: S P_p V_p in double, 12 roundings a term at most; no allocation, noexcept.
 // Shape: world points to homogeneous (s, t, r, q) in the units of the region; q > 0 in front of the projector.

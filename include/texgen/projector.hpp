@@ -42,7 +42,8 @@ struct Aim {
     glm::dvec3 position, target, up;
 };
 
-namespace detail::inline TEXGEN_COMPILER {
+namespace detail {
+inline namespace TEXGEN_COMPILER {
 
 // Row z of a perspective matrix: clip z = scale * z_eye + offset, clip w = -z_eye.
 struct DepthRow {
@@ -97,7 +98,8 @@ inline double dot(const glm::dvec3& a, const glm::dvec3& b) noexcept {
     return sum.high;
 }
 
-}  // namespace detail::inline TEXGEN_COMPILER
+}  // namespace TEXGEN_COMPILER
+}  // namespace detail
 
 // Guarantee: each element within 4 double ulp for any lens in range, 0.1 to 179.99 degrees and far/near to 1e9 and
 // beyond; no allocation, noexcept. For OpenGL's conventions, with f = cot(fovy / 2):
@@ -216,7 +218,8 @@ struct Projector {
     ProjectorMatrix matrix() const noexcept { return projection * view; }  // P_p V_p
 };
 
-namespace detail::inline TEXGEN_COMPILER {
+namespace detail {
+inline namespace TEXGEN_COMPILER {
 
 inline std::optional<Projector> assemble(const std::optional<ProjectorProjection>& projection,
                                          const std::optional<ProjectorView>& view, Conventions conventions) noexcept {
@@ -224,7 +227,8 @@ inline std::optional<Projector> assemble(const std::optional<ProjectorProjection
     return Projector{*projection, *view, conventions};
 }
 
-}  // namespace detail::inline TEXGEN_COMPILER
+}  // namespace TEXGEN_COMPILER
+}  // namespace detail
 
 // A projector from a lens and an aim: empty where either is. Guarantees as perspective(), frustum(), orthographic() and
 // look_at().

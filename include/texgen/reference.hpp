@@ -20,7 +20,8 @@
 #include "primitives.hpp"
 #include "texcoord.hpp"
 
-namespace TEXGEN_NAMESPACE::reference::inline TEXGEN_COMPILER {
+namespace TEXGEN_NAMESPACE::reference {
+inline namespace TEXGEN_COMPILER {
 
 // Columns of a scalar.
 template <class Scalar>
@@ -205,4 +206,5 @@ inline void interpolate(const Triangle& triangle, TextureRegion region, Fragment
     }
 }
 
-}  // namespace TEXGEN_NAMESPACE::reference::inline TEXGEN_COMPILER
+}  // namespace TEXGEN_COMPILER
+}  // namespace TEXGEN_NAMESPACE::reference

@@ -14,7 +14,8 @@
 
 namespace TEXGEN_NAMESPACE {
 
-namespace detail::inline TEXGEN_COMPILER {
+namespace detail {
+inline namespace TEXGEN_COMPILER {
 
 // Per coordinate: texture = at_minus_w * (w - c)/2 + at_plus_w * (w + c)/2, c the clip coordinate. The two ends say
 // everything about the conventions.
@@ -41,7 +42,8 @@ constexpr TextureRemap texture_remap(Conventions conventions, const TextureRegio
             halve_depth ? RemapEnds{0.0, 1.0} : RemapEnds{-1.0, 1.0}};
 }
 
-}  // namespace detail::inline TEXGEN_COMPILER
+}  // namespace TEXGEN_COMPILER
+}  // namespace detail
 
 // Guarantee: S in double, each element within one rounding (exact for the whole texture); no allocation, noexcept.
 // For OpenGL's conventions, the whole texture and unit depth this is Everitt's

@@ -49,7 +49,8 @@ struct Sphere {
     float radius;
 };
 
-namespace detail::inline TEXGEN_COMPILER {
+namespace detail {
+inline namespace TEXGEN_COMPILER {
 
 // Neither empty nor with a NaN.
 inline bool is_proper(const Box& box) noexcept {
@@ -256,7 +257,8 @@ inline Coverage coverage_of(const LitForms& forms, const Sphere& sphere) noexcep
     return Coverage::partial;
 }
 
-}  // namespace detail::inline TEXGEN_COMPILER
+}  // namespace TEXGEN_COMPILER
+}  // namespace detail
 
 inline namespace TEXGEN_BUILD {
 

@@ -81,7 +81,8 @@ private:
     std::size_t stride_bytes_;
 };
 
-namespace detail::inline TEXGEN_COMPILER {
+namespace detail {
+inline namespace TEXGEN_COMPILER {
 
 template <class Space>
 Positions<Space> interleaved(std::span<const glm::vec3> points) noexcept {
@@ -101,7 +102,8 @@ Positions<Space> strided(const float* first, std::size_t count, std::size_t stri
     return {first, first + (count != 0 ? 1 : 0), first + (count != 0 ? 2 : 0), count, stride_bytes};
 }
 
-}  // namespace detail::inline TEXGEN_COMPILER
+}  // namespace TEXGEN_COMPILER
+}  // namespace detail
 
 // Points of a space from an array of vectors, from three arrays (of one size, asserted), or from x, y, z that follow one
 // another every stride_bytes.
@@ -137,7 +139,8 @@ inline Positions<Eye> eye_space(const float* first, std::size_t count, std::size
     return detail::strided<Eye>(first, count, stride_bytes);
 }
 
-namespace detail::inline TEXGEN_COMPILER {
+namespace detail {
+inline namespace TEXGEN_COMPILER {
 
 // A row of a texgen matrix as a linear form of points with w = 1.
 inline PointForm form(const glm::dmat4& matrix, int row) noexcept {
@@ -406,7 +409,8 @@ void generate_all(const glm::dmat4& matrix, const Positions<Space>& positions, f
 
 }  // namespace TEXGEN_BUILD
 
-}  // namespace detail::inline TEXGEN_COMPILER
+}  // namespace TEXGEN_COMPILER
+}  // namespace detail
 
 // Guarantee: |computed - exact| of each coordinate (s, t, r, q) that generate() gives is at most this for every position,
 // the rounding to float included: 1/2 ulp + 2^-50 sum |T_ij v_j|, where that is largest. No allocation, noexcept; it looks
