@@ -6,7 +6,6 @@
 
 #include <glm/vec2.hpp>
 
-
 // 0.1.0: 10000 major + 100 minor + patch.
 #define TEXGEN_VERSION 100
 

@@ -229,7 +229,7 @@ MUTANTS = [
           "return detail::larger", "work_test"),
          ("the factors' remainder is halved", "reach * share + rest;", "reach * (0.5 * share) + rest;",
           "tolerance_test work_test"),
-         ("r is divided by the plan of s and t", "interpolator.shade(tile);", "interpolator.shade(tile, at, plan);",
+         ("r is divided by the plan of s and t", "interpolator.interpolate(tile);", "interpolator.interpolate(tile, found.at, plan);",
           "interpolate_test tolerance_test"),
          ("strips overlap by one", "const std::int64_t rest = tile.x + tile.width - strip.x;",
           "const std::int64_t rest = tile.x + tile.width - strip.x - 1;", "interpolate_test"),

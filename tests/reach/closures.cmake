@@ -1,7 +1,7 @@
 cmake_minimum_required(VERSION 3.25)
 
 # Every name of a function that the linker shares and that has a closure in it has the compiler's name too (see
-# detail/compiler.hpp). At -O0 no function is inlined, and g++ keeps those that are not called.
+# detail/language.hpp). At -O0 no function is inlined, and g++ keeps those that are not called.
 find_program(compiler ${COMPILER})
 find_program(nm nm)
 if(NOT compiler OR NOT nm)

@@ -24,7 +24,7 @@
 #include "rounding.hpp"
 #include "widen.hpp"
 
-namespace TEXGEN_NAMESPACE::detail {
+namespace TEXGEN_DETAIL {
 
 // Where M v is for the points v of an object's box. All numbers are finite.
 struct WorldBounds {
@@ -317,4 +317,4 @@ private:
     std::size_t moves_ = 0;
 };
 
-}  // namespace TEXGEN_NAMESPACE::detail
+}  // namespace TEXGEN_DETAIL

@@ -5,8 +5,7 @@
 #include <array>
 #include <cstddef>
 
-
-namespace TEXGEN_NAMESPACE::detail {
+namespace TEXGEN_DETAIL {
 
 // a . (x, y, z) + d, known to within error_a (|x| + |y| + |z|) + error_d when it is computed in double in any order. A
 // coordinate whose coefficient is exactly 0 is not used: there a box may be infinite.
@@ -57,4 +56,4 @@ struct BoxKernels {
                      double* least_of_largest) noexcept;
 };
 
-}  // namespace TEXGEN_NAMESPACE::detail
+}  // namespace TEXGEN_DETAIL

@@ -1,7 +1,7 @@
 // Boxes against linear forms. Included by lanes.hpp once per instruction set. A form is largest over a box at the vertex
 // that the signs of its coefficients pick, and least at the opposite one: one choice for all the boxes of a call.
 
-namespace TEXGEN_NAMESPACE::detail::TEXGEN_ISA {
+namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
 // Where the largest value of a form is negative, the box is outside; where the least of all are positive, inside. An
 // infinity makes the error one, and nothing is certain. Where min <= max, the larger magnitude is that of -min or max.
@@ -59,4 +59,4 @@ void separate(const BoundedForm* forms, std::size_t count, const BoxBlock& boxes
     }
 }
 
-}  // namespace TEXGEN_NAMESPACE::detail::TEXGEN_ISA
+}  // namespace TEXGEN_DETAIL::TEXGEN_ISA

@@ -16,7 +16,7 @@
 #include "planes.hpp"
 #include "rounding.hpp"
 
-namespace TEXGEN_NAMESPACE::detail {
+namespace TEXGEN_DETAIL {
 
 // base + i dx + j dy, within `error` of the exact value at every fragment of the tile that it was made for. The exact value is a
 // multiple of `grain`, a power of two (or 0, where that is not known).
@@ -137,4 +137,4 @@ inline Bounded close_to(const TrianglePlanes& planes, glm::length_t coordinate, 
     return {value, ramp.error + 0x1p-52 * std::fabs(value)};
 }
 
-}  // namespace TEXGEN_NAMESPACE::detail
+}  // namespace TEXGEN_DETAIL

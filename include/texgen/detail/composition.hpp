@@ -14,7 +14,7 @@
 #include "../scale_bias.hpp"
 #include "inverse.hpp"
 
-namespace TEXGEN_NAMESPACE::detail {
+namespace TEXGEN_DETAIL {
 
 inline glm::dmat4 transposed(const glm::dmat4& m) noexcept {
     glm::dmat4 result(0.0);
@@ -231,4 +231,4 @@ inline std::optional<Composition> composition_of(const glm::dmat4& texgen, const
     return is_near ? Composition{} : composition_of(texgen, factors, 2, composed_in_float);
 }
 
-}  // namespace TEXGEN_NAMESPACE::detail
+}  // namespace TEXGEN_DETAIL

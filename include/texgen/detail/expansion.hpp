@@ -8,7 +8,7 @@
 
 #include "rounding.hpp"
 
-namespace TEXGEN_NAMESPACE::detail {
+namespace TEXGEN_DETAIL {
 
 // The exact value of a sum, kept as at most Capacity doubles that do not overlap, smallest first.
 // Exact while no product leaves 2^-960 .. 2^1000, which products of five floats cannot, and whichever way the caller's
@@ -67,4 +67,4 @@ private:
     bool rounds_to_nearest_ = rounds_to_nearest();
 };
 
-}  // namespace TEXGEN_NAMESPACE::detail
+}  // namespace TEXGEN_DETAIL

@@ -1,6 +1,6 @@
 // The inner loops of footprints. Included by kernels.inc.hpp.
 
-namespace TEXGEN_NAMESPACE::detail::TEXGEN_ISA {
+namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
 TEXGEN_INLINE const WideFloats& to_floats(const WideFloats& values) noexcept { return values; }
 
@@ -175,4 +175,4 @@ int filter(const FootprintJob& original, int first) noexcept {
     return shape ? filter_rows<false, true>(job, first) : filter_rows<false, false>(job, first);
 }
 
-}  // namespace TEXGEN_NAMESPACE::detail::TEXGEN_ISA
+}  // namespace TEXGEN_DETAIL::TEXGEN_ISA

@@ -16,7 +16,7 @@
 
 #include "rounding.hpp"
 
-namespace TEXGEN_NAMESPACE::detail {
+namespace TEXGEN_DETAIL {
 
 // A convex polygon of the window: a triangle or a rectangle, cut by the sides of a box.
 class WindowPolygon {
@@ -222,4 +222,4 @@ inline double largest_anisotropy(const FootprintField& field, const WindowPolygo
     return largest;
 }
 
-}  // namespace TEXGEN_NAMESPACE::detail
+}  // namespace TEXGEN_DETAIL

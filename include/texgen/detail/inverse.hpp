@@ -13,7 +13,7 @@
 
 #include "rounding.hpp"
 
-namespace TEXGEN_NAMESPACE::detail {
+namespace TEXGEN_DETAIL {
 
 inline bool is_finite(double value) noexcept { return std::fabs(value) <= 1.7976931348623157e308; }
 
@@ -292,4 +292,4 @@ inline double distance_from_rigid(const glm::dmat4& m) noexcept {
     return distance;
 }
 
-}  // namespace TEXGEN_NAMESPACE::detail
+}  // namespace TEXGEN_DETAIL

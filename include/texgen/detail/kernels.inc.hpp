@@ -1,7 +1,7 @@
 // The inner loops. Included by lanes.hpp once per instruction set, inside that set's target region, so that one source
 // serves all of them. A kernel gets plain numbers; the only decision it makes is how a chunk of a row is divided.
 
-namespace TEXGEN_NAMESPACE::detail::TEXGEN_ISA {
+namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
 // Where a row of a TileJob goes. Where there is a mask, the numerators are s and t. A copy, so that the compiler knows that
 // no store changes it.
@@ -798,12 +798,12 @@ std::size_t divide_segment_float(const SegmentJob& original, std::size_t first) 
     return job.numerators == 2 ? divide_segment_float_of<2>(job, first) : divide_segment_float_of<1>(job, first);
 }
 
-}  // namespace TEXGEN_NAMESPACE::detail::TEXGEN_ISA
+}  // namespace TEXGEN_DETAIL::TEXGEN_ISA
 
 #include "boxes.inc.hpp"
 #include "footprint.inc.hpp"
 
-namespace TEXGEN_NAMESPACE::detail::TEXGEN_ISA {
+namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
 // ---- The tables ------------------------------------------------------------------------------------------------
 
@@ -828,4 +828,4 @@ const Table& kernels() noexcept {
     }
 }
 
-}  // namespace TEXGEN_NAMESPACE::detail::TEXGEN_ISA
+}  // namespace TEXGEN_DETAIL::TEXGEN_ISA

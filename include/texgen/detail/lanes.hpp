@@ -22,7 +22,7 @@
 #include "language.hpp"
 #include "rounding.hpp"
 
-namespace TEXGEN_NAMESPACE::detail {
+namespace TEXGEN_DETAIL {
 
 // Linear functions over a rectangle of fragments: base at its first fragment.
 template <class Number>
@@ -203,7 +203,7 @@ struct FootprintKernels {
     int (*filter)(const FootprintJob&, int first) noexcept;
 };
 
-}  // namespace TEXGEN_NAMESPACE::detail
+}  // namespace TEXGEN_DETAIL
 
 // TEXGEN_BUILD names the compiler and what the flags decide. Every function that reaches the kernels stands in an inline
 // namespace of that name, so that translation units of different ones link, each with its own kernels.
@@ -218,7 +218,7 @@ struct FootprintKernels {
 #define TEXGEN_BUILD TEXGEN_NAMED(TEXGEN_COMPILER, _scalar)
 #define TEXGEN_INLINE inline
 
-namespace TEXGEN_NAMESPACE::detail {
+namespace TEXGEN_DETAIL {
 
 // Two doubles at a time, for s and t. Laid out as those below.
 struct alignas(16) Pair {
@@ -238,7 +238,7 @@ inline Pair magnitude(const Pair& a) noexcept { return {{magnitude(a[0]), magnit
 inline Pair smaller(const Pair& a, const Pair& b) noexcept { return {{smaller(a[0], b[0]), smaller(a[1], b[1])}}; }
 inline Pair larger(const Pair& a, const Pair& b) noexcept { return {{larger(a[0], b[0]), larger(a[1], b[1])}}; }
 
-}  // namespace TEXGEN_NAMESPACE::detail
+}  // namespace TEXGEN_DETAIL
 
 #define TEXGEN_ISA scalar
 #include "loops.inc.hpp"
@@ -247,14 +247,14 @@ inline Pair larger(const Pair& a, const Pair& b) noexcept { return {{larger(a[0]
 #undef TEXGEN_ISA
 #undef TEXGEN_INLINE
 
-namespace TEXGEN_NAMESPACE::detail {
+namespace TEXGEN_DETAIL {
 inline namespace TEXGEN_BUILD {
 template <class Table>
 const Table& chosen() noexcept {
     return scalar::kernels<Table>();
 }
 }  // namespace TEXGEN_BUILD
-}  // namespace TEXGEN_NAMESPACE::detail
+}  // namespace TEXGEN_DETAIL
 
 #else
 
@@ -297,7 +297,7 @@ const Table& chosen() noexcept {
 #define TEXGEN_EIGHT_DOUBLES(values) __builtin_ia32_cvtps2pd512_mask(values, Doubles{}, char{-1}, 4)
 #endif
 
-namespace TEXGEN_NAMESPACE::detail {
+namespace TEXGEN_DETAIL {
 
 // Two doubles at a time, for s and t.
 using Pair [[gnu::vector_size(16)]] = double;
@@ -306,7 +306,7 @@ TEXGEN_INLINE Pair smaller(const Pair& a, const Pair& b) noexcept { return a < b
 TEXGEN_INLINE Pair larger(const Pair& a, const Pair& b) noexcept { return a > b ? a : b; }
 TEXGEN_INLINE Pair magnitude(const Pair& a) noexcept { return larger(a, -a); }
 
-}  // namespace TEXGEN_NAMESPACE::detail
+}  // namespace TEXGEN_DETAIL
 
 // Vector arguments never cross a call that is not inlined, so their calling convention does not matter.
 #pragma GCC diagnostic push
@@ -364,7 +364,7 @@ TEXGEN_INLINE Pair magnitude(const Pair& a) noexcept { return larger(a, -a); }
 #undef TEXGEN_ISA
 #undef TEXGEN_LANE_BYTES
 
-namespace TEXGEN_NAMESPACE::detail {
+namespace TEXGEN_DETAIL {
 inline namespace TEXGEN_BUILD {
 
 template <class Table>
@@ -384,20 +384,20 @@ const Table& chosen() noexcept {
 }
 
 }  // namespace TEXGEN_BUILD
-}  // namespace TEXGEN_NAMESPACE::detail
+}  // namespace TEXGEN_DETAIL
 
 #else
 
 #define TEXGEN_BUILD TEXGEN_NAMED(TEXGEN_COMPILER, TEXGEN_FLAGS(_))
 
-namespace TEXGEN_NAMESPACE::detail {
+namespace TEXGEN_DETAIL {
 inline namespace TEXGEN_BUILD {
 template <class Table>
 const Table& chosen() noexcept {
     return TEXGEN_FLAGS(flags_)::kernels<Table>();
 }
 }  // namespace TEXGEN_BUILD
-}  // namespace TEXGEN_NAMESPACE::detail
+}  // namespace TEXGEN_DETAIL
 
 #endif
 
@@ -415,7 +415,7 @@ const Table& chosen() noexcept {
 #else
 #define TEXGEN_EXTERN extern
 #endif
-namespace TEXGEN_NAMESPACE::detail {
+namespace TEXGEN_DETAIL {
 inline namespace TEXGEN_BUILD {
 TEXGEN_EXTERN template const TileKernels& chosen<TileKernels>() noexcept;
 TEXGEN_EXTERN template const PointKernels& chosen<PointKernels>() noexcept;
@@ -423,6 +423,6 @@ TEXGEN_EXTERN template const SegmentKernels& chosen<SegmentKernels>() noexcept;
 TEXGEN_EXTERN template const FootprintKernels& chosen<FootprintKernels>() noexcept;
 TEXGEN_EXTERN template const BoxKernels& chosen<BoxKernels>() noexcept;
 }  // namespace TEXGEN_BUILD
-}  // namespace TEXGEN_NAMESPACE::detail
+}  // namespace TEXGEN_DETAIL
 #undef TEXGEN_EXTERN
 #endif

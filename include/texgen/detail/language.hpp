@@ -8,8 +8,6 @@
 
 #include <glm/vec2.hpp>
 
-#include "compiler.hpp"
-
 // All of the library stands in this namespace. What GLM aligns by default has another layout: files that do and files that
 // do not link into one program, each with types and functions of its own.
 #if defined(GLM_FORCE_DEFAULT_ALIGNED_GENTYPES) && GLM_CONFIG_ALIGNED_GENTYPES == GLM_ENABLE
@@ -20,7 +18,26 @@ static_assert(glm::defaultp == glm::aligned_highp, "GLM was configured otherwise
 static_assert(glm::defaultp == glm::packed_highp, "GLM was configured otherwise when it was included first");
 #endif
 
-namespace TEXGEN_NAMESPACE::detail {
+// The compiler's name, for an inline namespace around all that makes closures or takes them. Compilers agree on the name of a
+// closure's type, and of what takes it, but not on its layout; so what one compiler made must not be linked to what another
+// did, as the linker else may with the functions of a header.
+
+#define TEXGEN_JOINED(name, version) name##version
+#define TEXGEN_NAMED(name, version) TEXGEN_JOINED(name, version)
+#if defined(__clang__)
+#define TEXGEN_COMPILER TEXGEN_NAMED(clang, __clang_major__)
+#elif defined(__GNUC__)
+#define TEXGEN_COMPILER TEXGEN_NAMED(gcc, __GNUC__)
+#elif defined(_MSC_VER)
+#define TEXGEN_COMPILER TEXGEN_NAMED(msvc, _MSC_VER)
+#else
+#define TEXGEN_COMPILER other_compiler
+#endif
+
+// What is not public stands in this one.
+#define TEXGEN_DETAIL TEXGEN_NAMESPACE::detail::inline TEXGEN_COMPILER
+
+namespace TEXGEN_DETAIL {
 
 // std::bit_cast, which standard libraries got later than the compilers that they come with.
 template <class To, class From>
@@ -29,4 +46,4 @@ constexpr To bit_cast(const From& from) noexcept {
     return __builtin_bit_cast(To, from);
 }
 
-}  // namespace TEXGEN_NAMESPACE::detail
+}  // namespace TEXGEN_DETAIL

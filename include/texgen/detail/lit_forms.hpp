@@ -22,7 +22,7 @@
 #include "nearest.hpp"
 #include "rounding.hpp"
 
-namespace TEXGEN_NAMESPACE::detail {
+namespace TEXGEN_DETAIL {
 
 // The coordinates of a vertex, or of the middle of a sphere.
 using Point = std::array<double, 3>;
@@ -337,4 +337,4 @@ private:
     bool lights_nothing_;
 };
 
-}  // namespace TEXGEN_NAMESPACE::detail
+}  // namespace TEXGEN_DETAIL

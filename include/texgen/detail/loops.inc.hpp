@@ -1,6 +1,6 @@
 // The plain-loop twin of vectors.inc.hpp, for compilers without vectors in the language. Included by lanes.hpp.
 
-namespace TEXGEN_NAMESPACE::detail::TEXGEN_ISA {
+namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
 inline constexpr int lanes = 8;  // of Doubles, and of the Floats that they round to
 inline constexpr int wide_lanes = 8;
@@ -239,4 +239,4 @@ TEXGEN_INLINE bool any(const Words& mask) noexcept {
     return all != 0;
 }
 
-}  // namespace TEXGEN_NAMESPACE::detail::TEXGEN_ISA
+}  // namespace TEXGEN_DETAIL::TEXGEN_ISA

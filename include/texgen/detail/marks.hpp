@@ -18,7 +18,7 @@
 #include "language.hpp"
 #include "rounding.hpp"
 
-namespace TEXGEN_NAMESPACE::detail {
+namespace TEXGEN_DETAIL {
 
 // Whether the matrix was rounded to float on its way: every element is a float, and of the axes one has more bits than
 // the round numbers of a scene that is aligned with them.
@@ -174,4 +174,4 @@ inline bool is_mirrored(const glm::dmat4& texgen, const glm::dmat4& world_from_s
     return ((picture.value > 0.0) == (pose.value > 0.0)) == (origin == TextureOrigin::bottom_left);
 }
 
-}  // namespace TEXGEN_NAMESPACE::detail
+}  // namespace TEXGEN_DETAIL

@@ -14,7 +14,7 @@
 #include "language.hpp"
 #include "rounding.hpp"
 
-namespace TEXGEN_NAMESPACE::detail {
+namespace TEXGEN_DETAIL {
 
 // Whether every real number within `error` of `value` rounds to one float; then that float is the nearest of them all.
 // Source: Ziv, Fast evaluation of elementary mathematical functions with correctly rounded last bit, ACM TOMS 17 (1991).
@@ -134,4 +134,4 @@ private:
     float max_[2];
 };
 
-}  // namespace TEXGEN_NAMESPACE::detail
+}  // namespace TEXGEN_DETAIL

@@ -24,7 +24,7 @@
 #include "rounding.hpp"
 #include "widen.hpp"
 
-namespace TEXGEN_NAMESPACE::detail {
+namespace TEXGEN_DETAIL {
 
 // A rectangle of fragments inside the one that the caller asked for. Wide enough for any int plus any int.
 struct Tile {
@@ -323,4 +323,4 @@ private:
     double weight_[3];  // w_j w_k times a common factor, with the sign of the orientation
 };
 
-}  // namespace TEXGEN_NAMESPACE::detail
+}  // namespace TEXGEN_DETAIL

@@ -32,7 +32,7 @@
     "texgen computes with proved error bounds, which need float and double arithmetic in their own precision, not in that of the x87: compile with -msse2 -mfpmath=sse, or /arch:SSE2."
 #endif
 
-namespace TEXGEN_NAMESPACE::detail {
+namespace TEXGEN_DETAIL {
 
 inline constexpr double unit_roundoff_float = 0x1p-24;
 inline constexpr double unit_roundoff_double = 0x1p-53;
@@ -190,4 +190,4 @@ inline double difference_of_products(double a, double b, double c, double d) noe
     return std::fma(a, b, -cd) + std::fma(-c, d, cd);
 }
 
-}  // namespace TEXGEN_NAMESPACE::detail
+}  // namespace TEXGEN_DETAIL

@@ -1,7 +1,7 @@
 // Vectors as GCC and Clang have them in the language. Included by lanes.hpp once per instruction set; the plain-loop
 // twin of this file is loops.inc.hpp.
 
-namespace TEXGEN_NAMESPACE::detail::TEXGEN_ISA {
+namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
 inline constexpr int lanes = TEXGEN_LANE_BYTES / 8;  // of Doubles, and of the Floats that they round to
 inline constexpr int wide_lanes = TEXGEN_LANE_BYTES / 4;
@@ -221,4 +221,4 @@ TEXGEN_INLINE bool any(const Words& mask) noexcept {
 #endif
 }
 
-}  // namespace TEXGEN_NAMESPACE::detail::TEXGEN_ISA
+}  // namespace TEXGEN_DETAIL::TEXGEN_ISA

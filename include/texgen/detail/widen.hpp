@@ -9,8 +9,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
-
-namespace TEXGEN_NAMESPACE::detail {
+namespace TEXGEN_DETAIL {
 
 inline double widened(float value) noexcept {
     const volatile float given = value;
@@ -27,4 +26,4 @@ inline glm::dmat4 widened(const glm::mat4& m) noexcept {
     return {widened(m[0]), widened(m[1]), widened(m[2]), widened(m[3])};
 }
 
-}  // namespace TEXGEN_NAMESPACE::detail
+}  // namespace TEXGEN_DETAIL
