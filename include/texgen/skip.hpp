@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <span>
 
 #include <glm/vec3.hpp>
@@ -116,39 +117,81 @@ inline Coverage exact_coverage(const LitForms& forms, const Box& box) noexcept {
 
 inline namespace TEXGEN_BUILD {
 
-// Boxes that the five planes leave partial, gathered until they fill vectors.
-class PartialBoxes {
+// Boxes of which floats do not say that they are outside or inside, gathered until they fill vectors.
+class OpenBoxes {
 public:
-    explicit PartialBoxes(const BoxKernels& kernels) noexcept : kernels_(kernels) {}
+    OpenBoxes(const BoxKernels& kernels, const LitForms& forms) noexcept
+        : kernels_(kernels), forms_(forms), has_forms_(forms.are_usable() && !forms.light_nothing()) {}
 
-    void add_if_partial(const LitForms& forms, const Box& box, Coverage& out) noexcept {
-        if (out != Coverage::partial || !is_proper(box) || !forms.are_usable()) return;
-        for (glm::length_t j = 0; j < 3; ++j) {
-            const auto min = static_cast<double>(box.min[j]);
-            const auto max = static_cast<double>(box.max[j]);
-            block_.min[j][count_] = min;
-            block_.max[j][count_] = max;
-            block_.size[j][count_] = larger(-min, max);
+    // A box that is partial to the five planes, or in doubt.
+    void add(const Box& box, bool is_in_doubt, Coverage& out) noexcept {
+        // Without a branch for each.
+        bool has_points = has_forms_;
+        for (std::size_t j = 0; j < 3; ++j) {
+            const float min = box.min[static_cast<glm::length_t>(j)];
+            const float max = box.max[static_cast<glm::length_t>(j)];
+            has_points &= min <= max;
+            has_points &= min <= std::numeric_limits<float>::max();
+            has_points &= max >= std::numeric_limits<float>::lowest();
+            block_.min[j][count_] = static_cast<double>(min);
+            block_.max[j][count_] = static_cast<double>(max);
         }
+        if (!has_points) {
+            out = exact_coverage(forms_, box);
+            return;
+        }
+        box_[count_] = &box;
         out_[count_] = &out;
-        if (++count_ == box_block) separate(forms);
+        is_in_doubt_ = is_in_doubt_ || is_in_doubt;
+        if (++count_ == box_block) decide();
     }
 
-    // Those that a further plane separates from the pyramid are outside.
-    void separate(const LitForms& forms) noexcept {
+    // The five planes in double, where there is doubt; and those that a further plane separates from the pyramid are
+    // outside.
+    void decide() noexcept {
         if (count_ == 0) return;
-        double least_of_largest[box_block];
-        kernels_.separate(forms.separating(), forms.separating_count(), block_, least_of_largest);
-        for (std::size_t i = 0; i < count_; ++i)
-            *out_[i] = least_of_largest[i] < 0.0 ? Coverage::outside : Coverage::partial;
+        for (std::size_t i = 0; i < count_; ++i) *out_[i] = Coverage::partial;
+        if (is_in_doubt_) decide_doubt();
+        bool any_is_partial = false;
+        for (std::size_t i = 0; i < count_; ++i) any_is_partial |= *out_[i] == Coverage::partial;
+        if (any_is_partial) separate();
         count_ = 0;
+        is_in_doubt_ = false;
     }
 
 private:
+    void separate() noexcept {
+        double least_of_largest[box_block];
+        kernels_.separate(forms_.separating(), forms_.separating_count(), block_, least_of_largest);
+        for (std::size_t i = 0; i < count_; ++i)
+            if (*out_[i] == Coverage::partial && least_of_largest[i] < 0.0) *out_[i] = Coverage::outside;
+    }
+
+    void decide_doubt() noexcept {
+        if (!double_forms_) double_forms_ = forms_.in_double();
+        BoxBounds bounds;
+        kernels_.bound(*double_forms_, block_, bounds);
+        for (std::size_t i = 0; i < count_; ++i) {
+            if (bounds.upper[i] < 0.0)
+                *out_[i] = Coverage::outside;
+            else if (bounds.lower[i] < 0.0)
+                *out_[i] = exact_coverage(forms_, *box_[i]);
+            else if (bounds.inner_lower[i] >= 0.0)
+                *out_[i] = Coverage::inside;
+            else if (!(bounds.inner_upper[i] < 0.0))
+                *out_[i] = exact_coverage(forms_, *box_[i]);
+        }
+    }
+
     const BoxKernels& kernels_;
+    const LitForms& forms_;
+    std::optional<DoubleForms> double_forms_;
     BoxBlock block_{};
+    const Box* box_[box_block];
     Coverage* out_[box_block];
     std::size_t count_ = 0;
+    bool has_forms_;
+    bool is_in_doubt_ = false;
 };
 
 template <class = void>
@@ -159,7 +202,7 @@ void cover(const LitForms& forms, const FloatForms& float_forms, std::span<const
     constexpr bool is_dense = sizeof(Box) == 6 * sizeof(float);
     constexpr std::size_t copied = is_dense ? box_quantum : chunk;
     const BoxKernels& kernels = chosen<BoxKernels>();
-    PartialBoxes partial(kernels);
+    OpenBoxes open_boxes(kernels, forms);
     int classes[chunk];
     std::size_t open[chunk];
     for (std::size_t begin = 0; begin < boxes.size();) {
@@ -188,14 +231,12 @@ void cover(const LitForms& forms, const FloatForms& float_forms, std::span<const
             open_count += static_cast<std::size_t>(classes[i] & 1);
         }
         for (std::size_t k = 0; k < open_count; ++k) {
-            const Box& box = boxes[open[k]];
             Coverage& result = out[open[k]];
-            if (result != Coverage::partial) result = exact_coverage(forms, box);
-            partial.add_if_partial(forms, box, result);
+            open_boxes.add(boxes[open[k]], result != Coverage::partial, result);
         }
         begin += count;
     }
-    partial.separate(forms);
+    open_boxes.decide();
 }
 
 // One box: the planes are decided exactly at once, which says what the floats would.
@@ -203,9 +244,9 @@ template <class = void>
 Coverage coverage_of(const LitForms& forms, const Box& box) noexcept {
     Coverage result = exact_coverage(forms, box);
     if (result != Coverage::partial) return result;
-    PartialBoxes partial(chosen<BoxKernels>());
-    partial.add_if_partial(forms, box, result);
-    partial.separate(forms);
+    OpenBoxes open_boxes(chosen<BoxKernels>(), forms);
+    open_boxes.add(box, false, result);
+    open_boxes.decide();
     return result;
 }
 

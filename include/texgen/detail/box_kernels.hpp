@@ -31,6 +31,25 @@ struct FloatForms {
     float error_per_size, error;
 };
 
+// of_row * row + of_q * q, exactly, and its four coefficients, each rounded once.
+struct ExactForm {
+    const double* row;
+    const double* q;
+    double of_row, of_q;
+    std::array<double, 4> rounded;
+};
+
+// The same five for boxes that floats leave in doubt, and the inner ones. A point is outside where
+// a form is below least_lit.
+struct DoubleForms {
+    struct Form {
+        ExactForm outer, inner;
+        double least_lit;  // 0, and for q a number that is smaller than any other value
+    };
+    std::array<Form, lit_form_count> form;
+    bool sums_are_exact;  // whether two_sum() is what it says in the caller's state
+};
+
 // What the five forms say of a box: the numbers of Coverage's enumerators, or doubt.
 inline constexpr int box_outside = 0;
 inline constexpr int box_partial = 1;
@@ -40,17 +59,25 @@ inline constexpr int box_doubtful = 3;
 // classify() takes a multiple of box_quantum.
 inline constexpr std::size_t box_quantum = 16;
 
-// Boxes, planar. size is the larger magnitude of both sides.
+// Boxes, planar.
 inline constexpr std::size_t box_block = 8;
 struct BoxBlock {
     double min[3][box_block];
     double max[3][box_block];
-    double size[3][box_block];
+};
+
+// Bounds on the least over the five forms of the largest value over each box, and on the least of the inner ones: their
+// signs are right, and where a lower one is negative beside an upper one that is not, nothing is known.
+struct BoxBounds {
+    double lower[box_block], upper[box_block];
+    double inner_lower[box_block], inner_upper[box_block];
 };
 
 struct BoxKernels {
     // What floats are certain of. A box is six floats, min first. NaN, infinities and empty boxes are doubtful.
     void (*classify)(const FloatForms& forms, const float* boxes, std::size_t count, int* classes) noexcept;
+    // What doubles are certain of, and where they are not, pairs of doubles. For proper boxes, which may be infinite.
+    void (*bound)(const DoubleForms& forms, const BoxBlock& boxes, BoxBounds& bounds) noexcept;
     // The least over the forms of the largest value over each box, never below the exact one.
     void (*separate)(const BoundedForm* forms, std::size_t count, const BoxBlock& boxes,
                      double* least_of_largest) noexcept;

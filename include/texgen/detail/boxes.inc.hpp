@@ -40,18 +40,128 @@ void classify(const FloatForms& original, const float* boxes, std::size_t count,
     }
 }
 
+// A sum of exact terms as two doubles, and how much at most that leaves out: 0 where all of it is in the two, as it is for
+// numbers with few digits, however much they cancel. Source: Knuth's two_sum(), see rounding.hpp; Ogita, Rump, Oishi,
+// Accurate Sum and Dot Product, SIAM J. Sci. Comput. 26 (2005), Sum2.
+struct LongSum {
+    Doubles high{}, low{}, lost{};
+
+    TEXGEN_INLINE static Doubles add(Doubles& sum, const Doubles& term) noexcept {
+        const Doubles first = sum;
+        sum = first + term;
+        const Doubles term_part = sum - first;
+        return (first - (sum - term_part)) + (term - term_part);
+    }
+    TEXGEN_INLINE void add(const Doubles& term) noexcept { lost = lost + magnitude(add(low, add(high, term))); }
+};
+
+// The terms of a form at vertices. A coordinate is a float, so that its product with half of a coefficient's digits is a
+// double; so is the product of such a half and of_q, which is a float too.
+TEXGEN_INLINE double first_half(double value) noexcept {
+    return __builtin_bit_cast(double, __builtin_bit_cast(unsigned long long, value) & 0xfffffffff8000000);
+}
+TEXGEN_INLINE void add_product(LongSum& sum, double coefficient, const Doubles& coordinate) noexcept {
+    const double half = first_half(coefficient);
+    const double other = coefficient - half;
+    if (half != 0.0) sum.add(coordinate * half);
+    if (other != 0.0) sum.add(coordinate * other);
+}
+
+// Bounds on a form, whose signs are right, where it is largest or least. In double a coefficient, a product and three sums
+// are rounded; no error is infinite, as an infinite value has the right sign.
+TEXGEN_INLINE void bound_form(const ExactForm& form, bool largest, const BoxBlock& boxes, std::size_t i,
+                              double least_lit, Doubles& lower, Doubles& upper) noexcept {
+    Doubles value = Doubles{} + form.rounded[3];
+    Doubles size = magnitude(value);
+    const auto add = [&](std::size_t j) {
+        if (form.rounded[j] == 0.0) return;
+        const auto vertex = load<Doubles>(((form.rounded[j] > 0.0) == largest ? boxes.max : boxes.min)[j] + i);
+        const Doubles term = vertex * form.rounded[j];
+        value = value + term;
+        size = size + magnitude(term);
+    };
+    add(0);
+    add(1);
+    add(2);
+    const Doubles error = minimum(size, Doubles{} + 0x1p900) * gamma(8);
+    lower = value - error - least_lit;
+    upper = value + error - least_lit;
+}
+
+TEXGEN_INLINE void add_terms(LongSum& sum, const ExactForm& form, std::size_t j, const Doubles& coordinate) noexcept {
+    const double half = first_half(form.q[j]);
+    add_product(sum, form.of_row * form.row[j], coordinate);
+    add_product(sum, form.of_q * half, coordinate);
+    add_product(sum, form.of_q * (form.q[j] - half), coordinate);
+}
+
+// The same as a sum that loses nothing, or next to nothing. What is infinite stays as it is.
+TEXGEN_INLINE void bound_exactly(const ExactForm& form, bool largest, const BoxBlock& boxes, std::size_t i,
+                                 double least_lit, Doubles& lower, Doubles& upper) noexcept {
+    LongSum sum;
+    LongWords is_infinite = greater(Doubles{}, 0.0);
+    for (std::size_t j = 0; j < 3; ++j) {
+        if (form.rounded[j] == 0.0) continue;
+        const auto given = load<Doubles>(((form.rounded[j] > 0.0) == largest ? boxes.max : boxes.min)[j] + i);
+        const LongWords is_beyond = greater(magnitude(given), 0x1p200);
+        is_infinite = is_infinite | is_beyond;
+        add_terms(sum, form, j, where(~is_beyond, given));
+    }
+    add_terms(sum, form, 3, Doubles{} + 1.0);
+    LongSum::add(sum.high, sum.low);
+    const Doubles lost = sum.lost + sum.lost;
+    lower = where(~is_infinite, sum.high - lost - least_lit) + where(is_infinite, lower);
+    upper = where(~is_infinite, sum.high + lost - least_lit) + where(is_infinite, upper);
+}
+
+// The least of the largest values of the sides, or of the least ones of the inner sides.
+template <bool Largest>
+TEXGEN_INLINE void bound_least(const DoubleForms& forms, const BoxBlock& boxes, std::size_t i, double* least_lower,
+                               double* least_upper) noexcept {
+    Doubles all_lower = Doubles{} + 1.0;
+    Doubles all_upper = all_lower;
+    for (const DoubleForms::Form& sides : forms.form) {
+        const ExactForm& form = Largest ? sides.outer : sides.inner;
+        Doubles lower;
+        Doubles upper;
+        bound_form(form, Largest, boxes, i, sides.least_lit, lower, upper);
+        const LongWords is_in_doubt = greater(0.0 - lower, 0.0) & ~greater(0.0 - upper, 0.0);
+        if (forms.sums_are_exact && any(narrow(is_in_doubt)))
+            bound_exactly(form, Largest, boxes, i, sides.least_lit, lower, upper);
+        all_lower = minimum(lower, all_lower);
+        all_upper = minimum(upper, all_upper);
+    }
+    store(least_lower + i, all_lower);
+    store(least_upper + i, all_upper);
+}
+
+template <class = void>
+void bound(const DoubleForms& forms, const BoxBlock& boxes, BoxBounds& bounds) noexcept {
+    for (std::size_t i = 0; i < box_block; i += static_cast<std::size_t>(lanes)) {
+        bound_least<true>(forms, boxes, i, bounds.lower, bounds.upper);
+        const auto upper = load<Doubles>(bounds.upper + i);
+        store(bounds.inner_lower + i, upper);
+        store(bounds.inner_upper + i, upper);
+        if (any(narrow(~greater(0.0 - upper, 0.0))))
+            bound_least<false>(forms, boxes, i, bounds.inner_lower, bounds.inner_upper);
+    }
+}
+
 // What a form does not use is skipped, whatever the box has there. A NaN (of an infinity) proves nothing.
 template <class = void>
 void separate(const BoundedForm* forms, std::size_t count, const BoxBlock& boxes, double* least_of_largest) noexcept {
     for (std::size_t i = 0; i < box_block; i += static_cast<std::size_t>(lanes)) {
         Doubles least = Doubles{} + 1.0;
+        Doubles size[3];
+        for (std::size_t j = 0; j < 3; ++j)
+            size[j] = maximum(0.0 - load<Doubles>(boxes.min[j] + i), load<Doubles>(boxes.max[j] + i));
         for (std::size_t k = 0; k < count; ++k) {
             const BoundedForm& form = forms[k];
             Doubles largest = Doubles{} + (form.d + form.error_d);
             for (std::size_t j = 0; j < 3; ++j) {
                 if (!form.uses[j]) continue;
                 const auto vertex = load<Doubles>((form.a[j] > 0.0 ? boxes.max : boxes.min)[j] + i);
-                largest = largest + vertex * form.a[j] + load<Doubles>(boxes.size[j] + i) * form.error_a;
+                largest = largest + vertex * form.a[j] + size[j] * form.error_a;
             }
             least = minimum(largest, least);
         }

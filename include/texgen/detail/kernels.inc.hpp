@@ -823,7 +823,7 @@ const Table& kernels() noexcept {
         static constexpr FootprintKernels table{differentiate<>, filter<>};
         return table;
     } else {
-        static constexpr BoxKernels table{classify<>, separate<>};
+        static constexpr BoxKernels table{classify<>, bound<>, separate<>};
         return table;
     }
 }

@@ -120,6 +120,21 @@ public:
         return result;
     }
 
+    // In double, for boxes that floats leave in doubt. It names rows of this object.
+    DoubleForms in_double() const noexcept {
+        DoubleForms result{};
+        result.sums_are_exact = rounds_to_nearest();
+        for (std::size_t k = 0; k < count; ++k) {
+            const auto exact = [&](const Weight& weight) {
+                return ExactForm{rows_[k / 2 % 2].data(), rows_[2].data(), weight.of_row, weight.of_q,
+                                 form_of(k, weight)};
+            };
+            result.form[k] = {exact(weight_[k]), exact(k < side_count ? inner_weight_[k] : weight_[k]),
+                              k == q ? 0x1p-1000 : 0.0};
+        }
+        return result;
+    }
+
     // Further forms that are >= 0 wherever all five are: the planes that the theorem of separating axes asks about, each
     // a combination of the five with weights that are exactly >= 0. Where one of them is negative over all of a convex
     // body, nothing of the body is lit. A pointer and a count: the constraints of a span's constructor would take every
