@@ -313,7 +313,7 @@ inline namespace TEXGEN_BUILD {
 // Shape: bodies of Space, in order; both spans have one size (asserted).
 // Bad input: a NaN anywhere in a body, or a matrix that is not finite: partial. A box with min > max in some axis, a
 // sphere with a negative radius, an empty region (see TextureRegion) or a q that is 0 everywhere: outside. Exponents so
-// far apart that exact sums leave the range of double (elements below 2^-400 of the matrix's largest, sides of the region
+// far apart that exact sums leave the range of double (elements below 2^-600 of the matrix's largest, sides of the region
 // beyond 2^+-200): partial. An infinite side of the region is none.
 // Source: the separating axis theorem; Gottschalk, Lin, Manocha, OBBTree, SIGGRAPH 1996.
 template <class Space>

@@ -44,6 +44,12 @@ public:
         add_axis_forms();
     }
 
+    // Whether exact sums with this side of a region stay in the range of double; `none` is the infinity that is no side.
+    static bool is_usable_side(double side, double none) noexcept {
+        const double size = std::fabs(side);
+        return side == none || size == 0.0 || (size >= 0x1p-200 && size <= 0x1p200);
+    }
+
     // Whether every point is dark: the region is empty or q is 0 everywhere.
     bool light_nothing() const noexcept { return lights_nothing_; }
 
@@ -171,7 +177,7 @@ private:
             for (double& element : row) {
                 if (element == 0.0) continue;
                 element *= scale;
-                if (!(std::fabs(element) >= 0x1p-400)) return false;
+                if (!(std::fabs(element) >= 0x1p-600)) return false;
             }
         }
         for (std::size_t j = 0; j < 3; ++j) largest_q_ = larger(largest_q_, std::fabs(rows_[2][j]));
@@ -184,22 +190,18 @@ private:
         for (std::size_t k = 0; k < side_count; ++k) {
             const bool is_min = k % 2 == 0;
             const double side = (is_min ? min : max)[static_cast<glm::length_t>(k / 2)];
-            const double size = std::fabs(side);
             const double none = is_min ? -infinity : infinity;
-            if (side == none || size == 0.0 || (size >= 0x1p-200 && size <= 0x1p200)) {
-                const RoundedSide rounded = is_min ? RoundedSide::of_min(side) : RoundedSide::of_max(side);
-                const auto weight = [&](double u) {
-                    if (u == none) return Weight{0.0, 1.0};
-                    if (u == -none) return Weight{0.0, -1.0};
-                    return is_min ? Weight{1.0, -u} : Weight{-1.0, u};
-                };
-                side_[k] = rounded.outer;
-                weight_[k] = weight(rounded.outer);
-                inner_weight_[k] = weight(rounded.inner);
-                narrowing_[k] = side == none ? 0.0 : std::fabs(rounded.inner - rounded.outer);
-            } else {
-                return false;
-            }
+            if (!is_usable_side(side, none)) return false;
+            const RoundedSide rounded = is_min ? RoundedSide::of_min(side) : RoundedSide::of_max(side);
+            const auto weight = [&](double u) {
+                if (u == none) return Weight{0.0, 1.0};
+                if (u == -none) return Weight{0.0, -1.0};
+                return is_min ? Weight{1.0, -u} : Weight{-1.0, u};
+            };
+            side_[k] = rounded.outer;
+            weight_[k] = weight(rounded.outer);
+            inner_weight_[k] = weight(rounded.inner);
+            narrowing_[k] = side == none ? 0.0 : std::fabs(rounded.inner - rounded.outer);
         }
         weight_[q] = {0.0, 1.0};
         return true;
