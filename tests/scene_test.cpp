@@ -514,6 +514,171 @@ TEST_CASE("once every count was reached, nothing is allocated") {
     CHECK(broken_preconditions == 0);
 }
 
+TEST_CASE("memory is allocated only in an update in which a count exceeds all former ones") {
+    Random random(1210);
+    int grown = 0, within = 0;
+    for (int round = 0; round < 30; ++round) {
+        const Engine all = some_engine(random, 120, 10, 15.0);
+        Engine engine;
+        Scene scene;
+        std::array<std::size_t, 3> most{};
+        for (int frame = 0; frame < 60; ++frame) {
+            // Counts grow and shrink; some objects change, some twice, sometimes all.
+            const auto some = [&](std::size_t size, std::size_t before) {
+                const auto most_change = static_cast<int>(size / 8) + 1;
+                const int change = random.integer(0, 3) == 0 ? random.integer(-most_change, most_change) : 0;
+                return static_cast<std::size_t>(
+                    std::clamp(static_cast<int>(before) + change, 0, static_cast<int>(size)));
+            };
+            const std::size_t objects = frame == 0 ? 40 : some(120, engine.models.size());
+            const std::size_t projectors = frame == 0 ? 4 : some(10, engine.projectors.size());
+            const std::size_t old_objects = engine.models.size(), old_projectors = engine.projectors.size();
+            engine.models.resize(std::min(objects, old_objects), all.models[0]);
+            engine.projectors.resize(std::min(projectors, old_projectors), all.projectors[0]);
+            for (std::size_t i = engine.models.size(); i < objects; ++i) engine.models.push_back(all.models[i]);
+            for (std::size_t i = engine.projectors.size(); i < projectors; ++i)
+                engine.projectors.push_back(all.projectors[i]);
+            engine.bounds.assign(all.bounds.begin(), all.bounds.begin() + static_cast<std::ptrdiff_t>(objects));
+            engine.regions.assign(projectors, texgen::whole_texture());
+            Indices moved, turned;
+            const int kind = random.integer(0, 3);
+            if (kind == 0) moved = up_to(objects);
+            for (int n = kind == 1 ? 1 : kind == 2 ? random.integer(0, 9) : 0; n > 0 && objects > 0; --n)
+                moved.push_back(static_cast<std::uint32_t>(random.integer(0, static_cast<int>(objects) - 1)));
+            if (random.integer(0, 3) == 0 && projectors > 0) turned = {0, 0};
+            for (const std::uint32_t i : moved) {
+                engine.models[i] = some_model(random, 15.0);
+                engine.bounds[i] = all.bounds[i];
+            }
+            for (const std::uint32_t i : turned) engine.projectors[i] = some_projector(random, 15.0);
+            const texgen::CameraPose pose(random.rigid(10.0));
+
+            const std::size_t before = allocations;
+            scene.update(engine.view(), {moved, turned});
+            const std::size_t of_update = allocations - before;
+            scene.update_eye(pose);
+            REQUIRE(allocations - before == of_update);
+            const std::array<std::size_t, 3> counts{objects, projectors, scene.pairs().size()};
+            bool is_more = false;
+            for (std::size_t k = 0; k < 3; ++k) {
+                is_more = is_more || counts[k] > most[k];
+                most[k] = std::max(most[k], counts[k]);
+            }
+            if (!is_more) REQUIRE(of_update == 0);
+            ++(is_more ? grown : within);
+        }
+    }
+    CHECK(broken_preconditions == 0);
+    CHECK(grown > 100);
+    CHECK(within > 500);
+}
+
+TEST_CASE("whatever the numbers of matrices and regions are, the pairs are those of all pairs asked one by one") {
+    Random random(1211);
+    Tally tally;
+    int overflown = 0;
+    const auto spoil = [&](glm::dmat4 m, int kind, bool keeps_last_row) {
+        const double power = random.power_of_ten(-200.0, 200.0);
+        for (int column = 0; column < 4; ++column) {
+            for (int row = 0; row < (keeps_last_row ? 3 : 4); ++row) {
+                double& element = m[column][row];
+                switch (kind) {
+                    case 0:  // what a product of rotations by right angles leaves, and less
+                        if (column != row && random.coin())
+                            element = (random.coin() ? 1.0 : -1.0) * random.power_of_ten(-130.0, -15.0);
+                        break;
+                    case 1:  // graded
+                        element *= random.power_of_ten(-70.0, 70.0);
+                        break;
+                    case 2:
+                        element *= power;
+                        break;
+                    case 3:
+                        element *= 1e300;
+                        break;
+                    case 4:  // subnormal
+                        if (random.integer(0, 3) == 0) element = random.uniform(-1.0, 1.0) * 0x1p-1040;
+                        break;
+                    case 5:
+                        element *= 1e-300;
+                        break;
+                    default:
+                        if (random.integer(0, 5) == 0) element = std::nearbyint(element);
+                        break;
+                }
+            }
+        }
+        return m;
+    };
+    for (int round = 0; round < 400; ++round) {
+        const double size = 12.0;
+        Engine engine = some_engine(random, 30, 4, size);
+        const auto spoil_object = [&](std::size_t o) {
+            const int kind = random.integer(0, 11);
+            engine.models[o] = ModelMatrix(spoil(some_model(random, size).matrix(), kind, random.integer(0, 3) != 0));
+            if (random.coin())
+                engine.bounds[o] = box_of(glm::vec3(support::to_float(random.power_of_ten(-45.0, 38.0))));
+        };
+        const auto spoil_projector = [&](std::size_t p) {
+            const Projector given = some_projector(random, size);
+            engine.projectors[p] = {
+                texgen::ProjectorProjection(spoil(given.projection.matrix(), random.integer(0, 25), false)),
+                texgen::ProjectorView(spoil(given.view.matrix(), random.integer(0, 25), true)), given.conventions};
+            const auto side = [&] {
+                const int kind = random.integer(0, 9);
+                return kind == 0   ? random.power_of_ten(-300.0, 300.0)
+                       : kind == 1 ? HUGE_VAL
+                                   : random.uniform(-1.0, 1.0);
+            };
+            if (random.integer(0, 3) == 0) {
+                const glm::dvec2 min{-side(), -side()}, max{side(), side()};
+                engine.regions[p] = texgen::atlas_tile(min, max);
+            }
+        };
+        for (std::size_t o = 0; o < engine.models.size(); ++o)
+            if (random.coin()) spoil_object(o);
+        for (std::size_t p = 0; p < engine.projectors.size(); ++p)
+            if (random.coin()) spoil_projector(p);
+        Scene scene;
+        scene.update(engine.view(), {});
+        for (int frame = 0; frame < 6; ++frame) {
+            require_all_pairs(scene, engine, tally);
+            Scene fresh;
+            fresh.update(engine.view(), {});
+            require_same(scene, fresh);
+            for (const LitPair& pair : scene.pairs()) {
+                const auto is_finite = [](const glm::dmat4& m) {
+                    for (int j = 0; j < 4; ++j)
+                        for (int k = 0; k < 4; ++k)
+                            if (!std::isfinite(m[j][k])) return false;
+                    return true;
+                };
+                const Projector& projector = engine.projectors[pair.projector];
+                if (!is_finite(scene.texgen(pair).matrix())) {
+                    overflown += is_finite(engine.models[pair.object].matrix()) &&
+                                 is_finite(projector.projection.matrix()) && is_finite(projector.view.matrix());
+                    REQUIRE(pair.coverage == Coverage::partial);
+                }
+            }
+            Indices objects, projectors;
+            for (int n = random.integer(0, 5); n > 0; --n) {
+                objects.push_back(static_cast<std::uint32_t>(random.integer(0, 29)));
+                spoil_object(objects.back());
+            }
+            if (random.coin()) {
+                projectors.push_back(static_cast<std::uint32_t>(random.integer(0, 3)));
+                spoil_projector(projectors.back());
+            }
+            scene.update(engine.view(), {objects, projectors});
+        }
+    }
+    CHECK(broken_preconditions == 0);
+    CHECK(overflown > 1000);
+    CHECK(tally.outside > 50000);
+    CHECK(tally.partial > 50000);
+    CHECK(tally.inside > 100);
+}
+
 TEST_CASE("one T_e a projector, made anew when the camera or the projector moved") {
     Random random(1206);
     Engine engine = some_engine(random, 10, 8, 10.0);

@@ -60,16 +60,21 @@ inline namespace TEXGEN_COMPILER {
 
 // Guarantee: after update() no pair is missing of which a point of the object's closed box is lit by T_o = object_linear()
 // of the engine's matrices, and pairs() are those that coverage() of T_o and the box does not call outside, with its
-// answer. They are in the order of the objects, and for each in that of the projectors, whatever happened before: two
-// scenes that see the same arrays have the same pairs and the same matrices. Nothing of the engine's is kept but copies.
-// Memory is allocated only when a count exceeds all former ones; noexcept.
+// answer, whatever the numbers are. They are in the order of the objects, and for each in that of the projectors, whatever
+// happened before: two scenes that see the same arrays have the same pairs and the same matrices. Nothing of the engine's is
+// kept but copies. Memory is allocated only in an update, and only when the number of objects, of projectors or of lit
+// pairs exceeds all former ones; noexcept.
 // Cost: an update in which nothing changed does nothing. Otherwise only pairs of which a part changed are tested, through
 // a tree over the objects' bounds in the world: a changed projector costs what its light is near to, a changed object at
 // most one test a projector and level (5 for 10 000 objects), fewer where the light is far from all that changed; what is
-// found costs a T_o and a coverage(); and the lit pairs are gone through once, at about a nanosecond each. Memory: 250
-// bytes an object, 700 a projector, 170 a lit pair, up to twice that where they came one by one.
-// Bad input: where a matrix or a box is not finite, the pair is partial and kept, as coverage() has it; an empty box is
-// never lit. Where exponents are so far apart that coverage() cannot say, a pair that is provably dark may be missing.
+// found costs a T_o and a coverage(); and the lit pairs are gone through once, at about a nanosecond each. The tree is put
+// into a new order once as many objects changed as there are, a few objects for each that changes: no update does all of
+// it, but one that changes or adds as many. Where there are more objects than ever, their memory moves. Memory: 250 bytes
+// an object, 850 a projector, 170 a lit pair, up to twice that where they came one by one.
+// Bad input: where T_o, as it is computed, or a box is not finite, the pair is partial and kept, as coverage() has it: where
+// a product of finite matrices overflows, too. An empty box is never lit. Where exponents are so far apart that coverage()
+// might not say (elements beyond 2^+-200, or 2^190 apart), an object meets every projector, a projector every
+// object.
 // Spans that disagree in size, and an index that names nothing, are asserted; beyond the shortest nothing is
 // looked at. What changed without being named stays as it was; with assertions on, that is asserted too, as far as the
 // bounds in the world show it.
@@ -101,6 +106,7 @@ public:
             if (i >= projectors) continue;
             put(prepared_, i, Prepared(view.projectors[i], region_of(i), depth_));
         }
+        eye_texgens_.reserve(prepared_.capacity());
         cut(prepared_, projectors);
 
         drop_changed_pairs();
@@ -240,7 +246,6 @@ private:
     }
 
     void drop_changed_pairs() noexcept {
-        free_.reserve(texgens_.capacity());
         std::size_t kept = 0;
         for (const LitPair& pair : pairs_) {
             if (objects_.is_changed(pair.object) || projectors_.is_changed(pair.projector))
@@ -251,6 +256,16 @@ private:
         cut(pairs_, kept);
     }
 
+    // Room for all that a pair may need until there are more of them.
+    void reserve_a_pair() noexcept {
+        if (pairs_.size() < pairs_.capacity()) return;
+        const std::size_t count = std::max<std::size_t>(16, 2 * pairs_.size());
+        pairs_.reserve(count);
+        new_.reserve(count);
+        texgens_.reserve(count);
+        free_.reserve(count);
+    }
+
     void add_pair(std::uint32_t object, std::uint32_t projector, const ModelMatrix& model, const Box& box,
                   bool is_inside, SceneWork& work) noexcept {
         const Prepared& prepared = prepared_[projector];
@@ -258,6 +273,7 @@ private:
         ++work.texgens_computed;
         const Coverage lit = is_inside ? Coverage::inside : coverage(texgen, prepared.region, box);
         if (lit == Coverage::outside) return;
+        reserve_a_pair();
         auto place = static_cast<std::uint32_t>(texgens_.size());
         if (!free_.empty()) {
             place = free_.back();
@@ -274,7 +290,6 @@ private:
         };
         const auto first_new = pairs_.begin() + static_cast<std::ptrdiff_t>(kept);
         std::sort(first_new, pairs_.end(), precedes);
-        new_.reserve(pairs_.capacity());
         new_.assign(first_new, pairs_.end());
         std::size_t from_old = kept;
         std::size_t from_new = new_.size();

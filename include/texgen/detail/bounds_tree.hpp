@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <glm/mat4x4.hpp>
@@ -26,6 +27,31 @@
 
 namespace TEXGEN_DETAIL {
 
+// How many times the smallest element that is not 0 the largest is; infinite where an element is beyond 2^+-200, so that
+// a product of three matrices neither overflows nor underflows. r is in no form, and may be small.
+//
+// Each element of such a product, rounded, is a multiple of the product of the factors' last bits. So where the quotients of
+// M, and of S P and V together, are no larger than these, no element of T_o that is not 0 is below 2^-600 of the largest,
+// and coverage() of it is decided.
+inline double range_of(const glm::dmat4& m, bool without_r = false) noexcept {
+    double smallest = 0x1p200;
+    double largest = 0x1p-200;
+    for (glm::length_t column = 0; column < 4; ++column) {
+        for (glm::length_t row = 0; row < 4; ++row) {
+            const double size = std::fabs(m[column][row]);
+            if (!(size <= 0x1p200)) return std::numeric_limits<double>::infinity();
+            if (size == 0.0 || (without_r && row == 2)) continue;
+            if (size < 0x1p-200) return std::numeric_limits<double>::infinity();
+            smallest = smaller(smallest, size);
+            largest = larger(largest, size);
+        }
+    }
+    return largest / smallest;
+}
+inline constexpr double object_range = 0x1p240;
+inline constexpr double projector_range = 0x1p190;
+static_assert(object_range * projector_range * 0x1p165 < 0x1p600);  // three times 53 bits, two sums of four, and 2
+
 // Where M v is for the points v of an object's box. All numbers are finite.
 struct WorldBounds {
     std::array<double, 3> min, max;
@@ -38,7 +64,7 @@ struct WorldBounds {
     friend bool operator==(const WorldBounds&, const WorldBounds&) = default;
 };
 
-// Unbounded where a number is not finite or M is not affine. Four terms a component, each rounded at most five times.
+// Unbounded where a number is not finite, M is not affine or its exponents are far apart. Four terms a component, each rounded at most five times.
 inline WorldBounds world_bounds(const glm::dmat4& m, const Box& box) noexcept {
     WorldBounds result = WorldBounds::none();
     const glm::dvec3 low = glm::dvec3(widened(glm::vec4(box.min, 0.0f)));
@@ -62,7 +88,7 @@ inline WorldBounds world_bounds(const glm::dmat4& m, const Box& box) noexcept {
         result.size = larger(result.size, size);
     }
     const bool is_affine = m[0][3] == 0.0 && m[1][3] == 0.0 && m[2][3] == 0.0 && m[3][3] == 1.0;
-    if (!is_affine) return WorldBounds::unbounded();
+    if (!is_affine || !(range_of(m) <= object_range)) return WorldBounds::unbounded();
     return low.x > high.x || low.y > high.y || low.z > high.z ? WorldBounds::none() : result;
 }
 
@@ -74,10 +100,16 @@ inline WorldBounds world_bounds(const glm::dmat4& m, const Box& box) noexcept {
 // of T_o over the box, and where all are above slack, so are those.
 class WorldForms {
 public:
-    // texture_from_eye is S P. The forms of a matrix that is not finite say nothing, as that of an infinite side.
+    // texture_from_eye is S P. Where coverage() may not be able to say, the forms say nothing; nor does that of an infinite
+    // side.
     WorldForms(const glm::dmat4& texture_from_eye, const glm::dmat4& view, const TextureRegion& region) noexcept {
         const glm::dmat4 matrix = texture_from_eye * view;
-        if (!is_finite(matrix)) return;
+        if (!(range_of(texture_from_eye, true) * range_of(view) <= projector_range)) return;
+        constexpr double infinity = std::numeric_limits<double>::infinity();
+        for (glm::length_t k = 0; k < 2; ++k) {
+            if (!LitForms::is_usable_side(region.min()[k], -infinity)) return;
+            if (!LitForms::is_usable_side(region.max()[k], infinity)) return;
+        }
         glm::dmat4 magnitude(0.0);
         for (glm::length_t column = 0; column < 4; ++column)
             for (glm::length_t row = 0; row < 4; ++row)
@@ -161,12 +193,15 @@ public:
     template <class BoundsOf>
     void change(std::span<const std::uint32_t> objects, std::size_t count, const BoundsOf& bounds_of) noexcept {
         const bool grows = count > bounds_.size();
-        // Room for half as much again, so that objects which come one by one do not sort each time.
-        if (grows) bounds_.resize(count + count / 2, WorldBounds::none());
+        if (grows) grow(count);
         for (const std::uint32_t object : objects) bounds_[object] = bounds_of(object);
         // What moved is no longer where it was sorted in. Sorting costs less than as many moves.
         moves_ += objects.size();
-        if (grows || moves_ > bounds_.size()) sort();
+        if (grows || (stage_ == Stage::sorted && moves_ > bounds_.size())) {
+            moves_ = 0;
+            begin(Stage::measure);
+        }
+        sort(steps_a_move * objects.size());
         for (const std::uint32_t object : objects) mark(object);
         if (height_ > 0) refit(height_ - 1, 0);
     }
@@ -250,54 +285,137 @@ private:
             if (level > 0)
                 tested += visit(level - 1, place, forms, all, found);
             else
-                found(static_cast<std::uint32_t>(order_[place]), coverage == Coverage::inside);
+                found(object_at_[place], coverage == Coverage::inside);
         });
         return tested;
     }
 
-    // Neighbours in the world become neighbours in the tree: by the Morton code of their middle.
-    void sort() noexcept {
-        moves_ = 0;
-        const auto middle = [this](std::size_t object, glm::length_t axis) {
-            const auto j = static_cast<std::size_t>(axis);
-            return 0.5 * bounds_[object].min[j] + 0.5 * bounds_[object].max[j];
-        };
-        glm::dvec3 low((std::numeric_limits<double>::max)());
-        glm::dvec3 high(std::numeric_limits<double>::lowest());
-        const auto is_somewhere = [this](std::size_t object) {
-            return bounds_[object].size >= 0.0 && bounds_[object].size < WorldBounds::unbounded_size;
-        };
-        for (std::size_t object = 0; object < bounds_.size(); ++object) {
-            for (glm::length_t j = 0; j < 3 && is_somewhere(object); ++j) {
-                low[j] = smaller(low[j], middle(object, j));
-                high[j] = larger(high[j], middle(object, j));
-            }
-        }
-        order_.resize(bounds_.size());
-        for (std::size_t object = 0; object < bounds_.size(); ++object) {
-            std::uint64_t code = 0x7fffffff;  // what is nowhere comes last
-            if (is_somewhere(object)) {
-                code = 0;
-                for (glm::length_t j = 0; j < 3; ++j) {
-                    const double extent = high[j] - low[j];
-                    const double along = extent > 0.0 ? (middle(object, j) - low[j]) / extent : 0.0;
-                    code |= every_third_bit(static_cast<std::uint32_t>(1023.0 * along)) << j;
-                }
-            }
-            order_[object] = code << 32 | object;
-        }
-        std::sort(order_.begin(), order_.end());
-
-        place_.resize(bounds_.size());
-        std::size_t blocks = bounds_.size();
+    // New objects stand behind the others, until they are sorted in. Room for half as much again, so that objects which
+    // come one by one do not move all memory each time.
+    void grow(std::size_t count) noexcept {
+        const std::size_t before = bounds_.size();
+        const std::size_t size = count + count / 2;
+        bounds_.resize(size, WorldBounds::none());
+        keys_.resize(size);
+        sorted_keys_.resize(size);
+        object_at_.resize(size);
+        place_.resize(size);
+        for (std::size_t i = before; i < size; ++i) object_at_[i] = place_[i] = static_cast<std::uint32_t>(i);
+        std::size_t blocks = size;
         for (height_ = 0; height_ == 0 || blocks > 1; ++height_) {
             blocks = (blocks + width - 1) / width;
-            levels_[height_].assign(blocks, Block{});
+            levels_[height_].resize(blocks);
         }
-        for (std::size_t place = 0; place < order_.size(); ++place) {
-            const auto object = static_cast<std::uint32_t>(order_[place]);
-            place_[object] = static_cast<std::uint32_t>(place);
+        for (std::size_t object = 0; object < before; object += width) mark(object_at_[object]);
+        refit(height_ - 1, 0);
+        forget_changes();
+    }
+
+    // Neighbours in the world become neighbours in the tree, by the Morton code of their middle. That is done in slices, of
+    // some steps for each object that moves, and so at most once for as many moves as there are objects: the extent of the
+    // world, the codes, a radix sort by their bytes, and at last place after place gets its object. Meanwhile the tree is as
+    // right as ever, whatever stands where.
+    enum class Stage { measure, encode, sort_by_byte, place, sorted };
+    static constexpr std::size_t steps_a_move = 12;
+    static constexpr std::size_t code_bytes = 4;
+
+    void begin(Stage stage) noexcept {
+        stage_ = stage;
+        next_ = 0;
+    }
+
+    void sort(std::size_t steps) noexcept {
+        while (steps > 0 && stage_ != Stage::sorted) {
+            const std::size_t end = std::min(bounds_.size(), next_ + steps);
+            steps -= end - next_;
+            switch (stage_) {
+                case Stage::measure:
+                    measure(end);
+                    break;
+                case Stage::encode:
+                    encode(end);
+                    break;
+                case Stage::sort_by_byte:
+                    sort_by_byte(end);
+                    break;
+                default:
+                    put_in_place(end);
+                    break;
+            }
+            next_ = end;
+            if (next_ == bounds_.size()) begin_next_stage();
+        }
+    }
+
+    void begin_next_stage() noexcept {
+        if (stage_ == Stage::encode) {
+            byte_ = 0;
+            for (auto& places : first_place_) {
+                std::uint32_t sum = 0;
+                for (std::uint32_t& first : places) sum += std::exchange(first, sum);
+            }
+        }
+        if (stage_ == Stage::sort_by_byte) {
+            std::swap(keys_, sorted_keys_);
+            if (++byte_ < code_bytes) return begin(stage_);
+        }
+        begin(static_cast<Stage>(static_cast<int>(stage_) + 1));
+    }
+
+    bool is_somewhere(std::size_t object) const noexcept {
+        return bounds_[object].size >= 0.0 && bounds_[object].size < WorldBounds::unbounded_size;
+    }
+    double middle(std::size_t object, std::size_t axis) const noexcept {
+        return 0.5 * bounds_[object].min[axis] + 0.5 * bounds_[object].max[axis];
+    }
+
+    void measure(std::size_t end) noexcept {
+        if (next_ == 0) {
+            low_.fill((std::numeric_limits<double>::max)());
+            high_.fill(std::numeric_limits<double>::lowest());
+        }
+        for (std::size_t object = next_; object < end; ++object) {
+            for (std::size_t j = 0; j < 3 && is_somewhere(object); ++j) {
+                low_[j] = smaller(low_[j], middle(object, j));
+                high_[j] = larger(high_[j], middle(object, j));
+            }
+        }
+    }
+
+    // What moved beyond the extent since stands at its end; what is nowhere comes last.
+    void encode(std::size_t end) noexcept {
+        if (next_ == 0) first_place_ = {};
+        for (std::size_t object = next_; object < end; ++object) {
+            std::uint64_t code = 0x7fffffff;
+            if (is_somewhere(object)) {
+                code = 0;
+                for (std::size_t j = 0; j < 3; ++j) {
+                    const double extent = high_[j] - low_[j];
+                    const double along = extent > 0.0 ? (middle(object, j) - low_[j]) / extent : 0.0;
+                    code |= every_third_bit(static_cast<std::uint32_t>(1023.0 * smaller(larger(along, 0.0), 1.0))) << j;
+                }
+            }
+            keys_[object] = code << 32 | object;
+            for (std::size_t byte = 0; byte < code_bytes; ++byte) ++first_place_[byte][byte_of(keys_[object], byte)];
+        }
+    }
+
+    static std::size_t byte_of(std::uint64_t key, std::size_t byte) noexcept { return key >> (32 + 8 * byte) & 0xff; }
+
+    void sort_by_byte(std::size_t end) noexcept {
+        for (std::size_t i = next_; i < end; ++i)
+            sorted_keys_[first_place_[byte_][byte_of(keys_[i], byte_)]++] = keys_[i];
+    }
+
+    void put_in_place(std::size_t end) noexcept {
+        for (std::size_t place = next_; place < end; ++place) {
+            const auto object = static_cast<std::uint32_t>(keys_[place]);
+            const std::uint32_t other = object_at_[place];
+            if (object == other) continue;
+            std::swap(object_at_[place], object_at_[place_[object]]);
+            std::swap(place_[object], place_[other]);
             mark(object);
+            mark(other);
         }
         refit(height_ - 1, 0);
         forget_changes();
@@ -309,12 +427,19 @@ private:
         return result;
     }
 
-    std::vector<WorldBounds> bounds_;            // of each object
-    std::vector<std::uint64_t> order_;           // of each place: a Morton code, and below it the object
-    std::vector<std::uint32_t> place_;           // of each object
-    std::array<std::vector<Block>, 11> levels_;  // the objects' first; 8^11 is above 2^32
+    std::vector<WorldBounds> bounds_;                // of each object
+    std::vector<std::uint32_t> place_;               // of each object
+    std::vector<std::uint32_t> object_at_;           // of each place
+    std::vector<std::uint64_t> keys_, sorted_keys_;  // a Morton code, and below it the object
+    std::array<std::vector<Block>, 11> levels_;      // the objects' first; 8^11 is above 2^32
     std::size_t height_ = 0;
-    std::size_t moves_ = 0;
+    std::size_t moves_ = 0;  // since the last sorting began
+
+    Stage stage_ = Stage::sorted;
+    std::size_t next_ = 0;  // of the stage: an object, or a place
+    std::size_t byte_ = 0;
+    std::array<double, 3> low_{}, high_{};
+    std::array<std::array<std::uint32_t, 256>, code_bytes> first_place_{};  // of each byte's values
 };
 
 }  // namespace TEXGEN_DETAIL
