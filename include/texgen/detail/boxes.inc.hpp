@@ -58,7 +58,7 @@ struct LongSum {
 // The terms of a form at vertices. A coordinate is a float, so that its product with half of a coefficient's digits is a
 // double; so is the product of such a half and of_q, which is a float too.
 TEXGEN_INLINE double first_half(double value) noexcept {
-    return __builtin_bit_cast(double, __builtin_bit_cast(unsigned long long, value) & 0xfffffffff8000000);
+    return bit_cast<double>(bit_cast<std::uint64_t>(value) & 0xfffffffff8000000);
 }
 TEXGEN_INLINE void add_product(LongSum& sum, double coefficient, const Doubles& coordinate) noexcept {
     const double half = first_half(coefficient);

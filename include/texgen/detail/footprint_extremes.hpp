@@ -148,10 +148,10 @@ public:
 
     double least() const noexcept { return least_; }
 
-    // The part of the polygon inside, its coordinate `axis` being k. Precondition: v >= least().
+    // The part of the polygon inside, its coordinate `axis` being k.
     WindowPolygon cut(const WindowPolygon& polygon, glm::length_t axis, double v) const noexcept {
         if (!(size_ > 0.0)) return polygon;
-        const double half = std::sqrt((v - least_) / size_) * (1.0 + 0x1p-40) + slack_;
+        const double half = std::sqrt(larger(v - least_, 0.0) / size_) * (1.0 + 0x1p-40) + slack_;
         return polygon.cut(axis, 1.0, half + centre_).cut(axis, -1.0, half - centre_);
     }
 
@@ -159,58 +159,130 @@ private:
     double size_, least_ = 0.0, centre_ = 0.0, slack_ = 0.0;
 };
 
-// A lower bound on rho^2 over the polygon, and within 1 % of it (0.5 % of rho) where the search below is not cut short.
-//
-// v = max(|X|^2, |Y|^2) <= v1 holds in a box, so where v is in [v0, v1] rho^2 is at least v0 / Q^4 with Q the largest of
-// box and polygon. The range of v is halved until that bound is close to a value that is attained.
-inline double least_square_of_rho(const FootprintField& field, const WindowPolygon& polygon) noexcept {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    const Sublevel of_x(field.x, field.twist);
-    const Sublevel of_y(field.y, -field.twist);
-    double attained = infinity;
-    double highest = 0.0;
-    for (std::size_t i = 0; i < polygon.count(); ++i) {
-        const double v = field.square_at(polygon[i]);
-        const double q = field.q_at(polygon[i]);
-        highest = larger(v, highest);
-        if (q > field.q_error) attained = smaller(v / (q * q * q * q), attained);
-    }
-    const double lowest = larger(of_x.least(), of_y.least());
-
-    struct Interval {
-        double low, high;
+// The largest Q of the polygon where N = max(|X|, |Y|) is at most n, as a function of n: concave, as N is convex and Q
+// affine. The least of rho = N / Q^2 is that of n / Q(n)^2, and a few values of Q(n) enclose it: between two of them the
+// function is below the lines through the pairs of values on either side.
+class LargestQ {
+public:
+    // n is right to within rounding, as is q; -infinity where N is nowhere so small.
+    struct Sample {
+        double n, q;
     };
-    std::array<Interval, 64> pending{};
-    std::size_t count = 0;
-    pending[count++] = {lowest, larger(highest * (1.0 + 0x1p-40), lowest)};
-    double bound = infinity;
-    for (int budget = 500; count != 0; --budget) {
-        const auto [low, high] = pending[--count];
-        const WindowPolygon part = of_y.cut(of_x.cut(polygon, 1, high), 0, high);
-        double q = -infinity;
-        for (std::size_t i = 0; i < part.count(); ++i) {
-            const double q_here = field.q_at(part[i]);
-            q = larger(q_here, q);
-            if (q_here > field.q_error)
-                attained = smaller(field.square_at(part[i]) / (q_here * q_here * q_here * q_here), attained);
-        }
-        q += field.q_error;
-        if (!(q > 0.0)) continue;  // no point in front
-        const double size = larger(std::sqrt(low) - field.error, 0.0);
-        const double here = size * size / (q * q * q * q);
-        if (here >= 0.99 * attained || budget <= 0 || count + 2 > pending.size()) {
-            bound = smaller(here, bound);
-            continue;
-        }
-        const double middle = low > 0x1p-7 * high ? std::sqrt(low) * std::sqrt(high) : 0x1p-6 * high;
-        if (!(middle > low && middle < high)) {
-            bound = smaller(here, bound);
-            continue;
-        }
-        pending[count++] = {middle, high};
-        pending[count++] = {low, middle};
+
+    LargestQ(const FootprintField& field, const WindowPolygon& polygon) noexcept
+        : field_(field), polygon_(polygon), of_x_(field.x, field.twist), of_y_(field.y, -field.twist) {
+        double highest = 0.0;
+        for (std::size_t i = 0; i < polygon.count(); ++i) highest = larger(field.square_at(polygon[i]), highest);
+        attain(polygon);
+        const double lowest = larger(of_x_.least(), of_y_.least());
+        insert(0, std::sqrt(lowest));
+        insert(1, std::sqrt(larger(highest * (1.0 + 0x1p-40), lowest)));
     }
-    return smaller(bound, attained);
+
+    std::size_t count() const noexcept { return count_; }
+    bool is_full() const noexcept { return count_ == samples_.size(); }
+
+    // The least rho^2 that was met.
+    double attained() const noexcept { return attained_; }
+
+    // A lower bound on rho^2 where N is between samples i and i + 1, and the n where that is.
+    struct Least {
+        double bound, n;
+    };
+    Least least_between(std::size_t i) const noexcept {
+        const Sample& low = samples_[i];
+        const Sample& high = samples_[i + 1];
+        if (!(high.q + field_.q_error > 0.0)) return {infinity, low.n};  // no point in front
+        const double fall = slope_after(i + 1);
+        const double q = high.q - fall * (high.n - low.n);
+        const double rise = slope_before(i);
+        if (!(low.q > -infinity && rise < infinity)) {
+            const Least at_low{bound_at(low.n, q), middle_of(low.n, high.n)};
+            return smaller_of(at_low, {bound_at(high.n, high.q), at_low.n});
+        }
+        // The lines meet where low.q + rise (n - low.n) = q + fall (n - low.n).
+        const double steps = rise > fall ? (q - low.q) / (rise - fall) : 0.0;
+        const double n = low.n + smaller(larger(steps, 0.0), high.n - low.n);
+        const double at_n = smaller(low.q + rise * (n - low.n), q + fall * (n - low.n));
+        const bool is_inside = n > low.n && n < high.n;
+        const double next = is_inside ? n : middle_of(low.n, high.n);
+        return smaller_of({bound_at(n, larger(at_n, low.q)), next},
+                          smaller_of({bound_at(low.n, low.q), next}, {bound_at(high.n, high.q), next}));
+    }
+
+    // Takes a sample at n behind sample i; false where n is no number between both.
+    bool split(std::size_t i, double n) noexcept {
+        if (!(n > samples_[i].n && n < samples_[i + 1].n)) return false;
+        insert(i + 1, n);
+        return true;
+    }
+
+private:
+    static constexpr double infinity = std::numeric_limits<double>::infinity();
+
+    static Least smaller_of(const Least& a, const Least& b) noexcept { return a.bound < b.bound ? a : b; }
+    static double middle_of(double low, double high) noexcept {
+        return low > 0x1p-4 * high ? std::sqrt(low) * std::sqrt(high) : 0x1p-3 * high;
+    }
+
+    double bound_at(double n, double q) const noexcept {
+        const double least_n = larger(n - field_.error, 0.0);
+        const double largest_q = q + field_.q_error;
+        const double square = largest_q * largest_q;
+        return largest_q > 0.0 ? least_n * least_n / (square * square) : infinity;
+    }
+
+    // Upper bounds on the function's slope behind sample i, and lower ones before it, from its other neighbour: where that
+    // is, and what it has, is rounded.
+    double slope_before(std::size_t i) const noexcept {
+        if (i == 0 || !(samples_[i - 1].q > -infinity)) return infinity;
+        const double run = samples_[i].n - samples_[i - 1].n - rounding_at(i);
+        return run > 0.0 ? (samples_[i].q - samples_[i - 1].q + 2.0 * field_.q_error) / run : infinity;
+    }
+    double slope_after(std::size_t i) const noexcept {
+        if (i + 1 >= count_) return 0.0;
+        const double run = samples_[i + 1].n - samples_[i].n + rounding_at(i + 1);
+        return larger((samples_[i + 1].q - samples_[i].q - 2.0 * field_.q_error) / run, 0.0);
+    }
+    double rounding_at(std::size_t i) const noexcept { return 0x1p-36 * samples_[i].n + 2.0 * field_.error; }
+
+    void attain(const WindowPolygon& part) noexcept {
+        for (std::size_t i = 0; i < part.count(); ++i) {
+            const double q = field_.q_at(part[i]);
+            if (q > field_.q_error) attained_ = smaller(field_.square_at(part[i]) / (q * q * q * q), attained_);
+        }
+    }
+
+    void insert(std::size_t i, double n) noexcept {
+        const WindowPolygon part = of_y_.cut(of_x_.cut(polygon_, 1, n * n), 0, n * n);
+        attain(part);
+        for (std::size_t k = count_++; k > i; --k) samples_[k] = samples_[k - 1];
+        samples_[i] = {n, part.count() > 0 ? range_of_q(field_, part).largest : -infinity};
+    }
+
+    const FootprintField& field_;
+    const WindowPolygon& polygon_;
+    Sublevel of_x_, of_y_;
+    std::array<Sample, 24> samples_{};
+    std::size_t count_ = 0;
+    double attained_ = infinity;
+};
+
+// A lower bound on rho^2 over the polygon, and within 1 % of it (0.5 % of rho) where the search is not cut short.
+inline double least_square_of_rho(const FootprintField& field, const WindowPolygon& polygon) noexcept {
+    LargestQ largest_q(field, polygon);
+    for (;;) {
+        std::size_t lowest = 0;
+        LargestQ::Least least = largest_q.least_between(0);
+        for (std::size_t i = 1; i + 1 < largest_q.count(); ++i) {
+            const LargestQ::Least here = largest_q.least_between(i);
+            if (!(here.bound < least.bound)) continue;
+            least = here;
+            lowest = i;
+        }
+        if (least.bound >= 0.99 * largest_q.attained() || largest_q.is_full() || !largest_q.split(lowest, least.n))
+            return smaller(least.bound, largest_q.attained());
+    }
 }
 
 // The largest ratio of the singular values times |D|, for a polygon in front: L^2 / Q is convex, as the square of a convex
