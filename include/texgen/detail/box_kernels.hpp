@@ -31,12 +31,16 @@ struct FloatForms {
     float error_per_size, error;
 };
 
-// of_row * row + of_q * q, exactly, and its four coefficients, each rounded once.
+// A form by its four coefficients, each rounded once, and as a sum of terms that is exact: of a coordinate, the last of which
+// is 1, and a factor with so few digits that its product with any float is a double. There are at least two.
 struct ExactForm {
-    const double* row;
-    const double* q;
-    double of_row, of_q;
+    struct Term {
+        double factor;
+        std::size_t coordinate;
+    };
     std::array<double, 4> rounded;
+    std::array<Term, 24> terms;
+    std::size_t term_count;
 };
 
 // The same five for boxes that floats leave in doubt, and the inner ones. A point is outside where

@@ -40,31 +40,12 @@ void classify(const FloatForms& original, const float* boxes, std::size_t count,
     }
 }
 
-// A sum of exact terms as two doubles, and how much at most that leaves out: 0 where all of it is in the two, as it is for
-// numbers with few digits, however much they cancel. Source: Knuth's two_sum(), see rounding.hpp; Ogita, Rump, Oishi,
-// Accurate Sum and Dot Product, SIAM J. Sci. Comput. 26 (2005), Sum2.
-struct LongSum {
-    Doubles high{}, low{}, lost{};
-
-    TEXGEN_INLINE static Doubles add(Doubles& sum, const Doubles& term) noexcept {
-        const Doubles first = sum;
-        sum = first + term;
-        const Doubles term_part = sum - first;
-        return (first - (sum - term_part)) + (term - term_part);
-    }
-    TEXGEN_INLINE void add(const Doubles& term) noexcept { lost = lost + magnitude(add(low, add(high, term))); }
-};
-
-// The terms of a form at vertices. A coordinate is a float, so that its product with half of a coefficient's digits is a
-// double; so is the product of such a half and of_q, which is a float too.
-TEXGEN_INLINE double first_half(double value) noexcept {
-    return bit_cast<double>(bit_cast<std::uint64_t>(value) & 0xfffffffff8000000);
-}
-TEXGEN_INLINE void add_product(LongSum& sum, double coefficient, const Doubles& coordinate) noexcept {
-    const double half = first_half(coefficient);
-    const double other = coefficient - half;
-    if (half != 0.0) sum.add(coordinate * half);
-    if (other != 0.0) sum.add(coordinate * other);
+// What is added, and what the rounded sum leaves: Knuth's two_sum(), see rounding.hpp.
+TEXGEN_INLINE Doubles add_exactly(Doubles& sum, const Doubles& term) noexcept {
+    const Doubles before = sum;
+    sum = before + term;
+    const Doubles term_part = sum - before;
+    return (before - (sum - term_part)) + (term - term_part);
 }
 
 // Bounds on a form, whose signs are right, where it is largest or least. In double a coefficient, a product and three sums
@@ -88,30 +69,26 @@ TEXGEN_INLINE void bound_form(const ExactForm& form, bool largest, const BoxBloc
     upper = value + error - least_lit;
 }
 
-TEXGEN_INLINE void add_terms(LongSum& sum, const ExactForm& form, std::size_t j, const Doubles& coordinate) noexcept {
-    const double half = first_half(form.q[j]);
-    add_product(sum, form.of_row * form.row[j], coordinate);
-    add_product(sum, form.of_q * half, coordinate);
-    add_product(sum, form.of_q * (form.q[j] - half), coordinate);
-}
-
-// The same as a sum that loses nothing, or next to nothing. What is infinite stays as it is.
+// The same as a sum of exact terms in two doubles, which tells how much at most they leave out: nothing for numbers with few
+// digits, however much they cancel. What is infinite becomes a NaN here, and stays as it is.
+// Source: Ogita, Rump, Oishi, Accurate Sum and Dot Product, SIAM J. Sci. Comput. 26 (2005), Sum2.
 TEXGEN_INLINE void bound_exactly(const ExactForm& form, bool largest, const BoxBlock& boxes, std::size_t i,
                                  double least_lit, Doubles& lower, Doubles& upper) noexcept {
-    LongSum sum;
-    LongWords is_infinite = greater(Doubles{}, 0.0);
+    Doubles vertex[4] = {{}, {}, {}, Doubles{} + 1.0};
     for (std::size_t j = 0; j < 3; ++j) {
-        if (form.rounded[j] == 0.0) continue;
-        const auto given = load<Doubles>(((form.rounded[j] > 0.0) == largest ? boxes.max : boxes.min)[j] + i);
-        const LongWords is_beyond = greater(magnitude(given), 0x1p200);
-        is_infinite = is_infinite | is_beyond;
-        add_terms(sum, form, j, where(~is_beyond, given));
+        if (form.rounded[j] != 0.0)
+            vertex[j] = load<Doubles>(((form.rounded[j] > 0.0) == largest ? boxes.max : boxes.min)[j] + i);
     }
-    add_terms(sum, form, 3, Doubles{} + 1.0);
-    LongSum::add(sum.high, sum.low);
-    const Doubles lost = sum.lost + sum.lost;
-    lower = where(~is_infinite, sum.high - lost - least_lit) + where(is_infinite, lower);
-    upper = where(~is_infinite, sum.high + lost - least_lit) + where(is_infinite, upper);
+    const auto term = [&](std::size_t k) { return vertex[form.terms[k].coordinate] * form.terms[k].factor; };
+    Doubles high = term(0);
+    Doubles low = add_exactly(high, term(1));
+    Doubles lost{};
+    for (std::size_t k = 2; k < form.term_count; ++k)
+        lost = lost + magnitude(add_exactly(low, add_exactly(high, term(k))));
+    add_exactly(high, low);
+    lost = lost + lost;
+    lower = maximum(high - lost - least_lit, lower);
+    upper = minimum(high + lost - least_lit, upper);
 }
 
 // The least of the largest values of the sides, or of the least ones of the inner sides.

@@ -9,8 +9,10 @@
 // lit, its rounding to float included; where all is lit, the inner sides say (see RoundedSide).
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 
 #include <glm/mat4x4.hpp>
@@ -126,17 +128,14 @@ public:
         return result;
     }
 
-    // In double, for boxes that floats leave in doubt. It names rows of this object.
+    // In double, for boxes that floats leave in doubt.
     DoubleForms in_double() const noexcept {
-        DoubleForms result{};
+        DoubleForms result;
         result.sums_are_exact = rounds_to_nearest();
         for (std::size_t k = 0; k < count; ++k) {
-            const auto exact = [&](const Weight& weight) {
-                return ExactForm{rows_[k / 2 % 2].data(), rows_[2].data(), weight.of_row, weight.of_q,
-                                 form_of(k, weight)};
-            };
-            result.form[k] = {exact(weight_[k]), exact(k < side_count ? inner_weight_[k] : weight_[k]),
-                              k == q ? 0x1p-1000 : 0.0};
+            take_exact_form(k, weight_[k], result.form[k].outer);
+            take_exact_form(k, k < side_count ? inner_weight_[k] : weight_[k], result.form[k].inner);
+            result.form[k].least_lit = k == q ? 0x1p-1000 : 0.0;
         }
         return result;
     }
@@ -249,6 +248,31 @@ private:
             form.error_a = larger(form.error_a, 1.001 * (error_of_a[j] + gamma(8) * std::fabs(form.a[j])));
         form.error_d = 1.001 * (error_of_d + gamma(8) * std::fabs(form.d)) + 0x1p-1000;
         form.error_a += 0x1p-1000;
+    }
+
+    // The first 26 digits of a double; 27 are left. Times 24 digits, of a float or of a weight, which is one, either is a double.
+    static double first_half(double value) noexcept {
+        return bit_cast<double>(bit_cast<std::uint64_t>(value) & 0xfffffffff8000000);
+    }
+
+    void take_exact_form(std::size_t k, const Weight& weight, ExactForm& form) const noexcept {
+        form.rounded = form_of(k, weight);
+        form.term_count = 0;
+        for (std::size_t j = 0; j < 4; ++j) {
+            const auto add = [&](double factor) {
+                if (factor != 0.0) form.terms[form.term_count++] = {factor, j};
+            };
+            if (form.rounded[j] == 0.0) continue;
+            const double half = first_half(rows_[2][j]);
+            const DoubleDouble most = two_sum(weight.of_row * rows_[k / 2 % 2][j], weight.of_q * half);
+            const DoubleDouble all = two_sum(most.high, weight.of_q * (rows_[2][j] - half));
+            for (const double part : {all.high, all.low, most.low}) {
+                const double first = first_half(part);
+                add(first);
+                add(part - first);
+            }
+        }
+        while (form.term_count < 2) form.terms[form.term_count++] = {0.0, 3};
     }
 
     using Exact = Expansion<24>;
