@@ -934,6 +934,25 @@ TEST_CASE("a batch has room for what rounds off the slide where s hardly changes
     CHECK(answers == std::vector{Coverage::outside, Coverage::partial, Coverage::inside, Coverage::inside});
 }
 
+TEST_CASE("what cancels to less than two doubles hold is not taken for 0") {
+    // At (1, 1, 1) is s - q = 1 + 2^-53 - 2^-130 - 1 - 2^-53, so that s/q is rounded to 1 and is less.
+    const auto of = [](double of_z) {
+        glm::dmat4 matrix(0.0);
+        matrix[0][0] = 1.0;
+        matrix[1][0] = 0x1p-53;
+        matrix[2][0] = of_z;
+        matrix[3] = {-1.0, 0x1p-54, 0.0, 0x1p-53};
+        const Box boxes[] = {{glm::vec3(1.0f), glm::vec3(1.0f)}};
+        Coverage answers[] = {Coverage::outside};
+        coverage(WorldTexgen(matrix), atlas_tile({1.0, 0.0}, {2.0, 1.0}), boxes, answers);
+        CHECK(coverage(WorldTexgen(matrix), atlas_tile({1.0, 0.0}, {2.0, 1.0}), boxes[0]) == answers[0]);
+        return answers[0];
+    };
+    CHECK(of(-0x1p-130) == Coverage::partial);
+    CHECK(of(0.0) == Coverage::inside);
+    CHECK(of(0x1p-130) == Coverage::inside);
+}
+
 TEST_CASE("what is no body, no slide or no number gets a safe answer") {
     const auto projector = texgen::make_projector(
         texgen::PerspectiveLens{.fovy = degrees(30), .aspect = 1, .z_near = 0.2, .z_far = 1000},

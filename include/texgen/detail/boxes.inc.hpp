@@ -91,13 +91,16 @@ TEXGEN_INLINE void bound_exactly(const ExactForm& form, bool largest, const BoxB
     upper = minimum(high + lost - least_lit, upper);
 }
 
-// The least of the largest values of the sides, or of the least ones of the inner sides.
+// The least of the largest values of the sides, or of the least ones of the inner sides; q first, which is negative for
+// half of what is at the apex. Where one is negative for every box, the others are not asked.
 template <bool Largest>
 TEXGEN_INLINE void bound_least(const DoubleForms& forms, const BoxBlock& boxes, std::size_t i, double* least_lower,
                                double* least_upper) noexcept {
     Doubles all_lower = Doubles{} + 1.0;
     Doubles all_upper = all_lower;
-    for (const DoubleForms::Form& sides : forms.form) {
+    for (std::size_t k = lit_form_count; k-- > 0;) {
+        if (!any(narrow(~greater(0.0 - all_upper, 0.0)))) break;
+        const DoubleForms::Form& sides = forms.form[k];
         const ExactForm& form = Largest ? sides.outer : sides.inner;
         Doubles lower;
         Doubles upper;

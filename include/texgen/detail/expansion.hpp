@@ -18,6 +18,7 @@ template <std::size_t Capacity>
 class Expansion {
 public:
     void add(double term) noexcept {
+        if (term == 0.0) return;
         if (rounds_to_nearest_)
             add_by(two_sum, term);
         else
