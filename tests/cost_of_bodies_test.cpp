@@ -229,9 +229,9 @@ TEST_CASE("no sphere costs more than 8 ordinary ones") {
         const LitVolume<World> volume(slide.transform, texgen::whole_texture());
         std::vector<Coverage> out(count);
         const auto batch = [&](const std::vector<Sphere>& spheres) { return [&] { volume.coverage(spheres, out); }; };
-        for (const auto& [name, spheres] : all) {
-            INFO(slide.name, ": ", name);
-            CHECK(worst_over_ordinary_within(limit_of_functions, batch(ordinary), batch(spheres)) <=
+        for (const auto& family : all) {
+            INFO(slide.name, ": ", family.first);
+            CHECK(worst_over_ordinary_within(limit_of_functions, batch(ordinary), batch(family.second)) <=
                   limit_of_functions);
         }
     }
