@@ -131,7 +131,7 @@ public:
             const float min = box.min[static_cast<glm::length_t>(j)];
             const float max = box.max[static_cast<glm::length_t>(j)];
             has_points &= min <= max;
-            has_points &= min <= std::numeric_limits<float>::max();
+            has_points &= min <= (std::numeric_limits<float>::max)();
             has_points &= max >= std::numeric_limits<float>::lowest();
             block_.min[j][count_] = static_cast<double>(min);
             block_.max[j][count_] = static_cast<double>(max);

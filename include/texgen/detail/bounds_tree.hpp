@@ -326,7 +326,7 @@ private:
 
     void sort(std::size_t steps) noexcept {
         while (steps > 0 && stage_ != Stage::sorted) {
-            const std::size_t end = std::min(bounds_.size(), next_ + steps);
+            const std::size_t end = (std::min)(bounds_.size(), next_ + steps);
             steps -= end - next_;
             switch (stage_) {
                 case Stage::measure:
