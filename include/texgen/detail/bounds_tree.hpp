@@ -107,8 +107,8 @@ public:
         if (!(range_of(texture_from_eye, true) * range_of(view) <= projector_range)) return;
         constexpr double infinity = std::numeric_limits<double>::infinity();
         for (glm::length_t k = 0; k < 2; ++k) {
-            if (!LitForms::is_usable_side(region.min()[k], -infinity)) return;
-            if (!LitForms::is_usable_side(region.max()[k], infinity)) return;
+            if (!LitForms::is_usable_side((region.min)()[k], -infinity)) return;
+            if (!LitForms::is_usable_side((region.max)()[k], infinity)) return;
         }
         glm::dmat4 magnitude(0.0);
         for (glm::length_t column = 0; column < 4; ++column)

@@ -5,6 +5,8 @@
 #include <array>
 #include <cstddef>
 
+#include "language.hpp"
+
 namespace TEXGEN_DETAIL {
 
 // a . (x, y, z) + d, known to within error_a (|x| + |y| + |z|) + error_d when it is computed in double in any order. A

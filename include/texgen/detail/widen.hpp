@@ -9,6 +9,8 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include "language.hpp"
+
 namespace TEXGEN_DETAIL {
 
 inline double widened(float value) noexcept {
