@@ -305,12 +305,15 @@ public:
 
     void fill_all(const Tile& tile, const Corners& at) noexcept {
         if (at.all_behind()) return store_rows(tile, nothing());
-        if (at.well_in_front() && at.least_q > 0x1p-12 * at.largest_q && fill_in_vectors(tile, at)) return;
+        const bool may_be_vectors = at.well_in_front() && at.least_q > 0x1p-12 * at.largest_q;
+        if (may_be_vectors && tile.width <= largest_index && fill_in_vectors(tile, at)) return;
         if (tile.width <= 8 && tile.height <= 8) return fill_one_by_one(tile);
         for (const Tile& half : tile.halves()) fill_all(half, setup_.corners(half));
     }
 
 private:
+    static constexpr int largest_index = 1 << 24;  // floats beyond are not every integer
+
     static Footprint nothing() noexcept { return {{0.0, 0.0}, {0.0, 0.0}, 0.0, {0.0, 0.0}, 0.0, {0.0, 0.0}}; }
 
     bool needs_filter() const noexcept {
@@ -471,7 +474,7 @@ template <class>
 bool footprint(const FootprintSetup& setup, FragmentRect rect, Footprints out) noexcept {
     TEXGEN_ASSERT(rect.width >= 0 && rect.height >= 0);
     if (rect.width <= 0 || rect.height <= 0) return false;
-    const std::size_t count = static_cast<std::size_t>(rect.width) * static_cast<std::size_t>(rect.height);
+    const std::size_t count = detail::count_of(rect);
     for (std::span<float>* output :
          {&out.dsdx, &out.dtdx, &out.dsdy, &out.dtdy, &out.level, &out.anisotropy, &out.major_s, &out.major_t})
         if (!detail::is_computed(*output, count)) *output = {};

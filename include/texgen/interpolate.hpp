@@ -680,7 +680,7 @@ template <class>
 Work interpolate(const TriangleSetup& setup, FragmentRect rect, Texcoords out) noexcept {
     TEXGEN_ASSERT(rect.width >= 0 && rect.height >= 0);
     if (rect.width <= 0 || rect.height <= 0) return Work::nothing;
-    const std::size_t count = static_cast<std::size_t>(rect.width) * static_cast<std::size_t>(rect.height);
+    const std::size_t count = detail::count_of(rect);
     bool any_output = false;
     for (std::span<float>* output : {&out.s, &out.t, &out.r, &out.lit}) {
         if (!detail::is_computed(*output, count)) *output = {};

@@ -52,7 +52,7 @@ struct TileRow : RowOutputs<Numerators> {
 
 // Stores one vector of coordinates from out[k] + x on, and its mask from lit + x on: inside the region and in front.
 template <std::size_t Numerators, class Vector, class Mask>
-TEXGEN_INLINE void store_all(const RowOutputs<Numerators>& row, int x, const Vector (&value)[Numerators],
+TEXGEN_INLINE void store_all(const RowOutputs<Numerators>& row, std::int64_t x, const Vector (&value)[Numerators],
                              const Mask& in_front) noexcept {
     for (std::size_t k = 0; k < Numerators; ++k) store(row.out[k] + x, value[k]);
     if constexpr (Numerators == 2)
@@ -63,8 +63,8 @@ TEXGEN_INLINE void store_all(const RowOutputs<Numerators>& row, int x, const Vec
 
 // A whole vector where it may be written, else up to `end`.
 template <std::size_t Numerators, class Vector, class Mask>
-TEXGEN_INLINE void store_from(const RowOutputs<Numerators>& row, int x, int end, const Vector (&value)[Numerators],
-                              const Mask& in_front) noexcept {
+TEXGEN_INLINE void store_from(const RowOutputs<Numerators>& row, std::int64_t x, std::int64_t end,
+                              const Vector (&value)[Numerators], const Mask& in_front) noexcept {
     constexpr std::size_t size = sizeof(Vector) / sizeof(float);
     if (x + static_cast<std::int64_t>(size) <= row.writable) return store_all(row, x, value, in_front);
     float buffer[Numerators + 1][size]{};
@@ -110,7 +110,7 @@ TEXGEN_INLINE TileJob::Unit divide_units(const TileJob& job, TileJob::Unit unit)
             const TileRow<Numerators> row(job, y);
             Doubles index = indices<Doubles>() + static_cast<double>(unit.x_begin);
             Floats quotient[Numerators];
-            int x = unit.x_begin;
+            std::int64_t x = unit.x_begin;  // what follows the last vector may be no int
             const std::int64_t last = row.writable - lanes;
             for (; x < unit.x_end && x <= last; x += lanes, index += static_cast<double>(lanes)) {
                 divide_vector<Nearest>(job, row, index, reciprocal, quotient, doubtful);
@@ -231,7 +231,7 @@ TEXGEN_INLINE std::uint64_t divide_closely_of(const TileJob& job, const CloseFun
         q_row.move_to(close.q, y);
         first.move_to(close.numerator[0], y);
         second.move_to(close.numerator[1], y);
-        for (int x = unit.x_begin; x < unit.x_end; x += lanes) {
+        for (std::int64_t x = unit.x_begin; x < unit.x_end; x += lanes) {
             const Doubles index = indices<Doubles>() + static_cast<double>(x);
             const CloseQ q(q_row, close.q_unit, index);
             Floats value[Numerators];
@@ -241,7 +241,7 @@ TEXGEN_INLINE std::uint64_t divide_closely_of(const TileJob& job, const CloseFun
                 doubt |=
                     divide_closely(second, close.numerator[1].grain, q, half_q_error, middle_grain, index, value[1]);
             store_from(row, x, unit.x_end, value, narrow(q.in_front));
-            const int count = unit.x_end - x < lanes ? unit.x_end - x : lanes;
+            const int count = unit.x_end - x < lanes ? static_cast<int>(unit.x_end - x) : lanes;
             if (any(doubt))
                 for (int i = 0; i < count; ++i)
                     if (lane(doubt, i) != 0) doubtful |= std::uint64_t{1} << (shift + i);
@@ -379,7 +379,7 @@ TEXGEN_INLINE void evaluate(const ChunkGroup& group, int first, int last, const 
     WideFloats first_index{};
     for (int i = first; i < last; ++i) {
         const int begin = place.chunk * longest;
-        const int end = begin + longest < width ? begin + longest : width;
+        const int end = longest < width - begin ? begin + longest : width;
         if (end - begin != length) {
             length = end - begin;
             first_index = indices<WideFloats>() - 0.5f * static_cast<float>(length - 1);
@@ -393,7 +393,7 @@ TEXGEN_INLINE void evaluate(const ChunkGroup& group, int first, int last, const 
         // By turns, so that the next index does not wait for this one.
         WideFloats index = first_index;
         WideFloats next_index = index + static_cast<float>(wide_lanes);
-        for (int x = begin; x < end; x += wide_lanes) {
+        for (std::int64_t x = begin; x < end; x += wide_lanes) {
             const WideFloats step = bent<Factors>(index, bend);
             WideFloats value[2];
             for (std::size_t k = 0; k < 2; ++k) value[k] = step * slope[k] + middle[k];
@@ -443,8 +443,8 @@ TileJob::Unit divide_chunks(const TileJob& job, TileJob::Unit first) noexcept {
                     if (place.per_row == 1) return {0, job.width, place.y, place.y + (last - i)};
                     const int in_row =
                         place.chunk + (last - i) < place.per_row ? place.chunk + (last - i) : place.per_row;
-                    const int end = in_row * job.chunk;
-                    return {place.chunk * job.chunk, end < job.width ? end : job.width, place.y, place.y + 1};
+                    const int end = in_row < place.per_row ? in_row * job.chunk : job.width;
+                    return {place.chunk * job.chunk, end, place.y, place.y + 1};
                 }
             }
             i = last;

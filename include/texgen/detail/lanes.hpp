@@ -64,7 +64,7 @@ struct TileJob {
 
     Unit unit_at(int x, int y) const noexcept {
         const int rows = width >= unit_size ? 1 : unit_size / width;
-        return {x, x + unit_size < width ? x + unit_size : width, y, y + rows < height ? y + rows : height};
+        return {x, unit_size < width - x ? x + unit_size : width, y, rows < height - y ? y + rows : height};
     }
     Unit unit_after(const Unit& unit) const noexcept {
         return unit.x_end < width ? unit_at(unit.x_end, unit.y_begin) : unit_at(0, unit.y_end);

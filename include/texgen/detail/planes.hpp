@@ -48,6 +48,14 @@ struct Tile {
     }
 };
 
+// How many fragments a rectangle has: where std::size_t cannot say it, more than any array holds.
+inline std::size_t count_of(const FragmentRect& rect) noexcept {
+    constexpr std::size_t most = std::numeric_limits<std::size_t>::max();
+    const auto width = static_cast<std::size_t>(rect.width);
+    const auto height = static_cast<std::size_t>(rect.height);
+    return width <= most / height ? width * height : most;
+}
+
 // Where a fragment stands in the row-major outputs of a rectangle.
 inline std::size_t offset_in(const FragmentRect& rect, std::int64_t x, std::int64_t y) noexcept {
     return static_cast<std::size_t>((y - rect.y) * rect.width + (x - rect.x));
