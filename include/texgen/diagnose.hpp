@@ -549,7 +549,7 @@ Diagnosis diagnose(const Setup<Space>& setup, bool are_planes) noexcept {
     const Examined examined = examine(matrices, diagnosis);
     PointReport report(examined, matrices.picture, matrices.depth);
     const std::size_t count = setup.points ? setup.points->size() : 0;
-    for (std::size_t i = 0; i < count; ++i) report.add(glm::dvec3((*setup.points)[i]));
+    for (std::size_t i = 0; i < count; ++i) report.add(widened((*setup.points)[i]));
     report.conclude(diagnosis);
     return diagnosis;
 }

@@ -180,7 +180,7 @@ private:
         return std::fma(a.z, b.z, std::fma(a.y, b.y, a.x * b.x));
     }
     static double dot(const glm::dvec4& a, const glm::dvec4& b) noexcept {
-        return std::fma(a.w, b.w, dot(glm::dvec3(a), glm::dvec3(b)));
+        return std::fma(a.w, b.w, std::fma(a.z, b.z, std::fma(a.y, b.y, a.x * b.x)));
     }
     static double cancelling_dot(const glm::vec4& a, const glm::vec4& b) noexcept;
     static double largest(const glm::dvec3& v) noexcept {
@@ -223,9 +223,9 @@ inline bool TexGenUnit::set_mode(Coordinate coordinate, TexGenMode mode) noexcep
 
 inline bool TexGenUnit::set_eye_plane(Coordinate coordinate, glm::vec4 plane, const glm::mat4& modelview) noexcept {
     if (!valid(coordinate)) return false;
-    const detail::CertifiedInverse inverse{glm::dmat4(modelview)};
+    const detail::CertifiedInverse inverse(detail::widened(modelview));
     if (!inverse.regular()) return false;
-    const glm::vec4 stored(inverse.solve_row(glm::dvec4(plane)));
+    const glm::vec4 stored(inverse.solve_row(detail::widened(plane)));
     for (glm::length_t i = 0; i < 4; ++i)
         if (!(std::fabs(stored[i]) <= (std::numeric_limits<float>::max)())) return false;
     state(coordinate).eye_plane = stored;
@@ -237,7 +237,7 @@ inline bool TexGenUnit::set_eye_plane(Coordinate coordinate, glm::vec4 plane, co
 inline double TexGenUnit::cancelling_dot(const glm::vec4& a, const glm::vec4& b) noexcept {
     double sum = 0.0, lost = 0.0;
     for (glm::length_t i = 0; i < 4; ++i) {
-        const detail::DoubleDouble next = detail::two_sum(sum, static_cast<double>(a[i]) * static_cast<double>(b[i]));
+        const detail::DoubleDouble next = detail::two_sum(sum, detail::widened(a[i]) * detail::widened(b[i]));
         sum = next.high;
         lost += next.low;
     }
@@ -261,7 +261,7 @@ inline TexGenUnit::EyeSpace::EyeSpace(const glm::mat4& modelview, const TexGenUn
         wants_normal_ = wants_normal_ || uses_normal(coordinate.mode);
     }
     if (!wants_normal_) return;
-    const detail::CertifiedInverse inverse{glm::dmat4(modelview)};
+    const detail::CertifiedInverse inverse(detail::widened(modelview));
     inverse_ = glm::dmat3(inverse.regular() ? inverse.matrix() : glm::dmat4(std::numeric_limits<double>::quiet_NaN()));
     const glm::dvec3 third_row(inverse_[0][2], inverse_[1][2], inverse_[2][2]);
     const double size = largest(third_row);
@@ -279,7 +279,7 @@ inline glm::dvec4 TexGenUnit::EyeSpace::position(const glm::vec4& position) cons
 }
 
 inline glm::dvec3 TexGenUnit::EyeSpace::normal(const glm::vec3& normal) const noexcept {
-    const glm::dvec3 row(normal);
+    const glm::dvec3 row = detail::widened(normal);
     const glm::dvec3 result(dot(row, inverse_[0]), dot(row, inverse_[1]), dot(row, inverse_[2]));
     switch (scaling_) {
         case NormalScaling::rescale:
@@ -305,14 +305,14 @@ inline glm::vec4 TexGenUnit::generate(const FixedFunctionVertex& vertex, const E
         const double size = largest(normal);
         if (size > 1.0 && size <= (std::numeric_limits<double>::max)()) exponent = std::ilogb(size);
         const glm::dvec3 n = times_power_of_two(normal, -exponent);
-        const glm::dvec3 to_vertex = direction(glm::dvec3(eye));
+        const glm::dvec3 to_vertex = direction({eye.x, eye.y, eye.z});
         const double n_dot_u = dot(n, to_vertex);
         const glm::dvec3 u = times_power_of_two(to_vertex, -2 * exponent);
         for (glm::length_t i = 0; i < 3; ++i) scaled_reflection[i] = std::fma(-2.0 * n[i], n_dot_u, u[i]);
         sphere = direction(scaled_reflection + glm::dvec3(0.0, 0.0, std::scalbn(1.0, -2 * exponent)));
     }
 
-    glm::dvec4 generated(vertex.texcoord);
+    glm::dvec4 generated = detail::widened(vertex.texcoord);
     for (glm::length_t i = 0; i < 4; ++i) {
         const CoordinateState& coordinate = states_[static_cast<std::size_t>(i)];
         if (!coordinate.enabled) continue;
@@ -321,7 +321,7 @@ inline glm::vec4 TexGenUnit::generate(const FixedFunctionVertex& vertex, const E
                 generated[i] = cancelling_dot(coordinate.object_plane, vertex.position);
                 break;
             case TexGenMode::eye_linear:
-                generated[i] = dot(glm::dvec4(coordinate.eye_plane), eye);
+                generated[i] = dot(detail::widened(coordinate.eye_plane), eye);
                 break;
             case TexGenMode::sphere_map:
                 generated[i] = 0.5 + 0.5 * sphere[i];
@@ -336,7 +336,7 @@ inline glm::vec4 TexGenUnit::generate(const FixedFunctionVertex& vertex, const E
     }
     // The identity is left out, so that a NaN stays in its coordinate.
     if (texture_matrix_ == glm::mat4(1.0f)) return glm::vec4(generated);
-    const glm::dmat4 texture_rows(glm::transpose(texture_matrix_));
+    const glm::dmat4 texture_rows = detail::widened(glm::transpose(texture_matrix_));
     return {dot(texture_rows[0], generated), dot(texture_rows[1], generated), dot(texture_rows[2], generated),
             dot(texture_rows[3], generated)};
 }

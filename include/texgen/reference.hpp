@@ -186,20 +186,20 @@ inline void interpolate(const Triangle& triangle, TextureRegion region, Fragment
 
     const detail::Corners<double> corners(triangle);
     for (std::size_t row = 0; row < height; ++row) {
-        const double y = rect.y + static_cast<double>(row) + 0.5;
+        const double y = rect.y + static_cast<double>(row) + 0.5;  // integers
         for (std::size_t column = 0; column < width; ++column) {
-            const double x = rect.x + static_cast<double>(column) + 0.5;
+            const double x = rect.x + static_cast<double>(column) + 0.5;  // integers
             const Vector3<double> k = corners.weights(x, y);
             const Vector4<double> strq = k[0] * corners.a.strq + k[1] * corners.b.strq + k[2] * corners.c.strq;
             const bool in_front = strq[3] > 0.0;
             const auto divided = [&](int i) { return in_front ? static_cast<float>(strq[i] / strq[3]) : 0.0f; };
-            const float s = divided(0);
-            const float t = divided(1);
+            const auto s = detail::exactly<double>(divided(0));
+            const auto t = detail::exactly<double>(divided(1));
             const bool lit = in_front && s >= (region.min)().x && s <= (region.max)().x && t >= (region.min)().y &&
                              t <= (region.max)().y;
             const std::size_t fragment = row * width + column;
-            if (!out.s.empty()) out.s[fragment] = s;
-            if (!out.t.empty()) out.t[fragment] = t;
+            if (!out.s.empty()) out.s[fragment] = static_cast<float>(s);
+            if (!out.t.empty()) out.t[fragment] = static_cast<float>(t);
             if (!out.r.empty()) out.r[fragment] = divided(2);
             if (!out.lit.empty()) out.lit[fragment] = lit ? 1.0f : 0.0f;
         }

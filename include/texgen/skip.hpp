@@ -102,7 +102,7 @@ inline Coverage exact_coverage(const LitForms& forms, const Box& box) noexcept {
         Point vertex{};
         double size = 0.0;
         for (glm::length_t j = 0; j < 3; ++j)
-            size += larger(std::fabs(static_cast<double>(box.min[j])), std::fabs(static_cast<double>(box.max[j])));
+            size += larger(std::fabs(widened(box.min[j])), std::fabs(widened(box.max[j])));
         return (take_vertex(k, false, vertex) && forms.is_inside_at(k, vertex, size)) ||
                is_inside_inner_side(forms, k, box);
     };
@@ -133,8 +133,8 @@ public:
             has_points &= min <= max;
             has_points &= min <= (std::numeric_limits<float>::max)();
             has_points &= max >= std::numeric_limits<float>::lowest();
-            block_.min[j][count_] = static_cast<double>(min);
-            block_.max[j][count_] = static_cast<double>(max);
+            block_.min[j][count_] = widened(min);
+            block_.max[j][count_] = widened(max);
         }
         if (!has_points) {
             out = exact_coverage(forms_, box);

@@ -221,8 +221,8 @@ void for_each_batch(const Positions<Space>& positions, const Batch& batch) noexc
 
 // One point of a job, every decision exact.
 inline void project_one(const PointJob& job, std::size_t i) noexcept {
-    const glm::dvec3 v = job.triples ? glm::dvec3(job.x[3 * i], job.x[3 * i + 1], job.x[3 * i + 2])
-                                     : glm::dvec3(job.x[i], job.y[i], job.z[i]);
+    const glm::dvec3 v = job.triples ? widened(glm::vec3(job.x[3 * i], job.x[3 * i + 1], job.x[3 * i + 2]))
+                                     : widened(glm::vec3(job.x[i], job.y[i], job.z[i]));
     const auto exact_q = [&] { return exactly_at(job.q, v); };
     const Bounded q = value_at(job.q, v);
     const bool in_front = certain_sign(q, exact_q) > 0;

@@ -67,8 +67,8 @@ struct WorldBounds {
 // Unbounded where a number is not finite, M is not affine or its exponents are far apart. Four terms a component, each rounded at most five times.
 inline WorldBounds world_bounds(const glm::dmat4& m, const Box& box) noexcept {
     WorldBounds result = WorldBounds::none();
-    const glm::dvec3 low = glm::dvec3(widened(glm::vec4(box.min, 0.0f)));
-    const glm::dvec3 high = glm::dvec3(widened(glm::vec4(box.max, 0.0f)));
+    const glm::dvec3 low = widened(box.min);
+    const glm::dvec3 high = widened(box.max);
     result.size = 0.0;
     for (glm::length_t i = 0; i < 3; ++i) {
         double least = m[3][i];

@@ -13,6 +13,7 @@
 #include "expansion.hpp"
 #include "language.hpp"
 #include "rounding.hpp"
+#include "widen.hpp"
 
 namespace TEXGEN_DETAIL {
 
@@ -37,7 +38,7 @@ float nearest_quotient(const Expansion<N>& numerator, const Expansion<D>& denomi
     // Two neighbours are left. Their middle is a double (beyond the largest float stands 2^128), and the sign of
     // numerator - middle * denominator decides.
     const auto unbounded = [](float value) {
-        return std::fabs(value) < std::numeric_limits<float>::infinity() ? static_cast<double>(value)
+        return std::fabs(value) < std::numeric_limits<float>::infinity() ? widened(value)
                                                                          : std::copysign(0x1p128, value);
     };
     const double middle = 0.5 * unbounded(low) + 0.5 * unbounded(high);
@@ -86,7 +87,7 @@ inline float float_before(float value) noexcept {
 // The least float that is not below a bound.
 inline float float_at_least(double bound) noexcept {
     const auto nearest = static_cast<float>(bound);
-    return static_cast<double>(nearest) < bound ? -float_before(-nearest) : nearest;
+    return widened(nearest) < bound ? -float_before(-nearest) : nearest;
 }
 
 // What rounding makes of a side of a region. A number beyond `outer` is not inside the side, nor is the float that it is
@@ -99,8 +100,8 @@ struct RoundedSide {
     static RoundedSide of_min(double min) noexcept {
         if (!(std::fabs(min) < std::numeric_limits<double>::infinity())) return {min, min};
         const float first = float_at_least(min);
-        if (std::fabs(min) < 0x1p-126) return {-0x1p-126, first > 0.0f ? 0x1p-126 : static_cast<double>(first)};
-        return {static_cast<double>(float_before(first)), static_cast<double>(first)};
+        if (std::fabs(min) < 0x1p-126) return {-0x1p-126, first > 0.0f ? 0x1p-126 : widened(first)};
+        return {widened(float_before(first)), widened(first)};
     }
     static RoundedSide of_max(double max) noexcept {
         const RoundedSide mirrored = of_min(-max);
@@ -118,8 +119,8 @@ public:
     float operator()(float s, float t) const noexcept { return is_inside(s, t, min_, max_) ? 1.0f : 0.0f; }
 
     // The bounds of s (0) and of t (1).
-    double least(std::size_t coordinate) const noexcept { return static_cast<double>(min_[coordinate]); }
-    double greatest(std::size_t coordinate) const noexcept { return static_cast<double>(max_[coordinate]); }
+    double least(std::size_t coordinate) const noexcept { return widened(min_[coordinate]); }
+    double greatest(std::size_t coordinate) const noexcept { return widened(max_[coordinate]); }
 
     // The same as the kernels take them.
     void copy_to(float (&min)[2], float (&max)[2]) const noexcept {

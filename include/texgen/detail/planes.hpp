@@ -205,7 +205,7 @@ public:
 
     // The window, seen from the first vertex: the centre of a fragment, and the other vertices.
     glm::dvec2 from_a(const Tile& tile) const noexcept {
-        return {(static_cast<double>(tile.x) + 0.5) - a_.x, (static_cast<double>(tile.y) + 0.5) - a_.y};
+        return {(static_cast<double>(tile.x) + 0.5) - a_.x, (static_cast<double>(tile.y) + 0.5) - a_.y};  // integers
     }
     const glm::dvec2& to_b() const noexcept { return to_b_; }
     const glm::dvec2& to_c() const noexcept { return to_c_; }
@@ -237,7 +237,7 @@ public:
     // F at one fragment, exactly.
     using Exact = Expansion<144>;
     Exact exactly_at(glm::length_t coordinate, std::int64_t x, std::int64_t y) const noexcept {
-        const glm::dvec2 p(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5);
+        const glm::dvec2 p(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5);  // integers
         const auto& [a, b, c] = triangle_;
         Exact sum;
         add_corner(sum, p, a.strq[coordinate], b, c);

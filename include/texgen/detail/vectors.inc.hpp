@@ -14,8 +14,9 @@ using WideWords [[gnu::vector_size(TEXGEN_LANE_BYTES)]] = int;
 
 template <class Vector>
 TEXGEN_INLINE Vector indices() noexcept {
+    using Lane = std::remove_reference_t<decltype(Vector()[0])>;
     Vector result{};
-    for (int i = 0; i < static_cast<int>(sizeof result / sizeof result[0]); ++i) result[i] = static_cast<float>(i);
+    for (int i = 0; i < static_cast<int>(sizeof(Vector) / sizeof(Lane)); ++i) result[i] = static_cast<Lane>(i);
     return result;
 }
 
