@@ -59,8 +59,10 @@ using EyeTexgen = Transform<Texture, Eye>;                           // T_e
 using WorldTexgen = Transform<Texture, World>;                       // S P_p V_p
 
 // Guarantee: where it answers, each element of X = A^-1 is within 2 double ulp of the largest of its terms in X A X, while
-// the condition of A (rows and columns scaled) stays below 1e8; the answer is certified by its residual, never by the
-// size of a determinant, so any uniform scale is regular. An affine A has an exactly affine X. No allocation, noexcept.
+// the condition of A (rows and columns scaled) stays below 1e8, however far apart its elements are, as long as that term
+// is (likewise scaled) above detail::least_scaled; an element without terms is 0. The answer is certified by its residual,
+// never by the size of a determinant, so any uniform scale is regular. An affine A has an exactly affine X. No allocation,
+// noexcept.
 // Bad input: empty for a matrix that is singular to working precision, is not finite, or whose inverse overflows, and where
 // an element is below detail::least_scaled of others in its row or column: scaling could round it.
 // Source: see detail/inverse.hpp.
