@@ -138,6 +138,41 @@ TEST_CASE("a polygon behind the near plane leaves nothing, even where it touches
     }
 }
 
+TEST_CASE("an edge on the near plane leaves nothing of what is behind it, whatever corners it has") {
+    Random random(321);
+    for (const NearPlane plane : near_planes) {
+        for (int corners = 1; corners <= 5; ++corners) {
+            for (int i = 0; i < 100; ++i) {
+                const auto at = [&](double along, double depth) {
+                    ClipVertex v = camera_vertex(random, plane);
+                    const float w = random.uniform_float(0.5, 2.0);
+                    const float z = plane.reversed ? w : plane.range == DepthRange::zero_to_one ? 0.0f : -w;
+                    const float behind = support::to_float(plane.reversed ? depth : -depth);
+                    v.position = {support::to_float(along) * w, 0.0f, z + behind, w};
+                    return v;
+                };
+                std::vector<ClipVertex> polygon;
+                for (int k = 0; k < corners; ++k) polygon.push_back(at(k, 0.0));
+                polygon.push_back(at(4.0, 1.0));
+                polygon.push_back(at(0.0, 1.0));
+                std::rotate(polygon.begin(), polygon.begin() + random.integer(0, corners + 1), polygon.end());
+                REQUIRE_MESSAGE(clipped(polygon, plane).empty(), hex_of(polygon));
+            }
+        }
+        // Within the plane, though, it is not behind; and a polygon without an area stays one.
+        const auto on_plane = [&](float x, float y) {
+            return ClipVertex{{x, y,
+                               plane.reversed                           ? 1.0f
+                               : plane.range == DepthRange::zero_to_one ? 0.0f
+                                                                        : -1.0f,
+                               1.0f},
+                              {}};
+        };
+        CHECK(clipped({on_plane(0.0f, 0.0f), on_plane(1.0f, 0.0f), on_plane(0.0f, 1.0f)}, plane).size() == 3);
+        CHECK(clipped({on_plane(0.0f, 0.0f), on_plane(1.0f, 0.0f), on_plane(2.0f, 0.0f)}, plane).size() == 3);
+    }
+}
+
 TEST_CASE("what comes out is in front of the near plane, has w > 0, and lies on the polygon within the stated error") {
     Random random(33);
     for (const NearPlane plane : near_planes) {

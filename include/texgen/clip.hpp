@@ -157,7 +157,9 @@ inline WindowVertex to_window(const ClipVertex& vertex, Viewport viewport) noexc
 inline constexpr double clip_error = 0x1p-50;
 
 // The part of a convex polygon that lies in front of the camera's near plane, in the order of the polygon, though its
-// first vertex may be another. Returns the count of vertices written to `out`; 0 where nothing with an area is left.
+// first vertex may be another. Returns the count of vertices written to `out`; 0 where nothing is in front, or where what is
+// not behind only touches the plane, with any number of corners. A polygon whose own corners are collinear, or become so by
+// rounding, is cut as any other: TriangleSetup::of() refuses it.
 // Guarantee: every vertex that comes out has w > 0, and z + w >= 0 (negative_one_to_one), z >= 0 (zero_to_one) or, where
 // reversed_depth says that the near plane is z = w, z <= w. Vertices in front keep their bits. Each component of a new
 // vertex is within 1/2 float ulp + clip_error of the exact intersection, but z, which is the near plane's for the w that
@@ -173,12 +175,16 @@ inline std::size_t clip_to_near(std::span<const ClipVertex> polygon, std::span<C
                                 bool reversed_depth = false) noexcept {
     TEXGEN_ASSERT(out.size() > polygon.size());
     if (out.size() <= polygon.size() || polygon.size() < 3) return 0;
+    const auto near_plane = detail::ClipDistance::from_near(range, reversed_depth);
+    bool any_in_front = false;
+    bool any_behind = false;
     for (std::size_t i = 0; i < polygon.size(); ++i) {
         if (!detail::is_finite(polygon[i].position)) return 0;
         out[i] = polygon[i];
+        any_in_front = any_in_front || near_plane(out[i]) > 0.0;
+        any_behind = any_behind || near_plane(out[i]) < 0.0;
     }
-
-    const auto near_plane = detail::ClipDistance::from_near(range, reversed_depth);
+    if (any_behind && !any_in_front) return 0;
     const auto cut_at_near = [&](const ClipVertex& inside, const ClipVertex& outside) {
         ClipVertex cut = detail::between(-near_plane(outside), inside, near_plane(inside), outside);
         cut.position.z = near_plane.depth_on_plane(cut.position.w);
@@ -284,9 +290,9 @@ inline ClipVertex cut_at(const SlideDistance& side, const ClipVertex& inside, co
     return result;
 }
 
-// Cuts the polygon in storage[0, count) edge by edge and returns the new count; 0 where storage has no room. sign() is
-// that of the distance of a vertex; cut() as for cut_convex. It is read from the end of the storage on, so that what is
-// written at its begin grows into the room that is free.
+// Cuts the polygon in storage[0, count) edge by edge and returns the new count; 0 where nothing is inside but corners on the
+// side, or where storage has no room. sign() is that of the distance of a vertex; cut() as for cut_convex. It is read from
+// the end of the storage on, so that what is written at its begin grows into the room that is free.
 template <class Sign, class Cut>
 std::size_t cut_edges(std::span<ClipVertex> storage, std::size_t count, const Sign& sign, const Cut& cut) noexcept {
     std::size_t inside = 0;
@@ -297,19 +303,21 @@ std::size_t cut_edges(std::span<ClipVertex> storage, std::size_t count, const Si
     const ClipVertex first_vertex = storage[first];
     ClipVertex to = first_vertex;
     int to_sign = sign(to);
+    bool touches = true;  // and no more
     std::size_t written = 0;
     for (std::size_t i = first; i < storage.size(); ++i) {
         const ClipVertex from = to;
         const int from_sign = to_sign;
         to = i + 1 < storage.size() ? storage[i + 1] : first_vertex;
         to_sign = sign(to);
+        touches = touches && from_sign <= 0;
         const bool crosses = (from_sign > 0 && to_sign < 0) || (from_sign < 0 && to_sign > 0);
         // Vertices up to i are read.
         if (written + (from_sign >= 0) + crosses > i + 1) return 0;
         if (from_sign >= 0) storage[written++] = from;
         if (crosses) storage[written++] = from_sign > 0 ? cut(from, to) : cut(to, from);
     }
-    return written < 3 ? 0 : written;
+    return written < 3 || touches ? 0 : written;
 }
 
 }  // namespace TEXGEN_COMPILER
@@ -349,8 +357,9 @@ inline constexpr double slide_clip_error = 0x1p-20;
 inline namespace TEXGEN_COMPILER {
 
 // The part of a convex polygon that the slide falls on, in the order of the polygon, though its first vertex may be another:
-// q > 0, and s and t in the region's four sides. Returns the count of vertices written to `out`; 0 where nothing with an
-// area is left.
+// q > 0, and s and t in the region's four sides. Returns the count of vertices written to `out`; 0 where nothing is inside
+// a side, or where what is not outside only touches it, with any number of corners. A polygon whose own corners are
+// collinear, or become so by rounding, is cut as any other: TriangleSetup::of() refuses it.
 // Guarantee: every vertex that comes out has q > 0 and is inside the region but for slide_clip_error. Vertices inside keep
 // their bits; sides are decided exactly, so a vertex on a side stays. A new vertex is the exact intersection of its edge
 // (of a new edge's ends as they were rounded), each component of position and strq the nearest float. Shared edges stay
