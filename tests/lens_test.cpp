@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "support/hex.hpp"
@@ -40,8 +41,7 @@ Depth exact_depth(double z_near, double z_far, bool reversed, DepthRange range) 
     // At z_eye = -z the NDC is (-scale z + offset) / z = at(z).
     if (!(z_far < infinity)) return {-at_far, (at_near - at_far) * Real(z_near)};
     const Real near(z_near), far(z_far);
-    const Real offset = (at_near - at_far) * near * far / (far - near);
-    return {offset / near - at_near, offset};
+    return {(at_near * near - at_far * far) / (far - near), (at_near - at_far) * near * far / (far - near)};
 }
 
 std::string describe(const PerspectiveLens& lens) {
@@ -202,6 +202,78 @@ TEST_CASE("an orthographic lens is within 4 double ulp") {
         REQUIRE(m[2][3] == 0.0);
     }
     CHECK(worst <= bound_in_ulps);
+}
+
+TEST_CASE("a lens of any finite numbers has its matrix, each element within 4 ulp, or has none of doubles") {
+    Random random(75);
+    // Of any size, subnormal too, and often next to another.
+    const auto number = [&](double next_to) {
+        if (random.integer(0, 3) == 0)
+            return next_to * (1.0 + std::ldexp(random.uniform(-1.0, 1.0), -random.integer(0, 52)));
+        if (random.integer(0, 9) == 0) return random.coin() ? 0x1p-1074 : std::numeric_limits<double>::max();
+        return std::ldexp(random.uniform(0.5, 1.0), random.integer(-1073, 1024)) * (random.coin() ? 1.0 : -1.0);
+    };
+    const Real largest = std::numeric_limits<double>::max(), smallest = 0x1p-1074;
+    double worst = 0.0;
+    std::string worst_input;
+    int accepted = 0, refused = 0;
+    for (int i = 0; i < 60000; ++i) {
+        const double left = number(1.0), right = number(left), bottom = number(left), top = number(bottom);
+        double z_near = number(right), z_far = number(z_near);
+        const bool unit = random.coin(), reversed = random.coin();
+        const Conventions conventions = with(unit ? DepthRange::zero_to_one : DepthRange::negative_one_to_one);
+        const int kind = i % 3;
+        if (kind != 1) z_near = std::fabs(z_near), z_far = std::fabs(z_far);
+        if (!(z_near < z_far && z_far < infinity) || left == right || bottom == top) continue;
+        if (kind != 1 && !(z_near > 0.0)) continue;
+        const Real n(z_near), f(z_far), width = Real(right) - Real(left), height = Real(top) - Real(bottom);
+        const Real sum_x = (Real(right) + Real(left)) / width, sum_y = (Real(top) + Real(bottom)) / height;
+        std::optional<texgen::ProjectorProjection> projection;
+        std::array<Real, 6> exact;
+        std::array<glm::ivec2, 6> place;  // column, row
+        std::string input =
+            hex(left) + " " + hex(right) + " " + hex(bottom) + " " + hex(top) + " " + hex(z_near) + " " + hex(z_far);
+        if (kind == 0) {
+            projection = frustum({left, right, bottom, top, z_near, z_far}, conventions);
+            const Depth depth = exact_depth(z_near, z_far, false, conventions.depth);
+            exact = {2 * n / width, 2 * n / height, sum_x, sum_y, depth.scale, depth.offset};
+            place = {glm::ivec2(0, 0), {1, 1}, {2, 0}, {2, 1}, {2, 2}, {3, 2}};
+        } else if (kind == 1) {
+            projection = orthographic({left, right, bottom, top, z_near, z_far}, conventions);
+            exact = {2 / width, 2 / height, -sum_x, -sum_y, (unit ? -1 : -2) / (f - n), -(unit ? n : n + f) / (f - n)};
+            place = {glm::ivec2(0, 0), {1, 1}, {3, 0}, {3, 1}, {2, 2}, {3, 2}};
+        } else {
+            const double aspect = std::fabs(left);
+            const double fovy = random.coin() ? std::min(std::fabs(right), 3.14) : random.uniform(0.0, 3.1415926);
+            input = hex(fovy) + " " + hex(aspect) + " " + hex(z_near) + " " + hex(z_far);
+            projection = perspective({texgen::radians(fovy), aspect, z_near, z_far, reversed}, conventions);
+            const Depth depth = exact_depth(z_near, z_far, reversed, conventions.depth);
+            const Real focal_length = 1 / tan(Real(fovy) / 2);
+            exact = {focal_length / Real(aspect), focal_length, Real(0), Real(0), depth.scale, depth.offset};
+            place = {glm::ivec2(0, 0), {1, 1}, {2, 0}, {2, 1}, {2, 2}, {3, 2}};
+        }
+        bool is_clear = true, is_double = true;  // not next to a limit; inside them
+        for (std::size_t k = 0; k < 6; ++k) {
+            const Real size = abs(exact[k]);
+            is_clear = is_clear && (size < 0.999 * largest || size > 1.001 * largest);
+            is_double = is_double && size < largest;
+            if (k >= 2) continue;
+            is_clear = is_clear && (size < 0.25 * smallest || size > smallest);
+            is_double = is_double && size > 0.5 * smallest;
+        }
+        if (!is_clear) continue;
+        REQUIRE_MESSAGE(projection.has_value() == is_double, input);
+        (is_double ? accepted : refused) += 1;
+        if (!is_double) continue;
+        for (std::size_t k = 0; k < 6; ++k) {
+            const double error = support::error_in_ulps(projection->matrix()[place[k].x][place[k].y], exact[k]);
+            if (error > worst) worst = error, worst_input = input;
+        }
+    }
+    CHECK(accepted > 5000);
+    CHECK(refused > 5000);
+    CHECK_MESSAGE(worst <= bound_in_ulps, worst_input);
+    MESSAGE(worst, " ulp at most: ", worst_input);
 }
 
 TEST_CASE("y down turns the second row over and changes nothing else") {

@@ -45,22 +45,44 @@ struct Aim {
 namespace detail {
 inline namespace TEXGEN_COMPILER {
 
+// What lenses need of two numbers: their sum and difference, both in halves where a sum could leave the range. (Elsewhere
+// halves would lose the last bit of subnormal numbers.)
+class Interval {
+public:
+    Interval(double from, double to) noexcept : unit_(larger(std::fabs(from), std::fabs(to)) < 0x1p1000 ? 1.0 : 0.5) {
+        sum_ = unit_ * to + unit_ * from;
+        difference_ = unit_ * to - unit_ * from;
+    }
+
+    // (to + from) / (to - from), and number / (to - from) for one of the two.
+    double sum_over_length() const noexcept { return sum_ / difference_; }
+    double end_over_length(double end) const noexcept { return unit_ * end / difference_; }
+
+    // 2 number / (to - from), where neither twice the number nor half the difference leaves the range on the way.
+    double twice_over_length(double number) const noexcept {
+        if (unit_ < 1.0) return number / difference_;
+        return std::fabs(difference_) < 1.0 ? 2.0 * number / difference_ : number / (0.5 * difference_);
+    }
+
+private:
+    double unit_, sum_, difference_;
+};
+
 // Row z of a perspective matrix: clip z = scale * z_eye + offset, clip w = -z_eye.
 struct DepthRow {
     double scale, offset;
 };
 
-// Written with halves so that neither far + near nor near * far can overflow; far - near is exact where they are close.
 inline DepthRow perspective_depth(double z_near, double z_far, bool reversed, DepthRange range) noexcept {
     const bool infinite = !is_finite(z_far);
-    const double half_difference = 0.5 * z_far - 0.5 * z_near;
+    const Interval depth(z_near, z_far);
+    const double far_ratio = infinite ? 1.0 : depth.end_over_length(z_far);    // far / (far - near)
+    const double near_ratio = infinite ? 0.0 : depth.end_over_length(z_near);  // near / (far - near)
     if (range == DepthRange::negative_one_to_one) {
-        const double scale = infinite ? 1.0 : (0.5 * z_far + 0.5 * z_near) / half_difference;
-        const double offset = z_near * (infinite ? 2.0 : z_far / half_difference);
+        const double scale = infinite ? 1.0 : depth.sum_over_length();
+        const double offset = z_near * (2.0 * far_ratio);
         return reversed ? DepthRow{scale, offset} : DepthRow{-scale, -offset};
     }
-    const double far_ratio = infinite ? 1.0 : 0.5 * z_far / half_difference;    // far / (far - near)
-    const double near_ratio = infinite ? 0.0 : 0.5 * z_near / half_difference;  // near / (far - near)
     return reversed ? DepthRow{near_ratio, z_near * far_ratio} : DepthRow{-far_ratio, -z_near * far_ratio};
 }
 
@@ -101,8 +123,8 @@ inline double dot(const glm::dvec3& a, const glm::dvec3& b) noexcept {
 }  // namespace TEXGEN_COMPILER
 }  // namespace detail
 
-// Guarantee: each element within 4 double ulp for any lens in range, 0.1 to 179.99 degrees and far/near to 1e9 and
-// beyond; no allocation, noexcept. For OpenGL's conventions, with f = cot(fovy / 2):
+// Guarantee: each element within 4 double ulp (those of subnormal numbers too), for every lens that is not refused; no
+// allocation, noexcept. For OpenGL's conventions, with f = cot(fovy / 2):
 //
 //     | f/aspect  0            0                     0           |
 //     |    0      f            0                     0           |
@@ -111,8 +133,8 @@ inline double dot(const glm::dvec3& a, const glm::dvec3& b) noexcept {
 //
 // zero_to_one has far/(near - far) and far near/(near - far) in row z; y down negates row y.
 // Shape: projector eye space (looking down -z) to projector clip space.
-// Bad input: empty unless 0 < fovy < 180 degrees, aspect > 0 and finite, 0 < z_near < z_far, z_near finite, and every
-// element is finite.
+// Bad input: empty unless 0 < fovy < 180 degrees, aspect > 0 and finite, 0 < z_near < z_far, and z_near finite. Empty, too,
+// where the matrix is none of doubles: an element would be infinite, or the scale of x or y 0.
 // Source: Everitt, Projective Texture Mapping, P_p in (3); OpenGL 2.1 specification, 2.11 (gluPerspective's lens).
 inline std::optional<ProjectorProjection> perspective(const PerspectiveLens& lens, Conventions conventions) noexcept {
     const double half_angle = 0.5 * lens.fovy.in_radians();
@@ -134,18 +156,19 @@ inline std::optional<ProjectorProjection> perspective(const PerspectiveLens& len
 
 // Guarantee, shape: as perspective(); the off-axis terms (right + left)/(right - left) and (top + bottom)/(top - bottom)
 // stand in column z.
-// Bad input: empty unless all fields are finite, left != right, bottom != top, and 0 < z_near < z_far.
+// Bad input: empty unless all fields are finite, left != right, bottom != top, and 0 < z_near < z_far; and where the matrix
+// is none of doubles, as perspective().
 // Source: OpenGL 2.1 specification, 2.11.2 (glFrustum).
 inline std::optional<ProjectorProjection> frustum(const FrustumLens& lens, Conventions conventions) noexcept {
     if (!(lens.z_near > 0.0 && lens.z_near < lens.z_far && detail::is_finite(lens.z_far))) return std::nullopt;
-    const double half_width = 0.5 * lens.right - 0.5 * lens.left;
-    const double half_height = 0.5 * lens.top - 0.5 * lens.bottom;
+    const detail::Interval width(lens.left, lens.right);
+    const detail::Interval height(lens.bottom, lens.top);
     const detail::DepthRow depth = detail::perspective_depth(lens.z_near, lens.z_far, false, conventions.depth);
     glm::dmat4 matrix(0.0);
-    matrix[0][0] = lens.z_near / half_width;
-    matrix[1][1] = lens.z_near / half_height;
-    matrix[2][0] = (0.5 * lens.right + 0.5 * lens.left) / half_width;
-    matrix[2][1] = (0.5 * lens.top + 0.5 * lens.bottom) / half_height;
+    matrix[0][0] = width.twice_over_length(lens.z_near);
+    matrix[1][1] = height.twice_over_length(lens.z_near);
+    matrix[2][0] = width.sum_over_length();
+    matrix[2][1] = height.sum_over_length();
     matrix[2][2] = depth.scale;
     matrix[3][2] = depth.offset;
     matrix[2][3] = -1.0;
@@ -153,22 +176,23 @@ inline std::optional<ProjectorProjection> frustum(const FrustumLens& lens, Conve
 }
 
 // Guarantee, shape: as perspective(); the last row is (0, 0, 0, 1), so q = 1 and the slide falls in parallel rays.
-// Bad input: empty unless all fields are finite, left != right, bottom != top, and z_near < z_far.
+// Bad input: empty unless all fields are finite, left != right, bottom != top, and z_near < z_far; and where the matrix is
+// none of doubles, as perspective().
 // Source: OpenGL 2.1 specification, 2.11.2 (glOrtho).
 inline std::optional<ProjectorProjection> orthographic(const OrthographicLens& lens, Conventions conventions) noexcept {
     if (!(lens.z_near < lens.z_far && detail::is_finite(lens.z_near) && detail::is_finite(lens.z_far)))
         return std::nullopt;
-    const double half_width = 0.5 * lens.right - 0.5 * lens.left;
-    const double half_height = 0.5 * lens.top - 0.5 * lens.bottom;
-    const double half_depth = 0.5 * lens.z_far - 0.5 * lens.z_near;
+    const detail::Interval width(lens.left, lens.right);
+    const detail::Interval height(lens.bottom, lens.top);
+    const detail::Interval depth(lens.z_near, lens.z_far);
     const bool zero_to_one = conventions.depth == DepthRange::zero_to_one;
     glm::dmat4 matrix(0.0);
-    matrix[0][0] = 1.0 / half_width;
-    matrix[1][1] = 1.0 / half_height;
-    matrix[2][2] = (zero_to_one ? -0.5 : -1.0) / half_depth;
-    matrix[3][0] = -(0.5 * lens.right + 0.5 * lens.left) / half_width;
-    matrix[3][1] = -(0.5 * lens.top + 0.5 * lens.bottom) / half_height;
-    matrix[3][2] = -(zero_to_one ? 0.5 * lens.z_near : 0.5 * lens.z_far + 0.5 * lens.z_near) / half_depth;
+    matrix[0][0] = width.twice_over_length(1.0);
+    matrix[1][1] = height.twice_over_length(1.0);
+    matrix[2][2] = -depth.twice_over_length(zero_to_one ? 0.5 : 1.0);
+    matrix[3][0] = -width.sum_over_length();
+    matrix[3][1] = -height.sum_over_length();
+    matrix[3][2] = -(zero_to_one ? depth.end_over_length(lens.z_near) : depth.sum_over_length());
     matrix[3][3] = 1.0;
     return detail::checked_projection(matrix, conventions);
 }
