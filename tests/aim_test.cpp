@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "support/hex.hpp"
 #include "support/oracle.hpp"
@@ -139,6 +140,104 @@ TEST_CASE("far from the origin the direction is that of the exact difference of 
         REQUIRE_MESSAGE(rotation_error(answer->matrix(), aim) <= 4.0 * one_ulp, describe(aim));
         REQUIRE_MESSAGE(translation_error(answer->matrix(), aim.position) <= 1.0, describe(aim));
     }
+}
+
+TEST_CASE("up next to a difference that no doubles hold turns nothing, down to 2^-95 rad") {
+    Random random(84);
+    double rotation = 0.0, orthonormality = 0.0;
+    std::string worst_input;
+    for (int i = 0; i < 1000; ++i) {
+        // target - position is (a + b) direction and a little more; its components are rounded apart. Up is the direction and
+        // a little more, so that the products of 2^-54 cancel but for what is next to 2^-96.
+        const glm::dvec3 direction{random.integer(1 << 25, 1 << 26), random.integer(1 << 25, 1 << 26), 0.0};
+        const double a = random.integer(1 << 9, 1 << 10);
+        const double b = std::ldexp(random.integer(1 << 25, 1 << 26), -62);
+        Aim aim{-b * direction, a * direction, direction};
+        aim.position.y -= std::ldexp(random.integer(1, 8), -62);
+        aim.up.z = std::ldexp(random.uniform(2.0, 8.0), -72);
+        const auto view = look_at(aim);
+        REQUIRE_MESSAGE(view, describe(aim));
+        const double error = rotation_error(view->matrix(), aim);
+        if (error > rotation) {
+            rotation = error;
+            worst_input = describe(aim);
+        }
+        orthonormality = std::max(orthonormality, orthonormality_error(view->matrix()));
+    }
+    CHECK_MESSAGE(rotation <= 4.0 * one_ulp, worst_input);
+    CHECK(orthonormality <= 4.0 * one_ulp);
+}
+
+TEST_CASE("the translation rounds once where its terms cancel to the last of 106 bits") {
+    Random random(85);
+    int cancelled = 0;
+    for (int i = 0; i < 1000; ++i) {
+        const glm::dvec3 difference{random.integer(-99, 99), random.integer(-99, 99), random.integer(1, 99)};
+        const glm::dvec3 up{random.integer(-99, 99), random.integer(1, 99), random.integer(-99, 99)};
+        const auto at_origin = look_at({glm::dvec3(0.0), difference, up});
+        if (!at_origin) continue;
+        const int row = random.integer(0, 2), x = random.integer(0, 2), y = (x + 1) % 3;
+        // m / n as near to the ratio of two elements as numbers of that size are: its continued fraction.
+        Rational ratio = support::magnitude(exactly(at_origin->matrix()[x][row]));
+        const Rational other = support::magnitude(exactly(at_origin->matrix()[y][row]));
+        if (ratio == 0 || other == 0) continue;
+        ratio /= other;
+        double m = 1.0, n = 0.0, m_before = 0.0, n_before = 1.0;
+        for (Rational rest = ratio; m < 0x1p50 && n < 0x1p50;) {
+            const double whole = std::floor(support::nearest<double>(rest));
+            if (whole * m + m_before > 0x1p51 || whole * n + n_before > 0x1p51) break;
+            m_before = std::exchange(m, whole * m + m_before);
+            n_before = std::exchange(n, whole * n + n_before);
+            rest -= exactly(whole);
+            if (rest <= 0) break;
+            rest = 1 / rest;
+        }
+        const bool alike = at_origin->matrix()[x][row] * at_origin->matrix()[y][row] > 0.0;
+        Aim aim{glm::dvec3(0.0), glm::dvec3(0.0), up};
+        aim.position[x] = n;
+        aim.position[y] = alike ? -m : m;
+        aim.target = aim.position + difference;
+        const auto view = look_at(aim);
+        REQUIRE_MESSAGE(view, describe(aim));
+        REQUIRE_MESSAGE(translation_error(view->matrix(), aim.position) <= 1.0, describe(aim));
+        const double size = std::fabs(aim.position[x] * view->matrix()[x][row]);
+        cancelled += std::fabs(view->matrix()[3][row]) < 0x1p-80 * size;
+    }
+    CHECK(cancelled > 300);
+}
+
+TEST_CASE("positions and targets of any finite numbers are an aim, unless its translation is none of doubles") {
+    Random random(86);
+    int at_end = 0;
+    for (int i = 0; i < 12000; ++i) {
+        const auto any_point = [&] {
+            const int kind = random.integer(0, 2);
+            const int exponent = kind == 0   ? random.integer(-1074, 1022)
+                                 : kind == 1 ? random.integer(-1074, -1060)
+                                             : random.integer(1021, 1023);
+            return glm::dvec3(std::ldexp(random.uniform(-2.0, 2.0), exponent),
+                              std::ldexp(random.uniform(-2.0, 2.0), exponent),
+                              std::ldexp(random.uniform(-2.0, 2.0), exponent - random.integer(0, 3)));
+        };
+        Aim aim{any_point(), any_point(), any_point()};
+        if (i % 4 == 0) {
+            // Sums of two terms of the translation leave the range, and that of all three does not.
+            for (int k = 0; k < 3; ++k) aim.position[k] = random.coin() ? 0x1.cp1023 : -0x1.cp1023;
+            aim.target = aim.position + 0x1p1000 * random.direction();
+        }
+        const auto view = look_at(aim);
+        if (aim.position == aim.target || aim.up == glm::dvec3(0.0)) continue;
+        const support::RealMatrix exact = support::look_at(aim.position, aim.target, aim.up);
+        bool is_double = true;
+        for (std::size_t row = 0; row < 3; ++row)
+            is_double = is_double && abs(exact[row][3]) < 0.999 * Real(std::numeric_limits<double>::max());
+        if (is_double) REQUIRE_MESSAGE(view, describe(aim));
+        at_end += is_double && std::fabs(aim.position.x) > 0x1p1022;
+        if (!view) continue;
+        REQUIRE_MESSAGE(rotation_error(view->matrix(), aim) <= 4.0 * one_ulp, describe(aim));
+        REQUIRE_MESSAGE(translation_error(view->matrix(), aim.position) <= 1.0, describe(aim));
+    }
+    CHECK(at_end > 300);
 }
 
 TEST_CASE("the position goes to the origin, the target onto the negative z axis, up upwards") {

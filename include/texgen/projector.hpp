@@ -12,6 +12,7 @@
 #include <glm/vec3.hpp>
 
 #include "conventions.hpp"
+#include "detail/expansion.hpp"
 #include "detail/inverse.hpp"
 #include "detail/rounding.hpp"
 #include "transform.hpp"
@@ -113,11 +114,63 @@ inline glm::dvec3 cross(const glm::dvec3& a, const glm::dvec3& b) noexcept {
             difference_of_products(a.x, b.y, a.y, b.x)};
 }
 
-// a . b, summed in doubled precision: far from the origin its terms cancel.
-inline double dot(const glm::dvec3& a, const glm::dvec3& b) noexcept {
-    DoubleDouble sum{0.0, 0.0};
-    for (glm::length_t i = 0; i < 3; ++i) sum = add_product(sum, a[i], b[i]);
-    return sum.high;
+// v / |v| for a v near 1. The length is that of the exact squares, rounded once, so that it adds next to nothing.
+inline glm::dvec3 normalized(const glm::dvec3& v) noexcept {
+    DoubleDouble square{0.0, 0.0};
+    for (glm::length_t i = 0; i < 3; ++i) square = add_product(square, v[i], v[i]);
+    const double root = std::sqrt(square.high);
+    return v / (root + 0.5 * (std::fma(-root, root, square.high) + square.low) / root);
+}
+
+// row . point for a row of a rotation, within 1 ulp however its terms cancel: far from the origin they do. The point is
+// brought to where neither products nor their last bits leave the range.
+inline double rotated(const glm::dvec3& row, const glm::dvec3& point) noexcept {
+    if (point.x == 0.0 && point.y == 0.0 && point.z == 0.0) return 0.0;
+    const int exponent = largest_exponent(point);
+    const int shift = exponent > 900 ? 900 - exponent : exponent < -700 ? -700 - exponent : 0;
+    Expansion<6> sum;
+    for (glm::length_t i = 0; i < 3; ++i) sum.add_product(row[i], std::scalbn(point[i], shift));
+    return std::scalbn(sum.estimate(), -shift);
+}
+
+// A difference of two points as it is, unrounded: the sum of both.
+struct Difference {
+    glm::dvec3 high, low;
+};
+
+// to - from times a power of two, so that the largest component is in [1, 2); 0 where it is 0 or not finite.
+inline Difference scaled_difference(const glm::dvec3& to, const glm::dvec3& from) noexcept {
+    const glm::dvec3 rounded = to - from;
+    const bool is_in_range = is_finite(rounded.x) && is_finite(rounded.y) && is_finite(rounded.z);
+    const double unit = is_in_range ? 1.0 : 0.5;
+    Difference result{};
+    for (glm::length_t i = 0; i < 3; ++i) {
+        const DoubleDouble component = two_sum(unit * to[i], -unit * from[i]);
+        result.high[i] = component.high;
+        result.low[i] = component.low;
+    }
+    const glm::dvec3 scaled = scaled_near_one(result.high);
+    if (!(length(scaled) > 0.0)) return Difference{};
+    const int exponent = largest_exponent(result.high);
+    for (glm::length_t i = 0; i < 3; ++i) result.low[i] = std::scalbn(result.low[i], -exponent);
+    result.high = scaled;
+    return result;
+}
+
+// a x b within 1 ulp, component by component.
+inline glm::dvec3 cross(const Difference& a, const glm::dvec3& b) noexcept {
+    glm::dvec3 result(0.0);
+    for (glm::length_t i = 0; i < 3; ++i) {
+        const glm::length_t j = (i + 1) % 3;
+        const glm::length_t k = (i + 2) % 3;
+        Expansion<8> sum;
+        sum.add_product(a.high[j], b[k]);
+        sum.add_product(a.low[j], b[k]);
+        sum.add_product(-a.high[k], b[j]);
+        sum.add_product(-a.low[k], b[j]);
+        result[i] = sum.estimate();
+    }
+    return result;
 }
 
 }  // namespace TEXGEN_COMPILER
@@ -141,8 +194,9 @@ inline std::optional<ProjectorProjection> perspective(const PerspectiveLens& len
     if (!(half_angle > 0.0 && half_angle < 0.5 * 3.14159265358979323846)) return std::nullopt;
     if (!(lens.aspect > 0.0 && detail::is_finite(lens.aspect))) return std::nullopt;
     if (!(lens.z_near > 0.0 && lens.z_near < lens.z_far)) return std::nullopt;
-    // cos / sin and not 1 / tan: two correctly rounded functions and one division, at any angle.
-    const double focal_length = std::cos(half_angle) / std::sin(half_angle);
+    // cos / sin and not 1 / tan: two correctly rounded functions and one division, at any angle whose half is exact.
+    const double focal_length =
+        half_angle < 0x1p-30 ? 2.0 / lens.fovy.in_radians() : std::cos(half_angle) / std::sin(half_angle);
     const detail::DepthRow depth =
         detail::perspective_depth(lens.z_near, lens.z_far, lens.reversed_depth, conventions.depth);
     glm::dmat4 matrix(0.0);
@@ -197,38 +251,36 @@ inline std::optional<ProjectorProjection> orthographic(const OrthographicLens& l
     return detail::checked_projection(matrix, conventions);
 }
 
-// Guarantee: the rotation's rows are orthonormal within 4 double ulp, with `up` as near to the view as 2^-98 rad; the
-// translation -R position is within 1 ulp of its exact value for the rotation that is returned, at any distance from
-// the origin. No allocation, noexcept.
+// Guarantee: each element of the rotation within 4 double ulp of 1 (2^-50) of the definition's, its rows orthonormal within
+// that, with `up` as near to the view as 2^-98 rad; the translation -R position is within 1 ulp of its exact value for the
+// rotation that is returned, at any distance from the origin and however it cancels. No allocation, noexcept.
 // Shape: world to projector eye space; the position goes to 0, the target onto the negative z axis, up has x = 0.
-// Bad input: empty where target equals position, up is zero or parallel to the view, or a number is not finite.
+// Bad input: empty where target equals position, up is zero or parallel to the view, or a number is not finite, that of the
+// translation among them.
 // Source: Everitt, Projective Texture Mapping, V_p in (3); OpenGL utility library, gluLookAt.
 inline std::optional<ProjectorView> look_at(const Aim& aim) noexcept {
-    const glm::dvec3 forward = detail::scaled_near_one(aim.target - aim.position);
+    // Where up is nearly parallel the rounding of target - position would turn the picture.
+    const detail::Difference view = detail::scaled_difference(aim.target, aim.position);
+    const glm::dvec3& forward = view.high;
     const glm::dvec3 up = detail::scaled_near_one(aim.up);
     if (!(detail::length(forward) > 0.0 && detail::length(up) > 0.0)) return std::nullopt;
-    // The rounding of target - position, in the same scale: where up is nearly parallel it would turn the picture.
-    glm::dvec3 rounding(0.0);
-    const int exponent = detail::largest_exponent(aim.target - aim.position);
-    for (glm::length_t i = 0; i < 3; ++i)
-        rounding[i] = std::scalbn(detail::two_sum(aim.target[i], -aim.position[i]).low, -exponent);
-    const glm::dvec3 sideways = detail::cross(forward, up) + detail::cross(rounding, up);
+    const glm::dvec3 sideways = detail::cross(view, up);
     if (!(detail::length(sideways) > 0x1p-98)) return std::nullopt;
     const glm::dvec3 side_direction = detail::scaled_near_one(sideways);
     if (!(detail::length(side_direction) > 0.0)) return std::nullopt;
 
-    const glm::dvec3 side = side_direction / detail::length(side_direction);
-    const glm::dvec3 back = -forward / detail::length(forward);
-    const glm::dvec3 upright = detail::cross(back, side);
+    const glm::dvec3 side = detail::normalized(side_direction);
+    const glm::dvec3 back = -detail::normalized(forward);
+    const glm::dvec3 upright = detail::normalized(detail::cross(back, side));
     glm::dmat4 matrix(1.0);
     for (glm::length_t i = 0; i < 3; ++i) {
         matrix[i][0] = side[i];
         matrix[i][1] = upright[i];
         matrix[i][2] = back[i];
     }
-    matrix[3][0] = -detail::dot(side, aim.position);
-    matrix[3][1] = -detail::dot(upright, aim.position);
-    matrix[3][2] = -detail::dot(back, aim.position);
+    matrix[3][0] = -detail::rotated(side, aim.position);
+    matrix[3][1] = -detail::rotated(upright, aim.position);
+    matrix[3][2] = -detail::rotated(back, aim.position);
     if (!detail::is_finite(matrix)) return std::nullopt;
     return ProjectorView(matrix);
 }
