@@ -751,6 +751,77 @@ TEST_CASE("footprints of any size have the shape of those near 1") {
     CHECK(thin > 30);
 }
 
+TEST_CASE("a footprint of any finite derivatives is that of 400 bits, next to level 0 and at the ends of the range") {
+    Random random(6751);
+    const double bound = 0x1p-48;
+    const Real largest_double = std::numeric_limits<double>::max();
+    double worst_level = 0.0, worst_value = 0.0, worst_anisotropy = 0.0;
+    int near_level_0 = 0, huge = 0, infinite = 0, thin = 0;
+    for (int i = 0; i < 20000; ++i) {
+        TexelsPerUnit texels = some_texels(random);
+        int exponent = random.integer(-1040, 1023);
+        if (i % 3 == 0) exponent = random.integer(1000, 1023);
+        double size = std::ldexp(1.0, exponent);
+        if (i % 3 == 1) {
+            // The longer column is next to one texel a pixel.
+            texels = {std::ldexp(1.0, random.integer(0, 9)), std::ldexp(1.0, random.integer(0, 9))};
+            size = 1.0;
+        }
+        const auto column = [&](double length) {
+            const double angle = random.uniform(0.0, 6.28);
+            return glm::dvec2(length * std::cos(angle), length * std::sin(angle));
+        };
+        glm::dvec2 dx = size * column(random.uniform(0.5, 1.0)), dy = size * column(random.uniform(0.5, 1.0));
+        if (i % 3 == 1) {
+            dx = column(1.0 + std::ldexp(random.uniform(-1.0, 1.0), -random.integer(10, 53)));
+            dx = {dx.x / texels.s, dx.y / texels.t};
+            dy = 0.5 * dx + std::ldexp(1.0, -random.integer(10, 40)) * dy / glm::dvec2(texels.s, texels.t);
+        }
+        if (i % 5 == 0) dy = dx * random.uniform(0.1, 0.9);
+        const Footprint got = texgen::footprint_of(dx, dy, texels);
+        const Real p = Real(dx.x) * texels.s, q = Real(dx.y) * texels.t;
+        const Real u = Real(dy.x) * texels.s, v = Real(dy.y) * texels.t;
+        const Real a = p * p + u * u, b = p * q + u * v, c = q * q + v * v, half = (a - c) / 2;
+        const Real larger = sqrt((a + c) / 2 + sqrt(half * half + b * b));
+        const Real smaller = abs(p * v - q * u) / larger;
+        const Real longer = p * p + q * q > u * u + v * v ? p * p + q * q : u * u + v * v;
+        const Real level = log(longer) / log(Real(2)) / 2;
+        const std::string input =
+            hex(dx.x) + " " + hex(dx.y) + " " + hex(dy.x) + " " + hex(dy.y) + " " + hex(texels.s) + " " + hex(texels.t);
+        const Real size_of_level = abs(level) > 1 ? abs(level) : Real(1);
+        const auto of_level = static_cast<double>(abs(Real(got.level) - level) / size_of_level);
+        REQUIRE_MESSAGE(of_level <= bound, input);
+        worst_level = std::max(worst_level, of_level);
+        near_level_0 += abs(level) < 0x1p-9;
+        huge += std::max({std::fabs(dx.x), std::fabs(dx.y), std::fabs(dy.x), std::fabs(dy.y)}) > 0x1p1000;
+        const Real ratio = smaller > 0 ? Real(larger / smaller) : Real(0);
+        if (ratio > 0 && ratio < Real(0x1p40)) {
+            const auto error = static_cast<double>(abs(Real(got.anisotropy) - ratio) / (ratio * ratio));
+            REQUIRE_MESSAGE(error <= bound, input);
+            worst_anisotropy = std::max(worst_anisotropy, error);
+        }
+        thin += ratio > 1e6;
+        if (larger > largest_double) {
+            ++infinite;
+            REQUIRE_MESSAGE(std::isinf(got.singular_values.x), input);
+        } else if (larger > Real(0x1p-1000)) {
+            const auto of_larger = static_cast<double>(abs(Real(got.singular_values.x) - larger) / larger);
+            const auto of_smaller = static_cast<double>(abs(Real(got.singular_values.y) - smaller) / larger);
+            REQUIRE_MESSAGE(of_larger <= bound, input);
+            REQUIRE_MESSAGE(of_smaller <= bound, input);
+            worst_value = std::max({worst_value, of_larger, of_smaller});
+        }
+    }
+    CHECK(near_level_0 > 4000);
+    CHECK(huge > 4000);
+    CHECK(infinite > 1000);
+    CHECK(thin > 1000);
+    MESSAGE((worst_level / bound), " of the bound on the level, ", (worst_value / bound), " on the singular values, ",
+            (worst_anisotropy / bound), " on the anisotropy");
+    CHECK(texgen::footprint_of({1e303, 0.0}, {0.0, 1e303}, {1.0, 1.0}).singular_values == glm::dvec2(1e303));
+    CHECK(std::isnan(texgen::footprint_of({HUGE_VAL, 0.0}, {0.0, 1.0}, {1.0, 1.0}).level));
+}
+
 TEST_CASE("triangles that double cannot hold the differences of keep their bounds and their extremes") {
     // Corners that differ by 2^-142 of the third's distance; and a Q that grows to 2^269 over one pixel.
     const auto corner = [](float x, float y, float w, const glm::vec4& strq) { return WindowVertex{{x, y}, w, strq}; };

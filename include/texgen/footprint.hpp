@@ -90,14 +90,16 @@ Footprint footprint_of(const glm::dvec2& dx, const glm::dvec2& dy, const Determi
                        const TexelsPerUnit& texels) noexcept {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    const double s_dx = dx.x * texels.s;
-    const double t_dx = dx.y * texels.t;
-    const double s_dy = dy.x * texels.s;
-    const double t_dy = dy.y * texels.t;
-    const double size =
-        larger_or_nan(larger_or_nan(std::fabs(s_dx), std::fabs(t_dx)), larger_or_nan(std::fabs(s_dy), std::fabs(t_dy)));
-    if (!is_usable(texels) || !(size < 0x1p1000)) return {dx, dy, nan, {nan, nan}, nan, {nan, nan}};
-    if (!(size > 0.0)) return {dx, dy, -infinity, {0.0, 0.0}, 1.0, {0.0, 0.0}};
+    const double largest_slope =
+        larger_or_nan(larger_or_nan(std::fabs(dx.x), std::fabs(dx.y)), larger_or_nan(std::fabs(dy.x), std::fabs(dy.y)));
+    if (!is_usable(texels) || !(largest_slope < infinity)) return {dx, dy, nan, {nan, nan}, nan, {nan, nan}};
+    if (!(largest_slope > 0.0)) return {dx, dy, -infinity, {0.0, 0.0}, 1.0, {0.0, 0.0}};
+    const double unit = reciprocal_power_of_two(smaller(larger(largest_slope, 0x1p-1000), 0x1p1000));
+    const double s_dx = unit * dx.x * texels.s;
+    const double t_dx = unit * dx.y * texels.t;
+    const double s_dy = unit * dy.x * texels.s;
+    const double t_dy = unit * dy.y * texels.t;
+    const double size = larger(larger(std::fabs(s_dx), std::fabs(t_dx)), larger(std::fabs(s_dy), std::fabs(t_dy)));
     const double scale = reciprocal_power_of_two(size);
     const double p = s_dx * scale;
     const double q = t_dx * scale;
@@ -109,10 +111,7 @@ Footprint footprint_of(const glm::dvec2& dx, const glm::dvec2& dy, const Determi
     const double half = 0.5 * (a - c);
     const double root = std::sqrt(half * half + b * b);
     const double largest = 0.5 * (a + c) + root;  // the larger eigenvalue of J J^T, and det^2 over it the smaller
-    const double largest_slope =
-        larger(larger(std::fabs(dx.x), std::fabs(dx.y)), larger(std::fabs(dy.x), std::fabs(dy.y)));
-    const double unit = reciprocal_power_of_two(smaller(larger(largest_slope, 0x1p-1000), 0x1p1000));
-    const double det = std::fabs(determinant(unit) * (texels.s * (scale / unit)) * (texels.t * (scale / unit)));
+    const double det = std::fabs(determinant(unit) * (texels.s * scale) * (texels.t * scale));
     const double length = std::sqrt(largest);
     glm::dvec2 major(1.0, 0.0);
     if (root > 0.0) {
@@ -121,10 +120,10 @@ Footprint footprint_of(const glm::dvec2& dx, const glm::dvec2& dy, const Determi
     }
     return {dx,
             dy,
-            0.5 * std::log2(larger(p * p + q * q, u * u + v * v)) - std::log2(scale),
-            glm::dvec2(length, smaller(det / length, length)) / scale,
+            0.5 * std::log2(larger(p * p + q * q, u * u + v * v)) - std::log2(scale) - std::log2(unit),
+            glm::dvec2(length, smaller(det / length, length)) / scale / unit,
             det > 0.0 ? larger(largest / det, 1.0) : infinity,
-            glm::dvec2(major.x / texels.s, major.y / texels.t) * (length / scale)};
+            glm::dvec2(major.x / texels.s, major.y / texels.t) * (length / scale) / unit};
 }
 
 }  // namespace TEXGEN_COMPILER
@@ -133,8 +132,9 @@ Footprint footprint_of(const glm::dvec2& dx, const glm::dvec2& dy, const Determi
 inline namespace TEXGEN_COMPILER {
 
 // What filters make of derivatives that come from elsewhere.
-// Guarantee: singular values, level and anisotropy within 2^-48 of themselves (of the larger singular value for the smaller;
-// so with the anisotropy, relative to its square). No allocation, noexcept.
+// Guarantee: singular values and anisotropy within 2^-48 of themselves (of the larger singular value for the smaller; so
+// with the anisotropy, relative to its square), level within 2^-48 max(1, |level|): of any finite derivatives, while what
+// comes out is a normal number; what is beyond the largest is infinite. No allocation, noexcept.
 // Shapes: units of s and t a pixel.
 // Bad input: what is not finite makes all but dx and dy NaN.
 inline Footprint footprint_of(const glm::dvec2& dx, const glm::dvec2& dy, const TexelsPerUnit& texels) noexcept {
