@@ -25,8 +25,10 @@ struct CloseRamp {
     double error, grain;
 
     CloseRamp moved(std::int64_t x, std::int64_t y) const noexcept {
-        const DoubleDouble along_x = product(dx, {static_cast<double>(x), 0.0});
-        const DoubleDouble along_y = product(dy, {static_cast<double>(y), 0.0});
+        const auto right = static_cast<double>(x);  // integers
+        const auto down = static_cast<double>(y);   // integers
+        const DoubleDouble along_x = product(dx, {right, 0.0});
+        const DoubleDouble along_y = product(dy, {down, 0.0});
         return {sum(base, sum(along_x, along_y)), dx, dy, error, grain};
     }
 
@@ -81,8 +83,8 @@ struct CloseRamps {
 class ClosePlanes {
 public:
     ClosePlanes(const TrianglePlanes& planes, const Tile& tile) noexcept : planes_(planes), tile_(tile) {
-        const double x = static_cast<double>(tile.x) + 0.5;
-        const double y = static_cast<double>(tile.y) + 0.5;
+        const double x = static_cast<double>(tile.x) + 0.5;  // integers
+        const double y = static_cast<double>(tile.y) + 0.5;  // integers
         for (std::size_t i = 0; i < 3; ++i) {
             const glm::dvec2 corner = planes.corner(i);
             to_x_[i] = two_sum(corner.x, -x);

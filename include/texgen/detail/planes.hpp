@@ -50,7 +50,7 @@ struct Tile {
 
 // How many fragments a rectangle has: where std::size_t cannot say it, more than any array holds.
 inline std::size_t count_of(const FragmentRect& rect) noexcept {
-    constexpr std::size_t most = std::numeric_limits<std::size_t>::max();
+    constexpr std::size_t most = (std::numeric_limits<std::size_t>::max)();
     const auto width = static_cast<std::size_t>(rect.width);
     const auto height = static_cast<std::size_t>(rect.height);
     return width <= most / height ? width * height : most;

@@ -56,7 +56,8 @@ inline double last_bit(double value) noexcept {
     const auto bits = bit_cast<std::uint64_t>(value);
     if (bits << 1 == 0) return std::numeric_limits<double>::infinity();
     const int zeros = std::countr_zero(bits | std::uint64_t{1} << 52);
-    return bit_cast<double>(bits & 0x7ff0000000000000) * (0x1p-52 * static_cast<double>(std::uint64_t{1} << zeros));
+    const auto from_last = static_cast<double>(std::uint64_t{1} << zeros);  // integers
+    return bit_cast<double>(bits & 0x7ff0000000000000) * (0x1p-52 * from_last);
 }
 
 // The relative error of n roundings in sequence is at most gamma(n) = n u / (1 - n u). Here u is twice the unit roundoff,
