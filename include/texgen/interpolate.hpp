@@ -851,12 +851,9 @@ inline SegmentJob segment_job(const Segment& segment, int first, int numerators)
 
 inline namespace TEXGEN_BUILD {
 
-// The nearest floats from `first` on: in vectors, and the blocks that those cannot vouch for value by value.
+// The nearest floats from `first` on: in vectors; what those cannot decide value by value.
 inline void interpolate_nearest(const SegmentKernels& kernels, const SegmentJob& job, std::size_t first) noexcept {
-    for (std::size_t i = kernels.divide_nearest(job, first); i < job.count; i = kernels.divide_nearest(job, i)) {
-        const std::size_t block_end = (i / nearest_block + 1) * nearest_block;
-        for (; i < job.count && i < block_end; ++i) interpolate_one(job, i);
-    }
+    divide_blocks(kernels.divide_nearest, job, first, interpolate_one);
 }
 
 // In float where that stays inside the tolerance for the whole segment, else the nearest float.

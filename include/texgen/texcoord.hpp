@@ -5,6 +5,7 @@
 
 #include "detail/language.hpp"
 
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -242,13 +243,20 @@ inline void project_one(const PointJob& job, std::size_t i) noexcept {
 
 inline namespace TEXGEN_BUILD {
 
-// Points begin to end of a job: in vectors; the blocks that those cannot vouch for point by point.
+// The values of a job from `first` on by its kernel, and by one(job, i) what that cannot decide.
+template <class Kernel, class Job, class One>
+void divide_blocks(Kernel kernel, const Job& job, std::size_t first, const One& one) noexcept {
+    for (Undecided left = kernel(job, first); left.begin < job.count; left = kernel(job, first)) {
+        for (std::uint64_t values = left.values; values != 0; values &= values - 1)
+            one(job, left.begin + static_cast<std::size_t>(std::countr_zero(values)));
+        first = (left.begin / nearest_block + 1) * nearest_block;
+    }
+}
+
+// Points begin to end of a job: in vectors; what those cannot decide point by point.
 inline void project_nearest(const PointKernels& kernels, PointJob job, std::size_t begin, std::size_t end) noexcept {
     job.count = end;
-    for (std::size_t i = kernels.divide_nearest(job, begin); i < end; i = kernels.divide_nearest(job, i)) {
-        const std::size_t block_end = (i / nearest_block + 1) * nearest_block;
-        for (; i < end && i < block_end; ++i) project_one(job, i);
-    }
+    divide_blocks(kernels.divide_nearest, job, begin, project_one);
 }
 
 // Points begin to end by a kernel that stops at a block whose error is not certified to be inside the tolerance. Such a

@@ -455,6 +455,12 @@ TileJob::Unit divide_chunks(const TileJob& job, TileJob::Unit first) noexcept {
 
 // ---- Points ----------------------------------------------------------------------------------------------------
 
+}  // namespace TEXGEN_DETAIL::TEXGEN_ISA
+
+#include "twofold.inc.hpp"
+
+namespace TEXGEN_DETAIL::TEXGEN_ISA {
+
 template <class Vector, class Job>
 TEXGEN_INLINE void load_points(const Job& job, std::size_t i, Vector& x, Vector& y, Vector& z) noexcept {
     if (job.triples) {
@@ -484,6 +490,7 @@ TEXGEN_INLINE void store_points(const DividedOutput& output, std::size_t i, cons
 struct Doubt {
     Words rounding{};
     LongWords side{};
+    LongWords not_in_front{};
 
     TEXGEN_INLINE bool any_lane() const noexcept { return any(rounding | narrow(side)); }
 };
@@ -497,6 +504,7 @@ TEXGEN_INLINE LongWords divide_certainly(const Doubles (&numerator)[Numerators],
     const LongWords in_front = greater(q, 0x1p20 * q_error);
     Doubles reciprocal = 1.0 / q;
     if constexpr (Signed) {
+        doubt.not_in_front |= ~in_front;
         doubt.side |= ~(in_front | greater(-1.0 * q, q_error));
         reciprocal = where(in_front, reciprocal);
     } else {
@@ -512,6 +520,33 @@ TEXGEN_INLINE LongWords divide_certainly(const Doubles (&numerator)[Numerators],
         doubt.rounding |= bits(value[k]) ^ bits(to_floats(quotient + error));
     }
     return in_front;
+}
+
+// Decides a block in two doubles. Terms are the sums at a vector of values: whether a lane is behind whatever its q, q, and
+// the numerators, or their quotients where these are no numbers. Bit i of the result: value begin + i is in doubt still.
+template <std::size_t Numerators, class Terms>
+TEXGEN_INLINE std::uint64_t decide_block(const DividedOutput& output, const Terms& terms, std::size_t begin,
+                                         std::size_t end) noexcept {
+    if (!rounds_to_nearest()) return ~std::uint64_t{0} >> (nearest_block - (end - begin));
+    std::uint64_t doubtful = 0;
+    for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(lanes)) {
+        const auto at = terms.load(i);
+        const TwofoldDivisor q(terms.q.at(at));
+        LongWords is_known = q.is_known | terms.are_dark(at);
+        Floats value[Numerators];
+        for (std::size_t k = 0; k < Numerators; ++k) {
+            if (terms.numerator[k].is_finite)
+                value[k] = nearest_quotients(terms.numerator[k].at(at), q, is_known);
+            else
+                value[k] = to_floats(where(q.in_front, terms.numerator[k].nearly_at(at) * q.reciprocal));
+        }
+        store_points(output, i, value, narrow(q.in_front));
+        const Words doubt = narrow(~is_known);
+        if (!any(doubt)) continue;
+        for (int lane = 0; lane < lanes; ++lane)
+            if (doubt[lane] != 0) doubtful |= std::uint64_t{1} << (i - begin + static_cast<std::size_t>(lane));
+    }
+    return doubtful;
 }
 
 // The largest |x|, |y|, |z| of a block: of all three together for triples. A NaN is the largest.
@@ -546,10 +581,10 @@ TEXGEN_INLINE Doubles at(const PointForm& form, const Doubles& x, const Doubles&
     return x * form.x + (y * form.y + (z * form.z + form.w));
 }
 
-// A block of points. False where a value is in doubt (it is written all the same).
+// A block of points. Returns what is in doubt (it is written all the same).
 template <bool Signed, std::size_t Numerators>
-TEXGEN_INLINE bool divide_points_block(const PointJob& job, std::size_t begin, std::size_t end,
-                                       const double (&numerator_error)[Numerators], double q_error) noexcept {
+TEXGEN_INLINE Doubt divide_points_block(const PointJob& job, std::size_t begin, std::size_t end,
+                                        const double (&numerator_error)[Numerators], double q_error) noexcept {
     Doubt doubt;
     for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(lanes)) {
         Floats xs, ys, zs;
@@ -564,32 +599,88 @@ TEXGEN_INLINE bool divide_points_block(const PointJob& job, std::size_t begin, s
             divide_certainly<Signed>(numerator, numerator_error, at(job.q, x, y, z), q_error, value, doubt);
         store_points(job, i, value, narrow(in_front));
     }
-    return !doubt.any_lane();
+    return doubt;
 }
 
-// Most blocks are all in front; one that is not is done again for both signs of q.
+// The sums of points, for decide_block().
 template <std::size_t Numerators>
-TEXGEN_INLINE std::size_t divide_points_nearest_of(const PointJob& job, std::size_t first) noexcept {
+struct PointTerms {
+    const PointJob& job;
+    TwofoldForm q;
+    TwofoldForm numerator[Numerators];
+
+    TEXGEN_INLINE explicit PointTerms(const PointJob& points) noexcept : job(points), q(points.q) {
+        for (std::size_t k = 0; k < Numerators; ++k) numerator[k] = TwofoldForm(points.numerator[k]);
+    }
+    TEXGEN_INLINE PointLanes load(std::size_t i) const noexcept {
+        Floats x, y, z;
+        load_points(job, i, x, y, z);
+        return {{to_doubles(x), to_doubles(y), to_doubles(z)}};
+    }
+    TEXGEN_INLINE LongWords are_dark(const PointLanes& at) const noexcept {
+        const Doubles zero =
+            (at.v[0] + at.v[1] + at.v[2]) * (q.is_finite ? 0.0 : std::numeric_limits<double>::quiet_NaN());
+        return ~at_most(zero, zero);
+    }
+};
+
+// The bounds of divide_certainly() for a block.
+template <std::size_t Numerators>
+struct BlockErrors {
+    double numerator[Numerators];
+    double q;
+};
+
+// What doing a block of points again leaves.
+struct Again {
+    std::uint64_t values;  // in doubt still
+    bool is_in_front;      // all of the block, it seems
+};
+
+// For both signs of q, where not all of the block seems to be in front; then in two doubles.
+template <std::size_t Numerators>
+TEXGEN_APART Again divide_points_again(const PointJob& job, std::size_t begin, std::size_t end,
+                                       BlockErrors<Numerators> error, bool is_in_front) noexcept {
+    if (!is_in_front) {
+        const Doubt doubt = divide_points_block<true>(job, begin, end, error.numerator, error.q);
+        is_in_front = !any(narrow(doubt.not_in_front));
+        if (!doubt.any_lane()) return {0, is_in_front};
+    }
+    return {decide_block<Numerators>(job, PointTerms<Numerators>(job), begin, end), is_in_front};
+}
+
+// Most blocks are all in front; those that follow one that is not are taken for what it was. The job is copied, here and
+// below, so that the compiler knows that no store changes it: nothing that the loop reads may be reached from elsewhere.
+template <std::size_t Numerators>
+TEXGEN_INLINE Undecided divide_points_nearest_of(const PointJob& original, std::size_t first) noexcept {
+    const PointJob job = original;
+    bool is_in_front = true;
     for (std::size_t begin = first; begin < job.count;) {
         const std::size_t next = begin / nearest_block * nearest_block + nearest_block;
         const std::size_t end = next < job.count ? next : job.count;
         const PointExtent extent = extent_of(job, begin, end);
-        double numerator_error[Numerators];
+        BlockErrors<Numerators> error;
         for (std::size_t k = 0; k < Numerators; ++k)
-            numerator_error[k] = gamma(5) * extent.magnitude_of(job.numerator[k]);
-        const double q_error = gamma(5) * extent.magnitude_of(job.q);
-        if (!divide_points_block<false>(job, begin, end, numerator_error, q_error) &&
-            !divide_points_block<true>(job, begin, end, numerator_error, q_error))
-            return begin;
+            error.numerator[k] = gamma(5) * extent.magnitude_of(job.numerator[k]);
+        error.q = gamma(5) * extent.magnitude_of(job.q);
+        bool is_certain = false;
+        if (is_in_front) {
+            const Doubt doubt = divide_points_block<false>(job, begin, end, error.numerator, error.q);
+            is_certain = !doubt.any_lane();
+            if (!is_certain) is_in_front = !any(narrow(doubt.side));
+        }
+        if (!is_certain) {
+            const Again again = divide_points_again(original, begin, end, error, is_in_front);
+            if (again.values != 0) return {begin, again.values};
+            is_in_front = again.is_in_front;
+        }
         begin = end;
     }
-    return job.count;
+    return {job.count, 0};
 }
 
-// The job is copied, here and below, so that the compiler knows that no store changes it.
 template <class = void>
-std::size_t divide_points_nearest(const PointJob& original, std::size_t first) noexcept {
-    const PointJob job = original;
+Undecided divide_points_nearest(const PointJob& job, std::size_t first) noexcept {
     return job.numerators == 2 ? divide_points_nearest_of<2>(job, first) : divide_points_nearest_of<1>(job, first);
 }
 
@@ -712,10 +803,50 @@ void generate_points(const GenerateJob& original) noexcept {
 
 // ---- Segments --------------------------------------------------------------------------------------------------
 
+// The sums of a segment's values, for decide_block().
+template <std::size_t Numerators>
+struct SegmentTerms {
+    struct At {
+        Doubles alpha;
+    };
+    struct Mixture {
+        double a, b;
+        bool is_finite;
+
+        TEXGEN_INLINE Twofold at(const At& at) const noexcept { return twofold_mixed(a, b, at.alpha); }
+        TEXGEN_INLINE Doubles nearly_at(const At& at) const noexcept { return (1.0 - at.alpha) * a + at.alpha * b; }
+    };
+
+    const SegmentJob& job;
+    Mixture q;
+    Mixture numerator[Numerators];
+
+    TEXGEN_INLINE explicit SegmentTerms(const SegmentJob& segment) noexcept
+        : job(segment), q(mixture(segment.q_a, segment.q_b)) {
+        for (std::size_t k = 0; k < Numerators; ++k) numerator[k] = mixture(segment.a[k], segment.b[k]);
+    }
+    TEXGEN_INLINE At load(std::size_t i) const noexcept {
+        return {to_doubles(detail::TEXGEN_ISA::load<Floats>(job.alpha + i))};
+    }
+    TEXGEN_INLINE LongWords are_dark(const At& at) const noexcept {
+        const Doubles zero = at.alpha * (q.is_finite ? 0.0 : std::numeric_limits<double>::quiet_NaN());
+        return ~at_most(zero, zero);
+    }
+
+private:
+    TEXGEN_INLINE static Mixture mixture(double a, double b) noexcept { return {a, b, 0.0 * (a + b) == 0.0}; }
+};
+
+template <std::size_t Numerators>
+TEXGEN_APART std::uint64_t divide_segment_again(const SegmentJob& job, std::size_t begin, std::size_t end) noexcept {
+    return decide_block<Numerators>(job, SegmentTerms<Numerators>(job), begin, end);
+}
+
 // (1 - a) A + a B in double, in blocks as for points. 1 - a, the products and the sum are rounded once each. Where the
 // whole segment is in front one bound serves all values; only an alpha that is NaN is in doubt about its side.
 template <bool InFront, std::size_t Numerators>
-TEXGEN_INLINE std::size_t divide_segment_nearest_of(const SegmentJob& job, std::size_t first) noexcept {
+TEXGEN_INLINE Undecided divide_segment_nearest_of(const SegmentJob& original, std::size_t first) noexcept {
+    const SegmentJob job = original;
     double numerator_error[Numerators];
     for (std::size_t k = 0; k < Numerators; ++k)
         numerator_error[k] = gamma(4) * larger(std::fabs(job.a[k]), std::fabs(job.b[k]));
@@ -745,15 +876,17 @@ TEXGEN_INLINE std::size_t divide_segment_nearest_of(const SegmentJob& job, std::
                 store_points(job, i, value, narrow(in_front));
             }
         }
-        if (doubt.any_lane()) return begin;
+        if (doubt.any_lane()) {
+            const std::uint64_t doubtful = divide_segment_again<Numerators>(original, begin, end);
+            if (doubtful != 0) return {begin, doubtful};
+        }
         begin = end;
     }
-    return job.count;
+    return {job.count, 0};
 }
 
 template <class = void>
-std::size_t divide_segment_nearest(const SegmentJob& original, std::size_t first) noexcept {
-    const SegmentJob job = original;
+Undecided divide_segment_nearest(const SegmentJob& job, std::size_t first) noexcept {
     if (job.numerators == 2)
         return job.in_front ? divide_segment_nearest_of<true, 2>(job, first)
                             : divide_segment_nearest_of<false, 2>(job, first);

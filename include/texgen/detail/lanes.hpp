@@ -15,6 +15,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <type_traits>
 #include <utility>
 
@@ -182,17 +183,23 @@ struct TileKernels {
     std::uint64_t (*divide_closely)(const TileJob&, const CloseFunctions&, TileJob::Unit unit) noexcept;
 };
 
+// Where a kernel stops: at the first block with values that it cannot decide (bit i: value begin + i), or at the count.
+// Blocks end at multiples of nearest_block.
+struct Undecided {
+    std::size_t begin;
+    std::uint64_t values;
+};
+
 struct PointKernels {
-    // The first point from `first` on of a block with a doubtful value, or the count; blocks end at multiples of nearest_block.
-    std::size_t (*divide_nearest)(const PointJob&, std::size_t first) noexcept;
-    // The same for a block of float_block points that is not inside the tolerance.
+    Undecided (*divide_nearest)(const PointJob&, std::size_t first) noexcept;
+    // The first point from `first` on of a block of float_block points that is not inside the tolerance, or the count.
     std::size_t (*divide_float)(const PointJob&, std::size_t first) noexcept;
     std::size_t (*divide_rounded)(const PointJob&, std::size_t first) noexcept;
     void (*generate)(const GenerateJob&) noexcept;
 };
 
 struct SegmentKernels {
-    std::size_t (*divide_nearest)(const SegmentJob&, std::size_t first) noexcept;
+    Undecided (*divide_nearest)(const SegmentJob&, std::size_t first) noexcept;
     // The first value from `first` on of a block of float_block with an alpha that is no number, or the count.
     std::size_t (*divide_float)(const SegmentJob&, std::size_t first) noexcept;
 };
@@ -217,6 +224,7 @@ struct FootprintKernels {
 
 #define TEXGEN_BUILD TEXGEN_NAMED(TEXGEN_COMPILER, _scalar)
 #define TEXGEN_INLINE inline
+#define TEXGEN_APART
 
 namespace TEXGEN_DETAIL {
 
@@ -246,6 +254,7 @@ inline Pair larger(const Pair& a, const Pair& b) noexcept { return {{larger(a[0]
 #include "kernels.inc.hpp"
 #undef TEXGEN_ISA
 #undef TEXGEN_INLINE
+#undef TEXGEN_APART
 
 namespace TEXGEN_DETAIL {
 inline namespace TEXGEN_BUILD {
@@ -289,6 +298,7 @@ const Table& chosen() noexcept {
 #endif
 
 #define TEXGEN_INLINE [[gnu::always_inline]] inline
+#define TEXGEN_APART [[gnu::noinline]]  // what is rare, so that it costs the rest no registers
 
 // GCC 12 converts eight floats the generic way in two halves.
 #ifdef __clang__
@@ -405,6 +415,7 @@ const Table& chosen() noexcept {
 #undef TEXGEN_STACK_HOLDS_NARROW_VECTORS
 #undef TEXGEN_EIGHT_DOUBLES
 #undef TEXGEN_INLINE
+#undef TEXGEN_APART
 
 #endif
 #undef TEXGEN_HAS_VECTORS

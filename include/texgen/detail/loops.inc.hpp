@@ -11,6 +11,8 @@ struct Lanes {
 
     T lane[lanes];
 
+    T operator[](int i) const noexcept { return lane[i]; }
+
     template <class Operation>
     static Lanes of(const Operation& operation) noexcept {
         Lanes result;
@@ -19,6 +21,7 @@ struct Lanes {
     }
 
     Lanes& operator+=(T b) noexcept { return *this = *this + b; }
+    Lanes& operator&=(const Lanes& b) noexcept { return *this = *this & b; }
     Lanes& operator|=(const Lanes& b) noexcept {
         return *this = of([&](int i) { return lane[i] | b.lane[i]; });
     }
@@ -108,6 +111,14 @@ TEXGEN_INLINE LongWords greater(const Doubles& a, double b) noexcept {
 }
 TEXGEN_INLINE LongWords greater(const Doubles& a, const Doubles& b) noexcept {
     return LongWords::of([&](int i) { return a.lane[i] > b.lane[i] ? -1 : 0; });
+}
+TEXGEN_INLINE LongWords at_most(const Doubles& a, const Doubles& b) noexcept {
+    return LongWords::of([&](int i) { return a.lane[i] <= b.lane[i] ? -1 : 0; });
+}
+TEXGEN_INLINE Doubles leading_27_bits(const Doubles& a) noexcept {
+    return Doubles::of([&](int i) {
+        return bit_cast<double>(bit_cast<std::uint64_t>(a.lane[i]) & ~std::uint64_t{0x3ffffff});
+    });
 }
 TEXGEN_INLINE Doubles where(const LongWords& mask, const Doubles& values) noexcept {
     return Doubles::of([&](int i) { return mask.lane[i] != 0 ? values.lane[i] : 0.0; });

@@ -56,6 +56,10 @@ TEXGEN_INLINE Doubles truncated(const Doubles& values) noexcept {
 using LongWords [[gnu::vector_size(TEXGEN_LANE_BYTES)]] = long long;
 TEXGEN_INLINE LongWords greater(const Doubles& a, double b) noexcept { return a > b; }
 TEXGEN_INLINE LongWords greater(const Doubles& a, const Doubles& b) noexcept { return a > b; }
+TEXGEN_INLINE LongWords at_most(const Doubles& a, const Doubles& b) noexcept { return a <= b; }
+TEXGEN_INLINE Doubles leading_27_bits(const Doubles& a) noexcept {
+    return __builtin_bit_cast(Doubles, __builtin_bit_cast(LongWords, a) & ~0x3ffffffLL);
+}
 TEXGEN_INLINE Doubles where(const LongWords& mask, const Doubles& values) noexcept {
     return __builtin_bit_cast(Doubles, mask & __builtin_bit_cast(LongWords, values));
 }

@@ -1,0 +1,150 @@
+// What one double leaves in doubt, decided in two: sums whose loss is known, in the lanes of the kernels. Included by
+// kernels.inc.hpp. For rounding to nearest; products are exact without fma(), so that contraction changes nothing.
+
+namespace TEXGEN_DETAIL::TEXGEN_ISA {
+
+// Exactly a + b: the sum rounded, and in `error` the rest. As detail::two_sum().
+TEXGEN_INLINE Doubles two_sum(const Doubles& a, const Doubles& b, Doubles& error) noexcept {
+    const Doubles sum = a + b;
+    const Doubles b_part = sum - a;
+    error = (a - (sum - b_part)) + (b - b_part);
+    return sum;
+}
+
+TEXGEN_INLINE bool any_but_zero(const Doubles& a) noexcept { return any(narrow(~at_most(magnitude(a), a * 0.0))); }
+
+// A number as an unevaluated sum, high the nearest double, and a bound on what that lacks: 0 where it is exact.
+struct Twofold {
+    Doubles high, low, lost;
+};
+
+TEXGEN_INLINE double leading_29_bits(double value) noexcept {
+    return bit_cast<double>(bit_cast<std::uint64_t>(value) & ~std::uint64_t{0xffffff});
+}
+
+struct PointLanes {
+    Doubles v[3];
+};
+
+// The value of a form at points. A coefficient is split in two, so that both products with a float are exact.
+struct TwofoldForm {
+    double w, high[3], low[3];
+    bool is_short;  // no low part is needed
+    bool is_finite;
+
+    TwofoldForm() = default;
+    TEXGEN_INLINE explicit TwofoldForm(const PointForm& form) noexcept
+        : w(form.w), high{}, low{}, is_short(true), is_finite(0.0 * (form.x + form.y + form.z + form.w) == 0.0) {
+        const double coefficient[3] = {form.x, form.y, form.z};
+        for (int j = 0; j < 3; ++j) {
+            high[j] = leading_29_bits(coefficient[j]);
+            low[j] = coefficient[j] - high[j];
+            is_short = is_short && low[j] == 0.0;
+        }
+    }
+
+    TEXGEN_INLINE Doubles nearly_at(const PointLanes& at) const noexcept {
+        return at.v[0] * high[0] + (at.v[1] * high[1] + (at.v[2] * high[2] + w));
+    }
+
+    TEXGEN_INLINE Twofold at(const PointLanes& at) const noexcept {
+        const Doubles(&v)[3] = at.v;
+        Doubles error[3];
+        Doubles sum = two_sum(v[0] * high[0], Doubles{} + w, error[0]);
+        sum = two_sum(sum, v[1] * high[1], error[1]);
+        sum = two_sum(sum, v[2] * high[2], error[2]);
+        Doubles left;
+        Doubles rest{};
+        Doubles lost{};
+        const auto add = [&](const Doubles& term) {
+            rest = two_sum(rest, term, left);
+            lost = lost + magnitude(left);
+        };
+        if (is_short) {
+            rest = error[0];
+        } else {
+            rest = v[0] * low[0];
+            add(v[1] * low[1]);
+            add(v[2] * low[2]);
+            add(error[0]);
+        }
+        add(error[1]);
+        add(error[2]);
+        Twofold result;
+        result.high = two_sum(sum, rest, result.low);
+        result.lost = lost * 1.001;
+        return result;
+    }
+};
+
+// (1 - alpha) a + alpha b of floats: their products are exact.
+TEXGEN_INLINE Twofold twofold_mixed(double a, double b, const Doubles& alpha) noexcept {
+    Doubles error[2];
+    Doubles left;
+    Doubles sum = two_sum(Doubles{} + a, alpha * -a, error[0]);
+    sum = two_sum(sum, alpha * b, error[1]);
+    const Doubles rest = two_sum(error[0], error[1], left);
+    Twofold result;
+    result.high = two_sum(sum, rest, result.low);
+    result.lost = magnitude(left) * 1.001;
+    return result;
+}
+
+// The denominators of a vector of quotients, and on which side of 0 they are.
+struct TwofoldDivisor {
+    LongWords in_front, is_known;  // is_known: the side is, and in front the value well enough to divide by
+    Doubles high, lost, reciprocal;
+    bool has_low;
+    Doubles part[4];  // the number in parts of 27 bits and less, whose products with 25 bits are exact
+
+    TEXGEN_INLINE explicit TwofoldDivisor(const Twofold& q) noexcept {
+        in_front = greater(q.high, 0.0) & at_most(q.lost, q.high * 0x1p-52);
+        is_known = in_front | at_most(q.lost * 2.0, -1.0 * q.high);
+        high = q.high;
+        lost = q.lost;
+        reciprocal = where(in_front, 1.0 / q.high);
+        has_low = any_but_zero(q.low);
+        part[0] = leading_27_bits(q.high);
+        part[1] = q.high - part[0];
+        part[2] = leading_27_bits(q.low);
+        part[3] = q.low - part[2];
+    }
+};
+
+// The floats nearest to s / q in front, 0 elsewhere; `is_known` loses the lanes in front where that is in doubt.
+// As nearest_quotient(): two neighbours are left, and the sign of s - middle q decides. That is a small number beside both
+// products, so s - middle q' is exact for the leading 53 bits q' of q, and the rest is summed exactly where it is but short.
+TEXGEN_INLINE Floats nearest_quotients(const Twofold& s, const TwofoldDivisor& q, LongWords& is_known) noexcept {
+    const Doubles quotient = where(q.in_front, s.high * q.reciprocal) + 0.0;
+    const Doubles error = magnitude(quotient) * 0x1p-48;
+    const Floats first = to_floats(quotient - error);
+    const Doubles low = to_doubles(first);
+    const Doubles high = to_doubles(to_floats(quotient + error));
+    const LongWords is_precise = at_most(s.lost, magnitude(s.high) * 0x1p-52);
+    const LongWords is_alone = at_most(high, low);
+    if (!any(narrow(~is_alone))) {
+        is_known &= ~q.in_front | is_precise;
+        return first;
+    }
+    const Doubles beyond = Doubles{} + 0x1p128;
+    const Doubles middle =
+        minimum(maximum(low, -1.0 * beyond), beyond) * 0.5 + minimum(maximum(high, -1.0 * beyond), beyond) * 0.5;
+    const Doubles leading_rest = (s.high - middle * q.part[0]) - middle * q.part[1];
+    Doubles remainder = leading_rest;
+    Doubles lost = s.lost + magnitude(middle) * q.lost;
+    // Nice scenes make nice numbers, which one double holds.
+    if (any_but_zero(s.low) || q.has_low) {
+        Doubles left[5];
+        Doubles sum = two_sum(leading_rest, s.low, left[0]);
+        sum = two_sum(sum, -1.0 * (middle * q.part[2]), left[1]);
+        sum = two_sum(sum, -1.0 * (middle * q.part[3]), left[2]);
+        Doubles rest = two_sum(left[0], left[1], left[3]);
+        rest = two_sum(rest, left[2], left[4]);
+        remainder = sum + rest;
+        lost = lost + (magnitude(left[3]) + magnitude(left[4]));
+    }
+    is_known &= ~q.in_front | (is_precise & (is_alone | at_most(lost * 2.0, magnitude(remainder))));
+    return to_floats(middle + (where(greater(remainder, 0.0), error) - where(greater(-1.0 * remainder, 0.0), error)));
+}
+
+}  // namespace TEXGEN_DETAIL::TEXGEN_ISA
