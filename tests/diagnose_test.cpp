@@ -358,6 +358,21 @@ void count(const Rig& rig, Classes& classes) {
     classes.huge += scale > 1e20;
 }
 
+// Whether one of the points is lit at least, and they are not all in one texel.
+bool shows_points(const Parts& parts, const glm::dmat4& texgen) {
+    glm::dvec2 least(infinity), most(-infinity);
+    bool any_lit = false;
+    for (const glm::vec3& point : parts.points) {
+        const Seen at = seen(texgen, parts.region, point);
+        any_lit = any_lit || at.lit;
+        least = {std::min(least.x, at.st.x), std::min(least.y, at.st.y)};
+        most = {std::max(most.x, at.st.x), std::max(most.y, at.st.y)};
+    }
+    const glm::dvec2 texels =
+        parts.texels_per_unit.x > 0.0 ? parts.texels_per_unit : 4096.0 / (parts.region.max() - parts.region.min());
+    return any_lit && std::max((most.x - least.x) * texels.x, (most.y - least.y) * texels.y) > 1.0;
+}
+
 // A set-up that is as it should be, told in part or in whole.
 Parts valid_parts(Random& random, Classes& classes) {
     Rig rig = random_rig(random.coin() ? extreme : ordinary, random);
@@ -425,19 +440,7 @@ Parts valid_parts(Random& random, Classes& classes) {
         }
     }
 
-    // Of the points one is lit at least, and they are not all in one texel.
-    glm::dvec2 least(infinity), most(-infinity);
-    bool any_lit = false;
-    for (const glm::vec3& point : parts.points) {
-        const Seen at = seen(texgen, rig.region, point);
-        any_lit = any_lit || at.lit;
-        least = {std::min(least.x, at.st.x), std::min(least.y, at.st.y)};
-        most = {std::max(most.x, at.st.x), std::max(most.y, at.st.y)};
-    }
-    const glm::dvec2 texels =
-        parts.texels_per_unit.x > 0.0 ? parts.texels_per_unit : 4096.0 / (rig.region.max() - rig.region.min());
-    const bool is_seen = any_lit && std::max((most.x - least.x) * texels.x, (most.y - least.y) * texels.y) > 1.0;
-    parts.has_points = is_seen && random.integer(0, 3) != 0;
+    parts.has_points = shows_points(parts, texgen) && random.integer(0, 3) != 0;
 
     const int told = random.integer(0, 7);
     if (told != 0) parts.projector = projector;
@@ -870,6 +873,137 @@ TEST_CASE("no valid set-up of round numbers is found fault with, where factors c
     }
     CHECK(far > 1000);
     CHECK(empty_poses > 1000);
+}
+
+namespace {
+
+// A projector along the axes, or turned about one of them, whose rounding to float leaves rows as they are.
+Rig aligned_rig(Random& random) {
+    const auto axis = [&] {
+        glm::dvec3 result(0.0);
+        result[random.integer(0, 2)] = random.coin() ? 1.0 : -1.0;
+        return result;
+    };
+    Rig rig;
+    rig.conventions = any_conventions(random);
+    rig.lens = random_lens(ordinary, random);
+    rig.lens.kind = random.integer(0, 2) == 0 ? static_cast<LensKind>(random.integer(0, 4)) : LensKind::orthographic;
+    if (rig.lens.kind == LensKind::infinite || rig.lens.kind == LensKind::reversed_infinite)
+        rig.lens.z_far = infinity;
+    else if (!(rig.lens.z_far < infinity))
+        rig.lens.z_far = 1000.0 * rig.lens.z_near;
+    if (random.integer(0, 3) != 0) {
+        const double width = std::ldexp(1.0, random.integer(-1, 7)), height = std::ldexp(1.0, random.integer(-1, 7));
+        rig.lens.left = random.coin() ? -width : 0.0;
+        rig.lens.right = width;
+        rig.lens.bottom = random.coin() ? -height : 0.0;
+        rig.lens.top = height;
+        rig.lens.fovy = 90.0;
+    }
+    const double unit = std::ldexp(1.0, random.integer(-3, 4)), most = random.power_of_ten(0.0, 6.0) / unit;
+    for (int i = 0; i < 3; ++i)
+        if (random.integer(0, 3) != 0) rig.aim.position[i] = unit * std::round(random.uniform(-most, most));
+    rig.aim.up = axis();
+    glm::dvec3 direction = axis();
+    while (std::fabs(dot3(direction, rig.aim.up)) > 0.5) direction = axis();
+    if (random.integer(0, 3) == 0) {
+        glm::dvec3 aside = axis();
+        while (std::fabs(dot3(aside, direction)) > 0.5) aside = axis();
+        direction += random.uniform(-2.0, 2.0) * aside;
+    }
+    rig.aim.target = rig.aim.position + direction;
+    const auto view = texgen::look_at(rig.aim);
+    if (!view) return aligned_rig(random);
+    rig.view = view->matrix();
+    rig.in = static_cast<In>(random.integer(0, 2));
+    rig.depth = random.coin() ? DepthMapping::unit : DepthMapping::ndc;
+    const int region = random.integer(0, 2);
+    if (region == 1) rig.region = texgen::rectangle_texture(512, 256);
+    if (region == 2) rig.region = texgen::atlas_tile({0.25, 0.5}, {0.5, 0.75});
+    if (rig.in != In::world) {
+        for (int i = 0; i < 3; ++i) rig.pose[3][i] = std::round(random.uniform(-4.0, 4.0));
+        if (random.coin()) std::swap(rig.pose[0], rig.pose[2]);
+    }
+    return rig;
+}
+
+// In texels of a picture of 4096, of all that rounding may lose of a point where it has changed an element at all.
+double lost_by_rounding(const glm::dmat4& texgen, const glm::dmat4& rounded, const TextureRegion& region,
+                        const glm::vec3& point) {
+    const glm::dvec4 v(glm::dvec3(point), 1.0);
+    const auto lost = [&](int i) {
+        double sum = 0.0;
+        for (int j = 0; j < 4; ++j)
+            if (texgen[j][i] != rounded[j][i]) sum += 0x1p-24 * std::fabs(texgen[j][i] * v[j]);
+        return sum;
+    };
+    const Seen at = seen(texgen, region, point);
+    const glm::dvec2 extent = region.max() - region.min();
+    return 4096.0 / at.q *
+           std::max((lost(0) + std::fabs(at.st.x) * lost(3)) / extent.x,
+                    (lost(1) + std::fabs(at.st.y) * lost(3)) / extent.y);
+}
+
+}  // namespace
+
+TEST_CASE("no valid set-up along the axes is found fault with, however far, in float where floats hold what is read") {
+    Random random(613);
+    int far = 0, parallel = 0, in_float = 0, float_views = 0, alone = 0, lossy = 0;
+    for (int i = 0; i < 300000; ++i) {
+        const Rig rig = aligned_rig(random);
+        const glm::dmat4 p = projection(rig.lens, rig.conventions);
+        Projector projector = projector_of(rig, p, rig.view);
+        Parts parts{.in = rig.in, .region = rig.region, .depth = rig.depth};
+        parts.points = lit_points(rig, random);
+        const auto loses = [&](const glm::dmat4& texgen, const glm::dmat4& rounded) {
+            double lost = 0.0;
+            for (const glm::vec3& point : parts.points) {
+                const bool is_lit = seen(texgen, rig.region, point).lit && seen(rounded, rig.region, point).lit;
+                lost = std::max(lost, is_lit ? lost_by_rounding(texgen, rounded, rig.region, point) : infinity);
+            }
+            return lost;
+        };
+        glm::dmat4 texgen = composed(rig, projector);
+        if (random.integer(0, 3) == 0) {
+            const Projector rounded = projector_of(rig, p, to_float(rig.view));
+            if (loses(texgen, composed(rig, rounded)) < 0.5) {
+                projector = rounded;
+                texgen = composed(rig, projector);
+                ++float_views;
+            }
+        }
+        if (random.coin()) {
+            const glm::dmat4 rounded = to_float(texgen);
+            if (loses(texgen, rounded) < 0.5) {
+                far += std::fabs(rig.aim.position.x) + std::fabs(rig.aim.position.y) > 3e4;
+                parallel += rig.lens.kind == LensKind::orthographic;
+                texgen = rounded;
+                ++in_float;
+            } else {
+                Parts spoilt = parts;
+                spoilt.projector = projector;
+                if (rig.in != In::world) spoilt.pose = rig.pose;
+                spoilt.texgen = rounded;
+                spoilt.has_points = true;
+                if (measured_error(rig, projector, spoilt) > 1.0) {
+                    const Diagnosis diagnosis = diagnosis_of(spoilt);
+                    REQUIRE_MESSAGE(diagnosis.contains(Defect::precision_lost), i, " ", text(diagnosis), " in ",
+                                    text(spoilt));
+                    ++lossy;
+                }
+            }
+        }
+        parts.has_points = shows_points(parts, texgen) && random.coin();
+        const bool has_projector = random.integer(0, 3) != 0;
+        if (has_projector) parts.projector = projector;
+        if (rig.in != In::world) parts.pose = rig.pose;
+        if (!has_projector || random.integer(0, 3) != 0) parts.texgen = texgen;
+        if (random.coin()) parts.lens = all_facts(rig);
+        alone += !has_projector;
+        const Diagnosis diagnosis = diagnosis_of(parts);
+        if (!diagnosis.empty()) FAIL(i, " ", text(diagnosis), " in ", text(parts));
+    }
+    for (const int seen_so_often : {far, parallel, in_float, float_views, alone, lossy}) CHECK(seen_so_often > 1000);
 }
 
 TEST_CASE("every defect of the corpus is found, and stands first") {

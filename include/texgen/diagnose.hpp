@@ -297,19 +297,20 @@ inline void examine(const Composition& composition, bool in_eye_space, Diagnosis
 // that the set-up composes.
 struct Examined {
     std::optional<glm::dmat4> texgen, right;  // right: what the set-up composes, where texgen is that but for rounding
-    bool in_float = false;
+    // What floats lose of the texgen matrix, element by element: half the bound on their rounding, where they are rounded.
+    glm::dmat4 lost{0.0};
 };
 
-// What floats lose of s and t at every point that is lit: the rounding of the rows' constants, half its bound, where q is
-// largest, on the far plane. 0 where that is infinitely far, or row r does not say.
-inline double least_error_in_texels(const glm::dmat4& texgen, const Picture& picture, DepthMapping depth) noexcept {
+// What is lost of s and t at every point that is lit: that of the rows' constants, where q is largest, on the far plane.
+// 0 where that is infinitely far, or row r does not say.
+inline double least_error_in_texels(const Examined& examined, const Picture& picture, DepthMapping depth) noexcept {
+    const glm::dmat4& texgen = *examined.texgen;
     const DepthRows rows = depth_rows(texgen);
     const double constant = texgen[3].z - rows.limit * texgen[3].w;  // r = limit q + constant
     const double far_end = rows.limit > 0.5 ? 1.0 : depth == DepthMapping::unit ? 0.0 : -1.0;
     const double largest_q = rows.is_parallel_light ? texgen[3].w : constant / (far_end - rows.limit);
     const glm::dvec2 texels = picture.texels();
-    const double error = 0.5 * unit_roundoff_float / largest_q *
-                         larger(std::fabs(texgen[3].x) * texels.x, std::fabs(texgen[3].y) * texels.y);
+    const double error = larger(examined.lost[3].x * texels.x, examined.lost[3].y * texels.y) / largest_q;
     return rows.are_parallel && largest_q > 0.0 && is_finite(error) ? error : 0.0;
 }
 
@@ -320,11 +321,11 @@ public:
     PointReport(const Examined& examined, const Picture& picture, DepthMapping depth) noexcept
         : has_texgen_(examined.texgen),
           has_right_(examined.right),
-          in_float_(examined.in_float),
           texgen_(rows(examined.texgen)),
           right_(rows(examined.right)),
+          lost_(rows(examined.lost)),
           picture_(picture) {
-        if (has_texgen_ && in_float_) error_in_texels_ = least_error_in_texels(*examined.texgen, picture, depth);
+        if (has_texgen_) error_in_texels_ = least_error_in_texels(examined, picture, depth);
     }
 
     void add(const glm::dvec3& v) noexcept {
@@ -361,11 +362,12 @@ public:
             least_[k] = smaller(least_[k], st[k]);
             most_[k] = larger(most_[k], st[k]);
         }
-        if (in_float_ && is_lit(st)) {
-            // Half the bound on the rounding of the elements, each within 2^-24 of itself.
-            const double per_error = 0.5 * unit_roundoff_float / gamma(5);
+        // Where it is known what is right, compare() has measured it.
+        if (!has_right_ && is_lit(st)) {
+            const double lost_of_q = terms_at(lost_[2], v);
             for (glm::length_t k = 0; k < 2; ++k)
-                raise((k == 0 ? s : t).error + std::fabs(st[k]) * q.error, per_error / q.value * picture_.texels()[k]);
+                raise((terms_at(lost_[k == 0 ? 0 : 1], v) + std::fabs(st[k]) * lost_of_q) / q.value,
+                      picture_.texels()[k]);
         }
     }
 
@@ -406,8 +408,8 @@ private:
         for (glm::length_t k = 0; k < 2; ++k) raise(std::fabs(st[k] - right[k]), picture_.texels()[k]);
     }
 
-    bool has_texgen_, has_right_, in_float_;
-    std::array<PointForm, 3> texgen_, right_;  // rows s, t and q
+    bool has_texgen_, has_right_;
+    std::array<PointForm, 3> texgen_, right_, lost_;  // rows s, t and q
     Picture picture_;
     std::size_t count_ = 0, in_front_ = 0;
     bool all_finite_ = true, behind_ = true, all_in_front_ = true, distinct_ = false;
@@ -465,6 +467,28 @@ inline bool examine_alone(const glm::dmat4& texgen, const SetupMatrices& setup, 
     return false;
 }
 
+// Half the bound on the rounding of an element to float, relative to it.
+inline constexpr double expected_rounding = 0.5 * unit_roundoff_float;
+
+// The smaller of the magnitudes of both elements.
+inline glm::dmat4 smaller_elements(const glm::dmat4& a, const glm::dmat4& b) noexcept {
+    glm::dmat4 result(0.0);
+    for (glm::length_t column = 0; column < 4; ++column)
+        for (glm::length_t row = 0; row < 4; ++row)
+            result[column][row] = smaller(std::fabs(a[column][row]), std::fabs(b[column][row]));
+    return result;
+}
+
+// What floats lose of the matrix where the product is known: nothing of elements that are its own. The rounding of others moves the multiple that
+// fits best, so that one of few bits next to it is taken for what was meant.
+inline glm::dmat4 lost_of(const glm::dmat4& texgen, const Product& right) noexcept {
+    const double fitted = multiple_of(right, texgen, composed_in_float);
+    const double large = 0x1p37 * fitted;
+    const double of_few_bits = (fitted + large) - large;
+    const double multiple = std::fabs(fitted - of_few_bits) < 0x1p-20 * fitted ? of_few_bits : fitted;
+    return smaller_elements(texgen - multiple * right.value, expected_rounding * texgen);
+}
+
 inline Examined examine(const SetupMatrices& setup, Diagnosis& diagnosis) noexcept {
     if (!are_numbers(setup)) diagnosis.add(Defect::not_finite);
     if (setup.picture.is_empty()) diagnosis.add(Defect::region_never_hit);
@@ -495,7 +519,13 @@ inline Examined examine(const SetupMatrices& setup, Diagnosis& diagnosis) noexce
     if (setup.texgen == nullptr) {
         if (!right) return examined;
         examined.texgen = right->value;
-        examined.in_float = is_in_float(setup.projector->view.matrix());
+        const glm::dmat4& view = setup.projector->view.matrix();
+        if (is_in_float(view)) {
+            const Product lens = scale_bias_factor(*factors, {}) * lens_factor(factors->projection);
+            const glm::dmat4 by_view = lens.magnitude * rounded_magnitudes(view);
+            const glm::dmat4 by_all = factors->pose ? by_view * lens_factor(*factors->pose).magnitude : by_view;
+            examined.lost = expected_rounding * smaller_elements(by_all, right->value);
+        }
         return examined;
     }
     const glm::dmat4& texgen = *setup.texgen;
@@ -505,15 +535,19 @@ inline Examined examine(const SetupMatrices& setup, Diagnosis& diagnosis) noexce
         return examined;
     }
     examined.texgen = texgen;
-    examined.in_float = setup.are_planes || is_in_float(texgen);
+    const bool in_float = setup.are_planes || is_in_float(texgen);
+    if (in_float) examined.lost = expected_rounding * rounded_magnitudes(texgen);
     const bool has_q = !is_zero_row(texgen, 3);
     const bool is_dependent = has_q && !are_independent(texgen, {0, 1, 3});
     bool was_transposed = false;
-    const auto composition = right ? composition_of(texgen, *factors, *right, examined.in_float) : std::nullopt;
+    const auto composition = right ? composition_of(texgen, *factors, *right, in_float) : std::nullopt;
     if (composition) {
         examine(*composition, setup.in_eye_space, diagnosis);
         const bool is_right = mistakes(*composition) == 0 && composition->multiple > 0.0;
-        if (is_right) examined.right = right->value;
+        if (is_right) {
+            examined.right = right->value;
+            if (in_float) examined.lost = lost_of(texgen, *right);
+        }
         if (is_right && is_dependent) diagnosis.add(Defect::rank_below_three);
         was_transposed = composition->transposed;
     } else if (is_dependent) {

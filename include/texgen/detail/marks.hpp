@@ -20,20 +20,38 @@
 
 namespace TEXGEN_DETAIL {
 
-// Whether the matrix was rounded to float on its way: every element is a float, and of the axes one has more bits than
-// the round numbers of a scene that is aligned with them.
+// Whether a number has more bits than the round numbers of a scene that is aligned with the axes.
+inline bool is_long(double value) noexcept { return (bit_cast<std::uint64_t>(value) & 0x1fffffffff) != 0; }
+
+// Whether the matrix was rounded to float on its way: every element is a float, and one of the axes is no round number.
 inline bool is_in_float(const glm::dmat4& m) noexcept {
-    const auto has_bits = [&](glm::length_t column, glm::length_t row, std::uint64_t mask) {
-        return (bit_cast<std::uint64_t>(m[column][row]) & mask) != 0;
-    };
     bool is_rounded = false;
     for (glm::length_t column = 0; column < 4; ++column) {
         for (glm::length_t row = 0; row < 4; ++row) {
-            if (has_bits(column, row, 0x1fffffff)) return false;  // the last 29 of the 52 bits behind the point
-            is_rounded = is_rounded || (column < 3 && has_bits(column, row, 0x1fffffffff));
+            // The last 29 of the 52 bits behind the point.
+            if ((bit_cast<std::uint64_t>(m[column][row]) & 0x1fffffff) != 0) return false;
+            is_rounded = is_rounded || (column < 3 && is_long(m[column][row]));
         }
     }
     return is_rounded;
+}
+
+// What its rounding is relative to, where no more is known: the magnitudes of the elements that are no round numbers. Of a
+// constant that is known only where no axis of the row is round: else it may have many bits, and be exact.
+inline glm::dmat4 rounded_magnitudes(const glm::dmat4& m) noexcept {
+    glm::dmat4 result(0.0);
+    for (glm::length_t row = 0; row < 4; ++row) {
+        bool any_long = false;
+        bool all_long = true;
+        for (glm::length_t column = 0; column < 4; ++column) {
+            if (column == 3 && !(any_long && all_long)) continue;
+            const double element = m[column][row];
+            if (is_long(element)) result[column][row] = std::fabs(element);
+            any_long = any_long || is_long(element);
+            all_long = all_long && (element == 0.0 || is_long(element));
+        }
+    }
+    return result;
 }
 
 // A determinant of three rows and three columns, and whether it stands out of the rounding of the elements and of its
