@@ -858,6 +858,7 @@ inline void interpolate_nearest(const SegmentKernels& kernels, const SegmentJob&
 
 // In float where that stays inside the tolerance for the whole segment, else the nearest float.
 inline void interpolate_job(const SegmentKernels& kernels, SegmentJob job, double tolerance) noexcept {
+    job.tolerance = tolerance;
     if (job.q_a > 0.0 && job.q_b > 0.0) {
         const SegmentBounds bounds(job);
         bool float_fits = tolerance > 0.0;

@@ -490,53 +490,91 @@ TEXGEN_INLINE void store_points(const DividedOutput& output, std::size_t i, cons
 struct Doubt {
     Words rounding{};
     LongWords side{};
-    LongWords not_in_front{};
+    LongWords behind{};  // no doubt, but no ordinary points
 
     TEXGEN_INLINE bool any_lane() const noexcept { return any(rounding | narrow(side)); }
 };
 
-// numerator[k] / q with these errors; the error of the quotient is that of certain_quotient(). With Signed, q has either
-// sign, and lanes that are certainly behind give 0; else they are in doubt too. Returns the mask of the lanes in front.
-template <bool Signed, std::size_t Numerators>
+// numerator[k] / q with these errors, of all or of each lane; the error of the quotient is that of certain_quotient(). With
+// Signed, q has either sign, and lanes that are certainly behind give 0; else they are in doubt too; and in none where both
+// floats are inside the tolerance. Returns the mask of the lanes in front.
+template <bool Signed, std::size_t Numerators, class Error>
 TEXGEN_INLINE LongWords divide_certainly(const Doubles (&numerator)[Numerators],
-                                         const double (&numerator_error)[Numerators], const Doubles& q, double q_error,
-                                         Floats (&value)[Numerators], Doubt& doubt) noexcept {
-    const LongWords in_front = greater(q, 0x1p20 * q_error);
+                                         const Error (&numerator_error)[Numerators], const Doubles& q,
+                                         const Error& q_error, double tolerance, Floats (&value)[Numerators],
+                                         Doubt& doubt) noexcept {
+    const LongWords in_front = greater(q - 0x1p20 * q_error, 0.0);
     Doubles reciprocal = 1.0 / q;
     if constexpr (Signed) {
-        doubt.not_in_front |= ~in_front;
-        doubt.side |= ~(in_front | greater(-1.0 * q, q_error));
+        doubt.behind |= ~in_front;
+        doubt.side |= ~(in_front | greater(-1.0 * q - q_error, 0.0));
         reciprocal = where(in_front, reciprocal);
     } else {
         doubt.side |= ~in_front;
     }
-    const Doubles relative_error = reciprocal * (1.001 * q_error) + 4.0 * unit_roundoff_double;
+    const Doubles relative_error = reciprocal * (q_error * 1.001) + 4.0 * unit_roundoff_double;
     for (std::size_t k = 0; k < Numerators; ++k) {
         Doubles quotient = numerator[k] * reciprocal;
         if constexpr (Signed) quotient = where(in_front, quotient);
-        Doubles error = magnitude(quotient) * relative_error + reciprocal * (1.001 * numerator_error[k]);
+        Doubles error = magnitude(quotient) * relative_error + reciprocal * (numerator_error[k] * 1.001);
         if constexpr (Signed) error = where(in_front, error);  // of a numerator that is no number
         value[k] = to_floats(quotient - error);
-        doubt.rounding |= bits(value[k]) ^ bits(to_floats(quotient + error));
+        const Floats other = to_floats(quotient + error);
+        Words differ = bits(value[k]) ^ bits(other);
+        if constexpr (Signed)
+            if (tolerance > 0.0 && any(differ))
+                differ &= ~narrow(at_most((to_doubles(other) - to_doubles(value[k])) * 2.0, Doubles{} + tolerance));
+        doubt.rounding |= differ;
     }
     return in_front;
 }
 
-// Decides a block in two doubles. Terms are the sums at a vector of values: whether a lane is behind whatever its q, q, and
-// the numerators, or their quotients where these are no numbers. Bit i of the result: value begin + i is in doubt still.
+// What doing a block again leaves.
+struct Again {
+    std::uint64_t doubtful;  // bit i: value begin + i
+    bool is_ordinary;        // all in front, and nothing in doubt
+    bool is_in_doubt;        // the last vector
+};
+
+// Does a block again: for both signs of q and with errors of each lane; a vector that those leave in doubt, and up to 15
+// that follow it, in two doubles. Terms are the sums at a vector of values: q and the numerators, nearly and in two doubles,
+// and which lanes are behind whatever their q, being no numbers.
 template <std::size_t Numerators, class Terms>
-TEXGEN_INLINE std::uint64_t decide_block(const DividedOutput& output, const Terms& terms, std::size_t begin,
-                                         std::size_t end) noexcept {
-    if (!rounds_to_nearest()) return ~std::uint64_t{0} >> (nearest_block - (end - begin));
-    std::uint64_t doubtful = 0;
+TEXGEN_INLINE Again divide_block_again(const DividedOutput& output, const Terms& terms, std::size_t begin,
+                                       std::size_t end, bool is_in_doubt) noexcept {
+    Again again{0, true, is_in_doubt};
+    bool are_ties = false;  // the last vector, or next to ties
     for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(lanes)) {
         const auto at = terms.load(i);
-        const TwofoldDivisor q(terms.q.at(at));
-        LongWords is_known = q.is_known | terms.are_dark(at);
+        const LongWords are_dark = terms.are_dark(at);
         Floats value[Numerators];
+        if (!again.is_in_doubt || i / static_cast<std::size_t>(lanes) % 16 == 0) {
+            Doubles numerator[Numerators], numerator_error[Numerators];
+            for (std::size_t k = 0; k < Numerators; ++k) {
+                numerator[k] = terms.numerator[k].nearly_at(at);
+                numerator_error[k] = terms.numerator[k].error_at(at);
+            }
+            Doubt doubt;
+            const LongWords in_front = divide_certainly<true>(numerator, numerator_error, terms.q.nearly_at(at),
+                                                              terms.q.error_at(at), terms.tolerance(), value, doubt);
+            are_ties = false;
+            again.is_in_doubt = any(doubt.rounding | narrow(doubt.side & ~are_dark));
+            if (!again.is_in_doubt) {
+                again.is_ordinary = again.is_ordinary && !any(narrow(~in_front));
+                store_points(output, i, value, narrow(in_front));
+                continue;
+            }
+        }
+        again.is_ordinary = false;
+        const TwofoldDivisor q(terms.q.at(at));
+        LongWords is_known = q.is_known | are_dark;
         for (std::size_t k = 0; k < Numerators; ++k) {
+            if (!are_ties)
+                are_ties =
+                    !divide_nearly(terms.numerator[k].nearly_at(at), terms.numerator[k].error_at(at), q, value[k]);
+            if (!are_ties) continue;
             if (terms.numerator[k].is_finite)
-                value[k] = nearest_quotients(terms.numerator[k].at(at), q, is_known);
+                value[k] = nearest_quotients(terms.numerator[k].at(at), q, terms.tolerance(), is_known);
             else
                 value[k] = to_floats(where(q.in_front, terms.numerator[k].nearly_at(at) * q.reciprocal));
         }
@@ -544,9 +582,14 @@ TEXGEN_INLINE std::uint64_t decide_block(const DividedOutput& output, const Term
         const Words doubt = narrow(~is_known);
         if (!any(doubt)) continue;
         for (int lane = 0; lane < lanes; ++lane)
-            if (doubt[lane] != 0) doubtful |= std::uint64_t{1} << (i - begin + static_cast<std::size_t>(lane));
+            if (doubt[lane] != 0) again.doubtful |= std::uint64_t{1} << (i - begin + static_cast<std::size_t>(lane));
     }
-    return doubtful;
+    return again;
+}
+
+// Where sums are not those of rounding to nearest, all of a block is in doubt.
+TEXGEN_INLINE Again all_in_doubt(std::size_t begin, std::size_t end) noexcept {
+    return {~std::uint64_t{0} >> (nearest_block - (end - begin)), false, false};
 }
 
 // The largest |x|, |y|, |z| of a block: of all three together for triples. A NaN is the largest.
@@ -581,10 +624,13 @@ TEXGEN_INLINE Doubles at(const PointForm& form, const Doubles& x, const Doubles&
     return x * form.x + (y * form.y + (z * form.z + form.w));
 }
 
-// A block of points. Returns what is in doubt (it is written all the same).
+// A block of points, with errors that hold for all of it. Returns what is in doubt (it is written all the same).
 template <bool Signed, std::size_t Numerators>
-TEXGEN_INLINE Doubt divide_points_block(const PointJob& job, std::size_t begin, std::size_t end,
-                                        const double (&numerator_error)[Numerators], double q_error) noexcept {
+TEXGEN_INLINE Doubt divide_points_block(const PointJob& job, std::size_t begin, std::size_t end) noexcept {
+    const PointExtent extent = extent_of(job, begin, end);
+    double numerator_error[Numerators];
+    for (std::size_t k = 0; k < Numerators; ++k) numerator_error[k] = gamma(5) * extent.magnitude_of(job.numerator[k]);
+    const double q_error = gamma(5) * extent.magnitude_of(job.q);
     Doubt doubt;
     for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(lanes)) {
         Floats xs, ys, zs;
@@ -595,20 +641,21 @@ TEXGEN_INLINE Doubt divide_points_block(const PointJob& job, std::size_t begin, 
         Doubles numerator[Numerators];
         for (std::size_t k = 0; k < Numerators; ++k) numerator[k] = at(job.numerator[k], x, y, z);
         Floats value[Numerators];
-        const LongWords in_front =
-            divide_certainly<Signed>(numerator, numerator_error, at(job.q, x, y, z), q_error, value, doubt);
+        const LongWords in_front = divide_certainly<Signed>(numerator, numerator_error, at(job.q, x, y, z), q_error,
+                                                            job.tolerance, value, doubt);
         store_points(job, i, value, narrow(in_front));
     }
     return doubt;
 }
 
-// The sums of points, for decide_block().
+// The sums of points, for divide_block_again().
 template <std::size_t Numerators>
 struct PointTerms {
     const PointJob& job;
     TwofoldForm q;
     TwofoldForm numerator[Numerators];
 
+    TEXGEN_INLINE double tolerance() const noexcept { return job.tolerance; }
     TEXGEN_INLINE explicit PointTerms(const PointJob& points) noexcept : job(points), q(points.q) {
         for (std::size_t k = 0; k < Numerators; ++k) numerator[k] = TwofoldForm(points.numerator[k]);
     }
@@ -624,55 +671,36 @@ struct PointTerms {
     }
 };
 
-// The bounds of divide_certainly() for a block.
-template <std::size_t Numerators>
-struct BlockErrors {
-    double numerator[Numerators];
-    double q;
-};
-
-// What doing a block of points again leaves.
-struct Again {
-    std::uint64_t values;  // in doubt still
-    bool is_in_front;      // all of the block, it seems
-};
-
-// For both signs of q, where not all of the block seems to be in front; then in two doubles.
 template <std::size_t Numerators>
 TEXGEN_APART Again divide_points_again(const PointJob& job, std::size_t begin, std::size_t end,
-                                       BlockErrors<Numerators> error, bool is_in_front) noexcept {
-    if (!is_in_front) {
-        const Doubt doubt = divide_points_block<true>(job, begin, end, error.numerator, error.q);
-        is_in_front = !any(narrow(doubt.not_in_front));
-        if (!doubt.any_lane()) return {0, is_in_front};
+                                       bool is_in_doubt) noexcept {
+    if (!is_in_doubt) {
+        const PointJob copy = job;
+        const Doubt doubt = divide_points_block<true, Numerators>(copy, begin, end);
+        if (!doubt.any_lane()) return {0, !any(narrow(doubt.behind)), false};
     }
-    return {decide_block<Numerators>(job, PointTerms<Numerators>(job), begin, end), is_in_front};
+    if (!rounds_to_nearest()) return all_in_doubt(begin, end);
+    return divide_block_again<Numerators>(job, PointTerms<Numerators>(job), begin, end, is_in_doubt);
 }
 
-// Most blocks are all in front; those that follow one that is not are taken for what it was. The job is copied, here and
-// below, so that the compiler knows that no store changes it: nothing that the loop reads may be reached from elsewhere.
+// Most blocks are all in front and in no doubt; those that follow one that is not are taken for what it was. The job is
+// copied, here and below, so that the compiler knows that no store changes it: nothing that the loop reads may be reached
+// from elsewhere.
 template <std::size_t Numerators>
 TEXGEN_INLINE Undecided divide_points_nearest_of(const PointJob& original, std::size_t first) noexcept {
     const PointJob job = original;
-    bool is_in_front = true;
+    bool is_ordinary = true;
+    bool is_in_doubt = false;
     for (std::size_t begin = first; begin < job.count;) {
         const std::size_t next = begin / nearest_block * nearest_block + nearest_block;
         const std::size_t end = next < job.count ? next : job.count;
-        const PointExtent extent = extent_of(job, begin, end);
-        BlockErrors<Numerators> error;
-        for (std::size_t k = 0; k < Numerators; ++k)
-            error.numerator[k] = gamma(5) * extent.magnitude_of(job.numerator[k]);
-        error.q = gamma(5) * extent.magnitude_of(job.q);
         bool is_certain = false;
-        if (is_in_front) {
-            const Doubt doubt = divide_points_block<false>(job, begin, end, error.numerator, error.q);
-            is_certain = !doubt.any_lane();
-            if (!is_certain) is_in_front = !any(narrow(doubt.side));
-        }
+        if (is_ordinary) is_certain = !divide_points_block<false, Numerators>(job, begin, end).any_lane();
         if (!is_certain) {
-            const Again again = divide_points_again(original, begin, end, error, is_in_front);
-            if (again.values != 0) return {begin, again.values};
-            is_in_front = again.is_in_front;
+            const Again again = divide_points_again<Numerators>(original, begin, end, is_in_doubt);
+            is_in_doubt = again.is_in_doubt;
+            if (again.doubtful != 0) return {begin, again.doubtful};
+            is_ordinary = again.is_ordinary;
         }
         begin = end;
     }
@@ -803,7 +831,7 @@ void generate_points(const GenerateJob& original) noexcept {
 
 // ---- Segments --------------------------------------------------------------------------------------------------
 
-// The sums of a segment's values, for decide_block().
+// The sums of a segment's values, for divide_block_again().
 template <std::size_t Numerators>
 struct SegmentTerms {
     struct At {
@@ -815,12 +843,16 @@ struct SegmentTerms {
 
         TEXGEN_INLINE Twofold at(const At& at) const noexcept { return twofold_mixed(a, b, at.alpha); }
         TEXGEN_INLINE Doubles nearly_at(const At& at) const noexcept { return (1.0 - at.alpha) * a + at.alpha * b; }
+        TEXGEN_INLINE Doubles error_at(const At& at) const noexcept {
+            return (magnitude((1.0 - at.alpha) * a) + magnitude(at.alpha * b)) * gamma(4);
+        }
     };
 
     const SegmentJob& job;
     Mixture q;
     Mixture numerator[Numerators];
 
+    TEXGEN_INLINE double tolerance() const noexcept { return job.tolerance; }
     TEXGEN_INLINE explicit SegmentTerms(const SegmentJob& segment) noexcept
         : job(segment), q(mixture(segment.q_a, segment.q_b)) {
         for (std::size_t k = 0; k < Numerators; ++k) numerator[k] = mixture(segment.a[k], segment.b[k]);
@@ -838,8 +870,10 @@ private:
 };
 
 template <std::size_t Numerators>
-TEXGEN_APART std::uint64_t divide_segment_again(const SegmentJob& job, std::size_t begin, std::size_t end) noexcept {
-    return decide_block<Numerators>(job, SegmentTerms<Numerators>(job), begin, end);
+TEXGEN_APART Again divide_segment_again(const SegmentJob& job, std::size_t begin, std::size_t end,
+                                        bool is_in_doubt) noexcept {
+    if (!rounds_to_nearest()) return all_in_doubt(begin, end);
+    return divide_block_again<Numerators>(job, SegmentTerms<Numerators>(job), begin, end, is_in_doubt);
 }
 
 // (1 - a) A + a B in double, in blocks as for points. 1 - a, the products and the sum are rounded once each. Where the
@@ -851,34 +885,41 @@ TEXGEN_INLINE Undecided divide_segment_nearest_of(const SegmentJob& original, st
     for (std::size_t k = 0; k < Numerators; ++k)
         numerator_error[k] = gamma(4) * larger(std::fabs(job.a[k]), std::fabs(job.b[k]));
     const double q_error = gamma(4) * larger(std::fabs(job.q_a), std::fabs(job.q_b));
+    bool is_in_doubt = false;
     for (std::size_t begin = first; begin < job.count;) {
         const std::size_t next = begin / nearest_block * nearest_block + nearest_block;
         const std::size_t end = next < job.count ? next : job.count;
-        Doubt doubt;
-        for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(lanes)) {
-            const Doubles alpha = to_doubles(load<Floats>(job.alpha + i));
-            const Doubles rest = 1.0 - alpha;
-            const Doubles q = rest * job.q_a + alpha * job.q_b;
-            Doubles numerator[Numerators];
-            for (std::size_t k = 0; k < Numerators; ++k) numerator[k] = rest * job.a[k] + alpha * job.b[k];
-            Floats value[Numerators];
-            if constexpr (InFront) {
-                doubt.side |= ~greater(q, 0.0);
-                const Doubles reciprocal = 1.0 / q;
-                for (std::size_t k = 0; k < Numerators; ++k) {
-                    const Doubles quotient = numerator[k] * reciprocal;
-                    value[k] = to_floats(quotient - job.quotient_error[k]);
-                    doubt.rounding |= bits(value[k]) ^ bits(to_floats(quotient + job.quotient_error[k]));
+        bool is_certain = false;
+        if (!is_in_doubt) {
+            Doubt doubt;
+            for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(lanes)) {
+                const Doubles alpha = to_doubles(load<Floats>(job.alpha + i));
+                const Doubles rest = 1.0 - alpha;
+                const Doubles q = rest * job.q_a + alpha * job.q_b;
+                Doubles numerator[Numerators];
+                for (std::size_t k = 0; k < Numerators; ++k) numerator[k] = rest * job.a[k] + alpha * job.b[k];
+                Floats value[Numerators];
+                if constexpr (InFront) {
+                    doubt.side |= ~greater(q, 0.0);
+                    const Doubles reciprocal = 1.0 / q;
+                    for (std::size_t k = 0; k < Numerators; ++k) {
+                        const Doubles quotient = numerator[k] * reciprocal;
+                        value[k] = to_floats(quotient - job.quotient_error[k]);
+                        doubt.rounding |= bits(value[k]) ^ bits(to_floats(quotient + job.quotient_error[k]));
+                    }
+                    store_points(job, i, value, ~Words{});
+                } else {
+                    const LongWords in_front =
+                        divide_certainly<true>(numerator, numerator_error, q, q_error, 0.0, value, doubt);
+                    store_points(job, i, value, narrow(in_front));
                 }
-                store_points(job, i, value, ~Words{});
-            } else {
-                const LongWords in_front = divide_certainly<true>(numerator, numerator_error, q, q_error, value, doubt);
-                store_points(job, i, value, narrow(in_front));
             }
+            is_certain = !doubt.any_lane();
         }
-        if (doubt.any_lane()) {
-            const std::uint64_t doubtful = divide_segment_again<Numerators>(original, begin, end);
-            if (doubtful != 0) return {begin, doubtful};
+        if (!is_certain) {
+            const Again again = divide_segment_again<Numerators>(original, begin, end, is_in_doubt);
+            if (again.doubtful != 0) return {begin, again.doubtful};
+            is_in_doubt = again.is_in_doubt;
         }
         begin = end;
     }

@@ -114,7 +114,7 @@ struct PointJob : DividedOutput {
     const float* z;
     PointForm numerator[2];
     PointForm q;
-    double tolerance;  // for divide_points_float and divide_points_rounded
+    double tolerance;
 
     void advance(std::size_t points) noexcept {
         x += triples ? 3 * points : points;
@@ -128,6 +128,7 @@ struct SegmentJob : DividedOutput {
     const float* alpha;
     double a[2], b[2];
     double q_a, q_b;
+    double tolerance;
     bool in_front;  // all of it, well enough that quotient_error bounds the error in double of every value
     double quotient_error[2];
     // For divide_float: about the end where q is less, base + slope i / (1 + bend i), i the alpha from there.

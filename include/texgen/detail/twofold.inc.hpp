@@ -28,13 +28,14 @@ struct PointLanes {
 
 // The value of a form at points. A coefficient is split in two, so that both products with a float are exact.
 struct TwofoldForm {
-    double w, high[3], low[3];
+    PointForm form;
+    double high[3], low[3];
     bool is_short;  // no low part is needed
     bool is_finite;
 
     TwofoldForm() = default;
-    TEXGEN_INLINE explicit TwofoldForm(const PointForm& form) noexcept
-        : w(form.w), high{}, low{}, is_short(true), is_finite(0.0 * (form.x + form.y + form.z + form.w) == 0.0) {
+    TEXGEN_INLINE explicit TwofoldForm(const PointForm& given) noexcept
+        : form(given), high{}, low{}, is_short(true), is_finite(0.0 * (form.x + form.y + form.z + form.w) == 0.0) {
         const double coefficient[3] = {form.x, form.y, form.z};
         for (int j = 0; j < 3; ++j) {
             high[j] = leading_29_bits(coefficient[j]);
@@ -44,35 +45,43 @@ struct TwofoldForm {
     }
 
     TEXGEN_INLINE Doubles nearly_at(const PointLanes& at) const noexcept {
-        return at.v[0] * high[0] + (at.v[1] * high[1] + (at.v[2] * high[2] + w));
+        return at.v[0] * form.x + (at.v[1] * form.y + (at.v[2] * form.z + form.w));
+    }
+    TEXGEN_INLINE Doubles error_at(const PointLanes& at) const noexcept {
+        return (magnitude(at.v[0]) * std::fabs(form.x) + magnitude(at.v[1]) * std::fabs(form.y) +
+                magnitude(at.v[2]) * std::fabs(form.z) + std::fabs(form.w)) *
+               gamma(5);
     }
 
     TEXGEN_INLINE Twofold at(const PointLanes& at) const noexcept {
         const Doubles(&v)[3] = at.v;
         Doubles error[3];
-        Doubles sum = two_sum(v[0] * high[0], Doubles{} + w, error[0]);
+        Doubles sum = two_sum(v[0] * high[0], Doubles{} + form.w, error[0]);
         sum = two_sum(sum, v[1] * high[1], error[1]);
         sum = two_sum(sum, v[2] * high[2], error[2]);
-        Doubles left;
-        Doubles rest{};
-        Doubles lost{};
-        const auto add = [&](const Doubles& term) {
-            rest = two_sum(rest, term, left);
-            lost = lost + magnitude(left);
-        };
-        if (is_short) {
-            rest = error[0];
-        } else {
-            rest = v[0] * low[0];
-            add(v[1] * low[1]);
-            add(v[2] * low[2]);
-            add(error[0]);
+        // What the sum leaves, and what that leaves.
+        Doubles left[5]{};
+        Doubles rest = error[0];
+        if (!is_short) {
+            rest = two_sum(v[0] * low[0], v[1] * low[1], left[0]);
+            rest = two_sum(rest, v[2] * low[2], left[1]);
+            rest = two_sum(rest, error[0], left[2]);
         }
-        add(error[1]);
-        add(error[2]);
+        rest = two_sum(rest, error[1], left[3]);
+        rest = two_sum(rest, error[2], left[4]);
         Twofold result;
         result.high = two_sum(sum, rest, result.low);
-        result.lost = lost * 1.001;
+        result.lost = magnitude(left[3]) + magnitude(left[4]);
+        if (!is_short) result.lost = result.lost + (magnitude(left[0]) + magnitude(left[1]) + magnitude(left[2]));
+        // Beside a sum that cancels that is much, and is kept.
+        if (any(narrow(~at_most(result.lost, magnitude(result.high) * 0x1p-60)))) {
+            const Doubles third = left[0] + left[1] + left[2] + left[3] + left[4];
+            Doubles lost;
+            const Doubles second = two_sum(result.low, third, lost);
+            result.high = two_sum(result.high, second, result.low);
+            result.lost = result.lost * 0x1p-50 + magnitude(lost);
+        }
+        result.lost = result.lost * 1.001;
         return result;
     }
 };
@@ -111,24 +120,33 @@ struct TwofoldDivisor {
     }
 };
 
+// The same of numerators with these errors. False where a lane is in doubt, as where value - error and value + error do not
+// round to one float. 2^-49 covers what q lacks, and the roundings here.
+TEXGEN_INLINE bool divide_nearly(const Doubles& s, const Doubles& s_error, const TwofoldDivisor& q,
+                                 Floats& value) noexcept {
+    const Doubles quotient = where(q.in_front, s * q.reciprocal);
+    const Doubles error = where(q.in_front, magnitude(quotient) * 0x1p-49 + q.reciprocal * (s_error * 1.001));
+    value = to_floats(quotient - error);
+    return !any(bits(value) ^ bits(to_floats(quotient + error)));
+}
+
 // The floats nearest to s / q in front, 0 elsewhere; `is_known` loses the lanes in front where that is in doubt.
 // As nearest_quotient(): two neighbours are left, and the sign of s - middle q decides. That is a small number beside both
-// products, so s - middle q' is exact for the leading 53 bits q' of q, and the rest is summed exactly where it is but short.
-TEXGEN_INLINE Floats nearest_quotients(const Twofold& s, const TwofoldDivisor& q, LongWords& is_known) noexcept {
+// products (either will do where they are no further apart than the tolerance), so s - middle q' is exact for the leading 53 bits q' of q, and the rest is summed exactly where it is but short.
+TEXGEN_INLINE Floats nearest_quotients(const Twofold& s, const TwofoldDivisor& q, double tolerance,
+                                       LongWords& is_known) noexcept {
     const Doubles quotient = where(q.in_front, s.high * q.reciprocal) + 0.0;
     const Doubles error = magnitude(quotient) * 0x1p-48;
     const Floats first = to_floats(quotient - error);
     const Doubles low = to_doubles(first);
     const Doubles high = to_doubles(to_floats(quotient + error));
     const LongWords is_precise = at_most(s.lost, magnitude(s.high) * 0x1p-52);
-    const LongWords is_alone = at_most(high, low);
+    const LongWords is_alone = at_most(high, low) | at_most(high - low, Doubles{} + tolerance);
     if (!any(narrow(~is_alone))) {
         is_known &= ~q.in_front | is_precise;
         return first;
     }
-    const Doubles beyond = Doubles{} + 0x1p128;
-    const Doubles middle =
-        minimum(maximum(low, -1.0 * beyond), beyond) * 0.5 + minimum(maximum(high, -1.0 * beyond), beyond) * 0.5;
+    const Doubles middle = low * 0.5 + high * 0.5;  // next to 2^128 it is infinite, and the lane in doubt
     const Doubles leading_rest = (s.high - middle * q.part[0]) - middle * q.part[1];
     Doubles remainder = leading_rest;
     Doubles lost = s.lost + magnitude(middle) * q.lost;

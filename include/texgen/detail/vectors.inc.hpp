@@ -123,7 +123,7 @@ TEXGEN_INLINE WideWords at_most(const WideFloats& a, const WideFloats& b) noexce
 TEXGEN_INLINE Doubles minimum(const Doubles& a, const Doubles& b) noexcept { return a < b ? a : b; }
 TEXGEN_INLINE Doubles maximum(const Doubles& a, const Doubles& b) noexcept { return a > b ? a : b; }
 TEXGEN_INLINE Doubles magnitude(const Doubles& a) noexcept {
-    return __builtin_bit_cast(Doubles, __builtin_bit_cast(LongWords, a) & 0x7fffffffffffffff);
+    return __builtin_bit_cast(Doubles, __builtin_bit_cast(LongWords, a) & 0x7fffffffffffffffLL);
 }
 
 template <class Vector>

@@ -1,0 +1,134 @@
+// The worst points and segments cost at most eight times what ordinary ones do: as many of them, laid out alike, with the
+// same outputs.
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "support/cost.hpp"
+#include "support/doubtful.hpp"
+#include "support/random.hpp"
+#include "texgen/interpolate.hpp"
+#include "texgen/texcoord.hpp"
+
+namespace {
+
+using support::Random;
+using texgen::Tolerance;
+
+constexpr double limit = 8.0;
+
+struct Planes {
+    std::vector<float> x, y, z;
+
+    explicit Planes(const std::vector<glm::vec3>& points) {
+        for (const glm::vec3& point : points) {
+            x.push_back(point.x);
+            y.push_back(point.y);
+            z.push_back(point.z);
+        }
+    }
+};
+
+// A call of project() on a cloud.
+class Projection {
+public:
+    enum class Way { interleaved_lit, planar, strided, lit_only, one_coordinate, pairs };
+    static constexpr std::array ways{Way::interleaved_lit, Way::planar,         Way::strided,
+                                     Way::lit_only,        Way::one_coordinate, Way::pairs};
+
+    Projection(const support::Cloud& cloud, Way way, Tolerance tolerance)
+        : texgen_(cloud.matrix),
+          points_(cloud.points),
+          planes_(cloud.points),
+          way_(way),
+          tolerance_(tolerance),
+          outputs_(3, std::vector<float>(cloud.points.size())),
+          pairs_(cloud.points.size()) {
+        for (const glm::vec3& point : cloud.points) padded_.emplace_back(point, 1.0f);
+    }
+
+    void operator()() {
+        const auto out = [&](std::size_t k) { return std::span<float>(outputs_[k]); };
+        const auto run = [&](const texgen::Positions<texgen::World>& positions, const texgen::Texcoords& to) {
+            project(texgen_, positions, texgen::whole_texture(), to, tolerance_);
+        };
+        const auto interleaved = texgen::world_space(points_);
+        switch (way_) {
+            case Way::interleaved_lit:
+                return run(interleaved, {out(0), out(1), {}, out(2)});
+            case Way::planar:
+                return run(texgen::world_space(planes_.x, planes_.y, planes_.z), {out(0), out(1), {}, {}});
+            case Way::strided:
+                return run(texgen::world_space(&padded_[0].x, padded_.size(), sizeof padded_[0]),
+                           {out(0), out(1), {}, {}});
+            case Way::lit_only:
+                return run(interleaved, {{}, {}, {}, out(2)});
+            case Way::one_coordinate:
+                return run(texgen::world_space(planes_.x, planes_.y, planes_.z), {out(0), {}, {}, {}});
+            case Way::pairs:
+                return project(texgen_, interleaved, pairs_, tolerance_);
+        }
+    }
+
+private:
+    texgen::WorldTexgen texgen_;
+    std::vector<glm::vec3> points_;
+    Planes planes_;
+    Way way_;
+    Tolerance tolerance_;
+    std::vector<std::vector<float>> outputs_;
+    std::vector<glm::vec2> pairs_;
+    std::vector<glm::vec4> padded_;
+};
+
+}  // namespace
+
+TEST_CASE("the worst points cost eight times ordinary ones at most, at every size, however they are laid out") {
+    Random random(56);
+    std::size_t turn = 0;
+    for (const std::size_t count : {1u, 16u, 64u, 1024u}) {
+        const support::Cloud ordinary = support::ordinary_cloud(count, random);
+        for (const support::Cloud& cloud : support::doubtful_clouds(count, random)) {
+            for (const Projection::Way way : Projection::ways) {
+                // Of few points a seventh, in turn.
+                if (count < 1024 && turn++ % 7 != 0) continue;
+                for (const double tolerance : {0.0, 0x1p-21}) {
+                    const double cost =
+                        support::worst_over_ordinary_within(limit, Projection(ordinary, way, Tolerance{tolerance}),
+                                                            Projection(cloud, way, Tolerance{tolerance}));
+                    CHECK_MESSAGE(cost <= limit, cloud.name, ": ", cost, " times, ", count, " points, layout ",
+                                  static_cast<int>(way), ", tolerance ", tolerance);
+                }
+            }
+        }
+    }
+}
+
+TEST_CASE("the worst segments cost eight times ordinary ones at most, at every size, whatever is asked for") {
+    Random random(57);
+    for (const std::size_t count : {1u, 16u, 64u, 1024u}) {
+        const support::Stretch ordinary = support::ordinary_stretch(count, random);
+        for (const support::Stretch& stretch : support::doubtful_stretches(count, random)) {
+            std::vector<float> s(count), t(count), lit(count);
+            for (const bool is_lit_asked : {false, true}) {
+                for (const double tolerance : {0.0, 0x1p-21}) {
+                    const auto run = [&](const support::Stretch& of) {
+                        return [&, of] {
+                            interpolate(of.segment, of.alpha, texgen::whole_texture(),
+                                        {s, t, {}, is_lit_asked ? std::span<float>(lit) : std::span<float>()},
+                                        Tolerance{tolerance});
+                        };
+                    };
+                    const double cost = support::worst_over_ordinary_within(limit, run(ordinary), run(stretch));
+                    CHECK_MESSAGE(cost <= limit, stretch.name, ": ", cost, " times, ", count, " values, tolerance ",
+                                  tolerance, is_lit_asked ? ", lit" : "");
+                }
+            }
+        }
+    }
+}
