@@ -560,7 +560,7 @@ TEXGEN_INLINE Again divide_block_again(const DividedOutput& output, const Terms&
             are_ties = false;
             again.is_in_doubt = any(doubt.rounding | narrow(doubt.side & ~are_dark));
             if (!again.is_in_doubt) {
-                again.is_ordinary = again.is_ordinary && !any(narrow(~in_front));
+                again.is_ordinary = again.is_ordinary && !any(~in_front);
                 store_points(output, i, value, narrow(in_front));
                 continue;
             }
@@ -677,7 +677,7 @@ TEXGEN_APART Again divide_points_again(const PointJob& job, std::size_t begin, s
     if (!is_in_doubt) {
         const PointJob copy = job;
         const Doubt doubt = divide_points_block<true, Numerators>(copy, begin, end);
-        if (!doubt.any_lane()) return {0, !any(narrow(doubt.behind)), false};
+        if (!doubt.any_lane()) return {0, !any(doubt.behind), false};
     }
     if (!rounds_to_nearest()) return all_in_doubt(begin, end);
     return divide_block_again<Numerators>(job, PointTerms<Numerators>(job), begin, end, is_in_doubt);

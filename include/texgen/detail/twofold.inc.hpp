@@ -11,7 +11,7 @@ TEXGEN_INLINE Doubles two_sum(const Doubles& a, const Doubles& b, Doubles& error
     return sum;
 }
 
-TEXGEN_INLINE bool any_but_zero(const Doubles& a) noexcept { return any(narrow(~at_most(magnitude(a), a * 0.0))); }
+TEXGEN_INLINE bool any_but_zero(const Doubles& a) noexcept { return any(~at_most(magnitude(a), a * 0.0)); }
 
 // A number as an unevaluated sum, high the nearest double, and a bound on what that lacks: 0 where it is exact.
 struct Twofold {
@@ -74,7 +74,7 @@ struct TwofoldForm {
         result.lost = magnitude(left[3]) + magnitude(left[4]);
         if (!is_short) result.lost = result.lost + (magnitude(left[0]) + magnitude(left[1]) + magnitude(left[2]));
         // Beside a sum that cancels that is much, and is kept.
-        if (any(narrow(~at_most(result.lost, magnitude(result.high) * 0x1p-60)))) {
+        if (any(~at_most(result.lost, magnitude(result.high) * 0x1p-60))) {
             const Doubles third = left[0] + left[1] + left[2] + left[3] + left[4];
             Doubles lost;
             const Doubles second = two_sum(result.low, third, lost);
@@ -142,7 +142,7 @@ TEXGEN_INLINE Floats nearest_quotients(const Twofold& s, const TwofoldDivisor& q
     const Doubles high = to_doubles(to_floats(quotient + error));
     const LongWords is_precise = at_most(s.lost, magnitude(s.high) * 0x1p-52);
     const LongWords is_alone = at_most(high, low) | at_most(high - low, Doubles{} + tolerance);
-    if (!any(narrow(~is_alone))) {
+    if (!any(~is_alone)) {
         is_known &= ~q.in_front | is_precise;
         return first;
     }

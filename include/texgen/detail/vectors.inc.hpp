@@ -219,10 +219,23 @@ TEXGEN_INLINE bool any(const Words& mask) noexcept {
     using Quadwords [[gnu::vector_size(32)]] = long long;
     const auto quadwords = __builtin_bit_cast(Quadwords, mask);
     return !__builtin_ia32_ptestz256(quadwords, quadwords);
+#elif TEXGEN_LANE_BYTES == 32
+    using Quadwords [[gnu::vector_size(16)]] = long long;
+    const auto quadwords = __builtin_bit_cast(Quadwords, mask);
+    return !__builtin_ia32_ptestz128(quadwords, quadwords);
 #else
     int all = mask[0];
     for (int i = 1; i < lanes; ++i) all |= mask[i];
     return all != 0;
+#endif
+}
+TEXGEN_INLINE bool any(const LongWords& mask) noexcept {
+#if TEXGEN_LANE_BYTES == 64
+    return any(narrow(mask));
+#elif TEXGEN_LANE_BYTES == 32
+    return !__builtin_ia32_ptestz256(mask, mask);
+#else
+    return (mask[0] | mask[1]) != 0;
 #endif
 }
 
