@@ -309,7 +309,7 @@ MUTANTS = [
          ("a lens that is transposed is none", "return perspective || (is_affine_transposed(p) && is_lens(transposed(p)));",
           "return false;", "diagnose_test"),
          ("every matrix is in float",
-          "if ((std::bit_cast<std::uint64_t>(m[column][row]) & 0x1fffffff) != 0) return false;", "", "diagnose_test"),
+          "if ((bit_cast<std::uint64_t>(m[column][row]) & 0x1fffffff) != 0) return false;", "", "diagnose_test"),
          ("a constant is rounded wherever it is long", "if (column == 3 && !(any_long && all_long)) continue;", "",
           "diagnose_test"),
          ("depth is that of the range", "const double other_low = -1.0 - low;", "const double other_low = low;",

@@ -29,7 +29,7 @@ inline bool rounds_alone(double value, double error) noexcept {
 // The middle of two neighbouring floats. Beyond the largest float stands 2^128.
 inline double middle_of(float low, float high) noexcept {
     const auto unbounded = [](float value) {
-        return std::fabs(value) < std::numeric_limits<float>::infinity() ? static_cast<double>(value)
+        return std::fabs(value) < std::numeric_limits<float>::infinity() ? widened(value)
                                                                          : std::copysign(0x1p128, value);
     };
     return 0.5 * unbounded(low) + 0.5 * unbounded(high);
