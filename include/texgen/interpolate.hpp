@@ -121,14 +121,14 @@ inline Corners corners_of(const TrianglePlanes& planes, const PlaneOf<Pair>& num
 
 // Each coefficient is rounded to double; its product with an index and two sums are rounded once each.
 inline Corners corners_of(const CloseRamps& close) noexcept {
-    const auto& [s, t] = close.numerator;
+    const auto& [s, t, q] = close.function;
+    const auto pair = [](const DoubleDouble& of_s, const DoubleDouble& of_t) { return pair_of(of_s.high, of_t.high); };
     const auto error = [&close](const CloseRamp& ramp) { return ramp.error + gamma(4) * ramp.size(close.tile); };
     Corners corners;
-    corners.numerator_ramp = {pair_of(s.base.high, t.base.high), pair_of(s.dx.high, t.dx.high),
-                              pair_of(s.dy.high, t.dy.high)};
-    corners.q_ramp = {close.q.base.high, close.q.dx.high, close.q.dy.high};
+    corners.numerator_ramp = {pair(s.term[0], t.term[0]), pair(s.term[1], t.term[1]), pair(s.term[2], t.term[2])};
+    corners.q_ramp = {q.term[0].high, q.term[1].high, q.term[2].high};
     corners.numerator_error = pair_of(error(s), error(t));
-    corners.q_error = error(close.q);
+    corners.q_error = error(q);
     take_corners(corners, close.tile);
     return corners;
 }
@@ -530,16 +530,17 @@ private:
         shade_some(whole_, unit, doubtful);
     }
 
+    // The planes as they are.
     CloseRamps plain_ramps() const noexcept {
         const Corners at = corners_of(setup_.planes_, planes_, setup_.q_, whole_);
         const auto plain = [](double base, double dx, double dy, double error) {
-            return CloseRamp{{base, 0.0}, {dx, 0.0}, {dy, 0.0}, error, 0.0};
+            return CloseRamp{{{base, 0.0}, {dx, 0.0}, {dy, 0.0}}, error, 0.0};
         };
         const auto numerator = [&](std::size_t k) {
             const auto& [base, dx, dy] = at.numerator_ramp;
             return plain(base[k], dx[k], dy[k], at.numerator_error[k]);
         };
-        return {whole_, {numerator(0), numerator(1)}, plain(at.q_ramp.base, at.q_ramp.dx, at.q_ramp.dy, at.q_error)};
+        return {whole_, {numerator(0), numerator(1), plain(at.q_ramp.base, at.q_ramp.dx, at.q_ramp.dy, at.q_error)}};
     }
 
     // Fragments of a unit, one by one: a bit for each.
@@ -588,16 +589,11 @@ private:
     // One fragment, every decision exact.
     void shade_one(std::int64_t x, std::int64_t y) noexcept {
         const TrianglePlanes& planes = setup_.planes_;
-        const Bounded q = planes.at(setup_.q_, x, y);
-        const auto exact_q = [&] { return planes.exactly_at(3, x, y); };
-        const bool in_front = certain_sign(q, exact_q) > 0;
-        const Tile fragment{x, y, 1, 1};
-        const Pair numerator = planes.ramp(planes_, fragment).base;
-        const Pair error = planes.error(planes_, fragment);
+        const TrianglePlanes::Exact q = planes.exactly_at(3, x, y);
+        const bool in_front = q.sign() > 0;
         float value[2] = {0.0f, 0.0f};
         for (std::size_t k = 0; k < count_; ++k) {
-            const auto exact_numerator = [&] { return planes.exactly_at(coordinate_[k], x, y); };
-            if (in_front) value[k] = certain_quotient({numerator[k], error[k]}, q, exact_numerator, exact_q);
+            if (in_front) value[k] = nearest_quotient(planes.exactly_at(coordinate_[k], x, y), q);
             if (!output_[k].empty()) output_[k][offset(x, y)] = value[k];
         }
         if (!lit_.empty()) lit_[offset(x, y)] = in_front ? setup_.lit_(value[0], value[1]) : 0.0f;

@@ -18,41 +18,39 @@
 
 namespace TEXGEN_DETAIL {
 
-// base + i dx + j dy, within `error` of the exact value at every fragment of the tile that it was made for. The exact value is a
-// multiple of `grain`, a power of two (or 0, where that is not known).
+// base + i dx + j dy: these three terms. Within `error` of the exact value at every fragment of the tile that it was made for;
+// that value is a multiple of `grain`, a power of two (or 0, where that is not known).
 struct CloseRamp {
-    DoubleDouble base, dx, dy;
+    DoubleDouble term[3];
     double error, grain;
 
-    CloseRamp moved(std::int64_t x, std::int64_t y) const noexcept {
-        const auto right = static_cast<double>(x);  // integers
-        const auto down = static_cast<double>(y);   // integers
-        const DoubleDouble along_x = product(dx, {right, 0.0});
-        const DoubleDouble along_y = product(dy, {down, 0.0});
-        return {sum(base, sum(along_x, along_y)), dx, dy, error, grain};
+    CloseRamp moved(double x, double y) const noexcept {
+        CloseRamp result = *this;
+        for (std::size_t j = 1; j < 3; ++j)
+            result.term[0] = sum(result.term[0], product(term[j], {j == 1 ? x : y, 0.0}));
+        return result;
     }
 
     // |base| + |i dx| + |j dy| where that is largest.
     double size(const Tile& tile) const noexcept {
-        return std::fabs(base.high) + tile.width * std::fabs(dx.high) + tile.height * std::fabs(dy.high);
+        return std::fabs(term[0].high) + tile.width * std::fabs(term[1].high) + tile.height * std::fabs(term[2].high);
     }
 
     // As high and low parts, see CloseFunction. The coefficients of low are at most half a unit: they, two products and two
-    // sums are rounded in double, 6 u of half of width + height + 1 units (2^-53 = u; 2^-50 has room for every direction).
+    // sums are rounded in double, 6 u of half of width + height + 1 units: less than 2^-50 of those.
     CloseFunction split(const Tile& tile) const noexcept {
         const double unit = unit_for(tile);
         const double rounder = 0x1.8p52 * unit;
-        CloseFunction function;
-        const auto part = [rounder](const DoubleDouble& value, double& high, double& low) {
-            high = (value.high + rounder) - rounder;
-            low = (value.high - high) + value.low;
-        };
-        part(base, function.high.base, function.low.base);
-        part(dx, function.high.dx, function.low.dx);
-        part(dy, function.high.dy, function.low.dy);
-        function.error = error + 0x1p-50 * (1.0 + tile.width + tile.height) * unit;
-        function.grain = grain;
-        return function;
+        double high[3];
+        double low[3];
+        for (std::size_t j = 0; j < 3; ++j) {
+            high[j] = (term[j].high + rounder) - rounder;
+            low[j] = (term[j].high - high[j]) + term[j].low;
+        }
+        return {{high[0], high[1], high[2]},
+                {low[0], low[1], low[2]},
+                error + 0x1p-50 * (1.0 + tile.width + tile.height) * unit,
+                grain};
     }
     double unit_for(const Tile& tile) const noexcept {
         const double size = this->size(tile);
@@ -62,18 +60,26 @@ struct CloseRamp {
 
 // Two numerators and q over a tile.
 struct CloseRamps {
+    static constexpr std::size_t q = 2;
+
     Tile tile;
-    CloseRamp numerator[2];
-    CloseRamp q;
+    CloseRamp function[3];
 
     CloseRamps moved_to(const Tile& part) const noexcept {
-        const std::int64_t x = part.x - tile.x;
-        const std::int64_t y = part.y - tile.y;
-        return {part, {numerator[0].moved(x, y), numerator[1].moved(x, y)}, q.moved(x, y)};
+        const auto x = static_cast<double>(part.x - tile.x);  // integers
+        const auto y = static_cast<double>(part.y - tile.y);  // integers
+        CloseRamps result = *this;
+        result.tile = part;
+        for (CloseRamp& ramp : result.function) ramp = ramp.moved(x, y);
+        return result;
     }
 
     CloseFunctions split() const noexcept {
-        return {{numerator[0].split(tile), numerator[1].split(tile)}, q.split(tile), 0x1.8p78 * q.unit_for(tile)};
+        CloseFunctions result;
+        for (std::size_t k = 0; k < 2; ++k) result.numerator[k] = function[k].split(tile);
+        result.q = function[q].split(tile);
+        result.q_unit = 0x1.8p78 * function[q].unit_for(tile);
+        return result;
     }
 };
 
@@ -95,11 +101,11 @@ public:
             const std::size_t k = (i + 2) % 3;
             const DoubleDouble left = product(to_x_[j], to_y_[k]);
             const DoubleDouble right = product(to_y_[j], to_x_[k]);
-            edge_[i] = sum(left, -right);
-            edge_dx_[i] = two_sum(planes.corner(j).y, -planes.corner(k).y);
-            edge_dy_[i] = two_sum(planes.corner(k).x, -planes.corner(j).x);
-            magnitude_[i] = std::fabs(left.high) + std::fabs(right.high) + tile.width * std::fabs(edge_dx_[i].high) +
-                            tile.height * std::fabs(edge_dy_[i].high);
+            edge_[i][0] = sum(left, -right);
+            edge_[i][1] = two_sum(planes.corner(j).y, -planes.corner(k).y);
+            edge_[i][2] = two_sum(planes.corner(k).x, -planes.corner(j).x);
+            magnitude_[i] = std::fabs(left.high) + std::fabs(right.high) + tile.width * std::fabs(edge_[i][1].high) +
+                            tile.height * std::fabs(edge_[i][2].high);
         }
     }
 
@@ -108,9 +114,7 @@ public:
         double magnitude = 0.0;
         for (std::size_t i = 0; i < 3; ++i) {
             const DoubleDouble c = two_product(planes_.value(i, coordinate), planes_.weight(i));
-            ramp.base = sum(ramp.base, product(edge_[i], c));
-            ramp.dx = sum(ramp.dx, product(edge_dx_[i], c));
-            ramp.dy = sum(ramp.dy, product(edge_dy_[i], c));
+            for (std::size_t j = 0; j < 3; ++j) ramp.term[j] = sum(ramp.term[j], product(edge_[i][j], c));
             magnitude += magnitude_[i] * std::fabs(c.high);
         }
         ramp.error = 0x1p-97 * magnitude + 0x1p-1000;
@@ -119,14 +123,14 @@ public:
     }
 
     CloseRamps ramps(glm::length_t first, glm::length_t second) const noexcept {
-        return {tile_, {ramp(first), ramp(second)}, ramp(3)};
+        return {tile_, {ramp(first), ramp(second), ramp(3)}};
     }
 
 private:
     const TrianglePlanes& planes_;
     Tile tile_;
-    DoubleDouble to_x_[3], to_y_[3];                  // from the first fragment to the corners
-    DoubleDouble edge_[3], edge_dx_[3], edge_dy_[3];  // of the side opposite each corner
+    DoubleDouble to_x_[3], to_y_[3];  // from the first fragment to the corners
+    DoubleDouble edge_[3][3];         // of the side opposite each corner: its function's value there, and by x and by y
     double magnitude_[3];
 };
 
@@ -134,7 +138,7 @@ private:
 inline Bounded close_to(const TrianglePlanes& planes, glm::length_t coordinate, std::int64_t x,
                         std::int64_t y) noexcept {
     const CloseRamp ramp = ClosePlanes(planes, {x, y, 1, 1}).ramp(coordinate);
-    const double value = ramp.base.high + ramp.base.low;
+    const double value = ramp.term[0].high + ramp.term[0].low;
     if (4.0 * ramp.error < ramp.grain && std::fabs(value) < 0.5 * ramp.grain) return {0.0, 0.0};
     return {value, ramp.error + 0x1p-52 * std::fabs(value)};
 }

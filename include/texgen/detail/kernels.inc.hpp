@@ -215,31 +215,28 @@ TEXGEN_INLINE Words divide_closely(const CloseRow& row, double grain, const Clos
     return doubt & ~is_zero;
 }
 
-template <std::size_t Numerators>
-TEXGEN_INLINE std::uint64_t divide_closely_of(const TileJob& job, const CloseFunctions& functions,
-                                              const TileJob::Unit& unit) noexcept {
+// One numerator stands in both places.
+template <class = void>
+std::uint64_t divide_closely(const TileJob& job, const CloseFunctions& functions, TileJob::Unit unit) noexcept {
     const CloseFunctions close = functions;
     CloseRow q_row(close.q);
-    CloseRow first(close.numerator[0]);
-    CloseRow second(close.numerator[1]);
-    RowOutputs<Numerators> row(job, unit.y_begin);
+    CloseRow numerator[2] = {CloseRow(close.numerator[0]), CloseRow(close.numerator[1])};
+    RowOutputs<2> row(job, unit.y_begin);
     const Doubles half_q_error = q_row.error * 0.5;
     const double middle_grain = 0x1p-25 * close.q.grain;
     std::uint64_t doubtful = 0;
     int shift = 0;
     for (int y = unit.y_begin; y < unit.y_end; ++y, row.advance()) {
         q_row.move_to(close.q, y);
-        first.move_to(close.numerator[0], y);
-        second.move_to(close.numerator[1], y);
+        for (std::size_t k = 0; k < 2; ++k) numerator[k].move_to(close.numerator[k], y);
         for (std::int64_t x = unit.x_begin; x < unit.x_end; x += lanes) {
             const Doubles index = indices<Doubles>() + static_cast<double>(x);
             const CloseQ q(q_row, close.q_unit, index);
-            Floats value[Numerators];
-            Words doubt = narrow(q.doubt) | divide_closely(first, close.numerator[0].grain, q, half_q_error,
-                                                           middle_grain, index, value[0]);
-            if constexpr (Numerators == 2)
-                doubt |=
-                    divide_closely(second, close.numerator[1].grain, q, half_q_error, middle_grain, index, value[1]);
+            Floats value[2];
+            Words doubt = narrow(q.doubt);
+            for (std::size_t k = 0; k < 2; ++k)
+                doubt |= divide_closely(numerator[k], close.numerator[k].grain, q, half_q_error, middle_grain, index,
+                                        value[k]);
             store_from(row, x, unit.x_end, value, narrow(q.in_front));
             const int count = unit.x_end - x < lanes ? static_cast<int>(unit.x_end - x) : lanes;
             if (any(doubt))
@@ -249,11 +246,6 @@ TEXGEN_INLINE std::uint64_t divide_closely_of(const TileJob& job, const CloseFun
         }
     }
     return doubtful;
-}
-
-template <class = void>
-std::uint64_t divide_closely(const TileJob& job, const CloseFunctions& close, TileJob::Unit unit) noexcept {
-    return job.numerators == 2 ? divide_closely_of<2>(job, close, unit) : divide_closely_of<1>(job, close, unit);
 }
 
 // ---- Chunks ----------------------------------------------------------------------------------------------------
