@@ -317,10 +317,10 @@ TEST_CASE("the sides of a region in floats are the first floats inside it") {
         const double left = random.uniform(0.0, 0.5), right = random.uniform(0.5, 1.0);
         const texgen::detail::LitTest lit(texgen::atlas_tile({left, left}, {right, right}));
         for (std::size_t k = 0; k < 2; ++k) {
-            REQUIRE(lit.min(k) >= left);
-            REQUIRE(texgen::detail::float_before(support::to_float(lit.min(k))) < left);
-            REQUIRE(lit.max(k) <= right);
-            REQUIRE(-texgen::detail::float_before(support::to_float(-lit.max(k))) > right);
+            REQUIRE(lit.least(k) >= left);
+            REQUIRE(texgen::detail::float_before(support::to_float(lit.least(k))) < left);
+            REQUIRE(lit.greatest(k) <= right);
+            REQUIRE(-texgen::detail::float_before(support::to_float(-lit.greatest(k))) > right);
         }
     }
 }
