@@ -454,6 +454,21 @@ texgen::FragmentRect rect_of(const Numbers& n) {
     return {pixel(n[21]), pixel(n[22]), Width, Height};
 }
 
+// What the limits are about: a triangle of a window, of a camera and of slides as they are. Beyond, where floats of all sizes
+// meet in one triangle, ties may differ from their middle by less than two doubles hold, and are decided one by one.
+inline bool is_of_a_scene(const texgen::Triangle& triangle) {
+    const auto is_between = [](float value, float least, float largest) {
+        return value == 0.0f || (std::fabs(value) >= least && std::fabs(value) <= largest);
+    };
+    bool all = true;
+    for (const texgen::WindowVertex* v : {&triangle.a, &triangle.b, &triangle.c}) {
+        all = all && is_between(v->clip_w, 0x1p-20f, 0x1p20f);
+        for (const float pixel : {v->window.x, v->window.y}) all = all && is_between(pixel, 0x1p-10f, 0x1p30f);
+        for (glm::length_t k = 0; k < 4; ++k) all = all && is_between(v->strq[k], 0x1p-20f, 0x1p20f);
+    }
+    return all;
+}
+
 struct TileCall {
     texgen::TriangleSetup setup;
     texgen::FragmentRect rect;
@@ -461,8 +476,9 @@ struct TileCall {
 };
 template <int Width, int Height, bool IsExact>
 std::shared_ptr<TileCall> tile_call(const Numbers& n, texgen::TextureRegion region) {
-    const auto setup = texgen::TriangleSetup::of(triangle_of(n), region, IsExact ? texgen::exact : tolerance);
-    if (!setup) return nullptr;
+    const texgen::Triangle triangle = triangle_of(n);
+    const auto setup = texgen::TriangleSetup::of(triangle, region, IsExact ? texgen::exact : tolerance);
+    if (!setup || !is_of_a_scene(triangle)) return nullptr;
     auto call = std::make_shared<TileCall>(TileCall{*setup, rect_of<Width, Height>(n), {}});
     for (std::vector<float>& out : call->out) out.resize(Width * Height);
     return call;
