@@ -4,9 +4,7 @@
 // that lies next to the middle of two floats.
 
 #include <array>
-#include <cmath>
 #include <cstddef>
-#include <optional>
 
 #include "rounding.hpp"
 
@@ -68,45 +66,6 @@ private:
     std::array<double, Capacity> terms_{};
     std::size_t count_ = 0;
     bool rounds_to_nearest_ = rounds_to_nearest();
-};
-
-// The same in two doubles, for a fraction of the time, and a bound on what they lose: 0 where they are exact. Of sums that
-// no double can tell from 0 this tells almost all. For rounding to nearest.
-class TwofoldSum {
-public:
-    void add(double term) noexcept {
-        const DoubleDouble high = two_sum(high_, term);
-        const DoubleDouble low = two_sum(low_, high.low);
-        high_ = high.high;
-        low_ = low.high;
-        lost_ += 1.001 * std::fabs(low.low);
-    }
-
-    void add_product(double a, double b) noexcept {
-        const DoubleDouble both = two_product(a, b);
-        add(both.high);
-        add(both.low);
-    }
-
-    // That the number lacks as much more.
-    void lose(double error) noexcept { lost_ += 1.001 * error; }
-
-    // high is the sum rounded to double.
-    DoubleDouble value() const noexcept { return two_sum(high_, low_); }
-    double lost() const noexcept { return lost_; }
-
-    // -1, 0 or 1; nothing where the loss leaves it open.
-    std::optional<int> sign() const noexcept {
-        const double sum = high_ + low_;
-        if (std::fabs(sum) > 1.001 * lost_) return sum > 0.0 ? 1 : -1;
-        if (sum == 0.0 && lost_ == 0.0) return 0;
-        return std::nullopt;
-    }
-
-private:
-    double high_ = 0.0;
-    double low_ = 0.0;
-    double lost_ = 0.0;
 };
 
 }  // namespace TEXGEN_DETAIL

@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <optional>
 
 #include "../conventions.hpp"
 #include "expansion.hpp"
@@ -53,32 +52,6 @@ float nearest_quotient(const Expansion<N>& numerator, const Expansion<D>& denomi
     if (remainder.sign() < 0) return low;
     if (remainder.sign() > 0) return high;
     return static_cast<float>(middle);
-}
-
-// The same of sums that may have lost something; nothing where that leaves it open.
-inline std::optional<float> nearest_quotient(const TwofoldSum& numerator, const TwofoldSum& denominator) noexcept {
-    const DoubleDouble s = numerator.value();
-    const DoubleDouble q = denominator.value();
-    if (s.high == 0.0 && numerator.lost() == 0.0) return 0.0f;
-    if (!(numerator.lost() <= 0x1p-52 * std::fabs(s.high) && denominator.lost() <= 0x1p-52 * q.high))
-        return std::nullopt;
-    const double quotient = s.high / q.high;
-    if (!(std::fabs(quotient) < 0x1p129)) return static_cast<float>(quotient);
-    const double error = 0x1p-48 * std::fabs(quotient);
-    const auto low = static_cast<float>(quotient - error);
-    const auto high = static_cast<float>(quotient + error);
-    if (low == high) return low;
-    const double middle = middle_of(low, high);
-    TwofoldSum remainder;
-    remainder.add(s.high);
-    remainder.add_product(-middle, q.high);
-    remainder.add(s.low);
-    remainder.add_product(-middle, q.low);
-    remainder.lose(numerator.lost());
-    remainder.lose(std::fabs(middle) * denominator.lost());
-    const std::optional<int> sign = remainder.sign();
-    if (!sign) return std::nullopt;
-    return *sign < 0 ? low : *sign > 0 ? high : static_cast<float>(middle);
 }
 
 // -1, 0 or 1: the sign of the number that `bounded` stands for, from exact() where the bound leaves it open.
