@@ -173,7 +173,7 @@ TEST_CASE("the bounds of forms, of mixtures and of planes in double cover their 
         of_plane = std::max(of_plane, std::fabs(cross.estimate()) / room);
     }
     for (const double worst : {of_form, of_mixture, of_plane}) CHECK(worst <= 1.0);
-    // The bounds have room for roundings in any direction, which are up to twice those to nearest.
+    // The bounds have room for twice the unit roundoff.
     CHECK(of_form > 0.15);
     CHECK(of_mixture > 0.15);
     CHECK(of_plane > 0.03);

@@ -97,8 +97,8 @@ bool have_a_solution(std::vector<Inequality> all) {
     return gap > 0 || (gap == 0 && !low->is_strict && !high->is_strict);
 }
 
-// A region of real numbers about those that are inside the given one, or are rounded into it, in any direction; and one in
-// those that are rounded into it. Subnormal numbers may count as 0.
+// A region of real numbers about those that are inside the given one, or may be rounded into it; and one in those that
+// are rounded into it. Subnormal numbers may count as 0.
 struct Rounded {
     double outer, inner;
 
@@ -865,7 +865,7 @@ TEST_CASE("what rounds onto a side of the region is not outside, and what rounds
     const TextureRegion whole = whole_texture();
     CHECK(of(0x0.40p-23, whole, 1.0f) == Coverage::partial);  // a quarter of an ulp outside is lit
     CHECK(of(0x0.80p-23, whole, 1.0f) == Coverage::partial);  // a tie that goes to the even 1
-    CHECK(of(0x0.c0p-23, whole, 1.0f) == Coverage::partial);  // lit where s is rounded towards 0
+    CHECK(of(0x0.c0p-23, whole, 1.0f) == Coverage::partial);  // not beyond the next float
     CHECK(of(0x1.01p-23, whole, 1.0f) == Coverage::outside);
     CHECK(of(0.0, whole, 1.0f) == Coverage::inside);
     CHECK(of(0.0, whole, 0.0f) == Coverage::inside);
@@ -917,7 +917,7 @@ TEST_CASE(
     const TextureRegion to_there = atlas_tile({0.0, 0.0}, {0x1p130, 1.0});
     CHECK(of(0x1.fffffep127, to_there) == Coverage::inside);
     CHECK(of(0x1p129, to_there) == Coverage::partial);
-    CHECK(of(0x1p131, to_there) == Coverage::partial);  // lit where s is rounded towards 0
+    CHECK(of(0x1p131, to_there) == Coverage::partial);  // no float is beyond the side
 }
 
 TEST_CASE("a batch has room for what rounds off the slide where s hardly changes") {

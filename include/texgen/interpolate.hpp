@@ -138,8 +138,8 @@ struct SideOfBound {
     bool all_below[2], all_above[2];
 };
 
-// The float that is written may be on the other side of the bound than the exact value, by an ulp, by the tolerance (or
-// twice that: see detail/rounding.hpp), or as a 0 that was subnormal: so the answer must hold with that much slack.
+// The float that is written may be on the other side of the bound than the exact value, by an ulp, by the tolerance
+// (twice that leaves room), or as a 0 that was subnormal: so the answer must hold with that much slack.
 inline SideOfBound side_of(const Corners& at, const Pair& bound, double tolerance) noexcept {
     Pair g[4];
     for (std::size_t i = 0; i < 4; ++i) g[i] = at.numerator[i] - bound * at.q[i];

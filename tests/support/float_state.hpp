@@ -1,10 +1,9 @@
 #pragma once
 
-// The states of the floating-point unit that a host program may leave behind: rounding in another direction, subnormal
-// numbers taken as 0.
+// The states of the floating-point unit that a host program may leave behind: the default, and subnormal numbers taken
+// as 0.
 
 #include <array>
-#include <cfenv>
 #include <cstdint>
 
 #if defined(__SSE__)
@@ -15,19 +14,12 @@ namespace support {
 
 struct FloatState {
     const char* name;
-    int rounding;
     bool flushes;  // FTZ and DAZ on x86, FZ on Arm
 };
 
 inline constexpr std::array float_states{
-    FloatState{"nearest", FE_TONEAREST, false},
-    FloatState{"nearest, flushing", FE_TONEAREST, true},
-    FloatState{"upwards", FE_UPWARD, false},
-    FloatState{"downwards", FE_DOWNWARD, false},
-    FloatState{"towards 0", FE_TOWARDZERO, false},
-    FloatState{"upwards, flushing", FE_UPWARD, true},
-    FloatState{"downwards, flushing", FE_DOWNWARD, true},
-    FloatState{"towards 0, flushing", FE_TOWARDZERO, true},
+    FloatState{"default", false},
+    FloatState{"flushing", true},
 };
 
 namespace detail {
@@ -63,11 +55,9 @@ template <class Body>
 void under(const FloatState& state, const Body& body) {
     void (*volatile const call)(const void*) = [](const void* any) { (*static_cast<const Body*>(any))(); };
     const volatile std::uint64_t before = detail::control();
-    std::fesetround(state.rounding);
     if (state.flushes) detail::set_control(detail::control() | detail::flushing);
     call(&body);
     detail::set_control(before);
-    std::fesetround(FE_TONEAREST);
 }
 
 }  // namespace support

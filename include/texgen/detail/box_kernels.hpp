@@ -53,7 +53,6 @@ struct DoubleForms {
         double least_lit;  // 0, and for q a number that is smaller than any other value
     };
     std::array<Form, lit_form_count> form;
-    bool sums_are_exact;  // whether two_sum() is what it says in the caller's state
 };
 
 // What the five forms say of a box: the numbers of Coverage's enumerators, or doubt.

@@ -106,8 +106,7 @@ TEXGEN_INLINE void bound_least(const DoubleForms& forms, const BoxBlock& boxes, 
         Doubles upper;
         bound_form(form, Largest, boxes, i, sides.least_lit, lower, upper);
         const LongWords is_in_doubt = greater(0.0 - lower, 0.0) & ~greater(0.0 - upper, 0.0);
-        if (forms.sums_are_exact && any(narrow(is_in_doubt)))
-            bound_exactly(form, Largest, boxes, i, sides.least_lit, lower, upper);
+        if (any(narrow(is_in_doubt))) bound_exactly(form, Largest, boxes, i, sides.least_lit, lower, upper);
         all_lower = minimum(lower, all_lower);
         all_upper = minimum(upper, all_upper);
     }

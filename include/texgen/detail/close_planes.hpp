@@ -85,7 +85,7 @@ struct CloseRamps {
 
 // What all functions of a triangle share over a tile. With double-double sums within 2^-103 of their terms and products
 // within 2^-103, E_i errs by 2^-102 of the two products that it is the difference of, and the value by 2^-100 of theirs
-// times the c_i: 2^-97 leaves room for every direction of rounding.
+// times the c_i: 2^-97 leaves room.
 class ClosePlanes {
 public:
     ClosePlanes(const TrianglePlanes& planes, const Tile& tile) noexcept : planes_(planes), tile_(tile) {

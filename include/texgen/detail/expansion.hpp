@@ -11,18 +11,22 @@
 namespace TEXGEN_DETAIL {
 
 // The exact value of a sum, kept as at most Capacity doubles that do not overlap, smallest first.
-// Exact while no product leaves 2^-960 .. 2^1000, which products of five floats cannot, and whichever way the caller's
-// state rounds: sums are those of rounding to nearest, and what fma() leaves of a rounded product is a double.
+// Exact while no product leaves 2^-960 .. 2^1000, which products of five floats cannot.
 // Source: Shewchuk, Adaptive Precision Floating-Point Arithmetic, Grow-Expansion and Scale-Expansion.
 template <std::size_t Capacity>
 class Expansion {
 public:
     void add(double term) noexcept {
         if (term == 0.0) return;
-        if (rounds_to_nearest_)
-            add_by(two_sum, term);
-        else
-            add_by(two_sum_in_any_direction, term);
+        double carry = term;
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < count_; ++i) {
+            const DoubleDouble sum = two_sum(carry, terms_[i]);
+            carry = sum.high;
+            if (sum.low != 0.0) terms_[kept++] = sum.low;
+        }
+        if (carry != 0.0) terms_[kept++] = carry;
+        count_ = kept;
     }
 
     void add_product(double a, double b) noexcept {
@@ -50,22 +54,8 @@ public:
     int sign() const noexcept { return count_ == 0 ? 0 : terms_[count_ - 1] > 0.0 ? 1 : -1; }
 
 private:
-    template <class TwoSum>
-    void add_by(const TwoSum& two_sum, double term) noexcept {
-        double carry = term;
-        std::size_t kept = 0;
-        for (std::size_t i = 0; i < count_; ++i) {
-            const DoubleDouble sum = two_sum(carry, terms_[i]);
-            carry = sum.high;
-            if (sum.low != 0.0) terms_[kept++] = sum.low;
-        }
-        if (carry != 0.0) terms_[kept++] = carry;
-        count_ = kept;
-    }
-
     std::array<double, Capacity> terms_{};
     std::size_t count_ = 0;
-    bool rounds_to_nearest_ = rounds_to_nearest();
 };
 
 }  // namespace TEXGEN_DETAIL

@@ -579,11 +579,6 @@ TEXGEN_INLINE Again divide_block_again(const DividedOutput& output, const Terms&
     return again;
 }
 
-// Where sums are not those of rounding to nearest, all of a block is in doubt.
-TEXGEN_INLINE Again all_in_doubt(std::size_t begin, std::size_t end) noexcept {
-    return {~std::uint64_t{0} >> (nearest_block - (end - begin)), false, false};
-}
-
 // The largest |x|, |y|, |z| of a block: of all three together for triples. A NaN is the largest.
 struct PointExtent {
     double x, y, z;
@@ -671,7 +666,6 @@ TEXGEN_APART Again divide_points_again(const PointJob& job, std::size_t begin, s
         const Doubt doubt = divide_points_block<true, Numerators>(copy, begin, end);
         if (!doubt.any_lane()) return {0, !any(doubt.behind), false};
     }
-    if (!rounds_to_nearest()) return all_in_doubt(begin, end);
     return divide_block_again<Numerators>(job, PointTerms<Numerators>(job), begin, end, is_in_doubt);
 }
 
@@ -864,7 +858,6 @@ private:
 template <std::size_t Numerators>
 TEXGEN_APART Again divide_segment_again(const SegmentJob& job, std::size_t begin, std::size_t end,
                                         bool is_in_doubt) noexcept {
-    if (!rounds_to_nearest()) return all_in_doubt(begin, end);
     return divide_block_again<Numerators>(job, SegmentTerms<Numerators>(job), begin, end, is_in_doubt);
 }
 

@@ -90,9 +90,7 @@ public:
 
     // In float, scaled by powers of two so that one bound serves all. With u = 2^-24 a coefficient is rounded (1 u), as are
     // its product (1 u) and at most three sums (3 u): 5 u (max|a_j| size + |d|), and 0.1 u for the bound's own roundings.
-    // In other directions a rounding is up to 2 u. But a sign is only wrong where the terms cancel: half of their
-    // magnitudes is then the most that is left to either of the first two sums, and the last one is small: 2 u for
-    // coefficients and for products, 1 u for each of the two.
+    // 6.1 leaves room for one more.
     // |a_j| and |d| are so small that nothing overflows before the size does. What holds with room for the inner sides
     // holds for both, so one bound has that room, too.
     // A form is worth as much as it changes within the scene. How large that is, the distances of the sides from the
@@ -131,7 +129,6 @@ public:
     // In double, for boxes that floats leave in doubt.
     DoubleForms in_double() const noexcept {
         DoubleForms result;
-        result.sums_are_exact = rounds_to_nearest();
         for (std::size_t k = 0; k < count; ++k) {
             take_exact_form(k, weight_[k], result.form[k].outer);
             take_exact_form(k, k < side_count ? inner_weight_[k] : weight_[k], result.form[k].inner);

@@ -95,9 +95,9 @@ inline float float_at_least(double bound) noexcept {
 }
 
 // What rounding makes of a side of a region. A number beyond `outer` is not inside the side, nor is the float that it is
-// rounded to, in whichever direction; one not beyond `inner` is, and so is its float: they are the last float outside and
-// the first one inside, as rounding keeps the order and keeps floats. Next to 0 both leave room for subnormal floats that
-// count as 0. An infinite side stays where it is; one beyond all floats has no `outer`, as what is rounded towards 0 is inside.
+// rounded to; one not beyond `inner` is, and so is its float: they are the last float outside and the first one inside, as
+// rounding keeps the order and keeps floats. Next to 0 both leave room for subnormal floats that count as 0. An infinite
+// side stays where it is; one beyond all floats has no `outer`.
 struct RoundedSide {
     double outer, inner;
 

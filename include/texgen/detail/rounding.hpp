@@ -3,13 +3,9 @@
 // Rounding: the unit roundoffs, gamma(n), and the error-free transformations. Every bound of the library is computed
 // from these, where the rounding happens.
 //
-// What is promised is promised for rounding to nearest with subnormal numbers, the state that a program starts in. The
-// library changes no state. In others it keeps its decisions (the sign of q, coverage, Work, what is lit by what was
-// written): sums that decide are exact in every state, and gamma(n) has room for every direction.
-//   rounding up, down or towards 0    what would be the nearest float, or half an ulp, is within an ulp; a tolerance, and
-//                                     bounds that are told to callers, are kept within twice their value
-//   subnormal numbers taken as 0      (FTZ and DAZ on x86, FZ on Arm) a float below 2^-126 counts as 0, and is written as
-//                                     0; everything else has the same bits
+// Promises are for rounding to nearest, the direction that a program starts in; the library changes no state. Where
+// subnormal numbers are taken as 0 (FTZ and DAZ on x86, FZ on Arm), a float below 2^-126 counts as 0, and is written as 0;
+// everything else has the same bits.
 
 #include <bit>
 #include <cmath>
@@ -60,19 +56,11 @@ inline double last_bit(double value) noexcept {
     return bit_cast<double>(bits & 0x7ff0000000000000) * (0x1p-52 * from_last);
 }
 
-// The relative error of n roundings in sequence is at most gamma(n) = n u / (1 - n u). Here u is twice the unit roundoff,
-// so that it holds whichever way the caller's state rounds. Source: Higham, Accuracy and Stability of Numerical
-// Algorithms, lemma 3.1.
+// The relative error of n roundings in sequence is at most gamma(n) = n u / (1 - n u). Here u is twice the unit roundoff:
+// a factor of 2 is room. Source: Higham, Accuracy and Stability of Numerical Algorithms, lemma 3.1.
 constexpr double gamma(int n) noexcept {
     constexpr double u = 2.0 * unit_roundoff_double;
     return n * u / (1.0 - n * u);
-}
-
-// Whether the caller's state rounds to nearest: upwards 1 + 2^-60 is more than 1, down and towards 0 1 - 2^-60 is less.
-inline bool rounds_to_nearest() noexcept {
-    const volatile double tiny = 0x1p-60;
-    const double little = tiny;
-    return 1.0 + little == 1.0 && 1.0 - little == 1.0;
 }
 
 // A double and a bound on its distance from the number that it stands for.
@@ -124,33 +112,6 @@ inline DoubleDouble two_sum(double a, double b) noexcept {
     const double sum = a + b;
     const double b_part = sum - a;
     return {sum, (a - (sum - b_part)) + (b - b_part)};
-}
-
-// The same two numbers whichever way the caller's state rounds: high is the sum rounded to nearest. With |a| >= |b|, let
-// `next` be the neighbour of a towards b. Where b is less than half of that gap, a + b rounds to a. Else the error of any
-// of both doubles next to a + b is a double, and s - a is exact (Boldo, Graillat, Muller, On the Robustness of the 2Sum and
-// Fast2Sum Algorithms, ACM TOMS 44, 2017); then what is more than half a gap goes to the next double, exactly.
-inline DoubleDouble two_sum_in_any_direction(double a, double b) noexcept {
-    if (std::fabs(a) < std::fabs(b)) {
-        const double smaller_one = a;
-        a = b;
-        b = smaller_one;
-    }
-    if (b == 0.0 || !(std::fabs(a) < 0x1p1022)) return {a + b, 0.0};
-    const auto is_odd = [](double value) { return (bit_cast<std::uint64_t>(value) & 1) != 0; };
-    const auto neighbour = [](double value, double towards) {
-        const auto bits = bit_cast<std::uint64_t>(value);
-        return bit_cast<double>((value > 0.0) == (towards > 0.0) ? bits + 1 : bits - 1);
-    };
-    const double gap = neighbour(a, b) - a;
-    if (2.0 * std::fabs(b) < std::fabs(gap)) return {a, b};
-    const double sum = a + b;
-    const double error = b - (sum - a);
-    if (error == 0.0 || sum == 0.0) return {sum, error};
-    const double next = neighbour(sum, error);
-    const double half = 0.5 * std::fabs(next - sum);
-    if (std::fabs(error) < half || (std::fabs(error) == half && !is_odd(sum))) return {sum, error};
-    return {next, error - (next - sum)};
 }
 
 // Exactly a * b where neither the product nor its last bit leaves the range of double.
