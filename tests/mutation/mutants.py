@@ -405,7 +405,7 @@ MUTANTS = [
           "return nearest;", "work_test")),
     *_of("detail/expansion.hpp",
          ("a product loses its low part", "        add(product.low);\n", "", "interpolate_test texcoord_test segment_test"),
-         ("the carry is dropped", "if (carry != 0.0) terms_[kept++] = carry;", "", "interpolate_test texcoord_test"),
+         ("the carry is dropped", "if (carry != 0.0) terms[kept++] = carry;", "", "interpolate_test texcoord_test"),
          ("the sign is that of the smallest", "terms_[count_ - 1] > 0.0 ? 1 : -1", "terms_[0] > 0.0 ? 1 : -1",
           "interpolate_test texcoord_test clip_slide_test")),
     *_of("detail/rounding.hpp",

@@ -10,23 +10,28 @@
 
 namespace TEXGEN_DETAIL {
 
+// Adds a number to the exact value of `count` doubles that do not overlap, smallest first; returns how many they are then.
+// One function for all capacities. Source: Shewchuk, Adaptive Precision Floating-Point Arithmetic, Grow-Expansion.
+inline std::size_t grow(double* terms, std::size_t count, double term) noexcept {
+    double carry = term;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const DoubleDouble sum = two_sum(carry, terms[i]);
+        carry = sum.high;
+        if (sum.low != 0.0) terms[kept++] = sum.low;
+    }
+    if (carry != 0.0) terms[kept++] = carry;
+    return kept;
+}
+
 // The exact value of a sum, kept as at most Capacity doubles that do not overlap, smallest first.
 // Exact while no product leaves 2^-960 .. 2^1000, which products of five floats cannot.
-// Source: Shewchuk, Adaptive Precision Floating-Point Arithmetic, Grow-Expansion and Scale-Expansion.
+// Source: Shewchuk, Scale-Expansion.
 template <std::size_t Capacity>
 class Expansion {
 public:
     void add(double term) noexcept {
-        if (term == 0.0) return;
-        double carry = term;
-        std::size_t kept = 0;
-        for (std::size_t i = 0; i < count_; ++i) {
-            const DoubleDouble sum = two_sum(carry, terms_[i]);
-            carry = sum.high;
-            if (sum.low != 0.0) terms_[kept++] = sum.low;
-        }
-        if (carry != 0.0) terms_[kept++] = carry;
-        count_ = kept;
+        if (term != 0.0) count_ = grow(terms_.data(), count_, term);
     }
 
     void add_product(double a, double b) noexcept {
