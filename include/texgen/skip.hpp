@@ -84,11 +84,12 @@ inline Coverage exact_coverage(const LitForms& forms, const Box& box) noexcept {
         if (box.min[j] == infinity || box.max[j] == -infinity) return Coverage::partial;  // beyond all numbers
 
     // The vertex where a form is largest, or least; false where it is infinite there.
+    const glm::dvec3 min = widened(box.min);
+    const glm::dvec3 max = widened(box.max);
     const auto take_vertex = [&](std::size_t k, bool largest, Point& vertex) {
         for (std::size_t j = 0; j < 3; ++j) {
             if (!forms[k].uses[j]) continue;
-            const glm::vec3& corner = (forms[k].a[j] > 0.0) == largest ? box.max : box.min;
-            vertex[j] = widened(corner[static_cast<glm::length_t>(j)]);
+            vertex[j] = ((forms[k].a[j] > 0.0) == largest ? max : min)[static_cast<glm::length_t>(j)];
             if (!is_finite(vertex[j])) return false;
         }
         return true;
@@ -97,12 +98,11 @@ inline Coverage exact_coverage(const LitForms& forms, const Box& box) noexcept {
         Point vertex{};
         return take_vertex(k, largest, vertex) ? forms.sign_at(k, vertex) : largest ? 1 : -1;
     };
+    double size = 0.0;
+    for (glm::length_t j = 0; j < 3; ++j) size += larger(std::fabs(min[j]), std::fabs(max[j]));
     // Almost always the outer side has room for the inner one.
     const auto is_inside_side = [&](std::size_t k) {
         Point vertex{};
-        double size = 0.0;
-        for (glm::length_t j = 0; j < 3; ++j)
-            size += larger(std::fabs(widened(box.min[j])), std::fabs(widened(box.max[j])));
         return (take_vertex(k, false, vertex) && forms.is_inside_at(k, vertex, size)) ||
                is_inside_inner_side(forms, k, box);
     };
