@@ -400,7 +400,7 @@ public:
 
     Corners corners(const Tile& tile) noexcept {
         const Corners at = corners_of(setup_.planes_, planes_, setup_.q_, tile);
-        return at.all_behind() || !at.cancel() ? at : corners_of(close().moved_to(tile));
+        return at.all_behind() || !at.cancel() ? at : corners_of(close_ramps(tile));
     }
 
     // A coordinate whose plan nobody knows.
@@ -442,11 +442,11 @@ private:
         divide_parts(tile, at, [&](const Tile& half) { shade(half); });
     }
 
-    // Made when a tile first needs it, for all of the rectangle.
-    const CloseRamps& close() noexcept {
-        const Tile tile{rect_.x, rect_.y, rect_.width, rect_.height};
-        if (!close_) close_ = ClosePlanes(setup_.planes_, tile).ramps(coordinate_[0], coordinate_[count_ - 1]);
-        return *close_;
+    // They are made when a tile first needs them, for all of the rectangle.
+    CloseRamps close_ramps(const Tile& tile) noexcept {
+        const Tile all{rect_.x, rect_.y, rect_.width, rect_.height};
+        if (!close_) close_ = ClosePlanes(setup_.planes_, all).ramps(coordinate_[0], coordinate_[count_ - 1]);
+        return close_->moved_to(tile);
     }
 
     // A tile behind is cleared; one that is in doubt is halved, until it is so small that it is divided closely.
@@ -466,7 +466,7 @@ private:
         for (std::size_t k = 0; k < 2; ++k) job.quotient_error[k] = error[k];
         TileJob::Unit unit = kernels_.divide_nearest(job, job.unit_at(0, 0));
         if (job.is_done(unit)) return;
-        const CloseFunctions functions = close().moved_to(tile).split();
+        const CloseFunctions functions = close_ramps(tile).split();
         if (take_exact_quotients(functions, job)) {
             kernels_.divide_nearest(job, unit);
             return;
@@ -518,13 +518,13 @@ private:
         const int y = static_cast<int>(tile.y - whole_.y);
         const TileJob::Unit unit{x, x + tile.width, y, y + tile.height};
         if (!closely_) {
-            closely_.emplace(job(whole_, at), (close_ ? close_->moved_to(whole_) : plain_ramps()).split());
+            closely_.emplace(job(whole_, at), (close_ ? close_ramps(whole_) : plain_ramps()).split());
             closely_->first.is_contiguous = false;
         }
         const auto& [job, functions] = *closely_;
         std::uint64_t doubtful = kernels_.divide_closely(job, functions, unit);
         if (doubtful != 0 && !close_) {
-            closely_->second = close().moved_to(whole_).split();
+            closely_->second = close_ramps(whole_).split();
             doubtful = kernels_.divide_closely(job, functions, unit);
         }
         shade_some(whole_, unit, doubtful);
