@@ -48,9 +48,9 @@ inline namespace TEXGEN_COMPILER {
 
 // What lenses need of two numbers: their sum and difference, both in halves where a sum could leave the range. (Elsewhere
 // halves would lose the last bit of subnormal numbers.)
-class Interval {
+class LensExtent {
 public:
-    Interval(double from, double to) noexcept : unit_(larger(std::fabs(from), std::fabs(to)) < 0x1p1000 ? 1.0 : 0.5) {
+    LensExtent(double from, double to) noexcept : unit_(larger(std::fabs(from), std::fabs(to)) < 0x1p1000 ? 1.0 : 0.5) {
         sum_ = unit_ * to + unit_ * from;
         difference_ = unit_ * to - unit_ * from;
     }
@@ -76,7 +76,7 @@ struct DepthRow {
 
 inline DepthRow perspective_depth(double z_near, double z_far, bool reversed, DepthRange range) noexcept {
     const bool infinite = !is_finite(z_far);
-    const Interval depth(z_near, z_far);
+    const LensExtent depth(z_near, z_far);
     const double far_ratio = infinite ? 1.0 : depth.end_over_length(z_far);    // far / (far - near)
     const double near_ratio = infinite ? 0.0 : depth.end_over_length(z_near);  // near / (far - near)
     if (range == DepthRange::negative_one_to_one) {
@@ -215,8 +215,8 @@ inline std::optional<ProjectorProjection> perspective(const PerspectiveLens& len
 // Source: OpenGL 2.1 specification, 2.11.2 (glFrustum).
 inline std::optional<ProjectorProjection> frustum(const FrustumLens& lens, Conventions conventions) noexcept {
     if (!(lens.z_near > 0.0 && lens.z_near < lens.z_far && detail::is_finite(lens.z_far))) return std::nullopt;
-    const detail::Interval width(lens.left, lens.right);
-    const detail::Interval height(lens.bottom, lens.top);
+    const detail::LensExtent width(lens.left, lens.right);
+    const detail::LensExtent height(lens.bottom, lens.top);
     const detail::DepthRow depth = detail::perspective_depth(lens.z_near, lens.z_far, false, conventions.depth);
     glm::dmat4 matrix(0.0);
     matrix[0][0] = width.twice_over_length(lens.z_near);
@@ -236,9 +236,9 @@ inline std::optional<ProjectorProjection> frustum(const FrustumLens& lens, Conve
 inline std::optional<ProjectorProjection> orthographic(const OrthographicLens& lens, Conventions conventions) noexcept {
     if (!(lens.z_near < lens.z_far && detail::is_finite(lens.z_near) && detail::is_finite(lens.z_far)))
         return std::nullopt;
-    const detail::Interval width(lens.left, lens.right);
-    const detail::Interval height(lens.bottom, lens.top);
-    const detail::Interval depth(lens.z_near, lens.z_far);
+    const detail::LensExtent width(lens.left, lens.right);
+    const detail::LensExtent height(lens.bottom, lens.top);
+    const detail::LensExtent depth(lens.z_near, lens.z_far);
     const bool zero_to_one = conventions.depth == DepthRange::zero_to_one;
     glm::dmat4 matrix(0.0);
     matrix[0][0] = width.twice_over_length(1.0);
