@@ -346,7 +346,7 @@ int main() {
     compare("homogeneous points", homogeneous_points, 0x6ee2268fe67029b3);
     compare("segments", segments, 0x8e812146eabb3761);
     compare("triangles", triangles, 0xe2857cdbe2c5b2e3);
-    compare("polygons", polygons, 0xb5ee64d4066b8fae);
+    compare("polygons", polygons, 0xce0ff08cf94bc6dd);
     compare("bodies", bodies, 0x2e85bbd30985cf48);
     compare("inverses", inverses, 0xdc50a6ad49ba5418);
     if (!same_in_all_layouts) std::puts("points: the layouts disagree");

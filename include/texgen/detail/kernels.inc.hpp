@@ -513,9 +513,14 @@ TEXGEN_INLINE LongWords divide_certainly(const Doubles (&numerator)[Numerators],
         value[k] = to_floats(quotient - error);
         const Floats other = to_floats(quotient + error);
         Words differ = bits(value[k]) ^ bits(other);
-        if constexpr (Signed)
-            if (tolerance > 0.0 && any(differ))
-                differ &= ~narrow(at_most((to_doubles(other) - to_doubles(value[k])) * 2.0, Doubles{} + tolerance));
+        if constexpr (Signed) {
+            if (tolerance > 0.0 && any(differ)) {
+                const Words is_within =
+                    narrow(at_most((to_doubles(other) - to_doubles(value[k])) * 2.0, Doubles{} + tolerance));
+                value[k] = select(is_within, to_floats(quotient), value[k]);
+                differ &= ~is_within;
+            }
+        }
         doubt.rounding |= differ;
     }
     return in_front;
