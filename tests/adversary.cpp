@@ -6,10 +6,10 @@
 //
 // Towards time it climbs to the inputs that a function takes longest for, as a multiple of what ordinary ones take, and
 // fails where that is above its limit (support/workloads.hpp). What it prints is a line of worst_inputs.txt, behind what it
-// measured; it begins with those. Functions of which the name begins with one of the words behind --but are searched, and
-// never fail.
+// measured; it begins with those, and with 0 seconds they are all. Functions of which the name begins with one of the names
+// behind --but, which a | separates, are searched, and never fail.
 //
-//   adversary --towards time [--seconds N] [--seed N] [--only WORD] [--but WORD,WORD...]
+//   adversary --towards time [--seconds N] [--seed N] [--only WORD] [--but NAME|NAME...]
 
 #include <algorithm>
 #include <array>
@@ -771,12 +771,12 @@ Numbers begin(const support::Workload& workload, Random& random) {
     return support::detail::numbers(shot.triangle, static_cast<float>(shot.rect.x), static_cast<float>(shot.rect.y));
 }
 
-// Climbs from the slowest of some beginnings, or from the slowest input so far.
+// Looks at the recorded inputs, and for some seconds climbs from the slowest of some beginnings, or from the slowest input
+// so far.
 std::vector<support::SlowInput> search(const support::Workload& workload,
                                        const std::vector<support::RecordedInput>& recorded, double seconds,
                                        std::uint64_t seed) {
     using Clock = std::chrono::steady_clock;
-    const auto end = Clock::now() + std::chrono::duration<double>(seconds);
     Random random(seed);
     const support::Race race(workload);
     support::Slowest slowest(workload, race);
@@ -787,7 +787,8 @@ std::vector<support::SlowInput> search(const support::Workload& workload,
     };
     for (const support::RecordedInput& input : recorded)
         if (input.function == workload.function) look(input.numbers, input.words);
-    do {
+    const auto end = Clock::now() + std::chrono::duration<double>(seconds);
+    while (Clock::now() < end) {
         Numbers here = begin(workload, random);
         double ratio = look(here);
         for (int i = 0; i < 8 && Clock::now() < end; ++i) {
@@ -809,7 +810,7 @@ std::vector<support::SlowInput> search(const support::Workload& workload,
             here = next;
             ratio = std::max(ratio, of_next);
         }
-    } while (Clock::now() < end);
+    }
     return slowest.inputs();
 }
 
@@ -837,11 +838,11 @@ bool near_cuts_keep_limits(const support::Workload& workload) {
     }
 }
 
-bool begins_with_one_of(std::string_view name, std::string_view words) {
-    while (!words.empty()) {
-        const std::string_view word = words.substr(0, words.find(','));
-        if (!word.empty() && name.starts_with(word)) return true;
-        words.remove_prefix(std::min(words.size(), word.size() + 1));
+bool begins_with_one_of(std::string_view name, std::string_view beginnings) {
+    while (!beginnings.empty()) {
+        const std::string_view beginning = beginnings.substr(0, beginnings.find('|'));
+        if (!beginning.empty() && name.starts_with(beginning)) return true;
+        beginnings.remove_prefix(std::min(beginnings.size(), beginning.size() + 1));
     }
     return false;
 }
