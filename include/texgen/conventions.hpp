@@ -6,8 +6,8 @@
 
 #include <glm/vec2.hpp>
 
-// 0.1.0: 10000 major + 100 minor + patch.
-#define TEXGEN_VERSION 100
+// 0.2.0: 10000 major + 100 minor + patch.
+#define TEXGEN_VERSION 200
 
 namespace TEXGEN_NAMESPACE {
 
