@@ -174,7 +174,7 @@ inline Places places_of(const Corners& at, const LitTest& lit, double tolerance)
 }  // namespace TEXGEN_BUILD
 
 // What a tile gets: the work; under a tolerance the length of its chunks, and the factors that serve them all with a bound
-// on the error of s and of t, if there are such (kernels.inc.hpp, Chunks).
+// on the error of s and of t, if there are such (chunks.inc.hpp).
 struct Plan {
     Work work;
     int chunk;

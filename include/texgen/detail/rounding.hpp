@@ -97,7 +97,7 @@ struct FloatDivision {
 inline constexpr FloatDivision forms_in_float{5.01 * unit_roundoff_float, 2.01 * unit_roundoff_float};
 inline constexpr FloatDivision forms_in_double{gamma(5), 4.01 * unit_roundoff_float};
 
-// What float arithmetic adds to the error of a chunk (kernels.inc.hpp, Chunks): of its middle, and of its largest step.
+// What float arithmetic adds to the error of a chunk (chunks.inc.hpp): of its middle, and of its largest step.
 inline constexpr double chunk_middle_error = 2.001 * unit_roundoff_float;
 inline constexpr double chunk_step_error = 12.004 * unit_roundoff_float;
 inline constexpr double chunk_underflow = 0x1p-115;

@@ -1,0 +1,200 @@
+// The inner loops of a tile under a tolerance: chunks of its rows about their middle. Included by kernels.inc.hpp.
+
+namespace TEXGEN_DETAIL::TEXGEN_ISA {
+
+// About the middle of a chunk of a row, i fragments from it, F/Q is exactly
+//   u + d i / (1 + x),  u = F/Q and d = (F_x - u Q_x) / Q in the middle,  x = b i, b = Q_x / Q in the middle,
+// and 1 / (1 + x) = (1 - x) (1 + x^2) (1 + x^4) ..., which has a relative error of x^(2^n) after n factors: a parabola and
+// on, until a division is cheaper. (A line saves nothing beside the stores.)
+//
+// With h the largest |i|, X = |b| h <= 3/4 and S = 1 + X + 4 X^2 >= 1/(1 - X), no step |d i / (1 + x)| is above
+// D = h |d| S. In float, with r = 2^-24, the roundings of b and of x change 1/(1 + x) by at most 2 r X/(1 - X), which is 6 r
+// where there is a division (its sum and quotient add 2 r), and 1 r where X <= 1/4 and there are factors (whose products
+// and sums add 3.5 r); d and its product add 2 r. Less than 11 r D, and the roundings of u and of the last sum,
+// 2 r |u| + r D. Subnormals, or what is flushed to zero, add less than 2^-116; the doubles (e_F + (|u| + D) e_Q) / Q.
+inline constexpr int divided = 4, refused = 5;
+
+TEXGEN_INLINE int chunks_of_row(const TileJob& job) noexcept { return (job.width - 1) / job.chunk + 1; }
+
+// Chunks that follow one another, over the ends of rows too: their coefficients, and where they are not chosen for all of
+// the job, what their certificates need.
+struct ChunkGroup {
+    static constexpr int size = 16;
+
+    float bend[size];
+    float middle[2][size], slope[2][size];
+    double extent[size], least_q[size];    // X, and what the least q has above job.least_q
+    double reach[2][size], room[2][size];  // D, and what is left of the tolerance for x^(2^n) D
+
+    // Of `count` chunks from the given one of row y on.
+    TEXGEN_INLINE void fill(const TileJob& job, int y, int chunk, int count) noexcept {
+        const double width = job.width;
+        const double length = job.chunk;
+        const double per_row = chunks_of_row(job);
+        const double rows_per_chunk = 1.0 / per_row;
+        for (int i = 0; i < count; i += lanes) {
+            // Half of one more keeps the quotient away from the integers.
+            const Doubles number = indices<Doubles>() + static_cast<double>(chunk + i);
+            const Doubles row = truncated((number + 0.5) * rows_per_chunk);
+            const Doubles begin = (number - row * per_row) * length;
+            const Doubles half = (minimum(begin + length, Doubles{} + width) - begin) * 0.5 - 0.5;
+            const Doubles at_x = begin + half;
+            const Doubles at_y = row + static_cast<double>(y);
+            const auto value = [&](const Ramp& ramp) { return at_x * ramp.dx + (at_y * ramp.dy + ramp.base); };
+            const Doubles q = value(job.q);
+            const Doubles reciprocal = 1.0 / q;
+            const Doubles bends = reciprocal * job.q.dx;
+            store(&bend[i], to_floats(bends));
+            const Doubles extents = magnitude(bends) * half;
+            const Doubles stretch = (extents * 4.0 + 1.0) * extents + 1.0;
+            if (job.factors == TileJob::any_factors) {
+                store(&extent[i], extents);
+                store(&least_q[i], (q - q * extents) - job.least_q);
+            }
+            for (std::size_t k = 0; k < 2; ++k) {
+                const Doubles u = value(job.numerator[k]) * reciprocal;
+                const Doubles d = (u * -job.q.dx + job.numerator[k].dx) * reciprocal;
+                store(&middle[k][i], to_floats(u));
+                store(&slope[k][i], to_floats(d));
+                if (job.factors != TileJob::any_factors) continue;
+                const Doubles size_of_u = magnitude(u);
+                const Doubles size_of_step = magnitude(d) * half * stretch;
+                store(&reach[k][i], size_of_step);
+                store(&room[k][i], (job.tolerance - chunk_underflow) -
+                                       (size_of_u * chunk_middle_error + size_of_step * chunk_step_error) -
+                                       ((size_of_u + size_of_step) * job.q_error + job.numerator_error[k]) *
+                                           (reciprocal * stretch) * 1.001);
+            }
+        }
+    }
+
+    // The fewest factors with which chunk i stays inside the tolerance.
+    TEXGEN_INLINE int factors(int i) const noexcept {
+        const auto fits = [&](double error) {
+            bool all = true;
+            for (std::size_t k = 0; k < 2; ++k) all = all && error * reach[k][i] <= room[k][i];
+            return all;
+        };
+        if (!(extent[i] <= 0.75 && least_q[i] > 0.0 && fits(0.0))) return refused;
+        if (!(extent[i] <= 0.25)) return divided;
+        double error = extent[i];
+        for (int n = 1; n < divided; ++n) {
+            error *= error;
+            if (fits(error)) return n;
+        }
+        return divided;
+    }
+};
+
+// i / (1 + i bend), to so many factors.
+template <int Factors>
+TEXGEN_INLINE WideFloats bent(const WideFloats& i, const WideFloats& bend) noexcept {
+    WideFloats x = i * bend;
+    if constexpr (Factors == divided) return i / (x + 1.0f);
+    WideFloats result = i - i * x;
+    for (int n = 1; n < Factors; ++n) {
+        x = x * x;
+        result = result + result * x;
+    }
+    return result;
+}
+
+// A chunk of a row, counted from the left.
+struct ChunkPlace {
+    int chunk, y;
+    int per_row;
+
+    TEXGEN_INLINE bool advance() noexcept {
+        const bool is_last = ++chunk == per_row;
+        chunk = is_last ? 0 : chunk;
+        y += is_last ? 1 : 0;
+        return is_last;
+    }
+};
+
+// Chunks first to last of the group.
+template <int Factors>
+TEXGEN_INLINE void evaluate(const ChunkGroup& group, int first, int last, const TileJob& job,
+                            ChunkPlace& place) noexcept {
+    const int width = job.width;
+    const int longest = job.chunk;
+    RowOutputs<2> row(job, place.y);
+    int length = 0;
+    WideFloats first_index{};
+    for (int i = first; i < last; ++i) {
+        const int begin = place.chunk * longest;
+        const int end = longest < width - begin ? begin + longest : width;
+        if (end - begin != length) {
+            length = end - begin;
+            first_index = indices<WideFloats>() - 0.5f * static_cast<float>(length - 1);
+        }
+        const WideFloats bend = WideFloats{} + group.bend[i];
+        WideFloats middle[2], slope[2];
+        for (std::size_t k = 0; k < 2; ++k) {
+            middle[k] = WideFloats{} + group.middle[k][i];
+            slope[k] = WideFloats{} + group.slope[k][i];
+        }
+        // By turns, so that the next index does not wait for this one.
+        WideFloats index = first_index;
+        WideFloats next_index = index + static_cast<float>(wide_lanes);
+        for (std::int64_t x = begin; x < end; x += wide_lanes) {
+            const WideFloats step = bent<Factors>(index, bend);
+            WideFloats value[2];
+            for (std::size_t k = 0; k < 2; ++k) value[k] = step * slope[k] + middle[k];
+            // What a last vector writes beyond the chunk is written again by those that follow.
+            store_from(row, x, end, value, ~WideWords{});
+            const WideFloats after_next = index + static_cast<float>(2 * wide_lanes);
+            index = next_index;
+            next_index = after_next;
+        }
+        if (place.advance()) row.advance();
+    }
+}
+
+// Does the job from `first` on. Stops at chunks that no factors serve and returns them, a part of one row or whole rows;
+// the empty unit if there are none. The next call starts after them.
+template <class = void>
+TileJob::Unit divide_chunks(const TileJob& job, TileJob::Unit first) noexcept {
+    ChunkPlace place{first.x_begin / job.chunk, first.y_begin, chunks_of_row(job)};
+    ChunkGroup group;
+    const int height = job.height;
+    while (place.y < height) {
+        const std::int64_t left = static_cast<std::int64_t>(height - place.y) * place.per_row - place.chunk;
+        const int count = left < group.size ? static_cast<int>(left) : group.size;
+        group.fill(job, place.y, place.chunk, count);
+        for (int i = 0; i < count;) {
+            // As many as the same factors serve.
+            int factors = job.factors;
+            int last = count;
+            if (factors == TileJob::any_factors) {
+                factors = group.factors(i);
+                for (last = i + 1; last < count && group.factors(last) == factors;) ++last;
+            }
+            switch (factors) {
+                case 1:
+                    evaluate<1>(group, i, last, job, place);
+                    break;
+                case 2:
+                    evaluate<2>(group, i, last, job, place);
+                    break;
+                case 3:
+                    evaluate<3>(group, i, last, job, place);
+                    break;
+                case divided:
+                    evaluate<divided>(group, i, last, job, place);
+                    break;
+                default: {
+                    if (place.per_row == 1) return {0, job.width, place.y, place.y + (last - i)};
+                    const int in_row =
+                        place.chunk + (last - i) < place.per_row ? place.chunk + (last - i) : place.per_row;
+                    const int end = in_row < place.per_row ? in_row * job.chunk : job.width;
+                    return {place.chunk * job.chunk, end, place.y, place.y + 1};
+                }
+            }
+            i = last;
+        }
+    }
+    return {0, 0, height, height};
+}
+
+}  // namespace TEXGEN_DETAIL::TEXGEN_ISA

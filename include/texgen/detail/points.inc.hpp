@@ -1,0 +1,372 @@
+// The inner loops of points, and what those of segments share with them. Included by kernels.inc.hpp.
+
+namespace TEXGEN_DETAIL::TEXGEN_ISA {
+
+template <class Vector, class Job>
+TEXGEN_INLINE void load_points(const Job& job, std::size_t i, Vector& x, Vector& y, Vector& z) noexcept {
+    if (job.triples) {
+        load_triples(job.x + 3 * i, x, y, z);
+    } else {
+        x = load<Vector>(job.x + i);
+        y = load<Vector>(job.y + i);
+        z = load<Vector>(job.z + i);
+    }
+}
+
+// Stores a vector of results from index i on, and their mask: inside the region and in front.
+template <std::size_t Numerators, class Vector, class Mask>
+TEXGEN_INLINE void store_points(const DividedOutput& output, std::size_t i, const Vector (&value)[Numerators],
+                                const Mask& in_front) noexcept {
+    if constexpr (Numerators == 2) {
+        if (output.lit != nullptr)
+            store(output.lit + i, one_where(in_front & inside(value[0], output.min[0], output.max[0]) &
+                                            inside(value[1], output.min[1], output.max[1])));
+        if (output.pairs) return store_pairs(output.out[0] + 2 * i, value[0], value[1]);
+    }
+    for (std::size_t k = 0; k < Numerators; ++k) store(output.out[k] + i, value[k]);
+}
+
+// Lanes that cannot be vouched for: where value - error and value + error do not round to one float, and where it is not
+// certain on which side of the projector the point is.
+struct Doubt {
+    Words rounding{};
+    LongWords side{};
+    LongWords behind{};  // no doubt, but no ordinary points
+
+    TEXGEN_INLINE bool any_lane() const noexcept { return any(rounding | narrow(side)); }
+};
+
+// numerator[k] / q with these errors, of all or of each lane; the error of the quotient is that of certain_quotient(). With
+// Signed, q has either sign, and lanes that are certainly behind give 0; else they are in doubt too; and in none where both
+// floats are inside the tolerance. Returns the mask of the lanes in front.
+template <bool Signed, std::size_t Numerators, class Error>
+TEXGEN_INLINE LongWords divide_certainly(const Doubles (&numerator)[Numerators],
+                                         const Error (&numerator_error)[Numerators], const Doubles& q,
+                                         const Error& q_error, double tolerance, Floats (&value)[Numerators],
+                                         Doubt& doubt) noexcept {
+    const LongWords in_front = greater(q - 0x1p20 * q_error, 0.0);
+    Doubles reciprocal = 1.0 / q;
+    if constexpr (Signed) {
+        doubt.behind |= ~in_front;
+        doubt.side |= ~(in_front | greater(-1.0 * q - q_error, 0.0));
+        reciprocal = where(in_front, reciprocal);
+    } else {
+        doubt.side |= ~in_front;
+    }
+    const Doubles relative_error = reciprocal * (q_error * 1.001) + 4.0 * unit_roundoff_double;
+    for (std::size_t k = 0; k < Numerators; ++k) {
+        Doubles quotient = numerator[k] * reciprocal;
+        if constexpr (Signed) quotient = where(in_front, quotient);
+        Doubles error = magnitude(quotient) * relative_error + reciprocal * (numerator_error[k] * 1.001);
+        if constexpr (Signed) error = where(in_front, error);  // of a numerator that is no number
+        value[k] = to_floats(quotient - error);
+        const Floats other = to_floats(quotient + error);
+        Words differ = bits(value[k]) ^ bits(other);
+        if constexpr (Signed) {
+            if (tolerance > 0.0 && any(differ)) {
+                const Words is_within =
+                    narrow(at_most((to_doubles(other) - to_doubles(value[k])) * 2.0, Doubles{} + tolerance));
+                value[k] = select(is_within, to_floats(quotient), value[k]);
+                differ &= ~is_within;
+            }
+        }
+        doubt.rounding |= differ;
+    }
+    return in_front;
+}
+
+// What doing a block again leaves.
+struct Again {
+    std::uint64_t doubtful;  // bit i: value begin + i
+    bool is_ordinary;        // all in front, and nothing in doubt
+    bool is_in_doubt;        // the last vector
+};
+
+// Does a block again: for both signs of q and with errors of each lane; a vector that those leave in doubt, and up to 15
+// that follow it, in two doubles. Terms are the sums at a vector of values: q and the numerators, nearly and in two doubles,
+// and which lanes are behind whatever their q, being no numbers.
+template <std::size_t Numerators, class Terms>
+TEXGEN_INLINE Again divide_block_again(const DividedOutput& output, const Terms& terms, std::size_t begin,
+                                       std::size_t end, bool is_in_doubt) noexcept {
+    Again again{0, true, is_in_doubt};
+    bool are_ties = false;  // the last vector, or next to ties
+    for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(lanes)) {
+        const auto at = terms.load(i);
+        const LongWords are_dark = terms.are_dark(at);
+        Floats value[Numerators];
+        if (!again.is_in_doubt || i / static_cast<std::size_t>(lanes) % 16 == 0) {
+            Doubles numerator[Numerators], numerator_error[Numerators];
+            for (std::size_t k = 0; k < Numerators; ++k) {
+                numerator[k] = terms.numerator[k].nearly_at(at);
+                numerator_error[k] = terms.numerator[k].error_at(at);
+            }
+            Doubt doubt;
+            const LongWords in_front = divide_certainly<true>(numerator, numerator_error, terms.q.nearly_at(at),
+                                                              terms.q.error_at(at), terms.tolerance(), value, doubt);
+            are_ties = false;
+            again.is_in_doubt = any(doubt.rounding | narrow(doubt.side & ~are_dark));
+            if (!again.is_in_doubt) {
+                again.is_ordinary = again.is_ordinary && !any(~in_front);
+                store_points(output, i, value, narrow(in_front));
+                continue;
+            }
+        }
+        again.is_ordinary = false;
+        const TwofoldDivisor q(terms.q.at(at));
+        LongWords is_known = q.is_known | are_dark;
+        for (std::size_t k = 0; k < Numerators; ++k) {
+            if (!are_ties)
+                are_ties =
+                    !divide_nearly(terms.numerator[k].nearly_at(at), terms.numerator[k].error_at(at), q, value[k]);
+            if (!are_ties) continue;
+            if (terms.numerator[k].is_finite)
+                value[k] = nearest_quotients(terms.numerator[k].at(at), q, terms.tolerance(), is_known);
+            else
+                value[k] = to_floats(where(q.in_front, terms.numerator[k].nearly_at(at) * q.reciprocal));
+        }
+        store_points(output, i, value, narrow(q.in_front));
+        const Words doubt = narrow(~is_known);
+        if (!any(doubt)) continue;
+        for (int lane = 0; lane < lanes; ++lane)
+            if (doubt[lane] != 0) again.doubtful |= std::uint64_t{1} << (i - begin + static_cast<std::size_t>(lane));
+    }
+    return again;
+}
+
+// The largest |x|, |y|, |z| of a block: of all three together for triples. A NaN is the largest.
+struct PointExtent {
+    double x, y, z;
+
+    TEXGEN_INLINE PointExtent(const WideWords& x_bits, const WideWords& y_bits, const WideWords& z_bits) noexcept
+        : x(static_cast<double>(bit_cast<float>(largest_lane(x_bits)))),
+          y(static_cast<double>(bit_cast<float>(largest_lane(y_bits)))),
+          z(static_cast<double>(bit_cast<float>(largest_lane(z_bits)))) {}
+
+    TEXGEN_INLINE double magnitude_of(const PointForm& form) const noexcept {
+        return std::fabs(form.x) * x + std::fabs(form.y) * y + std::fabs(form.z) * z + std::fabs(form.w);
+    }
+};
+
+TEXGEN_INLINE PointExtent extent_of(const PointJob& job, std::size_t begin, std::size_t end) noexcept {
+    WideWords x{};
+    WideWords y{};
+    WideWords z{};
+    for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(wide_lanes)) {
+        const float* const from = job.x + 3 * i;
+        x = maximum(magnitude_bits(load<WideFloats>(job.triples ? from : job.x + i)), x);
+        y = maximum(magnitude_bits(load<WideFloats>(job.triples ? from + wide_lanes : job.y + i)), y);
+        z = maximum(magnitude_bits(load<WideFloats>(job.triples ? from + 2 * wide_lanes : job.z + i)), z);
+    }
+    if (job.triples) x = y = z = maximum(maximum(x, y), z);
+    return {x, y, z};
+}
+
+TEXGEN_INLINE Doubles at(const PointForm& form, const Doubles& x, const Doubles& y, const Doubles& z) noexcept {
+    return x * form.x + (y * form.y + (z * form.z + form.w));
+}
+
+// A block of points, with errors that hold for all of it. Returns what is in doubt (it is written all the same).
+template <bool Signed, std::size_t Numerators>
+TEXGEN_INLINE Doubt divide_points_block(const PointJob& job, std::size_t begin, std::size_t end) noexcept {
+    const PointExtent extent = extent_of(job, begin, end);
+    double numerator_error[Numerators];
+    for (std::size_t k = 0; k < Numerators; ++k) numerator_error[k] = gamma(5) * extent.magnitude_of(job.numerator[k]);
+    const double q_error = gamma(5) * extent.magnitude_of(job.q);
+    Doubt doubt;
+    for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(lanes)) {
+        Floats xs, ys, zs;
+        load_points(job, i, xs, ys, zs);
+        const Doubles x = to_doubles(xs);
+        const Doubles y = to_doubles(ys);
+        const Doubles z = to_doubles(zs);
+        Doubles numerator[Numerators];
+        for (std::size_t k = 0; k < Numerators; ++k) numerator[k] = at(job.numerator[k], x, y, z);
+        Floats value[Numerators];
+        const LongWords in_front = divide_certainly<Signed>(numerator, numerator_error, at(job.q, x, y, z), q_error,
+                                                            job.tolerance, value, doubt);
+        store_points(job, i, value, narrow(in_front));
+    }
+    return doubt;
+}
+
+// The sums of points, for divide_block_again().
+template <std::size_t Numerators>
+struct PointTerms {
+    const PointJob& job;
+    TwofoldForm q;
+    TwofoldForm numerator[Numerators];
+
+    TEXGEN_INLINE double tolerance() const noexcept { return job.tolerance; }
+    TEXGEN_INLINE explicit PointTerms(const PointJob& points) noexcept : job(points), q(points.q) {
+        for (std::size_t k = 0; k < Numerators; ++k) numerator[k] = TwofoldForm(points.numerator[k]);
+    }
+    TEXGEN_INLINE PointLanes load(std::size_t i) const noexcept {
+        Floats x, y, z;
+        load_points(job, i, x, y, z);
+        return {{to_doubles(x), to_doubles(y), to_doubles(z)}};
+    }
+    TEXGEN_INLINE LongWords are_dark(const PointLanes& at) const noexcept {
+        const Doubles zero =
+            (at.v[0] + at.v[1] + at.v[2]) * (q.is_finite ? 0.0 : std::numeric_limits<double>::quiet_NaN());
+        return ~at_most(zero, zero);
+    }
+};
+
+template <std::size_t Numerators>
+TEXGEN_APART Again divide_points_again(const PointJob& job, std::size_t begin, std::size_t end,
+                                       bool is_in_doubt) noexcept {
+    if (!is_in_doubt) {
+        const PointJob copy = job;
+        const Doubt doubt = divide_points_block<true, Numerators>(copy, begin, end);
+        if (!doubt.any_lane()) return {0, !any(doubt.behind), false};
+    }
+    return divide_block_again<Numerators>(job, PointTerms<Numerators>(job), begin, end, is_in_doubt);
+}
+
+// Most blocks are all in front and in no doubt; those that follow one that is not are taken for what it was. The job is
+// copied, here and below, so that the compiler knows that no store changes it: nothing that the loop reads may be reached
+// from elsewhere.
+template <std::size_t Numerators>
+TEXGEN_INLINE Undecided divide_points_nearest_of(const PointJob& original, std::size_t first) noexcept {
+    const PointJob job = original;
+    bool is_ordinary = true;
+    bool is_in_doubt = false;
+    for (std::size_t begin = first; begin < job.count;) {
+        const std::size_t next = begin / nearest_block * nearest_block + nearest_block;
+        const std::size_t end = next < job.count ? next : job.count;
+        bool is_certain = false;
+        if (is_ordinary) is_certain = !divide_points_block<false, Numerators>(job, begin, end).any_lane();
+        if (!is_certain) {
+            const Again again = divide_points_again<Numerators>(original, begin, end, is_in_doubt);
+            is_in_doubt = again.is_in_doubt;
+            if (again.doubtful != 0) return {begin, again.doubtful};
+            is_ordinary = again.is_ordinary;
+        }
+        begin = end;
+    }
+    return {job.count, 0};
+}
+
+template <class = void>
+Undecided divide_points_nearest(const PointJob& job, std::size_t first) noexcept {
+    return job.numerators == 2 ? divide_points_nearest_of<2>(job, first) : divide_points_nearest_of<1>(job, first);
+}
+
+// The forms of q and of the numerators in float, in the order in which they are computed.
+template <std::size_t Numerators>
+struct FormsInFloat {
+    float coefficient[1 + Numerators][4];
+
+    TEXGEN_INLINE explicit FormsInFloat(const PointJob& job) noexcept {
+        fill(coefficient[0], job.q);
+        for (std::size_t k = 0; k < Numerators; ++k) fill(coefficient[1 + k], job.numerator[k]);
+    }
+    TEXGEN_INLINE WideFloats at(std::size_t k, const WideFloats& x, const WideFloats& y,
+                                const WideFloats& z) const noexcept {
+        const float(&c)[4] = coefficient[k];
+        return x * c[0] + (y * c[1] + (z * c[2] + c[3]));
+    }
+
+private:
+    TEXGEN_INLINE static void fill(float (&to)[4], const PointForm& form) noexcept {
+        to[0] = static_cast<float>(form.x);
+        to[1] = static_cast<float>(form.y);
+        to[2] = static_cast<float>(form.z);
+        to[3] = static_cast<float>(form.w);
+    }
+};
+
+// The same in double, rounded once.
+template <std::size_t Numerators>
+struct FormsInDouble {
+    const PointJob& job;
+
+    TEXGEN_INLINE explicit FormsInDouble(const PointJob& points) noexcept : job(points) {}
+    TEXGEN_INLINE WideFloats at(std::size_t k, const WideFloats& x, const WideFloats& y,
+                                const WideFloats& z) const noexcept {
+        const PointForm& form = k == 0 ? job.q : job.numerator[k - 1];
+        const auto value = [&form](const Doubles& vx, const Doubles& vy, const Doubles& vz) {
+            return detail::TEXGEN_ISA::at(form, vx, vy, vz);
+        };
+        return in_double(value, x, y, z);
+    }
+};
+
+// Divided in float, in blocks of float_block points. The largest |v_j| bound the terms of the forms, and with the largest
+// quotient and the least q, found on the way, the error of every point: see FloatDivision. Returns where the first block
+// begins that is not inside the tolerance (it is written all the same), or the count. A NaN makes the largest quotient
+// one, and fails.
+template <template <std::size_t> class Forms, std::size_t Numerators>
+TEXGEN_INLINE std::size_t divide_points_within_of(const PointJob& job, std::size_t first) noexcept {
+    constexpr bool in_float = std::is_same_v<Forms<1>, FormsInFloat<1>>;
+    constexpr FloatDivision division = in_float ? forms_in_float : forms_in_double;
+    const Forms<Numerators> forms(job);
+    for (std::size_t begin = first; begin < job.count; begin += float_block) {
+        const std::size_t end = begin + float_block < job.count ? begin + float_block : job.count;
+        WideWords x_largest{};
+        WideWords y_largest{};
+        WideWords z_largest{};
+        WideWords largest[Numerators] = {};
+        WideWords q_least = signed_bits(WideFloats{} + 0x1p100f);
+        for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(wide_lanes)) {
+            WideFloats x, y, z;
+            load_points(job, i, x, y, z);
+            x_largest = maximum(magnitude_bits(x), x_largest);
+            y_largest = maximum(magnitude_bits(y), y_largest);
+            z_largest = maximum(magnitude_bits(z), z_largest);
+            const WideFloats q = forms.at(0, x, y, z);
+            q_least = minimum(signed_bits(q), q_least);
+            const WideFloats reciprocal = 1.0f / q;
+            WideFloats value[Numerators];
+            for (std::size_t k = 0; k < Numerators; ++k) {
+                value[k] = forms.at(1 + k, x, y, z) * reciprocal;
+                largest[k] = maximum(magnitude_bits(value[k]), largest[k]);
+            }
+            store_points(job, i, value, ~WideWords{});
+        }
+        const PointExtent extent(x_largest, y_largest, z_largest);
+        const double size = extent.x + extent.y + extent.z + 1.0;
+        // The bits of positive floats have their order; those of a negative one, and of -0, are below them all. A q that
+        // overflowed in float would go unnoticed, not being the least; its terms tell.
+        const int least_bits = ~largest_lane(~q_least);
+        const auto least = static_cast<double>(bit_cast<float>(least_bits));
+        bool certified = true;
+        for (std::size_t k = 0; k < Numerators; ++k) {
+            const auto bound = static_cast<double>(bit_cast<float>(largest_lane(largest[k])));
+            const double error =
+                division.error(extent.magnitude_of(job.numerator[k]), extent.magnitude_of(job.q), size, least, bound);
+            certified = certified && error <= job.tolerance;
+        }
+        if (!certified) return begin;
+    }
+    return job.count;
+}
+
+template <template <std::size_t> class Forms>
+std::size_t divide_points_within(const PointJob& original, std::size_t first) noexcept {
+    const PointJob job = original;
+    return job.numerators == 2 ? divide_points_within_of<Forms, 2>(job, first)
+                               : divide_points_within_of<Forms, 1>(job, first);
+}
+
+// The forms at points, in double, rounded once.
+template <class = void>
+void generate_points(const GenerateJob& original) noexcept {
+    const GenerateJob job = original;
+    for (std::size_t i = 0; i < job.count; i += static_cast<std::size_t>(lanes)) {
+        Floats xs, ys, zs;
+        load_points(job, i, xs, ys, zs);
+        const Doubles x = to_doubles(xs);
+        const Doubles y = to_doubles(ys);
+        const Doubles z = to_doubles(zs);
+        if (job.quads != nullptr) {
+            store_quads(job.quads + 4 * i, to_floats(at(job.form[0], x, y, z)), to_floats(at(job.form[1], x, y, z)),
+                        to_floats(at(job.form[2], x, y, z)), to_floats(at(job.form[3], x, y, z)));
+        } else {
+            for (std::size_t k = 0; k < 4; ++k)
+                if (job.out[k] != nullptr) store(job.out[k] + i, to_floats(at(job.form[k], x, y, z)));
+        }
+    }
+}
+
+}  // namespace TEXGEN_DETAIL::TEXGEN_ISA

@@ -1,0 +1,145 @@
+// The inner loops of segments. Included by kernels.inc.hpp.
+
+namespace TEXGEN_DETAIL::TEXGEN_ISA {
+
+// The sums of a segment's values, for divide_block_again().
+template <std::size_t Numerators>
+struct SegmentTerms {
+    struct At {
+        Doubles alpha;
+    };
+    struct Mixture {
+        double a, b;
+        bool is_finite;
+
+        TEXGEN_INLINE Twofold at(const At& at) const noexcept { return twofold_mixed(a, b, at.alpha); }
+        TEXGEN_INLINE Doubles nearly_at(const At& at) const noexcept { return (1.0 - at.alpha) * a + at.alpha * b; }
+        TEXGEN_INLINE Doubles error_at(const At& at) const noexcept {
+            return (magnitude((1.0 - at.alpha) * a) + magnitude(at.alpha * b)) * gamma(4);
+        }
+    };
+
+    const SegmentJob& job;
+    Mixture q;
+    Mixture numerator[Numerators];
+
+    TEXGEN_INLINE double tolerance() const noexcept { return job.tolerance; }
+    TEXGEN_INLINE explicit SegmentTerms(const SegmentJob& segment) noexcept
+        : job(segment), q(mixture(segment.q_a, segment.q_b)) {
+        for (std::size_t k = 0; k < Numerators; ++k) numerator[k] = mixture(segment.a[k], segment.b[k]);
+    }
+    TEXGEN_INLINE At load(std::size_t i) const noexcept {
+        return {to_doubles(detail::TEXGEN_ISA::load<Floats>(job.alpha + i))};
+    }
+    TEXGEN_INLINE LongWords are_dark(const At& at) const noexcept {
+        const Doubles zero = at.alpha * (q.is_finite ? 0.0 : std::numeric_limits<double>::quiet_NaN());
+        return ~at_most(zero, zero);
+    }
+
+private:
+    TEXGEN_INLINE static Mixture mixture(double a, double b) noexcept { return {a, b, 0.0 * (a + b) == 0.0}; }
+};
+
+template <std::size_t Numerators>
+TEXGEN_APART Again divide_segment_again(const SegmentJob& job, std::size_t begin, std::size_t end,
+                                        bool is_in_doubt) noexcept {
+    return divide_block_again<Numerators>(job, SegmentTerms<Numerators>(job), begin, end, is_in_doubt);
+}
+
+// (1 - a) A + a B in double, in blocks as for points. 1 - a, the products and the sum are rounded once each. Where the
+// whole segment is in front one bound serves all values; only an alpha that is NaN is in doubt about its side.
+template <bool InFront, std::size_t Numerators>
+TEXGEN_INLINE Undecided divide_segment_nearest_of(const SegmentJob& original, std::size_t first) noexcept {
+    const SegmentJob job = original;
+    double numerator_error[Numerators];
+    for (std::size_t k = 0; k < Numerators; ++k)
+        numerator_error[k] = gamma(4) * larger(std::fabs(job.a[k]), std::fabs(job.b[k]));
+    const double q_error = gamma(4) * larger(std::fabs(job.q_a), std::fabs(job.q_b));
+    bool is_in_doubt = false;
+    for (std::size_t begin = first; begin < job.count;) {
+        const std::size_t next = begin / nearest_block * nearest_block + nearest_block;
+        const std::size_t end = next < job.count ? next : job.count;
+        bool is_certain = false;
+        if (!is_in_doubt) {
+            Doubt doubt;
+            for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(lanes)) {
+                const Doubles alpha = to_doubles(load<Floats>(job.alpha + i));
+                const Doubles rest = 1.0 - alpha;
+                const Doubles q = rest * job.q_a + alpha * job.q_b;
+                Doubles numerator[Numerators];
+                for (std::size_t k = 0; k < Numerators; ++k) numerator[k] = rest * job.a[k] + alpha * job.b[k];
+                Floats value[Numerators];
+                if constexpr (InFront) {
+                    doubt.side |= ~greater(q, 0.0);
+                    const Doubles reciprocal = 1.0 / q;
+                    for (std::size_t k = 0; k < Numerators; ++k) {
+                        const Doubles quotient = numerator[k] * reciprocal;
+                        value[k] = to_floats(quotient - job.quotient_error[k]);
+                        doubt.rounding |= bits(value[k]) ^ bits(to_floats(quotient + job.quotient_error[k]));
+                    }
+                    store_points(job, i, value, ~Words{});
+                } else {
+                    const LongWords in_front =
+                        divide_certainly<true>(numerator, numerator_error, q, q_error, 0.0, value, doubt);
+                    store_points(job, i, value, narrow(in_front));
+                }
+            }
+            is_certain = !doubt.any_lane();
+        }
+        if (!is_certain) {
+            const Again again = divide_segment_again<Numerators>(original, begin, end, is_in_doubt);
+            if (again.doubtful != 0) return {begin, again.doubtful};
+            is_in_doubt = again.is_in_doubt;
+        }
+        begin = end;
+    }
+    return {job.count, 0};
+}
+
+template <class = void>
+Undecided divide_segment_nearest(const SegmentJob& job, std::size_t first) noexcept {
+    if (job.numerators == 2)
+        return job.in_front ? divide_segment_nearest_of<true, 2>(job, first)
+                            : divide_segment_nearest_of<false, 2>(job, first);
+    return job.in_front ? divide_segment_nearest_of<true, 1>(job, first)
+                        : divide_segment_nearest_of<false, 1>(job, first);
+}
+
+// In float about one end, two vectors by one division, so that an alpha that is no number spoils its neighbour: its block
+// is left to divide_nearest.
+template <std::size_t Numerators>
+TEXGEN_INLINE std::size_t divide_segment_float_of(const SegmentJob& job, std::size_t first) noexcept {
+    // alpha, or 1 - alpha.
+    const WideFloats start = WideFloats{} + (job.about_b ? 1.0f : 0.0f);
+    const float direction = job.about_b ? -1.0f : 1.0f;
+    const auto store_value = [&job](std::size_t i, const WideFloats& step) {
+        WideFloats value[Numerators];
+        for (std::size_t k = 0; k < Numerators; ++k) value[k] = step * job.slope[k] + job.base[k];
+        store_points(job, i, value, ~WideWords{});
+    };
+    for (std::size_t begin = first; begin < job.count; begin += float_block) {
+        const std::size_t end = begin + float_block < job.count ? begin + float_block : job.count;
+        WideFloats sum{};
+        for (std::size_t i = begin; i < end; i += 2 * static_cast<std::size_t>(wide_lanes)) {
+            const std::size_t next = i + static_cast<std::size_t>(wide_lanes);
+            const WideFloats from = load<WideFloats>(job.alpha + i) * direction + start;
+            const WideFloats next_from = load<WideFloats>(job.alpha + (next < end ? next : i)) * direction + start;
+            sum = sum + (from + next_from);
+            const WideFloats q = from * job.bend + 1.0f;
+            const WideFloats next_q = next_from * job.bend + 1.0f;
+            const WideFloats of_both = 1.0f / (q * next_q);
+            store_value(i, from * (of_both * next_q));
+            if (next < end) store_value(next, next_from * (of_both * q));
+        }
+        if (any_not_finite(sum)) return begin;
+    }
+    return job.count;
+}
+
+template <class = void>
+std::size_t divide_segment_float(const SegmentJob& original, std::size_t first) noexcept {
+    const SegmentJob job = original;
+    return job.numerators == 2 ? divide_segment_float_of<2>(job, first) : divide_segment_float_of<1>(job, first);
+}
+
+}  // namespace TEXGEN_DETAIL::TEXGEN_ISA

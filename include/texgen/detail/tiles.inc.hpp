@@ -1,0 +1,251 @@
+// The inner loops of a tile: where its rows go, the quotients in double, and those that stay in doubt to twice the precision
+// of double. Included by kernels.inc.hpp.
+
+namespace TEXGEN_DETAIL::TEXGEN_ISA {
+
+// Where a row of a TileJob goes. Where there is a mask, the numerators are s and t. A copy, so that the compiler knows that
+// no store changes it.
+template <std::size_t Numerators>
+struct RowOutputs {
+    float* out[Numerators];
+    std::ptrdiff_t pitch[Numerators];
+    float* lit;
+    std::ptrdiff_t lit_pitch;
+    float min[2], max[2];
+    std::int64_t writable;  // from its first fragment on: where rows follow one another, the rows below too
+    std::int64_t writable_pitch;
+
+    TEXGEN_INLINE RowOutputs(const TileJob& job, int y) noexcept
+        : lit(job.lit == nullptr ? nullptr : job.lit + y * job.pitch),
+          lit_pitch(job.lit == nullptr ? 0 : job.pitch),
+          min{job.min[0], job.min[1]},
+          max{job.max[0], job.max[1]},
+          writable(job.is_contiguous ? (job.height - std::int64_t{y}) * job.width : job.width),
+          writable_pitch(job.is_contiguous ? job.width : 0) {
+        for (std::size_t k = 0; k < Numerators; ++k) {
+            pitch[k] = job.is_scratch[k] ? 0 : job.pitch;
+            out[k] = job.out[k] + y * pitch[k];
+        }
+    }
+
+    TEXGEN_INLINE void advance() noexcept {
+        for (std::size_t k = 0; k < Numerators; ++k) out[k] += pitch[k];
+        lit += lit_pitch;
+        writable -= writable_pitch;
+    }
+};
+
+// The functions of the row's index.
+template <std::size_t Numerators>
+struct TileRow : RowOutputs<Numerators> {
+    double base[Numerators];
+    double q;
+
+    TEXGEN_INLINE TileRow(const TileJob& job, int y) noexcept
+        : RowOutputs<Numerators>(job, y), q(job.q.base + y * job.q.dy) {
+        for (std::size_t k = 0; k < Numerators; ++k) base[k] = job.numerator[k].base + y * job.numerator[k].dy;
+    }
+};
+
+// Whether a mask is asked for, the layout of points and that of their coordinates are looked at vector by vector: a branch
+// that is always the same costs next to nothing, and a loop for each combination would be most of what a user compiles.
+
+// Stores one vector of coordinates from out[k] + x on, and its mask from lit + x on: inside the region and in front.
+template <std::size_t Numerators, class Vector, class Mask>
+TEXGEN_INLINE void store_all(const RowOutputs<Numerators>& row, std::int64_t x, const Vector (&value)[Numerators],
+                             const Mask& in_front) noexcept {
+    for (std::size_t k = 0; k < Numerators; ++k) store(row.out[k] + x, value[k]);
+    if constexpr (Numerators == 2)
+        if (row.lit != nullptr)
+            store(row.lit + x, one_where(in_front & inside(value[0], row.min[0], row.max[0]) &
+                                         inside(value[1], row.min[1], row.max[1])));
+}
+
+// A whole vector where it may be written, else up to `end`.
+template <std::size_t Numerators, class Vector, class Mask>
+TEXGEN_INLINE void store_from(const RowOutputs<Numerators>& row, std::int64_t x, std::int64_t end,
+                              const Vector (&value)[Numerators], const Mask& in_front) noexcept {
+    constexpr std::size_t size = sizeof(Vector) / sizeof(float);
+    if (x + static_cast<std::int64_t>(size) <= row.writable) return store_all(row, x, value, in_front);
+    float buffer[Numerators + 1][size]{};
+    RowOutputs<Numerators> buffered = row;
+    for (std::size_t k = 0; k < Numerators; ++k) buffered.out[k] = buffer[k];
+    if (row.lit != nullptr) buffered.lit = buffer[Numerators];
+    store_all(buffered, 0, value, in_front);
+    for (std::size_t i = 0; i < size && x < end; ++i, ++x) {
+        for (std::size_t k = 0; k < Numerators; ++k) row.out[k][x] = buffer[k][i];
+        if (row.lit != nullptr) row.lit[x] = buffer[Numerators][i];
+    }
+}
+
+// ---- Division in double ----------------------------------------------------------------------------------------
+
+// One vector of quotients from `index` on. With Nearest, marks in `doubtful` where value - error and value + error do
+// not round to one float; else numerators and q are rounded to float and divided there.
+template <bool Nearest, std::size_t Numerators>
+TEXGEN_INLINE void divide_vector(const TileJob& job, const TileRow<Numerators>& row, const Doubles& index,
+                                 Doubles& reciprocal, Floats (&quotient)[Numerators], Words& doubtful) noexcept {
+    if constexpr (Nearest) {
+        if (!job.q_is_constant) reciprocal = 1.0 / (index * job.q.dx + row.q);
+        for (std::size_t k = 0; k < Numerators; ++k) {
+            const Doubles value = (index * job.numerator[k].dx + row.base[k]) * reciprocal;
+            quotient[k] = to_floats(value - job.quotient_error[k]);
+            doubtful |= bits(quotient[k]) ^ bits(to_floats(value + job.quotient_error[k]));
+        }
+    } else {
+        const Floats float_reciprocal = 1.0f / to_floats(index * job.q.dx + row.q);
+        for (std::size_t k = 0; k < Numerators; ++k)
+            quotient[k] = to_floats(index * job.numerator[k].dx + row.base[k]) * float_reciprocal;
+    }
+}
+
+// The units of the job from `unit` on, up to the first one with a doubtful value (it is written all the same). What a last
+// vector writes beyond its row is written again by those that follow, and may only cause a doubt too many.
+template <bool Nearest, std::size_t Numerators>
+TEXGEN_INLINE TileJob::Unit divide_units(const TileJob& job, TileJob::Unit unit) noexcept {
+    Doubles reciprocal = Doubles{} + 1.0 / job.q.base;
+    for (; !job.is_done(unit); unit = job.unit_after(unit)) {
+        Words doubtful{};
+        for (int y = unit.y_begin; y < unit.y_end; ++y) {
+            const TileRow<Numerators> row(job, y);
+            Doubles index = indices<Doubles>() + static_cast<double>(unit.x_begin);
+            Floats quotient[Numerators];
+            std::int64_t x = unit.x_begin;  // what follows the last vector may be no int
+            const std::int64_t last = row.writable - lanes;
+            for (; x < unit.x_end && x <= last; x += lanes, index += static_cast<double>(lanes)) {
+                divide_vector<Nearest>(job, row, index, reciprocal, quotient, doubtful);
+                store_all(row, x, quotient, ~Words{});
+            }
+            if (x >= unit.x_end) continue;
+            divide_vector<Nearest>(job, row, index, reciprocal, quotient, doubtful);
+            store_from(row, x, unit.x_end, quotient, ~Words{});
+        }
+        if (Nearest && any(doubtful)) break;
+    }
+    return unit;
+}
+
+template <class = void>
+TileJob::Unit divide_nearest(const TileJob& job, TileJob::Unit first) noexcept {
+    return job.numerators == 2 ? divide_units<true, 2>(job, first) : divide_units<true, 1>(job, first);
+}
+
+template <class = void>
+void divide_rounded(const TileJob& job) noexcept {
+    divide_units<false, 2>(job, job.unit_at(0, 0));
+}
+
+// ---- Division to twice the precision of double --------------------------------------------------------------------
+
+// A function of a row's index.
+struct CloseRow {
+    Doubles high, high_dx, low, low_dx, error;
+    double least;  // a value below it is 0
+
+    TEXGEN_INLINE explicit CloseRow(const CloseFunction& function) noexcept
+        : high{},
+          high_dx(Doubles{} + function.high.dx),
+          low{},
+          low_dx(Doubles{} + function.low.dx),
+          error(Doubles{} + 1.01 * function.error),
+          least(function.grain > 4.0 * function.error ? 0.5 * function.grain : 0.0) {}
+
+    TEXGEN_INLINE void move_to(const CloseFunction& function, int y) noexcept {
+        high = Doubles{} + (function.high.base + y * function.high.dy);
+        low = Doubles{} + (function.low.base + y * function.low.dy);
+    }
+};
+
+// A vector of q, and what its quotients share. In what is left of a quotient, F - m Q, m is the middle of two floats, which
+// has 25 bits: with half of the high part of Q in two parts of 26 bits the products with 2 m are exact.
+struct CloseQ {
+    Doubles upper, lower, low, reciprocal, relative_error;
+    LongWords in_front, doubt;
+
+    TEXGEN_INLINE CloseQ(const CloseRow& row, double unit, const Doubles& index) noexcept {
+        const Doubles high = index * row.high_dx + row.high;
+        const Doubles rest = index * row.low_dx + row.low;
+        const Doubles q = high + rest;
+        in_front = greater(q, row.error * 256.0);
+        doubt = ~(in_front | greater(q * -1.0, row.error) | greater(row.least - magnitude(q), 0.0));
+        reciprocal = where(in_front, 1.0 / q);
+        relative_error = reciprocal * row.error + 0x1p-50;
+        upper = (high + unit) - unit;
+        lower = (high - upper) * 0.5;
+        upper = upper * 0.5;
+        low = rest * 0.5;
+    }
+};
+
+// The quotients of a vector, 0 behind. Where value - error and value + error do not round to one float but to neighbours, the
+// sign of F - m Q decides. That is a multiple of the grain of its terms: what is certainly smaller is 0, and the tie is certain,
+// too. Returns the lanes that stay in doubt.
+TEXGEN_INLINE Words divide_closely(const CloseRow& row, double grain, const CloseQ& q, const Doubles& half_q_error,
+                                   double middle_grain, const Doubles& index, Floats& value) noexcept {
+    const Doubles high = index * row.high_dx + row.high;
+    const Doubles low = index * row.low_dx + row.low;
+    const Doubles sum = high + low;
+    const Doubles quotient = where(q.in_front, sum * q.reciprocal);  // no -0 behind
+    const Doubles error = magnitude(quotient) * q.relative_error + q.reciprocal * row.error;
+    const Floats below = to_floats(quotient - error);
+    const Floats above = to_floats(quotient + error);
+    value = below;
+    const Words differ = bits(below) ^ bits(above);
+    if (!any(differ)) return Words{};
+    const Doubles middle = to_doubles(below) + to_doubles(above);  // twice it
+    const Doubles product = middle * q.upper;
+    const Doubles rest = high - product;
+    const Doubles taken = rest - high;
+    const Doubles lost = (high - (rest - taken)) - (product + taken);
+    const Doubles remainder = (rest - middle * q.lower) + (lost + (low - middle * q.low));
+    const Doubles unit = power_of_two_below(middle);
+    const Doubles bound = magnitude(middle) * half_q_error + row.error;
+    const LongWords is_open = greater(magnitude(remainder), bound);
+    const LongWords is_tie = greater(minimum(unit * middle_grain, Doubles{} + grain), bound * 4.0);
+    // A step from the middle that is less than half of what the floats are away.
+    const Doubles step = where(is_open, with_sign_of(unit * 0x1p-26, remainder));
+    const Floats nearest = to_floats((middle + step) * 0.5);
+    const Words decided = narrow(is_open | is_tie) & equal((bits(above) - bits(below) + 1) & ~2, 0) &
+                          ~equal(bits(below) & bits(above) & 0x7f800000, 0);
+    value = select(decided, nearest, below);
+    const Words doubt = ~(decided | equal(differ, 0));
+    if (!any(doubt)) return doubt;
+    const Words is_zero = narrow(greater(row.least - magnitude(sum), 0.0) & q.in_front) & doubt;
+    value = select(is_zero, Floats{}, value);
+    return doubt & ~is_zero;
+}
+
+// One numerator stands in both places.
+template <class = void>
+std::uint64_t divide_closely(const TileJob& job, const CloseFunctions& functions, TileJob::Unit unit) noexcept {
+    const CloseFunctions close = functions;
+    CloseRow q_row(close.q);
+    CloseRow numerator[2] = {CloseRow(close.numerator[0]), CloseRow(close.numerator[1])};
+    RowOutputs<2> row(job, unit.y_begin);
+    const Doubles half_q_error = q_row.error * 0.5;
+    const double middle_grain = 0x1p-25 * close.q.grain;
+    std::uint64_t doubtful = 0;
+    int shift = 0;
+    for (int y = unit.y_begin; y < unit.y_end; ++y, row.advance()) {
+        q_row.move_to(close.q, y);
+        for (std::size_t k = 0; k < 2; ++k) numerator[k].move_to(close.numerator[k], y);
+        for (std::int64_t x = unit.x_begin; x < unit.x_end; x += lanes) {
+            const Doubles index = indices<Doubles>() + static_cast<double>(x);
+            const CloseQ q(q_row, close.q_unit, index);
+            Floats value[2];
+            Words doubt = narrow(q.doubt);
+            for (std::size_t k = 0; k < 2; ++k)
+                doubt |= divide_closely(numerator[k], close.numerator[k].grain, q, half_q_error, middle_grain, index,
+                                        value[k]);
+            store_from(row, x, unit.x_end, value, narrow(q.in_front));
+            const int count = unit.x_end - x < lanes ? static_cast<int>(unit.x_end - x) : lanes;
+            if (any(doubt))
+                for (int i = 0; i < count; ++i)
+                    if (lane(doubt, i) != 0) doubtful |= std::uint64_t{1} << (shift + i);
+            shift += count;
+        }
+    }
+    return doubtful;
+}
+
+}  // namespace TEXGEN_DETAIL::TEXGEN_ISA
