@@ -1,4 +1,4 @@
-// With subnormal numbers taken as 0 decisions stay as they are, and errors within what detail/rounding.hpp says. The judge
+// With subnormal numbers taken as 0 decisions stay as they are, and errors within what detail/arithmetic/rounding.hpp says. The judge
 // works in the default state.
 
 #include <doctest/doctest.h>

@@ -17,9 +17,9 @@
 #include <glm/vec4.hpp>
 
 #include "conventions.hpp"
+#include "detail/arithmetic/nearest.hpp"
+#include "detail/arithmetic/widen.hpp"
 #include "detail/assert.hpp"
-#include "detail/nearest.hpp"
-#include "detail/widen.hpp"
 #include "primitives.hpp"
 #include "transform.hpp"
 

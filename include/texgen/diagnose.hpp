@@ -20,11 +20,11 @@
 #include <glm/vec4.hpp>
 
 #include "conventions.hpp"
-#include "detail/composition.hpp"
-#include "detail/inverse.hpp"
-#include "detail/marks.hpp"
-#include "detail/rounding.hpp"
-#include "detail/widen.hpp"
+#include "detail/arithmetic/inverse.hpp"
+#include "detail/arithmetic/rounding.hpp"
+#include "detail/arithmetic/widen.hpp"
+#include "detail/diagnosis/composition.hpp"
+#include "detail/diagnosis/matrix_signs.hpp"
 #include "linear.hpp"
 #include "projector.hpp"
 #include "texcoord.hpp"

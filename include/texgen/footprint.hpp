@@ -21,11 +21,11 @@
 #include <glm/vec2.hpp>
 
 #include "conventions.hpp"
+#include "detail/arithmetic/nearest.hpp"
 #include "detail/assert.hpp"
-#include "detail/footprint_extremes.hpp"
-#include "detail/lanes.hpp"
-#include "detail/nearest.hpp"
-#include "detail/planes.hpp"
+#include "detail/simd/lanes.hpp"
+#include "detail/triangle/footprint_extremes.hpp"
+#include "detail/triangle/planes.hpp"
 #include "interpolate.hpp"
 #include "primitives.hpp"
 #include "texcoord.hpp"

@@ -31,12 +31,12 @@
 #include <glm/vec2.hpp>
 
 #include "conventions.hpp"
+#include "detail/arithmetic/nearest.hpp"
+#include "detail/arithmetic/widen.hpp"
 #include "detail/assert.hpp"
-#include "detail/close_planes.hpp"
-#include "detail/lanes.hpp"
-#include "detail/nearest.hpp"
-#include "detail/planes.hpp"
-#include "detail/widen.hpp"
+#include "detail/simd/lanes.hpp"
+#include "detail/triangle/close_planes.hpp"
+#include "detail/triangle/planes.hpp"
 #include "primitives.hpp"
 #include "skip.hpp"
 #include "texcoord.hpp"

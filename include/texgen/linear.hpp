@@ -13,7 +13,7 @@
 #include <glm/vec4.hpp>
 
 #include "conventions.hpp"
-#include "detail/inverse.hpp"
+#include "detail/arithmetic/inverse.hpp"
 #include "projector.hpp"
 #include "scale_bias.hpp"
 #include "transform.hpp"

@@ -12,9 +12,9 @@
 #include <glm/vec3.hpp>
 
 #include "conventions.hpp"
-#include "detail/expansion.hpp"
-#include "detail/inverse.hpp"
-#include "detail/rounding.hpp"
+#include "detail/arithmetic/expansion.hpp"
+#include "detail/arithmetic/inverse.hpp"
+#include "detail/arithmetic/rounding.hpp"
 #include "transform.hpp"
 
 namespace TEXGEN_NAMESPACE {

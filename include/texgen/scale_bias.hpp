@@ -9,7 +9,7 @@
 #include <glm/vec4.hpp>
 
 #include "conventions.hpp"
-#include "detail/widen.hpp"
+#include "detail/arithmetic/widen.hpp"
 #include "transform.hpp"
 
 namespace TEXGEN_NAMESPACE {

@@ -17,7 +17,7 @@
 
 #include "conventions.hpp"
 #include "detail/assert.hpp"
-#include "detail/bounds_tree.hpp"
+#include "detail/culling/bounds_tree.hpp"
 #include "linear.hpp"
 #include "projector.hpp"
 #include "skip.hpp"

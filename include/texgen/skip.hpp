@@ -14,10 +14,10 @@
 #include <glm/vec3.hpp>
 
 #include "conventions.hpp"
+#include "detail/arithmetic/widen.hpp"
 #include "detail/assert.hpp"
-#include "detail/lanes.hpp"
-#include "detail/lit_forms.hpp"
-#include "detail/widen.hpp"
+#include "detail/culling/lit_forms.hpp"
+#include "detail/simd/lanes.hpp"
 #include "transform.hpp"
 
 namespace TEXGEN_NAMESPACE {

@@ -20,10 +20,10 @@
 #include <glm/vec4.hpp>
 
 #include "conventions.hpp"
+#include "detail/arithmetic/nearest.hpp"
+#include "detail/arithmetic/widen.hpp"
 #include "detail/assert.hpp"
-#include "detail/lanes.hpp"
-#include "detail/nearest.hpp"
-#include "detail/widen.hpp"
+#include "detail/simd/lanes.hpp"
 #include "transform.hpp"
 
 namespace TEXGEN_NAMESPACE {

@@ -8,10 +8,10 @@
 
 #include <glm/mat4x4.hpp>
 
+#include "detail/arithmetic/inverse.hpp"
+#include "detail/arithmetic/rounding.hpp"
+#include "detail/arithmetic/widen.hpp"
 #include "detail/assert.hpp"
-#include "detail/inverse.hpp"
-#include "detail/rounding.hpp"
-#include "detail/widen.hpp"
 
 namespace TEXGEN_NAMESPACE {
 

@@ -12,7 +12,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "language.hpp"
+#include "../language.hpp"
 
 // A compiler that may reorder sums takes two_sum() for a and 0, and a reciprocal for a division: no bound would hold.
 #if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || \

@@ -9,9 +9,9 @@
 #include <cstdint>
 #include <limits>
 
-#include "../conventions.hpp"
+#include "../../conventions.hpp"
+#include "../language.hpp"
 #include "expansion.hpp"
-#include "language.hpp"
 #include "rounding.hpp"
 #include "widen.hpp"
 

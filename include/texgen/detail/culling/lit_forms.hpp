@@ -17,12 +17,12 @@
 
 #include <glm/mat4x4.hpp>
 
-#include "../conventions.hpp"
-#include "box_kernels.hpp"
-#include "expansion.hpp"
-#include "inverse.hpp"
-#include "nearest.hpp"
-#include "rounding.hpp"
+#include "../../conventions.hpp"
+#include "../arithmetic/expansion.hpp"
+#include "../arithmetic/inverse.hpp"
+#include "../arithmetic/nearest.hpp"
+#include "../arithmetic/rounding.hpp"
+#include "../simd/box_kernels.hpp"
 
 namespace TEXGEN_DETAIL {
 

@@ -10,9 +10,9 @@
 
 #include <glm/mat4x4.hpp>
 
-#include "../conventions.hpp"
-#include "../scale_bias.hpp"
-#include "inverse.hpp"
+#include "../../conventions.hpp"
+#include "../../scale_bias.hpp"
+#include "../arithmetic/inverse.hpp"
 
 namespace TEXGEN_DETAIL {
 

@@ -4,8 +4,8 @@
 
 #include "tiles.inc.hpp"
 
+#include "../simd/twofold.inc.hpp"
 #include "chunks.inc.hpp"
-#include "twofold.inc.hpp"
 
 #include "points.inc.hpp"
 #include "segments.inc.hpp"

@@ -12,11 +12,11 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
-#include "../conventions.hpp"
+#include "../../conventions.hpp"
+#include "../arithmetic/inverse.hpp"
+#include "../arithmetic/rounding.hpp"
+#include "../language.hpp"
 #include "composition.hpp"
-#include "inverse.hpp"
-#include "language.hpp"
-#include "rounding.hpp"
 
 namespace TEXGEN_DETAIL {
 

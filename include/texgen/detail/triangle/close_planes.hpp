@@ -11,10 +11,10 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "expansion.hpp"
-#include "lanes.hpp"
+#include "../arithmetic/expansion.hpp"
+#include "../arithmetic/rounding.hpp"
+#include "../simd/lanes.hpp"
 #include "planes.hpp"
-#include "rounding.hpp"
 
 namespace TEXGEN_DETAIL {
 

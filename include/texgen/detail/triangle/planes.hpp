@@ -17,12 +17,12 @@
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 
-#include "../primitives.hpp"
-#include "expansion.hpp"
-#include "lanes.hpp"
-#include "nearest.hpp"
-#include "rounding.hpp"
-#include "widen.hpp"
+#include "../../primitives.hpp"
+#include "../arithmetic/expansion.hpp"
+#include "../arithmetic/nearest.hpp"
+#include "../arithmetic/rounding.hpp"
+#include "../arithmetic/widen.hpp"
+#include "../simd/lanes.hpp"
 
 namespace TEXGEN_DETAIL {
 

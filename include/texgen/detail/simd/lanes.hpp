@@ -19,9 +19,9 @@
 #include <type_traits>
 #include <utility>
 
+#include "../arithmetic/rounding.hpp"
+#include "../language.hpp"
 #include "box_kernels.hpp"
-#include "language.hpp"
-#include "rounding.hpp"
 
 namespace TEXGEN_DETAIL {
 
@@ -252,7 +252,7 @@ inline Pair larger(const Pair& a, const Pair& b) noexcept { return {{larger(a[0]
 #define TEXGEN_ISA scalar
 #include "loops.inc.hpp"
 
-#include "kernels.inc.hpp"
+#include "../kernels/kernels.inc.hpp"
 #undef TEXGEN_ISA
 #undef TEXGEN_INLINE
 #undef TEXGEN_APART
@@ -326,7 +326,7 @@ TEXGEN_INLINE Pair magnitude(const Pair& a) noexcept { return larger(a, -a); }
 #define TEXGEN_ISA TEXGEN_FLAGS(flags_)
 #include "vectors.inc.hpp"
 
-#include "kernels.inc.hpp"
+#include "../kernels/kernels.inc.hpp"
 #undef TEXGEN_ISA
 #undef TEXGEN_LANE_BYTES
 
@@ -347,7 +347,7 @@ TEXGEN_INLINE Pair magnitude(const Pair& a) noexcept { return larger(a, -a); }
 #endif
 #include "vectors.inc.hpp"
 
-#include "kernels.inc.hpp"
+#include "../kernels/kernels.inc.hpp"
 #ifdef __clang__
 #pragma clang attribute pop
 #else
@@ -366,7 +366,7 @@ TEXGEN_INLINE Pair magnitude(const Pair& a) noexcept { return larger(a, -a); }
 #endif
 #include "vectors.inc.hpp"
 
-#include "kernels.inc.hpp"
+#include "../kernels/kernels.inc.hpp"
 #ifdef __clang__
 #pragma clang attribute pop
 #else

@@ -9,7 +9,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
-#include "language.hpp"
+#include "../language.hpp"
 
 namespace TEXGEN_DETAIL {
 

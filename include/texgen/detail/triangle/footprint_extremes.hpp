@@ -14,7 +14,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
-#include "rounding.hpp"
+#include "../arithmetic/rounding.hpp"
 
 namespace TEXGEN_DETAIL {
 

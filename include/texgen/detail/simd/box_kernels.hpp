@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 
-#include "language.hpp"
+#include "../language.hpp"
 
 namespace TEXGEN_DETAIL {
 

@@ -18,12 +18,12 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
-#include "../conventions.hpp"
-#include "../skip.hpp"
-#include "inverse.hpp"
-#include "nearest.hpp"
-#include "rounding.hpp"
-#include "widen.hpp"
+#include "../../conventions.hpp"
+#include "../../skip.hpp"
+#include "../arithmetic/inverse.hpp"
+#include "../arithmetic/nearest.hpp"
+#include "../arithmetic/rounding.hpp"
+#include "../arithmetic/widen.hpp"
 
 namespace TEXGEN_DETAIL {
 
