@@ -34,6 +34,7 @@
 #include "detail/arithmetic/nearest.hpp"
 #include "detail/arithmetic/widen.hpp"
 #include "detail/assert.hpp"
+#include "detail/culling/lit_test.hpp"
 #include "detail/simd/lanes.hpp"
 #include "detail/triangle/close_planes.hpp"
 #include "detail/triangle/planes.hpp"

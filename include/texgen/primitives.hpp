@@ -1,13 +1,11 @@
 #pragma once
 
-// Floor 5: the one input and output of every interpolator.
+// Floor 0: the input of every interpolator.
 
 #include "detail/language.hpp"
 
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
-
-#include "texcoord.hpp"
 
 namespace TEXGEN_NAMESPACE {
 

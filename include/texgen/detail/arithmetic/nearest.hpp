@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <limits>
 
-#include "../../conventions.hpp"
 #include "../language.hpp"
 #include "expansion.hpp"
 #include "rounding.hpp"
@@ -75,11 +74,6 @@ float certain_quotient(const Bounded& s, const Bounded& q, const ExactS& exact_s
     return nearest_quotient(exact_s(), exact_q());
 }
 
-// Whether (s, t) is inside the closed region of these floats. A NaN is not.
-inline bool is_inside(float s, float t, const float (&min)[2], const float (&max)[2]) noexcept {
-    return s >= min[0] && s <= max[0] && t >= min[1] && t <= max[1];
-}
-
 // The float before a number other than -infinity, in a few instructions and without arithmetic.
 inline float float_before(float value) noexcept {
     const auto bits = bit_cast<std::uint32_t>(value);
@@ -93,50 +87,5 @@ inline float float_at_least(double bound) noexcept {
     const auto nearest = static_cast<float>(bound);
     return widened(nearest) < bound ? -float_before(-nearest) : nearest;
 }
-
-// What rounding makes of a side of a region. A number beyond `outer` is not inside the side, nor is the float that it is
-// rounded to; one not beyond `inner` is, and so is its float: they are the last float outside and the first one inside, as
-// rounding keeps the order and keeps floats. Next to 0 both leave room for subnormal floats that count as 0. An infinite
-// side stays where it is; one beyond all floats has no `outer`.
-struct RoundedSide {
-    double outer, inner;
-
-    static RoundedSide of_min(double min) noexcept {
-        if (!(std::fabs(min) < std::numeric_limits<double>::infinity())) return {min, min};
-        const float first = float_at_least(min);
-        if (std::fabs(min) < 0x1p-126) return {-0x1p-126, first > 0.0f ? 0x1p-126 : widened(first)};
-        return {widened(float_before(first)), widened(first)};
-    }
-    static RoundedSide of_max(double max) noexcept {
-        const RoundedSide mirrored = of_min(-max);
-        return {-mirrored.outer, -mirrored.inner};
-    }
-};
-
-// The closed region in floats: a float is inside the region exactly when it is inside these.
-class LitTest {
-public:
-    explicit LitTest(const TextureRegion& region) noexcept
-        : min_{float_at_least((region.min)().x), float_at_least((region.min)().y)},
-          max_{-float_at_least(-(region.max)().x), -float_at_least(-(region.max)().y)} {}
-
-    float operator()(float s, float t) const noexcept { return is_inside(s, t, min_, max_) ? 1.0f : 0.0f; }
-
-    // The bounds of s (0) and of t (1).
-    double least(std::size_t coordinate) const noexcept { return widened(min_[coordinate]); }
-    double greatest(std::size_t coordinate) const noexcept { return widened(max_[coordinate]); }
-
-    // The same as the kernels take them.
-    void copy_to(float (&min)[2], float (&max)[2]) const noexcept {
-        for (std::size_t k = 0; k < 2; ++k) {
-            min[k] = min_[k];
-            max[k] = max_[k];
-        }
-    }
-
-private:
-    float min_[2];
-    float max_[2];
-};
 
 }  // namespace TEXGEN_DETAIL

@@ -23,6 +23,7 @@
 #include "../arithmetic/nearest.hpp"
 #include "../arithmetic/rounding.hpp"
 #include "../simd/box_kernels.hpp"
+#include "lit_test.hpp"
 
 namespace TEXGEN_DETAIL {
 
