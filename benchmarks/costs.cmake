@@ -47,7 +47,7 @@ add_call("generate()" texcoord.hpp
 add_call("project()" texcoord.hpp
     "const WorldTexgen& matrix, Positions<World> points, Texcoords out, Tolerance tolerance"
     "project(matrix, points, whole_texture(), out, tolerance)")
-add_call("coverage()" skip.hpp
+add_call("coverage()" coverage.hpp
     "const WorldTexgen& matrix, std::span<const Box> boxes, std::span<Coverage> out"
     "coverage(matrix, whole_texture(), boxes, out)")
 add_call("clip_to_slide()" clip.hpp

@@ -11,9 +11,9 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <texgen/coverage.hpp>
 #include <texgen/linear.hpp>
 #include <texgen/projector.hpp>
-#include <texgen/skip.hpp>
 
 #include "bench.hpp"
 

@@ -37,10 +37,10 @@
 #include "support/verdict.hpp"
 #include "support/workloads.hpp"
 #include "texgen/clip.hpp"
+#include "texgen/coverage.hpp"
 #include "texgen/footprint.hpp"
 #include "texgen/interpolate.hpp"
 #include "texgen/linear.hpp"
-#include "texgen/skip.hpp"
 #include "texgen/texcoord.hpp"
 
 namespace {

@@ -18,11 +18,11 @@
 
 #include "support/cost.hpp"
 #include "support/random.hpp"
+#include "texgen/coverage.hpp"
 #include "texgen/footprint.hpp"
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
 #include "texgen/scene.hpp"
-#include "texgen/skip.hpp"
 
 namespace {
 

@@ -17,9 +17,9 @@
 #include "support/hex.hpp"
 #include "support/random.hpp"
 #include "support/rational_matrix.hpp"
+#include "texgen/coverage.hpp"
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
-#include "texgen/skip.hpp"
 #include "texgen/texcoord.hpp"
 
 namespace {

@@ -24,12 +24,12 @@
 #include "support/rational_matrix.hpp"
 #include "support/verdict.hpp"
 #include "texgen/clip.hpp"
+#include "texgen/coverage.hpp"
 #include "texgen/footprint.hpp"
 #include "texgen/interpolate.hpp"
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
 #include "texgen/scene.hpp"
-#include "texgen/skip.hpp"
 #include "texgen/texcoord.hpp"
 
 namespace {

@@ -13,6 +13,7 @@
 
 #include "support/random.hpp"
 #include "texgen/clip.hpp"
+#include "texgen/coverage.hpp"
 #include "texgen/diagnose.hpp"
 #include "texgen/eigen.hpp"
 #include "texgen/fixed_function.hpp"
@@ -22,7 +23,6 @@
 #include "texgen/reference.hpp"
 #include "texgen/scale_bias.hpp"
 #include "texgen/scene.hpp"
-#include "texgen/skip.hpp"
 #include "texgen/texcoord.hpp"
 
 namespace {

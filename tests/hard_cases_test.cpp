@@ -17,13 +17,13 @@
 #include "support/oracle.hpp"
 #include "support/random.hpp"
 #include "support/rational_matrix.hpp"
+#include "texgen/coverage.hpp"
 #include "texgen/fixed_function.hpp"
 #include "texgen/interpolate.hpp"
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
 #include "texgen/reference.hpp"
 #include "texgen/scene.hpp"
-#include "texgen/skip.hpp"
 #include "texgen/texcoord.hpp"
 
 namespace {

@@ -39,7 +39,6 @@
 #include "detail/triangle/close_planes.hpp"
 #include "detail/triangle/planes.hpp"
 #include "primitives.hpp"
-#include "skip.hpp"
 #include "texcoord.hpp"
 
 namespace TEXGEN_NAMESPACE {

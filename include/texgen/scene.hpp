@@ -16,11 +16,11 @@
 #include <glm/mat4x4.hpp>
 
 #include "conventions.hpp"
+#include "coverage.hpp"
 #include "detail/assert.hpp"
 #include "detail/culling/bounds_tree.hpp"
 #include "linear.hpp"
 #include "projector.hpp"
-#include "skip.hpp"
 #include "transform.hpp"
 
 namespace TEXGEN_NAMESPACE {

@@ -7,6 +7,7 @@
 
 #include "clip.hpp"
 #include "conventions.hpp"
+#include "coverage.hpp"
 #include "fixed_function.hpp"
 #include "footprint.hpp"
 #include "interpolate.hpp"
@@ -14,6 +15,5 @@
 #include "primitives.hpp"
 #include "projector.hpp"
 #include "scale_bias.hpp"
-#include "skip.hpp"
 #include "texcoord.hpp"
 #include "transform.hpp"

@@ -11,10 +11,10 @@
 
 #include "fuzz/input.hpp"
 #include "support/exact.hpp"
+#include "texgen/coverage.hpp"
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
 #include "texgen/scene.hpp"
-#include "texgen/skip.hpp"
 
 namespace {
 

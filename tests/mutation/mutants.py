@@ -449,7 +449,7 @@ MUTANTS = [
           "minimum(size, Doubles{} + 0x1p900) * 0.0", "coverage_test"),
          ("an empty box is a box", "at_most(min[0], max[0]) & at_most(min[1], max[1]) & at_most(min[2], max[2])",
           "at_most(min[0], max[0]) & at_most(min[1], max[1])", "coverage_test")),
-    *_of("skip.hpp",
+    *_of("coverage.hpp",
          ("a sphere is a point", "forms.slope(k) * radius;", "forms.slope(k) * 0.0;", "coverage_test"),
          ("a sphere beside an edge is outside without its roundings", "+ (of_f * error[f] + of_g * error[g]) + rounding < 0.0)",
           "< 0.0)", "coverage_test"),

@@ -11,9 +11,9 @@
 #include <cstring>
 
 #include <texgen/clip.hpp>
+#include <texgen/coverage.hpp>
 #include <texgen/interpolate.hpp>
 #include <texgen/linear.hpp>
-#include <texgen/skip.hpp>
 #include <texgen/texcoord.hpp>
 #include <texgen/transform.hpp>
 

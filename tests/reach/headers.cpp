@@ -12,6 +12,7 @@
 
 #include <texgen/clip.hpp>
 #include <texgen/conventions.hpp>
+#include <texgen/coverage.hpp>
 #include <texgen/diagnose.hpp>
 #include <texgen/fixed_function.hpp>
 #include <texgen/footprint.hpp>
@@ -21,7 +22,6 @@
 #include <texgen/projector.hpp>
 #include <texgen/scale_bias.hpp>
 #include <texgen/scene.hpp>
-#include <texgen/skip.hpp>
 #include <texgen/texcoord.hpp>
 #include <texgen/texgen.hpp>
 #include <texgen/transform.hpp>

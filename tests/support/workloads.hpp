@@ -24,6 +24,7 @@
 #include "random.hpp"
 #include "stopwatch.hpp"
 #include "texgen/clip.hpp"
+#include "texgen/coverage.hpp"
 #include "texgen/diagnose.hpp"
 #include "texgen/eigen.hpp"
 #include "texgen/fixed_function.hpp"
@@ -32,7 +33,6 @@
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
 #include "texgen/scene.hpp"
-#include "texgen/skip.hpp"
 #include "texgen/texcoord.hpp"
 #include "triangles.hpp"
 

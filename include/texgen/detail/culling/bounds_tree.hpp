@@ -19,7 +19,7 @@
 #include <glm/vec4.hpp>
 
 #include "../../conventions.hpp"
-#include "../../skip.hpp"
+#include "../../coverage.hpp"
 #include "../arithmetic/inverse.hpp"
 #include "../arithmetic/nearest.hpp"
 #include "../arithmetic/rounding.hpp"
