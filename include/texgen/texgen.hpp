@@ -15,5 +15,6 @@
 #include "primitives.hpp"
 #include "projector.hpp"
 #include "scale_bias.hpp"
+#include "segment.hpp"
 #include "texcoord.hpp"
 #include "transform.hpp"

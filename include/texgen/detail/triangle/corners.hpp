@@ -1,0 +1,145 @@
+#pragma once
+
+// What is known of a tile by its corner fragments: in front or behind, where its coordinates lie in the region, and how large
+// they and their errors are.
+
+#include <cmath>
+#include <cstddef>
+
+#include "../arithmetic/rounding.hpp"
+#include "../culling/lit_test.hpp"
+#include "../language.hpp"
+#include "../simd/lanes.hpp"
+#include "close_planes.hpp"
+#include "planes.hpp"
+
+namespace TEXGEN_DETAIL {
+
+inline namespace TEXGEN_BUILD {
+
+// A tile of two numerators F and of Q: the linear functions, their values at the corner fragments and bounds on their
+// errors. What holds at the corners with a margin for rounding holds at every fragment.
+struct Corners {
+    RampOf<Pair> numerator_ramp;
+    Ramp q_ramp;
+    Pair numerator[4];
+    double q[4];
+    Pair numerator_error;
+    double q_error;
+    double least_q, largest_q;
+    double reciprocal;  // the largest 1 / q, for a tile in front
+
+    bool all_behind() const noexcept { return largest_q < -q_error; }
+    bool all_in_front() const noexcept { return least_q > q_error; }
+    // Whether so little is left of the functions' terms that many quotients would be in doubt: the planes are about a corner.
+    // Where q has both signs there is doubt beside q = 0 in any case.
+    bool cancel() const noexcept {
+        constexpr double share = 0x1p-36;
+        const double size = least_q > q_error ? least_q : larger(-least_q, largest_q);
+        const Pair largest = larger(larger(magnitude(numerator[0]), magnitude(numerator[1])),
+                                    larger(magnitude(numerator[2]), magnitude(numerator[3])));
+        return q_error > share * size || numerator_error[0] > share * largest[0] ||
+               numerator_error[1] > share * largest[1];
+    }
+    // Far enough in front that the relative error of q is below 2^-24.
+    bool well_in_front() const noexcept { return least_q > 0x1p24 * q_error; }
+
+    // The largest |F/Q| of a tile in front. Where Q varies little the quotient of the bounds will do; else the corners have
+    // it, u = F/Q being monotone along every line.
+    Pair largest_quotient() const noexcept {
+        Pair size[4];
+        for (std::size_t i = 0; i < 4; ++i) size[i] = magnitude(numerator[i]) + numerator_error;
+        if (!(largest_q < 1.25 * least_q))
+            for (std::size_t i = 0; i < 4; ++i) size[i] = size[i] / ((q[i] - q_error) * reciprocal);
+        return larger(larger(size[0], size[1]), larger(size[2], size[3])) * reciprocal;
+    }
+
+    // The error of F/Q in double for a tile well in front: as in certain_quotient(), where it is worst.
+    Pair quotient_error(const Pair& largest) const noexcept {
+        return (numerator_error + largest * q_error) * (1.0001 * reciprocal) + largest * (4.0 * unit_roundoff_double);
+    }
+};
+
+// With its functions and errors known: the values at the corner fragments.
+inline void take_corners(Corners& corners, const Tile& tile) noexcept {
+    const double right = tile.width - 1;
+    const double bottom = tile.height - 1;
+    const auto fill = [&](const auto& ramp, auto& value) {
+        value[0] = ramp.base;
+        value[1] = ramp.base + ramp.dx * right;
+        value[2] = ramp.base + ramp.dy * bottom;
+        value[3] = value[2] + ramp.dx * right;
+    };
+    fill(corners.numerator_ramp, corners.numerator);
+    fill(corners.q_ramp, corners.q);
+    corners.least_q = smaller(smaller(corners.q[0], corners.q[1]), smaller(corners.q[2], corners.q[3]));
+    corners.largest_q = larger(larger(corners.q[0], corners.q[1]), larger(corners.q[2], corners.q[3]));
+    corners.reciprocal = 1.0 / (corners.least_q - corners.q_error);
+}
+
+inline Corners corners_of(const TrianglePlanes& planes, const PlaneOf<Pair>& numerator, const Plane& q,
+                          const Tile& tile) noexcept {
+    Corners corners;
+    corners.numerator_ramp = planes.ramp(numerator, tile);
+    corners.q_ramp = planes.ramp(q, tile);
+    corners.numerator_error = planes.error(numerator, tile);
+    corners.q_error = planes.error(q, tile);
+    take_corners(corners, tile);
+    return corners;
+}
+
+// Each coefficient is rounded to double; its product with an index and two sums are rounded once each.
+inline Corners corners_of(const CloseRamps& close) noexcept {
+    const auto& [s, t, q] = close.function;
+    const auto pair = [](const DoubleDouble& of_s, const DoubleDouble& of_t) { return pair_of(of_s.high, of_t.high); };
+    const auto error = [&close](const CloseRamp& ramp) { return ramp.error + gamma(4) * ramp.size(close.tile); };
+    Corners corners;
+    corners.numerator_ramp = {pair(s.term[0], t.term[0]), pair(s.term[1], t.term[1]), pair(s.term[2], t.term[2])};
+    corners.q_ramp = {q.term[0].high, q.term[1].high, q.term[2].high};
+    corners.numerator_error = pair_of(error(s), error(t));
+    corners.q_error = error(q);
+    take_corners(corners, close.tile);
+    return corners;
+}
+
+// Where the fragments in front lie as to one side of the region: G = F - bound Q is positive above it and negative below.
+struct SideOfBound {
+    bool all_below[2], all_above[2];
+};
+
+// The float that is written may be on the other side of the bound than the exact value, by an ulp, by the tolerance
+// (twice that leaves room), or as a 0 that was subnormal: so the answer must hold with that much slack.
+inline SideOfBound side_of(const Corners& at, const Pair& bound, double tolerance) noexcept {
+    Pair g[4];
+    for (std::size_t i = 0; i < 4; ++i) g[i] = at.numerator[i] - bound * at.q[i];
+    const double slightly_less = 1.0 - gamma(4);
+    const Pair least = smaller(smaller(g[0], g[1]), smaller(g[2], g[3])) * slightly_less;
+    const Pair largest = larger(larger(g[0], g[1]), larger(g[2], g[3])) * slightly_less;
+    const Pair size = magnitude(bound);
+    const Pair slack = size * 0x1p-22 + (0x1p-125 + 2.0 * tolerance);
+    const double q = larger(std::fabs(at.least_q), std::fabs(at.largest_q));
+    const Pair margin = (at.numerator_error + (size + slack) * at.q_error + slack * q + size * (gamma(4) * q)) * 1.0001;
+    return {{largest[0] < -margin[0], largest[1] < -margin[1]}, {least[0] > margin[0], least[1] > margin[1]}};
+}
+
+// Where a coordinate lies in the region, for all fragments at once.
+enum class Place { outside, across, inside };
+
+struct Places {
+    Place s, t;
+};
+
+inline Places places_of(const Corners& at, const LitTest& lit, double tolerance) noexcept {
+    const SideOfBound of_min = side_of(at, pair_of(lit.least(0), lit.least(1)), tolerance);
+    const SideOfBound of_max = side_of(at, pair_of(lit.greatest(0), lit.greatest(1)), tolerance);
+    const auto place = [&](std::size_t k) {
+        if (of_min.all_below[k]) return Place::outside;
+        if (of_max.all_above[k]) return Place::outside;
+        return of_min.all_above[k] && of_max.all_below[k] && at.all_in_front() ? Place::inside : Place::across;
+    };
+    return {place(0), place(1)};
+}
+
+}  // namespace TEXGEN_BUILD
+
+}  // namespace TEXGEN_DETAIL
