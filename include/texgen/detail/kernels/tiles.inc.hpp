@@ -205,8 +205,9 @@ TEXGEN_INLINE Words divide_closely(const CloseRow& row, double grain, const Clos
     // A step from the middle that is less than half of what the floats are away.
     const Doubles step = where(is_open, with_sign_of(unit * 0x1p-26, remainder));
     const Floats nearest = to_floats((middle + step) * 0.5);
-    const Words decided = narrow(is_open | is_tie) & equal((bits(above) - bits(below) + 1) & ~2, 0) &
-                          ~equal(bits(below) & bits(above) & 0x7f800000, 0);
+    const LongWords are_neighbours = at_most(to_doubles(above) - to_doubles(below), unit * 0x1p-24);
+    const Words decided =
+        narrow((is_open | is_tie) & are_neighbours) & ~equal(bits(below) & bits(above) & 0x7f800000, 0);
     value = select(decided, nearest, below);
     const Words doubt = ~(decided | equal(differ, 0));
     if (!any(doubt)) return doubt;
