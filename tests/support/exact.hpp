@@ -18,6 +18,7 @@
 #include <glm/vec4.hpp>
 
 #include "oracle.hpp"
+#include "texgen/conventions.hpp"
 #include "texgen/primitives.hpp"
 
 namespace support {
