@@ -167,7 +167,7 @@ inline namespace TEXGEN_COMPILER {
 // A triangle made ready for footprints, beside the set-up for its coordinates.
 class FootprintSetup {
 public:
-    // Guarantee: in double about the first vertex; no allocation, noexcept.
+    // Guarantee: in double, about the vertex with the largest clip_w; no allocation, noexcept.
     FootprintSetup(const TriangleSetup& triangle, TexelsPerUnit texels) noexcept
         : triangle_(triangle),
           texels_(texels),

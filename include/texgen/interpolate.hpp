@@ -91,7 +91,7 @@ class TriangleSetup {
     };
 
 public:
-    // Guarantee: everything in double about the first vertex; no allocation, noexcept.
+    // Guarantee: everything in double, about the vertex with the largest clip_w; no allocation, noexcept.
     // Shapes: window positions in pixels, the camera's clip w, and homogeneous (s, t, r, q), in either winding.
     // Bad input: empty where a number is not finite, a clip_w is not positive, or the area is zero (decided exactly).
     static std::optional<TriangleSetup> of(const Triangle& triangle, TextureRegion region,

@@ -61,7 +61,7 @@ inline std::size_t offset_in(const FragmentRect& rect, std::int64_t x, std::int6
     return static_cast<std::size_t>((y - rect.y) * rect.width + (x - rect.x));
 }
 
-// F(p) = base + (p - a) . (dx, dy), about the first vertex: far from the origin of the window nothing cancels that does
+// F(p) = base + (p - a) . (dx, dy), about the first vertex, which has the largest w: nothing cancels there that does
 // not cancel in the triangle itself. `magnitude` is the same with the absolute values of all terms: it bounds the
 // rounding errors.
 template <class Number>
