@@ -696,6 +696,23 @@ TEST_CASE("the extremes of a triangle hold for all fragments inside it, and are 
     CHECK(triangles == 60);
 }
 
+TEST_CASE("a level is inside the extremes where texels are beyond 2^500 pixels") {
+    const texgen::Triangle triangle{
+        {{0.0f, 0.0f}, 0x1p+8f, {0.0f, -0x1p+127f, 0x1p+127f, -0x1p+127f}},
+        {{0x1p+127f, 0x1p-149f}, 0x1p+8f, {-0x1p-149f, 0x1p-149f, -0x1p-149f, 0x1p-149f}},
+        {{-0x1p-149f, 0.0f}, 0x1.919p+6f, {0x1.9084p+6f, 0x1.919p+6f, 0x1.91ccp+6f, 0x1.919p+6f}}};
+    const auto prepared = texgen::TriangleSetup::of(triangle, texgen::whole_texture());
+    REQUIRE(prepared.has_value());
+    const texgen::FootprintSetup setup(*prepared, {32.0, 4000.0});
+    const auto one = setup.at(0, 0);
+    const auto extremes = setup.extremes({0, 0, 1, 1});
+    REQUIRE(one.has_value());
+    REQUIRE(extremes.has_value());
+    CHECK(one->level >= extremes->least_level);
+    CHECK(one->level <= extremes->largest_level);
+    CHECK(extremes->largest_level - extremes->least_level < 0.05);
+}
+
 TEST_CASE("next to q = 0 and behind it the extremes say so") {
     // q/w = (x - 100) / 100.
     const Triangle triangle = flat({glm::vec2(0, 0), glm::vec2(200, 0), glm::vec2(0, 200)},

@@ -507,7 +507,8 @@ inline std::optional<FootprintExtremes> FootprintSetup::extremes(const detail::W
     // what the field says.
     const double scale = detail::reciprocal_power_of_two(detail::larger(size, 0x1p-700));
     const double q_scale = detail::reciprocal_power_of_two(q_size);
-    const double back = q_scale * q_scale / scale;
+    const double back = q_scale / scale * q_scale;
+    const double back_levels = 2.0 * std::log2(q_scale) - std::log2(scale);  // where `back` itself is no normal number
     const auto scaled = [&](double of_s, double of_t) {
         return glm::dvec2(of_s * (texels_.s * scale), of_t * (texels_.t * scale));
     };
@@ -527,7 +528,7 @@ inline std::optional<FootprintExtremes> FootprintSetup::extremes(const detail::W
     constexpr double slack = 0x1p-15;
     const auto level = [&](double square, double outward) {
         if (square == 0.0) return -infinity;
-        const double middle = 0.5 * std::log2(square) + std::log2(back);
+        const double middle = 0.5 * std::log2(square) + back_levels;
         return middle + outward * slack * detail::larger(1.0, std::fabs(middle) / 32.0);
     };
     const double determinant = std::fabs(determinant_ * (texels_.s * scale) * (texels_.t * scale)) / q_scale;
