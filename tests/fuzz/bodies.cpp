@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "fuzz/input.hpp"
-#include "support/exact.hpp"
+#include "judges/exact.hpp"
 #include "texgen/coverage.hpp"
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"

@@ -10,9 +10,9 @@
 #include <span>
 
 #include "fuzz/input.hpp"
-#include "support/exact.hpp"
+#include "judges/exact.hpp"
+#include "judges/fragments.hpp"
 #include "support/footprint_outputs.hpp"
-#include "support/fragments.hpp"
 #include "texgen/footprint.hpp"
 #include "texgen/interpolate.hpp"
 

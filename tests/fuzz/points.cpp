@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "fuzz/input.hpp"
-#include "support/exact.hpp"
+#include "judges/exact.hpp"
+#include "judges/verdict.hpp"
 #include "support/outputs.hpp"
-#include "support/verdict.hpp"
 #include "texgen/eigen.hpp"
 #include "texgen/interpolate.hpp"
 #include "texgen/texcoord.hpp"

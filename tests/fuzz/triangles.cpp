@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "fuzz/input.hpp"
-#include "support/exact.hpp"
-#include "support/fragments.hpp"
+#include "judges/exact.hpp"
+#include "judges/fragments.hpp"
+#include "judges/verdict.hpp"
 #include "support/outputs.hpp"
-#include "support/verdict.hpp"
 #include "texgen/clip.hpp"
 #include "texgen/interpolate.hpp"
 #include "texgen/reference.hpp"

@@ -14,8 +14,8 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
-#include "oracle.hpp"
-#include "random.hpp"
+#include "judges/oracle.hpp"
+#include "support/random.hpp"
 #include "texgen/primitives.hpp"
 
 namespace support {

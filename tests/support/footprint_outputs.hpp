@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <span>
 
-#include "support/fragments.hpp"
+#include "judges/fragments.hpp"
 #include "support/outputs.hpp"
 #include "texgen/footprint.hpp"
 

@@ -14,11 +14,11 @@
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 
-#include "exact.hpp"
-#include "hex.hpp"
-#include "random.hpp"
+#include "judges/exact.hpp"
+#include "support/hex.hpp"
+#include "support/random.hpp"
+#include "support/triangles.hpp"
 #include "texgen/primitives.hpp"
-#include "triangles.hpp"
 
 namespace support {
 

@@ -11,11 +11,11 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
 
-#include "random.hpp"
+#include "support/random.hpp"
+#include "support/triangles.hpp"
 #include "texgen/clip.hpp"
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
-#include "triangles.hpp"
 
 namespace support {
 

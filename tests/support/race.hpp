@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "random.hpp"
-#include "stopwatch.hpp"
-#include "workloads.hpp"
+#include "support/random.hpp"
+#include "support/stopwatch.hpp"
+#include "support/workloads.hpp"
 
 namespace support {
 

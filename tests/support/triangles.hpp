@@ -10,8 +10,8 @@
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 
-#include "hex.hpp"
-#include "random.hpp"
+#include "support/hex.hpp"
+#include "support/random.hpp"
 #include "texgen/primitives.hpp"
 
 namespace support {

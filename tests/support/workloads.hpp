@@ -20,9 +20,10 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
-#include "near_cut.hpp"
-#include "random.hpp"
-#include "stopwatch.hpp"
+#include "support/near_cut.hpp"
+#include "support/random.hpp"
+#include "support/stopwatch.hpp"
+#include "support/triangles.hpp"
 #include "texgen/clip.hpp"
 #include "texgen/coverage.hpp"
 #include "texgen/diagnose.hpp"
@@ -34,7 +35,6 @@
 #include "texgen/projector.hpp"
 #include "texgen/scene.hpp"
 #include "texgen/texcoord.hpp"
-#include "triangles.hpp"
 
 namespace support {
 

@@ -1,0 +1,492 @@
+// Triangles in the exact tier: every fragment is the nearest float of the exact rational, wherever and however it is
+// asked for.
+
+#include "texgen/interpolate.hpp"
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "judges/fragments.hpp"
+#include "support/hard_triangles.hpp"
+#include "support/near_cut.hpp"
+#include "support/outputs.hpp"
+#include "support/random.hpp"
+#include "texgen/reference.hpp"
+
+namespace {
+
+using support::count_of;
+using support::everywhere;
+using support::ExactTriangle;
+using support::HardFamily;
+using support::hex;
+using support::Outputs;
+using support::Random;
+using support::same_bits;
+using support::Seen;
+using support::setup_of;
+using support::Shot;
+using support::text;
+using support::vertices;
+using texgen::FragmentRect;
+using texgen::Triangle;
+using texgen::TriangleSetup;
+using texgen::WindowVertex;
+using texgen::Work;
+
+// The widths at which something ends: vectors, units of 64 fragments, chunks of 128 and 256, strips of 512.
+std::vector<int> awkward_widths() {
+    std::vector<int> widths;
+    for (int width = 1; width <= 71; ++width) widths.push_back(width);
+    for (const int middle : {128, 131, 192, 257, 320, 512, 516}) {
+        for (int width = middle - 3; width <= middle + 3; ++width) widths.push_back(width);
+    }
+    return widths;
+}
+
+void require_right(const Shot& shot, const texgen::TextureRegion& region, Outputs& out, Seen& seen) {
+    const Work work = interpolate(setup_of(shot.triangle, region), shot.rect, out.spans());
+    const std::string wrong = first_wrong(shot, ExactTriangle(shot.triangle), region, texgen::exact, work, out, seen);
+    REQUIRE_MESSAGE(wrong.empty(), wrong, " in ", hex(shot));
+    REQUIRE_MESSAGE(out.pads_are_intact(), hex(shot));
+}
+
+// s at fragment i of every row is (2 m + 1) 2^-25 for some integer m: the middle of two floats. q/w is constant.
+Shot row_of_ties(int width, int height, Random& random) {
+    const int x = random.integer(-100, 100), y = random.integer(-100, 100);
+    const int step = 2 * random.integer(1, 1000) + 1;
+    const int first = random.integer(1 << 23, (1 << 23) + (1 << 22));
+    const auto vertex = [&](int column, int row) {
+        const auto s = static_cast<float>(first + step * column) * 0x1p-24f;
+        return WindowVertex{{static_cast<float>(x + column), static_cast<float>(y + row)}, 1.0f, {s, s, s, 1.0f}};
+    };
+    return {{vertex(0, 0), vertex(1024, 0), vertex(random.integer(0, 2), 1024)}, {x, y, width, height}};
+}
+
+// s/q is the same everywhere while q varies, and is so near to the middle of two floats that no bound in double can tell:
+// with an odd m of 25 bits and m q = 1 (mod 2^24), s = (m q - 1) / 2^24 is m q / 2^24 up to 2^-48 of itself.
+Shot near_ties_with_varying_q(int width, int height, Random& random) {
+    std::int64_t m = 0, q = 0, s = 0;
+    do {
+        m = 2 * static_cast<std::int64_t>(random.integer(1 << 23, (1 << 24) - 1)) + 1;
+        std::uint64_t inverse = 1;  // of m, modulo 2^24: Newton's iteration doubles its right bits
+        for (int j = 0; j < 6; ++j) inverse *= 2u - static_cast<std::uint64_t>(m) * inverse;
+        q = static_cast<std::int64_t>((random.coin() ? inverse : 0u - inverse) & 0xffffffu);
+        s = (m * q + (1 << 23)) >> 24;
+    } while (q < (1 << 23) || s >= (1 << 24));
+    const int x = random.integer(-100, 100), y = random.integer(-100, 100);
+    const auto vertex = [&](int column, int row) {
+        const float scale = std::ldexp(1.0f, random.integer(-26, -22));
+        const glm::vec4 strq{static_cast<float>(s) * scale, static_cast<float>(s) * scale,
+                             static_cast<float>(s) * scale, static_cast<float>(q) * scale};
+        return WindowVertex{{static_cast<float>(x + column), static_cast<float>(y + row)}, 1.0f, strq};
+    };
+    return {{vertex(-7, -5), vertex(1031, 2), vertex(3, 1033)}, {x, y, width, height}};
+}
+
+float any_finite(Random& random) {
+    for (;;) {
+        const float value = random.any_float();
+        if (std::isfinite(value)) return value;
+    }
+}
+
+}  // namespace
+
+TEST_CASE("every fragment is the nearest float of the exact rational, in every family") {
+    std::uint64_t seed = 100;
+    Seen everything;
+    for (const HardFamily& family : support::hard_families) {
+        CAPTURE(std::string(family.name));
+        Random random(++seed);
+        constexpr int members = 150;
+        int hard = 0;
+        Seen seen;
+        for (int i = 0; i < members; ++i) {
+            const Shot shot = family.make(random);
+            hard += family.is_hard(shot, ExactTriangle(shot.triangle));
+            Outputs out(count_of(shot.rect), Outputs::all, static_cast<std::size_t>(random.integer(0, 15)));
+            require_right(shot, random.coin() ? everywhere() : texgen::whole_texture(), out, seen);
+        }
+        CHECK(hard >= family.least_share * members);
+        CHECK(seen.in_front > 500);
+        everything += seen;
+    }
+    CHECK(everything.behind > 1000);
+    CHECK(everything.on_plane > 50);
+    CHECK(everything.subnormal > 500);
+    CHECK(everything.infinite > 500);
+    CHECK(everything.lit > 10000);
+    CHECK(everything.dark > 10000);
+}
+
+TEST_CASE(
+    "what the near plane cuts is the nearest float in every order of the corners, and with a tolerance inside of it") {
+    Random random(4711);
+    Seen seen;
+    int far_first = 0;
+    for (int i = 0; i < 300; ++i) {
+        const auto [triangle, rect] = support::near_cut(random, random.integer(1, 70), random.integer(1, 3));
+        for (int order = 0; order < 3; ++order) {
+            const Shot shot{support::rotated(triangle, order), rect};
+            far_first += std::fabs(shot.triangle.a.window.x) > 1e4f;
+            for (const texgen::Tolerance tolerance : {texgen::exact, texgen::texels(1.0 / 512.0, 4096.0)}) {
+                Outputs out(count_of(rect));
+                const Work work = interpolate(setup_of(shot.triangle, everywhere(), tolerance), rect, out.spans());
+                const std::string wrong =
+                    first_wrong(shot, ExactTriangle(shot.triangle), everywhere(), tolerance, work, out, seen);
+                REQUIRE_MESSAGE(wrong.empty(), wrong, " in ", hex(shot));
+                REQUIRE_MESSAGE(out.pads_are_intact(), hex(shot));
+            }
+        }
+    }
+    CHECK(far_first > 100);
+    CHECK(seen.behind > 500);
+    CHECK(seen.in_front > 10000);
+}
+
+TEST_CASE("every fragment of a row whose values all lie between two floats is decided, at every width") {
+    Random random(200);
+    for (const auto make : {row_of_ties, near_ties_with_varying_q}) {
+        for (const int width : awkward_widths()) {
+            for (const int height : {1, 3}) {
+                const Shot shot = make(width, height, random);
+                const ExactTriangle exact(shot.triangle);
+                for (const int column : {0, width - 1}) {
+                    const support::Quotient u = exact.at(shot.x(column), shot.y(0)).over_q(0);
+                    REQUIRE((make == row_of_ties ? support::is_tie(u) : support::distance_to_tie(u) < 0x1p-46));
+                }
+                Seen seen;
+                for (const unsigned asked : {15u, 1u, 4u, 8u}) {
+                    Outputs out(count_of(shot.rect), asked, static_cast<std::size_t>(random.integer(0, 15)));
+                    require_right(shot, everywhere(), out, seen);
+                }
+            }
+        }
+    }
+}
+
+TEST_CASE("a value does not depend on the rectangle that it was asked with") {
+    std::uint64_t seed = 300;
+    int parts = 0, parts_with_nothing = 0;
+    for (const HardFamily& family : support::hard_families) {
+        Random random(++seed);
+        for (int i = 0; i < 12; ++i) {
+            Shot shot = family.make(random);
+            if (std::abs(static_cast<std::int64_t>(shot.rect.x)) < 2000000000 &&
+                std::abs(static_cast<std::int64_t>(shot.rect.y)) < 2000000000)
+                shot.rect.width += random.integer(0, 200), shot.rect.height += random.integer(0, 12);
+            const TriangleSetup setup = setup_of(shot.triangle);
+            Outputs whole(count_of(shot.rect));
+            if (interpolate(setup, shot.rect, whole.spans()) == Work::nothing) continue;
+            for (int j = 0; j < 60; ++j) {
+                FragmentRect part = shot.rect;
+                part.width = random.integer(1, random.coin() ? shot.rect.width : std::min(9, shot.rect.width));
+                part.height = random.integer(1, shot.rect.height);
+                const int dx = random.integer(0, shot.rect.width - part.width);
+                const int dy = random.integer(0, shot.rect.height - part.height);
+                constexpr int last = std::numeric_limits<int>::max();
+                if (shot.rect.x > last - dx || shot.rect.y > last - dy) continue;
+                part.x += dx;
+                part.y += dy;
+                Outputs out(count_of(part), Outputs::all, static_cast<std::size_t>(j % 16));
+                const bool nothing = interpolate(setup, part, out.spans()) == Work::nothing;
+                ++parts;
+                parts_with_nothing += nothing;
+                for (std::size_t k = 0; k < 4; ++k) {
+                    for (int row = 0; row < part.height; ++row) {
+                        const auto first = static_cast<std::size_t>((dy + row) * shot.rect.width + dx);
+                        const auto width = static_cast<std::size_t>(part.width);
+                        const auto expected = whole[k].subspan(first, width);
+                        const auto got = out[k].subspan(static_cast<std::size_t>(row) * width, width);
+                        const bool same = nothing && k < 3 ? Outputs::is_poison(got) : same_bits(got, expected);
+                        REQUIRE_MESSAGE(same, family.name, ": output ", k, " in ", text(part), " of ", hex(shot));
+                    }
+                }
+                REQUIRE(out.pads_are_intact());
+            }
+        }
+    }
+    CHECK(parts > 8000);
+    CHECK(parts_with_nothing > 10);
+}
+
+TEST_CASE("a value depends neither on what else is asked, nor on the alignment, nor on the length") {
+    Random random(400);
+    const std::array makers{
+        +[](Random& r) { return support::detail::ordinary(support::Family::friendly, r); },
+        +[](Random& r) { return support::detail::with_root(3, r); },
+        +[](Random& r) { return support::detail::constant_q(r); },
+        +[](Random& r) { return row_of_ties(1, 1, r); },
+    };
+    const texgen::TextureRegion region = texgen::atlas_tile({0.1, 0.2}, {0.9, 0.7});
+    for (const int width : awkward_widths()) {
+        for (const auto make : makers) {
+            Shot shot = make(random);
+            shot.rect.width = width;
+            shot.rect.height = random.integer(1, width < 70 ? 5 : 2);
+            const TriangleSetup setup = setup_of(shot.triangle, region);
+            Outputs all(count_of(shot.rect));
+            const Work work = interpolate(setup, shot.rect, all.spans());
+            for (unsigned asked = 0; asked < Outputs::all; ++asked) {
+                Outputs some(count_of(shot.rect), asked, static_cast<std::size_t>(random.integer(0, 16)));
+                REQUIRE(interpolate(setup, shot.rect, some.spans()) == work);
+                for (std::size_t k = 0; k < 4; ++k)
+                    if (some.asked(k)) REQUIRE_MESSAGE(same_bits(some[k], all[k]), asked, " of ", hex(shot));
+                REQUIRE_MESSAGE(some.pads_are_intact(), asked, " of ", hex(shot));
+            }
+        }
+    }
+}
+
+TEST_CASE("a mask without coordinates is right in rows wider than the scratch of a strip") {
+    Random random(450);
+    Seen seen;
+    for (const int width : {511, 512, 513, 1023, 1024, 1025, 1600}) {
+        for (const unsigned asked : {8u, 9u, 10u, 11u, 15u}) {
+            Shot shot = support::detail::ordinary(support::Family::friendly, random);
+            shot.rect = {-100, random.integer(0, 800), width, 3};
+            Outputs out(count_of(shot.rect), asked, 1);
+            require_right(shot, texgen::whole_texture(), out, seen);
+        }
+    }
+    CHECK(seen.lit > 1000);
+    CHECK(seen.dark > 1000);
+}
+
+TEST_CASE("the order of the vertices and the winding do not change a bit") {
+    std::uint64_t seed = 500;
+    for (const HardFamily& family : support::hard_families) {
+        Random random(++seed);
+        for (int i = 0; i < 20; ++i) {
+            const Shot shot = family.make(random);
+            const auto& [a, b, c] = shot.triangle;
+            Outputs first(count_of(shot.rect));
+            const Work work = interpolate(setup_of(shot.triangle), shot.rect, first.spans());
+            for (const Triangle& other :
+                 {Triangle{b, c, a}, Triangle{c, a, b}, Triangle{a, c, b}, Triangle{c, b, a}, Triangle{b, a, c}}) {
+                Outputs out(count_of(shot.rect));
+                const Work other_work = interpolate(setup_of(other), shot.rect, out.spans());
+                if (work == Work::nothing || other_work == Work::nothing) continue;  // another rounding may not see it
+                for (std::size_t k = 0; k < 4; ++k)
+                    REQUIRE_MESSAGE(same_bits(out[k], first[k]), family.name, ": ", hex(shot));
+            }
+        }
+    }
+}
+
+TEST_CASE("a rectangle without fragments does nothing") {
+    Random random(550);
+    const TriangleSetup setup = setup_of(make_triangle(support::Family::friendly, random));
+    for (const FragmentRect& rect : {FragmentRect{5, 5, 0, 3}, FragmentRect{5, 5, 3, 0}, FragmentRect{5, 5, 0, 0}}) {
+        Outputs out(0);
+        CHECK(interpolate(setup, rect, out.spans()) == Work::nothing);
+        CHECK(out.pads_are_intact());
+    }
+}
+
+TEST_CASE("rectangles at the ends of int, with a triangle anywhere, are the nearest floats") {
+    Random random(600);
+    constexpr int low = std::numeric_limits<int>::min(), high = std::numeric_limits<int>::max();
+    Seen seen;
+    for (int i = 0; i < 300; ++i) {
+        Shot shot = support::detail::ordinary(support::Family::friendly, random);
+        if (random.coin()) {  // w = 1: every fragment counts, however far from the triangle
+            for (WindowVertex* vertex : vertices(shot.triangle)) vertex->clip_w = 1.0f;
+        }
+        shot.rect.x = random.coin() ? high - random.integer(0, 2) * (shot.rect.width - 1) : low + random.integer(0, 2);
+        shot.rect.y = random.coin() ? high - random.integer(0, 2) * (shot.rect.height - 1) : low + random.integer(0, 2);
+        Outputs out(count_of(shot.rect));
+        require_right(shot, everywhere(), out, seen);
+    }
+    CHECK(seen.in_front > 5000);
+}
+
+TEST_CASE("no setup comes of a number that is not finite, of a w that is not positive, or of no area") {
+    Random random(700);
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    const float bad_numbers[] = {infinity, -infinity, std::numeric_limits<float>::quiet_NaN(),
+                                 std::bit_cast<float>(0xff812345u), std::bit_cast<float>(0x7f800001u)};
+    for (int i = 0; i < 50; ++i) {
+        const Triangle good = make_triangle(support::families[static_cast<std::size_t>(i) % 8], random);
+        REQUIRE(TriangleSetup::of(good, everywhere()).has_value());
+        for (std::size_t vertex = 0; vertex < 3; ++vertex) {
+            for (std::size_t field = 0; field < 7; ++field) {
+                for (const float number : bad_numbers) {
+                    Triangle bad = good;
+                    WindowVertex& v = *vertices(bad)[vertex];
+                    (field < 2    ? v.window[static_cast<int>(field)]
+                     : field == 2 ? v.clip_w
+                                  : v.strq[static_cast<int>(field) - 3]) = number;
+                    REQUIRE_MESSAGE(!TriangleSetup::of(bad, everywhere()), hex(bad));
+                }
+            }
+            for (const float w :
+                 {0.0f, -0.0f, -1.0f, -std::numeric_limits<float>::denorm_min(), -std::numeric_limits<float>::max()}) {
+                Triangle bad = good;
+                vertices(bad)[vertex]->clip_w = w;
+                REQUIRE_MESSAGE(!TriangleSetup::of(bad, everywhere()), hex(bad));
+            }
+        }
+    }
+}
+
+TEST_CASE("collinear vertices have no setup at any magnitude; one unit beside the line they have one") {
+    Random random(800);
+    int nudged_apart = 0, least_exponent = 0;
+    for (int i = 0; i < 4000; ++i) {
+        // Integers of 11 bits, so that p + k d is a float; scaled by powers of two.
+        const int exponent_x = random.integer(-140, 100), exponent_y = random.integer(-140, 100);
+        const auto point = [&](int k, const glm::ivec2& p, const glm::ivec2& d) {
+            return glm::vec2(std::ldexp(static_cast<float>(p.x + k * d.x), exponent_x),
+                             std::ldexp(static_cast<float>(p.y + k * d.y), exponent_y));
+        };
+        const glm::ivec2 p{random.integer(-2000, 2000), random.integer(-2000, 2000)};
+        const glm::ivec2 d{random.integer(-2000, 2000), random.integer(-2000, 2000)};
+        Triangle triangle = make_triangle(support::Family::friendly, random);
+        triangle.a.window = point(random.integer(-99, 99), p, d);
+        triangle.b.window = point(random.integer(-99, 99), p, d);
+        triangle.c.window = point(random.integer(-99, 99), p, d);
+        REQUIRE_MESSAGE(!TriangleSetup::of(triangle, everywhere()), hex(triangle));
+        if (d.x == 0 || triangle.a.window == triangle.b.window) continue;
+        triangle.c.window.y = support::neighbour(triangle.c.window.y, random.coin() ? 1 : -1);
+        REQUIRE_MESSAGE(TriangleSetup::of(triangle, everywhere()).has_value(), hex(triangle));
+        ++nudged_apart;
+        least_exponent = std::min(least_exponent, std::ilogb(std::fabs(support::twice_area(triangle))));
+    }
+    CHECK(nudged_apart > 3000);
+    CHECK(least_exponent < -250);
+}
+
+TEST_CASE("a sliver of area 2^-140 has a setup, and its fragments are the nearest floats") {
+    Random random(900);
+    Seen seen;
+    for (int i = 0; i < 400; ++i) {
+        Triangle triangle = make_triangle(support::Family::friendly, random);
+        // (0, 0) lies on the long edge; the third vertex is 2^-k away from it.
+        const int along = random.integer(0, 8);
+        const float length = std::ldexp(1.0f, along);
+        const float height = std::ldexp(1.0f, -140 - along) * (random.coin() ? 1.0f : -1.0f);
+        const bool upright = random.coin();
+        const auto at = [&](float x, float y) { return upright ? glm::vec2(x, y) : glm::vec2(y, x); };
+        triangle.a.window = at(-length, 0.0f);
+        triangle.b.window = at(length, 0.0f);
+        triangle.c.window = at(random.uniform_float(-1.0, 1.0) * length, height);
+        for (WindowVertex* vertex : vertices(triangle))
+            if (i % 2 == 0) vertex->clip_w = 1.0f;
+        const Shot shot{triangle, support::detail::rect_about(0, 0, random)};
+        Outputs out(count_of(shot.rect));
+        require_right(shot, everywhere(), out, seen);
+    }
+    CHECK(seen.in_front > 5000);
+}
+
+TEST_CASE("triangles of random bits are refused, or interpolated to the nearest floats") {
+    Random random(1000);
+    Seen seen;
+    int accepted = 0;
+    for (int i = 0; i < 40000; ++i) {
+        Triangle triangle{};
+        const bool mostly_usable = random.coin();
+        for (WindowVertex* vertex : vertices(triangle)) {
+            const auto any = [&] { return mostly_usable ? any_finite(random) : random.any_float(); };
+            for (int k = 0; k < 2; ++k) vertex->window[k] = any();
+            for (int k = 0; k < 4; ++k) vertex->strq[k] = any();
+            vertex->clip_w = mostly_usable ? std::fabs(any()) : any();
+        }
+        const texgen::TextureRegion region =
+            texgen::atlas_tile({random.any_float(), random.any_float()}, {random.any_float(), random.any_float()});
+        const std::optional<TriangleSetup> setup = TriangleSetup::of(triangle, region);
+        if (!setup) continue;
+        ++accepted;
+        const Shot shot{triangle, support::detail::rect_about(
+                                      random.coin() ? 0 : static_cast<int>(random.uniform(-2147483000.0, 2147483000.0)),
+                                      random.integer(-2000, 2000), random)};
+        if (accepted % 8 == 0) {
+            Outputs out(count_of(shot.rect));
+            require_right(shot, random.coin() ? region : everywhere(), out, seen);
+        } else {
+            const glm::dvec2 bound = setup->error_bound({shot.rect.x, shot.rect.y, 1, 1});
+            REQUIRE(bound.x >= 0.0);
+            REQUIRE(bound.y >= 0.0);
+        }
+    }
+    CHECK(accepted > 10000);
+    CHECK(seen.in_front > 10000);
+}
+
+TEST_CASE("coordinates that are 0, of either sign, come out as +0") {
+    Random random(1100);
+    for (int i = 0; i < 100; ++i) {
+        Shot shot =
+            support::detail::ordinary(random.coin() ? support::Family::friendly : support::Family::crossing, random);
+        for (WindowVertex* vertex : vertices(shot.triangle)) {
+            vertex->strq.x = random.coin() ? 0.0f : -0.0f;
+            vertex->strq.z = -0.0f;
+        }
+        Outputs out(count_of(shot.rect));
+        if (interpolate(setup_of(shot.triangle), shot.rect, out.spans()) == Work::nothing) continue;
+        for (const float s : out.s()) REQUIRE_MESSAGE(same_bits(s, 0.0f), hex(shot));
+        for (const float r : out.r()) REQUIRE_MESSAGE(same_bits(r, 0.0f), hex(shot));
+    }
+}
+
+TEST_CASE("the reference in double agrees within the accuracy that it states") {
+    std::uint64_t seed = 1200;
+    int compared = 0, different = 0;
+    for (const support::Family family : support::families) {
+        Random random(++seed);
+        for (int i = 0; i < 60; ++i) {
+            Shot shot = support::detail::ordinary(family, random);
+            Outputs fast(count_of(shot.rect)), reference(count_of(shot.rect));
+            if (interpolate(setup_of(shot.triangle), shot.rect, fast.spans()) == Work::nothing) continue;
+            texgen::reference::interpolate(shot.triangle, everywhere(), shot.rect, reference.spans());
+            // interpolation_error's formula, its terms exactly.
+            Triangle absolute = shot.triangle;
+            const ExactTriangle exact(shot.triangle);
+            for (std::size_t j = 0; j < fast.size(); ++j) {
+                const std::int64_t x = shot.rect.x + static_cast<std::int64_t>(j) % shot.rect.width;
+                const std::int64_t y = shot.rect.y + static_cast<std::int64_t>(j) / shot.rect.width;
+                if (!exact.has_positive_w(x, y)) continue;
+                const std::array corners{absolute.a, absolute.b, absolute.c};
+                double size[4] = {};
+                for (std::size_t v = 0; v < 3; ++v) {
+                    const glm::dvec2 p(corners[(v + 1) % 3].window), q(corners[(v + 2) % 3].window);
+                    const glm::dvec2 centre(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5);
+                    const double edge = (p.x - centre.x) * (q.y - centre.y) - (p.y - centre.y) * (q.x - centre.x);
+                    const double weight = std::fabs(edge) * static_cast<double>(corners[(v + 1) % 3].clip_w) *
+                                          static_cast<double>(corners[(v + 2) % 3].clip_w);
+                    for (int k = 0; k < 4; ++k)
+                        size[k] += 1.001 * weight * std::fabs(static_cast<double>(corners[v].strq[k]));
+                }
+                const support::Homogeneous at = exact.at(x, y);
+                const double q = at.q.estimate();
+                const double error = texgen::reference::interpolation_error;
+                if (!(std::fabs(q) > error * size[3])) continue;
+                ++compared;
+                const bool in_front = q > 0.0;
+                REQUIRE_MESSAGE((fast.lit()[j] == reference.lit()[j]), hex(shot));
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const double a = static_cast<double>(fast[k][j]), b = static_cast<double>(reference[k][j]);
+                    different += a != b;
+                    const double allowed =
+                        error * (size[k] + std::fabs(a) * size[3]) / (std::fabs(q) - error * size[3]);
+                    const double ulp = std::nextafter(std::fabs(fast[k][j]), HUGE_VALF) - std::fabs(fast[k][j]);
+                    REQUIRE_MESSAGE((in_front ? std::fabs(a - b) <= 1.001 * allowed + ulp : a == b), hex(shot));
+                    if (allowed < 0.001 * ulp) REQUIRE(std::fabs(a - b) <= ulp);
+                }
+            }
+        }
+    }
+    CHECK(compared > 20000);
+    CHECK(different < compared / 100);
+}

@@ -1,0 +1,374 @@
+// What is skipped, what is lit, and what is said of the error: never a lit fragment lost, never a bound below the truth.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "judges/fragments.hpp"
+#include "judges/verdict.hpp"
+#include "support/hard_triangles.hpp"
+#include "support/outputs.hpp"
+#include "support/random.hpp"
+#include "texgen/interpolate.hpp"
+
+namespace {
+
+using support::count_of;
+using support::everywhere;
+using support::ExactTriangle;
+using support::hex;
+using support::Homogeneous;
+using support::Outputs;
+using support::Random;
+using support::setup_of;
+using support::Shot;
+using texgen::atlas_tile;
+using texgen::FragmentRect;
+using texgen::TextureRegion;
+using texgen::Tolerance;
+using texgen::TriangleSetup;
+using texgen::WindowVertex;
+using texgen::Work;
+
+constexpr double nan_double = std::numeric_limits<double>::quiet_NaN();
+
+std::string hex(const TextureRegion& region) { return "region " + hex(region.min()) + " to " + hex(region.max()); }
+
+// w = 1 and q = 1, and s = first + i step at fragment i of every row, t likewise at every row: without an error where
+// first + 1024 step is a float.
+Shot ramp(glm::vec2 first, glm::vec2 step, int width, int height) {
+    const auto vertex = [&](float column, float row) {
+        return WindowVertex{
+            {column + 0.5f, row + 0.5f}, 1.0f, {first.x + column * step.x, first.y + row * step.y, 0.0f, 1.0f}};
+    };
+    return {{vertex(0.0f, 0.0f), vertex(1024.0f, 0.0f), vertex(0.0f, 1024.0f)}, {0, 0, width, height}};
+}
+
+// With a side next to the coordinates of a fragment of the rectangle, at one of its corners more often than not.
+TextureRegion region_at(const Shot& shot, const ExactTriangle& exact, Random& random) {
+    const auto somewhere = [&](int length) {
+        return random.integer(0, 2) == 0 ? random.integer(0, length - 1) : random.coin() ? 0 : length - 1;
+    };
+    const Homogeneous at = exact.at(shot.x(somewhere(shot.rect.width)), shot.y(somewhere(shot.rect.height)));
+    return at.q.sign() > 0 ? support::region_about(at.over_q(0), at.over_q(1), random) : texgen::whole_texture();
+}
+
+// Whose sides are the extremes of s and t over the rectangle (they are at its corners), or next to them.
+TextureRegion region_around(const Shot& shot, const ExactTriangle& exact, Random& random) {
+    glm::dvec2 least(HUGE_VAL), largest(-HUGE_VAL);
+    for (const int x : {0, shot.rect.width - 1}) {
+        for (const int y : {0, shot.rect.height - 1}) {
+            const Homogeneous at = exact.at(shot.x(x), shot.y(y));
+            if (at.q.sign() <= 0) return texgen::whole_texture();
+            for (int k = 0; k < 2; ++k) {
+                const double u = at.over_q(static_cast<std::size_t>(k)).estimate();
+                least[k] = std::min(least[k], u);
+                largest[k] = std::max(largest[k], u);
+            }
+        }
+    }
+    const double unit = std::ldexp(1.0, random.integer(-53, -10));
+    const auto moved = [&](double side, double outward) {
+        return side + outward * unit * std::fabs(side) * (random.integer(0, 9) == 0 ? -1.0 : random.integer(0, 2));
+    };
+    return atlas_tile({moved(least.x, -1.0), moved(least.y, -1.0)}, {moved(largest.x, 1.0), moved(largest.y, 1.0)});
+}
+
+// What the nearest floats say of every fragment of the rectangle for which something is promised.
+struct Truth {
+    bool any_lit = false, all_lit = true, any_in_front = false, all_in_front = true, all_promised = true;
+};
+
+Truth truth_of(const Shot& shot, const ExactTriangle& exact, const TextureRegion& region) {
+    Truth truth;
+    for (std::int64_t y = shot.rect.y; y < shot.rect.y + static_cast<std::int64_t>(shot.rect.height); ++y) {
+        for (std::int64_t x = shot.rect.x; x < shot.rect.x + static_cast<std::int64_t>(shot.rect.width); ++x) {
+            if (!exact.has_positive_w(x, y)) {
+                truth.all_promised = false;
+                continue;
+            }
+            const Homogeneous at = exact.at(x, y);
+            const bool in_front = at.q.sign() > 0;
+            const bool lit = in_front && support::contains(region, support::nearest_float(at.over_q(0)),
+                                                           support::nearest_float(at.over_q(1)));
+            truth.any_lit = truth.any_lit || lit;
+            truth.all_lit = truth.all_lit && lit;
+            truth.any_in_front = truth.any_in_front || in_front;
+            truth.all_in_front = truth.all_in_front && in_front;
+        }
+    }
+    return truth;
+}
+
+// The largest distance of s (0) or t (1) from the truth over the fragments in front.
+double largest_error(const Shot& shot, const ExactTriangle& exact, const Outputs& out, std::size_t coordinate) {
+    double largest = 0.0;
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        const std::int64_t x = shot.x(static_cast<int>(i) % shot.rect.width);
+        const std::int64_t y = shot.y(static_cast<int>(i) / shot.rect.width);
+        if (!exact.has_positive_w(x, y)) continue;
+        const Homogeneous at = exact.at(x, y);
+        if (at.q.sign() > 0)
+            largest =
+                std::max(largest, support::distance(static_cast<double>(out[coordinate][i]), at.over_q(coordinate)));
+    }
+    return largest;
+}
+
+double median(std::vector<double> values) {
+    REQUIRE(values.size() > 50);
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+}  // namespace
+
+TEST_CASE("nothing is done only where nothing is lit, and no test is left out where it is needed") {
+    std::uint64_t seed = 3000;
+    int nothing = 0, dark = 0, divide = 0, affine = 0, border = 0;
+    for (const support::HardFamily& family : support::hard_families) {
+        Random random(++seed);
+        for (int i = 0; i < 250; ++i) {
+            const Shot shot = family.make(random);
+            const ExactTriangle exact(shot.triangle);
+            const TextureRegion region =
+                random.coin() ? region_at(shot, exact, random) : region_around(shot, exact, random);
+            const Tolerance tolerance{random.integer(0, 2) != 0 ? 0.0 : random.power_of_ten(-8.0, 0.0)};
+            const TriangleSetup setup = setup_of(shot.triangle, region, tolerance);
+            const Work work = setup.work(shot.rect);
+            const Truth truth = truth_of(shot, exact, region);
+            const std::string context = family.name + (": " + hex(region)) + " in " + hex(shot);
+            if (work == Work::nothing) REQUIRE_MESSAGE(!truth.any_lit, context);
+            if (work == Work::divide) {
+                REQUIRE_MESSAGE(truth.all_in_front, context);
+                REQUIRE_MESSAGE(truth.all_lit, context);
+            }
+            if (!(tolerance.value > 0.0)) {
+                REQUIRE_MESSAGE(work != Work::quadratic, context);
+                if (work == Work::affine) REQUIRE_MESSAGE(exact.has_constant_q(), context);
+            }
+            Outputs out(count_of(shot.rect), 8u);
+            REQUIRE_MESSAGE(interpolate(setup, shot.rect, out.spans()) == work, context);
+            if (!truth.all_promised) continue;
+            nothing += work == Work::nothing;
+            dark += !truth.any_lit;
+            divide += work == Work::divide;
+            affine += work == Work::affine;
+            border += truth.any_lit && !truth.all_lit;
+        }
+    }
+    CHECK(nothing > 600);
+    CHECK(nothing > 0.3 * dark);
+    CHECK(divide > 25);
+    CHECK(affine > 50);
+    CHECK(border > 100);
+}
+
+TEST_CASE("where nothing is lit by a margin nothing is done; where all is lit by a margin nothing is tested") {
+    std::uint64_t seed = 3100;
+    int behind = 0, outside = 0, inside = 0;
+    for (const support::Family family :
+         {support::Family::friendly, support::Family::parallel, support::Family::crossing}) {
+        Random random(++seed);
+        for (int i = 0; i < 1500; ++i) {
+            const Shot shot = support::detail::ordinary(family, random);
+            const ExactTriangle exact(shot.triangle);
+            bool all_in_front = true, all_behind = true;
+            double least[2] = {HUGE_VAL, HUGE_VAL}, largest[2] = {-HUGE_VAL, -HUGE_VAL};
+            const double scale = 1e-6 * support::magnitude(exact.at(shot.rect.x, shot.rect.y).q).estimate();
+            for (const int x : {0, shot.rect.width - 1}) {
+                for (const int y : {0, shot.rect.height - 1}) {
+                    const Homogeneous at = exact.at(shot.x(x), shot.y(y));
+                    all_in_front = all_in_front && at.q.estimate() > scale;
+                    all_behind = all_behind && at.q.estimate() < -scale;
+                    for (std::size_t k = 0; k < 2 && all_in_front; ++k) {
+                        least[k] = std::min(least[k], at.over_q(k).estimate());
+                        largest[k] = std::max(largest[k], at.over_q(k).estimate());
+                    }
+                }
+            }
+            if (all_behind) {
+                ++behind;
+                REQUIRE_MESSAGE(setup_of(shot.triangle).work(shot.rect) == Work::nothing, hex(shot));
+            }
+            if (!all_in_front) continue;
+            double margin = 0.0;
+            for (std::size_t k = 0; k < 2; ++k)
+                margin = std::max(
+                    {margin, 1e-5 * std::fabs(least[k]), 1e-5 * std::fabs(largest[k]), 1e-3 * (largest[k] - least[k])});
+            const TextureRegion around =
+                atlas_tile({least[0] - margin, least[1] - margin}, {largest[0] + margin, largest[1] + margin});
+            REQUIRE_MESSAGE(setup_of(shot.triangle, around).work(shot.rect) <= Work::divide, hex(shot));
+            ++inside;
+            const double far = 1e3 * margin + 1.0;
+            for (const TextureRegion& beside : {atlas_tile({least[0] - far, -far}, {least[0] - margin, far}),
+                                                atlas_tile({largest[0] + margin, -far}, {largest[0] + far, far}),
+                                                atlas_tile({-far, least[1] - far}, {far, least[1] - margin}),
+                                                atlas_tile({-far, largest[1] + margin}, {far, largest[1] + far})}) {
+                const TriangleSetup setup = setup_of(shot.triangle, beside);
+                Outputs out(count_of(shot.rect), Outputs::all, 3);
+                REQUIRE_MESSAGE(interpolate(setup, shot.rect, out.spans()) == Work::nothing, hex(shot));
+                REQUIRE(out.pads_are_intact());
+                for (std::size_t k = 0; k < 3; ++k) REQUIRE(Outputs::is_poison(out[k]));
+                for (const float lit : out.lit()) REQUIRE(support::same_bits(lit, 0.0f));
+                ++outside;
+            }
+        }
+    }
+    CHECK(behind > 200);
+    CHECK(inside > 2000);
+    CHECK(outside > 8000);
+}
+
+TEST_CASE(
+    "lit is 1 exactly where the written floats are inside the closed region, bounds that are no floats included") {
+    struct Border {
+        TextureRegion region;
+        float s, t;  // fragments run through these, a unit at a time
+    };
+    const double denorm_min = std::numeric_limits<double>::denorm_min();
+    const std::array borders{
+        Border{texgen::whole_texture(), 0.0f, 0.0f},
+        Border{texgen::whole_texture(), 1.0f, 1.0f},
+        Border{atlas_tile({0.1, 0.1}, {0.7, 0.7}), 0.1f, 0.7f},
+        Border{atlas_tile({0.1, 0.1}, {0.7, 0.7}), 0.7f, 0.1f},
+        Border{atlas_tile({1.0 / 3.0, -5.0}, {5.0, 2.0 / 3.0}), 0.333333333f, 0.666666667f},
+        Border{atlas_tile({-0.3, -0.7}, {-0.1, -0.2}), -0.1f, -0.7f},
+        Border{texgen::rectangle_texture(640.0, 480.0), 640.0f, 480.0f},
+        Border{texgen::rectangle_texture(1920.7, 1080.3), 1920.7f, 1080.3f},
+        Border{atlas_tile({0.25, 0.5}, {0.5, 0.75}), 0.5f, 0.5f},
+        Border{atlas_tile({denorm_min, -1.0}, {1.0, denorm_min}), 0.0f, 0.0f},
+        Border{atlas_tile({0.5, 0.5}, {0.5, 0.5}), 0.5f, 0.5f},
+        Border{atlas_tile({0.1, 0.1}, {0.1, 0.1}), 0.1f, 0.1f},
+        Border{atlas_tile({0.7, 0.1}, {0.1, 0.7}), 0.3f, 0.3f},
+        Border{atlas_tile({0.5, 1.0}, {0.49999, 0.0}), 0.5f, 0.5f},
+        Border{atlas_tile({nan_double, 0.0}, {1.0, 1.0}), 0.5f, 0.5f},
+        Border{atlas_tile({0.0, nan_double}, {1.0, 1.0}), 0.5f, 0.5f},
+        Border{atlas_tile({0.0, 0.0}, {nan_double, 1.0}), 0.5f, 0.5f},
+        Border{atlas_tile({0.0, 0.0}, {1.0, nan_double}), 0.5f, 0.5f},
+        Border{atlas_tile({-HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, HUGE_VAL}), 0.5f, 0.5f},
+        Border{atlas_tile({0.1, -HUGE_VAL}, {HUGE_VAL, 0.1}), 0.1f, 0.1f},
+    };
+    int both = 0;
+    for (const Border& border : borders) {
+        for (const Tolerance tolerance : {texgen::exact, Tolerance{1e-7}, Tolerance{0.01}}) {
+            for (const int width : {9, 33, 257}) {
+                // One unit in the last place a fragment; the size of 1024 of them keeps the vertices floats.
+                const auto unit = [](float value) {
+                    return std::max(std::nextafter(std::fabs(value), HUGE_VALF) - std::fabs(value), 0x1p-149f) * 2.0f;
+                };
+                const glm::vec2 step(unit(border.s), unit(border.t));
+                Shot shot = ramp(glm::vec2(border.s, border.t) - 4.0f * step, step, width, 9);
+                const TriangleSetup setup = setup_of(shot.triangle, border.region, tolerance);
+                Outputs out(count_of(shot.rect), Outputs::all, 1);
+                const Work work = interpolate(setup, shot.rect, out.spans());
+                bool any_lit = false, any_dark = false;
+                for (std::size_t i = 0; i < out.size(); ++i) {
+                    const float lit = out.lit()[i];
+                    any_lit = any_lit || lit == 1.0f;
+                    any_dark = any_dark || lit == 0.0f;
+                    if (work == Work::nothing)
+                        REQUIRE(lit == 0.0f);
+                    else
+                        REQUIRE_MESSAGE(lit == (support::contains(border.region, out.s()[i], out.t()[i]) ? 1.0f : 0.0f),
+                                        hex(border.region), " at ", hex(out.s()[i]), " ", hex(out.t()[i]));
+                }
+                both += any_lit && any_dark;
+                const Truth truth = truth_of(shot, ExactTriangle(shot.triangle), border.region);
+                if (!(tolerance.value > 0.0)) REQUIRE_MESSAGE(any_lit == truth.any_lit, hex(border.region));
+                const bool is_empty =
+                    !(border.region.min().x <= border.region.max().x && border.region.min().y <= border.region.max().y);
+                if (is_empty) REQUIRE_MESSAGE(!any_lit, hex(border.region));
+            }
+        }
+    }
+    CHECK(both > 60);
+}
+
+TEST_CASE("error_bound in the exact tier is never below the error, is infinite where q reaches 0, and is tight") {
+    std::uint64_t seed = 3300;
+    int infinite = 0, finite = 0;
+    std::vector<double> ratios;
+    for (const support::HardFamily& family : support::hard_families) {
+        CAPTURE(std::string(family.name));
+        Random random(++seed);
+        std::vector<double> ratios_here;
+        for (int i = 0; i < 120; ++i) {
+            const Shot shot = family.make(random);
+            const ExactTriangle exact(shot.triangle);
+            const TextureRegion region = random.coin() ? everywhere() : region_at(shot, exact, random);
+            const TriangleSetup setup = setup_of(shot.triangle, region);
+            const glm::dvec2 bound = setup.error_bound(shot.rect);
+            REQUIRE(bound.x >= 0.0);
+            REQUIRE(bound.y >= 0.0);
+            const Truth truth = truth_of(shot, exact, region);
+            if (truth.any_in_front && !truth.all_in_front) {
+                ++infinite;
+                REQUIRE_MESSAGE(std::isinf(bound.x), hex(shot));
+                REQUIRE_MESSAGE(std::isinf(bound.y), hex(shot));
+            }
+            Outputs out(count_of(shot.rect));
+            if (interpolate(setup, shot.rect, out.spans()) == Work::nothing) continue;
+            for (std::size_t k = 0; k < 2; ++k) {
+                const double b = bound[static_cast<int>(k)];
+                if (!std::isfinite(b)) continue;
+                ++finite;
+                const double error = largest_error(shot, exact, out, k);
+                REQUIRE_MESSAGE(error <= b * (1.0 + 1e-12), hex(shot));
+                if (error > 0.0) ratios_here.push_back(b / error);
+            }
+        }
+        if (ratios_here.size() > 50) CHECK(median(ratios_here) < 100.0);
+        ratios.insert(ratios.end(), ratios_here.begin(), ratios_here.end());
+    }
+    CHECK(infinite > 100);
+    CHECK(finite > 1000);
+    CHECK(median(ratios) < 5.0);
+}
+
+TEST_CASE("error_bound under a tolerance is never below the error, and is at most a hundred times too large") {
+    std::uint64_t seed = 3400;
+    for (const double tolerance : {0x1p-21, 0x1p-14, 0x1p-8, 0.1}) {
+        CAPTURE(tolerance);
+        Random random(++seed);
+        std::vector<double> ratios, ratios_of_polynomials;
+        for (int i = 0; i < 400; ++i) {
+            Shot shot = support::detail::ordinary(random.coin() ? support::Family::friendly : support::Family::parallel,
+                                                  random);
+            shot.rect = {shot.rect.x - 20, shot.rect.y, random.integer(33, 150), random.integer(1, 12)};
+            const ExactTriangle exact(shot.triangle);
+            const TriangleSetup setup = setup_of(shot.triangle, everywhere(), {tolerance});
+            const glm::dvec2 bound = setup.error_bound(shot.rect);
+            Outputs out(count_of(shot.rect));
+            const Work work = interpolate(setup, shot.rect, out.spans());
+            if (work == Work::nothing) continue;
+            for (std::size_t k = 0; k < 2; ++k) {
+                const double b = bound[static_cast<int>(k)];
+                const double error = largest_error(shot, exact, out, k);
+                REQUIRE_MESSAGE(error <= b * (1.0 + 1e-12), hex(shot));
+                if (!std::isfinite(b) || !(error > 0.0)) continue;
+                ratios.push_back(b / error);
+                if (work == Work::affine || work == Work::quadratic) ratios_of_polynomials.push_back(b / error);
+            }
+        }
+        CHECK(median(ratios) < 100.0);
+        CHECK(median(ratios_of_polynomials) < 100.0);
+    }
+}
+
+TEST_CASE("a rectangle without fragments needs nothing and has no error") {
+    Random random(3500);
+    const TriangleSetup setup = setup_of(make_triangle(support::Family::friendly, random));
+    for (const FragmentRect& rect : {FragmentRect{0, 0, 0, 5}, FragmentRect{0, 0, 5, 0}}) {
+        CHECK(setup.work(rect) == Work::nothing);
+        CHECK(setup.error_bound(rect) == glm::dvec2(0.0, 0.0));
+    }
+}

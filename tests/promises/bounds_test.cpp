@@ -1,0 +1,205 @@
+// Inputs whose roundings all go the same way, so that an error comes as near to its bound as it can: a bound that is less
+// than the roundings add up to, does not hold here.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "judges/exact.hpp"
+#include "judges/fragments.hpp"
+#include "judges/verdict.hpp"
+#include "support/hex.hpp"
+#include "support/outputs.hpp"
+#include "support/random.hpp"
+#include "texgen/interpolate.hpp"
+#include "texgen/texcoord.hpp"
+
+namespace {
+
+using support::everywhere;
+using support::hex;
+using support::Outputs;
+using support::Random;
+using texgen::Tolerance;
+
+constexpr double u = 0x1p-24;
+
+// The number of points that are not what exact gives: they came from a cheaper tier.
+int count_of_cheap(const glm::dmat4& matrix, const std::vector<glm::vec3>& points, Tolerance tolerance) {
+    Outputs out(points.size()), exact(points.size());
+    project(texgen::ObjectTexgen(matrix), texgen::object_space(points), everywhere(), out.spans(), tolerance);
+    project(texgen::ObjectTexgen(matrix), texgen::object_space(points), everywhere(), exact.spans());
+    int cheap = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const std::string wrong =
+            what_is_wrong(support::exactly_at(matrix, points[i]), everywhere(), tolerance, out, i);
+        REQUIRE_MESSAGE(wrong.empty(), wrong, " for ", hex(points[i]), " by ", hex(matrix), ", tolerance ",
+                        hex(tolerance.value));
+        cheap += !support::same_bits(out.s()[i], exact.s()[i]);
+    }
+    return cheap;
+}
+
+}  // namespace
+
+TEST_CASE("forms in float whose coefficients and sums are all rounded the same way stay inside the tolerance") {
+    // s: 1 + 2^-24 and three times 2^-24 are rounded down to 1, one by one; q: 1 + 3 * 2^-24 is rounded up, and three
+    // times -2^-24 leave it there. The quotient is 8 u too small.
+    glm::dmat4 matrix(0.0);
+    for (int j = 0; j < 3; ++j) matrix[j] = {u, u, u, -u};
+    matrix[3] = {1.0 + u, 1.0 + u, 1.0 + u, 1.0 + 3.0 * u};
+    const std::vector<glm::vec3> points(64, glm::vec3(1.0f));
+    int cheap = 0;
+    for (double units = 1.0; units < 40.0; units += 0.25) cheap += count_of_cheap(matrix, points, {units * u});
+    CHECK(cheap > 1000);
+}
+
+TEST_CASE("forms in double that are rounded to float and divided there stay inside the tolerance") {
+    Random random(6100);
+    int cheap = 0;
+    for (int i = 0; i < 400; ++i) {
+        // Terms that cancel in float, so that only the forms in double fit.
+        glm::dmat4 matrix(0.0);
+        matrix[0] = {1024.0, 1024.0, 1024.0, 1024.0};
+        matrix[1] = {-1024.0, -1024.0, -1024.0, -1024.0};
+        // Above a power of two roundings are largest beside the number.
+        const auto about_one = [&] { return random.uniform(1.0, 1.0 + 0x1p-6); };
+        matrix[2] = {about_one(), 0.0, 0.0, 0.0};
+        matrix[3] = {0.0, about_one(), about_one(), about_one()};
+        std::vector<glm::vec3> points(64);
+        for (glm::vec3& point : points) {
+            const float size = random.uniform_float(1.0, 1024.0);
+            point = {size, size, random.uniform_float(1.0, 1.0 + 0x1p-6)};
+        }
+        cheap += count_of_cheap(matrix, points, {random.uniform(1.0, 5.0) * u});
+    }
+    CHECK(cheap > 100);
+}
+
+TEST_CASE("float functions of a segment stay inside the tolerance at every multiple of the unit roundoff") {
+    Random random(6200);
+    int cheap = 0;
+    for (int i = 0; i < 3000; ++i) {
+        // Ends that are almost one another, or not at all.
+        const double spread = random.coin() ? 40.0 * 0x1p-23 : 1.0;
+        const auto about_one = [&] { return random.uniform_float(1.0, 1.0 + spread); };
+        const float s = about_one(), t = about_one();
+        const texgen::Segment segment{{s, t, 0.0f, about_one()},
+                                      {random.coin() ? s : about_one(), t, 0.0f, about_one()}};
+        std::vector<float> alpha(64);
+        for (float& a : alpha) a = random.uniform_float(0.0, 1.0);
+        const Tolerance tolerance{random.uniform(1.0, 14.0) * u};
+        Outputs out(alpha.size()), exact(alpha.size());
+        interpolate(segment, alpha, everywhere(), out.spans(), tolerance);
+        interpolate(segment, alpha, everywhere(), exact.spans());
+        for (std::size_t k = 0; k < alpha.size(); ++k) {
+            const std::string wrong =
+                what_is_wrong(support::exactly_at(segment, alpha[k]), everywhere(), tolerance, out, k);
+            REQUIRE_MESSAGE(wrong.empty(), wrong, " at ", hex(alpha[k]), " of ", hex(segment.a), " ", hex(segment.b));
+            cheap += !support::same_bits(out.s()[k], exact.s()[k]);
+        }
+    }
+    CHECK(cheap > 100);
+}
+
+TEST_CASE("functions over a triangle in float, or in double and rounded, stay inside the tolerance") {
+    Random random(6300);
+    int cheap = 0;
+    for (int i = 0; i < 4000; ++i) {
+        const auto vertex = [&](float x, float y) {
+            const auto about = [&](double size) { return random.uniform_float(size, size * (1.0 + 0x1p-6)); };
+            return texgen::WindowVertex{{x, y}, 1.0f, {about(1.0), about(1.0), 0.0f, about(1.0)}};
+        };
+        const texgen::Triangle triangle{vertex(0.0f, 0.0f), vertex(64.0f, 0.0f), vertex(0.0f, 64.0f)};
+        const support::ExactTriangle exact(triangle);
+        // Rows of 15 are too short for float functions, and a row of 30 is too little for polynomials.
+        const bool is_float = random.coin();
+        const texgen::FragmentRect rect{random.integer(0, 20), random.integer(0, 20), is_float ? 30 : 15,
+                                        is_float ? 1 : 2};
+        const Tolerance tolerance{random.uniform(1.0, is_float ? 7.0 : 4.5) * u};
+        const texgen::TriangleSetup setup = support::setup_of(triangle, everywhere(), tolerance);
+        Outputs out(30), nearest(30);
+        const texgen::Work work = interpolate(setup, rect, out.spans());
+        interpolate(support::setup_of(triangle), rect, nearest.spans());
+        support::Seen seen;
+        const std::string wrong = first_wrong({triangle, rect}, exact, everywhere(), tolerance, work, out, seen);
+        REQUIRE_MESSAGE(wrong.empty(), wrong, " of ", support::hex(triangle), ", tolerance ", hex(tolerance.value));
+        for (std::size_t k = 0; k < out.size(); ++k) cheap += !support::same_bits(out.s()[k], nearest.s()[k]);
+    }
+    CHECK(cheap > 1000);
+}
+
+TEST_CASE("the bounds of forms, of mixtures and of planes in double cover their errors, and not by much") {
+    Random random(6400);
+    double of_form = 0.0, of_mixture = 0.0, of_plane = 0.0;
+    const auto share = [](const texgen::detail::Bounded& bounded, const support::Dyadic& exact) {
+        return magnitude(support::Dyadic(bounded.value) - exact).estimate() / bounded.error;
+    };
+    const auto any = [&] { return random.uniform(0.5, 1.0) * (random.coin() ? 1.0 : -1.0); };
+    for (int i = 0; i < 20000; ++i) {
+        glm::dmat4 matrix(0.0);
+        for (int j = 0; j < 4; ++j) matrix[j][0] = any();
+        const glm::vec3 point(support::to_float(any()), support::to_float(any()), support::to_float(any()));
+        of_form = std::max(of_form, share(texgen::detail::value_at(texgen::detail::form(matrix, 0), glm::dvec3(point)),
+                                          support::exactly_at(matrix, point).s));
+
+        const texgen::Segment segment{glm::vec4(support::to_float(any())), glm::vec4(support::to_float(any()))};
+        const float alpha = random.uniform_float(0.0, 1.0);
+        of_mixture = std::max(
+            of_mixture, share(texgen::detail::mixed(static_cast<double>(segment.a.x), static_cast<double>(segment.b.x),
+                                                    static_cast<double>(alpha)),
+                              support::exactly_at(segment, alpha).s));
+    }
+    for (int i = 0; i < 20000; ++i) {
+        const auto vertex = [&] {
+            return texgen::WindowVertex{{random.uniform_float(-100.0, 100.0), random.uniform_float(-100.0, 100.0)},
+                                        random.uniform_float(0.5, 2.0),
+                                        {support::to_float(any()), 0.0f, 0.0f, support::to_float(any())}};
+        };
+        const texgen::Triangle triangle{vertex(), vertex(), vertex()};
+        const texgen::detail::TrianglePlanes planes(triangle);
+        REQUIRE(planes.is_usable());
+        const std::int64_t x = random.integer(-100, 100), y = random.integer(-100, 100);
+        // Both are known up to the same positive factor: s / q of one is that of the other, and so is s q' - s' q = 0.
+        const texgen::detail::Bounded s = planes.at(planes.plane(0), x, y), q = planes.at(planes.plane(3), x, y);
+        const support::Homogeneous exact = support::ExactTriangle(triangle).at(x, y);
+        const support::Dyadic cross = support::Dyadic(s.value) * exact.q - support::Dyadic(q.value) * exact.s;
+        const double room = s.error * std::fabs(exact.q.estimate()) + q.error * std::fabs(exact.s.estimate());
+        of_plane = std::max(of_plane, std::fabs(cross.estimate()) / room);
+    }
+    for (const double worst : {of_form, of_mixture, of_plane}) CHECK(worst <= 1.0);
+    // The bounds have room for twice the unit roundoff.
+    CHECK(of_form > 0.15);
+    CHECK(of_mixture > 0.15);
+    CHECK(of_plane > 0.03);
+    MESSAGE(of_form, " ", of_mixture, " ", of_plane);
+}
+
+TEST_CASE("an area that the differences in double do not see is an area") {
+    const auto vertex = [](float x, float y, float s) {
+        return texgen::WindowVertex{{x, y}, 1.0f, {s, 0.25f, 0.0f, 1.0f}};
+    };
+    // c - a is a double only when it is rounded, to -a; c is above the line, on it, or below.
+    const auto triangle = [&](float c) {
+        return texgen::Triangle{vertex(0x1p60f, 0x1p60f, 1.0f), vertex(-0x1p60f, -0x1p60f, 2.0f),
+                                vertex(1.0f, c, 3.0f)};
+    };
+    CHECK_FALSE(texgen::TriangleSetup::of(triangle(1.0f), everywhere()));
+    for (const float c : {2.0f, 0.5f, -3.0f}) {
+        const auto setup = texgen::TriangleSetup::of(triangle(c), everywhere());
+        REQUIRE(setup);
+        const texgen::FragmentRect rect{-1, -1, 4, 4};
+        Outputs out(16);
+        support::Seen seen;
+        const texgen::Work work = interpolate(*setup, rect, out.spans());
+        const std::string wrong = first_wrong({triangle(c), rect}, support::ExactTriangle(triangle(c)), everywhere(),
+                                              texgen::exact, work, out, seen);
+        CHECK_MESSAGE(wrong.empty(), wrong);
+        CHECK(seen.in_front > 0);
+    }
+}

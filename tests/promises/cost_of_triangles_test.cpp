@@ -1,0 +1,177 @@
+// What triangles cost: no input of a function takes many times the ordinary one's time. Ratios of times that were taken in
+// turn, as users compile them.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "judges/fragments.hpp"
+#include "support/cost.hpp"
+#include "support/hard_triangles.hpp"
+#include "support/hex.hpp"
+#include "support/near_cut.hpp"
+#include "support/random.hpp"
+#include "texgen/interpolate.hpp"
+
+namespace {
+
+using support::everywhere;
+using support::hex;
+using support::Random;
+using support::Shot;
+using texgen::FragmentRect;
+using texgen::Tolerance;
+using texgen::Triangle;
+using texgen::WindowVertex;
+
+constexpr std::array<Tolerance, 2> dial{texgen::exact, texgen::texels(1.0 / 512.0, 4096.0)};
+
+// One triangle with its set-up, over its rectangle: s, t and the mask.
+class Workload {
+public:
+    Workload(const Shot& shot, Tolerance tolerance)
+        : shot_(shot), tolerance_(tolerance), s_(support::count_of(shot.rect)), t_(s_.size()), lit_(s_.size()) {}
+
+    void operator()() {
+        interpolate(support::setup_of(shot_.triangle, everywhere(), tolerance_), shot_.rect, {s_, t_, {}, lit_});
+    }
+
+private:
+    Shot shot_;
+    Tolerance tolerance_;
+    std::vector<float> s_, t_, lit_;
+};
+
+Shot ordinary(int width, int height) {
+    return {{{{3.7f, 5.2f}, 1.1f, {0.1f, 0.2f, 0.3f, 1.0f}},
+             {{1030.1f, 2.4f}, 1.4f, {1.2f, 0.1f, 0.3f, 1.3f}},
+             {{410.0f, 800.7f}, 1.2f, {0.5f, 1.1f, 0.3f, 1.2f}}},
+            {300, 100, width, height}};
+}
+
+// The time of a shot over that of the ordinary one of its size; taken anew while it is above the limit.
+double cost(const Shot& shot, Tolerance tolerance, double limit) {
+    return support::worst_over_ordinary_within(limit, Workload(ordinary(shot.rect.width, shot.rect.height), tolerance),
+                                               Workload(shot, tolerance));
+}
+
+// The least of some short times: quick, for many shots.
+double least_seconds(const Shot& shot, Tolerance tolerance) {
+    Workload workload(shot, tolerance);
+    double least = HUGE_VAL;
+    for (int i = 0; i < 8; ++i) least = std::min(least, support::seconds_of(workload, 4));
+    return least;
+}
+
+void require_cost(const char* name, const Shot& shot, double limit) {
+    for (const Tolerance tolerance : dial) {
+        const double ratio = cost(shot, tolerance, limit);
+        REQUIRE_MESSAGE(ratio <= limit, name, ", tolerance ", tolerance.value, ": ", ratio, " times in ", hex(shot));
+    }
+}
+
+WindowVertex vertex(float x, float y, float w, float s, float t, float q) { return {{x, y}, w, {s, t, 0.5f, q}}; }
+
+}  // namespace
+
+TEST_CASE("a triangle that the near plane cuts costs at most 16 times the ordinary one, and 4 times in 99 of 100") {
+    constexpr int count = 300;
+    for (const auto& [width, height] : {std::array{8, 8}, std::array{64, 4}}) {
+        for (const Tolerance tolerance : dial) {
+            Random random(71);
+            int far_corners = 0;
+            int dear = 0;
+            const double of_ordinary = least_seconds(ordinary(width, height), tolerance);
+            for (int i = 0; i < count; ++i) {
+                const auto [triangle, rect] = support::near_cut(random, width, height);
+                std::array<double, 3> seconds{};
+                for (int order = 0; order < 3; ++order) {
+                    const Shot shot{support::rotated(triangle, order), rect};
+                    far_corners += std::fabs(shot.triangle.a.window.x) > 1e4f;
+                    auto& of_order = seconds[static_cast<std::size_t>(order)];
+                    of_order = least_seconds(shot, tolerance);
+                    if (of_order > 16.0 * of_ordinary) of_order = cost(shot, tolerance, 16.0) * of_ordinary;
+                    INFO(width, " x ", height, ", tolerance ", tolerance.value, " in ", hex(shot));
+                    REQUIRE(of_order <= 16.0 * of_ordinary);
+                }
+                const auto [least, largest] = std::minmax_element(seconds.begin(), seconds.end());
+                dear += *largest > 4.0 * of_ordinary;
+                if (*largest <= 3.0 * *least) continue;
+                const auto shot_of = [&, t = triangle, r = rect](const double* order) {
+                    return Shot{support::rotated(t, static_cast<int>(order - seconds.data())), r};
+                };
+                const double ratio = support::worst_over_ordinary_within(3.0, Workload(shot_of(least), tolerance),
+                                                                         Workload(shot_of(largest), tolerance));
+                REQUIRE_MESSAGE(ratio <= 3.0, hex(shot_of(largest)));
+            }
+            CHECK_MESSAGE(dear <= count / 100, width, " x ", height, ", tolerance ", tolerance.value);
+            CHECK(far_corners > count / 5);
+        }
+    }
+}
+
+TEST_CASE("a triangle whose cut corner comes first costs what it costs with the other corners first") {
+    const Triangle cut{{{-544164.188f, 27988.3828f}, 0.1f, {-68.9127731f, -22.6434841f, -10.0570049f, -24.988451f}},
+                       {{810.03656f, 428.25708f}, 97.3841324f, {82.398613f, 24.5005531f, 16.0539932f, 30.6767712f}},
+                       {{525.804382f, 361.901428f}, 68.5282516f, {38.480442f, 12.9906549f, 11.8506365f, 8.97344875f}}};
+    for (int order = 0; order < 3; ++order)
+        require_cost("cut", {support::rotated(cut, order), {169, 428, 256, 16}}, 8.0);
+}
+
+TEST_CASE("fragments that all lie between two floats cost at most 8 times the ordinary ones") {
+    // s = 1/2 + (2 i + 1) 2^-25 at fragment i of every row, with parallel views; then with the row's own 1 / (q/w), and with a
+    // corner a hair beside its place.
+    constexpr float unit = 0x1p-25f;
+    for (const auto& [width, height] : {std::array{8, 8}, std::array{64, 4}, std::array{64, 64}}) {
+        const FragmentRect rect{0, 0, width, height};
+        const Triangle ties{vertex(0, 0, 1, 0.5f, 0.5f, 1), vertex(1024, 0, 1, 0.5f + 2048 * unit, 0.5f, 1),
+                            vertex(0, 1024, 1, 0.5f, 0.5f + 4096 * unit, 1)};
+        require_cost("ties", {ties, rect}, 8.0);
+        Triangle rows = ties;
+        rows.c.strq *= 2.0f;
+        require_cost("ties of the first rows, q by rows", {rows, rect}, 8.0);
+        Triangle beside = ties;
+        beside.b.window.y = 1e-5f;
+        require_cost("next to ties", {beside, rect}, 8.0);
+    }
+}
+
+TEST_CASE("a tile that q = 0 crosses costs at most 24 times the ordinary one") {
+    Random random(72);
+    int crossed = 0;
+    for (const auto& [width, height] : {std::array{8, 8}, std::array{64, 4}, std::array{256, 16}}) {
+        for (int i = 0; i < 40; ++i) {
+            // Through the middle of the tile, at any slope; the first times along a row of fragments.
+            const double angle = i < 3 ? 0.0 : random.uniform(0.0, 6.3);
+            const glm::dvec2 across(std::sin(angle), std::cos(angle));
+            const glm::dvec2 middle(400.0 + 0.5 * width, 300.5 + height / 2);
+            Triangle triangle = support::make_triangle(support::Family::friendly, random);
+            for (WindowVertex* corner : support::vertices(triangle)) {
+                const glm::dvec2 from = glm::dvec2(corner->window) - middle;
+                corner->strq.w = static_cast<float>((from.x * across.x + from.y * across.y) *
+                                                    static_cast<double>(corner->clip_w) / 500.0);
+            }
+            const Shot shot{triangle, {400, 300, width, height}};
+            crossed += support::detail::changes_sign(shot, support::ExactTriangle(triangle), 3);
+            for (const Tolerance tolerance : dial) {
+                const double ratio = least_seconds(shot, tolerance) / least_seconds(ordinary(width, height), tolerance);
+                if (ratio > 24.0) require_cost("crossed", shot, 24.0);
+            }
+        }
+    }
+    CHECK(crossed > 80);
+}
+
+TEST_CASE("a row on which q is 0 everywhere, and a rectangle far outside of the window, cost at most 24 and 8 times") {
+    const Triangle zero_row{vertex(0, -7.5f, 1, 0.3f, 0.2f, -1), vertex(0, 24.5f, 1, 0.5f, 0.8f, 1),
+                            vertex(1000, 8.5f, 1, 0.2f, 0.9f, 0)};
+    require_cost("q = 0 along a row", {zero_row, {30, 8, 64, 4}}, 24.0);
+    for (const int x : {1000000000, -1000000000})
+        require_cost("far away", {ordinary(64, 4).triangle, {x, 100, 64, 4}}, 8.0);
+}

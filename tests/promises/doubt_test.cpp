@@ -1,0 +1,194 @@
+// Points and segments on which one double does not suffice: their values are those of exact numbers, in vectors as one by
+// one.
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "judges/exact.hpp"
+#include "judges/fragments.hpp"
+#include "support/doubtful.hpp"
+#include "support/hex.hpp"
+#include "support/outputs.hpp"
+#include "support/random.hpp"
+#include "texgen/interpolate.hpp"
+#include "texgen/texcoord.hpp"
+
+namespace {
+
+using support::everywhere;
+using support::Homogeneous;
+using support::Outputs;
+using support::Random;
+
+constexpr std::array<std::size_t, 4> counts{1, 16, 100, 333};
+
+bool is_finite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+// What is promised of value i, s, t or r.
+void check(const Outputs& out, std::size_t i, const Homogeneous& exact, double tolerance, const std::string& where) {
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (exact.q.sign() <= 0) {
+            REQUIRE_MESSAGE(support::same_bits(out[k][i], 0.0f), where);
+            continue;
+        }
+        const support::Quotient u = exact.over_q(k);
+        if (tolerance == 0.0)
+            REQUIRE_MESSAGE(is_nearest(out[k][i], u), where);
+        else if (k == 2)
+            REQUIRE_MESSAGE(is_within_relatively(out[k][i], u, tolerance), where);
+        else
+            REQUIRE_MESSAGE(is_within(out[k][i], u, tolerance), where);
+    }
+    const bool is_lit = exact.q.sign() > 0 && support::contains(everywhere(), out.s()[i], out.t()[i]);
+    REQUIRE_MESSAGE(out.lit()[i] == (is_lit ? 1.0f : 0.0f), where);
+}
+
+bool same_or_both_nan(float a, float b) { return support::same_bits(a, b) || (std::isnan(a) && std::isnan(b)); }
+
+}  // namespace
+
+TEST_CASE("points in doubt are what exact numbers make of them, at every tolerance and in every number") {
+    Random random(51);
+    for (const std::size_t count : counts) {
+        for (const support::Cloud& cloud : support::doubtful_clouds(count, random)) {
+            const bool is_number = 0.0 * (cloud.matrix[0][0] + cloud.matrix[0][3] + cloud.matrix[3][3]) == 0.0;
+            if (!is_number) continue;
+            const texgen::WorldTexgen texgen(cloud.matrix);
+            for (const double tolerance : {0.0, 0x1p-30, 0x1p-21, 0x1p-12}) {
+                Outputs out(count);
+                project(texgen, texgen::world_space(cloud.points), everywhere(), out.spans(),
+                        texgen::Tolerance{tolerance});
+                REQUIRE(out.pads_are_intact());
+                for (std::size_t i = 0; i < count; ++i) {
+                    const std::string where = cloud.name + " at " + support::hex(cloud.points[i]);
+                    if (is_finite(cloud.points[i])) {
+                        check(out, i, support::exactly_at(cloud.matrix, cloud.points[i]), tolerance, where);
+                    } else {
+                        for (std::size_t k = 0; k < 4; ++k) REQUIRE_MESSAGE(support::same_bits(out[k][i], 0.0f), where);
+                    }
+                }
+            }
+        }
+    }
+}
+
+TEST_CASE("points in doubt have the same bits in vectors and one by one") {
+    Random random(52);
+    constexpr std::size_t count = 320;
+    for (const support::Cloud& cloud : support::doubtful_clouds(count, random)) {
+        for (const int row : {0, 2}) {
+            const int numerators = row == 0 ? 2 : 1;
+            std::array<std::vector<float>, 3> in_vectors, one_by_one;
+            for (auto* arrays : {&in_vectors, &one_by_one}) arrays->fill(std::vector<float>(count));
+            texgen::detail::PointJob job =
+                texgen::detail::point_job(cloud.matrix, row, numerators, everywhere(), texgen::exact);
+            job.count = count;
+            job.triples = true;
+            job.x = &cloud.points[0].x;
+            const auto write_to = [&](std::array<std::vector<float>, 3>& arrays) {
+                for (std::size_t k = 0; k < 2; ++k) job.out[k] = arrays[k].data();
+                job.lit = row == 0 ? arrays[2].data() : nullptr;
+            };
+            write_to(in_vectors);
+            project_nearest(texgen::detail::chosen<texgen::detail::PointKernels>(), job, 0, count);
+            write_to(one_by_one);
+            for (std::size_t i = 0; i < count; ++i) texgen::detail::project_one(job, i);
+            for (std::size_t k = 0; k < 3; ++k)
+                for (std::size_t i = 0; i < count; ++i)
+                    REQUIRE_MESSAGE(same_or_both_nan(in_vectors[k][i], one_by_one[k][i]), cloud.name, " at ",
+                                    support::hex(cloud.points[i]), ": ", in_vectors[k][i], " ", one_by_one[k][i]);
+        }
+    }
+}
+
+TEST_CASE("values of a segment in doubt are what exact numbers make of them, at every tolerance and in every number") {
+    Random random(53);
+    for (const std::size_t count : counts) {
+        for (const support::Stretch& stretch : support::doubtful_stretches(count, random)) {
+            const glm::vec4 ends = 0.0f * (stretch.segment.a + stretch.segment.b);
+            if (!(ends.x + ends.y + ends.z + ends.w == 0.0f)) continue;
+            for (const double tolerance : {0.0, 0x1p-30, 0x1p-21, 0x1p-12}) {
+                Outputs out(count);
+                interpolate(stretch.segment, stretch.alpha, everywhere(), out.spans(), texgen::Tolerance{tolerance});
+                REQUIRE(out.pads_are_intact());
+                for (std::size_t i = 0; i < count; ++i) {
+                    const std::string where = stretch.name + " at " + support::hex(stretch.alpha[i]);
+                    if (std::isfinite(stretch.alpha[i])) {
+                        check(out, i, support::exactly_at(stretch.segment, stretch.alpha[i]), tolerance, where);
+                    } else {
+                        for (std::size_t k = 0; k < 4; ++k) REQUIRE_MESSAGE(support::same_bits(out[k][i], 0.0f), where);
+                    }
+                }
+            }
+        }
+    }
+}
+
+TEST_CASE("values of a segment in doubt have the same bits in vectors and one by one") {
+    Random random(54);
+    constexpr std::size_t count = 320;
+    for (const support::Stretch& stretch : support::doubtful_stretches(count, random)) {
+        for (const int first : {0, 2}) {
+            std::array<std::vector<float>, 2> in_vectors, one_by_one;
+            for (auto* arrays : {&in_vectors, &one_by_one}) arrays->fill(std::vector<float>(count));
+            texgen::detail::SegmentJob job = texgen::detail::segment_job(stretch.segment, first, first == 0 ? 2 : 1);
+            job.count = count;
+            job.alpha = stretch.alpha.data();
+            const auto write_to = [&](std::array<std::vector<float>, 2>& arrays) {
+                for (std::size_t k = 0; k < 2; ++k) job.out[k] = arrays[k].data();
+            };
+            write_to(in_vectors);
+            interpolate_job(texgen::detail::chosen<texgen::detail::SegmentKernels>(), job, 0.0);
+            write_to(one_by_one);
+            for (std::size_t i = 0; i < count; ++i) texgen::detail::interpolate_one(job, i);
+            for (std::size_t k = 0; k < 2; ++k)
+                for (std::size_t i = 0; i < count; ++i)
+                    REQUIRE_MESSAGE(same_or_both_nan(in_vectors[k][i], one_by_one[k][i]), stretch.name, " at ",
+                                    support::hex(stretch.alpha[i]), ": ", in_vectors[k][i], " ", one_by_one[k][i]);
+        }
+    }
+}
+
+TEST_CASE("next to ties that no two doubles tell from ties the nearest float is found all the same") {
+    Random random(58);
+    constexpr std::size_t count = 160;
+    for (const double factor : {0.1, 0.3, 1.7}) {
+        for (const double least : {0x1p-120, 0x1p-170, 0x1p-220}) {
+            const glm::dmat4 matrix =
+                support::matrix_of_rows({factor, 0x1p-24 * factor, least, 0.0}, {factor, 0x1p-24 * factor, -least, 0.0},
+                                        {factor, 0x1p-24 * factor, 0.0, 0.0}, {0.0, 0.0, 0.0, factor});
+            std::vector<glm::vec3> points;
+            for (std::size_t i = 0; i < count; ++i)
+                points.emplace_back(random.uniform_float(1.0, 2.0), 1.0f, random.integer(-1, 1));
+            Outputs out(count);
+            project(texgen::WorldTexgen(matrix), texgen::world_space(points), everywhere(), out.spans());
+            for (std::size_t i = 0; i < count; ++i)
+                check(out, i, support::exactly_at(matrix, points[i]), 0.0, support::hex(points[i]));
+        }
+    }
+}
+
+TEST_CASE("two doubles leave none of these points in doubt") {
+    Random random(55);
+    constexpr std::size_t count = 320;
+    const auto& kernels = texgen::detail::chosen<texgen::detail::PointKernels>();
+    for (const support::Cloud& cloud : support::doubtful_clouds(count, random)) {
+        std::vector<float> s(count), t(count);
+        texgen::detail::PointJob job = texgen::detail::point_job(cloud.matrix, 0, 2, everywhere(), texgen::exact);
+        job.count = count;
+        job.triples = true;
+        job.x = &cloud.points[0].x;
+        job.out[0] = s.data();
+        job.out[1] = t.data();
+        std::size_t undecided = 0;
+        texgen::detail::divide_blocks(kernels.divide_nearest, job, 0,
+                                      [&](const texgen::detail::PointJob&, std::size_t) { ++undecided; });
+        CHECK_MESSAGE(undecided == 0, cloud.name, ": ", undecided);
+    }
+}

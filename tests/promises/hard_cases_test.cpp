@@ -1,0 +1,409 @@
+// Every case of hard_cases.jsonl: inputs on which an obvious formula fails, with the exact result, put to the public
+// function that answers it. A kind that is not known here fails.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "judges/oracle.hpp"
+#include "judges/rational_matrix.hpp"
+#include "support/hex.hpp"
+#include "support/json.hpp"
+#include "support/random.hpp"
+#include "texgen/coverage.hpp"
+#include "texgen/fixed_function.hpp"
+#include "texgen/interpolate.hpp"
+#include "texgen/linear.hpp"
+#include "texgen/projector.hpp"
+#include "texgen/reference.hpp"
+#include "texgen/scene.hpp"
+#include "texgen/texcoord.hpp"
+
+namespace {
+
+namespace reference = texgen::reference;
+using support::exactly;
+using support::Json;
+using support::Rational;
+using texgen::Segment;
+using texgen::Triangle;
+
+float as_float(const Json& json) {
+    const double value = json.number();
+    REQUIRE((std::isnan(value) || static_cast<double>(static_cast<float>(value)) == value));
+    return static_cast<float>(value);
+}
+
+glm::vec4 as_vector(const Json& json) {
+    return {as_float(json[0]), as_float(json[1]), as_float(json[2]), as_float(json[3])};
+}
+
+glm::dvec3 as_point(const Json& json) { return {as_float(json[0]), as_float(json[1]), as_float(json[2])}; }
+
+glm::dmat4 from_rows(const Json& json) {
+    glm::dmat4 m(0.0);
+    for (int row = 0; row < 4; ++row)
+        for (int column = 0; column < 4; ++column)
+            m[column][row] = as_float(json[static_cast<std::size_t>(4 * row + column)]);
+    return m;
+}
+
+// "-3e/b" and "0", hexadecimal.
+Rational as_rational(const Json& json) {
+    std::string text = json.text;
+    const bool negative = text.front() == '-';
+    if (negative) text.erase(0, 1);
+    const std::size_t slash = text.find('/');
+    const support::Integer numerator("0x" + text.substr(0, slash));
+    const support::Integer denominator(slash == std::string::npos ? "1" : "0x" + text.substr(slash + 1));
+    return Rational(negative ? support::Integer(-numerator) : numerator, denominator);
+}
+
+const texgen::TextureRegion everywhere = texgen::atlas_tile({-1e300, -1e300}, {1e300, 1e300});
+const texgen::TextureRegion open_everywhere = texgen::atlas_tile({-HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, HUGE_VAL});
+
+struct Divided {
+    float s, lit;
+};
+
+Divided at(const Segment& segment, float alpha) {
+    Divided result{-7.0f, -7.0f};
+    texgen::interpolate(segment, {&alpha, 1}, everywhere,
+                        {.s = {&result.s, 1}, .t = {}, .r = {}, .lit = {&result.lit, 1}});
+    return result;
+}
+
+// (1 - a) A + a B as s over q = 1; what is said of s holds for t and r.
+void lerp(const Json& json) {
+    const Json& in = json["in"];
+    const float a = as_float(in["A"]), b = as_float(in["B"]), alpha = as_float(in["a"]);
+    const Segment segment{{a, 0, 0, 1}, {b, 0, 0, 1}};
+    CHECK(reference::strq(segment, exactly(alpha))[0] == as_rational(json["exact_hex_rational"]));
+    CHECK(at(segment, alpha).s == as_float(json["f32"]));
+}
+
+void cu(const Json& json) {
+    const Json& in = json["in"];
+    const Segment segment{{as_float(in["Au"]), 0, 0, as_float(in["Aq"])},
+                          {as_float(in["Bu"]), 0, 0, as_float(in["Bq"])}};
+    const float alpha = as_float(in["a"]);
+    const auto exact = reference::strq(segment, exactly(alpha));
+    const Divided computed = at(segment, alpha);
+    if (json.has("q_exact_zero")) {
+        CHECK(exact[3] == 0);
+        CHECK(computed.s == 0.0f);
+        CHECK(computed.lit == 0.0f);
+        return;
+    }
+    CHECK(reference::quotient(exact)[0] == as_rational(json["exact_hex_rational"]));
+    const bool in_front = json["q_sign"].number() > 0.0;
+    CHECK((exact[3] > 0) == in_front);
+    CHECK(computed.s == (in_front ? as_float(json["f32"]) : 0.0f));
+    if (in_front && std::isfinite(computed.s)) {
+        CHECK(work(segment, everywhere) != texgen::Work::nothing);
+        const Rational error = support::magnitude(exactly(computed.s) - reference::quotient(exact)[0]);
+        const double bound = error_bound(segment).x;
+        if (std::isfinite(bound)) CHECK(error <= exactly(bound));
+    }
+    CHECK(computed.lit == (in_front && std::isfinite(computed.s) ? 1.0f : 0.0f));
+}
+
+void div(const Json& json) {
+    const float s = as_float(json["in"]["s"]), q = as_float(json["in"]["q"]), expected = as_float(json["f32"]);
+    const auto divided = texgen::divide({s, -s, 0, q});
+    REQUIRE(divided);
+    CHECK(divided->x == expected);
+    CHECK(divided->y == -expected);
+    // The same through a matrix: s = x, q = y.
+    glm::dmat4 pick(0.0);
+    pick[0][0] = 1.0;
+    pick[1][3] = 1.0;
+    const glm::vec3 point(s, q, 0.0f);
+    Divided projected{-7.0f, -7.0f};
+    texgen::project(texgen::ObjectTexgen(pick), texgen::object_space(std::span(&point, 1)), texgen::whole_texture(),
+                    {.s = {&projected.s, 1}, .t = {}, .r = {}, .lit = {}});
+    CHECK(projected.s == expected);
+}
+
+// q = T_q v: its value from generate(), its sign from project().
+void dot4(const Json& json) {
+    const glm::vec4 row = as_vector(json["in"]["T_q"]), v = as_vector(json["in"]["v"]);
+    REQUIRE(v.w == 1.0f);
+    glm::dmat4 matrix(0.0);
+    matrix[3][0] = 1.0;  // s = 1
+    Rational slack = 0;
+    for (int k = 0; k < 4; ++k) {
+        matrix[k][3] = row[k];
+        slack += support::magnitude(exactly(row[k]) * exactly(v[k])) * support::power_of_two(-50);
+    }
+    const texgen::ObjectTexgen texture_from_object(matrix);
+    const glm::vec3 point(v);
+    const auto points = texgen::object_space(std::span(&point, 1));
+    const Rational exact = as_rational(json["exact_hex_rational"]);
+    glm::vec4 strq(-7.0f);
+    texgen::generate(texture_from_object, points, std::span(&strq, 1));
+    const Rational half_ulp = support::power_of_two(support::ulp_exponent<float>(exact) - 1);
+    CHECK(support::magnitude(exactly(strq.w) - exact) <= half_ulp + slack);
+    Divided projected{-7.0f, -7.0f};
+    texgen::project(texture_from_object, points, everywhere,
+                    {.s = {&projected.s, 1}, .t = {}, .r = {}, .lit = {&projected.lit, 1}});
+    CHECK(support::magnitude(exactly(strq.w) - exact) <= exactly(generate_error_bound(texture_from_object, points).w));
+    const bool in_front = json["sign"].number() > 0.0;
+    CHECK((coverage(texture_from_object, open_everywhere, texgen::Box{point, point}) == texgen::Coverage::outside) !=
+          in_front);
+    if (in_front && std::isfinite(projected.s))
+        CHECK(support::magnitude(exactly(projected.s) - 1 / exact) <=
+              exactly(project_error_bound(texture_from_object, points).x));
+    CHECK(projected.s == (in_front ? support::nearest<float>(1 / exact) : 0.0f));
+    CHECK(projected.lit == (in_front && std::isfinite(projected.s) ? 1.0f : 0.0f));
+}
+
+// The orientation of (a, b, p) decides whether there is a triangle at all.
+void orient(const Json& json) {
+    const Json& c = json["in"]["axay_bxby_pxpy"];
+    const auto vertex = [&c](std::size_t i) {
+        return texgen::WindowVertex{{as_float(c[2 * i]), as_float(c[2 * i + 1])}, 1.0f, {0, 0, 0, 1}};
+    };
+    const Triangle triangle{vertex(0), vertex(1), vertex(2)};
+    const int sign = static_cast<int>(json["sign"].number());
+    const reference::detail::Corner<Rational> a(triangle.a), b(triangle.b), p(triangle.c);
+    CHECK(reference::detail::edge(a, b, p.x, p.y) == as_rational(json["exact_hex_rational"]));
+    if (sign != 0) CHECK(reference::detail::Corners<Rational>(triangle).side == sign);
+    CHECK(texgen::TriangleSetup::of(triangle, texgen::whole_texture()).has_value() == (sign != 0));
+}
+
+void tri(const Json& json) {
+    const Json& in = json["in"];
+    const double px = in["px"].number(), py = in["py"].number();
+    // Moved so that the point is the centre of its pixel; the move is exact.
+    const glm::dvec2 centre(std::floor(px) + 0.5, std::floor(py) + 0.5);
+    const auto vertex = [&](std::size_t i) {
+        const double x = in["x"][i].number() + (centre.x - px), y = in["y"][i].number() + (centre.y - py);
+        const glm::vec2 window(static_cast<float>(x), static_cast<float>(y));
+        REQUIRE(glm::dvec2(window) == glm::dvec2(x, y));
+        return texgen::WindowVertex{window, as_float(in["w"][i]), {as_float(in["s"][i]), 0, 0, as_float(in["q"][i])}};
+    };
+    const Triangle triangle{vertex(0), vertex(1), vertex(2)};
+    const auto exact = reference::strq(triangle, exactly(centre.x), exactly(centre.y));
+    CHECK(reference::quotient(exact)[0] == as_rational(json["exact_hex_rational"]));
+    const texgen::FragmentRect pixel{static_cast<int>(std::floor(px)), static_cast<int>(std::floor(py)), 1, 1};
+    float by_reference = -7.0f, fast = -7.0f;
+    reference::interpolate(triangle, everywhere, pixel, {.s = {&by_reference, 1}, .t = {}, .r = {}, .lit = {}});
+    const auto setup = texgen::TriangleSetup::of(triangle, everywhere);
+    REQUIRE(setup);
+    texgen::interpolate(*setup, pixel, {.s = {&fast, 1}, .t = {}, .r = {}, .lit = {}});
+    CHECK(by_reference == as_float(json["f32"]));
+    CHECK(fast == as_float(json["f32"]));
+    CHECK(setup->work(pixel) != texgen::Work::nothing);
+    CHECK(support::magnitude(exactly(fast) - as_rational(json["exact_hex_rational"])) <=
+          exactly(setup->error_bound(pixel).x));
+}
+
+void eyeplane(const Json& json) {
+    const texgen::ModelviewMatrix modelview(from_rows(json["in"]["M_rowmajor"]));
+    const glm::vec4 plane = as_vector(json["in"]["p"]);
+    glm::dmat4 rows(0.0);
+    for (int column = 0; column < 4; ++column) rows[column] = glm::dvec4(plane[column]);
+    const auto stored = eye_planes_as_stored(texgen::ObjectTexgen(rows), modelview);
+    REQUIRE(stored.has_value() != json["singular"].is_true());
+    texgen::TexGenUnit unit;
+    const glm::mat4 in_float(modelview.rounded());
+    REQUIRE(unit.set_eye_plane(texgen::Coordinate::s, plane, in_float) == stored.has_value());
+    const glm::dvec4 bound = unit.eye_plane_error_bound(texgen::Coordinate::s, plane, in_float);
+    if (!stored) {
+        CHECK(std::isinf(bound.x));
+        return;
+    }
+    for (int k = 0; k < 4; ++k) {
+        const double kept = static_cast<double>(unit.eye_plane(texgen::Coordinate::s)[k]);
+        CHECK(unit.eye_plane(texgen::Coordinate::s)[k] == as_float(json["f32"][static_cast<std::size_t>(k)]));
+        // f64 is rounded itself.
+        const double exact = json["f64"][static_cast<std::size_t>(k)].number();
+        CHECK(std::fabs(kept - exact) <= bound[k] + 0x1p-52 * std::fabs(exact));
+    }
+    double largest = 0.0;
+    for (std::size_t k = 0; k < 4; ++k) largest = std::max(largest, std::fabs(json["f64"][k].number()));
+    for (const glm::vec4& row : texgen::planes(*stored))
+        for (int k = 0; k < 4; ++k) CHECK(row[k] == as_float(json["f32"][static_cast<std::size_t>(k)]));
+    for (int k = 0; k < 4; ++k)
+        CHECK(std::fabs(stored->matrix()[k][2] - json["f64"][static_cast<std::size_t>(k)].number()) <=
+              0x1p-52 * largest);
+}
+
+// Row-major elements against the exact ones, each in float and within a few double ulp of the terms that made it.
+void check_matrix(const glm::dmat4& computed, const glm::dmat4& terms, double roundings, const Json& json) {
+    for (int row = 0; row < 4; ++row) {
+        for (int column = 0; column < 4; ++column) {
+            const std::size_t i = static_cast<std::size_t>(4 * row + column);
+            CAPTURE(row);
+            CAPTURE(column);
+            CHECK(std::fabs(computed[column][row] - json["f64"][i].number()) <=
+                  roundings * 0x1p-53 * std::fabs(terms[column][row]));
+        }
+    }
+}
+
+glm::dmat4 magnitudes(glm::dmat4 m) {
+    for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 4; ++row) m[column][row] = std::fabs(m[column][row]);
+    return m;
+}
+
+void compose_to(const Json& json) {
+    const Json& in = json["in"];
+    const glm::dmat4 p = from_rows(in["P"]), v = from_rows(in["V"]), m = from_rows(in["M"]);
+    const texgen::Projector projector{texgen::ProjectorProjection(p), texgen::ProjectorView(v), texgen::opengl};
+    const texgen::ObjectTexgen t_o = object_linear(projector, texgen::ModelMatrix(m));
+    const glm::dmat4 s = scale_bias(texgen::opengl).matrix();
+    check_matrix(t_o.matrix(), s * magnitudes(p) * magnitudes(v) * magnitudes(m), 13.0, json);
+    for (int row = 0; row < 4; ++row)
+        for (int column = 0; column < 4; ++column)
+            CHECK(t_o.rounded()[column][row] == as_float(json["f32"][static_cast<std::size_t>(4 * row + column)]));
+}
+
+void te_from_poses(const Json& json) {
+    const Json& in = json["in"];
+    const glm::dvec3 up(0, 1, 0);
+    const auto projector = make_projector(texgen::PerspectiveLens{.fovy = texgen::radians(in["fovy_rad"].number()),
+                                                                  .aspect = 1.0,
+                                                                  .z_near = in["near"].number(),
+                                                                  .z_far = in["far"].number()},
+                                          {as_point(in["proj_eye"]), as_point(in["proj_center"]), up}, texgen::opengl);
+    const auto camera = texgen::look_at({as_point(in["cam_eye"]), as_point(in["cam_center"]), up});
+    REQUIRE(projector);
+    REQUIRE(camera);
+    const texgen::CameraPose pose(texgen::inverse_rigid(*camera).matrix());
+    const texgen::EyeTexgen t_e = eye_linear(*projector, pose);
+    const glm::dmat4 s = scale_bias(texgen::opengl).matrix();
+    const glm::dmat4 terms = s * magnitudes(projector->projection.matrix()) * magnitudes(projector->view.matrix()) *
+                             magnitudes(pose.matrix());
+    check_matrix(t_e.matrix(), terms, 24.0, json);
+    texgen::Scene scene;
+    const texgen::ModelMatrix model(glm::dmat4(1.0));
+    const texgen::Box bounds{glm::vec3(-1.0f), glm::vec3(1.0f)};
+    scene.update({.models = {&model, 1}, .bounds = {&bounds, 1}, .projectors = {&*projector, 1}}, {});
+    CHECK(scene.update_eye(pose) == 1);
+    check_matrix(scene.eye_texgens()[0].matrix(), terms, 24.0, json);
+}
+
+void perspective(const Json& json) {
+    const Json& in = json["in"];
+    const texgen::PerspectiveLens lens{.fovy = texgen::radians(in["fovy_rad"].number()),
+                                       .aspect = in["aspect"].number(),
+                                       .z_near = in["near"].number(),
+                                       .z_far = in["far"].number()};
+    const auto projection = texgen::perspective(lens, texgen::opengl);
+    // Beyond 180 degrees the formula has a value, of a picture that is upside down; it is no lens.
+    const bool is_lens = json["f64"][0].number() > 0.0;
+    REQUIRE(projection.has_value() == is_lens);
+    if (!is_lens) return;
+    const glm::dmat4& m = projection->matrix();
+    const std::array computed{m[0][0], m[1][1], m[2][2], m[3][2]};
+    for (std::size_t k = 0; k < 4; ++k) {
+        const double exact = json["f64"][k].number();
+        CHECK(std::fabs(computed[k] - exact) <= 4.0 * 0x1p-52 * std::fabs(exact));
+        CHECK(static_cast<float>(computed[k]) == as_float(json["f32"][k]));
+    }
+}
+
+void lookat(const Json& json) {
+    const Json& in = json["in"];
+    const glm::dvec3 eye = as_point(in["eye"]);
+    const auto view = texgen::look_at({eye, as_point(in["center"]), as_point(in["up"])});
+    REQUIRE(view);
+    const double distance = std::fabs(eye.x) + std::fabs(eye.y) + std::fabs(eye.z);
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 4; ++column) {
+            const double exact = json["f64"][static_cast<std::size_t>(4 * row + column)].number();
+            CHECK(std::fabs(view->matrix()[column][row] - exact) <= 4.0 * 0x1p-52 * (column < 3 ? 1.0 : distance));
+        }
+    }
+    // And back: the pose, which is rigid but for the rounding of the view.
+    const auto pose = inverse(*view);
+    REQUIRE(pose);
+    const auto inverted = support::inverse(support::exactly(view->matrix()));
+    REQUIRE(inverted);
+    const glm::dmat4 bound = inverse_error_bound(*view, *pose);
+    for (int row = 0; row < 4; ++row) {
+        for (int column = 0; column < 4; ++column) {
+            const Rational& element = (*inverted)[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)];
+            CHECK(support::magnitude(exactly(pose->matrix()[column][row]) - element) <= exactly(bound[column][row]));
+        }
+    }
+}
+
+// How far a line through the divided ends is from the divided segment, at its worst of n steps: option (3) against (2).
+void affine_dev(const Json& json) {
+    const Json& in = json["in"];
+    const auto end = [&in](const std::string& index) {
+        return reference::Vector4<Rational>(exactly(as_float(in["N" + index])), 0, 0,
+                                            exactly(as_float(in["Q" + index])));
+    };
+    const int steps = static_cast<int>(in["n"].number());
+    Rational worst = 0;
+    for (int i = 0; i <= steps; ++i) {
+        const Rational alpha(i, steps);
+        const Rational right = reference::interpolate_then_divide(end("0"), end("1"), alpha)[0];
+        const Rational line = reference::wrong_divide_then_interpolate(end("0"), end("1"), alpha)[0];
+        worst = std::max(worst, support::magnitude(right - line));
+    }
+    CHECK(worst == as_rational(json["exact_hex_rational"]));
+
+    // A segment under half that tolerance is divided.
+    const Segment segment{{as_float(in["N0"]), 0, 0, as_float(in["Q0"])},
+                          {as_float(in["N1"]), 0, 0, as_float(in["Q1"])}};
+    const texgen::Tolerance tolerance{0.5 * support::nearest<double>(worst)};
+    std::vector<float> alpha, s(static_cast<std::size_t>(steps + 1));
+    for (int i = 0; i <= steps; ++i) alpha.push_back(support::to_float(static_cast<double>(i) / steps));
+    texgen::interpolate(segment, alpha, everywhere, {.s = s, .t = {}, .r = {}, .lit = {}}, tolerance);
+    for (std::size_t i = 0; i < alpha.size(); ++i) {
+        const Rational right = reference::quotient(reference::strq(segment, exactly(alpha[i])))[0];
+        const Rational error = support::magnitude(exactly(s[i]) - right);
+        CHECK(error <= std::max(exactly(tolerance.value),
+                                Rational(support::power_of_two(support::ulp_exponent<float>(right) - 1))));
+        CHECK(error <= exactly(error_bound(segment, tolerance).x));
+    }
+}
+
+}  // namespace
+
+TEST_CASE("every hard case is answered by the function that it is about") {
+    const std::map<std::string, void (*)(const Json&)> checks{{"lerp", lerp},
+                                                              {"cu", cu},
+                                                              {"div", div},
+                                                              {"dot4", dot4},
+                                                              {"orient", orient},
+                                                              {"tri", tri},
+                                                              {"eyeplane", eyeplane},
+                                                              {"compose_To", compose_to},
+                                                              {"lookat", lookat},
+                                                              {"te_from_poses", te_from_poses},
+                                                              {"perspective", perspective},
+                                                              {"affine_dev", affine_dev}};
+    std::ifstream file(TEXGEN_TEST_DATA "/promises/hard_cases.jsonl");
+    REQUIRE(file.is_open());
+    std::map<std::string, int> counts;
+    std::string line;
+    while (std::getline(file, line)) {
+        if (line.empty()) continue;
+        const Json json = support::JsonReader::read(line);
+        const std::string kind = json["kind"].text;
+        CAPTURE(line);
+        const auto check = checks.find(kind);
+        REQUIRE(check != checks.end());
+        ++counts[kind];
+        check->second(json);
+    }
+    const std::map<std::string, int> expected{{"lerp", 17},       {"cu", 16},        {"div", 13},
+                                              {"dot4", 6},        {"orient", 5},     {"tri", 5},
+                                              {"eyeplane", 18},   {"lookat", 6},     {"te_from_poses", 4},
+                                              {"perspective", 8}, {"compose_To", 8}, {"affine_dev", 8}};
+    CHECK(counts == expected);
+}

@@ -1,0 +1,101 @@
+// Inputs whose exact value is so near to the middle of two floats that no double can tell the side: near_ties.txt, found
+// by adversary.cpp. A bound on a rounding error that is too small decides some of them wrongly.
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "judges/exact.hpp"
+#include "judges/fragments.hpp"
+#include "support/outputs.hpp"
+#include "texgen/interpolate.hpp"
+#include "texgen/texcoord.hpp"
+
+namespace {
+
+using support::everywhere;
+using support::Homogeneous;
+using support::Outputs;
+
+struct Answer {
+    Homogeneous exact;
+    Outputs out;
+};
+
+glm::vec4 four(const std::vector<double>& n, std::size_t i) {
+    return {support::to_float(n[i]), support::to_float(n[i + 1]), support::to_float(n[i + 2]),
+            support::to_float(n[i + 3])};
+}
+
+// The rows s, t and q of a matrix, column by column; and a point. `count` of it, so that it is met in vectors too.
+Answer of_point(const std::vector<double>& n, std::size_t count) {
+    glm::dmat4 matrix(0.0);
+    for (std::size_t column = 0; column < 4; ++column)
+        for (std::size_t row = 0; row < 3; ++row)
+            matrix[static_cast<int>(column)][row == 2 ? 3 : static_cast<int>(row)] = n[3 * column + row];
+    const std::vector<glm::vec3> points(count, glm::vec3(four(n, 12)));
+    Answer answer{support::exactly_at(matrix, points[0]), Outputs(count, 3u)};
+    project(texgen::ObjectTexgen(matrix), texgen::object_space(points), everywhere(), answer.out.spans());
+    return answer;
+}
+
+// The ends, and alpha.
+Answer of_segment(const std::vector<double>& n, std::size_t count) {
+    const texgen::Segment segment{four(n, 0), four(n, 4)};
+    const std::vector<float> alpha(count, support::to_float(n[8]));
+    Answer answer{support::exactly_at(segment, alpha[0]), Outputs(count, 3u)};
+    interpolate(segment, alpha, everywhere(), answer.out.spans());
+    return answer;
+}
+
+// Three times the window, w, and s, t, r, q; at the fragment (20, 20), the first of the rectangle.
+Answer of_triangle(const std::vector<double>& n, std::size_t count) {
+    const auto vertex = [&](std::size_t i) {
+        return texgen::WindowVertex{
+            {support::to_float(n[i]), support::to_float(n[i + 1])}, support::to_float(n[i + 2]), four(n, i + 3)};
+    };
+    const texgen::Triangle triangle{vertex(0), vertex(7), vertex(14)};
+    Answer answer{support::ExactTriangle(triangle).at(20, 20), Outputs(count, 3u)};
+    interpolate(support::setup_of(triangle), {20, 20, static_cast<int>(count), 1}, answer.out.spans());
+    return answer;
+}
+
+double distance_in_half_ulps(float value, const support::Quotient& u) {
+    const double middle = support::detail::middle(value, compare(u, static_cast<double>(value)) > 0);
+    return distance(middle, u) / std::fabs(middle - static_cast<double>(value));
+}
+
+}  // namespace
+
+TEST_CASE("next to the middle of two floats the nearest is found, alone and in company") {
+    std::ifstream file(TEXGEN_TEST_DATA "/promises/near_ties.txt");
+    int next_to_the_middle = 0, lines = 0;
+    for (std::string line; std::getline(file, line);) {
+        if (line.empty() || line.front() == '#') continue;
+        ++lines;
+        std::istringstream fields(line);
+        std::string kind, bits, number;
+        fields >> kind >> bits;
+        std::vector<double> numbers;
+        while (fields >> number) numbers.push_back(std::strtod(number.c_str(), nullptr));
+        for (const std::size_t count : {1u, 2u, 16u, 64u}) {
+            const auto answer = kind == "project"   ? of_point(numbers, count)
+                                : kind == "segment" ? of_segment(numbers, count)
+                                                    : of_triangle(numbers, count);
+            REQUIRE(answer.exact.q.sign() > 0);
+            for (std::size_t k = 0; k < 2; ++k) {
+                const support::Quotient u = answer.exact.over_q(k);
+                CHECK_MESSAGE(is_nearest(answer.out[k][0], u), line);
+                next_to_the_middle += distance_in_half_ulps(answer.out[k][0], u) < 0x1p-29;
+            }
+        }
+    }
+    CHECK(lines >= 100);
+    CHECK(next_to_the_middle >= 4 * lines);
+}
