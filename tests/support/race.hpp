@@ -131,7 +131,7 @@ struct RecordedInput {
     Numbers numbers;
 };
 
-// Throws where there are none, or a line names no workload or has not as many numbers as it takes.
+// Throws where there are none, or a line names no workload, has not as many numbers as it takes or measures nothing.
 inline std::vector<RecordedInput> read_inputs(std::istream& lines) {
     std::vector<RecordedInput> inputs;
     for (std::string line; std::getline(lines, line);) {
@@ -148,7 +148,8 @@ inline std::vector<RecordedInput> read_inputs(std::istream& lines) {
         const auto workload = std::find_if(workloads.begin(), workloads.end(),
                                            [&](const Workload& w) { return input.function == w.function; });
         Random random(1);
-        if (workload == workloads.end() || workload->hostile.draw(random).size() != input.numbers.size())
+        if (workload == workloads.end() || workload->hostile.draw(random).size() != input.numbers.size() ||
+            !workload->calls(input.numbers))
             throw std::runtime_error("no recorded input: " + line);
         inputs.push_back(input);
     }
