@@ -16,8 +16,8 @@
 #include <utility>
 #include <vector>
 
-#include "support/cost.hpp"
 #include "support/random.hpp"
+#include "support/stopwatch.hpp"
 #include "texgen/coverage.hpp"
 #include "texgen/footprint.hpp"
 #include "texgen/linear.hpp"

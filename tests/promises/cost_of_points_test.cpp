@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "support/cost.hpp"
 #include "support/doubtful.hpp"
 #include "support/random.hpp"
+#include "support/stopwatch.hpp"
 #include "texgen/interpolate.hpp"
 #include "texgen/texcoord.hpp"
 

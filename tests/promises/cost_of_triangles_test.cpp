@@ -12,11 +12,11 @@
 #include <vector>
 
 #include "judges/fragments.hpp"
-#include "support/cost.hpp"
 #include "support/hard_triangles.hpp"
 #include "support/hex.hpp"
 #include "support/near_cut.hpp"
 #include "support/random.hpp"
+#include "support/stopwatch.hpp"
 #include "texgen/interpolate.hpp"
 
 namespace {
@@ -62,10 +62,10 @@ double cost(const Shot& shot, Tolerance tolerance, double limit) {
 }
 
 // The least of some short times: quick, for many shots.
-double least_seconds(const Shot& shot, Tolerance tolerance) {
-    Workload workload(shot, tolerance);
+double least_time(const Shot& shot, Tolerance tolerance) {
+    const support::Calls calls = support::calls_of(Workload(shot, tolerance));
     double least = HUGE_VAL;
-    for (int i = 0; i < 8; ++i) least = std::min(least, support::seconds_of(workload, 4));
+    for (int i = 0; i < 8; ++i) least = std::min(least, support::nanoseconds_of(calls, 4));
     return least;
 }
 
@@ -87,7 +87,7 @@ TEST_CASE("a triangle that the near plane cuts costs at most 16 times the ordina
             Random random(71);
             int far_corners = 0;
             int dear = 0;
-            const double of_ordinary = least_seconds(ordinary(width, height), tolerance);
+            const double of_ordinary = least_time(ordinary(width, height), tolerance);
             for (int i = 0; i < count; ++i) {
                 const auto [triangle, rect] = support::near_cut(random, width, height);
                 std::array<double, 3> seconds{};
@@ -95,7 +95,7 @@ TEST_CASE("a triangle that the near plane cuts costs at most 16 times the ordina
                     const Shot shot{support::rotated(triangle, order), rect};
                     far_corners += std::fabs(shot.triangle.a.window.x) > 1e4f;
                     auto& of_order = seconds[static_cast<std::size_t>(order)];
-                    of_order = least_seconds(shot, tolerance);
+                    of_order = least_time(shot, tolerance);
                     if (of_order > 16.0 * of_ordinary) of_order = cost(shot, tolerance, 16.0) * of_ordinary;
                     INFO(width, " x ", height, ", tolerance ", tolerance.value, " in ", hex(shot));
                     REQUIRE(of_order <= 16.0 * of_ordinary);
@@ -160,7 +160,7 @@ TEST_CASE("a tile that q = 0 crosses costs at most 24 times the ordinary one") {
             const Shot shot{triangle, {400, 300, width, height}};
             crossed += support::detail::changes_sign(shot, support::ExactTriangle(triangle), 3);
             for (const Tolerance tolerance : dial) {
-                const double ratio = least_seconds(shot, tolerance) / least_seconds(ordinary(width, height), tolerance);
+                const double ratio = least_time(shot, tolerance) / least_time(ordinary(width, height), tolerance);
                 if (ratio > 24.0) require_cost("crossed", shot, 24.0);
             }
         }
