@@ -20,7 +20,8 @@ foreach(tool IN ITEMS sh cmake g++ clang++ x86_64-w64-mingw32-g++ aarch64-linux-
 endforeach()
 
 file(REMOVE_RECURSE ${DIRECTORY})
-file(COPY ${SOURCE}/CMakeLists.txt ${SOURCE}/LICENSE ${SOURCE}/README.md ${SOURCE}/include DESTINATION ${DIRECTORY}/texgen)
+file(COPY ${SOURCE}/CMakeLists.txt ${SOURCE}/LICENSE ${SOURCE}/README.md ${SOURCE}/include ${SOURCE}/.cmake
+    DESTINATION ${DIRECTORY}/texgen)
 if(WAY STREQUAL "`FetchContent`")
     find_program(git git)
     if(NOT git)

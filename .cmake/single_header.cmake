@@ -1,7 +1,7 @@
 cmake_minimum_required(VERSION 3.25)
 
 # Writes every header that needs no Eigen into one file:
-#   cmake -DOUTPUT=texgen.hpp -P include/single_header.cmake
+#   cmake -DOUTPUT=texgen.hpp -P .cmake/single_header.cmake
 # A header with #pragma once is written where it is included first; the kernels (*.inc.hpp) each time.
 if(NOT OUTPUT)
     message(FATAL_ERROR "-DOUTPUT=<file> says where the header goes")
@@ -47,7 +47,8 @@ function(inline file result)
 endfunction()
 
 set(whole "")
-file(GLOB headers ${CMAKE_CURRENT_LIST_DIR}/texgen/*.hpp)
+cmake_path(SET include NORMALIZE ${CMAKE_CURRENT_LIST_DIR}/../include/texgen)
+file(GLOB headers ${include}/*.hpp)
 list(FILTER headers EXCLUDE REGEX "/(reference|eigen|texgen)\\.hpp$")
 foreach(header IN LISTS headers)
     inline(${header} inlined)
