@@ -1,0 +1,101 @@
+// The bodies of the aim of projector.hpp, and what makes a projector of it and of a lens.
+
+namespace TEXGEN_DETAIL {
+
+// row . point for a row of a rotation, within 1 ulp however its terms cancel: far from the origin they do. The point is
+// brought to where neither products nor their last bits leave the range.
+inline double rotated(const glm::dvec3& row, const glm::dvec3& point) noexcept {
+    if (point == glm::dvec3(0.0)) return 0.0;
+    const int exponent = std::ilogb(largest(point));
+    const int shift = exponent > 900 ? 900 - exponent : exponent < -700 ? -700 - exponent : 0;
+    Expansion<6> sum;
+    for (glm::length_t i = 0; i < 3; ++i) sum.add_product(row[i], std::scalbn(point[i], shift));
+    return std::scalbn(sum.estimate(), -shift);
+}
+
+// A difference of two points as it is, unrounded: the sum of both.
+struct Difference {
+    glm::dvec3 high, low;
+};
+
+// to - from times a power of two, so that the largest component is in [1, 2); 0 where it is 0 or not finite.
+inline Difference scaled_difference(const glm::dvec3& to, const glm::dvec3& from) noexcept {
+    const double unit = is_finite(to - from) ? 1.0 : 0.5;
+    Difference result{};
+    for (glm::length_t i = 0; i < 3; ++i) {
+        const DoubleDouble component = two_sum(unit * to[i], -unit * from[i]);
+        result.high[i] = component.high;
+        result.low[i] = component.low;
+    }
+    const glm::dvec3 scaled = scaled_near_one(result.high);
+    if (!(length(scaled) > 0.0)) return Difference{};
+    return {scaled, times_power_of_two(result.low, -std::ilogb(largest(result.high)))};
+}
+
+// a x b within 1 ulp, component by component.
+inline glm::dvec3 cross(const Difference& a, const glm::dvec3& b) noexcept {
+    glm::dvec3 result(0.0);
+    for (glm::length_t i = 0; i < 3; ++i) {
+        const glm::length_t j = (i + 1) % 3;
+        const glm::length_t k = (i + 2) % 3;
+        Expansion<8> sum;
+        sum.add_product(a.high[j], b[k]);
+        sum.add_product(a.low[j], b[k]);
+        sum.add_product(-a.high[k], b[j]);
+        sum.add_product(-a.low[k], b[j]);
+        result[i] = sum.estimate();
+    }
+    return result;
+}
+
+inline std::optional<Projector> assemble(const std::optional<ProjectorProjection>& projection,
+                                         const std::optional<ProjectorView>& view, Conventions conventions) noexcept {
+    if (!projection || !view) return std::nullopt;
+    return Projector{*projection, *view, conventions};
+}
+
+}  // namespace TEXGEN_DETAIL
+
+namespace TEXGEN_NAMESPACE {
+
+inline std::optional<ProjectorView> look_at(const Aim& aim) noexcept {
+    // Where up is nearly parallel the rounding of target - position would turn the picture.
+    const detail::Difference view = detail::scaled_difference(aim.target, aim.position);
+    const glm::dvec3& forward = view.high;
+    const glm::dvec3 up = detail::scaled_near_one(aim.up);
+    if (!(detail::length(forward) > 0.0 && detail::length(up) > 0.0)) return std::nullopt;
+    const glm::dvec3 sideways = detail::cross(view, up);
+    if (!(detail::length(sideways) > 0x1p-98)) return std::nullopt;
+    const glm::dvec3 side_direction = detail::scaled_near_one(sideways);
+    if (!(detail::length(side_direction) > 0.0)) return std::nullopt;
+
+    const glm::dvec3 side = detail::normalized(side_direction);
+    const glm::dvec3 back = -detail::normalized(forward);
+    const glm::dvec3 upright = detail::normalized(detail::cross(back, side));
+    glm::dmat4 matrix(1.0);
+    for (glm::length_t i = 0; i < 3; ++i) {
+        matrix[i][0] = side[i];
+        matrix[i][1] = upright[i];
+        matrix[i][2] = back[i];
+    }
+    matrix[3][0] = -detail::rotated(side, aim.position);
+    matrix[3][1] = -detail::rotated(upright, aim.position);
+    matrix[3][2] = -detail::rotated(back, aim.position);
+    if (!detail::is_finite(matrix)) return std::nullopt;
+    return ProjectorView(matrix);
+}
+
+inline std::optional<Projector> make_projector(const PerspectiveLens& lens, const Aim& aim,
+                                               Conventions conventions) noexcept {
+    return detail::assemble(perspective(lens, conventions), look_at(aim), conventions);
+}
+inline std::optional<Projector> make_projector(const FrustumLens& lens, const Aim& aim,
+                                               Conventions conventions) noexcept {
+    return detail::assemble(frustum(lens, conventions), look_at(aim), conventions);
+}
+inline std::optional<Projector> make_projector(const OrthographicLens& lens, const Aim& aim,
+                                               Conventions conventions) noexcept {
+    return detail::assemble(orthographic(lens, conventions), look_at(aim), conventions);
+}
+
+}  // namespace TEXGEN_NAMESPACE

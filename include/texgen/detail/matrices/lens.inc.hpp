@@ -1,0 +1,111 @@
+// The bodies of the lenses of projector.hpp.
+
+namespace TEXGEN_DETAIL {
+
+// What lenses need of two numbers: their sum and difference, both in halves where a sum could leave the range. (Elsewhere
+// halves would lose the last bit of subnormal numbers.)
+class LensExtent {
+public:
+    LensExtent(double from, double to) noexcept : unit_(larger(std::fabs(from), std::fabs(to)) < 0x1p1000 ? 1.0 : 0.5) {
+        sum_ = unit_ * to + unit_ * from;
+        difference_ = unit_ * to - unit_ * from;
+    }
+
+    // (to + from) / (to - from), and number / (to - from) for one of the two.
+    double sum_over_length() const noexcept { return sum_ / difference_; }
+    double end_over_length(double end) const noexcept { return unit_ * end / difference_; }
+
+    // 2 number / (to - from), where neither twice the number nor half the difference leaves the range on the way.
+    double twice_over_length(double number) const noexcept {
+        if (unit_ < 1.0) return number / difference_;
+        return std::fabs(difference_) < 1.0 ? 2.0 * number / difference_ : number / (0.5 * difference_);
+    }
+
+private:
+    double unit_, sum_, difference_;
+};
+
+// Row z of a perspective matrix: clip z = scale * z_eye + offset, clip w = -z_eye.
+struct DepthRow {
+    double scale, offset;
+};
+
+inline DepthRow perspective_depth(double z_near, double z_far, bool reversed, DepthRange range) noexcept {
+    const bool infinite = !is_finite(z_far);
+    const LensExtent depth(z_near, z_far);
+    const double far_ratio = infinite ? 1.0 : depth.end_over_length(z_far);    // far / (far - near)
+    const double near_ratio = infinite ? 0.0 : depth.end_over_length(z_near);  // near / (far - near)
+    if (range == DepthRange::negative_one_to_one) {
+        const double scale = infinite ? 1.0 : depth.sum_over_length();
+        const double offset = z_near * (2.0 * far_ratio);
+        return reversed ? DepthRow{scale, offset} : DepthRow{-scale, -offset};
+    }
+    return reversed ? DepthRow{near_ratio, z_near * far_ratio} : DepthRow{-far_ratio, -z_near * far_ratio};
+}
+
+inline std::optional<ProjectorProjection> checked_projection(glm::dmat4 matrix, Conventions conventions) noexcept {
+    if (conventions.ndc_y == NdcY::down) {
+        for (glm::length_t column = 0; column < 4; ++column) matrix[column][1] = -matrix[column][1];
+    }
+    const bool usable = is_finite(matrix) && matrix[0][0] != 0.0 && matrix[1][1] != 0.0;
+    return usable ? std::optional(ProjectorProjection(matrix)) : std::nullopt;
+}
+
+// The perspective matrix of the focal lengths on the diagonal, and of the off-axis terms in column z.
+inline std::optional<ProjectorProjection> checked_perspective(const glm::dvec2& focal_length,
+                                                              const glm::dvec2& off_axis, const DepthRow& depth,
+                                                              Conventions conventions) noexcept {
+    glm::dmat4 matrix(0.0);
+    matrix[0][0] = focal_length.x;
+    matrix[1][1] = focal_length.y;
+    matrix[2] = {off_axis.x, off_axis.y, depth.scale, -1.0};
+    matrix[3][2] = depth.offset;
+    return checked_projection(matrix, conventions);
+}
+
+}  // namespace TEXGEN_DETAIL
+
+namespace TEXGEN_NAMESPACE {
+
+inline std::optional<ProjectorProjection> perspective(const PerspectiveLens& lens, Conventions conventions) noexcept {
+    const double half_angle = 0.5 * lens.fovy.in_radians();
+    if (!(half_angle > 0.0 && half_angle < 0.5 * 3.14159265358979323846)) return std::nullopt;
+    if (!(lens.aspect > 0.0 && detail::is_finite(lens.aspect))) return std::nullopt;
+    if (!(lens.z_near > 0.0 && lens.z_near < lens.z_far)) return std::nullopt;
+    // cos / sin and not 1 / tan: two correctly rounded functions and one division, at any angle whose half is exact.
+    const double focal_length =
+        half_angle < 0x1p-30 ? 2.0 / lens.fovy.in_radians() : std::cos(half_angle) / std::sin(half_angle);
+    return detail::checked_perspective(
+        {focal_length / lens.aspect, focal_length}, glm::dvec2(0.0),
+        detail::perspective_depth(lens.z_near, lens.z_far, lens.reversed_depth, conventions.depth), conventions);
+}
+
+inline std::optional<ProjectorProjection> frustum(const FrustumLens& lens, Conventions conventions) noexcept {
+    if (!(lens.z_near > 0.0 && lens.z_near < lens.z_far && detail::is_finite(lens.z_far))) return std::nullopt;
+    const detail::LensExtent width(lens.left, lens.right);
+    const detail::LensExtent height(lens.bottom, lens.top);
+    return detail::checked_perspective({width.twice_over_length(lens.z_near), height.twice_over_length(lens.z_near)},
+                                       {width.sum_over_length(), height.sum_over_length()},
+                                       detail::perspective_depth(lens.z_near, lens.z_far, false, conventions.depth),
+                                       conventions);
+}
+
+inline std::optional<ProjectorProjection> orthographic(const OrthographicLens& lens, Conventions conventions) noexcept {
+    if (!(lens.z_near < lens.z_far && detail::is_finite(lens.z_near) && detail::is_finite(lens.z_far)))
+        return std::nullopt;
+    const detail::LensExtent width(lens.left, lens.right);
+    const detail::LensExtent height(lens.bottom, lens.top);
+    const detail::LensExtent depth(lens.z_near, lens.z_far);
+    const bool zero_to_one = conventions.depth == DepthRange::zero_to_one;
+    glm::dmat4 matrix(0.0);
+    matrix[0][0] = width.twice_over_length(1.0);
+    matrix[1][1] = height.twice_over_length(1.0);
+    matrix[2][2] = -depth.twice_over_length(zero_to_one ? 0.5 : 1.0);
+    matrix[3][0] = -width.sum_over_length();
+    matrix[3][1] = -height.sum_over_length();
+    matrix[3][2] = -(zero_to_one ? depth.end_over_length(lens.z_near) : depth.sum_over_length());
+    matrix[3][3] = 1.0;
+    return detail::checked_projection(matrix, conventions);
+}
+
+}  // namespace TEXGEN_NAMESPACE
