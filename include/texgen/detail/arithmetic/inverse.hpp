@@ -60,19 +60,19 @@ private:
     using Row = std::array<double, 4>;
     using Square = std::array<Row, 4>;  // [row][column]
 
-    static DoubleDouble dot(const double* row, const Square& matrix, int column, double start) noexcept {
+    // start - row . column of a matrix.
+    static double residual_of(const Row& row, const Square& matrix, std::size_t column, double start) noexcept {
         DoubleDouble sum{start, 0.0};
-        for (std::size_t k = 0; k < 4; ++k)
-            sum = add_product(sum, -row[k], matrix[k][static_cast<std::size_t>(column)]);
-        return sum;
+        for (std::size_t k = 0; k < 4; ++k) sum = add_product(sum, -row[k], matrix[k][column]);
+        return sum.high;
     }
 
     // The same and a bound on its error: one rounding, four sums within 2^-102 of the terms, and products that underflow.
-    static Bounded bounded_dot(const double* row, const Square& matrix, int column, double start) noexcept {
-        const double value = dot(row, matrix, column, start).high;
+    static Bounded bounded_residual_of(const Row& row, const Square& matrix, std::size_t column,
+                                       double start) noexcept {
+        const double value = residual_of(row, matrix, column, start);
         double magnitude = std::fabs(start);
-        for (std::size_t k = 0; k < 4; ++k)
-            magnitude += std::fabs(row[k]) * std::fabs(matrix[k][static_cast<std::size_t>(column)]);
+        for (std::size_t k = 0; k < 4; ++k) magnitude += std::fabs(row[k]) * std::fabs(matrix[k][column]);
         return {value, gamma(2) * std::fabs(value) + 0x1p-99 * magnitude + 0x1p-1000};
     }
 
@@ -123,22 +123,17 @@ inline bool CertifiedInverse::equilibrate() noexcept {
         is_exact = is_exact && (element == 0.0 || std::fabs(std::scalbn(element, shift)) >= least_scaled);
         element = std::scalbn(element, shift);
     };
-    for (int pass = 0; pass < 3; ++pass) {
+    // Rows, then columns, three times.
+    for (int pass = 0; pass < 6; ++pass) {
+        const bool is_of_rows = pass % 2 == 0;
         for (std::size_t i = 0; i < 4; ++i) {
-            double row_largest = 0.0;
-            for (std::size_t k = 0; k < 4; ++k) row_largest = std::fmax(row_largest, std::fabs(scaled_[i][k]));
-            if (row_largest == 0.0) return false;
-            const int row_shift = -std::ilogb(row_largest);
-            for (std::size_t k = 0; k < 4; ++k) scale(scaled_[i][k], row_shift);
-            row_exponent_[i] += row_shift;
-        }
-        for (std::size_t k = 0; k < 4; ++k) {
-            double column_largest = 0.0;
-            for (std::size_t i = 0; i < 4; ++i) column_largest = std::fmax(column_largest, std::fabs(scaled_[i][k]));
-            if (column_largest == 0.0) return false;
-            const int column_shift = -std::ilogb(column_largest);
-            for (std::size_t i = 0; i < 4; ++i) scale(scaled_[i][k], column_shift);
-            column_exponent_[k] += column_shift;
+            const auto element = [&](std::size_t k) -> double& { return is_of_rows ? scaled_[i][k] : scaled_[k][i]; };
+            double largest = 0.0;
+            for (std::size_t k = 0; k < 4; ++k) largest = std::fmax(largest, std::fabs(element(k)));
+            if (largest == 0.0) return false;
+            const int shift = -std::ilogb(largest);
+            for (std::size_t k = 0; k < 4; ++k) scale(element(k), shift);
+            (is_of_rows ? row_exponent_ : column_exponent_)[i] += shift;
         }
     }
     return is_exact;
@@ -196,8 +191,7 @@ inline void CertifiedInverse::clear_what_has_no_terms() noexcept {
 inline CertifiedInverse::Square CertifiedInverse::residual() const noexcept {
     Square result;
     for (std::size_t i = 0; i < 4; ++i)
-        for (std::size_t j = 0; j < 4; ++j)
-            result[i][j] = dot(scaled_[i].data(), inverse_, static_cast<int>(j), i == j ? 1.0 : 0.0).high;
+        for (std::size_t j = 0; j < 4; ++j) result[i][j] = residual_of(scaled_[i], inverse_, j, i == j ? 1.0 : 0.0);
     return result;
 }
 
@@ -294,16 +288,15 @@ inline glm::dmat4 CertifiedInverse::matrix() const noexcept {
 
 inline glm::dvec4 CertifiedInverse::solve_row(const glm::dvec4& row) const noexcept {
     // y A = row with B = R A C is (y R^-1) B = row C.
-    std::array<double, 4> target{};
+    Row target{};
     for (std::size_t k = 0; k < 4; ++k)
         target[k] = std::scalbn(row[static_cast<glm::length_t>(k)], column_exponent_[k]);
-    std::array<double, 4> solution{};
-    std::array<double, 4> residual = target;
+    Row solution{};
+    Row residual = target;
     for (int pass = 0; pass < 3; ++pass) {
         for (std::size_t j = 0; j < 4; ++j)
             for (std::size_t k = 0; k < 4; ++k) solution[j] += residual[k] * inverse_[k][j];
-        for (std::size_t j = 0; j < 4; ++j)
-            residual[j] = dot(solution.data(), scaled_, static_cast<int>(j), target[j]).high;
+        for (std::size_t j = 0; j < 4; ++j) residual[j] = residual_of(solution, scaled_, j, target[j]);
     }
     glm::dvec4 result(0.0);
     for (std::size_t j = 0; j < 4; ++j)
@@ -318,7 +311,7 @@ inline double CertifiedInverse::contraction() const noexcept {
     for (std::size_t j = 0; j < 4; ++j) {
         double sum = 0.0;
         for (std::size_t i = 0; i < 4; ++i) {
-            const Bounded residual = bounded_dot(scaled_[i].data(), inverse_, static_cast<int>(j), i == j ? 1.0 : 0.0);
+            const Bounded residual = bounded_residual_of(scaled_[i], inverse_, j, i == j ? 1.0 : 0.0);
             sum += std::fabs(residual.value) + residual.error;
         }
         largest = larger_or_nan(largest, 1.001 * sum);
@@ -339,7 +332,7 @@ inline glm::dvec4 CertifiedInverse::error_of_row(const glm::dvec4& solution, con
     Row error{};
     for (std::size_t k = 0; k < 4; ++k) {
         const double target = std::scalbn(row[static_cast<glm::length_t>(k)], column_exponent_[k]);
-        const Bounded residual = bounded_dot(scaled_solution.data(), scaled_, static_cast<int>(k), target);
+        const Bounded residual = bounded_residual_of(scaled_solution, scaled_, k, target);
         for (std::size_t j = 0; j < 4; ++j) {
             lacking[j] += residual.value * inverse_[k][j];
             error[j] += (residual.error + gamma(5) * std::fabs(residual.value)) * std::fabs(inverse_[k][j]);
