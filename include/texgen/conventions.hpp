@@ -6,6 +6,8 @@
 
 #include <glm/vec2.hpp>
 
+#include "detail/matrices/required.hpp"
+
 // 0.2.0: 10000 major + 100 minor + patch.
 #define TEXGEN_VERSION 200
 
@@ -15,28 +17,11 @@ enum class DepthRange { negative_one_to_one, zero_to_one };  // NDC depth of the
 enum class NdcY { up, down };                                // where y grows to in NDC
 enum class TextureOrigin { bottom_left, top_left };          // the corner of the picture that (s, t) = (0, 0) addresses
 
-namespace detail {
-inline namespace TEXGEN_COMPILER {
-
-// A member that has no default: leaving it out does not compile.
-template <class T>
-class Given {
-public:
-    constexpr Given(T value) noexcept : value_(value) {}
-    constexpr operator T() const noexcept { return value_; }
-
-private:
-    T value_;
-};
-
-}  // namespace TEXGEN_COMPILER
-}  // namespace detail
-
 // Three independent choices of a graphics API. There is no default: the caller says which one the numbers follow.
 struct Conventions {
-    detail::Given<DepthRange> depth;
-    detail::Given<NdcY> ndc_y;
-    detail::Given<TextureOrigin> origin;
+    detail::Required<DepthRange> depth;
+    detail::Required<NdcY> ndc_y;
+    detail::Required<TextureOrigin> origin;
 
     friend constexpr bool operator==(const Conventions&, const Conventions&) = default;
 };
@@ -47,14 +32,14 @@ inline constexpr Conventions direct3d{DepthRange::zero_to_one, NdcY::up, Texture
 inline constexpr Conventions metal{DepthRange::zero_to_one, NdcY::up, TextureOrigin::top_left};
 inline constexpr Conventions vulkan{DepthRange::zero_to_one, NdcY::down, TextureOrigin::top_left};
 
-// What r holds after the division: unit is depth in [0, 1] as Everitt's matrix has it, ndc leaves the projector's own
-// depth alone as SGI's recipe does.
+// What r holds after the division: with unit a depth in [0, 1], as Everitt's matrix has it; with ndc the projector's own
+// depth, as SGI's recipe leaves it.
 enum class DepthMapping { unit, ndc };
 
 // The closed rectangle of texture coordinates that the slide covers. min() is the corner that TextureOrigin addresses.
 // A rectangle with min() > max() in a component, or with a NaN, contains no point, so nothing is lit in it.
-// Its functions are constexpr where GLM's are: not under GLM_FORCE_INTRINSICS. The parentheses about the names of two of them
-// keep off the macros of <windows.h>; where those are, a call is (region.min)().
+// Its functions are constexpr where GLM's are: not under GLM_FORCE_INTRINSICS. min and max stand in parentheses because
+// <windows.h> makes macros of them; where it is included, a call is (region.min)().
 class TextureRegion {
 public:
     constexpr const glm::dvec2&(min)() const noexcept { return min_; }
@@ -75,7 +60,7 @@ private:
     glm::dvec2 max_;
 };
 
-// [0, 1] x [0, 1].
+// [0, 1] x [0, 1]: all of a texture that is addressed by fractions.
 inline GLM_CONSTEXPR TextureRegion whole_texture() noexcept { return {glm::dvec2(0.0, 0.0), glm::dvec2(1.0, 1.0)}; }
 
 // [0, width] x [0, height] in texels, as GL_TEXTURE_RECTANGLE addresses its image.
@@ -83,7 +68,7 @@ inline GLM_CONSTEXPR TextureRegion rectangle_texture(double width, double height
     return {glm::dvec2(0.0, 0.0), glm::dvec2(width, height)};
 }
 
-// A tile of a larger texture, in the units of that texture.
+// From min to max: a tile of a larger texture, in the units of that texture.
 inline GLM_CONSTEXPR TextureRegion atlas_tile(glm::dvec2 min, glm::dvec2 max) noexcept { return {min, max}; }
 
 // An angle that knows its unit: made by radians() or degrees() only, so that a bare number does not convert.
@@ -103,7 +88,7 @@ private:
     double radians_;
 };
 
-// The two ways to say one.
+// The two ways to make one.
 constexpr Angle radians(double value) noexcept { return Angle(value); }
 constexpr Angle degrees(double value) noexcept { return Angle(value * (3.14159265358979323846 / 180.0)); }
 
@@ -116,21 +101,19 @@ struct Tolerance {
 
 inline constexpr Tolerance exact{0.0};  // the nearest float
 
-namespace detail {
-inline namespace TEXGEN_COMPILER {
+// The tolerance that is a fraction of a texel of a texture of that size, for a region of one unit. (The unit of a rectangle
+// texture is the texel: Tolerance{fraction}.) Exact where the size is not positive, or so small that the quotient overflows.
+constexpr Tolerance texels(double fraction, double texture_size) noexcept {
+    return texture_size > 0.0 && fraction < texture_size * 1e300 ? Tolerance{fraction / texture_size} : exact;
+}
+
+}  // namespace TEXGEN_NAMESPACE
+
+namespace TEXGEN_DETAIL {
 
 // The error that a kernel may make: 0 for exact, and never so much that a float could leave its range.
 constexpr double accepted(Tolerance tolerance) noexcept {
     return tolerance.value > 0.0 ? (tolerance.value < 0x1p100 ? tolerance.value : 0x1p100) : 0.0;
 }
 
-}  // namespace TEXGEN_COMPILER
-}  // namespace detail
-
-// A fraction of a texel of a texture of that size, for a region of one unit (a rectangle texture's unit is the texel:
-// Tolerance{fraction}). Exact where the size is not positive, or is so small that the quotient is no number.
-constexpr Tolerance texels(double fraction, double texture_size) noexcept {
-    return texture_size > 0.0 && fraction < texture_size * 1e300 ? Tolerance{fraction / texture_size} : exact;
-}
-
-}  // namespace TEXGEN_NAMESPACE
+}  // namespace TEXGEN_DETAIL

@@ -99,8 +99,9 @@ Positions<Space> positions_of(const X& x, const Y& y, const Z& z) noexcept {
 
 // ---- Matrices --------------------------------------------------------------------------------------------------
 
+// Makes a Transform of an Eigen matrix: from_eigen<ViewMatrix>(m).
 // Guarantee: each element is kept exactly; no allocation, noexcept for a plain matrix.
-// Shape: from_eigen<ViewMatrix>(m), a 4x4 of float or double for column vectors, or an Eigen::Transform of any mode
+// Shape: a 4x4 of float or double for column vectors, or an Eigen::Transform of any mode
 // (Isometry3d, Affine3f, AffineCompact3d, Projective3d ...). The role names the spaces; there is no default.
 // Bad input: NaN and infinity are kept as they are.
 template <class Role, detail::EigenMatrix4 Matrix>
@@ -113,13 +114,14 @@ Role from_eigen(const Matrix& matrix) {
     return Role(result);
 }
 
-// The same of an Eigen::Transform.
+// Makes it of an Eigen::Transform.
 template <class Role, detail::EigenTransform EigenTransform>
 Role from_eigen(const EigenTransform& transform) noexcept {
     return from_eigen<Role>(
         Eigen::Transform<typename EigenTransform::Scalar, 3, Eigen::Projective>(transform).matrix());
 }
 
+// Makes an Eigen matrix of a Transform.
 // Guarantee: exact for Matrix4d and Projective3d; each element rounded once for Matrix4f and Projective3f. No allocation,
 // noexcept. Bad input: as Transform.
 template <class Target = Eigen::Matrix4d, class To, class From>
@@ -136,8 +138,8 @@ Target to_eigen(const Transform<To, From>& transform) noexcept {
     return result;
 }
 
-// The same as Affine3d or Affine3f. Bad input: empty where the last row is not exactly (0, 0, 0, 1), so that no projection
-// is lost; every texgen matrix of a perspective projector is such a one.
+// Makes an Affine3d or Affine3f of a Transform.
+// Bad input: empty where the last row is not exactly (0, 0, 0, 1), so that no projection is lost; every texgen matrix of a perspective projector is such a one.
 template <class Target = Eigen::Affine3d, class To, class From>
 std::optional<Target> to_eigen_affine(const Transform<To, From>& transform) noexcept {
     static_assert(std::is_same_v<Target, Eigen::Affine3d> || std::is_same_v<Target, Eigen::Affine3f>,
@@ -149,6 +151,7 @@ std::optional<Target> to_eigen_affine(const Transform<To, From>& transform) noex
 
 // ---- Vectors ---------------------------------------------------------------------------------------------------
 
+// Makes an Eigen vector of a GLM vector.
 // Guarantee: each element is kept. Shapes: glm::vec2, vec3, vec4 and dvec2, dvec3, dvec4; column vectors of as many rows.
 template <glm::length_t N, detail::FloatOrDouble Scalar, glm::qualifier Q>
 Eigen::Matrix<Scalar, static_cast<int>(N), 1> to_eigen(const glm::vec<N, Scalar, Q>& vector) noexcept {
@@ -157,7 +160,7 @@ Eigen::Matrix<Scalar, static_cast<int>(N), 1> to_eigen(const glm::vec<N, Scalar,
     return result;
 }
 
-// The way back.
+// Makes a GLM vector of an Eigen vector.
 template <class Vector>
 requires detail::EigenDense<Vector> && detail::FloatOrDouble<typename Vector::Scalar> &&
     (Vector::ColsAtCompileTime == 1 && Vector::RowsAtCompileTime >= 2 &&
@@ -171,7 +174,8 @@ requires detail::EigenDense<Vector> && detail::FloatOrDouble<typename Vector::Sc
 
 // ---- Points and outputs ----------------------------------------------------------------------------------------
 
-// Guarantee: a view of the given floats, which are not copied and must outlive it; no allocation, noexcept.
+// Views the floats of an Eigen object as points.
+// Guarantee: they are not copied, and must outlive the view; no allocation, noexcept.
 // Shapes: points as columns of a 3 x N (Matrix3Xf, Ref, Map, block; interleaved where its columns are dense, planar where
 // it is row-major), as rows of an N x 3, or as three vectors of coordinates of one size and one inner stride. Any strides.
 // Bad input: three vectors that disagree, and negative strides, are asserted; without assertions they are no points.
@@ -204,7 +208,7 @@ Positions<Eye> eye_space(X&& x, Y&& y, Z&& z) noexcept {
     return detail::positions_of<Eye>(x, y, z);
 }
 
-// The floats of a vector without gaps (VectorXf, Ref<ArrayXf>, a column of a matrix), or of a row-major matrix or array
+// Views the floats of a vector without gaps (VectorXf, Ref<ArrayXf>, a column of a matrix), or of a row-major matrix or array
 // that owns them (height x width fragments): an output of Texcoords, or an input of alphas.
 // Guarantee: a view as above; std::span<const float> of what is const. A vector that may have gaps does not compile.
 template <detail::EigenSpan Floats>

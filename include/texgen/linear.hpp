@@ -20,53 +20,38 @@
 
 namespace TEXGEN_NAMESPACE {
 
-namespace detail {
-inline namespace TEXGEN_COMPILER {
-
-inline Transform<Texture, ProjectorEye> texture_from_projector_eye(const Projector& projector,
-                                                                   const TextureRegion& region,
-                                                                   DepthMapping depth) noexcept {
-    return scale_bias(projector.conventions, region, depth) * projector.projection;
-}
-
-}  // namespace TEXGEN_COMPILER
-}  // namespace detail
-
-// Guarantee: S P_p V_p in double, 12 roundings a term at most; no allocation, noexcept.
+// Makes the texgen matrix of the world, S P_p V_p.
+// Guarantee: in double, 12 roundings a term at most; no allocation, noexcept.
 // Shape: world points to homogeneous (s, t, r, q) in the units of the region; q > 0 in front of the projector.
 // Bad input: NaN and infinity of the projector stay in the elements that they reach.
 // Source: Everitt, Projective Texture Mapping, (3) with M = I.
 inline WorldTexgen texture_from_world(const Projector& projector, TextureRegion region = whole_texture(),
-                                      DepthMapping depth = DepthMapping::unit) noexcept {
-    return detail::texture_from_projector_eye(projector, region, depth) * projector.view;
-}
+                                      DepthMapping depth = DepthMapping::unit) noexcept;
 
-// Guarantee: T_o = S P_p V_p M in double. Rounded to float it is within 0.002 texel of a 4096 texture, at any distance
-// up to 1e7 from the origin, for a slide that the object is near to; no allocation, noexcept.
-// Shape: object points to homogeneous (s, t, r, q). It must be made anew whenever M, V_p or P_p changes. In a vertex shader,
-// which gets rounded() and does not divide:
+// Makes the texgen matrix of an object, T_o = S P_p V_p M. It must be made anew whenever M, V_p or P_p changes. In a vertex
+// shader, which gets rounded() and does not divide:
 //
 //     strq = texture_from_object * vec4(position, 1.0);
 //
+// Guarantee: in double. Rounded to float it is within 0.002 texel of a 4096 texture, at any distance up to 1e7 from the
+// origin, for a slide that the object is near to; no allocation, noexcept.
+// Shape: object points to homogeneous (s, t, r, q).
 // Bad input: as texture_from_world().
 // Source: Everitt, Projective Texture Mapping, (3).
 inline ObjectTexgen object_linear(const Projector& projector, const ModelMatrix& world_from_object,
                                   TextureRegion region = whole_texture(),
-                                  DepthMapping depth = DepthMapping::unit) noexcept {
-    return detail::texture_from_projector_eye(projector, region, depth) * (projector.view * world_from_object);
-}
+                                  DepthMapping depth = DepthMapping::unit) noexcept;
 
-// Guarantee: T_e = S P_p V_p V_e^-1 in double, as accurate as object_linear(); no allocation, noexcept.
-// Shape: the camera's eye points to homogeneous (s, t, r, q); one matrix serves every object of the frame.
-// Bad input: as texture_from_world(). The camera is given as its pose, V_e^-1: no inverse is taken here.
+// Makes the texgen matrix of a camera's eye space, T_e = S P_p V_p V_e^-1: one matrix serves every object of the frame.
+// Guarantee: in double, as accurate as object_linear(); no allocation, noexcept.
+// Shape: the camera's eye points to homogeneous (s, t, r, q). The camera is given as its pose, V_e^-1: no inverse is taken.
+// Bad input: as texture_from_world().
 // Source: Everitt, Projective Texture Mapping, (4).
 inline EyeTexgen eye_linear(const Projector& projector, const CameraPose& world_from_eye,
-                            TextureRegion region = whole_texture(), DepthMapping depth = DepthMapping::unit) noexcept {
-    return detail::texture_from_projector_eye(projector, region, depth) * (projector.view * world_from_eye);
-}
+                            TextureRegion region = whole_texture(), DepthMapping depth = DepthMapping::unit) noexcept;
 
-// Guarantee: what OpenGL stores when the rows of `planes` are given to glTexGen under that MODELVIEW: each row p becomes
-// p M^-1, solved and refined, so that rounded to float it is within 0.54 ulp of its largest component while the
+// Returns what OpenGL stores when the rows of `planes` are given to glTexGen under that MODELVIEW: each row p becomes p M^-1.
+// Guarantee: solved and refined, so that rounded to float it is within 0.54 ulp of its largest component while the
 // condition of M (rows and columns scaled) stays below 1e8; no allocation, noexcept.
 // Shape: planes over the space that M takes to the eye. The rows of S P_p V_p under MODELVIEW = V_e give T_e.
 // Bad input: empty where M is singular to working precision, or a plane, M or a result is not finite.
@@ -74,40 +59,23 @@ inline EyeTexgen eye_linear(const Projector& projector, const CameraPose& world_
 // the call.
 template <class Space>
 std::optional<EyeTexgen> eye_planes_as_stored(const Transform<Texture, Space>& planes,
-                                              const Transform<Eye, Space>& modelview) noexcept {
-    const detail::CertifiedInverse inverse(modelview.matrix());
-    if (!inverse.regular()) return std::nullopt;
-    glm::dmat4 stored(0.0);
-    for (glm::length_t row = 0; row < 4; ++row) {
-        glm::dvec4 plane(0.0);
-        for (int column = 0; column < 4; ++column) plane[column] = planes.matrix()[column][row];
-        plane = inverse.solve_row(plane);
-        for (glm::length_t column = 0; column < 4; ++column) stored[column][row] = plane[column];
-    }
-    if (!detail::is_finite(stored)) return std::nullopt;
-    return EyeTexgen(stored);
-}
+                                              const Transform<Eye, Space>& modelview) noexcept;
 
-// Guarantee: |stored - planes M^-1| is at most this, element by element, for any `stored`: what eye_planes_as_stored()
-// answers, the same rounded to float, or what glGetTexGen returned. Next to the error itself while the condition of M
-// (rows and columns scaled) stays below 1e7. No allocation, noexcept.
+// Bounds |stored - planes M^-1|, element by element, for any `stored`: what eye_planes_as_stored() answers, the same rounded
+// to float, or what glGetTexGen returned.
+// Guarantee: next to the error itself while the condition of M (rows and columns scaled) stays below 1e7. No allocation,
+// noexcept.
 // Shape: elements as in stored.matrix(), planes and M as for eye_planes_as_stored().
 // Bad input: infinite where M is refused; a NaN or an infinity of a plane, given or stored, stays in its row.
-// Source: see detail/inverse.hpp.
+// Source: see detail/arithmetic/inverse.hpp.
 template <class Space>
 glm::dmat4 eye_planes_error_bound(const Transform<Texture, Space>& planes, const Transform<Eye, Space>& modelview,
-                                  const EyeTexgen& stored) noexcept {
-    return detail::CertifiedInverse(modelview.matrix()).error_of(stored.matrix(), planes.matrix());
-}
+                                  const EyeTexgen& stored) noexcept;
 
-// The rows S, T, R, Q, each element rounded once: what glTexGenfv is given.
+// Returns the rows S, T, R, Q, each element rounded once: what glTexGenfv is given.
 template <class Space>
-std::array<glm::vec4, 4> planes(const Transform<Texture, Space>& transform) noexcept {
-    const glm::mat4 m = transform.rounded();
-    std::array<glm::vec4, 4> rows;
-    for (glm::length_t row = 0; row < 4; ++row)
-        rows[static_cast<std::size_t>(row)] = {m[0][row], m[1][row], m[2][row], m[3][row]};
-    return rows;
-}
+std::array<glm::vec4, 4> planes(const Transform<Texture, Space>& transform) noexcept;
 
 }  // namespace TEXGEN_NAMESPACE
+
+#include "detail/matrices/linear.inc.hpp"

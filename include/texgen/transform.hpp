@@ -23,8 +23,9 @@ struct ProjectorEye;
 struct ProjectorClip;
 struct Texture;
 
-// Guarantee: holds its matrix in double unchanged; rounded() rounds each element once; no allocation, noexcept.
-// Shape: column vectors, v_to = matrix() * v_from. There is no default: a Transform was always given a value.
+// A 4x4 matrix of doubles from one space to another. There is no default: a Transform was always given a value.
+// Guarantee: holds its matrix unchanged; rounded() rounds each element once; no allocation, noexcept.
+// Shape: column vectors, v_to = matrix() * v_from.
 // Bad input: NaN and infinity are kept as they are. An element beyond the largest float rounds to infinity.
 template <class To, class From>
 class Transform {
@@ -39,7 +40,7 @@ private:
     glm::dmat4 matrix_;
 };
 
-// Composition, from right to left: A from B times B from C is A from C.
+// Composes from right to left: A from B times B from C is A from C.
 template <class A, class B, class C>
 Transform<A, C> operator*(const Transform<A, B>& a_from_b, const Transform<B, C>& b_from_c) noexcept {
     return Transform<A, C>(a_from_b.matrix() * b_from_c.matrix());
@@ -58,51 +59,36 @@ using ObjectTexgen = Transform<Texture, Object>;                     // T_o
 using EyeTexgen = Transform<Texture, Eye>;                           // T_e
 using WorldTexgen = Transform<Texture, World>;                       // S P_p V_p
 
+// Inverts a transform.
 // Guarantee: where it answers, each element of X = A^-1 is within 2 double ulp of the largest of its terms in X A X, while
 // the condition of A (rows and columns scaled) stays below 1e8, however far apart its elements are, as long as that term
-// is (likewise scaled) above detail::least_scaled; an element without terms is 0. The answer is certified by its residual,
+// is (likewise scaled) above 2^-900; an element without terms is 0. The answer is certified by its residual,
 // never by the size of a determinant, so any uniform scale is regular. An affine A has an exactly affine X. No allocation,
 // noexcept.
 // Bad input: empty for a matrix that is singular to working precision, is not finite, or whose inverse overflows, and where
-// an element is below detail::least_scaled of others in its row or column: scaling could round it.
-// Source: see detail/inverse.hpp.
+// an element is below 2^-900 of others in its row or column: scaling could round it.
+// Source: see detail/arithmetic/inverse.hpp.
 template <class To, class From>
-std::optional<Transform<From, To>> inverse(const Transform<To, From>& transform) noexcept {
-    const detail::CertifiedInverse inverse(transform.matrix());
-    if (!inverse.regular()) return std::nullopt;
-    const Transform<From, To> result(inverse.matrix());
-    return detail::is_finite(result.matrix()) ? std::optional(result) : std::nullopt;
-}
+std::optional<Transform<From, To>> inverse(const Transform<To, From>& transform) noexcept;
 
-// Guarantee: |inverse - transform^-1| is at most this, element by element, for any `inverse`: that of inverse(), of
-// inverse_rigid(), a rounded one, or one from elsewhere. Next to the error itself while the condition (rows and columns
-// scaled) stays below 1e7. No allocation, noexcept; it costs about what inverse() does.
+// Bounds |inverse - transform^-1|, element by element, for any `inverse`: that of inverse(), of inverse_rigid(), a rounded
+// one, or one from elsewhere.
+// Guarantee: next to the error itself while the condition (rows and columns scaled) stays below 1e7. No allocation,
+// noexcept; it costs about what inverse() does.
 // Shape: elements as in inverse.matrix().
 // Bad input: infinite where inverse() refuses the transform; a NaN or an infinity of the inverse stays in its row.
-// Source: see detail/inverse.hpp.
+// Source: see detail/arithmetic/inverse.hpp.
 template <class To, class From>
-glm::dmat4 inverse_error_bound(const Transform<To, From>& transform, const Transform<From, To>& inverse) noexcept {
-    return detail::CertifiedInverse(transform.matrix()).error_of(inverse.matrix(), glm::dmat4(1.0));
-}
+glm::dmat4 inverse_error_bound(const Transform<To, From>& transform, const Transform<From, To>& inverse) noexcept;
 
+// Inverts a rotation and a translation, by transposing: the inverse for a camera or a projector that is posed without scale.
+// It loses nothing, at any distance from the origin.
 // Guarantee: exact transposition of the rotation; the translation -R^T t within 1 double ulp of its exact value for that
 // rotation, while its terms do not cancel below 2^-50 of the largest. No allocation, noexcept.
 // Precondition, asserted to 1e-3: the transform is rigid (an orthonormal rotation and a translation).
-// Use it where a camera or a projector is posed without scale: it loses nothing, at any distance from the origin.
 template <class To, class From>
-Transform<From, To> inverse_rigid(const Transform<To, From>& transform) noexcept {
-    const glm::dmat4& m = transform.matrix();
-    TEXGEN_ASSERT(!(detail::distance_from_rigid(m) > 1e-3));
-    glm::dmat4 result(1.0);
-    for (glm::length_t column = 0; column < 3; ++column) {
-        detail::DoubleDouble translation{0.0, 0.0};
-        for (glm::length_t row = 0; row < 3; ++row) {
-            result[column][row] = m[row][column];
-            translation = detail::add_product(translation, -m[column][row], m[3][row]);
-        }
-        result[3][column] = translation.high;
-    }
-    return Transform<From, To>(result);
-}
+Transform<From, To> inverse_rigid(const Transform<To, From>& transform) noexcept;
 
 }  // namespace TEXGEN_NAMESPACE
+
+#include "detail/matrices/transform.inc.hpp"
