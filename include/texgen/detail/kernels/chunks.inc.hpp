@@ -153,7 +153,7 @@ TEXGEN_INLINE void evaluate(const ChunkGroup& group, int first, int last, const 
 
 // Does the job from `first` on. Stops at chunks that no factors serve and returns them, a part of one row or whole rows;
 // the empty unit if there are none. The next call starts after them.
-template <class = void>
+template <class CompiledWhereCalled = void>
 TileJob::Unit divide_chunks(const TileJob& job, TileJob::Unit first) noexcept {
     ChunkPlace place{first.x_begin / job.chunk, first.y_begin, chunks_of_row(job)};
     ChunkGroup group;

@@ -54,7 +54,7 @@ TEXGEN_INLINE void differentiate_rows(const FootprintJob& job) noexcept {
     }
 }
 
-template <class = void>
+template <class CompiledWhereCalled = void>
 void differentiate(const FootprintJob& original) noexcept {
     const FootprintJob job = original;
     if (job.derivatives_in_float)
@@ -167,7 +167,7 @@ TEXGEN_INLINE int filter_rows(const FootprintJob& job, int first) noexcept {
     return job.height;
 }
 
-template <class = void>
+template <class CompiledWhereCalled = void>
 int filter(const FootprintJob& original, int first) noexcept {
     const FootprintJob job = original;
     const bool shape = job.anisotropy != nullptr || job.major[0] != nullptr || job.major[1] != nullptr;

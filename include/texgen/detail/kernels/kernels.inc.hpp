@@ -18,20 +18,26 @@ namespace TEXGEN_DETAIL::TEXGEN_ISA {
 template <class Table>
 const Table& kernels() noexcept {
     if constexpr (std::is_same_v<Table, TileKernels>) {
-        static constexpr TileKernels table{divide_nearest<>, divide_rounded<>, divide_chunks<>, divide_closely<>};
+        static constexpr TileKernels table{.divide_nearest = divide_nearest<>,
+                                           .divide_rounded = divide_rounded<>,
+                                           .divide_chunks = divide_chunks<>,
+                                           .divide_closely = divide_closely<>};
         return table;
     } else if constexpr (std::is_same_v<Table, PointKernels>) {
-        static constexpr PointKernels table{divide_points_nearest<>, divide_points_within<FormsInFloat>,
-                                            divide_points_within<FormsInDouble>, generate_points<>};
+        static constexpr PointKernels table{.divide_nearest = divide_points_nearest<>,
+                                            .divide_float = divide_points_within<FormsInFloat>,
+                                            .divide_rounded = divide_points_within<FormsInDouble>,
+                                            .generate = generate_points<>};
         return table;
     } else if constexpr (std::is_same_v<Table, SegmentKernels>) {
-        static constexpr SegmentKernels table{divide_segment_nearest<>, divide_segment_float<>};
+        static constexpr SegmentKernels table{.divide_nearest = divide_segment_nearest<>,
+                                              .divide_float = divide_segment_float<>};
         return table;
     } else if constexpr (std::is_same_v<Table, FootprintKernels>) {
-        static constexpr FootprintKernels table{differentiate<>, filter<>};
+        static constexpr FootprintKernels table{.differentiate = differentiate<>, .filter = filter<>};
         return table;
     } else {
-        static constexpr BoxKernels table{classify<>, bound<>, separate<>};
+        static constexpr BoxKernels table{.classify = classify<>, .bound = bound<>, .separate = separate<>};
         return table;
     }
 }

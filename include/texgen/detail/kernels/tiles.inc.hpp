@@ -125,12 +125,12 @@ TEXGEN_INLINE TileJob::Unit divide_units(const TileJob& job, TileJob::Unit unit)
     return unit;
 }
 
-template <class = void>
+template <class CompiledWhereCalled = void>
 TileJob::Unit divide_nearest(const TileJob& job, TileJob::Unit first) noexcept {
     return job.numerators == 2 ? divide_units<true, 2>(job, first) : divide_units<true, 1>(job, first);
 }
 
-template <class = void>
+template <class CompiledWhereCalled = void>
 void divide_rounded(const TileJob& job) noexcept {
     divide_units<false, 2>(job, job.unit_at(0, 0));
 }
@@ -217,7 +217,7 @@ TEXGEN_INLINE Words divide_closely(const CloseRow& row, double grain, const Clos
 }
 
 // One numerator stands in both places.
-template <class = void>
+template <class CompiledWhereCalled = void>
 std::uint64_t divide_closely(const TileJob& job, const CloseFunctions& functions, TileJob::Unit unit) noexcept {
     const CloseFunctions close = functions;
     CloseRow q_row(close.q);

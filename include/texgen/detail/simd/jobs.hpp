@@ -1,0 +1,198 @@
+#pragma once
+
+// What the kernels for tiles, points, segments and footprints are given and what they return (for boxes see box_kernels.hpp):
+// plain numbers and arrays, so that a table of kernels serves files of all compilers and flags.
+
+#include <cstddef>
+#include <cstdint>
+
+#include "../language.hpp"
+
+namespace TEXGEN_DETAIL {
+
+// Linear functions over a rectangle of fragments: base at its first fragment.
+template <class Number>
+struct RampOf {
+    Number base, dx, dy;
+};
+using Ramp = RampOf<double>;
+
+// numerator[k] / q over a rectangle; out[k], and lit (or null) from the closed region. With one numerator the second is the
+// same again. Rows of the outputs are pitch apart; those of an output that only the mask needs are one and the same.
+struct TileJob {
+    int numerators;
+    int width, height;
+    int chunk;    // the most fragments of a row that share a middle
+    int factors;  // of divide_chunks, for all of them, or any
+    Ramp numerator[2];
+    Ramp q;
+    bool q_is_constant;
+    double quotient_error[2];   // for divide_nearest
+    double numerator_error[2];  // for divide_chunks, as what follows
+    double q_error;
+    double least_q;  // below it no certificate holds
+    double tolerance;
+    float* out[2];
+    bool is_scratch[2];
+    float* lit;
+    std::ptrdiff_t pitch;
+    bool is_contiguous;    // rows follow one another in all outputs
+    float min[2], max[2];  // the region
+
+    // The job is done, checked and resumed in units of about 64 fragments: a part of a row, or several short rows.
+    // After the last unit comes an empty one.
+    struct Unit {
+        int x_begin, x_end, y_begin, y_end;
+    };
+
+    static constexpr int unit_size = 64;
+    static constexpr int any_factors = -1;
+
+    Unit unit_at(int x, int y) const noexcept {
+        const int rows = width >= unit_size ? 1 : unit_size / width;
+        return {x, unit_size < width - x ? x + unit_size : width, y, rows < height - y ? y + rows : height};
+    }
+    Unit unit_after(const Unit& unit) const noexcept {
+        return unit.x_end < width ? unit_at(unit.x_end, unit.y_begin) : unit_at(0, unit.y_end);
+    }
+    bool is_done(const Unit& unit) const noexcept { return unit.y_begin >= height; }
+};
+
+// The same functions of a tile to twice the precision: each is high + low, within `error` of the exact one, and a multiple of
+// `grain`. The coefficients of high are multiples of a unit in which no value of the tile needs more than 52 bits, so that
+// its arithmetic is exact; those of low are what is left below the unit.
+struct CloseFunction {
+    Ramp high, low;
+    double error, grain;
+};
+struct CloseFunctions {
+    CloseFunction numerator[2];
+    CloseFunction q;
+    double q_unit;  // adding and taking it rounds high of q to 26 bits
+};
+
+// A linear form of points (x, y, z, 1).
+struct PointForm {
+    double x, y, z, w;
+};
+
+// The number of points, and of values along a segment, that a kernel does is a multiple of point_quantum.
+inline constexpr std::size_t point_quantum = 16;
+inline constexpr std::size_t nearest_block = 64;
+inline constexpr std::size_t float_block = 256;
+
+// One or two divided coordinates in arrays, and their mask.
+struct DividedOutput {
+    std::size_t count;
+    int numerators;
+    bool pairs;  // both coordinates follow one another from out[0] on; else there is an array for each
+    float* out[2];
+    float* lit;            // or null
+    float min[2], max[2];  // the region
+};
+
+struct PointInput {
+    bool triples;  // x, y, z follow one another from `x` on; else there are three arrays
+    const float* x;
+    const float* y;
+    const float* z;
+
+    void advance(std::size_t points) noexcept {
+        x += triples ? 3 * points : points;
+        y += points;
+        z += points;
+    }
+};
+
+// numerator[k] / q at points.
+struct PointJob : DividedOutput, PointInput {
+    PointForm numerator[2];
+    PointForm q;
+    double tolerance;
+};
+
+// numerator[k] / q along a segment: values at alpha = 0 and at alpha = 1.
+struct SegmentJob : DividedOutput {
+    const float* alpha;
+    double a[2], b[2];
+    double q_a, q_b;
+    double tolerance;
+    bool in_front;  // all of it, well enough that quotient_error bounds the error in double of every value
+    double quotient_error[2];
+    // For divide_float: about the end where q is less, base + slope i / (1 + bend i), i the alpha from there.
+    bool about_b;
+    float bend, base[2], slope[2];
+
+    void advance(std::size_t values) noexcept { alpha += values; }
+};
+
+// The forms themselves, rounded to float. An output is null or an array; or all go to `quads`, four after one another.
+struct GenerateJob : PointInput {
+    std::size_t count;
+    PointForm form[4];
+    float* out[4];
+    float* quads;
+};
+
+// The derivatives of s (0) and t (1) over a rectangle, and what filters make of them. Of d/dx Q^2 and d/dy Q^2 the one
+// grows by twist a row, the other shrinks by twist a column. An output is null or an array whose rows are pitch apart.
+struct FootprintJob {
+    struct Slope {
+        double dx, dy, twist;
+    };
+
+    // The sum of two squares of `texels` that the filters need in float, when the largest of the job is about 1.
+    static constexpr float smallest_square = 0x1p-24f;
+
+    int width, height;
+    Ramp q;
+    Slope slope[2];
+    Slope texels[2];  // the same in texels, times a factor that level_offset and the factors below make good
+    bool derivatives_in_float, filters_in_float;
+    float level_offset, anisotropy_factor, major_factor[2];
+    float* dx[2];
+    float* dy[2];
+    float* level;
+    float* anisotropy;
+    float* major[2];
+    std::ptrdiff_t pitch;
+
+    float* row(float* output, int y) const noexcept { return output == nullptr ? nullptr : output + y * pitch; }
+};
+
+struct TileKernels {
+    TileJob::Unit (*divide_nearest)(const TileJob&, TileJob::Unit first) noexcept;
+    void (*divide_rounded)(const TileJob&) noexcept;
+    TileJob::Unit (*divide_chunks)(const TileJob&, TileJob::Unit first) noexcept;
+    // A unit on either side of the projector. A bit for each fragment that stays in doubt, row by row.
+    std::uint64_t (*divide_closely)(const TileJob&, const CloseFunctions&, TileJob::Unit unit) noexcept;
+};
+
+// Where a kernel stops: at the first block with values that it cannot decide (bit i: value begin + i), or at the count.
+// Blocks end at multiples of nearest_block.
+struct Undecided {
+    std::size_t begin;
+    std::uint64_t values;
+};
+
+struct PointKernels {
+    Undecided (*divide_nearest)(const PointJob&, std::size_t first) noexcept;
+    // The first point from `first` on of a block of float_block points that is not inside the tolerance, or the count.
+    std::size_t (*divide_float)(const PointJob&, std::size_t first) noexcept;
+    std::size_t (*divide_rounded)(const PointJob&, std::size_t first) noexcept;
+    void (*generate)(const GenerateJob&) noexcept;
+};
+
+struct SegmentKernels {
+    Undecided (*divide_nearest)(const SegmentJob&, std::size_t first) noexcept;
+    // The first value from `first` on of a block of float_block with an alpha that is no number, or the count.
+    std::size_t (*divide_float)(const SegmentJob&, std::size_t first) noexcept;
+};
+
+struct FootprintKernels {
+    void (*differentiate)(const FootprintJob&) noexcept;
+    // The first row from `first` on with a fragment that floats do not serve, or the height.
+    int (*filter)(const FootprintJob&, int first) noexcept;
+};
+
+}  // namespace TEXGEN_DETAIL
