@@ -25,225 +25,37 @@
 
 namespace TEXGEN_NAMESPACE {
 
+inline namespace TEXGEN_BUILD {
+
+// Writes s/q, t/q and r/q along a segment, C_u = ((1-a) A_u + a B_u) / ((1-a) A_q + a B_q) for u = s, t, r.
+// Guarantee: each within max(tolerance, 1/2 ulp) of the exact value of the given floats (r: the tolerance relative to
+// max(1, |r|)); with `exact` the nearest float, the ends included. The sign of q is exact, and behind the projector all
+// are 0. lit as for triangles. No allocation, noexcept.
+// Shapes: each output as long as alpha, or empty (asserted); alpha in [0, 1] (asserted).
+// Bad input: NaN and infinity spoil their own value only; an alpha that is NaN is never lit.
+// Source: the C_u note, (2).
+template <class CompiledWhereCalled = void>
+void interpolate(const Segment& segment, std::span<const float> alpha, TextureRegion region, Texcoords out,
+                 Tolerance tolerance = exact) noexcept;
+
+}  // namespace TEXGEN_BUILD
+
 // The work that the values of a segment need, for all alpha in [0, 1].
 // Guarantee: never nothing where a value is lit, never less than divide_and_test where one is dark or behind; affine where
 // q is the same at both ends. noexcept.
 // Bad input: an end that is not finite needs divide_and_test.
-inline Work work(const Segment& segment, TextureRegion region, Tolerance tolerance = exact) noexcept {
-    const glm::dvec4 a = detail::widened(segment.a);
-    const glm::dvec4 b = detail::widened(segment.b);
-    // A product with 0 is 0 for numbers only.
-    if (!(0.0 * (a.x + a.y + a.w) == 0.0 && 0.0 * (b.x + b.y + b.w) == 0.0)) return Work::divide_and_test;
-    if (a.w <= 0.0 && b.w <= 0.0) return Work::nothing;
-
-    // A tile of one row whose corners are the ends: given, so without an error.
-    detail::Corners at{};
-    for (std::size_t i = 0; i < 4; ++i) {
-        const glm::dvec4& end = i % 2 == 0 ? a : b;
-        at.numerator[i] = detail::pair_of(end.x, end.y);
-        at.q[i] = end.w;
-    }
-    at.least_q = detail::smaller(a.w, b.w);
-    at.largest_q = detail::larger(a.w, b.w);
-    const detail::Places places = detail::places_of(at, detail::LitTest(region), detail::accepted(tolerance));
-    if (places.s == detail::Place::outside || places.t == detail::Place::outside) return Work::nothing;
-    if (a.w == b.w) return Work::affine;
-    return places.s == detail::Place::inside && places.t == detail::Place::inside ? Work::divide
-                                                                                  : Work::divide_and_test;
-}
-
-namespace detail {
-inline namespace TEXGEN_COMPILER {
-
-// A float stands for the segment's value at alpha exactly: A - alpha A + alpha B.
-inline Expansion<5> exactly_mixed(double a, double b, double alpha) noexcept {
-    Expansion<5> sum;
-    sum.add(a);
-    sum.add_product(-alpha, a);
-    sum.add_product(alpha, b);
-    return sum;
-}
-
-// 1 - alpha, the products and the sum are rounded once each.
-inline Bounded mixed(double a, double b, double alpha) noexcept {
-    const double from_a = (1.0 - alpha) * a;
-    const double from_b = alpha * b;
-    return {from_a + from_b, gamma(4) * (std::fabs(from_a) + std::fabs(from_b))};
-}
-
-// One value of a job, every decision exact.
-inline void interpolate_one(const SegmentJob& job, std::size_t i) noexcept {
-    const double alpha = widened(job.alpha[i]);
-    const auto exact_q = [&] { return exactly_mixed(job.q_a, job.q_b, alpha); };
-    const Bounded q = mixed(job.q_a, job.q_b, alpha);
-    const bool in_front = certain_sign(q, exact_q) > 0;
-    float value[2] = {0.0f, 0.0f};
-    for (int k = 0; k < job.numerators; ++k) {
-        if (in_front)
-            value[k] = certain_quotient(
-                mixed(job.a[k], job.b[k], alpha), q, [&] { return exactly_mixed(job.a[k], job.b[k], alpha); }, exact_q);
-        job.out[k][i] = value[k];
-    }
-    if (job.lit != nullptr) job.lit[i] = in_front && is_inside(value[0], value[1], job.min, job.max) ? 1.0f : 0.0f;
-}
-
-// What is known of a segment whose ends are in front: q is least, and |F/Q| largest, at an end.
-struct SegmentBounds {
-    double q_least, q_largest;
-    double numerator[2], quotient[2];
-
-    explicit SegmentBounds(const SegmentJob& job) noexcept
-        : q_least(smaller(job.q_a, job.q_b)), q_largest(larger(job.q_a, job.q_b)), numerator{}, quotient{} {
-        for (int k = 0; k < job.numerators; ++k) {
-            numerator[k] = larger(std::fabs(job.a[k]), std::fabs(job.b[k]));
-            quotient[k] = 1.001 * larger(std::fabs(job.a[k]) / job.q_a, std::fabs(job.b[k]) / job.q_b);
-        }
-    }
-
-    // As in certain_quotient(), with errors of `relative` in the numerator and in q, and `final` in the division.
-    double error(int k, double relative, double final) const noexcept {
-        return 1.001 * relative * (numerator[k] + quotient[k] * q_largest) / q_least + final * quotient[k];
-    }
-    bool is_well_in_front() const noexcept { return q_least > 0x1p-20 * q_largest && q_largest < 0x1p1000; }
-};
-
-// About the end where q is less, with i the alpha from there, u is exactly
-//   u0 + d i / (1 + b i),  b = (Q1 - Q0) / Q0 >= 0,  d = (u1 - u0) Q1 / Q0,
-// and the step lies between 0 and u1 - u0. With r = 2^-24: 1 - alpha, b, its product and the sum, the product of two sums,
-// its reciprocal, the products with the other sum and with i, d and its product are rounded, 10 r of the step at most; u0 and
-// the last sum once each. Infinite where a float could leave its range.
-inline double segment_float_error(const SegmentJob& job, int k) noexcept {
-    const double u_a = job.a[k] / job.q_a;
-    const double u_b = job.b[k] / job.q_b;
-    const double size_a = std::fabs(u_a);
-    const double size_b = std::fabs(u_b);
-    const double largest = larger_or_nan(size_a, size_b);
-    const double ratio = larger(job.q_a, job.q_b) / smaller(job.q_a, job.q_b);
-    if (!(largest < 0x1p60 && ratio < 0x1p60)) return std::numeric_limits<double>::infinity();
-    return 1.001 * unit_roundoff_float * (2.0 * largest + 11.0 * std::fabs(u_a - u_b)) + 0x1p-120;
-}
-
-inline void prepare_float(SegmentJob& job) noexcept {
-    job.about_b = job.q_b < job.q_a;
-    const double q = job.about_b ? job.q_b : job.q_a;
-    const double far_q = job.about_b ? job.q_a : job.q_b;
-    job.bend = static_cast<float>((far_q - q) / q);
-    for (int k = 0; k < job.numerators; ++k) {
-        const double u = (job.about_b ? job.b[k] : job.a[k]) / q;
-        const double far_u = (job.about_b ? job.a[k] : job.b[k]) / far_q;
-        job.base[k] = static_cast<float>(u);
-        job.slope[k] = static_cast<float>((far_u - u) * (far_q / q));
-    }
-}
-
-// What the segments' kernels need, but for the alphas and the outputs: coordinates `first` and the next.
-inline SegmentJob segment_job(const Segment& segment, int first, int numerators) noexcept {
-    SegmentJob job{};
-    job.numerators = numerators;
-    for (int k = 0; k < numerators; ++k) {
-        const auto coordinate = static_cast<glm::length_t>(first + k);
-        job.a[k] = widened(segment.a[coordinate]);
-        job.b[k] = widened(segment.b[coordinate]);
-    }
-    job.q_a = widened(segment.a.w);
-    job.q_b = widened(segment.b.w);
-    return job;
-}
-
-inline namespace TEXGEN_BUILD {
-
-// The nearest floats from `first` on: in vectors; what those cannot decide value by value.
-inline void interpolate_nearest(const SegmentKernels& kernels, const SegmentJob& job, std::size_t first) noexcept {
-    divide_blocks(kernels.divide_nearest, job, first, interpolate_one);
-}
-
-// In float where that stays inside the tolerance for the whole segment, else the nearest float.
-inline void interpolate_job(const SegmentKernels& kernels, SegmentJob job, double tolerance) noexcept {
-    job.tolerance = tolerance;
-    if (job.q_a > 0.0 && job.q_b > 0.0) {
-        const SegmentBounds bounds(job);
-        bool float_fits = tolerance > 0.0;
-        for (int k = 0; k < job.numerators; ++k) float_fits = float_fits && segment_float_error(job, k) <= tolerance;
-        job.in_front = bounds.is_well_in_front();
-        for (int k = 0; k < job.numerators; ++k)
-            job.quotient_error[k] = bounds.error(k, gamma(4), 4.0 * unit_roundoff_double);
-        if (float_fits) {
-            prepare_float(job);
-            const std::size_t count = job.count;
-            for (std::size_t i = kernels.divide_float(job, 0); i < count; i = kernels.divide_float(job, i)) {
-                job.count = count - i < float_block ? count : i + float_block;
-                interpolate_nearest(kernels, job, i);
-                i = job.count;
-                job.count = count;
-            }
-            return;
-        }
-    }
-    interpolate_nearest(kernels, job, 0);
-}
-
-}  // namespace TEXGEN_BUILD
-
-}  // namespace TEXGEN_COMPILER
-}  // namespace detail
+inline Work work(const Segment& segment, TextureRegion region, Tolerance tolerance = exact) noexcept;
 
 inline namespace TEXGEN_COMPILER {
 
-// Guarantee: |computed - exact| of s (x) and t (y) is at most this for every alpha in [0, 1] with q > 0, the rounding to
-// float included; infinite where q reaches 0 and no finite bound exists. noexcept.
+// Bounds the error of s (x) and t (y) along a segment.
+// Guarantee: |computed - exact| is at most this for every alpha in [0, 1] with q > 0, the rounding to float included;
+// infinite where q reaches 0 and no finite bound exists. noexcept.
 // Bad input: infinite where an s, t or q of an end is not finite.
-inline glm::dvec2 error_bound(const Segment& segment, Tolerance tolerance = exact) noexcept {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    const detail::SegmentJob job = detail::segment_job(segment, 0, 2);
-    // A product with 0 is 0 for numbers only.
-    const double sum = job.a[0] + job.a[1] + job.b[0] + job.b[1] + job.q_a + job.q_b;
-    if (!(0.0 * sum == 0.0)) return {infinity, infinity};
-    if (job.q_a <= 0.0 && job.q_b <= 0.0) return {0.0, 0.0};
-    if (job.q_a <= 0.0 || job.q_b <= 0.0) return {infinity, infinity};
-    const detail::SegmentBounds bounds(job);
-    const auto bound = [&](int k) {
-        const double of_nearest = detail::half_ulp(bounds.quotient[k]);
-        const double of_float = detail::segment_float_error(job, k);
-        // Where both are next to one another, a file with other flags may have decided otherwise.
-        const bool may_be_float = of_float * (1.0 - 0x1p-40) <= detail::accepted(tolerance);
-        return may_be_float ? detail::larger(of_float, of_nearest) : of_nearest;
-    };
-    return {bound(0), bound(1)};
-}
+inline glm::dvec2 error_bound(const Segment& segment, Tolerance tolerance = exact) noexcept;
 
 }  // namespace TEXGEN_COMPILER
-
-inline namespace TEXGEN_BUILD {
-
-// Guarantee: C_u = ((1-a) A_u + a B_u) / ((1-a) A_q + a B_q) for u = s, t, r within max(tolerance, 1/2 ulp) of the exact
-// value of the given floats (r: the tolerance relative to max(1, |r|)); with `exact` the nearest float, the ends
-// included. The sign of q is exact, and behind the projector all are 0. lit as for triangles. No allocation, noexcept.
-// Shapes: each output as long as alpha, or empty (asserted); alpha in [0, 1] (asserted).
-// Bad input: NaN and infinity spoil their own value only; an alpha that is NaN is never lit.
-// Source: the C_u note, (2).
-template <class = void>
-void interpolate(const Segment& segment, std::span<const float> alpha, TextureRegion region, Texcoords out,
-                 Tolerance tolerance = exact) noexcept {
-    for ([[maybe_unused]] const float a : alpha) TEXGEN_ASSERT(!(a < 0.0f) && !(a > 1.0f));
-    const double accepted = detail::accepted(tolerance);
-    const detail::SegmentKernels& kernels = detail::chosen<detail::SegmentKernels>();
-    detail::for_each_group(out, alpha.size(), [&](int first, int numerators, const detail::PointOutputs& outputs) {
-        detail::SegmentJob job = detail::segment_job(segment, first, numerators);
-        detail::LitTest(region).copy_to(job.min, job.max);
-        const auto run = [&](const detail::SegmentJob& part) { detail::interpolate_job(kernels, part, accepted); };
-
-        const std::size_t whole = alpha.size() / detail::point_quantum * detail::point_quantum;
-        job.alpha = alpha.data();
-        if (whole != 0) detail::run_batch(job, outputs, 0, whole, whole, run);
-        const std::size_t rest = alpha.size() - whole;
-        if (rest == 0) return;
-        float padded[detail::point_quantum];
-        for (std::size_t i = 0; i < detail::point_quantum; ++i) padded[i] = alpha[whole + (i < rest ? i : rest - 1)];
-        job.alpha = padded;
-        detail::run_batch(job, outputs, whole, rest, detail::point_quantum, run);
-    });
-}
-
-}  // namespace TEXGEN_BUILD
 
 }  // namespace TEXGEN_NAMESPACE
+
+#include "detail/points/segment.inc.hpp"

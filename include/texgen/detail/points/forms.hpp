@@ -1,0 +1,51 @@
+#pragma once
+
+// A row of a texgen matrix as a linear form of points with w = 1, and its value at one point: with a bound, exactly, and
+// accurately.
+
+#include <cmath>
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+
+#include "../arithmetic/expansion.hpp"
+#include "../arithmetic/rounding.hpp"
+#include "../language.hpp"
+#include "../simd/jobs.hpp"
+
+namespace TEXGEN_DETAIL {
+
+inline PointForm form(const glm::dmat4& matrix, int row) noexcept {
+    const auto i = static_cast<glm::length_t>(row);
+    return {matrix[0][i], matrix[1][i], matrix[2][i], matrix[3][i]};
+}
+
+// The sum of the terms' magnitudes.
+inline double terms_at(const PointForm& form, const glm::dvec3& v) noexcept {
+    return std::fabs(form.x * v.x) + std::fabs(form.y * v.y) + std::fabs(form.z * v.z) + std::fabs(form.w);
+}
+
+// Three products and three sums: each term is rounded four times at most.
+inline Bounded value_at(const PointForm& form, const glm::dvec3& v) noexcept {
+    return {form.x * v.x + form.y * v.y + form.z * v.z + form.w, gamma(5) * terms_at(form, v)};
+}
+
+inline Expansion<8> exactly_at(const PointForm& form, const glm::dvec3& v) noexcept {
+    Expansion<8> sum;
+    sum.add_product(form.x, v.x);
+    sum.add_product(form.y, v.y);
+    sum.add_product(form.z, v.z);
+    sum.add(form.w);
+    return sum;
+}
+
+// With an error that is small beside the value: from the exact sum where the terms cancel. A NaN or an infinity stays one
+// in the error.
+inline Bounded accurately_at(const PointForm& form, const glm::dvec3& v) noexcept {
+    const Bounded close = value_at(form, v);
+    if (std::fabs(close.value) > 0x1p20 * close.error || !(close.error < 0x1p1000)) return close;
+    const double value = exactly_at(form, v).estimate();
+    return {value, 0x1p-48 * std::fabs(value)};
+}
+
+}  // namespace TEXGEN_DETAIL

@@ -1,0 +1,101 @@
+// The caller's arrays: which of them are computed, and how a kernel's results get there, of points and of values along a
+// segment. Included by texcoord.hpp.
+
+namespace TEXGEN_DETAIL {
+
+inline bool is_computed(const std::span<float>& output, std::size_t count) noexcept {
+    TEXGEN_ASSERT(output.empty() || output.size() == count);
+    return !output.empty() && output.size() == count;
+}
+
+// The array of an output that is computed, or null. The span comes by reference, here and everywhere: where a function takes
+// it by value, out of an aggregate that the caller has by reference, and returns its pointer, GCC 12 at -O2 and -Os
+// forgets that what it points to is written, and the user's variables keep what they held (bug 115033 of GCC).
+inline float* array_of(const std::span<float>& output, std::size_t count) noexcept {
+    return is_computed(output, count) ? output.data() : nullptr;
+}
+
+// Where one or two coordinates of all points go. A coordinate that only the mask needs has no array; `pairs` takes two
+// coordinates in turn.
+struct PointOutputs {
+    float* coordinate[2] = {};
+    float* lit = nullptr;
+    float* pairs = nullptr;
+
+    bool are_complete(int numerators) const noexcept {
+        return pairs != nullptr || (coordinate[0] != nullptr && (numerators == 1 || coordinate[1] != nullptr));
+    }
+};
+
+// Calls group(first, numerators, outputs) for the coordinates that are computed together: s and t where both are asked for
+// or the mask is, either one alone, and r.
+template <class Group>
+void for_each_group(const Texcoords& out, std::size_t count, const Group& group) noexcept {
+    float* const s = array_of(out.s, count);
+    float* const t = array_of(out.t, count);
+    float* const r = array_of(out.r, count);
+    float* const lit = array_of(out.lit, count);
+    if (lit != nullptr || (s != nullptr && t != nullptr))
+        group(0, 2, PointOutputs{{s, t}, lit, nullptr});
+    else if (s != nullptr)
+        group(0, 1, PointOutputs{{s, nullptr}, nullptr, nullptr});
+    else if (t != nullptr)
+        group(1, 1, PointOutputs{{t, nullptr}, nullptr, nullptr});
+    if (r != nullptr) group(2, 1, PointOutputs{{r, nullptr}, nullptr, nullptr});
+}
+
+// What one job does: `count` points or values, padded to `whole`, a multiple of point_quantum; the results belong at `first`.
+struct Batch {
+    std::size_t first, count, whole;
+};
+
+// Copies hold a block of every kernel, so that its certificate serves as much as it would without them.
+inline constexpr std::size_t copy_size = float_block;
+
+// Runs a job for a batch. What has no place of its own goes through buffers.
+template <class Job, class Run>
+void run_batch(Job job, const PointOutputs& out, const Batch& batch, const Run& run) noexcept {
+    const auto [first, count, whole] = batch;
+    if (count == whole && out.are_complete(job.numerators)) {
+        job.count = count;
+        job.pairs = out.pairs != nullptr;
+        for (int k = 0; k < job.numerators; ++k)
+            job.out[k] = job.pairs ? out.pairs + 2 * first : out.coordinate[k] + first;
+        job.lit = out.lit != nullptr ? out.lit + first : nullptr;
+        return run(job);
+    }
+    float buffer[3][copy_size];
+    job.out[0] = buffer[0];
+    job.out[1] = buffer[1];
+    job.lit = out.lit != nullptr ? buffer[2] : nullptr;
+    for (std::size_t begin = 0; begin < count; begin += copy_size) {
+        job.count = whole - begin < copy_size ? whole - begin : copy_size;
+        run(job);
+        const std::size_t end = count - begin < job.count ? count - begin : job.count;
+        for (std::size_t i = 0; i < end; ++i) {
+            const std::size_t to = first + begin + i;
+            for (std::size_t k = 0; k < 2; ++k) {
+                if (out.pairs != nullptr) out.pairs[2 * to + k] = buffer[k][i];
+                if (out.coordinate[k] != nullptr) out.coordinate[k][to] = buffer[k][i];
+            }
+            if (out.lit != nullptr) out.lit[to] = buffer[2][i];
+        }
+        job.advance(job.count);
+    }
+}
+
+inline namespace TEXGEN_BUILD {
+
+// The values of a job from `first` on by its kernel, and by one(job, i) what that cannot decide.
+template <class Kernel, class Job, class One>
+void divide_blocks(Kernel kernel, const Job& job, std::size_t first, const One& one) noexcept {
+    for (Undecided left = kernel(job, first); left.begin < job.count; left = kernel(job, first)) {
+        for (std::uint64_t values = left.values; values != 0; values &= values - 1)
+            one(job, left.begin + static_cast<std::size_t>(std::countr_zero(values)));
+        first = (left.begin / nearest_block + 1) * nearest_block;
+    }
+}
+
+}  // namespace TEXGEN_BUILD
+
+}  // namespace TEXGEN_DETAIL

@@ -1,0 +1,225 @@
+// The bodies of texcoord.hpp: points in batches that the kernels can read, from one tier to the next.
+
+namespace TEXGEN_DETAIL {
+
+// Calls run(input, batch) for parts of the positions that the kernels can read: as they are, or, where the count is no
+// multiple of point_quantum or the layout is none of theirs, copied, and padded with the last point.
+template <class Space, class Run>
+void for_each_batch(const Positions<Space>& positions, const Run& run) noexcept {
+    const std::size_t count = positions.size();
+    std::size_t first = 0;
+    if (positions.is_planar() || positions.is_interleaved()) {
+        first = count / point_quantum * point_quantum;
+        if (first != 0)
+            run(PointInput{positions.is_interleaved(), positions.x(), positions.y(), positions.z()},
+                Batch{0, first, first});
+    }
+    float x[copy_size];
+    float y[copy_size];
+    float z[copy_size];
+    while (first < count) {
+        const std::size_t part = count - first < copy_size ? count - first : copy_size;
+        const std::size_t whole = (part + point_quantum - 1) / point_quantum * point_quantum;
+        for (std::size_t i = 0; i < whole; ++i) {
+            const glm::vec3 point = positions[first + (i < part ? i : part - 1)];
+            x[i] = point.x;
+            y[i] = point.y;
+            z[i] = point.z;
+        }
+        run(PointInput{false, x, y, z}, Batch{first, part, whole});
+        first += part;
+    }
+}
+
+// One point of a job, every decision exact.
+inline void project_one(const PointJob& job, std::size_t i) noexcept {
+    const glm::dvec3 v = job.triples ? widened(glm::vec3(job.x[3 * i], job.x[3 * i + 1], job.x[3 * i + 2]))
+                                     : widened(glm::vec3(job.x[i], job.y[i], job.z[i]));
+    const auto exact_q = [&] { return exactly_at(job.q, v); };
+    const Bounded q = value_at(job.q, v);
+    const bool in_front = certain_sign(q, exact_q) > 0;
+    float value[2] = {0.0f, 0.0f};
+    for (int k = 0; k < job.numerators; ++k) {
+        const PointForm& numerator = job.numerator[k];
+        if (in_front)
+            value[k] = certain_quotient(
+                value_at(numerator, v), q, [&] { return exactly_at(numerator, v); }, exact_q);
+        if (job.pairs)
+            job.out[0][2 * i + static_cast<std::size_t>(k)] = value[k];
+        else
+            job.out[k][i] = value[k];
+    }
+    if (job.lit != nullptr) job.lit[i] = in_front && is_inside(value[0], value[1], job.min, job.max) ? 1.0f : 0.0f;
+}
+
+// A job without points: the forms of these rows over the row of q.
+inline PointJob point_job(const glm::dmat4& matrix, int row, int numerators, const TextureRegion& region,
+                          Tolerance tolerance) noexcept {
+    PointJob job{};
+    job.numerators = numerators;
+    for (int k = 0; k < numerators; ++k) job.numerator[k] = form(matrix, row + k);
+    job.q = form(matrix, 3);
+    job.tolerance = accepted(tolerance);
+    LitTest(region).copy_to(job.min, job.max);
+    return job;
+}
+
+inline namespace TEXGEN_BUILD {
+
+// Points begin to end of a job: in vectors; what those cannot decide point by point.
+inline void project_nearest(const PointKernels& kernels, PointJob job, std::size_t begin, std::size_t end) noexcept {
+    job.count = end;
+    divide_blocks(kernels.divide_nearest, job, begin, project_one);
+}
+
+// Points begin to end by a kernel that stops at a block whose error is not certified to be inside the tolerance. Such a
+// block has company: `otherwise` gets more points after each failure, until the kernel is tried again.
+template <class Kernel, class Otherwise>
+void project_within(Kernel kernel, PointJob job, std::size_t begin, std::size_t end,
+                    const Otherwise& otherwise) noexcept {
+    job.count = end;
+    std::size_t pause = float_block;
+    for (std::size_t i = kernel(job, begin); i < end; i = kernel(job, i)) {
+        pause = pause < (end - begin) / 8 ? 8 * pause : end - begin;
+        const std::size_t resume = pause < end - i ? i + pause : end;
+        otherwise(job, i, resume);
+        i = resume;
+    }
+}
+
+// The dial: forms and division in float, else forms in double divided in float, else as exact.
+inline void project_within_tolerance(const PointKernels& kernels, const PointJob& points) noexcept {
+    const auto nearest = [&kernels](const PointJob& job, std::size_t begin, std::size_t end) {
+        project_nearest(kernels, job, begin, end);
+    };
+    if (points.tolerance == 0.0) return nearest(points, 0, points.count);
+    const auto rounded = [&](const PointJob& job, std::size_t begin, std::size_t end) {
+        project_within(kernels.divide_rounded, job, begin, end, nearest);
+    };
+    project_within(kernels.divide_float, points, 0, points.count, rounded);
+}
+
+template <class Space>
+void project_all(const Positions<Space>& positions, const PointJob& job, const PointOutputs& out) noexcept {
+    const PointKernels& kernels = chosen<PointKernels>();
+    for_each_batch(positions, [&](const PointInput& input, const Batch& batch) {
+        PointJob part = job;
+        static_cast<PointInput&>(part) = input;
+        run_batch(part, out, batch, [&](const PointJob& points) { project_within_tolerance(kernels, points); });
+    });
+}
+
+template <class Space>
+void generate_all(const glm::dmat4& matrix, const Positions<Space>& positions, float* const (&out)[4],
+                  float* quads) noexcept {
+    GenerateJob job{};
+    for (int k = 0; k < 4; ++k) job.form[k] = form(matrix, k);
+    for_each_batch(positions, [&](const PointInput& input, const Batch& batch) {
+        const auto [first, count, whole] = batch;
+        GenerateJob part = job;
+        static_cast<PointInput&>(part) = input;
+        part.count = whole;
+        if (count == whole) {
+            part.quads = quads != nullptr ? quads + 4 * first : nullptr;
+            for (std::size_t k = 0; k < 4; ++k) part.out[k] = out[k] != nullptr ? out[k] + first : nullptr;
+            return chosen<PointKernels>().generate(part);
+        }
+        float buffer[4][copy_size];  // a part that is padded is a copy
+        for (std::size_t k = 0; k < 4; ++k) part.out[k] = buffer[k];
+        chosen<PointKernels>().generate(part);
+        for (std::size_t i = 0; i < count; ++i) {
+            for (std::size_t k = 0; k < 4; ++k) {
+                if (quads != nullptr) quads[4 * (first + i) + k] = buffer[k][i];
+                if (out[k] != nullptr) out[k][first + i] = buffer[k][i];
+            }
+        }
+    });
+}
+
+}  // namespace TEXGEN_BUILD
+
+}  // namespace TEXGEN_DETAIL
+
+namespace TEXGEN_NAMESPACE {
+
+template <class Space>
+glm::dvec4 generate_error_bound(const Transform<Texture, Space>& texture_from_space,
+                                Positions<Space> positions) noexcept {
+    glm::dvec4 largest(0.0);
+    for (glm::length_t k = 0; k < 4; ++k) {
+        const detail::PointForm form = detail::form(texture_from_space.matrix(), k);
+        for (std::size_t i = 0; i < positions.size(); ++i) {
+            const detail::Bounded value = detail::value_at(form, detail::widened(positions[i]));
+            const double bound = value.error + detail::half_ulp(std::fabs(value.value) + 2.0 * value.error);
+            largest[k] = detail::larger_or_nan(largest[k], bound);
+        }
+    }
+    return largest;
+}
+
+template <class Space>
+glm::dvec2 project_error_bound(const Transform<Texture, Space>& texture_from_space, Positions<Space> positions,
+                               Tolerance tolerance) noexcept {
+    const glm::dmat4& matrix = texture_from_space.matrix();
+    const detail::PointForm q_form = detail::form(matrix, 3);
+    glm::dvec2 largest(0.0);
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        const glm::dvec3 v = detail::widened(positions[i]);
+        const detail::Bounded q = detail::accurately_at(q_form, v);
+        if (!(q.error < 0x1p1000)) return glm::dvec2(std::numeric_limits<double>::infinity());
+        if (q.value <= 0.0) continue;
+        for (glm::length_t k = 0; k < 2; ++k) {
+            const detail::PointForm form = detail::form(matrix, k);
+            const detail::Bounded s = detail::accurately_at(form, v);
+            const double quotient = (std::fabs(s.value) + s.error) / (q.value - q.error) * (1.0 + detail::gamma(4));
+            const double of_nearest = detail::half_ulp(quotient);
+            // Of the three ways to divide, the one in float errs most.
+            const double of_float = detail::forms_in_float.error(detail::terms_at(form, v), detail::terms_at(q_form, v),
+                                                                 std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z) + 1.0,
+                                                                 q.value - q.error, quotient);
+            const double bound = detail::larger(detail::smaller(of_float, detail::accepted(tolerance)), of_nearest);
+            largest[k] = detail::larger_or_nan(largest[k], bound);
+        }
+    }
+    return largest;
+}
+
+inline namespace TEXGEN_BUILD {
+
+template <class Space>
+void generate(const Transform<Texture, Space>& texture_from_space, Positions<Space> positions,
+              std::span<glm::vec4> strq) noexcept {
+    TEXGEN_ASSERT(strq.size() == positions.size());
+    if (strq.empty() || strq.size() != positions.size()) return;
+    detail::generate_all(texture_from_space.matrix(), positions, {}, &strq[0].x);
+}
+
+template <class Space>
+void generate(const Transform<Texture, Space>& texture_from_space, Positions<Space> positions,
+              HomogeneousTexcoords out) noexcept {
+    const auto array = [&](const std::span<float>& output) { return detail::array_of(output, positions.size()); };
+    detail::generate_all(texture_from_space.matrix(), positions,
+                         {array(out.s), array(out.t), array(out.r), array(out.q)}, nullptr);
+}
+
+template <class Space>
+void project(const Transform<Texture, Space>& texture_from_space, Positions<Space> positions, TextureRegion region,
+             Texcoords out, Tolerance tolerance) noexcept {
+    const glm::dmat4& matrix = texture_from_space.matrix();
+    detail::for_each_group(out, positions.size(), [&](int row, int numerators, const detail::PointOutputs& outputs) {
+        detail::project_all(positions, detail::point_job(matrix, row, numerators, region, tolerance), outputs);
+    });
+}
+
+template <class Space>
+void project(const Transform<Texture, Space>& texture_from_space, Positions<Space> positions, std::span<glm::vec2> st,
+             Tolerance tolerance) noexcept {
+    TEXGEN_ASSERT(st.size() == positions.size());
+    if (st.empty() || st.size() != positions.size()) return;
+    detail::project_all(positions, detail::point_job(texture_from_space.matrix(), 0, 2, whole_texture(), tolerance),
+                        {{}, nullptr, &st[0].x});
+}
+
+}  // namespace TEXGEN_BUILD
+
+}  // namespace TEXGEN_NAMESPACE
