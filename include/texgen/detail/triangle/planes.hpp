@@ -48,6 +48,8 @@ struct Tile {
     }
 };
 
+inline Tile tile_of(const FragmentRect& rect) noexcept { return {rect.x, rect.y, rect.width, rect.height}; }
+
 // How many fragments a rectangle has: where std::size_t cannot say it, more than any array holds.
 inline std::size_t count_of(const FragmentRect& rect) noexcept {
     constexpr std::size_t most = (std::numeric_limits<std::size_t>::max)();

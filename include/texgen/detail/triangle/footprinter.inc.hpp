@@ -1,0 +1,197 @@
+// Footprints over a triangle's tiles, and the body of footprint(). Included by footprint.hpp.
+
+namespace TEXGEN_DETAIL {
+
+inline namespace TEXGEN_BUILD {
+
+// Whether interpolate() does nothing there.
+inline bool is_dark(const TriangleFunctions& triangle, const Corners& at) noexcept {
+    if (at.all_behind()) return true;
+    const Places places = places_of(at, triangle.lit, triangle.tolerance);
+    return places.s == Place::outside || places.t == Place::outside;
+}
+
+// Footprints into the caller's arrays: in vectors where the tile is well in front, else in its halves, and at last one
+// by one.
+class TileFootprinter {
+public:
+    TileFootprinter(const FootprintKernels& kernels, const FootprintFunctions& functions, const TexelsPerUnit& texels,
+                    FragmentRect rect, const Footprints& out) noexcept
+        : kernels_(kernels), functions_(functions), texels_(texels), rect_(rect), out_(out) {}
+
+    void fill_all(const Tile& tile, const Corners& at) noexcept {
+        if (at.all_behind()) return store_rows(tile, nothing());
+        const bool may_be_vectors = at.well_in_front() && at.least_q > 0x1p-12 * at.largest_q;
+        if (may_be_vectors && tile.width <= largest_index && fill_in_vectors(tile, at)) return;
+        if (tile.width <= 8 && tile.height <= 8) return fill_one_by_one(tile);
+        for (const Tile& half : tile.halves()) fill_all(half, survey(functions_.triangle, half).at);
+    }
+
+private:
+    static constexpr int largest_index = 1 << 24;  // floats beyond are not every integer
+
+    static Footprint nothing() noexcept { return {{0.0, 0.0}, {0.0, 0.0}, 0.0, {0.0, 0.0}, 0.0, {0.0, 0.0}}; }
+
+    bool needs_filter() const noexcept {
+        return !out_.level.empty() || !out_.anisotropy.empty() || !out_.major_s.empty() || !out_.major_t.empty();
+    }
+
+    // False where floats do not reach. They hold the numerators in texels relative to their largest, Q relative to its
+    // own, and the factors that bring both back.
+    bool fill_in_vectors(const Tile& tile, const Corners& at) noexcept {
+        const TexelsPerUnit& texels = texels_;
+        const double numerator[2] = {functions_.largest(0, tile), functions_.largest(1, tile)};
+        const double largest = larger(numerator[0] * texels.s, numerator[1] * texels.t);
+        const bool filters = needs_filter();
+        if (!(larger(numerator[0], numerator[1]) < 0x1p500) || !(at.largest_q < 0x1p200) || !(at.least_q > 0x1p-200))
+            return false;
+        if (filters && (!is_usable(texels) || !(largest > 0x1p-500))) return false;
+
+        const double q_scale = reciprocal_power_of_two(at.largest_q);
+        const double q_scale_squared = q_scale * q_scale;
+        const double texel_scale = reciprocal_power_of_two(largest);
+        const auto scaled = [](const Slope::Terms& terms, double factor) {
+            return FootprintJob::Slope{terms.dx * factor, terms.dy * factor, terms.twist * factor};
+        };
+        FootprintJob job{};
+        job.width = tile.width;
+        job.height = tile.height;
+        job.q = {at.q_ramp.base * q_scale, at.q_ramp.dx * q_scale, at.q_ramp.dy * q_scale};
+        job.derivatives_in_float = float_fits(tile, at, numerator);
+        job.pitch = rect_.width;
+        const std::size_t offset = offset_of(tile.x, tile.y);
+        const auto array = [offset](const std::span<float>& span) {
+            return span.empty() ? nullptr : span.data() + offset;
+        };
+        for (std::size_t k = 0; k < 2; ++k) {
+            const Slope::Terms first = functions_.at_first(k, tile);
+            job.slope[k] = scaled(first, q_scale_squared);
+            if (filters) job.texels[k] = scaled(first, (k == 0 ? texels.s : texels.t) * texel_scale);
+        }
+        job.dx[0] = array(out_.dsdx);
+        job.dx[1] = array(out_.dtdx);
+        job.dy[0] = array(out_.dsdy);
+        job.dy[1] = array(out_.dtdy);
+        if (job.dx[0] != nullptr || job.dx[1] != nullptr || job.dy[0] != nullptr || job.dy[1] != nullptr)
+            kernels_.differentiate(job);
+        if (!filters) return true;
+
+        const double back = q_scale_squared / texel_scale;  // from a length of the job to texels, but for 1 / Q^2
+        const double determinant = std::fabs(functions_.determinant * texels.s * texels.t);
+        job.filters_in_float = job.derivatives_in_float || float_serves_filters(tile, at, job.texels);
+        job.level_offset = static_cast<float>(2 * exponent_of(q_scale) - exponent_of(texel_scale));
+        job.anisotropy_factor = factor_of(q_scale / (texel_scale * texel_scale * determinant));
+        job.major_factor[0] = factor_of(back / texels.s);
+        job.major_factor[1] = factor_of(back / texels.t);
+        job.level = array(out_.level);
+        job.anisotropy = array(out_.anisotropy);
+        job.major[0] = array(out_.major_s);
+        job.major[1] = array(out_.major_t);
+        for (int row = 0; (row = kernels_.filter(job, row)) < tile.height; ++row)
+            fill_one_by_one({tile.x, tile.y + row, tile.width, 1});
+        return true;
+    }
+
+    static float factor_of(double factor) noexcept { return static_cast<float>(factor); }
+
+    static int exponent_of(double power_of_two) noexcept {
+        return static_cast<int>(bit_cast<std::uint64_t>(power_of_two) >> 52) - 1023;
+    }
+
+    // Whether columns of J Q^2 and Q in float are within 2^-19 of themselves, which leaves level, anisotropy and major within
+    // 2^-16. With u = 2^-24 base, slope, product and sum of a component N are rounded: u (2 |N| + 2 |twist| width), where |N|
+    // is at most about 1; and one of the columns is nowhere shorter than at the first fragment less what the twist takes.
+    static bool float_serves_filters(const Tile& tile, const Corners& at,
+                                     const FootprintJob::Slope (&texels)[2]) noexcept {
+        constexpr double u = 1.001 * unit_roundoff_float;
+        const auto length = [](double s, double t) { return std::sqrt(s * s + t * t); };
+        const double twist = length(texels[0].twist, texels[1].twist);
+        const double least = larger(length(texels[0].dx, texels[1].dx) - tile.height * twist,
+                                    length(texels[0].dy, texels[1].dy) - tile.width * twist);
+        const double error = 1.5 * u * (4.0 + 2.0 * tile.width * twist);
+        const double q_error = u * (2.0 * at.largest_q + 2.0 * tile.width * std::fabs(at.q_ramp.dx));
+        return error <= 0x1p-19 * least && q_error <= 0x1p-19 * at.least_q;
+    }
+
+    // The error of N/Q^2 in float, with u = 2^-24: base, slope, product and sum of both are rounded, then the reciprocal,
+    // its square and the product.
+    bool float_fits(const Tile& tile, const Corners& at, const double (&numerator)[2]) const noexcept {
+        constexpr double u = 1.001 * unit_roundoff_float;
+        const double tolerance = functions_.triangle.tolerance;
+        const double q_error = u * (2.0 * at.largest_q + 2.0 * tile.width * std::fabs(at.q_ramp.dx));
+        if (!(tolerance > 0.0) || !(q_error < 0x1p-10 * at.least_q)) return false;
+        const double per_q_squared = at.reciprocal * at.reciprocal;
+        bool fits = true;
+        for (std::size_t k = 0; k < 2; ++k) {
+            const double twist = std::fabs(functions_.slope[k].value.twist);
+            const double error = u * (6.0 * numerator[k] + 2.0 * tile.width * twist) + functions_.error(k, tile) +
+                                 2.0 * (q_error + at.q_error) * at.reciprocal * numerator[k];
+            const double in_range = numerator[k] / (at.largest_q * at.largest_q);
+            fits = fits && in_range < 0x1p60 && 1.01 * error * per_q_squared + 0x1p-80 <= tolerance;
+        }
+        return fits;
+    }
+
+    void fill_one_by_one(const Tile& tile) noexcept {
+        for (std::int64_t y = tile.y; y < tile.y + tile.height; ++y) {
+            for (std::int64_t x = tile.x; x < tile.x + tile.width; ++x) {
+                const std::optional<Footprint> footprint = footprint_at(functions_, texels_, x, y);
+                store_rows({x, y, 1, 1}, footprint ? *footprint : nothing());
+            }
+        }
+    }
+
+    void store_rows(const Tile& tile, const Footprint& value) noexcept {
+        const auto put = [&](const std::span<float>& output, double number) {
+            if (output.empty()) return;
+            const auto rounded = static_cast<float>(number);
+            for (std::int64_t y = tile.y; y < tile.y + tile.height; ++y) {
+                float* const row = output.data() + offset_of(tile.x, y);
+                for (int i = 0; i < tile.width; ++i) row[i] = rounded;
+            }
+        };
+        put(out_.dsdx, value.dx.x);
+        put(out_.dtdx, value.dx.y);
+        put(out_.dsdy, value.dy.x);
+        put(out_.dtdy, value.dy.y);
+        put(out_.level, value.level);
+        put(out_.anisotropy, value.anisotropy);
+        put(out_.major_s, value.major.x);
+        put(out_.major_t, value.major.y);
+    }
+
+    std::size_t offset_of(std::int64_t x, std::int64_t y) const noexcept { return offset_in(rect_, x, y); }
+
+    const FootprintKernels& kernels_;
+    const FootprintFunctions& functions_;
+    TexelsPerUnit texels_;
+    FragmentRect rect_;
+    Footprints out_;
+};
+
+}  // namespace TEXGEN_BUILD
+
+}  // namespace TEXGEN_DETAIL
+
+namespace TEXGEN_NAMESPACE {
+inline namespace TEXGEN_BUILD {
+
+template <class CompiledWhereCalled>
+bool footprint(const FootprintSetup& setup, FragmentRect rect, Footprints out) noexcept {
+    TEXGEN_ASSERT(rect.width >= 0 && rect.height >= 0);
+    if (rect.width <= 0 || rect.height <= 0) return false;
+    const std::size_t count = detail::count_of(rect);
+    for (std::span<float>* output :
+         {&out.dsdx, &out.dtdx, &out.dsdy, &out.dtdy, &out.level, &out.anisotropy, &out.major_s, &out.major_t})
+        if (!detail::is_computed(*output, count)) *output = {};
+    const detail::Tile tile = detail::tile_of(rect);
+    const detail::FootprintFunctions& functions = setup.functions();
+    const detail::Corners at = detail::survey(functions.triangle, tile).at;
+    if (detail::is_dark(functions.triangle, at)) return false;
+    detail::TileFootprinter(detail::chosen<detail::FootprintKernels>(), functions, setup.texels(), rect, out)
+        .fill_all(tile, at);
+    return true;
+}
+
+}  // namespace TEXGEN_BUILD
+}  // namespace TEXGEN_NAMESPACE

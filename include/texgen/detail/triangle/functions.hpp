@@ -1,0 +1,64 @@
+#pragma once
+
+// A triangle made ready: what its tiles read, of coordinates and of their derivatives.
+
+#include <cmath>
+#include <cstddef>
+
+#include <glm/vec2.hpp>
+
+#include "../../conventions.hpp"
+#include "../../primitives.hpp"
+#include "../arithmetic/rounding.hpp"
+#include "../culling/lit_test.hpp"
+#include "../language.hpp"
+#include "../simd/lanes.hpp"
+#include "planes.hpp"
+
+namespace TEXGEN_DETAIL {
+
+struct TriangleFunctions {
+    TrianglePlanes planes;
+    PlaneOf<Pair> st;
+    Plane q;
+    LitTest lit;
+    double tolerance;
+
+    TriangleFunctions(const Triangle& triangle, const TextureRegion& region, double accepted) noexcept
+        : planes(triangle), st(planes.planes(0, 1)), q(planes.plane(3)), lit(region), tolerance(accepted) {}
+};
+
+// The numerators of the derivatives of s (0) and t (1), see Slope.
+struct FootprintFunctions {
+    TriangleFunctions triangle;
+    Slope slope[2];
+    double determinant;  // det J Q^3
+
+    explicit FootprintFunctions(const TriangleFunctions& functions) noexcept
+        : triangle(functions),
+          slope{triangle.planes.slope(0), triangle.planes.slope(1)},
+          determinant(triangle.planes.jacobian_determinant()) {}
+
+    // At the first fragment of a tile.
+    Slope::Terms at_first(std::size_t k, const Tile& tile) const noexcept {
+        const glm::dvec2 p = triangle.planes.from_a(tile);
+        const Slope::Terms& at_a = slope[k].value;
+        return {at_a.dx + p.y * at_a.twist, at_a.dy - p.x * at_a.twist, at_a.twist};
+    }
+
+    // The largest over a tile, and a bound on the errors.
+    double largest(std::size_t k, const Tile& tile) const noexcept {
+        const Slope::Terms at = at_first(k, tile);
+        const double dx = larger(std::fabs(at.dx), std::fabs(at.dx + (tile.height - 1) * at.twist));
+        const double dy = larger(std::fabs(at.dy), std::fabs(at.dy - (tile.width - 1) * at.twist));
+        return larger(dx, dy);
+    }
+    double error(std::size_t k, const Tile& tile) const noexcept {
+        const glm::dvec2 p = triangle.planes.from_a(tile);
+        const Slope::Terms& magnitude = slope[k].magnitude;
+        return gamma(20) * larger(magnitude.dx + (std::fabs(p.y) + tile.height) * magnitude.twist,
+                                  magnitude.dy + (std::fabs(p.x) + tile.width) * magnitude.twist);
+    }
+};
+
+}  // namespace TEXGEN_DETAIL

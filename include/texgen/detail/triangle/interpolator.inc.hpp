@@ -1,0 +1,346 @@
+// A triangle's tiles from one tier to the next, and the body of interpolate(). Included by interpolate.hpp.
+
+namespace TEXGEN_DETAIL {
+
+inline namespace TEXGEN_BUILD {
+
+// Interpolates up to two coordinates, and the mask, of a triangle into the caller's arrays.
+class TileInterpolator {
+public:
+    static constexpr int scratch_width = 512;
+
+    // `close` is what is known of the functions that add() says, or nothing yet.
+    TileInterpolator(const TileKernels& kernels, const TriangleFunctions& triangle, FragmentRect rect,
+                     std::optional<CloseRamps>& close) noexcept
+        : kernels_(kernels), triangle_(triangle), rect_(rect), close_(close) {}
+
+    // s and t, of which one that only the mask needs has no output.
+    void add(const std::span<float>& s, const std::span<float>& t, const std::span<float>& lit) noexcept {
+        planes_ = triangle_.st;
+        count_ = 2;
+        coordinate_[1] = 1;
+        output_[0] = s;
+        output_[1] = t;
+        lit_ = lit;
+    }
+    // One coordinate, 0 to 2 for s, t, r.
+    void add(glm::length_t coordinate, const std::span<float>& output) noexcept {
+        planes_ = triangle_.planes.planes(coordinate, coordinate);
+        count_ = 1;
+        coordinate_[0] = coordinate;
+        output_[0] = output;
+    }
+
+    Corners corners_at(const Tile& tile) noexcept {
+        const Corners at = corners_of(triangle_.planes, planes_, triangle_.q, tile);
+        return at.all_behind() || !at.cancel() ? at : corners_of(close_ramps(tile));
+    }
+
+    // A coordinate whose plan nobody knows.
+    void interpolate(const Tile& tile) noexcept {
+        const Corners at = corners_at(tile);
+        interpolate(tile, at, plan_without_survey(tile, at));
+    }
+
+    void interpolate(const Tile& tile, const Corners& at, const Plan& plan) noexcept {
+        whole_ = tile;
+        closely_.reset();
+        fill(tile, at, plan);
+    }
+
+    // In parts that the scratch arrays hold.
+    void interpolate_in_strips(const Tile& tile, const Plan& plan) noexcept {
+        Tile strip = tile;
+        for (strip.width = scratch_width; strip.x < tile.x + tile.width; strip.x += scratch_width) {
+            const std::int64_t rest = tile.x + tile.width - strip.x;
+            if (rest < strip.width) strip.width = static_cast<int>(rest);
+            interpolate(strip, corners_at(strip), plan);
+        }
+    }
+
+private:
+    static Plan plan_without_survey(const Tile& tile, const Corners& at) noexcept {
+        return {Work::divide, pays_for_chunks(tile) ? chunk_length(at, tile.width) : 0, TileJob::any_factors, {}};
+    }
+
+    void fill(const Tile& tile) noexcept {
+        const Corners at = corners_at(tile);
+        fill(tile, at, plan_without_survey(tile, at));
+    }
+
+    void fill(const Tile& tile, const Corners& at, const Plan& plan) noexcept {
+        if (triangle_.tolerance == 0.0) return divide_nearest(tile, at);
+        if (at.well_in_front())
+            return plan.chunk != 0 ? divide_chunks(tile, at, plan) : divide_without_chunks(tile, at);
+        split(tile, at, [&](const Tile& half) { fill(half); });
+    }
+
+    // They are made when a tile first needs them, for all of the rectangle.
+    CloseRamps close_ramps(const Tile& tile) noexcept {
+        const Tile all{rect_.x, rect_.y, rect_.width, rect_.height};
+        if (!close_) close_ = ClosePlanes(triangle_.planes, all).ramps(coordinate_[0], coordinate_[count_ - 1]);
+        return close_->moved_to(tile);
+    }
+
+    // A tile behind is cleared; one that is in doubt is halved, until it is so small that it is divided closely.
+    template <class FillHalf>
+    void split(const Tile& tile, const Corners& at, const FillHalf& fill_half) noexcept {
+        if (at.all_behind()) return clear(tile);
+        if (tile.width <= 8 && tile.height <= 8) return divide_closely(tile, at);
+        for (const Tile& half : tile.halves()) fill_half(half);
+    }
+
+    void divide_nearest(const Tile& tile, const Corners& at) noexcept {
+        // Beyond a ratio of 2^12 the error bound of the largest quotient would make the smallest ones doubtful.
+        if (!at.well_in_front() || !(at.least_q > 0x1p-12 * at.largest_q))
+            return split(tile, at, [&](const Tile& half) { divide_nearest(half, corners_at(half)); });
+        TileJob job = make_job(tile, at);
+        const Pair error = at.quotient_error(at.largest_quotient());
+        for (std::size_t k = 0; k < 2; ++k) job.quotient_error[k] = error[k];
+        TileJob::Unit unit = kernels_.divide_nearest(job, job.unit_at(0, 0));
+        if (job.is_done(unit)) return;
+        const CloseFunctions functions = close_ramps(tile).split();
+        if (take_exact_quotients(functions, job)) {
+            kernels_.divide_nearest(job, unit);
+            return;
+        }
+        // Doubt has company: twice as many units after each failure that follows another.
+        for (int many = 1; !job.is_done(unit);) {
+            for (int i = 0; i < many && !job.is_done(unit); ++i, unit = job.unit_after(unit))
+                fill_some(tile, unit, kernels_.divide_closely(job, functions, unit));
+            const TileJob::Unit next = kernels_.divide_nearest(job, unit);
+            many = next.x_begin == unit.x_begin && next.y_begin == unit.y_begin ? 2 * many : 1;
+            unit = next;
+        }
+    }
+
+    // Where q is constant the quotients are linear; if doubles hold them exactly, every tie is decided by rounding to float.
+    static bool take_exact_quotients(const CloseFunctions& functions, TileJob& job) noexcept {
+        const auto is_zero = [](const Ramp& ramp) { return ramp.base == 0.0 && ramp.dx == 0.0 && ramp.dy == 0.0; };
+        const auto is_exact = [&](const CloseFunction& f) { return is_zero(f.low) && 4.0 * f.error < f.grain; };
+        const double q = functions.q.high.base;
+        if (!is_exact(functions.q) || functions.q.high.dx != 0.0 || functions.q.high.dy != 0.0) return false;
+        Ramp quotient[2];
+        for (std::size_t k = 0; k < 2; ++k) {
+            const Ramp& f = functions.numerator[k].high;
+            quotient[k] = {f.base / q, f.dx / q, f.dy / q};
+            const auto is_quotient = [q](double u, double numerator) {
+                const DoubleDouble product = two_product(u, q);
+                return product.high == numerator && product.low == 0.0;
+            };
+            const auto& [base, dx, dy] = quotient[k];
+            const double size = std::fabs(base) + job.width * std::fabs(dx) + job.height * std::fabs(dy);
+            const double bit = smaller(smaller(last_bit(base), last_bit(dx)), last_bit(dy));
+            if (!is_exact(functions.numerator[k]) || !(size < 0x1p52 * bit) || !is_quotient(base, f.base) ||
+                !is_quotient(dx, f.dx) || !is_quotient(dy, f.dy))
+                return false;
+        }
+        for (std::size_t k = 0; k < 2; ++k) {
+            job.numerator[k] = quotient[k];
+            job.quotient_error[k] = 0.0;
+        }
+        job.q = {1.0, 0.0, 0.0};
+        job.q_is_constant = true;
+        return true;
+    }
+
+    // A small tile, by one job for all that there are: with the planes as they are, and closely only if that leaves doubt. What
+    // a last vector writes beyond the tile is to its right, where the halves come later.
+    void divide_closely(const Tile& tile, const Corners& at) noexcept {
+        const int x = static_cast<int>(tile.x - whole_.x);
+        const int y = static_cast<int>(tile.y - whole_.y);
+        const TileJob::Unit unit{x, x + tile.width, y, y + tile.height};
+        if (!closely_) {
+            closely_.emplace(make_job(whole_, at), (close_ ? close_ramps(whole_) : plain_ramps()).split());
+            closely_->first.is_contiguous = false;
+        }
+        const auto& [job, functions] = *closely_;
+        std::uint64_t doubtful = kernels_.divide_closely(job, functions, unit);
+        if (doubtful != 0 && !close_) {
+            closely_->second = close_ramps(whole_).split();
+            doubtful = kernels_.divide_closely(job, functions, unit);
+        }
+        fill_some(whole_, unit, doubtful);
+    }
+
+    // The planes as they are.
+    CloseRamps plain_ramps() const noexcept {
+        const Corners at = corners_of(triangle_.planes, planes_, triangle_.q, whole_);
+        const auto plain = [](double base, double dx, double dy, double error) {
+            return CloseRamp{{{base, 0.0}, {dx, 0.0}, {dy, 0.0}}, error, 0.0};
+        };
+        const auto numerator = [&](std::size_t k) {
+            const auto& [base, dx, dy] = at.numerator_ramp;
+            return plain(base[k], dx[k], dy[k], at.numerator_error[k]);
+        };
+        return {whole_, {numerator(0), numerator(1), plain(at.q_ramp.base, at.q_ramp.dx, at.q_ramp.dy, at.q_error)}};
+    }
+
+    // Fragments of a unit, one by one: a bit for each.
+    void fill_some(const Tile& tile, const TileJob::Unit& unit, std::uint64_t fragments) noexcept {
+        const int width = unit.x_end - unit.x_begin;
+        for (; fragments != 0; fragments &= fragments - 1) {
+            const int i = std::countr_zero(fragments);
+            fill_one(tile.x + unit.x_begin + i % width, tile.y + unit.y_begin + i / width);
+        }
+    }
+
+    void divide_chunks(const Tile& tile, const Corners& at, const Plan& plan) noexcept {
+        TileJob job = make_job(tile, at);
+        job.chunk = plan.chunk;
+        job.factors = plan.factors;
+        job.tolerance = triangle_.tolerance * (1.0 - 0x1p-20);
+        job.q_error = at.q_error;
+        job.least_q = 0x1p24 * at.q_error;
+        for (std::size_t k = 0; k < 2; ++k) job.numerator_error[k] = at.numerator_error[k];
+        TileJob::Unit next{0, 0, 0, 0};
+        while (true) {
+            const TileJob::Unit refused = kernels_.divide_chunks(job, next);
+            if (job.is_done(refused)) return;
+            const Tile rest = part_of(tile, refused);
+            divide_without_chunks(rest, corners_at(rest));
+            next = refused.x_end < tile.width ? TileJob::Unit{refused.x_end, 0, refused.y_begin, 0}
+                                              : TileJob::Unit{0, 0, refused.y_end, 0};
+        }
+    }
+
+    void divide_without_chunks(const Tile& tile, const Corners& at) noexcept {
+        const Pair error = rounded_error(at);
+        const bool fits = at.well_in_front() && at.least_q > 0x1p-20 * at.largest_q &&
+                          error[0] <= triangle_.tolerance && error[1] <= triangle_.tolerance;
+        if (!fits) return divide_nearest(tile, at);
+        kernels_.divide_rounded(make_job(tile, at, reciprocal_power_of_two(at.largest_q)));
+    }
+
+    // The error of F/Q with F and Q rounded to float, then the reciprocal and the product: 4 u |F/Q|, u = 2^-24. With
+    // 2^-21 <= Q <= 2 a float of F that is subnormal, or flushed to zero, adds less than 2^-104.
+    Pair rounded_error(const Corners& at) const noexcept {
+        const Pair largest = at.largest_quotient();
+        return largest * (4.01 * unit_roundoff_float) + 0x1p-104 + at.quotient_error(largest);
+    }
+
+    // One fragment, every decision exact.
+    void fill_one(std::int64_t x, std::int64_t y) noexcept {
+        const TrianglePlanes& planes = triangle_.planes;
+        const TrianglePlanes::Exact q = planes.exactly_at(3, x, y);
+        const bool in_front = q.sign() > 0;
+        float value[2] = {0.0f, 0.0f};
+        for (std::size_t k = 0; k < count_; ++k) {
+            if (in_front) value[k] = nearest_quotient(planes.exactly_at(coordinate_[k], x, y), q);
+            if (!output_[k].empty()) output_[k][offset(x, y)] = value[k];
+        }
+        if (!lit_.empty()) lit_[offset(x, y)] = in_front ? triangle_.lit(value[0], value[1]) : 0.0f;
+    }
+
+    void clear(const Tile& tile) noexcept {
+        for (const std::span<float>& output : {output_[0], output_[1], lit_}) {
+            if (output.empty()) continue;
+            for (std::int64_t y = tile.y; y < tile.y + tile.height; ++y) {
+                float* const row = output.data() + offset(tile.x, y);
+                for (int i = 0; i < tile.width; ++i) row[i] = 0.0f;
+            }
+        }
+    }
+
+    // What every kernel needs. A factor that the numerators and q share is free.
+    TileJob make_job(const Tile& tile, const Corners& at, double factor = 1.0) noexcept {
+        TileJob job{};
+        job.numerators = static_cast<int>(count_);
+        job.width = tile.width;
+        job.height = tile.height;
+        job.q = {at.q_ramp.base * factor, at.q_ramp.dx * factor, at.q_ramp.dy * factor};
+        job.q_is_constant = is_constant(at.q_ramp);
+        job.pitch = rect_.width;
+        job.is_contiguous = tile.width == rect_.width;
+        const Pair base = at.numerator_ramp.base * factor;
+        const Pair dx = at.numerator_ramp.dx * factor;
+        const Pair dy = at.numerator_ramp.dy * factor;
+        // One coordinate alone takes the place of both.
+        for (std::size_t k = 0; k < 2; ++k) {
+            const std::span<float>& output = output_[k < count_ ? k : 0];
+            job.numerator[k] = {base[k], dx[k], dy[k]};
+            job.is_scratch[k] = output.empty();
+            job.out[k] = output.empty() ? scratch_[k] : output.data() + offset(tile.x, tile.y);
+            job.is_contiguous = job.is_contiguous && !job.is_scratch[k];
+        }
+        if (lit_.empty()) return job;
+        job.lit = lit_.data() + offset(tile.x, tile.y);
+        triangle_.lit.copy_to(job.min, job.max);
+        return job;
+    }
+
+    static Tile part_of(const Tile& tile, const TileJob::Unit& unit) noexcept {
+        return {tile.x + unit.x_begin, tile.y + unit.y_begin, unit.x_end - unit.x_begin, unit.y_end - unit.y_begin};
+    }
+
+    std::size_t offset(std::int64_t x, std::int64_t y) const noexcept { return offset_in(rect_, x, y); }
+
+    const TileKernels& kernels_;
+    const TriangleFunctions& triangle_;
+    FragmentRect rect_;
+    std::size_t count_ = 0;
+    glm::length_t coordinate_[2] = {};
+    PlaneOf<Pair> planes_;
+    std::optional<CloseRamps>& close_;
+    Tile whole_;  // what is being interpolated
+    std::optional<std::pair<TileJob, CloseFunctions>> closely_;
+    std::span<float> output_[2];
+    std::span<float> lit_;
+    float scratch_[2][scratch_width];  // coordinates that only the mask needs, a row at a time
+};
+
+}  // namespace TEXGEN_BUILD
+
+}  // namespace TEXGEN_DETAIL
+
+namespace TEXGEN_NAMESPACE {
+inline namespace TEXGEN_BUILD {
+
+template <class CompiledWhereCalled>
+Work interpolate(const TriangleSetup& setup, FragmentRect rect, Texcoords out) noexcept {
+    TEXGEN_ASSERT(rect.width >= 0 && rect.height >= 0);
+    if (rect.width <= 0 || rect.height <= 0) return Work::nothing;
+    const std::size_t count = detail::count_of(rect);
+    bool any_output = false;
+    for (std::span<float>* output : {&out.s, &out.t, &out.r, &out.lit}) {
+        if (!detail::is_computed(*output, count)) *output = {};
+        any_output = any_output || !output->empty();
+    }
+
+    const detail::Tile tile = detail::tile_of(rect);
+    detail::TileSurvey found = detail::survey(setup.functions(), tile);
+    const detail::Plan& plan = found.plan;
+    if (plan.work == Work::nothing) {
+        for (float& lit : out.lit) lit = 0.0f;
+        return plan.work;
+    }
+
+    if (!any_output) return plan.work;
+    const detail::TileKernels& kernels = detail::chosen<detail::TileKernels>();
+
+    const auto interpolate_one = [&](glm::length_t coordinate, const std::span<float>& output) {
+        if (output.empty()) return;
+        std::optional<detail::CloseRamps> close;
+        detail::TileInterpolator interpolator(kernels, setup.functions(), rect, close);
+        interpolator.add(coordinate, output);
+        if (coordinate == 2) return interpolator.interpolate(tile);
+        interpolator.interpolate(tile, interpolator.corners_at(tile), plan);
+    };
+    const bool both = !out.s.empty() && !out.t.empty();
+    if (both || !out.lit.empty()) {
+        detail::TileInterpolator interpolator(kernels, setup.functions(), rect, found.close);
+        interpolator.add(out.s, out.t, out.lit);
+        if (both)
+            interpolator.interpolate(tile, found.at, plan);
+        else
+            interpolator.interpolate_in_strips(tile, plan);
+    } else {
+        interpolate_one(0, out.s);
+        interpolate_one(1, out.t);
+    }
+    interpolate_one(2, out.r);
+    return plan.work;
+}
+
+}  // namespace TEXGEN_BUILD
+}  // namespace TEXGEN_NAMESPACE

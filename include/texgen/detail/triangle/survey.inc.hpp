@@ -1,0 +1,133 @@
+// What is known of a tile before it is divided, what it gets, and the bodies of TriangleSetup. Included by interpolate.hpp.
+
+namespace TEXGEN_DETAIL {
+
+inline namespace TEXGEN_BUILD {
+
+// What a tile gets: the work; under a tolerance the length of its chunks, and the factors that serve them all with a bound
+// on the error of s and of t, if there are such (chunks.inc.hpp).
+struct Plan {
+    Work work;
+    int chunk;
+    int factors;
+    double error[2];
+};
+
+struct TileSurvey {
+    Corners at;
+    Plan plan;
+    std::optional<CloseRamps> close;  // where the planes cancel
+};
+
+// Short where q varies much, so that the ends of a chunk are not far from its middle. A chunk costs about as much as 32
+// fragments besides those that it has.
+inline int chunk_length(const Corners& at, int width) noexcept {
+    const double q = 0.25 * (at.q[0] + at.q[1] + at.q[2] + at.q[3]);
+    int longest = 256;
+    while (longest > 64 && std::fabs(at.q_ramp.dx) * longest > 0.25 * q) longest /= 2;
+    if (width <= longest) return width;
+    const int chunks = (width - 1) / longest + 1;
+    constexpr int lanes = 16;
+    return ((width - 1) / chunks / lanes + 1) * lanes;
+}
+
+// A chunk costs as much as some fragments, and the first of them as much as some tens.
+inline bool pays_for_chunks(const Tile& tile) noexcept {
+    return tile.width >= 16 && static_cast<std::int64_t>(tile.width) * tile.height > 64;
+}
+
+// The fewest factors that serve every chunk of a tile well in front, and the error that they leave; less work than a
+// division is said of it then, and affine where none were needed. The bound is that of the kernel with each of its terms at
+// its largest. A step of i is i (F_x Q - F Q_x) over the Q at both of its ends, and that difference is constant along a row.
+inline void choose_factors(Plan& plan, const Corners& at, double tolerance) noexcept {
+    const double half = 0.5 * (plan.chunk - 1);
+    const double extent = 1.001 * half * std::fabs(at.q_ramp.dx) * at.reciprocal;
+    if (!(extent <= 0.25)) return;
+    const auto slope_times_q_squared = [&](std::size_t i) {
+        const Pair first = at.numerator_ramp.dx * at.q[i];
+        const Pair second = at.numerator[i] * at.q_ramp.dx;
+        return magnitude(first - second) + (magnitude(first) + magnitude(second)) * gamma(8);
+    };
+    const Pair largest = at.largest_quotient();
+    const Pair reach =
+        larger(slope_times_q_squared(0), slope_times_q_squared(2)) * (1.001 * half * at.reciprocal * at.reciprocal);
+    const Pair rest = largest * chunk_middle_error + reach * chunk_step_error + chunk_underflow +
+                      (at.numerator_error + (largest + reach) * at.q_error) * (1.001 * at.reciprocal);
+    const auto fits = [&](double share) {
+        const Pair error = reach * share + rest;
+        plan.error[0] = error[0];
+        plan.error[1] = error[1];
+        return error[0] <= tolerance && error[1] <= tolerance;
+    };
+    const bool is_affine = fits(extent);
+    double share = extent;
+    for (int factors = 1; factors <= 3; ++factors) {
+        share *= share;
+        if (!fits(share)) continue;
+        plan.factors = factors;
+        if (plan.work != Work::affine) plan.work = is_affine ? Work::affine : Work::quadratic;
+        return;
+    }
+}
+
+inline Plan plan_for(const TriangleFunctions& triangle, const Tile& tile, const Corners& at) noexcept {
+    Plan plan{Work::nothing, 0, TileJob::any_factors, {}};
+    if (at.all_behind()) return plan;
+    const Places places = places_of(at, triangle.lit, triangle.tolerance);
+    if (places.s == Place::outside || places.t == Place::outside) return plan;
+
+    plan.work = places.s == Place::inside && places.t == Place::inside ? Work::divide : Work::divide_and_test;
+    if (at.well_in_front() && is_constant(at.q_ramp)) plan.work = Work::affine;
+    if (triangle.tolerance == 0.0 || !pays_for_chunks(tile)) return plan;
+    plan.chunk = chunk_length(at, tile.width);
+    if (!at.well_in_front()) return plan;
+    choose_factors(plan, at, triangle.tolerance * (1.0 - 0x1p-18));
+    return plan;
+}
+
+inline TileSurvey survey(const TriangleFunctions& triangle, const Tile& tile) noexcept {
+    TileSurvey found;  // not {}: zeros would cost what a small tile does
+    found.at = corners_of(triangle.planes, triangle.st, triangle.q, tile);
+    for (;;) {
+        found.plan = plan_for(triangle, tile, found.at);
+        if (found.close || found.plan.work == Work::nothing || !found.at.cancel()) return found;
+        found.close = ClosePlanes(triangle.planes, tile).ramps(0, 1);
+        found.at = corners_of(*found.close);
+    }
+}
+
+}  // namespace TEXGEN_BUILD
+
+}  // namespace TEXGEN_DETAIL
+
+namespace TEXGEN_NAMESPACE {
+inline namespace TEXGEN_COMPILER {
+
+inline std::optional<TriangleSetup> TriangleSetup::of(const Triangle& triangle, TextureRegion region,
+                                                      Tolerance tolerance) noexcept {
+    std::optional<TriangleSetup> setup(std::in_place, Key(), triangle, region, tolerance);
+    if (!setup->functions_.planes.is_usable()) setup.reset();
+    return setup;
+}
+
+inline Work TriangleSetup::work(FragmentRect rect) const noexcept {
+    if (rect.width <= 0 || rect.height <= 0) return Work::nothing;
+    return detail::survey(functions_, detail::tile_of(rect)).plan.work;
+}
+
+inline glm::dvec2 TriangleSetup::error_bound(FragmentRect rect) const noexcept {
+    if (rect.width <= 0 || rect.height <= 0) return {0.0, 0.0};
+    const detail::TileSurvey found = detail::survey(functions_, detail::tile_of(rect));
+    const detail::Corners& at = found.at;
+    const detail::Plan& plan = found.plan;
+    if (at.all_behind()) return {0.0, 0.0};
+    const auto bound = [&](std::size_t k) {
+        if (plan.factors != detail::TileJob::any_factors) return plan.error[k];
+        if (!at.all_in_front()) return std::numeric_limits<double>::infinity();
+        return detail::larger(functions_.tolerance, detail::half_ulp(at.largest_quotient()[k]));
+    };
+    return {bound(0), bound(1)};
+}
+
+}  // namespace TEXGEN_COMPILER
+}  // namespace TEXGEN_NAMESPACE
