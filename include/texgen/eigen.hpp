@@ -1,7 +1,7 @@
 #pragma once
 
-// Eigen users' border, not in the umbrella: matrices go across by value and say their spaces, arrays go across as views.
-// A view is made of the strides that the Eigen object reports; what has no such view (an expression, another scalar, a
+// Floor 9: Eigen users' border, not in the umbrella: matrices go across by value and say their spaces, arrays go across as
+// views. A view is made of the strides that the Eigen object reports; what has no such view (an expression, another scalar, a
 // temporary, a stride where none can be) does not compile, so nothing is copied and nothing is read at a wrong place.
 
 #include "detail/language.hpp"
