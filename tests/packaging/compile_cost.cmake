@@ -1,5 +1,5 @@
 cmake_minimum_required(VERSION 3.25)
-include(${CMAKE_CURRENT_LIST_DIR}/../../benchmarks/compile_cost.cmake)
+include(${CMAKE_CURRENT_LIST_DIR}/../../benchmarks/report/compile_cost.cmake)
 
 # Compares what it costs to compile texgen's umbrella header with what the GLM headers cost that its users have anyway.
 # On a quiet machine it is 235 %; where others compete for its caches, up to 265 %.

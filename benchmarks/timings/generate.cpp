@@ -1,4 +1,4 @@
-// K1h: points x, y, z to s, t, r, q, planar or interleaved.
+// Points x, y, z to s, t, r, q, planar or interleaved.
 
 #include <array>
 #include <memory>
@@ -20,7 +20,7 @@ constexpr Eigen::Index block = 256;
 // A scene with its points and its outputs.
 class Generate {
 public:
-    Generate(std::size_t count, Layout layout) : points_(count, layout), scene_(scene_of("K1h", points_)) {}
+    Generate(std::size_t count, Layout layout) : points_(count, layout), scene_(scene_of("generate", points_)) {}
 
     const Points& points() const { return points_; }
     const Scene& scene() const { return scene_; }
@@ -126,7 +126,7 @@ void add_scene(std::size_t count, Layout layout) {
 
 }  // namespace
 
-void add_k1h() {
+void add_generate() {
     for (const Layout layout : {Layout::planar, Layout::interleaved})
         for (const std::size_t count : {l1_count, l2_count, dram_count}) add_scene(count, layout);
 }

@@ -149,10 +149,10 @@ int main(int count, char** arguments) {
     benchmark::AddCustomContext("flags", TEXGEN_REPORT_FLAGS);
     benchmark::Initialize(&all_count, all.data());
     if (benchmark::ReportUnrecognizedArguments(all_count, all.data())) return 2;
-    bench::add_k1h();
-    bench::add_k1p();
-    bench::add_k2();
-    bench::add_k3();
+    bench::add_generate();
+    bench::add_project();
+    bench::add_segment();
+    bench::add_rows();
     bench::add_coverage();
     bench::add_scenes();
     bench::add_footprints();

@@ -1,4 +1,4 @@
-// K3: the fragments of rows and rects of a triangle to s, t.
+// The fragments of rows and rects of a triangle to s, t.
 
 #include <memory>
 #include <random>
@@ -8,9 +8,9 @@
 #include <texgen/interpolate.hpp>
 #include <texgen/reference.hpp>
 
+#include "../peers.hpp"
 #include "bench.hpp"
 #include "estimate.hpp"
-#include "peers.hpp"
 
 namespace bench {
 
@@ -66,7 +66,7 @@ std::shared_ptr<Rows> make_rows(const Shape& shape) {
         return std::uniform_real_distribution<double>(low, high)(random);
     };
     auto rows = std::make_shared<Rows>(
-        Rows{.scene = {"K3, " + std::string(shape.name), shape.inputs,
+        Rows{.scene = {"rows, " + std::string(shape.name), shape.inputs,
                        static_cast<std::size_t>(shape.width) * static_cast<std::size_t>(shape.height)},
              .times_set_up = shape.times_set_up,
              .triangles = {},
@@ -97,7 +97,7 @@ std::shared_ptr<Rows> make_rows(const Shape& shape) {
 struct Ours {
     std::optional<texgen::TriangleSetup> setup;
     void operator()(const FragmentRect& rect, float* s, float* t) const {
-        if (!setup) fail("K3: a triangle was refused");
+        if (!setup) fail("rows: a triangle was refused");
         texgen::interpolate(*setup, rect, {.s = {s, area(rect)}, .t = {t, area(rect)}, .r = {}, .lit = {}});
     }
 };
@@ -262,7 +262,7 @@ void add_set_up(const Shape& shape) {
 
 }  // namespace
 
-void add_k3() {
+void add_rows() {
     Shape row{.name = "", .width = 1024, .height = 1, .leg_x = 1080, .leg_y = 1000, .q_ratio = 1.3, .inputs = 16};
     const auto add_ratios = [&row](const char* gentle, const char* steep, const char* parallel) {
         for (const auto& [name, ratio] : {std::pair{gentle, 1.3}, std::pair{steep, 30.0}, std::pair{parallel, 1.0}}) {

@@ -1,4 +1,4 @@
-// K1p: points x, y, z to s/q, t/q, planar or interleaved to pairs.
+// Points x, y, z to s/q, t/q, planar or interleaved to pairs.
 
 #include <algorithm>
 #include <array>
@@ -23,7 +23,7 @@ constexpr Eigen::Index block = 256;
 // A scene with its points and its outputs.
 class Project {
 public:
-    Project(std::size_t count, Layout layout) : points_(count, layout), scene_(scene_of("K1p", points_)) {}
+    Project(std::size_t count, Layout layout) : points_(count, layout), scene_(scene_of("project", points_)) {}
 
     const Points& points() const { return points_; }
     const Scene& scene() const { return scene_; }
@@ -152,7 +152,7 @@ void add_scene(std::size_t count, Layout layout) {
 
 }  // namespace
 
-void add_k1p() {
+void add_project() {
     for (const Layout layout : {Layout::planar, Layout::interleaved})
         for (const std::size_t count : {l1_count, l2_count, dram_count}) add_scene(count, layout);
 }

@@ -1,4 +1,4 @@
-// K2: a segment at an array of alpha to s, t.
+// A segment at an array of alpha to s, t.
 
 #include <memory>
 #include <random>
@@ -24,7 +24,7 @@ constexpr std::size_t segment_count = 8;
 class Segments {
 public:
     explicit Segments(std::size_t count)
-        : scene_{std::string("K2, ") + (count == l1_count ? "1024" : "32768 (L2)"), segment_count, count} {
+        : scene_{std::string("segment, ") + (count == l1_count ? "1024" : "32768 (L2)"), segment_count, count} {
         std::mt19937 random(5);
         const auto between = [&](double low, double high) {
             return std::uniform_real_distribution<double>(low, high)(random);
@@ -135,7 +135,7 @@ void add_scene(std::size_t count) {
 
 }  // namespace
 
-void add_k2() {
+void add_segment() {
     add_scene(l1_count);
     add_scene(l2_count);
 }

@@ -10,8 +10,8 @@
 #include <texgen/interpolate.hpp>
 #include <texgen/reference.hpp>
 
-#include "error.hpp"
-#include "peers.hpp"
+#include "../error.hpp"
+#include "../peers.hpp"
 
 namespace report {
 

@@ -85,32 +85,32 @@ constexpr const char* stores = "floor: two store streams";
 constexpr const char* copying = "floor: copying as many bytes";
 
 constexpr Promise promises[] = {
-    {1, "K3, 1024x1, q/w by 1.3", fine, planes, 5},
-    {1, "K3, 1024x1, q/w by 1.3", fine, stores, 0.5},
-    {1, "K3, 1024x16, q/w by 1.3", fine, planes, 5},
-    {1, "K3, 1024x16, q/w by 1.3", fine, stores, 0.5},
-    {1, "K3, 1024x1, q/w by 30", fine, planes, 3},
-    {1, "K3, 1024x16, q/w by 30", fine, planes, 3},
-    {1, "K3, 1024x1, q/w by 1.3", exact, planes, 1.3},
-    {1, "K3, 1024x1, q/w by 1.3", exact, barycentric, 4},
-    {1, "K3, 1024x16, q/w by 1.3", exact, planes, 1.3},
-    {1, "K3, 1024x16, q/w by 1.3", exact, barycentric, 4},
-    {1, "K3, triangles of 64x1 with set-up", fine, planes, 1.2},
-    {1, "K3, triangles of 8x8 with set-up", fine, planes, 1.2},
-    {1, "K3, set-up alone", fine, nullptr, 40},
-    {1, "K1p planar, 1024", coarse, product, 1.8},
-    {1, "K1p interleaved, 1024", coarse, product, 1.2},
-    {1, "K2, 1024", coarse, mix, 2},
-    {1, "K2, 1024", exact, mix, 0.6},
-    {1, "K3, DRAM, 4096x4096, q/w by 1.3", exact, stores, 1 / 1.15},
-    {1, "K1p planar, 16 M (DRAM)", exact, copying, 1 / 1.15},
-    {0, "K3, 1024x1, q/w by 1.3", fine, barycentric, 40},
-    {0, "K3, 1024x16, q/w by 1.3", fine, barycentric, 40},
-    {0, "K3, 1024x1, q/w by 30", fine, barycentric, 30},
-    {0, "K3, 1024x16, q/w by 30", fine, barycentric, 30},
-    {0, "K1p planar, 1024", coarse, product, 15},
-    {0, "K1p interleaved, 1024", coarse, product, 8},
-    {0, "K2, 1024", coarse, mix, 6},
+    {1, "rows, 1024x1, q/w by 1.3", fine, planes, 5},
+    {1, "rows, 1024x1, q/w by 1.3", fine, stores, 0.5},
+    {1, "rows, 1024x16, q/w by 1.3", fine, planes, 5},
+    {1, "rows, 1024x16, q/w by 1.3", fine, stores, 0.5},
+    {1, "rows, 1024x1, q/w by 30", fine, planes, 3},
+    {1, "rows, 1024x16, q/w by 30", fine, planes, 3},
+    {1, "rows, 1024x1, q/w by 1.3", exact, planes, 1.3},
+    {1, "rows, 1024x1, q/w by 1.3", exact, barycentric, 4},
+    {1, "rows, 1024x16, q/w by 1.3", exact, planes, 1.3},
+    {1, "rows, 1024x16, q/w by 1.3", exact, barycentric, 4},
+    {1, "rows, triangles of 64x1 with set-up", fine, planes, 1.2},
+    {1, "rows, triangles of 8x8 with set-up", fine, planes, 1.2},
+    {1, "rows, set-up alone", fine, nullptr, 40},
+    {1, "project planar, 1024", coarse, product, 1.8},
+    {1, "project interleaved, 1024", coarse, product, 1.2},
+    {1, "segment, 1024", coarse, mix, 2},
+    {1, "segment, 1024", exact, mix, 0.6},
+    {1, "rows, DRAM, 4096x4096, q/w by 1.3", exact, stores, 1 / 1.15},
+    {1, "project planar, 16 M (DRAM)", exact, copying, 1 / 1.15},
+    {0, "rows, 1024x1, q/w by 1.3", fine, barycentric, 40},
+    {0, "rows, 1024x16, q/w by 1.3", fine, barycentric, 40},
+    {0, "rows, 1024x1, q/w by 30", fine, barycentric, 30},
+    {0, "rows, 1024x16, q/w by 30", fine, barycentric, 30},
+    {0, "project planar, 1024", coarse, product, 15},
+    {0, "project interleaved, 1024", coarse, product, 8},
+    {0, "segment, 1024", coarse, mix, 6},
     {0, "Coverage, 4096 boxes, scattered", batch, five_planes, 4},
     {0, "Coverage, 4096 boxes, dense", batch, five_planes, 4},
     {0, "Coverage, 4096 boxes, 1e5 from the origin", batch, five_planes, 4},
@@ -206,10 +206,10 @@ std::string cells_of(const Timings& build, const std::string& scene, const std::
 constexpr const char* explanation =
     "Each row computes what its scene asks for, is checked against the definitions in long double, and is then timed: "
     "medians of rounds in random order, in processor time, over inputs that change. A time is that of one element: a "
-    "point, a value of alpha, a fragment; for the set-up a triangle. K1h: points to s, t, r, q. K1p: points to s/q, "
-    "t/q. "
-    "K2: a segment at an array of alpha to s, t. K3: fragments of a triangle to s, t; q/w grows along the rows by the "
-    "given factor, or not at all (parallel); set-up counts only where it says so. Coverage: a box or a sphere "
+    "point, a value of alpha, a fragment; for the set-up a triangle. Generate: points to s, t, r, q. Project: "
+    "points to s/q, t/q. Segment: a segment at an array of alpha to s, t. Rows: fragments of a triangle to s, t; q/w "
+    "grows along the rows by the given factor, or not at all (parallel); set-up counts only where it says so. "
+    "Coverage: a box or a sphere "
     "against one projector. Scene: an update, from frame to frame. Frame: an update and the coordinates of what is "
     "lit. Errors are the largest, in texels of "
     "4096 and in units in the last place of float. Speed is relative to the first GLM row of the scene in the same "

@@ -14,15 +14,15 @@
 #include <benchmark/benchmark.h>
 #include <texgen/conventions.hpp>
 
-#include "error.hpp"
+#include "../error.hpp"
 
 namespace bench {
 
 // The workloads.
-void add_k1h();
-void add_k1p();
-void add_k2();
-void add_k3();
+void add_generate();
+void add_project();
+void add_segment();
+void add_rows();
 void add_coverage();
 void add_scenes();
 void add_footprints();
