@@ -23,6 +23,7 @@ using support::LongArray;
 using texgen::FragmentRect;
 using texgen::Triangle;
 using texgen::TriangleSetup;
+using texgen::detail::StepRule;
 using texgen::detail::TileJob;
 
 constexpr int longest = std::numeric_limits<int>::max();
@@ -76,7 +77,7 @@ TEST_CASE("units and chunks at the end of the longest rows and columns are done,
 
         std::ranges::fill(array.last(tail), poison);
         TileJob::Unit unit = is_row ? job.unit_at(longest - 300, 0) : job.unit_at(0, longest - 300);
-        for (int units = 0; !job.is_done(unit = kernels.divide_nearest(job, unit)); unit = job.unit_after(unit))
+        for (int units = 0; !job.is_done(unit = kernels.fill_exact(job, unit)); unit = job.unit_after(unit))
             REQUIRE(++units < 300);
         CHECK(is_right(array.last(300), 0.0f));
         CHECK(array.last(tail)[tail - 301] == poison);
@@ -84,19 +85,19 @@ TEST_CASE("units and chunks at the end of the longest rows and columns are done,
         std::ranges::fill(array.last(tail), poison);
         job.tolerance = 0x1p-10;
         job.chunk = is_row ? 256 : 1;
-        for (const int factors : {1, TileJob::any_factors}) {
-            job.factors = factors;
+        for (const StepRule rule : {StepRule::degree2, StepRule::undecided}) {
+            job.steps = rule;
             const int first = (longest - 300) / job.chunk * job.chunk;
-            CHECK(job.is_done(kernels.divide_chunks(job, at(first))));
+            CHECK(job.is_done(kernels.fill_polynomial(job, at(first))));
             CHECK(is_right(array.last(300), 0x1p-10f));
         }
 
-        // Where no factors serve, what is handed back is the rest of the row.
+        // Where no rule serves, what is handed back is the rest of the row.
         job.tolerance = 0.0;
-        job.factors = TileJob::any_factors;
+        job.steps = StepRule::undecided;
         if (is_row) {
             const int first = (longest - 1) / job.chunk * job.chunk;
-            const TileJob::Unit refused = kernels.divide_chunks(job, at(first));
+            const TileJob::Unit refused = kernels.fill_polynomial(job, at(first));
             CHECK(refused.x_begin == first);
             CHECK(refused.x_end == longest);
         }

@@ -74,34 +74,6 @@ inline double half_ulp(double largest) noexcept {
                                     : std::numeric_limits<double>::infinity();
 }
 
-// How points are divided in float: the forms of s and q err by form_error of their terms, and what is rounded after them
-// adds `roundings` of the quotient.
-struct FloatDivision {
-    double form_error, roundings;
-
-    // A bound on the error of s/q. The terms are sum |T_j v_j|, size is |x| + |y| + |z| + 1; q is at least least_q, and
-    // |s/q| at most `largest`, both either exactly or as computed. With s^ = s + a, q^ = q + b, |s^/q^ - s/q| is
-    // |a - b s/q| / q^ = |a - b s^/q^| / q. Infinite where a float could leave its range.
-    constexpr double error(double s_terms, double q_terms, double size, double least_q, double largest) const noexcept {
-        const double underflow = 0x1p-124 * size;
-        const double s_error = form_error * s_terms + underflow;
-        const double q_error = form_error * q_terms + underflow;
-        const double q = least_q * (1.0 - roundings) - q_error;
-        if (!(q > 0x1p-60 && s_terms < 0x1p127 && q_terms < 0x1p127)) return std::numeric_limits<double>::infinity();
-        return 1.001 * (s_error + largest * q_error) / q + roundings * largest;
-    }
-};
-
-// With u = 2^-24: rounded coefficients and four terms, 5 u; the reciprocal and the product, 2 u. And forms in double,
-// with four roundings to float.
-inline constexpr FloatDivision forms_in_float{5.01 * unit_roundoff_float, 2.01 * unit_roundoff_float};
-inline constexpr FloatDivision forms_in_double{gamma(5), 4.01 * unit_roundoff_float};
-
-// What float arithmetic adds to the error of a chunk (chunks.inc.hpp): of its middle, and of its largest step.
-inline constexpr double chunk_middle_error = 2.001 * unit_roundoff_float;
-inline constexpr double chunk_step_error = 12.004 * unit_roundoff_float;
-inline constexpr double chunk_underflow = 0x1p-115;
-
 // An unevaluated sum; high is the sum rounded to double.
 struct DoubleDouble {
     double high, low;

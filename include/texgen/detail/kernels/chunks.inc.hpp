@@ -12,7 +12,19 @@ namespace TEXGEN_DETAIL::TEXGEN_ISA {
 // where there is a division (its sum and quotient add 2 r), and 1 r where X <= 1/4 and there are factors (whose products
 // and sums add 3.5 r); d and its product add 2 r. Less than 11 r D, and the roundings of u and of the last sum,
 // 2 r |u| + r D. Subnormals, or what is flushed to zero, add less than 2^-116; the doubles (e_F + (|u| + D) e_Q) / Q.
-inline constexpr int divided = 4, refused = 5;
+// As names: bend is b, extent X, reach D; room is what a chunk leaves of the tolerance for the remainder of its factors,
+// x^(2^n) D.
+
+// The rest of a chunk's error, of s or of t, or of both: u, reach and 1 / Q at their largest.
+template <class Number, class Error, class Reciprocal>
+TEXGEN_INLINE Number chunk_error(const Number& u, const Number& reach, const Error& numerator_error, double q_error,
+                                 const Reciprocal& reciprocal) noexcept {
+    constexpr double middle_roundings = 2.001 * unit_roundoff_float;
+    constexpr double step_roundings = 12.004 * unit_roundoff_float;
+    constexpr double underflow = 0x1p-115;
+    return u * middle_roundings + reach * step_roundings + underflow +
+           ((u + reach) * q_error + numerator_error) * (reciprocal * 1.001);
+}
 
 TEXGEN_INLINE int chunks_of_row(const TileJob& job) noexcept { return (job.width - 1) / job.chunk + 1; }
 
@@ -23,8 +35,8 @@ struct ChunkGroup {
 
     float bend[size];
     float middle[2][size], slope[2][size];
-    double extent[size], least_q[size];    // X, and what the least q has above job.least_q
-    double reach[2][size], room[2][size];  // D, and what is left of the tolerance for x^(2^n) D
+    double extent[size], least_q[size];  // the least q less job.least_q
+    double reach[2][size], room[2][size];
 
     // Of `count` chunks from the given one of row y on.
     TEXGEN_INLINE void fill(const TileJob& job, int y, int chunk, int count) noexcept {
@@ -47,7 +59,7 @@ struct ChunkGroup {
             store(&bend[i], to_floats(bends));
             const Doubles extents = magnitude(bends) * half;
             const Doubles stretch = (extents * 4.0 + 1.0) * extents + 1.0;
-            if (job.factors == TileJob::any_factors) {
+            if (job.steps == StepRule::undecided) {
                 store(&extent[i], extents);
                 store(&least_q[i], (q - q * extents) - job.least_q);
             }
@@ -56,43 +68,40 @@ struct ChunkGroup {
                 const Doubles d = (u * -job.q.dx + job.numerator[k].dx) * reciprocal;
                 store(&middle[k][i], to_floats(u));
                 store(&slope[k][i], to_floats(d));
-                if (job.factors != TileJob::any_factors) continue;
-                const Doubles size_of_u = magnitude(u);
-                const Doubles size_of_step = magnitude(d) * half * stretch;
-                store(&reach[k][i], size_of_step);
-                store(&room[k][i], (job.tolerance - chunk_underflow) -
-                                       (size_of_u * chunk_middle_error + size_of_step * chunk_step_error) -
-                                       ((size_of_u + size_of_step) * job.q_error + job.numerator_error[k]) *
-                                           (reciprocal * stretch) * 1.001);
+                if (job.steps != StepRule::undecided) continue;
+                const Doubles reaches = magnitude(d) * half * stretch;
+                store(&reach[k][i], reaches);
+                store(&room[k][i], job.tolerance - chunk_error(magnitude(u), reaches, job.numerator_error[k],
+                                                               job.q_error, reciprocal * stretch));
             }
         }
     }
 
-    // The fewest factors with which chunk i stays inside the tolerance.
-    TEXGEN_INLINE int factors(int i) const noexcept {
-        const auto fits = [&](double error) {
+    // The cheapest rule with which chunk i stays inside the tolerance.
+    TEXGEN_INLINE StepRule rule_of(int i) const noexcept {
+        const auto fits = [&](double share) {
             bool all = true;
-            for (std::size_t k = 0; k < 2; ++k) all = all && error * reach[k][i] <= room[k][i];
+            for (std::size_t k = 0; k < 2; ++k) all = all && share * reach[k][i] <= room[k][i];
             return all;
         };
-        if (!(extent[i] <= 0.75 && least_q[i] > 0.0 && fits(0.0))) return refused;
-        if (!(extent[i] <= 0.25)) return divided;
-        double error = extent[i];
-        for (int n = 1; n < divided; ++n) {
-            error *= error;
-            if (fits(error)) return n;
+        if (!(extent[i] <= 0.75 && least_q[i] > 0.0 && fits(0.0))) return StepRule::none;
+        if (!(extent[i] <= 0.25)) return StepRule::divide;
+        double share = extent[i];
+        for (const StepRule rule : {StepRule::degree2, StepRule::degree4, StepRule::degree8}) {
+            share *= share;
+            if (fits(share)) return rule;
         }
-        return divided;
+        return StepRule::divide;
     }
 };
 
-// i / (1 + i bend), to so many factors.
-template <int Factors>
+// i / (1 + i bend).
+template <StepRule Rule>
 TEXGEN_INLINE WideFloats bent(const WideFloats& i, const WideFloats& bend) noexcept {
     WideFloats x = i * bend;
-    if constexpr (Factors == divided) return i / (x + 1.0f);
+    if constexpr (Rule == StepRule::divide) return i / (x + 1.0f);
     WideFloats result = i - i * x;
-    for (int n = 1; n < Factors; ++n) {
+    for (int n = static_cast<int>(StepRule::degree2); n < static_cast<int>(Rule); ++n) {
         x = x * x;
         result = result + result * x;
     }
@@ -113,7 +122,7 @@ struct ChunkPlace {
 };
 
 // Chunks first to last of the group.
-template <int Factors>
+template <StepRule Rule>
 TEXGEN_INLINE void evaluate(const ChunkGroup& group, int first, int last, const TileJob& job,
                             ChunkPlace& place) noexcept {
     const int width = job.width;
@@ -138,7 +147,7 @@ TEXGEN_INLINE void evaluate(const ChunkGroup& group, int first, int last, const 
         WideFloats index = first_index;
         WideFloats next_index = index + static_cast<float>(wide_lanes);
         for (std::int64_t x = begin; x < end; x += wide_lanes) {
-            const WideFloats step = bent<Factors>(index, bend);
+            const WideFloats step = bent<Rule>(index, bend);
             WideFloats value[2];
             for (std::size_t k = 0; k < 2; ++k) value[k] = step * slope[k] + middle[k];
             // What a last vector writes beyond the chunk is written again by those that follow.
@@ -151,10 +160,10 @@ TEXGEN_INLINE void evaluate(const ChunkGroup& group, int first, int last, const 
     }
 }
 
-// Does the job from `first` on. Stops at chunks that no factors serve and returns them, a part of one row or whole rows;
+// Does the job from `first` on. Stops at chunks that no rule serves and returns them, a part of one row or whole rows;
 // the empty unit if there are none. The next call starts after them.
 template <class CompiledWhereCalled = void>
-TileJob::Unit divide_chunks(const TileJob& job, TileJob::Unit first) noexcept {
+TileJob::Unit fill_tile_polynomial(const TileJob& job, TileJob::Unit first) noexcept {
     ChunkPlace place{first.x_begin / job.chunk, first.y_begin, chunks_of_row(job)};
     ChunkGroup group;
     const int height = job.height;
@@ -163,25 +172,25 @@ TileJob::Unit divide_chunks(const TileJob& job, TileJob::Unit first) noexcept {
         const int count = left < group.size ? static_cast<int>(left) : group.size;
         group.fill(job, place.y, place.chunk, count);
         for (int i = 0; i < count;) {
-            // As many as the same factors serve.
-            int factors = job.factors;
+            // As many as the same rule serves.
+            StepRule rule = job.steps;
             int last = count;
-            if (factors == TileJob::any_factors) {
-                factors = group.factors(i);
-                for (last = i + 1; last < count && group.factors(last) == factors;) ++last;
+            if (rule == StepRule::undecided) {
+                rule = group.rule_of(i);
+                for (last = i + 1; last < count && group.rule_of(last) == rule;) ++last;
             }
-            switch (factors) {
-                case 1:
-                    evaluate<1>(group, i, last, job, place);
+            switch (rule) {
+                case StepRule::degree2:
+                    evaluate<StepRule::degree2>(group, i, last, job, place);
                     break;
-                case 2:
-                    evaluate<2>(group, i, last, job, place);
+                case StepRule::degree4:
+                    evaluate<StepRule::degree4>(group, i, last, job, place);
                     break;
-                case 3:
-                    evaluate<3>(group, i, last, job, place);
+                case StepRule::degree8:
+                    evaluate<StepRule::degree8>(group, i, last, job, place);
                     break;
-                case divided:
-                    evaluate<divided>(group, i, last, job, place);
+                case StepRule::divide:
+                    evaluate<StepRule::divide>(group, i, last, job, place);
                     break;
                 default: {
                     if (place.per_row == 1) return {0, job.width, place.y, place.y + (last - i)};

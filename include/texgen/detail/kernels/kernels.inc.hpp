@@ -18,10 +18,10 @@ namespace TEXGEN_DETAIL::TEXGEN_ISA {
 template <class Table>
 const Table& kernels() noexcept {
     if constexpr (std::is_same_v<Table, TileKernels>) {
-        static constexpr TileKernels table{.divide_nearest = divide_nearest<>,
-                                           .divide_rounded = divide_rounded<>,
-                                           .divide_chunks = divide_chunks<>,
-                                           .divide_closely = divide_closely<>};
+        static constexpr TileKernels table{.fill_exact = fill_tile_exact<>,
+                                           .fill_float_divided = fill_tile_float_divided<>,
+                                           .fill_polynomial = fill_tile_polynomial<>,
+                                           .fill_closely = fill_tile_closely<>};
         return table;
     } else if constexpr (std::is_same_v<Table, PointKernels>) {
         static constexpr PointKernels table{.divide_nearest = divide_points_nearest<>,

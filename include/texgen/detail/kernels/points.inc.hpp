@@ -299,7 +299,7 @@ struct FormsInDouble {
 template <template <std::size_t> class Forms, std::size_t Numerators>
 TEXGEN_INLINE std::size_t divide_points_within_of(const PointJob& job, std::size_t first) noexcept {
     constexpr bool in_float = std::is_same_v<Forms<1>, FormsInFloat<1>>;
-    constexpr FloatDivision division = in_float ? forms_in_float : forms_in_double;
+    constexpr FloatDivision division = in_float ? all_float : float_divided;
     const Forms<Numerators> forms(job);
     for (std::size_t begin = first; begin < job.count; begin += float_block) {
         const std::size_t end = begin + float_block < job.count ? begin + float_block : job.count;

@@ -80,12 +80,12 @@ TEXGEN_INLINE void store_from(const RowOutputs<Numerators>& row, std::int64_t x,
 
 // ---- Division in double ----------------------------------------------------------------------------------------
 
-// One vector of quotients from `index` on. With Nearest, marks in `doubtful` where value - error and value + error do
+// One vector of quotients from `index` on. With Exact, marks in `doubtful` where value - error and value + error do
 // not round to one float; else numerators and q are rounded to float and divided there.
-template <bool Nearest, std::size_t Numerators>
+template <bool Exact, std::size_t Numerators>
 TEXGEN_INLINE void divide_vector(const TileJob& job, const TileRow<Numerators>& row, const Doubles& index,
                                  Doubles& reciprocal, Floats (&quotient)[Numerators], Words& doubtful) noexcept {
-    if constexpr (Nearest) {
+    if constexpr (Exact) {
         if (!job.q_is_constant) reciprocal = 1.0 / (index * job.q.dx + row.q);
         for (std::size_t k = 0; k < Numerators; ++k) {
             const Doubles value = (index * job.numerator[k].dx + row.base[k]) * reciprocal;
@@ -101,7 +101,7 @@ TEXGEN_INLINE void divide_vector(const TileJob& job, const TileRow<Numerators>& 
 
 // The units of the job from `unit` on, up to the first one with a doubtful value (it is written all the same). What a last
 // vector writes beyond its row is written again by those that follow, and may only cause a doubt too many.
-template <bool Nearest, std::size_t Numerators>
+template <bool Exact, std::size_t Numerators>
 TEXGEN_INLINE TileJob::Unit divide_units(const TileJob& job, TileJob::Unit unit) noexcept {
     Doubles reciprocal = Doubles{} + 1.0 / job.q.base;
     for (; !job.is_done(unit); unit = job.unit_after(unit)) {
@@ -113,25 +113,25 @@ TEXGEN_INLINE TileJob::Unit divide_units(const TileJob& job, TileJob::Unit unit)
             std::int64_t x = unit.x_begin;  // what follows the last vector may be no int
             const std::int64_t last = row.writable - lanes;
             for (; x < unit.x_end && x <= last; x += lanes, index += static_cast<double>(lanes)) {
-                divide_vector<Nearest>(job, row, index, reciprocal, quotient, doubtful);
+                divide_vector<Exact>(job, row, index, reciprocal, quotient, doubtful);
                 store_all(row, x, quotient, ~Words{});
             }
             if (x >= unit.x_end) continue;
-            divide_vector<Nearest>(job, row, index, reciprocal, quotient, doubtful);
+            divide_vector<Exact>(job, row, index, reciprocal, quotient, doubtful);
             store_from(row, x, unit.x_end, quotient, ~Words{});
         }
-        if (Nearest && any(doubtful)) break;
+        if (Exact && any(doubtful)) break;
     }
     return unit;
 }
 
 template <class CompiledWhereCalled = void>
-TileJob::Unit divide_nearest(const TileJob& job, TileJob::Unit first) noexcept {
+TileJob::Unit fill_tile_exact(const TileJob& job, TileJob::Unit first) noexcept {
     return job.numerators == 2 ? divide_units<true, 2>(job, first) : divide_units<true, 1>(job, first);
 }
 
 template <class CompiledWhereCalled = void>
-void divide_rounded(const TileJob& job) noexcept {
+void fill_tile_float_divided(const TileJob& job) noexcept {
     divide_units<false, 2>(job, job.unit_at(0, 0));
 }
 
@@ -218,7 +218,7 @@ TEXGEN_INLINE Words divide_closely(const CloseRow& row, double grain, const Clos
 
 // One numerator stands in both places.
 template <class CompiledWhereCalled = void>
-std::uint64_t divide_closely(const TileJob& job, const CloseFunctions& functions, TileJob::Unit unit) noexcept {
+std::uint64_t fill_tile_closely(const TileJob& job, const CloseFunctions& functions, TileJob::Unit unit) noexcept {
     const CloseFunctions close = functions;
     CloseRow q_row(close.q);
     CloseRow numerator[2] = {CloseRow(close.numerator[0]), CloseRow(close.numerator[1])};

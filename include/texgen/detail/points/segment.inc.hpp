@@ -146,7 +146,7 @@ inline Work work(const Segment& segment, TextureRegion region, Tolerance toleran
     detail::Corners at{};
     for (std::size_t i = 0; i < 4; ++i) {
         const glm::dvec4& end = i % 2 == 0 ? a : b;
-        at.numerator[i] = detail::pair_of(end.x, end.y);
+        at.numerator[i] = detail::double2_of(end.x, end.y);
         at.q[i] = end.w;
     }
     at.least_q = detail::smaller(a.w, b.w);

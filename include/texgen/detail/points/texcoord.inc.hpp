@@ -174,9 +174,9 @@ glm::dvec2 project_error_bound(const Transform<Texture, Space>& texture_from_spa
             const double quotient = (std::fabs(s.value) + s.error) / (q.value - q.error) * (1.0 + detail::gamma(4));
             const double of_nearest = detail::half_ulp(quotient);
             // Of the three ways to divide, the one in float errs most.
-            const double of_float = detail::forms_in_float.error(detail::terms_at(form, v), detail::terms_at(q_form, v),
-                                                                 std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z) + 1.0,
-                                                                 q.value - q.error, quotient);
+            const double of_float = detail::all_float.error(detail::terms_at(form, v), detail::terms_at(q_form, v),
+                                                            std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z) + 1.0,
+                                                            q.value - q.error, quotient);
             const double bound = detail::larger(detail::smaller(of_float, detail::accepted(tolerance)), of_nearest);
             largest[k] = detail::larger_or_nan(largest[k], bound);
         }

@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "../language.hpp"
+#include "tiers.hpp"
 
 namespace TEXGEN_DETAIL {
 
@@ -22,13 +23,13 @@ using Ramp = RampOf<double>;
 struct TileJob {
     int numerators;
     int width, height;
-    int chunk;    // the most fragments of a row that share a middle
-    int factors;  // of divide_chunks, for all of them, or any
+    int chunk;       // the most fragments of a row that share a middle
+    StepRule steps;  // of all chunks
     Ramp numerator[2];
     Ramp q;
     bool q_is_constant;
-    double quotient_error[2];   // for divide_nearest
-    double numerator_error[2];  // for divide_chunks, as what follows
+    double quotient_error[2];   // for fill_exact
+    double numerator_error[2];  // for fill_polynomial, as what follows
     double q_error;
     double least_q;  // below it no certificate holds
     double tolerance;
@@ -46,7 +47,6 @@ struct TileJob {
     };
 
     static constexpr int unit_size = 64;
-    static constexpr int any_factors = -1;
 
     Unit unit_at(int x, int y) const noexcept {
         const int rows = width >= unit_size ? 1 : unit_size / width;
@@ -160,12 +160,15 @@ struct FootprintJob {
     float* row(float* output, int y) const noexcept { return output == nullptr ? nullptr : output + y * pitch; }
 };
 
+// A kernel is called by its tier, see tiers.hpp.
 struct TileKernels {
-    TileJob::Unit (*divide_nearest)(const TileJob&, TileJob::Unit first) noexcept;
-    void (*divide_rounded)(const TileJob&) noexcept;
-    TileJob::Unit (*divide_chunks)(const TileJob&, TileJob::Unit first) noexcept;
+    // The first unit from `first` on that is in doubt.
+    TileJob::Unit (*fill_exact)(const TileJob&, TileJob::Unit first) noexcept;
+    void (*fill_float_divided)(const TileJob&) noexcept;
+    // The first unit from `first` on that no rule serves, of one row or of whole rows.
+    TileJob::Unit (*fill_polynomial)(const TileJob&, TileJob::Unit first) noexcept;
     // A unit on either side of the projector. A bit for each fragment that stays in doubt, row by row.
-    std::uint64_t (*divide_closely)(const TileJob&, const CloseFunctions&, TileJob::Unit unit) noexcept;
+    std::uint64_t (*fill_closely)(const TileJob&, const CloseFunctions&, TileJob::Unit unit) noexcept;
 };
 
 // Where a kernel stops: at the first block with values that it cannot decide (bit i: value begin + i), or at the count.

@@ -41,22 +41,26 @@
 namespace TEXGEN_DETAIL {
 
 // Two doubles at a time, for s and t. Laid out as those below.
-struct alignas(16) Pair {
+struct alignas(16) Double2 {
     double lane[2];
 
     double operator[](std::size_t i) const noexcept { return lane[i]; }
-    friend Pair operator-(const Pair& a) noexcept { return {{-a.lane[0], -a.lane[1]}}; }
-    friend Pair operator+(const Pair& a, const Pair& b) noexcept { return {{a[0] + b[0], a[1] + b[1]}}; }
-    friend Pair operator-(const Pair& a, const Pair& b) noexcept { return {{a[0] - b[0], a[1] - b[1]}}; }
-    friend Pair operator*(const Pair& a, const Pair& b) noexcept { return {{a[0] * b[0], a[1] * b[1]}}; }
-    friend Pair operator+(const Pair& a, double b) noexcept { return {{a[0] + b, a[1] + b}}; }
-    friend Pair operator*(const Pair& a, double b) noexcept { return {{a[0] * b, a[1] * b}}; }
-    friend Pair operator/(const Pair& a, double b) noexcept { return {{a[0] / b, a[1] / b}}; }
+    friend Double2 operator-(const Double2& a) noexcept { return {{-a.lane[0], -a.lane[1]}}; }
+    friend Double2 operator+(const Double2& a, const Double2& b) noexcept { return {{a[0] + b[0], a[1] + b[1]}}; }
+    friend Double2 operator-(const Double2& a, const Double2& b) noexcept { return {{a[0] - b[0], a[1] - b[1]}}; }
+    friend Double2 operator*(const Double2& a, const Double2& b) noexcept { return {{a[0] * b[0], a[1] * b[1]}}; }
+    friend Double2 operator+(const Double2& a, double b) noexcept { return {{a[0] + b, a[1] + b}}; }
+    friend Double2 operator*(const Double2& a, double b) noexcept { return {{a[0] * b, a[1] * b}}; }
+    friend Double2 operator/(const Double2& a, double b) noexcept { return {{a[0] / b, a[1] / b}}; }
 };
-inline Pair pair_of(double first, double second) noexcept { return {{first, second}}; }
-inline Pair magnitude(const Pair& a) noexcept { return {{magnitude(a[0]), magnitude(a[1])}}; }
-inline Pair smaller(const Pair& a, const Pair& b) noexcept { return {{smaller(a[0], b[0]), smaller(a[1], b[1])}}; }
-inline Pair larger(const Pair& a, const Pair& b) noexcept { return {{larger(a[0], b[0]), larger(a[1], b[1])}}; }
+inline Double2 double2_of(double first, double second) noexcept { return {{first, second}}; }
+inline Double2 magnitude(const Double2& a) noexcept { return {{magnitude(a[0]), magnitude(a[1])}}; }
+inline Double2 smaller(const Double2& a, const Double2& b) noexcept {
+    return {{smaller(a[0], b[0]), smaller(a[1], b[1])}};
+}
+inline Double2 larger(const Double2& a, const Double2& b) noexcept {
+    return {{larger(a[0], b[0]), larger(a[1], b[1])}};
+}
 
 }  // namespace TEXGEN_DETAIL
 
@@ -74,6 +78,7 @@ template <class Table>
 const Table& chosen() noexcept {
     return scalar::kernels<Table>();
 }
+namespace of_flags = scalar;
 }  // namespace TEXGEN_BUILD
 }  // namespace TEXGEN_DETAIL
 
@@ -122,11 +127,11 @@ const Table& chosen() noexcept {
 namespace TEXGEN_DETAIL {
 
 // Two doubles at a time, for s and t.
-using Pair [[gnu::vector_size(16)]] = double;
-TEXGEN_INLINE Pair pair_of(double first, double second) noexcept { return Pair{first, second}; }
-TEXGEN_INLINE Pair smaller(const Pair& a, const Pair& b) noexcept { return a < b ? a : b; }
-TEXGEN_INLINE Pair larger(const Pair& a, const Pair& b) noexcept { return a > b ? a : b; }
-TEXGEN_INLINE Pair magnitude(const Pair& a) noexcept { return larger(a, -a); }
+using Double2 [[gnu::vector_size(16)]] = double;
+TEXGEN_INLINE Double2 double2_of(double first, double second) noexcept { return Double2{first, second}; }
+TEXGEN_INLINE Double2 smaller(const Double2& a, const Double2& b) noexcept { return a < b ? a : b; }
+TEXGEN_INLINE Double2 larger(const Double2& a, const Double2& b) noexcept { return a > b ? a : b; }
+TEXGEN_INLINE Double2 magnitude(const Double2& a) noexcept { return larger(a, -a); }
 
 }  // namespace TEXGEN_DETAIL
 
@@ -204,6 +209,7 @@ const Table& chosen() noexcept {
     static const Table& table = choose<Table>();
     return table;
 }
+namespace of_flags = TEXGEN_FLAGS(flags_);
 
 }  // namespace TEXGEN_BUILD
 }  // namespace TEXGEN_DETAIL
@@ -218,6 +224,7 @@ template <class Table>
 const Table& chosen() noexcept {
     return TEXGEN_FLAGS(flags_)::kernels<Table>();
 }
+namespace of_flags = TEXGEN_FLAGS(flags_);
 }  // namespace TEXGEN_BUILD
 }  // namespace TEXGEN_DETAIL
 

@@ -20,11 +20,11 @@ inline namespace TEXGEN_BUILD {
 // A tile of two numerators F and of Q: the linear functions, their values at the corner fragments and bounds on their
 // errors. What holds at the corners with a margin for rounding holds at every fragment.
 struct Corners {
-    RampOf<Pair> numerator_ramp;
+    RampOf<Double2> numerator_ramp;
     Ramp q_ramp;
-    Pair numerator[4];
+    Double2 numerator[4];
     double q[4];
-    Pair numerator_error;
+    Double2 numerator_error;
     double q_error;
     double least_q, largest_q;
     double reciprocal;  // the largest 1 / q, for a tile in front
@@ -36,8 +36,8 @@ struct Corners {
     bool cancel() const noexcept {
         constexpr double share = 0x1p-36;
         const double size = least_q > q_error ? least_q : larger(-least_q, largest_q);
-        const Pair largest = larger(larger(magnitude(numerator[0]), magnitude(numerator[1])),
-                                    larger(magnitude(numerator[2]), magnitude(numerator[3])));
+        const Double2 largest = larger(larger(magnitude(numerator[0]), magnitude(numerator[1])),
+                                       larger(magnitude(numerator[2]), magnitude(numerator[3])));
         return q_error > share * size || numerator_error[0] > share * largest[0] ||
                numerator_error[1] > share * largest[1];
     }
@@ -46,8 +46,8 @@ struct Corners {
 
     // The largest |F/Q| of a tile in front. Where Q varies little the quotient of the bounds will do; else the corners have
     // it, u = F/Q being monotone along every line.
-    Pair largest_quotient() const noexcept {
-        Pair size[4];
+    Double2 largest_quotient() const noexcept {
+        Double2 size[4];
         for (std::size_t i = 0; i < 4; ++i) size[i] = magnitude(numerator[i]) + numerator_error;
         if (!(largest_q < 1.25 * least_q))
             for (std::size_t i = 0; i < 4; ++i) size[i] = size[i] / ((q[i] - q_error) * reciprocal);
@@ -55,7 +55,7 @@ struct Corners {
     }
 
     // The error of F/Q in double for a tile well in front: as in certain_quotient(), where it is worst.
-    Pair quotient_error(const Pair& largest) const noexcept {
+    Double2 quotient_error(const Double2& largest) const noexcept {
         return (numerator_error + largest * q_error) * (1.0001 * reciprocal) + largest * (4.0 * unit_roundoff_double);
     }
 };
@@ -77,7 +77,7 @@ inline void take_corners(Corners& corners, const Tile& tile) noexcept {
     corners.reciprocal = 1.0 / (corners.least_q - corners.q_error);
 }
 
-inline Corners corners_of(const TrianglePlanes& planes, const PlaneOf<Pair>& numerator, const Plane& q,
+inline Corners corners_of(const TrianglePlanes& planes, const PlaneOf<Double2>& numerator, const Plane& q,
                           const Tile& tile) noexcept {
     Corners corners;
     corners.numerator_ramp = planes.ramp(numerator, tile);
@@ -91,12 +91,14 @@ inline Corners corners_of(const TrianglePlanes& planes, const PlaneOf<Pair>& num
 // Each coefficient is rounded to double; its product with an index and two sums are rounded once each.
 inline Corners corners_of(const CloseRamps& close) noexcept {
     const auto& [s, t, q] = close.function;
-    const auto pair = [](const DoubleDouble& of_s, const DoubleDouble& of_t) { return pair_of(of_s.high, of_t.high); };
+    const auto high = [](const DoubleDouble& of_s, const DoubleDouble& of_t) {
+        return double2_of(of_s.high, of_t.high);
+    };
     const auto error = [&close](const CloseRamp& ramp) { return ramp.error + gamma(4) * ramp.size(close.tile); };
     Corners corners;
-    corners.numerator_ramp = {pair(s.term[0], t.term[0]), pair(s.term[1], t.term[1]), pair(s.term[2], t.term[2])};
+    corners.numerator_ramp = {high(s.term[0], t.term[0]), high(s.term[1], t.term[1]), high(s.term[2], t.term[2])};
     corners.q_ramp = {q.term[0].high, q.term[1].high, q.term[2].high};
-    corners.numerator_error = pair_of(error(s), error(t));
+    corners.numerator_error = double2_of(error(s), error(t));
     corners.q_error = error(q);
     take_corners(corners, close.tile);
     return corners;
@@ -109,16 +111,17 @@ struct SideOfBound {
 
 // The float that is written may be on the other side of the bound than the exact value, by an ulp, by the tolerance
 // (twice that leaves room), or as a 0 that was subnormal: so the answer must hold with that much slack.
-inline SideOfBound side_of(const Corners& at, const Pair& bound, double tolerance) noexcept {
-    Pair g[4];
+inline SideOfBound side_of(const Corners& at, const Double2& bound, double tolerance) noexcept {
+    Double2 g[4];
     for (std::size_t i = 0; i < 4; ++i) g[i] = at.numerator[i] - bound * at.q[i];
     const double slightly_less = 1.0 - gamma(4);
-    const Pair least = smaller(smaller(g[0], g[1]), smaller(g[2], g[3])) * slightly_less;
-    const Pair largest = larger(larger(g[0], g[1]), larger(g[2], g[3])) * slightly_less;
-    const Pair size = magnitude(bound);
-    const Pair slack = size * 0x1p-22 + (0x1p-125 + 2.0 * tolerance);
+    const Double2 least = smaller(smaller(g[0], g[1]), smaller(g[2], g[3])) * slightly_less;
+    const Double2 largest = larger(larger(g[0], g[1]), larger(g[2], g[3])) * slightly_less;
+    const Double2 size = magnitude(bound);
+    const Double2 slack = size * 0x1p-22 + (0x1p-125 + 2.0 * tolerance);
     const double q = larger(std::fabs(at.least_q), std::fabs(at.largest_q));
-    const Pair margin = (at.numerator_error + (size + slack) * at.q_error + slack * q + size * (gamma(4) * q)) * 1.0001;
+    const Double2 margin =
+        (at.numerator_error + (size + slack) * at.q_error + slack * q + size * (gamma(4) * q)) * 1.0001;
     return {{largest[0] < -margin[0], largest[1] < -margin[1]}, {least[0] > margin[0], least[1] > margin[1]}};
 }
 
@@ -130,8 +133,8 @@ struct Places {
 };
 
 inline Places places_of(const Corners& at, const LitTest& lit, double tolerance) noexcept {
-    const SideOfBound of_min = side_of(at, pair_of(lit.least(0), lit.least(1)), tolerance);
-    const SideOfBound of_max = side_of(at, pair_of(lit.greatest(0), lit.greatest(1)), tolerance);
+    const SideOfBound of_min = side_of(at, double2_of(lit.least(0), lit.least(1)), tolerance);
+    const SideOfBound of_max = side_of(at, double2_of(lit.greatest(0), lit.greatest(1)), tolerance);
     const auto place = [&](std::size_t k) {
         if (of_min.all_below[k]) return Place::outside;
         if (of_max.all_above[k]) return Place::outside;

@@ -19,7 +19,7 @@ namespace TEXGEN_DETAIL {
 
 struct TriangleFunctions {
     TrianglePlanes planes;
-    PlaneOf<Pair> st;
+    PlaneOf<Double2> st;
     Plane q;
     LitTest lit;
     double tolerance;

@@ -60,7 +60,7 @@ public:
 
 private:
     static Plan plan_without_survey(const Tile& tile, const Corners& at) noexcept {
-        return {Work::divide, pays_for_chunks(tile) ? chunk_length(at, tile.width) : 0, TileJob::any_factors, {}};
+        return {Work::divide, pays_for_chunks(tile) ? chunk_length(at, tile.width) : 0, StepRule::undecided, {}};
     }
 
     void fill(const Tile& tile) noexcept {
@@ -69,9 +69,8 @@ private:
     }
 
     void fill(const Tile& tile, const Corners& at, const Plan& plan) noexcept {
-        if (triangle_.tolerance == 0.0) return divide_nearest(tile, at);
-        if (at.well_in_front())
-            return plan.chunk != 0 ? divide_chunks(tile, at, plan) : divide_without_chunks(tile, at);
+        if (triangle_.tolerance == 0.0) return fill_exact(tile, at);
+        if (at.well_in_front()) return plan.chunk != 0 ? fill_polynomial(tile, at, plan) : fill_float_divided(tile, at);
         split(tile, at, [&](const Tile& half) { fill(half); });
     }
 
@@ -86,29 +85,29 @@ private:
     template <class FillHalf>
     void split(const Tile& tile, const Corners& at, const FillHalf& fill_half) noexcept {
         if (at.all_behind()) return clear(tile);
-        if (tile.width <= 8 && tile.height <= 8) return divide_closely(tile, at);
+        if (tile.width <= 8 && tile.height <= 8) return fill_closely(tile, at);
         for (const Tile& half : tile.halves()) fill_half(half);
     }
 
-    void divide_nearest(const Tile& tile, const Corners& at) noexcept {
+    void fill_exact(const Tile& tile, const Corners& at) noexcept {
         // Beyond a ratio of 2^12 the error bound of the largest quotient would make the smallest ones doubtful.
         if (!at.well_in_front() || !(at.least_q > 0x1p-12 * at.largest_q))
-            return split(tile, at, [&](const Tile& half) { divide_nearest(half, corners_at(half)); });
+            return split(tile, at, [&](const Tile& half) { fill_exact(half, corners_at(half)); });
         TileJob job = make_job(tile, at);
-        const Pair error = at.quotient_error(at.largest_quotient());
+        const Double2 error = at.quotient_error(at.largest_quotient());
         for (std::size_t k = 0; k < 2; ++k) job.quotient_error[k] = error[k];
-        TileJob::Unit unit = kernels_.divide_nearest(job, job.unit_at(0, 0));
+        TileJob::Unit unit = kernels_.fill_exact(job, job.unit_at(0, 0));
         if (job.is_done(unit)) return;
         const CloseFunctions functions = close_ramps(tile).split();
         if (take_exact_quotients(functions, job)) {
-            kernels_.divide_nearest(job, unit);
+            kernels_.fill_exact(job, unit);
             return;
         }
         // Doubt has company: twice as many units after each failure that follows another.
         for (int many = 1; !job.is_done(unit);) {
             for (int i = 0; i < many && !job.is_done(unit); ++i, unit = job.unit_after(unit))
-                fill_some(tile, unit, kernels_.divide_closely(job, functions, unit));
-            const TileJob::Unit next = kernels_.divide_nearest(job, unit);
+                fill_some(tile, unit, kernels_.fill_closely(job, functions, unit));
+            const TileJob::Unit next = kernels_.fill_exact(job, unit);
             many = next.x_begin == unit.x_begin && next.y_begin == unit.y_begin ? 2 * many : 1;
             unit = next;
         }
@@ -146,7 +145,7 @@ private:
 
     // A small tile, by one job for all that there are: with the planes as they are, and closely only if that leaves doubt. What
     // a last vector writes beyond the tile is to its right, where the halves come later.
-    void divide_closely(const Tile& tile, const Corners& at) noexcept {
+    void fill_closely(const Tile& tile, const Corners& at) noexcept {
         const int x = static_cast<int>(tile.x - whole_.x);
         const int y = static_cast<int>(tile.y - whole_.y);
         const TileJob::Unit unit{x, x + tile.width, y, y + tile.height};
@@ -155,10 +154,10 @@ private:
             closely_->first.is_contiguous = false;
         }
         const auto& [job, functions] = *closely_;
-        std::uint64_t doubtful = kernels_.divide_closely(job, functions, unit);
+        std::uint64_t doubtful = kernels_.fill_closely(job, functions, unit);
         if (doubtful != 0 && !close_) {
             closely_->second = close_ramps(whole_).split();
-            doubtful = kernels_.divide_closely(job, functions, unit);
+            doubtful = kernels_.fill_closely(job, functions, unit);
         }
         fill_some(whole_, unit, doubtful);
     }
@@ -185,38 +184,37 @@ private:
         }
     }
 
-    void divide_chunks(const Tile& tile, const Corners& at, const Plan& plan) noexcept {
+    void fill_polynomial(const Tile& tile, const Corners& at, const Plan& plan) noexcept {
         TileJob job = make_job(tile, at);
         job.chunk = plan.chunk;
-        job.factors = plan.factors;
+        job.steps = plan.steps;
         job.tolerance = triangle_.tolerance * (1.0 - 0x1p-20);
         job.q_error = at.q_error;
         job.least_q = 0x1p24 * at.q_error;
         for (std::size_t k = 0; k < 2; ++k) job.numerator_error[k] = at.numerator_error[k];
         TileJob::Unit next{0, 0, 0, 0};
         while (true) {
-            const TileJob::Unit refused = kernels_.divide_chunks(job, next);
+            const TileJob::Unit refused = kernels_.fill_polynomial(job, next);
             if (job.is_done(refused)) return;
             const Tile rest = part_of(tile, refused);
-            divide_without_chunks(rest, corners_at(rest));
+            fill_float_divided(rest, corners_at(rest));
             next = refused.x_end < tile.width ? TileJob::Unit{refused.x_end, 0, refused.y_begin, 0}
                                               : TileJob::Unit{0, 0, refused.y_end, 0};
         }
     }
 
-    void divide_without_chunks(const Tile& tile, const Corners& at) noexcept {
-        const Pair error = rounded_error(at);
+    void fill_float_divided(const Tile& tile, const Corners& at) noexcept {
+        const Double2 error = float_divided_error(at);
         const bool fits = at.well_in_front() && at.least_q > 0x1p-20 * at.largest_q &&
                           error[0] <= triangle_.tolerance && error[1] <= triangle_.tolerance;
-        if (!fits) return divide_nearest(tile, at);
-        kernels_.divide_rounded(make_job(tile, at, reciprocal_power_of_two(at.largest_q)));
+        if (!fits) return fill_exact(tile, at);
+        kernels_.fill_float_divided(make_job(tile, at, reciprocal_power_of_two(at.largest_q)));
     }
 
-    // The error of F/Q with F and Q rounded to float, then the reciprocal and the product: 4 u |F/Q|, u = 2^-24. With
-    // 2^-21 <= Q <= 2 a float of F that is subnormal, or flushed to zero, adds less than 2^-104.
-    Pair rounded_error(const Corners& at) const noexcept {
-        const Pair largest = at.largest_quotient();
-        return largest * (4.01 * unit_roundoff_float) + 0x1p-104 + at.quotient_error(largest);
+    // The error of F/Q with F and Q rounded to float, then the reciprocal and the product. With 2^-21 <= Q <= 2 a float of F that is subnormal, or flushed to zero, adds less than 2^-104.
+    Double2 float_divided_error(const Corners& at) const noexcept {
+        const Double2 largest = at.largest_quotient();
+        return largest * float_divided.roundings + 0x1p-104 + at.quotient_error(largest);
     }
 
     // One fragment, every decision exact.
@@ -252,9 +250,9 @@ private:
         job.q_is_constant = is_constant(at.q_ramp);
         job.pitch = rect_.width;
         job.is_contiguous = tile.width == rect_.width;
-        const Pair base = at.numerator_ramp.base * factor;
-        const Pair dx = at.numerator_ramp.dx * factor;
-        const Pair dy = at.numerator_ramp.dy * factor;
+        const Double2 base = at.numerator_ramp.base * factor;
+        const Double2 dx = at.numerator_ramp.dx * factor;
+        const Double2 dy = at.numerator_ramp.dy * factor;
         // One coordinate alone takes the place of both.
         for (std::size_t k = 0; k < 2; ++k) {
             const std::span<float>& output = output_[k < count_ ? k : 0];
@@ -280,7 +278,7 @@ private:
     FragmentRect rect_;
     std::size_t count_ = 0;
     glm::length_t coordinate_[2] = {};
-    PlaneOf<Pair> planes_;
+    PlaneOf<Double2> planes_;
     std::optional<CloseRamps>& close_;
     Tile whole_;  // what is being interpolated
     std::optional<std::pair<TileJob, CloseFunctions>> closely_;

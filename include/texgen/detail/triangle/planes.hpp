@@ -124,9 +124,9 @@ public:
         const auto corner = [&](const WindowVertex& vertex) { return widened(vertex.strq[coordinate]); };
         return plane_through(corner(triangle_.a), corner(triangle_.b), corner(triangle_.c));
     }
-    PlaneOf<Pair> planes(glm::length_t first, glm::length_t second) const noexcept {
+    PlaneOf<Double2> planes(glm::length_t first, glm::length_t second) const noexcept {
         const auto corner = [&](const WindowVertex& vertex) {
-            return pair_of(widened(vertex.strq[first]), widened(vertex.strq[second]));
+            return double2_of(widened(vertex.strq[first]), widened(vertex.strq[second]));
         };
         return plane_through(corner(triangle_.a), corner(triangle_.b), corner(triangle_.c));
     }

@@ -4,12 +4,12 @@ namespace TEXGEN_DETAIL {
 
 inline namespace TEXGEN_BUILD {
 
-// What a tile gets: the work; under a tolerance the length of its chunks, and the factors that serve them all with a bound
-// on the error of s and of t, if there are such (chunks.inc.hpp).
+// What a tile gets: the work; under a tolerance the length of its chunks (0: none), and the rule that serves them all with a
+// bound on the error of s and of t, if there is one (chunks.inc.hpp).
 struct Plan {
     Work work;
     int chunk;
-    int factors;
+    StepRule steps;
     double error[2];
 };
 
@@ -36,42 +36,41 @@ inline bool pays_for_chunks(const Tile& tile) noexcept {
     return tile.width >= 16 && static_cast<std::int64_t>(tile.width) * tile.height > 64;
 }
 
-// The fewest factors that serve every chunk of a tile well in front, and the error that they leave; less work than a
-// division is said of it then, and affine where none were needed. The bound is that of the kernel with each of its terms at
-// its largest. A step of i is i (F_x Q - F Q_x) over the Q at both of its ends, and that difference is constant along a row.
-inline void choose_factors(Plan& plan, const Corners& at, double tolerance) noexcept {
+// The cheapest rule that serves every chunk of a tile well in front, and the error that it leaves; less work than a division
+// is said of it then, and affine where a line would do. The bound is that of the kernel with each of its terms at its
+// largest. A step of i is i (F_x Q - F Q_x) over the Q at both of its ends, and that difference is constant along a row.
+inline void choose_steps(Plan& plan, const Corners& at, double tolerance) noexcept {
     const double half = 0.5 * (plan.chunk - 1);
     const double extent = 1.001 * half * std::fabs(at.q_ramp.dx) * at.reciprocal;
     if (!(extent <= 0.25)) return;
     const auto slope_times_q_squared = [&](std::size_t i) {
-        const Pair first = at.numerator_ramp.dx * at.q[i];
-        const Pair second = at.numerator[i] * at.q_ramp.dx;
+        const Double2 first = at.numerator_ramp.dx * at.q[i];
+        const Double2 second = at.numerator[i] * at.q_ramp.dx;
         return magnitude(first - second) + (magnitude(first) + magnitude(second)) * gamma(8);
     };
-    const Pair largest = at.largest_quotient();
-    const Pair reach =
+    const Double2 reach =
         larger(slope_times_q_squared(0), slope_times_q_squared(2)) * (1.001 * half * at.reciprocal * at.reciprocal);
-    const Pair rest = largest * chunk_middle_error + reach * chunk_step_error + chunk_underflow +
-                      (at.numerator_error + (largest + reach) * at.q_error) * (1.001 * at.reciprocal);
+    const Double2 rest =
+        of_flags::chunk_error(at.largest_quotient(), reach, at.numerator_error, at.q_error, at.reciprocal);
     const auto fits = [&](double share) {
-        const Pair error = reach * share + rest;
+        const Double2 error = reach * share + rest;
         plan.error[0] = error[0];
         plan.error[1] = error[1];
         return error[0] <= tolerance && error[1] <= tolerance;
     };
     const bool is_affine = fits(extent);
     double share = extent;
-    for (int factors = 1; factors <= 3; ++factors) {
+    for (const StepRule rule : {StepRule::degree2, StepRule::degree4, StepRule::degree8}) {
         share *= share;
         if (!fits(share)) continue;
-        plan.factors = factors;
+        plan.steps = rule;
         if (plan.work != Work::affine) plan.work = is_affine ? Work::affine : Work::quadratic;
         return;
     }
 }
 
-inline Plan plan_for(const TriangleFunctions& triangle, const Tile& tile, const Corners& at) noexcept {
-    Plan plan{Work::nothing, 0, TileJob::any_factors, {}};
+inline Plan choose_plan(const TriangleFunctions& triangle, const Tile& tile, const Corners& at) noexcept {
+    Plan plan{Work::nothing, 0, StepRule::undecided, {}};
     if (at.all_behind()) return plan;
     const Places places = places_of(at, triangle.lit, triangle.tolerance);
     if (places.s == Place::outside || places.t == Place::outside) return plan;
@@ -81,7 +80,7 @@ inline Plan plan_for(const TriangleFunctions& triangle, const Tile& tile, const 
     if (triangle.tolerance == 0.0 || !pays_for_chunks(tile)) return plan;
     plan.chunk = chunk_length(at, tile.width);
     if (!at.well_in_front()) return plan;
-    choose_factors(plan, at, triangle.tolerance * (1.0 - 0x1p-18));
+    choose_steps(plan, at, triangle.tolerance * (1.0 - 0x1p-18));
     return plan;
 }
 
@@ -89,7 +88,7 @@ inline TileSurvey survey(const TriangleFunctions& triangle, const Tile& tile) no
     TileSurvey found;  // not {}: zeros would cost what a small tile does
     found.at = corners_of(triangle.planes, triangle.st, triangle.q, tile);
     for (;;) {
-        found.plan = plan_for(triangle, tile, found.at);
+        found.plan = choose_plan(triangle, tile, found.at);
         if (found.close || found.plan.work == Work::nothing || !found.at.cancel()) return found;
         found.close = ClosePlanes(triangle.planes, tile).ramps(0, 1);
         found.at = corners_of(*found.close);
@@ -122,7 +121,7 @@ inline glm::dvec2 TriangleSetup::error_bound(FragmentRect rect) const noexcept {
     const detail::Plan& plan = found.plan;
     if (at.all_behind()) return {0.0, 0.0};
     const auto bound = [&](std::size_t k) {
-        if (plan.factors != detail::TileJob::any_factors) return plan.error[k];
+        if (plan.steps != detail::StepRule::undecided) return plan.error[k];
         if (!at.all_in_front()) return std::numeric_limits<double>::infinity();
         return detail::larger(functions_.tolerance, detail::half_ulp(at.largest_quotient()[k]));
     };

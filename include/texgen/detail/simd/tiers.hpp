@@ -1,0 +1,51 @@
+#pragma once
+
+// The tiers: how values are computed, the dearest way first, and what bounds their errors. What a tier's bound does not cover
+// goes to a dearer one.
+//
+//   exact           in double, with a certificate: the nearest float. What that leaves in doubt is decided closely, in two
+//                   doubles; and what those leave, one by one, by exact sums
+//   double_rounded  numerators and quotient in double, rounded once
+//   float_divided   numerators and q in double, rounded; the quotient in float
+//   all_float       numerators, q and quotient in float
+//   polynomial      in float about the middle of a chunk, with a polynomial instead of a division
+//
+// exact, float_divided and all_float serve points, exact and all_float segments, exact, float_divided and polynomial
+// triangles, double_rounded and all_float footprints. double_rounded serves the doubt of points and segments, too, where
+// their tolerance holds both floats.
+
+#include <limits>
+
+#include "../arithmetic/rounding.hpp"
+#include "../language.hpp"
+
+namespace TEXGEN_DETAIL {
+
+// The error of a division in float: the forms of s and q err by form_error of their terms, and what is rounded after them
+// adds `roundings` of the quotient.
+struct FloatDivision {
+    double form_error, roundings;
+
+    // A bound on the error of s/q. The terms are sum |T_j v_j|, size is |x| + |y| + |z| + 1; q is at least least_q, and
+    // |s/q| at most `largest`, both either exactly or as computed. With s^ = s + a, q^ = q + b, |s^/q^ - s/q| is
+    // |a - b s/q| / q^ = |a - b s^/q^| / q. Infinite where a float could leave its range.
+    constexpr double error(double s_terms, double q_terms, double size, double least_q, double largest) const noexcept {
+        const double underflow = 0x1p-124 * size;
+        const double s_error = form_error * s_terms + underflow;
+        const double q_error = form_error * q_terms + underflow;
+        const double q = least_q * (1.0 - roundings) - q_error;
+        if (!(q > 0x1p-60 && s_terms < 0x1p127 && q_terms < 0x1p127)) return std::numeric_limits<double>::infinity();
+        return 1.001 * (s_error + largest * q_error) / q + roundings * largest;
+    }
+};
+
+// With u = 2^-24: rounded coefficients and four terms, 5 u; the reciprocal and the product, 2 u. And forms in double, with
+// four roundings to float: of both, of the reciprocal and of the product.
+inline constexpr FloatDivision all_float{5.01 * unit_roundoff_float, 2.01 * unit_roundoff_float};
+inline constexpr FloatDivision float_divided{gamma(5), 4.01 * unit_roundoff_float};
+
+// How the steps i / (1 + x) of a chunk are computed: with 1, 2 or 3 factors of 1 / (1 + x) = (1 - x) (1 + x^2) (1 + x^4) ...,
+// which leaves x^2, x^4 or x^8 of them; by a division; or not, as no bound holds. Undecided: chunk by chunk.
+enum class StepRule { undecided, degree2, degree4, degree8, divide, none };
+
+}  // namespace TEXGEN_DETAIL
