@@ -4,15 +4,6 @@ namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
 TEXGEN_INLINE const WideFloats& to_floats(const WideFloats& values) noexcept { return values; }
 
-// The first `count` lanes.
-template <class Vector>
-TEXGEN_INLINE void store_some(float* to, int count, const Vector& values) noexcept {
-    if (count == static_cast<int>(sizeof(Vector) / sizeof(float))) return store(to, values);
-    float buffer[sizeof(Vector) / sizeof(float)];
-    store(buffer, values);
-    for (int i = 0; i < count; ++i) to[i] = buffer[i];
-}
-
 // A row is done in vectors of `count` fragments, as many as there are up to the lanes; the last overlaps the one before.
 TEXGEN_INLINE int start_of_vector(int x, int count, int width) noexcept {
     return x + count <= width ? x : width - count;

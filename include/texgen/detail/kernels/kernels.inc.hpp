@@ -2,6 +2,7 @@
 // target region, so that one source serves all of them. A kernel gets plain numbers; the only decisions that it makes are how a
 // chunk of a row is divided and what is in doubt.
 
+#include "stores.inc.hpp"
 #include "tiles.inc.hpp"
 
 #include "../simd/twofold.inc.hpp"

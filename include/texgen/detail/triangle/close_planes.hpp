@@ -135,8 +135,8 @@ private:
 };
 
 // F at one fragment.
-inline Bounded close_to(const TrianglePlanes& planes, glm::length_t coordinate, std::int64_t x,
-                        std::int64_t y) noexcept {
+inline Bounded closely_at(const TrianglePlanes& planes, glm::length_t coordinate, std::int64_t x,
+                          std::int64_t y) noexcept {
     const CloseRamp ramp = ClosePlanes(planes, {x, y, 1, 1}).ramp(coordinate);
     const double value = ramp.term[0].high + ramp.term[0].low;
     if (4.0 * ramp.error < ramp.grain && std::fabs(value) < 0.5 * ramp.grain) return {0.0, 0.0};

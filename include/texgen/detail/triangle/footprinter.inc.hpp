@@ -4,13 +4,6 @@ namespace TEXGEN_DETAIL {
 
 inline namespace TEXGEN_BUILD {
 
-// Whether interpolate() does nothing there.
-inline bool is_dark(const TriangleFunctions& triangle, const Corners& at) noexcept {
-    if (at.all_behind()) return true;
-    const Places places = places_of(at, triangle.lit, triangle.tolerance);
-    return places.s == Place::outside || places.t == Place::outside;
-}
-
 // Footprints into the caller's arrays: in vectors where the tile is well in front, else in its halves, and at last one
 // by one.
 class TileFootprinter {
@@ -186,10 +179,10 @@ bool footprint(const FootprintSetup& setup, FragmentRect rect, Footprints out) n
         if (!detail::is_computed(*output, count)) *output = {};
     const detail::Tile tile = detail::tile_of(rect);
     const detail::FootprintFunctions& functions = setup.functions();
-    const detail::Corners at = detail::survey(functions.triangle, tile).at;
-    if (detail::is_dark(functions.triangle, at)) return false;
+    const detail::TileSurvey found = detail::survey(functions.triangle, tile);
+    if (found.plan.work == Work::nothing) return false;
     detail::TileFootprinter(detail::chosen<detail::FootprintKernels>(), functions, setup.texels(), rect, out)
-        .fill_all(tile, at);
+        .fill_all(tile, found.at);
     return true;
 }
 

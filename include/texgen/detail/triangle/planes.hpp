@@ -249,7 +249,7 @@ public:
     }
 
     // The same within a few ulp of itself, and with the factor of the planes.
-    double closely_at(glm::length_t coordinate, std::int64_t x, std::int64_t y) const noexcept {
+    double accurately_at(glm::length_t coordinate, std::int64_t x, std::int64_t y) const noexcept {
         const double weight = orientation_ * (widened(triangle_.b.clip_w) * widened(triangle_.c.clip_w));
         return exactly_at(coordinate, x, y).estimate() * (weight_[0] / weight);
     }
