@@ -32,7 +32,7 @@ struct CloseRamp {
     }
 
     // |base| + |i dx| + |j dy| where that is largest.
-    double size(const Tile& tile) const noexcept {
+    double size_over(const Tile& tile) const noexcept {
         return std::fabs(term[0].high) + tile.width * std::fabs(term[1].high) + tile.height * std::fabs(term[2].high);
     }
 
@@ -53,7 +53,7 @@ struct CloseRamp {
                 grain};
     }
     double unit_for(const Tile& tile) const noexcept {
-        const double size = this->size(tile);
+        const double size = size_over(tile);
         return size > 0.0 ? 0x1p-50 / reciprocal_power_of_two(size) : 0.0;
     }
 };

@@ -94,7 +94,7 @@ inline Corners corners_of(const CloseRamps& close) noexcept {
     const auto high = [](const DoubleDouble& of_s, const DoubleDouble& of_t) {
         return double2_of(of_s.high, of_t.high);
     };
-    const auto error = [&close](const CloseRamp& ramp) { return ramp.error + gamma(4) * ramp.size(close.tile); };
+    const auto error = [&close](const CloseRamp& ramp) { return ramp.error + gamma(4) * ramp.size_over(close.tile); };
     Corners corners;
     corners.numerator_ramp = {high(s.term[0], t.term[0]), high(s.term[1], t.term[1]), high(s.term[2], t.term[2])};
     corners.q_ramp = {q.term[0].high, q.term[1].high, q.term[2].high};

@@ -136,7 +136,7 @@ public:
     // 5 u: gamma(16) of the magnitudes covers the values, and a step from the first vertex.
     Slope slope(glm::length_t coordinate) const noexcept {
         const WindowVertex* const corner[] = {&triangle_.a, &triangle_.b, &triangle_.c};
-        const double area = this->area();
+        const double area = twice_area();
         const auto mu = [&](int i, int j) {
             return (widened(corner[i]->strq[coordinate]) * widened(corner[j]->strq.w) -
                     widened(corner[j]->strq[coordinate]) * widened(corner[i]->strq.w)) *
@@ -156,7 +156,7 @@ public:
     // the planes are M times the edge functions, whose determinant is area^2. Within 2^-46 of itself; its sign is exact.
     double jacobian_determinant() const noexcept {
         const WindowVertex* const corner[] = {&triangle_.a, &triangle_.b, &triangle_.c, &triangle_.a, &triangle_.b};
-        const double area = this->area();
+        const double area = twice_area();
         const double scale = (area * weight_[0]) * (area * weight_[1]) * weight_[2];
         double sum = 0.0;
         double magnitude = 0.0;
@@ -305,7 +305,7 @@ private:
     }
 
     // Twice the signed area within 4 u of itself; it may cancel below the rounding of the differences.
-    double area() const noexcept {
+    double twice_area() const noexcept {
         const glm::dvec2 b = window(triangle_.b);
         const glm::dvec2 c = window(triangle_.c);
         const auto is_exact = [](double to, double from) { return two_sum(to, -from).low == 0.0; };
