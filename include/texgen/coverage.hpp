@@ -184,7 +184,7 @@ private:
     bool is_in_doubt_ = false;
 };
 
-template <class = void>
+template <class CompiledWhereCalled = void>
 void cover(const LitForms& forms, const FloatForms& float_forms, std::span<const Box> boxes,
            std::span<Coverage> out) noexcept {
     constexpr std::size_t chunk = 16 * box_quantum;
@@ -230,7 +230,7 @@ void cover(const LitForms& forms, const FloatForms& float_forms, std::span<const
 }
 
 // One box: the planes are decided exactly at once, which says what the floats would.
-template <class = void>
+template <class CompiledWhereCalled = void>
 Coverage coverage_of(const LitForms& forms, const Box& box) noexcept {
     Coverage result = exact_coverage(forms, box);
     if (result != Coverage::partial) return result;

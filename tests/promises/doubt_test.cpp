@@ -89,14 +89,14 @@ TEST_CASE("points in doubt have the same bits in vectors and one by one") {
             texgen::detail::PointJob job =
                 texgen::detail::point_job(cloud.matrix, row, numerators, everywhere(), texgen::exact);
             job.count = count;
-            job.triples = true;
+            job.interleaved_xyz = true;
             job.x = &cloud.points[0].x;
             const auto write_to = [&](std::array<std::vector<float>, 3>& arrays) {
                 for (std::size_t k = 0; k < 2; ++k) job.out[k] = arrays[k].data();
                 job.lit = row == 0 ? arrays[2].data() : nullptr;
             };
             write_to(in_vectors);
-            project_nearest(texgen::detail::chosen<texgen::detail::PointKernels>(), job, 0, count);
+            project_exact(texgen::detail::chosen<texgen::detail::PointKernels>(), job, 0, count);
             write_to(one_by_one);
             for (std::size_t i = 0; i < count; ++i) texgen::detail::project_one(job, i);
             for (std::size_t k = 0; k < 3; ++k)
@@ -182,13 +182,13 @@ TEST_CASE("two doubles leave none of these points in doubt") {
         std::vector<float> s(count), t(count);
         texgen::detail::PointJob job = texgen::detail::point_job(cloud.matrix, 0, 2, everywhere(), texgen::exact);
         job.count = count;
-        job.triples = true;
+        job.interleaved_xyz = true;
         job.x = &cloud.points[0].x;
         job.out[0] = s.data();
         job.out[1] = t.data();
         std::size_t undecided = 0;
-        texgen::detail::divide_blocks(kernels.divide_nearest, job, 0,
-                                      [&](const texgen::detail::PointJob&, std::size_t) { ++undecided; });
+        texgen::detail::fill_blocks(kernels.fill_exact, job, 0,
+                                    [&](const texgen::detail::PointJob&, std::size_t) { ++undecided; });
         CHECK_MESSAGE(undecided == 0, cloud.name, ": ", undecided);
     }
 }

@@ -5,7 +5,7 @@ namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
 // Where the largest value of a form is negative, the box is outside; where the least of all are positive, inside. An
 // infinity makes the error one, and nothing is certain. Where min <= max, the larger magnitude is that of -min or max.
-template <class = void>
+template <class CompiledWhereCalled = void>
 void classify(const FloatForms& original, const float* boxes, std::size_t count, int* classes) noexcept {
     const FloatForms forms = original;
     for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(wide_lanes)) {
@@ -114,7 +114,7 @@ TEXGEN_INLINE void bound_least(const DoubleForms& forms, const BoxBlock& boxes, 
     store(least_upper + i, all_upper);
 }
 
-template <class = void>
+template <class CompiledWhereCalled = void>
 void bound(const DoubleForms& forms, const BoxBlock& boxes, BoxBounds& bounds) noexcept {
     for (std::size_t i = 0; i < box_block; i += static_cast<std::size_t>(lanes)) {
         bound_least<true>(forms, boxes, i, bounds.lower, bounds.upper);
@@ -127,7 +127,7 @@ void bound(const DoubleForms& forms, const BoxBlock& boxes, BoxBounds& bounds) n
 }
 
 // What a form does not use is skipped, whatever the box has there. A NaN (of an infinity) proves nothing.
-template <class = void>
+template <class CompiledWhereCalled = void>
 void separate(const BoundedForm* forms, std::size_t count, const BoxBlock& boxes, double* least_of_largest) noexcept {
     for (std::size_t i = 0; i < box_block; i += static_cast<std::size_t>(lanes)) {
         Doubles least = Doubles{} + 1.0;

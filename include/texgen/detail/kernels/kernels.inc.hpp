@@ -25,14 +25,14 @@ const Table& kernels() noexcept {
                                            .fill_closely = fill_tile_closely<>};
         return table;
     } else if constexpr (std::is_same_v<Table, PointKernels>) {
-        static constexpr PointKernels table{.divide_nearest = divide_points_nearest<>,
-                                            .divide_float = divide_points_within<FormsInFloat>,
-                                            .divide_rounded = divide_points_within<FormsInDouble>,
+        static constexpr PointKernels table{.fill_exact = fill_points_exact<>,
+                                            .fill_all_float = fill_points_within<FormsInFloat>,
+                                            .fill_float_divided = fill_points_within<FormsInDouble>,
                                             .generate = generate_points<>};
         return table;
     } else if constexpr (std::is_same_v<Table, SegmentKernels>) {
-        static constexpr SegmentKernels table{.divide_nearest = divide_segment_nearest<>,
-                                              .divide_float = divide_segment_float<>};
+        static constexpr SegmentKernels table{.fill_exact = fill_segment_exact<>,
+                                              .fill_all_float = fill_segment_all_float<>};
         return table;
     } else if constexpr (std::is_same_v<Table, FootprintKernels>) {
         static constexpr FootprintKernels table{.differentiate = differentiate<>, .filter = filter<>};

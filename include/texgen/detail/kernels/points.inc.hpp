@@ -4,8 +4,8 @@ namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
 template <class Vector, class Job>
 TEXGEN_INLINE void load_points(const Job& job, std::size_t i, Vector& x, Vector& y, Vector& z) noexcept {
-    if (job.triples) {
-        load_triples(job.x + 3 * i, x, y, z);
+    if (job.interleaved_xyz) {
+        load_interleaved(job.x + 3 * i, x, y, z);
     } else {
         x = load<Vector>(job.x + i);
         y = load<Vector>(job.y + i);
@@ -18,10 +18,8 @@ template <std::size_t Numerators, class Vector, class Mask>
 TEXGEN_INLINE void store_points(const DividedOutput& output, std::size_t i, const Vector (&value)[Numerators],
                                 const Mask& in_front) noexcept {
     if constexpr (Numerators == 2) {
-        if (output.lit != nullptr)
-            store(output.lit + i, one_where(in_front & inside(value[0], output.min[0], output.max[0]) &
-                                            inside(value[1], output.min[1], output.max[1])));
-        if (output.pairs) return store_pairs(output.out[0] + 2 * i, value[0], value[1]);
+        if (output.lit != nullptr) store(output.lit + i, lit_of(output, value, in_front));
+        if (output.interleaved_st) return store_interleaved(output.out[0] + 2 * i, value[0], value[1]);
     }
     for (std::size_t k = 0; k < Numerators; ++k) store(output.out[k] + i, value[k]);
 }
@@ -86,8 +84,8 @@ struct Again {
 // that follow it, in two doubles. Terms are the sums at a vector of values: q and the numerators, nearly and in two doubles,
 // and which lanes are behind whatever their q, being no numbers.
 template <std::size_t Numerators, class Terms>
-TEXGEN_INLINE Again divide_block_again(const DividedOutput& output, const Terms& terms, std::size_t begin,
-                                       std::size_t end, bool is_in_doubt) noexcept {
+TEXGEN_INLINE Again fill_block_again(const DividedOutput& output, const Terms& terms, std::size_t begin,
+                                     std::size_t end, bool is_in_doubt) noexcept {
     Again again{0, true, is_in_doubt};
     bool are_ties = false;  // the last vector, or next to ties
     for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(lanes)) {
@@ -153,11 +151,11 @@ TEXGEN_INLINE PointExtent extent_of(const PointJob& job, std::size_t begin, std:
     WideWords z{};
     for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(wide_lanes)) {
         const float* const from = job.x + 3 * i;
-        x = maximum(magnitude_bits(load<WideFloats>(job.triples ? from : job.x + i)), x);
-        y = maximum(magnitude_bits(load<WideFloats>(job.triples ? from + wide_lanes : job.y + i)), y);
-        z = maximum(magnitude_bits(load<WideFloats>(job.triples ? from + 2 * wide_lanes : job.z + i)), z);
+        x = maximum(magnitude_bits(load<WideFloats>(job.interleaved_xyz ? from : job.x + i)), x);
+        y = maximum(magnitude_bits(load<WideFloats>(job.interleaved_xyz ? from + wide_lanes : job.y + i)), y);
+        z = maximum(magnitude_bits(load<WideFloats>(job.interleaved_xyz ? from + 2 * wide_lanes : job.z + i)), z);
     }
-    if (job.triples) x = y = z = maximum(maximum(x, y), z);
+    if (job.interleaved_xyz) x = y = z = maximum(maximum(x, y), z);
     return {x, y, z};
 }
 
@@ -167,7 +165,7 @@ TEXGEN_INLINE Doubles at(const PointForm& form, const Doubles& x, const Doubles&
 
 // A block of points, with errors that hold for all of it. Returns what is in doubt (it is written all the same).
 template <bool Signed, std::size_t Numerators>
-TEXGEN_INLINE Doubt divide_points_block(const PointJob& job, std::size_t begin, std::size_t end) noexcept {
+TEXGEN_INLINE Doubt fill_points_block(const PointJob& job, std::size_t begin, std::size_t end) noexcept {
     const PointExtent extent = extent_of(job, begin, end);
     double numerator_error[Numerators];
     for (std::size_t k = 0; k < Numerators; ++k) numerator_error[k] = gamma(5) * extent.magnitude_of(job.numerator[k]);
@@ -189,7 +187,7 @@ TEXGEN_INLINE Doubt divide_points_block(const PointJob& job, std::size_t begin, 
     return doubt;
 }
 
-// The sums of points, for divide_block_again().
+// The sums of points, for fill_block_again().
 template <std::size_t Numerators>
 struct PointTerms {
     const PointJob& job;
@@ -213,31 +211,31 @@ struct PointTerms {
 };
 
 template <std::size_t Numerators>
-TEXGEN_APART Again divide_points_again(const PointJob& job, std::size_t begin, std::size_t end,
-                                       bool is_in_doubt) noexcept {
+TEXGEN_APART Again fill_points_again(const PointJob& job, std::size_t begin, std::size_t end,
+                                     bool is_in_doubt) noexcept {
     if (!is_in_doubt) {
         const PointJob copy = job;
-        const Doubt doubt = divide_points_block<true, Numerators>(copy, begin, end);
+        const Doubt doubt = fill_points_block<true, Numerators>(copy, begin, end);
         if (!doubt.any_lane()) return {0, !any(doubt.behind), false};
     }
-    return divide_block_again<Numerators>(job, PointTerms<Numerators>(job), begin, end, is_in_doubt);
+    return fill_block_again<Numerators>(job, PointTerms<Numerators>(job), begin, end, is_in_doubt);
 }
 
 // Most blocks are all in front and in no doubt; those that follow one that is not are taken for what it was. The job is
 // copied, here and below, so that the compiler knows that no store changes it: nothing that the loop reads may be reached
 // from elsewhere.
 template <std::size_t Numerators>
-TEXGEN_INLINE Undecided divide_points_nearest_of(const PointJob& original, std::size_t first) noexcept {
+TEXGEN_INLINE Undecided fill_points_exact_of(const PointJob& original, std::size_t first) noexcept {
     const PointJob job = original;
     bool is_ordinary = true;
     bool is_in_doubt = false;
     for (std::size_t begin = first; begin < job.count;) {
-        const std::size_t next = begin / nearest_block * nearest_block + nearest_block;
+        const std::size_t next = begin / exact_block * exact_block + exact_block;
         const std::size_t end = next < job.count ? next : job.count;
         bool is_certain = false;
-        if (is_ordinary) is_certain = !divide_points_block<false, Numerators>(job, begin, end).any_lane();
+        if (is_ordinary) is_certain = !fill_points_block<false, Numerators>(job, begin, end).any_lane();
         if (!is_certain) {
-            const Again again = divide_points_again<Numerators>(original, begin, end, is_in_doubt);
+            const Again again = fill_points_again<Numerators>(original, begin, end, is_in_doubt);
             is_in_doubt = again.is_in_doubt;
             if (again.doubtful != 0) return {begin, again.doubtful};
             is_ordinary = again.is_ordinary;
@@ -247,9 +245,9 @@ TEXGEN_INLINE Undecided divide_points_nearest_of(const PointJob& original, std::
     return {job.count, 0};
 }
 
-template <class = void>
-Undecided divide_points_nearest(const PointJob& job, std::size_t first) noexcept {
-    return job.numerators == 2 ? divide_points_nearest_of<2>(job, first) : divide_points_nearest_of<1>(job, first);
+template <class CompiledWhereCalled = void>
+Undecided fill_points_exact(const PointJob& job, std::size_t first) noexcept {
+    return job.numerators == 2 ? fill_points_exact_of<2>(job, first) : fill_points_exact_of<1>(job, first);
 }
 
 // The forms of q and of the numerators in float, in the order in which they are computed.
@@ -297,7 +295,7 @@ struct FormsInDouble {
 // begins that is not inside the tolerance (it is written all the same), or the count. A NaN makes the largest quotient
 // one, and fails.
 template <template <std::size_t> class Forms, std::size_t Numerators>
-TEXGEN_INLINE std::size_t divide_points_within_of(const PointJob& job, std::size_t first) noexcept {
+TEXGEN_INLINE std::size_t fill_points_within_of(const PointJob& job, std::size_t first) noexcept {
     constexpr bool in_float = std::is_same_v<Forms<1>, FormsInFloat<1>>;
     constexpr FloatDivision division = in_float ? all_float : float_divided;
     const Forms<Numerators> forms(job);
@@ -343,14 +341,14 @@ TEXGEN_INLINE std::size_t divide_points_within_of(const PointJob& job, std::size
 }
 
 template <template <std::size_t> class Forms>
-std::size_t divide_points_within(const PointJob& original, std::size_t first) noexcept {
+std::size_t fill_points_within(const PointJob& original, std::size_t first) noexcept {
     const PointJob job = original;
-    return job.numerators == 2 ? divide_points_within_of<Forms, 2>(job, first)
-                               : divide_points_within_of<Forms, 1>(job, first);
+    return job.numerators == 2 ? fill_points_within_of<Forms, 2>(job, first)
+                               : fill_points_within_of<Forms, 1>(job, first);
 }
 
 // The forms at points, in double, rounded once.
-template <class = void>
+template <class CompiledWhereCalled = void>
 void generate_points(const GenerateJob& original) noexcept {
     const GenerateJob job = original;
     for (std::size_t i = 0; i < job.count; i += static_cast<std::size_t>(lanes)) {
@@ -359,9 +357,10 @@ void generate_points(const GenerateJob& original) noexcept {
         const Doubles x = to_doubles(xs);
         const Doubles y = to_doubles(ys);
         const Doubles z = to_doubles(zs);
-        if (job.quads != nullptr) {
-            store_quads(job.quads + 4 * i, to_floats(at(job.form[0], x, y, z)), to_floats(at(job.form[1], x, y, z)),
-                        to_floats(at(job.form[2], x, y, z)), to_floats(at(job.form[3], x, y, z)));
+        if (job.strq != nullptr) {
+            store_interleaved(job.strq + 4 * i, to_floats(at(job.form[0], x, y, z)),
+                              to_floats(at(job.form[1], x, y, z)), to_floats(at(job.form[2], x, y, z)),
+                              to_floats(at(job.form[3], x, y, z)));
         } else {
             for (std::size_t k = 0; k < 4; ++k)
                 if (job.out[k] != nullptr) store(job.out[k] + i, to_floats(at(job.form[k], x, y, z)));

@@ -2,7 +2,7 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// The sums of a segment's values, for divide_block_again().
+// The sums of a segment's values, for fill_block_again().
 template <std::size_t Numerators>
 struct SegmentTerms {
     struct At {
@@ -41,15 +41,15 @@ private:
 };
 
 template <std::size_t Numerators>
-TEXGEN_APART Again divide_segment_again(const SegmentJob& job, std::size_t begin, std::size_t end,
-                                        bool is_in_doubt) noexcept {
-    return divide_block_again<Numerators>(job, SegmentTerms<Numerators>(job), begin, end, is_in_doubt);
+TEXGEN_APART Again fill_segment_again(const SegmentJob& job, std::size_t begin, std::size_t end,
+                                      bool is_in_doubt) noexcept {
+    return fill_block_again<Numerators>(job, SegmentTerms<Numerators>(job), begin, end, is_in_doubt);
 }
 
 // (1 - a) A + a B in double, in blocks as for points. 1 - a, the products and the sum are rounded once each. Where the
 // whole segment is in front one bound serves all values; only an alpha that is NaN is in doubt about its side.
 template <bool InFront, std::size_t Numerators>
-TEXGEN_INLINE Undecided divide_segment_nearest_of(const SegmentJob& original, std::size_t first) noexcept {
+TEXGEN_INLINE Undecided fill_segment_exact_of(const SegmentJob& original, std::size_t first) noexcept {
     const SegmentJob job = original;
     double numerator_error[Numerators];
     for (std::size_t k = 0; k < Numerators; ++k)
@@ -57,7 +57,7 @@ TEXGEN_INLINE Undecided divide_segment_nearest_of(const SegmentJob& original, st
     const double q_error = gamma(4) * larger(std::fabs(job.q_a), std::fabs(job.q_b));
     bool is_in_doubt = false;
     for (std::size_t begin = first; begin < job.count;) {
-        const std::size_t next = begin / nearest_block * nearest_block + nearest_block;
+        const std::size_t next = begin / exact_block * exact_block + exact_block;
         const std::size_t end = next < job.count ? next : job.count;
         bool is_certain = false;
         if (!is_in_doubt) {
@@ -87,7 +87,7 @@ TEXGEN_INLINE Undecided divide_segment_nearest_of(const SegmentJob& original, st
             is_certain = !doubt.any_lane();
         }
         if (!is_certain) {
-            const Again again = divide_segment_again<Numerators>(original, begin, end, is_in_doubt);
+            const Again again = fill_segment_again<Numerators>(original, begin, end, is_in_doubt);
             if (again.doubtful != 0) return {begin, again.doubtful};
             is_in_doubt = again.is_in_doubt;
         }
@@ -96,19 +96,17 @@ TEXGEN_INLINE Undecided divide_segment_nearest_of(const SegmentJob& original, st
     return {job.count, 0};
 }
 
-template <class = void>
-Undecided divide_segment_nearest(const SegmentJob& job, std::size_t first) noexcept {
+template <class CompiledWhereCalled = void>
+Undecided fill_segment_exact(const SegmentJob& job, std::size_t first) noexcept {
     if (job.numerators == 2)
-        return job.in_front ? divide_segment_nearest_of<true, 2>(job, first)
-                            : divide_segment_nearest_of<false, 2>(job, first);
-    return job.in_front ? divide_segment_nearest_of<true, 1>(job, first)
-                        : divide_segment_nearest_of<false, 1>(job, first);
+        return job.in_front ? fill_segment_exact_of<true, 2>(job, first) : fill_segment_exact_of<false, 2>(job, first);
+    return job.in_front ? fill_segment_exact_of<true, 1>(job, first) : fill_segment_exact_of<false, 1>(job, first);
 }
 
 // In float about one end, two vectors by one division, so that an alpha that is no number spoils its neighbour: its block
-// is left to divide_nearest.
+// is left to fill_exact.
 template <std::size_t Numerators>
-TEXGEN_INLINE std::size_t divide_segment_float_of(const SegmentJob& job, std::size_t first) noexcept {
+TEXGEN_INLINE std::size_t fill_segment_all_float_of(const SegmentJob& job, std::size_t first) noexcept {
     // alpha, or 1 - alpha.
     const WideFloats start = WideFloats{} + (job.about_b ? 1.0f : 0.0f);
     const float direction = job.about_b ? -1.0f : 1.0f;
@@ -136,10 +134,10 @@ TEXGEN_INLINE std::size_t divide_segment_float_of(const SegmentJob& job, std::si
     return job.count;
 }
 
-template <class = void>
-std::size_t divide_segment_float(const SegmentJob& original, std::size_t first) noexcept {
+template <class CompiledWhereCalled = void>
+std::size_t fill_segment_all_float(const SegmentJob& original, std::size_t first) noexcept {
     const SegmentJob job = original;
-    return job.numerators == 2 ? divide_segment_float_of<2>(job, first) : divide_segment_float_of<1>(job, first);
+    return job.numerators == 2 ? fill_segment_all_float_of<2>(job, first) : fill_segment_all_float_of<1>(job, first);
 }
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA

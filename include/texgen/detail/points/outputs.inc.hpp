@@ -15,15 +15,15 @@ inline float* array_of(const std::span<float>& output, std::size_t count) noexce
     return is_computed(output, count) ? output.data() : nullptr;
 }
 
-// Where one or two coordinates of all points go. A coordinate that only the mask needs has no array; `pairs` takes two
-// coordinates in turn.
+// Where one or two coordinates of all points go. A coordinate that only the mask needs has no array; `st` takes two in
+// turn.
 struct PointOutputs {
     float* coordinate[2] = {};
     float* lit = nullptr;
-    float* pairs = nullptr;
+    float* st = nullptr;
 
     bool are_complete(int numerators) const noexcept {
-        return pairs != nullptr || (coordinate[0] != nullptr && (numerators == 1 || coordinate[1] != nullptr));
+        return st != nullptr || (coordinate[0] != nullptr && (numerators == 1 || coordinate[1] != nullptr));
     }
 };
 
@@ -58,9 +58,9 @@ void run_batch(Job job, const PointOutputs& out, const Batch& batch, const Run& 
     const auto [first, count, whole] = batch;
     if (count == whole && out.are_complete(job.numerators)) {
         job.count = count;
-        job.pairs = out.pairs != nullptr;
+        job.interleaved_st = out.st != nullptr;
         for (int k = 0; k < job.numerators; ++k)
-            job.out[k] = job.pairs ? out.pairs + 2 * first : out.coordinate[k] + first;
+            job.out[k] = job.interleaved_st ? out.st + 2 * first : out.coordinate[k] + first;
         job.lit = out.lit != nullptr ? out.lit + first : nullptr;
         return run(job);
     }
@@ -75,7 +75,7 @@ void run_batch(Job job, const PointOutputs& out, const Batch& batch, const Run& 
         for (std::size_t i = 0; i < end; ++i) {
             const std::size_t to = first + begin + i;
             for (std::size_t k = 0; k < 2; ++k) {
-                if (out.pairs != nullptr) out.pairs[2 * to + k] = buffer[k][i];
+                if (out.st != nullptr) out.st[2 * to + k] = buffer[k][i];
                 if (out.coordinate[k] != nullptr) out.coordinate[k][to] = buffer[k][i];
             }
             if (out.lit != nullptr) out.lit[to] = buffer[2][i];
@@ -88,11 +88,11 @@ inline namespace TEXGEN_BUILD {
 
 // The values of a job from `first` on by its kernel, and by one(job, i) what that cannot decide.
 template <class Kernel, class Job, class One>
-void divide_blocks(Kernel kernel, const Job& job, std::size_t first, const One& one) noexcept {
+void fill_blocks(Kernel kernel, const Job& job, std::size_t first, const One& one) noexcept {
     for (Undecided left = kernel(job, first); left.begin < job.count; left = kernel(job, first)) {
         for (std::uint64_t values = left.values; values != 0; values &= values - 1)
             one(job, left.begin + static_cast<std::size_t>(std::countr_zero(values)));
-        first = (left.begin / nearest_block + 1) * nearest_block;
+        first = (left.begin / exact_block + 1) * exact_block;
     }
 }
 

@@ -100,8 +100,8 @@ inline SegmentJob segment_job(const Segment& segment, int first, int numerators)
 inline namespace TEXGEN_BUILD {
 
 // The nearest floats from `first` on: in vectors; what those cannot decide value by value.
-inline void interpolate_nearest(const SegmentKernels& kernels, const SegmentJob& job, std::size_t first) noexcept {
-    divide_blocks(kernels.divide_nearest, job, first, interpolate_one);
+inline void interpolate_exact(const SegmentKernels& kernels, const SegmentJob& job, std::size_t first) noexcept {
+    fill_blocks(kernels.fill_exact, job, first, interpolate_one);
 }
 
 // In float where that stays inside the tolerance for the whole segment, else the nearest float.
@@ -117,16 +117,16 @@ inline void interpolate_job(const SegmentKernels& kernels, SegmentJob job, doubl
         if (float_fits) {
             prepare_float(job);
             const std::size_t count = job.count;
-            for (std::size_t i = kernels.divide_float(job, 0); i < count; i = kernels.divide_float(job, i)) {
+            for (std::size_t i = kernels.fill_all_float(job, 0); i < count; i = kernels.fill_all_float(job, i)) {
                 job.count = count - i < float_block ? count : i + float_block;
-                interpolate_nearest(kernels, job, i);
+                interpolate_exact(kernels, job, i);
                 i = job.count;
                 job.count = count;
             }
             return;
         }
     }
-    interpolate_nearest(kernels, job, 0);
+    interpolate_exact(kernels, job, 0);
 }
 
 }  // namespace TEXGEN_BUILD

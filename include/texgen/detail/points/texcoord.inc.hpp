@@ -33,8 +33,8 @@ void for_each_batch(const Positions<Space>& positions, const Run& run) noexcept 
 
 // One point of a job, every decision exact.
 inline void project_one(const PointJob& job, std::size_t i) noexcept {
-    const glm::dvec3 v = job.triples ? widened(glm::vec3(job.x[3 * i], job.x[3 * i + 1], job.x[3 * i + 2]))
-                                     : widened(glm::vec3(job.x[i], job.y[i], job.z[i]));
+    const glm::dvec3 v = job.interleaved_xyz ? widened(glm::vec3(job.x[3 * i], job.x[3 * i + 1], job.x[3 * i + 2]))
+                                             : widened(glm::vec3(job.x[i], job.y[i], job.z[i]));
     const auto exact_q = [&] { return exactly_at(job.q, v); };
     const Bounded q = value_at(job.q, v);
     const bool in_front = certain_sign(q, exact_q) > 0;
@@ -44,7 +44,7 @@ inline void project_one(const PointJob& job, std::size_t i) noexcept {
         if (in_front)
             value[k] = certain_quotient(
                 value_at(numerator, v), q, [&] { return exactly_at(numerator, v); }, exact_q);
-        if (job.pairs)
+        if (job.interleaved_st)
             job.out[0][2 * i + static_cast<std::size_t>(k)] = value[k];
         else
             job.out[k][i] = value[k];
@@ -67,9 +67,9 @@ inline PointJob point_job(const glm::dmat4& matrix, int row, int numerators, con
 inline namespace TEXGEN_BUILD {
 
 // Points begin to end of a job: in vectors; what those cannot decide point by point.
-inline void project_nearest(const PointKernels& kernels, PointJob job, std::size_t begin, std::size_t end) noexcept {
+inline void project_exact(const PointKernels& kernels, PointJob job, std::size_t begin, std::size_t end) noexcept {
     job.count = end;
-    divide_blocks(kernels.divide_nearest, job, begin, project_one);
+    fill_blocks(kernels.fill_exact, job, begin, project_one);
 }
 
 // Points begin to end by a kernel that stops at a block whose error is not certified to be inside the tolerance. Such a
@@ -87,16 +87,16 @@ void project_within(Kernel kernel, PointJob job, std::size_t begin, std::size_t 
     }
 }
 
-// The dial: forms and division in float, else forms in double divided in float, else as exact.
-inline void project_within_tolerance(const PointKernels& kernels, const PointJob& points) noexcept {
-    const auto nearest = [&kernels](const PointJob& job, std::size_t begin, std::size_t end) {
-        project_nearest(kernels, job, begin, end);
+// The dial: all_float, else float_divided, else exact.
+inline void project_job(const PointKernels& kernels, const PointJob& points) noexcept {
+    const auto exactly = [&kernels](const PointJob& job, std::size_t begin, std::size_t end) {
+        project_exact(kernels, job, begin, end);
     };
-    if (points.tolerance == 0.0) return nearest(points, 0, points.count);
-    const auto rounded = [&](const PointJob& job, std::size_t begin, std::size_t end) {
-        project_within(kernels.divide_rounded, job, begin, end, nearest);
+    if (points.tolerance == 0.0) return exactly(points, 0, points.count);
+    const auto float_divided = [&](const PointJob& job, std::size_t begin, std::size_t end) {
+        project_within(kernels.fill_float_divided, job, begin, end, exactly);
     };
-    project_within(kernels.divide_float, points, 0, points.count, rounded);
+    project_within(kernels.fill_all_float, points, 0, points.count, float_divided);
 }
 
 template <class Space>
@@ -105,13 +105,13 @@ void project_all(const Positions<Space>& positions, const PointJob& job, const P
     for_each_batch(positions, [&](const PointInput& input, const Batch& batch) {
         PointJob part = job;
         static_cast<PointInput&>(part) = input;
-        run_batch(part, out, batch, [&](const PointJob& points) { project_within_tolerance(kernels, points); });
+        run_batch(part, out, batch, [&](const PointJob& points) { project_job(kernels, points); });
     });
 }
 
 template <class Space>
 void generate_all(const glm::dmat4& matrix, const Positions<Space>& positions, float* const (&out)[4],
-                  float* quads) noexcept {
+                  float* strq) noexcept {
     GenerateJob job{};
     for (int k = 0; k < 4; ++k) job.form[k] = form(matrix, k);
     for_each_batch(positions, [&](const PointInput& input, const Batch& batch) {
@@ -120,7 +120,7 @@ void generate_all(const glm::dmat4& matrix, const Positions<Space>& positions, f
         static_cast<PointInput&>(part) = input;
         part.count = whole;
         if (count == whole) {
-            part.quads = quads != nullptr ? quads + 4 * first : nullptr;
+            part.strq = strq != nullptr ? strq + 4 * first : nullptr;
             for (std::size_t k = 0; k < 4; ++k) part.out[k] = out[k] != nullptr ? out[k] + first : nullptr;
             return chosen<PointKernels>().generate(part);
         }
@@ -129,7 +129,7 @@ void generate_all(const glm::dmat4& matrix, const Positions<Space>& positions, f
         chosen<PointKernels>().generate(part);
         for (std::size_t i = 0; i < count; ++i) {
             for (std::size_t k = 0; k < 4; ++k) {
-                if (quads != nullptr) quads[4 * (first + i) + k] = buffer[k][i];
+                if (strq != nullptr) strq[4 * (first + i) + k] = buffer[k][i];
                 if (out[k] != nullptr) out[k][first + i] = buffer[k][i];
             }
         }

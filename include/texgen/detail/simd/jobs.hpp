@@ -78,27 +78,27 @@ struct PointForm {
 
 // The number of points, and of values along a segment, that a kernel does is a multiple of point_quantum.
 inline constexpr std::size_t point_quantum = 16;
-inline constexpr std::size_t nearest_block = 64;
+inline constexpr std::size_t exact_block = 64;
 inline constexpr std::size_t float_block = 256;
 
 // One or two divided coordinates in arrays, and their mask.
 struct DividedOutput {
     std::size_t count;
     int numerators;
-    bool pairs;  // both coordinates follow one another from out[0] on; else there is an array for each
+    bool interleaved_st;  // both coordinates follow one another from out[0] on; else there is an array for each
     float* out[2];
     float* lit;            // or null
     float min[2], max[2];  // the region
 };
 
 struct PointInput {
-    bool triples;  // x, y, z follow one another from `x` on; else there are three arrays
+    bool interleaved_xyz;  // x, y, z follow one another from `x` on; else there are three arrays
     const float* x;
     const float* y;
     const float* z;
 
     void advance(std::size_t points) noexcept {
-        x += triples ? 3 * points : points;
+        x += interleaved_xyz ? 3 * points : points;
         y += points;
         z += points;
     }
@@ -119,19 +119,19 @@ struct SegmentJob : DividedOutput {
     double tolerance;
     bool in_front;  // all of it, well enough that quotient_error bounds the error in double of every value
     double quotient_error[2];
-    // For divide_float: about the end where q is less, base + slope i / (1 + bend i), i the alpha from there.
+    // For fill_all_float: about the end where q is less, base + slope i / (1 + bend i), i the alpha from there.
     bool about_b;
     float bend, base[2], slope[2];
 
     void advance(std::size_t values) noexcept { alpha += values; }
 };
 
-// The forms themselves, rounded to float. An output is null or an array; or all go to `quads`, four after one another.
+// The forms themselves, rounded to float. An output is null or an array; or all go to `strq`, four after one another.
 struct GenerateJob : PointInput {
     std::size_t count;
     PointForm form[4];
     float* out[4];
-    float* quads;
+    float* strq;
 };
 
 // The derivatives of s (0) and t (1) over a rectangle, and what filters make of them. Of d/dx Q^2 and d/dy Q^2 the one
@@ -172,24 +172,24 @@ struct TileKernels {
 };
 
 // Where a kernel stops: at the first block with values that it cannot decide (bit i: value begin + i), or at the count.
-// Blocks end at multiples of nearest_block.
+// Blocks end at multiples of exact_block.
 struct Undecided {
     std::size_t begin;
     std::uint64_t values;
 };
 
 struct PointKernels {
-    Undecided (*divide_nearest)(const PointJob&, std::size_t first) noexcept;
+    Undecided (*fill_exact)(const PointJob&, std::size_t first) noexcept;
     // The first point from `first` on of a block of float_block points that is not inside the tolerance, or the count.
-    std::size_t (*divide_float)(const PointJob&, std::size_t first) noexcept;
-    std::size_t (*divide_rounded)(const PointJob&, std::size_t first) noexcept;
+    std::size_t (*fill_all_float)(const PointJob&, std::size_t first) noexcept;
+    std::size_t (*fill_float_divided)(const PointJob&, std::size_t first) noexcept;
     void (*generate)(const GenerateJob&) noexcept;
 };
 
 struct SegmentKernels {
-    Undecided (*divide_nearest)(const SegmentJob&, std::size_t first) noexcept;
+    Undecided (*fill_exact)(const SegmentJob&, std::size_t first) noexcept;
     // The first value from `first` on of a block of float_block with an alpha that is no number, or the count.
-    std::size_t (*divide_float)(const SegmentJob&, std::size_t first) noexcept;
+    std::size_t (*fill_all_float)(const SegmentJob&, std::size_t first) noexcept;
 };
 
 struct FootprintKernels {

@@ -216,7 +216,7 @@ TEXGEN_INLINE Floats one_where(const Words& mask) noexcept {
     return Floats::of([&](int i) { return mask.lane[i] != 0 ? 1.0f : 0.0f; });
 }
 
-TEXGEN_INLINE void load_triples(const float* from, Floats& x, Floats& y, Floats& z) noexcept {
+TEXGEN_INLINE void load_interleaved(const float* from, Floats& x, Floats& y, Floats& z) noexcept {
     x = Floats::of([&](int i) { return from[3 * i]; });
     y = Floats::of([&](int i) { return from[3 * i + 1]; });
     z = Floats::of([&](int i) { return from[3 * i + 2]; });
@@ -227,14 +227,15 @@ TEXGEN_INLINE void load_boxes(const float* from, WideFloats (&min)[3], WideFloat
         max[j] = WideFloats::of([&](int i) { return from[6 * i + 3 + j]; });
     }
 }
-TEXGEN_INLINE void store_pairs(float* to, const Floats& a, const Floats& b) noexcept {
+TEXGEN_INLINE void store_interleaved(float* to, const Floats& a, const Floats& b) noexcept {
     for (int i = 0; i < lanes; ++i) {
         to[2 * i] = a.lane[i];
         to[2 * i + 1] = b.lane[i];
     }
 }
 
-TEXGEN_INLINE void store_quads(float* to, const Floats& a, const Floats& b, const Floats& c, const Floats& d) noexcept {
+TEXGEN_INLINE void store_interleaved(float* to, const Floats& a, const Floats& b, const Floats& c,
+                                     const Floats& d) noexcept {
     for (int i = 0; i < lanes; ++i) {
         to[4 * i] = a.lane[i];
         to[4 * i + 1] = b.lane[i];

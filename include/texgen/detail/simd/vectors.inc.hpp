@@ -161,7 +161,7 @@ TEXGEN_INLINE Vector every_third(const Vector& a, const Vector& b, const Vector&
     return __builtin_shufflevector(ab, c, (3 * Lane + Component < 2 * n ? Lane : 3 * Lane + Component - n)...);
 }
 template <class Vector>
-TEXGEN_INLINE void load_triples(const float* from, Vector& x, Vector& y, Vector& z) noexcept {
+TEXGEN_INLINE void load_interleaved(const float* from, Vector& x, Vector& y, Vector& z) noexcept {
     constexpr int n = static_cast<int>(sizeof(Vector) / sizeof(float));
     const auto a = load<Vector>(from);
     const auto b = load<Vector>(from + n);
@@ -180,8 +180,8 @@ TEXGEN_INLINE Vector every_second(const Vector& a, const Vector& b, std::integer
 TEXGEN_INLINE void load_boxes(const float* from, WideFloats (&min)[3], WideFloats (&max)[3]) noexcept {
     WideFloats first[3];
     WideFloats second[3];
-    load_triples(from, first[0], first[1], first[2]);
-    load_triples(from + 3 * wide_lanes, second[0], second[1], second[2]);
+    load_interleaved(from, first[0], first[1], first[2]);
+    load_interleaved(from + 3 * wide_lanes, second[0], second[1], second[2]);
     for (int j = 0; j < 3; ++j) {
         min[j] = every_second<0>(first[j], second[j], std::make_integer_sequence<int, wide_lanes>());
         max[j] = every_second<1>(first[j], second[j], std::make_integer_sequence<int, wide_lanes>());
@@ -195,7 +195,7 @@ TEXGEN_INLINE Vector zipped(const Vector& a, const Vector& b, std::integer_seque
     return __builtin_shufflevector(a, b, (First + Lane / 2 + Lane % 2 * n)...);
 }
 template <class Vector>
-TEXGEN_INLINE void store_pairs(float* to, const Vector& a, const Vector& b) noexcept {
+TEXGEN_INLINE void store_interleaved(float* to, const Vector& a, const Vector& b) noexcept {
     constexpr int n = static_cast<int>(sizeof(Vector) / sizeof(float));
     store(to, zipped<0>(a, b, std::make_integer_sequence<int, n>()));
     store(to + n, zipped<n / 2>(a, b, std::make_integer_sequence<int, n>()));
@@ -203,15 +203,16 @@ TEXGEN_INLINE void store_pairs(float* to, const Vector& a, const Vector& b) noex
 
 // Lane i of all four in turn.
 template <class Vector>
-TEXGEN_INLINE void store_quads(float* to, const Vector& a, const Vector& b, const Vector& c, const Vector& d) noexcept {
+TEXGEN_INLINE void store_interleaved(float* to, const Vector& a, const Vector& b, const Vector& c,
+                                     const Vector& d) noexcept {
     constexpr int n = static_cast<int>(sizeof(Vector) / sizeof(float));
     using Lanes = std::make_integer_sequence<int, n>;
     const Vector ac_low = zipped<0>(a, c, Lanes());
     const Vector ac_high = zipped<n / 2>(a, c, Lanes());
     const Vector bd_low = zipped<0>(b, d, Lanes());
     const Vector bd_high = zipped<n / 2>(b, d, Lanes());
-    store_pairs(to, ac_low, bd_low);
-    store_pairs(to + 2 * n, ac_high, bd_high);
+    store_interleaved(to, ac_low, bd_low);
+    store_interleaved(to + 2 * n, ac_high, bd_high);
 }
 
 TEXGEN_INLINE bool any(const Words& mask) noexcept {
