@@ -9,7 +9,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -20,6 +22,7 @@
 #include "detail/arithmetic/nearest.hpp"
 #include "detail/arithmetic/widen.hpp"
 #include "detail/assert.hpp"
+#include "detail/culling/slide_planes.hpp"
 #include "primitives.hpp"
 #include "transform.hpp"
 
@@ -207,38 +210,53 @@ inline std::size_t clip_to_near(std::span<const ClipVertex> polygon, std::span<C
 namespace detail {
 inline namespace TEXGEN_COMPILER {
 
-// The signed distance of (s, t, r, q) from a side of the slide, u >= min q or u <= max q for u = s or t, or from q >= 0:
-// in no unit; inside is >= 0.
+// The signed distance of (s, t, r, q) from a plane of the slide: sign (u - bound q), in no unit; inside is >= 0.
 class SlideDistance {
 public:
-    static SlideDistance at_least(glm::length_t coordinate, double side) noexcept {
-        return {coordinate, 1.0, -usable(side)};
+    explicit SlideDistance(const SlidePlane& plane) noexcept
+        : coordinate_(plane.coordinate), sign_(plane.sign), per_q_(-plane.sign * usable(plane.bound)) {
+        const bool has_29_digits = (bit_cast<std::uint64_t>(per_q_) & 0xffffff) == 0;  // times a float: a double
+        product_error_ = has_29_digits ? 0.0 : gamma(1);
     }
-    static SlideDistance at_most(glm::length_t coordinate, double side) noexcept {
-        return {coordinate, -1.0, usable(side)};
-    }
-    static SlideDistance in_front() noexcept { return {3, 1.0, 0.0}; }
 
+    // The product's rounding and the sum's.
     Bounded operator()(const ClipVertex& vertex) const noexcept {
-        const double own = sign_ * widened(vertex.strq[coordinate_]);
-        const double of_q = per_q_ * widened(vertex.strq.w);
-        return {own + of_q, gamma(2) * (std::fabs(own) + std::fabs(of_q))};
+        const double product = of_q(vertex);
+        const double value = own(vertex) + product;
+        return {value, gamma(1) * std::fabs(value) + product_error_ * std::fabs(product)};
+    }
+
+    // In two doubles, which leave out `error`: 0 unless the digits are too far apart.
+    struct Close {
+        DoubleDouble value;
+        double error;
+    };
+    Close closely(const ClipVertex& vertex) const noexcept {
+        const DoubleDouble product = two_product(per_q_, widened(vertex.strq.w));
+        const DoubleDouble sum = two_sum(own(vertex), product.high);
+        const DoubleDouble low = two_sum(sum.low, product.low);
+        return {two_sum(sum.high, low.high), std::fabs(low.low)};
     }
 
     Expansion<3> exactly(const ClipVertex& vertex) const noexcept {
         Expansion<3> sum;
-        sum.add(sign_ * widened(vertex.strq[coordinate_]));
+        sum.add(own(vertex));
         sum.add_product(per_q_, widened(vertex.strq.w));
         return sum;
     }
 
+    // A rounded sum has its sign, and what is below the product's error has no rounding: there that of the product decides.
     int sign(const ClipVertex& vertex) const noexcept {
-        return certain_sign((*this)(vertex), [&] { return exactly(vertex); });
+        const double product = of_q(vertex);
+        double value = own(vertex) + product;
+        if (!(std::fabs(value) >= product_error_ * std::fabs(product)))
+            value += two_product(per_q_, widened(vertex.strq.w)).low;
+        return value > 0.0 ? 1 : value < 0.0 ? -1 : 0;
     }
 
 private:
-    SlideDistance(glm::length_t coordinate, double sign, double per_q) noexcept
-        : coordinate_(coordinate), sign_(sign), per_q_(per_q) {}
+    double own(const ClipVertex& vertex) const noexcept { return sign_ * widened(vertex.strq[coordinate_]); }
+    double of_q(const ClipVertex& vertex) const noexcept { return per_q_ * widened(vertex.strq.w); }
 
     // Floats have |u/q| in [2^-277, 2^277], or 0: a side that is brought into a wider range decides the same of them, and
     // its products stay exact.
@@ -249,38 +267,88 @@ private:
 
     glm::length_t coordinate_;
     double sign_, per_q_;
+    double product_error_;  // relative
 };
 
 // Where the edge from a vertex inside to one outside crosses the side: (d_i outside - d_o inside) / (d_i - d_o) with
-// d_i > 0 > d_o, each component the float nearest to it. With weights v^ = v + e, |e| <= E, the numerator errs by
-// E_o |inside| + E_i |outside| and by three roundings.
+// d_i > 0 > d_o, each component the float nearest to it, where double does not tell which: from the sign of
+// d_i (outside - m) - d_o (inside - m) for the middle m of two floats, in two doubles or exactly.
+class CloseCrossing {
+public:
+    CloseCrossing(const SlideDistance& side, const ClipVertex& inside, const ClipVertex& outside) noexcept
+        : side_(side),
+          inside_(inside),
+          outside_(outside),
+          of_inside_(side.closely(inside)),
+          of_outside_(side.closely(outside)) {}
+
+    // Of a component that is i inside and o outside, with a quotient that may err by `error`.
+    float nearest(double i, double o, double quotient, double error) const noexcept {
+        if (!(error <= 0x1p-26 * std::fabs(quotient))) {
+            const Bounded sum = beyond(0.0, i, o);
+            const bool is_close = sum.error <= 0x1p-50 * std::fabs(sum.value);
+            quotient = (is_close ? sum.value : exactly_beyond(0.0, i, o).estimate()) /
+                       (of_inside_.value.high - of_outside_.value.high);
+            if (quotient == 0.0) return 0.0f;
+            error = 0x1p-48 * std::fabs(quotient);
+        }
+        return nearest_to(quotient, error, [&](double middle) {
+            const Bounded sum = beyond(middle, i, o);
+            if (sum.error > 0.0 && std::fabs(sum.value) <= sum.error) return exactly_beyond(middle, i, o).sign();
+            return sum.value > 0.0 ? 1 : sum.value < 0.0 ? -1 : 0;
+        });
+    }
+
+private:
+    // Products and their difference are within 2^-103 of their terms, and exact where each factor is one double.
+    Bounded beyond(double middle, double i, double o) const noexcept {
+        const DoubleDouble to_i = two_sum(i, -middle);
+        const DoubleDouble to_o = two_sum(o, -middle);
+        const DoubleDouble from_i = product(of_outside_.value, to_i);
+        const DoubleDouble from_o = product(of_inside_.value, to_o);
+        const double left_out = of_outside_.error * std::fabs(to_i.high) + of_inside_.error * std::fabs(to_o.high);
+        const bool is_exact = of_inside_.value.low == 0.0 && of_outside_.value.low == 0.0 && to_i.low == 0.0 &&
+                              to_o.low == 0.0 && left_out == 0.0;
+        return {(from_o.high - from_i.high) + (from_o.low - from_i.low),
+                is_exact ? 0.0 : 0x1p-100 * (std::fabs(from_i.high) + std::fabs(from_o.high)) + 1.001 * left_out};
+    }
+    Expansion<24> exactly_beyond(double middle, double i, double o) const noexcept {
+        Expansion<24> sum;
+        for (const double to : {o, -middle}) sum.add_scaled(side_.exactly(inside_), to);
+        for (const double to : {-i, middle}) sum.add_scaled(side_.exactly(outside_), to);
+        return sum;
+    }
+
+    const SlideDistance& side_;
+    const ClipVertex& inside_;
+    const ClipVertex& outside_;
+    SlideDistance::Close of_inside_, of_outside_;
+};
+
+// The same from the begin. With weights v^ = v + e, |e| <= E, the numerator errs by E_o |inside| + E_i |outside| and by three
+// roundings, the quotient by that and E_i + E_o of it, over the difference, and by its own.
 inline ClipVertex cut_at(const SlideDistance& side, const ClipVertex& inside, const ClipVertex& outside) noexcept {
     const Bounded of_inside = side(inside);
     const Bounded of_outside = side(outside);
-    const Bounded difference{
-        of_inside.value - of_outside.value,
-        of_inside.error + of_outside.error + gamma(2) * (std::fabs(of_inside.value) + std::fabs(of_outside.value))};
-    const auto exact_difference = [&] {
-        Expansion<6> sum;
-        sum.add_scaled(side.exactly(inside), 1.0);
-        sum.add_scaled(side.exactly(outside), -1.0);
-        return sum;
-    };
+    const double difference = of_inside.value - of_outside.value;
+    const double difference_error = of_inside.error + of_outside.error + gamma(2) * std::fabs(difference);
+    const bool is_apart = difference > 2.0 * difference_error;
+    const double per_difference = is_apart ? 1.001 / (difference - difference_error) : 0x1p900;
+    std::optional<CloseCrossing> close;
     const auto component = [&](float given_inside, float given_outside) {
         if (given_inside == given_outside) return given_inside;
         const double i = widened(given_inside);
         const double o = widened(given_outside);
         const double from_i = -of_outside.value * i;
         const double from_o = of_inside.value * o;
-        const Bounded sum{from_i + from_o, 1.001 * (of_outside.error * std::fabs(i) + of_inside.error * std::fabs(o) +
-                                                    gamma(3) * (std::fabs(from_i) + std::fabs(from_o)))};
-        const auto exact_sum = [&] {
-            Expansion<12> exact;
-            exact.add_scaled(side.exactly(outside), -i);
-            exact.add_scaled(side.exactly(inside), o);
-            return exact;
-        };
-        return certain_quotient(sum, difference, exact_sum, exact_difference);
+        const double quotient = (from_i + from_o) / difference;
+        const double size = std::fabs(from_i) + std::fabs(from_o);
+        if (!(size < 0x1p1000)) return static_cast<float>(quotient);  // not finite
+        const double error = per_difference * (of_outside.error * std::fabs(i) + of_inside.error * std::fabs(o) +
+                                               difference_error * std::fabs(quotient) + gamma(6) * size);
+        if (rounds_alone(quotient, error)) return static_cast<float>(quotient);
+        if (!close) close.emplace(side, inside, outside);
+        return close->nearest(i, o, quotient, error);
     };
     ClipVertex result{};
     for (glm::length_t k = 0; k < 4; ++k) {
@@ -384,11 +452,11 @@ inline std::size_t clip_to_slide(std::span<const ClipVertex> polygon, TextureReg
     }
 
     // q >= 0 comes first, so that what satisfies a side is a cone. Then q = 0 is left only where s = t = 0.
-    using Side = detail::SlideDistance;
-    const Side sides[] = {Side::in_front(), Side::at_least(0, (region.min)().x), Side::at_most(0, (region.max)().x),
-                          Side::at_least(1, (region.min)().y), Side::at_most(1, (region.max)().y)};
+    const auto planes = detail::slide_planes(region);
+    const detail::SlidePlane* const order[] = {&planes[4], &planes[0], &planes[1], &planes[2], &planes[3]};
     std::size_t count = polygon.size();
-    for (const Side& side : sides) {
+    for (const detail::SlidePlane* plane : order) {
+        const detail::SlideDistance side(*plane);
         count = detail::cut_edges(
             out, count, [&](const ClipVertex& v) { return side.sign(v); },
             [&](const ClipVertex& inside, const ClipVertex& outside) { return cut_at(side, inside, outside); });

@@ -132,6 +132,11 @@ Numbers numbers(const Parts&... parts) {
     return n;
 }
 
+// A number of a scene is 0 or neither very small nor very large.
+inline bool is_zero_or_between(float value, float least, float largest) {
+    return value == 0.0f || (std::fabs(value) >= least && std::fabs(value) <= largest);
+}
+
 inline double always(const Numbers&) { return limit::any; }
 inline double of_touching(const Numbers&) { return limit::touching; }
 
@@ -457,14 +462,11 @@ texgen::FragmentRect rect_of(const Numbers& n) {
 // What the limits are about: a triangle of a window, of a camera and of slides as they are. Beyond, where floats of all sizes
 // meet in one triangle, ties may differ from their middle by less than two doubles hold, and are decided one by one.
 inline bool is_of_a_scene(const texgen::Triangle& triangle) {
-    const auto is_between = [](float value, float least, float largest) {
-        return value == 0.0f || (std::fabs(value) >= least && std::fabs(value) <= largest);
-    };
     bool all = true;
     for (const texgen::WindowVertex* v : {&triangle.a, &triangle.b, &triangle.c}) {
-        all = all && is_between(v->clip_w, 0x1p-20f, 0x1p20f);
-        for (const float pixel : {v->window.x, v->window.y}) all = all && is_between(pixel, 0x1p-10f, 0x1p30f);
-        for (glm::length_t k = 0; k < 4; ++k) all = all && is_between(v->strq[k], 0x1p-20f, 0x1p20f);
+        all = all && is_zero_or_between(v->clip_w, 0x1p-20f, 0x1p20f);
+        for (const float pixel : {v->window.x, v->window.y}) all = all && is_zero_or_between(pixel, 0x1p-10f, 0x1p30f);
+        for (glm::length_t k = 0; k < 4; ++k) all = all && is_zero_or_between(v->strq[k], 0x1p-20f, 0x1p20f);
     }
     return all;
 }
@@ -731,6 +733,7 @@ inline Numbers ordinary_polygon(Random& random) {
     for (double& x : n) x = static_cast<double>(to_float(x));
     return n;
 }
+// Of a camera and of slides as they are, as is_of_a_scene() has them.
 template <bool ToNear>
 Calls clip_calls(const Numbers& n) {
     Reader reader(n);
@@ -738,6 +741,9 @@ Calls clip_calls(const Numbers& n) {
     for (texgen::ClipVertex& vertex : polygon) {
         vertex.position = reader.vec4();
         vertex.strq = reader.vec4();
+        for (const glm::vec4& v : {vertex.position, vertex.strq})
+            for (glm::length_t k = 0; k < 4; ++k)
+                if (!is_zero_or_between(v[k], 0x1p-20f, 0x1p20f)) return {};
     }
     return calls_of([polygon, out = std::array<texgen::ClipVertex, 12>{}]() mutable {
         if constexpr (ToNear)

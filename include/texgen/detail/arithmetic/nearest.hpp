@@ -33,24 +33,30 @@ inline double middle_of(float low, float high) noexcept {
     return 0.5 * unbounded(low) + 0.5 * unbounded(high);
 }
 
-// The float nearest to numerator / denominator, ties to even; infinity beyond the range. denominator > 0.
+// The float nearest to a number, ties to even; infinity beyond the range. The number is within error <= 2^-26 |value| of a
+// value, and sign_beyond(m) is the sign of what it is more than m, the middle of two floats.
+template <class SignBeyond>
+float nearest_to(double value, double error, const SignBeyond& sign_beyond) noexcept {
+    if (!(std::fabs(value) < 0x1p129)) return static_cast<float>(value);
+    const auto low = static_cast<float>(value - error);
+    const auto high = static_cast<float>(value + error);
+    if (low == high) return low;
+    const double middle = middle_of(low, high);
+    const int sign = sign_beyond(middle);
+    return sign < 0 ? low : sign > 0 ? high : static_cast<float>(middle);
+}
+
+// The float nearest to numerator / denominator. denominator > 0.
 template <std::size_t N, std::size_t D>
 float nearest_quotient(const Expansion<N>& numerator, const Expansion<D>& denominator) noexcept {
     if (numerator.sign() == 0) return 0.0f;
     const double quotient = numerator.estimate() / denominator.estimate();
-    if (!(std::fabs(quotient) < 0x1p129)) return static_cast<float>(quotient);
-    const double error = 0x1p-48 * std::fabs(quotient);
-    const auto low = static_cast<float>(quotient - error);
-    const auto high = static_cast<float>(quotient + error);
-    if (low == high) return low;
-    // Two neighbours are left: the sign of numerator - middle * denominator decides.
-    const double middle = middle_of(low, high);
-    Expansion<N + 2 * D> remainder;
-    for (std::size_t i = 0; i < numerator.count(); ++i) remainder.add(numerator.term(i));
-    remainder.add_scaled(denominator, -middle);
-    if (remainder.sign() < 0) return low;
-    if (remainder.sign() > 0) return high;
-    return static_cast<float>(middle);
+    return nearest_to(quotient, 0x1p-48 * std::fabs(quotient), [&](double middle) {
+        Expansion<N + 2 * D> remainder;
+        for (std::size_t i = 0; i < numerator.count(); ++i) remainder.add(numerator.term(i));
+        remainder.add_scaled(denominator, -middle);
+        return remainder.sign();
+    });
 }
 
 // -1, 0 or 1: the sign of the number that `bounded` stands for, from exact() where the bound leaves it open.
