@@ -13,15 +13,17 @@ TEXGEN_INLINE void load_points(const Job& job, std::size_t i, Vector& x, Vector&
     }
 }
 
-// Stores a vector of results from index i on, and their mask: inside the region and in front.
-template <std::size_t Numerators, class Vector, class Mask>
-TEXGEN_INLINE void store_points(const DividedOutput& output, std::size_t i, const Vector (&value)[Numerators],
-                                const Mask& in_front) noexcept {
-    if constexpr (Numerators == 2) {
+// Stores a vector of results from index i on, and their mask: inside the region and in front. Here and below `numerators`
+// is a constant where it is quick to have one.
+template <class Vector, class Mask>
+TEXGEN_INLINE void store_points(const DividedOutput& output, std::size_t i, std::size_t numerators,
+                                const Vector (&value)[2], const Mask& in_front) noexcept {
+    if (numerators == 2) {
         if (output.lit != nullptr) store(output.lit + i, lit_of(output, value, in_front));
         if (output.interleaved_st) return store_interleaved(output.out[0] + 2 * i, value[0], value[1]);
+        store(output.out[1] + i, value[1]);
     }
-    for (std::size_t k = 0; k < Numerators; ++k) store(output.out[k] + i, value[k]);
+    store(output.out[0] + i, value[0]);
 }
 
 // Lanes that cannot be vouched for: where value - error and value + error do not round to one float, and where it is not
@@ -37,11 +39,10 @@ struct Doubt {
 // numerator[k] / q with these errors, of all or of each lane; the error of the quotient is that of certain_quotient(). With
 // Signed, q has either sign, and lanes that are certainly behind give 0; else they are in doubt too; and in none where both
 // floats are inside the tolerance. Returns the mask of the lanes in front.
-template <bool Signed, std::size_t Numerators, class Error>
-TEXGEN_INLINE LongWords divide_certainly(const Doubles (&numerator)[Numerators],
-                                         const Error (&numerator_error)[Numerators], const Doubles& q,
-                                         const Error& q_error, double tolerance, Floats (&value)[Numerators],
-                                         Doubt& doubt) noexcept {
+template <bool Signed, class Error>
+TEXGEN_INLINE LongWords divide_certainly(std::size_t numerators, const Doubles (&numerator)[2],
+                                         const Error (&numerator_error)[2], const Doubles& q, const Error& q_error,
+                                         double tolerance, Floats (&value)[2], Doubt& doubt) noexcept {
     const LongWords in_front = greater(q - 0x1p20 * q_error, 0.0);
     Doubles reciprocal = 1.0 / q;
     if constexpr (Signed) {
@@ -52,7 +53,7 @@ TEXGEN_INLINE LongWords divide_certainly(const Doubles (&numerator)[Numerators],
         doubt.side |= ~in_front;
     }
     const Doubles relative_error = reciprocal * (q_error * 1.001) + 4.0 * unit_roundoff_double;
-    for (std::size_t k = 0; k < Numerators; ++k) {
+    for (std::size_t k = 0; k < numerators; ++k) {
         Doubles quotient = numerator[k] * reciprocal;
         if constexpr (Signed) quotient = where(in_front, quotient);
         Doubles error = magnitude(quotient) * relative_error + reciprocal * (numerator_error[k] * 1.001);
@@ -73,62 +74,80 @@ TEXGEN_INLINE LongWords divide_certainly(const Doubles (&numerator)[Numerators],
     return in_front;
 }
 
+// What decided a vector or a block of values, and is tried first with the next, so that company is not tried in vain.
+enum class Rung {
+    in_front,     // in double, with errors that hold for the block, which is all in front
+    either_side,  // the same on both sides of the projector
+    each_lane,    // with errors of each lane
+    closely       // in two doubles
+};
+struct Effort {
+    Rung rung = Rung::in_front;
+    bool are_ties = false;   // closely: the numerators as well as q
+    bool precisely = false;  // all of the sums, or their leading part
+};
+
 // What doing a block again leaves.
 struct Again {
     std::uint64_t doubtful;  // bit i: value begin + i
-    bool is_ordinary;        // all in front, and nothing in doubt
-    bool is_in_doubt;        // the last vector
+    Effort effort;
 };
 
-// Does a block again: for both signs of q and with errors of each lane; a vector that those leave in doubt, and up to 15
-// that follow it, in two doubles. Terms are the sums at a vector of values: q and the numerators, nearly and in two doubles,
-// and which lanes are behind whatever their q, being no numbers.
-template <std::size_t Numerators, class Terms>
+// Does a block again, from each_lane on at least. What a vector needs beyond that, up to 15 that follow it get at once. Terms
+// are the sums at a vector of values: q and the numerators, nearly and in two doubles, and which lanes are behind whatever
+// their q, being no numbers.
+template <class Terms>
 TEXGEN_INLINE Again fill_block_again(const DividedOutput& output, const Terms& terms, std::size_t begin,
-                                     std::size_t end, bool is_in_doubt) noexcept {
-    Again again{0, true, is_in_doubt};
-    bool are_ties = false;  // the last vector, or next to ties
+                                     std::size_t end, Effort effort) noexcept {
+    const auto numerators = static_cast<std::size_t>(output.numerators);
+    std::uint64_t doubtful = 0;
     for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(lanes)) {
         const auto at = terms.load(i);
         const LongWords are_dark = terms.are_dark(at);
-        Floats value[Numerators];
-        if (!again.is_in_doubt || i / static_cast<std::size_t>(lanes) % 16 == 0) {
-            Doubles numerator[Numerators], numerator_error[Numerators];
-            for (std::size_t k = 0; k < Numerators; ++k) {
+        Floats value[2];
+        if (effort.rung <= Rung::each_lane || i / static_cast<std::size_t>(lanes) % 16 == 0) {
+            Doubles numerator[2], numerator_error[2];
+            for (std::size_t k = 0; k < numerators; ++k) {
                 numerator[k] = terms.numerator[k].nearly_at(at);
                 numerator_error[k] = terms.numerator[k].error_at(at);
             }
             Doubt doubt;
-            const LongWords in_front = divide_certainly<true>(numerator, numerator_error, terms.q.nearly_at(at),
-                                                              terms.q.error_at(at), terms.tolerance(), value, doubt);
-            are_ties = false;
-            again.is_in_doubt = any(doubt.rounding | narrow(doubt.side & ~are_dark));
-            if (!again.is_in_doubt) {
-                again.is_ordinary = again.is_ordinary && !any(~in_front);
-                store_points(output, i, value, narrow(in_front));
+            const LongWords in_front =
+                divide_certainly<true>(numerators, numerator, numerator_error, terms.q.nearly_at(at),
+                                       terms.q.error_at(at), terms.tolerance(), value, doubt);
+            const bool is_decided = !any(doubt.rounding | narrow(doubt.side & ~are_dark));
+            effort = {is_decided ? Rung::each_lane : Rung::closely};
+            if (is_decided) {
+                store_points(output, i, numerators, value, narrow(in_front));
                 continue;
             }
         }
-        again.is_ordinary = false;
-        const TwofoldDivisor q(terms.q.at(at));
-        LongWords is_known = q.is_known | are_dark;
-        for (std::size_t k = 0; k < Numerators; ++k) {
-            if (!are_ties)
-                are_ties =
-                    !divide_nearly(terms.numerator[k].nearly_at(at), terms.numerator[k].error_at(at), q, value[k]);
-            if (!are_ties) continue;
-            if (terms.numerator[k].is_finite)
-                value[k] = nearest_quotients(terms.numerator[k].at(at), q, terms.tolerance(), is_known);
-            else
-                value[k] = to_floats(where(q.in_front, terms.numerator[k].nearly_at(at) * q.reciprocal));
+        LongWords in_front, is_known;
+        for (;;) {
+            const TwofoldDivisor q(terms.q.at(at, effort.precisely));
+            in_front = q.in_front;
+            is_known = q.is_known | are_dark;
+            for (std::size_t k = 0; k < numerators; ++k) {
+                const auto& numerator = terms.numerator[k];
+                if (!effort.are_ties)
+                    effort.are_ties = !divide_nearly(numerator.nearly_at(at), numerator.error_at(at), q, value[k]);
+                if (!effort.are_ties) continue;
+                if (numerator.is_finite)
+                    value[k] = nearest_quotients(numerator.at(at, effort.precisely), q, terms.tolerance(),
+                                                 effort.precisely, is_known);
+                else
+                    value[k] = to_floats(where(in_front, numerator.nearly_at(at) * q.reciprocal));
+            }
+            if (effort.precisely || !any(narrow(~is_known))) break;
+            effort.precisely = true;
         }
-        store_points(output, i, value, narrow(q.in_front));
+        store_points(output, i, numerators, value, narrow(in_front));
         const Words doubt = narrow(~is_known);
         if (!any(doubt)) continue;
         for (int lane = 0; lane < lanes; ++lane)
-            if (doubt[lane] != 0) again.doubtful |= std::uint64_t{1} << (i - begin + static_cast<std::size_t>(lane));
+            if (doubt[lane] != 0) doubtful |= std::uint64_t{1} << (i - begin + static_cast<std::size_t>(lane));
     }
-    return again;
+    return {doubtful, effort};
 }
 
 // The largest |x|, |y|, |z| of a block: of all three together for triples. A NaN is the largest.
@@ -167,7 +186,7 @@ TEXGEN_INLINE Doubles at(const PointForm& form, const Doubles& x, const Doubles&
 template <bool Signed, std::size_t Numerators>
 TEXGEN_INLINE Doubt fill_points_block(const PointJob& job, std::size_t begin, std::size_t end) noexcept {
     const PointExtent extent = extent_of(job, begin, end);
-    double numerator_error[Numerators];
+    double numerator_error[2];
     for (std::size_t k = 0; k < Numerators; ++k) numerator_error[k] = gamma(5) * extent.magnitude_of(job.numerator[k]);
     const double q_error = gamma(5) * extent.magnitude_of(job.q);
     Doubt doubt;
@@ -177,26 +196,25 @@ TEXGEN_INLINE Doubt fill_points_block(const PointJob& job, std::size_t begin, st
         const Doubles x = to_doubles(xs);
         const Doubles y = to_doubles(ys);
         const Doubles z = to_doubles(zs);
-        Doubles numerator[Numerators];
+        Doubles numerator[2];
         for (std::size_t k = 0; k < Numerators; ++k) numerator[k] = at(job.numerator[k], x, y, z);
-        Floats value[Numerators];
-        const LongWords in_front = divide_certainly<Signed>(numerator, numerator_error, at(job.q, x, y, z), q_error,
-                                                            job.tolerance, value, doubt);
-        store_points(job, i, value, narrow(in_front));
+        Floats value[2];
+        const LongWords in_front = divide_certainly<Signed>(Numerators, numerator, numerator_error, at(job.q, x, y, z),
+                                                            q_error, job.tolerance, value, doubt);
+        store_points(job, i, Numerators, value, narrow(in_front));
     }
     return doubt;
 }
 
 // The sums of points, for fill_block_again().
-template <std::size_t Numerators>
 struct PointTerms {
     const PointJob& job;
     TwofoldForm q;
-    TwofoldForm numerator[Numerators];
+    TwofoldForm numerator[2];
 
     TEXGEN_INLINE double tolerance() const noexcept { return job.tolerance; }
     TEXGEN_INLINE explicit PointTerms(const PointJob& points) noexcept : job(points), q(points.q) {
-        for (std::size_t k = 0; k < Numerators; ++k) numerator[k] = TwofoldForm(points.numerator[k]);
+        for (int k = 0; k < job.numerators; ++k) numerator[k] = TwofoldForm(points.numerator[k]);
     }
     TEXGEN_INLINE PointLanes load(std::size_t i) const noexcept {
         Floats x, y, z;
@@ -210,35 +228,37 @@ struct PointTerms {
     }
 };
 
-template <std::size_t Numerators>
-TEXGEN_APART Again fill_points_again(const PointJob& job, std::size_t begin, std::size_t end,
-                                     bool is_in_doubt) noexcept {
-    if (!is_in_doubt) {
-        const PointJob copy = job;
-        const Doubt doubt = fill_points_block<true, Numerators>(copy, begin, end);
-        if (!doubt.any_lane()) return {0, !any(doubt.behind), false};
+template <class CompiledWhereCalled = void>
+TEXGEN_APART Again fill_points_again(const PointJob& original, std::size_t begin, std::size_t end,
+                                     const Effort& effort) noexcept {
+    if (effort.rung <= Rung::either_side) {
+        const PointJob job = original;
+        const Doubt doubt = job.numerators == 2 ? fill_points_block<true, 2>(job, begin, end)
+                                                : fill_points_block<true, 1>(job, begin, end);
+        if (!doubt.any_lane()) return {0, {any(doubt.behind) ? Rung::either_side : Rung::in_front}};
     }
-    return fill_block_again<Numerators>(job, PointTerms<Numerators>(job), begin, end, is_in_doubt);
+    return fill_block_again(original, PointTerms(original), begin, end, effort);
 }
 
-// Most blocks are all in front and in no doubt; those that follow one that is not are taken for what it was. The job is
-// copied, here and below, so that the compiler knows that no store changes it: nothing that the loop reads may be reached
-// from elsewhere.
+// Most blocks are all in front and in no doubt; those that follow one that is not are taken for what it was, seven of them.
+// The job is copied, here and below, so that the compiler knows that no store changes it: nothing that the loop reads may be
+// reached from elsewhere.
 template <std::size_t Numerators>
 TEXGEN_INLINE Undecided fill_points_exact_of(const PointJob& original, std::size_t first) noexcept {
     const PointJob job = original;
-    bool is_ordinary = true;
-    bool is_in_doubt = false;
+    Effort effort;
     for (std::size_t begin = first; begin < job.count;) {
-        const std::size_t next = begin / exact_block * exact_block + exact_block;
+        const std::size_t block = begin / exact_block;
+        const std::size_t next = (block + 1) * exact_block;
         const std::size_t end = next < job.count ? next : job.count;
+        if (block % 8 == 0 && effort.rung == Rung::each_lane) effort = {};
         bool is_certain = false;
-        if (is_ordinary) is_certain = !fill_points_block<false, Numerators>(job, begin, end).any_lane();
+        if (effort.rung == Rung::in_front)
+            is_certain = !fill_points_block<false, Numerators>(job, begin, end).any_lane();
         if (!is_certain) {
-            const Again again = fill_points_again<Numerators>(original, begin, end, is_in_doubt);
-            is_in_doubt = again.is_in_doubt;
+            const Again again = fill_points_again(original, begin, end, effort);
             if (again.doubtful != 0) return {begin, again.doubtful};
-            is_ordinary = again.is_ordinary;
+            effort = again.effort;
         }
         begin = end;
     }
@@ -315,12 +335,12 @@ TEXGEN_INLINE std::size_t fill_points_within_of(const PointJob& job, std::size_t
             const WideFloats q = forms.at(0, x, y, z);
             q_least = minimum(signed_bits(q), q_least);
             const WideFloats reciprocal = 1.0f / q;
-            WideFloats value[Numerators];
+            WideFloats value[2];
             for (std::size_t k = 0; k < Numerators; ++k) {
                 value[k] = forms.at(1 + k, x, y, z) * reciprocal;
                 largest[k] = maximum(magnitude_bits(value[k]), largest[k]);
             }
-            store_points(job, i, value, ~WideWords{});
+            store_points(job, i, Numerators, value, ~WideWords{});
         }
         const PointExtent extent(x_largest, y_largest, z_largest);
         const double size = extent.x + extent.y + extent.z + 1.0;

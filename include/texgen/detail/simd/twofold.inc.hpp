@@ -11,12 +11,18 @@ TEXGEN_INLINE Doubles two_sum(const Doubles& a, const Doubles& b, Doubles& error
     return sum;
 }
 
-TEXGEN_INLINE bool any_but_zero(const Doubles& a) noexcept { return any(~at_most(magnitude(a), a * 0.0)); }
-
-// A number as an unevaluated sum, high the nearest double, and a bound on what that lacks: 0 where it is exact.
+// A number as an unevaluated sum, high the nearest double, and a bound on what that lacks: 0 where it is exact. A sum is made
+// either precisely, or quickly: then what its leading part leaves, about 2^-28 of its terms, is added in one double.
 struct Twofold {
     Doubles high, low, lost;
 };
+
+// Quickly: a sum, what is left of it in at most six terms, and their magnitudes. The low part is exact where the sum is
+// the larger one, as it is where what is lost is small beside it.
+TEXGEN_INLINE Twofold twofold_of(const Doubles& sum, const Doubles& rest, const Doubles& size) noexcept {
+    const Doubles high = sum + rest;
+    return {high, rest - (high - sum), size * 0x1p-50};
+}
 
 TEXGEN_INLINE double leading_29_bits(double value) noexcept {
     return bit_cast<double>(bit_cast<std::uint64_t>(value) & ~std::uint64_t{0xffffff});
@@ -53,12 +59,24 @@ struct TwofoldForm {
                gamma(5);
     }
 
-    TEXGEN_INLINE Twofold at(const PointLanes& at) const noexcept {
+    TEXGEN_INLINE Twofold at(const PointLanes& at, bool precisely) const noexcept {
         const Doubles(&v)[3] = at.v;
         Doubles error[3];
         Doubles sum = two_sum(v[0] * high[0], Doubles{} + form.w, error[0]);
         sum = two_sum(sum, v[1] * high[1], error[1]);
         sum = two_sum(sum, v[2] * high[2], error[2]);
+        if (!precisely) {
+            Doubles rest = (error[0] + error[1]) + error[2];
+            Doubles size = (magnitude(error[0]) + magnitude(error[1])) + magnitude(error[2]);
+            if (!is_short) {
+                const Doubles x = v[0] * low[0];
+                const Doubles y = v[1] * low[1];
+                const Doubles z = v[2] * low[2];
+                rest = rest + ((x + y) + z);
+                size = size + ((magnitude(x) + magnitude(y)) + magnitude(z));
+            }
+            return twofold_of(sum, rest, size);
+        }
         // What the sum leaves, and what that leaves.
         Doubles left[5]{};
         Doubles rest = error[0];
@@ -87,11 +105,12 @@ struct TwofoldForm {
 };
 
 // (1 - alpha) a + alpha b of floats: their products are exact.
-TEXGEN_INLINE Twofold twofold_mixed(double a, double b, const Doubles& alpha) noexcept {
+TEXGEN_INLINE Twofold twofold_mixed(double a, double b, const Doubles& alpha, bool precisely) noexcept {
     Doubles error[2];
     Doubles left;
     Doubles sum = two_sum(Doubles{} + a, alpha * -a, error[0]);
     sum = two_sum(sum, alpha * b, error[1]);
+    if (!precisely) return twofold_of(sum, error[0] + error[1], magnitude(error[0]) + magnitude(error[1]));
     const Doubles rest = two_sum(error[0], error[1], left);
     Twofold result;
     result.high = two_sum(sum, rest, result.low);
@@ -102,21 +121,18 @@ TEXGEN_INLINE Twofold twofold_mixed(double a, double b, const Doubles& alpha) no
 // The denominators of a vector of quotients, and on which side of 0 they are.
 struct TwofoldDivisor {
     LongWords in_front, is_known;  // is_known: the side is, and in front the value well enough to divide by
-    Doubles high, lost, reciprocal;
-    bool has_low;
-    Doubles part[4];  // the number in parts of 27 bits and less, whose products with 25 bits are exact
+    Doubles high, low, lost, reciprocal;
+    Doubles part[2];  // high in parts of 27 bits and less, whose products with 25 bits are exact
 
     TEXGEN_INLINE explicit TwofoldDivisor(const Twofold& q) noexcept {
         in_front = greater(q.high, 0.0) & at_most(q.lost, q.high * 0x1p-52);
         is_known = in_front | at_most(q.lost * 2.0, -1.0 * q.high);
         high = q.high;
+        low = q.low;
         lost = q.lost;
         reciprocal = where(in_front, 1.0 / q.high);
-        has_low = any_but_zero(q.low);
         part[0] = leading_27_bits(q.high);
         part[1] = q.high - part[0];
-        part[2] = leading_27_bits(q.low);
-        part[3] = q.low - part[2];
     }
 };
 
@@ -132,8 +148,9 @@ TEXGEN_INLINE bool divide_nearly(const Doubles& s, const Doubles& s_error, const
 
 // The floats nearest to s / q in front, 0 elsewhere; `is_known` loses the lanes in front where that is in doubt.
 // As nearest_quotient(): two neighbours are left, and the sign of s - middle q decides. That is a small number beside both
-// products (either will do where they are no further apart than the tolerance), so s - middle q' is exact for the leading 53 bits q' of q, and the rest is summed exactly where it is but short.
-TEXGEN_INLINE Floats nearest_quotients(const Twofold& s, const TwofoldDivisor& q, double tolerance,
+// products (either will do where they are no further apart than the tolerance), so s - middle q' is exact for the leading
+// 53 bits q' of q; and precisely the rest is summed exactly where it is but short.
+TEXGEN_INLINE Floats nearest_quotients(const Twofold& s, const TwofoldDivisor& q, double tolerance, bool precisely,
                                        LongWords& is_known) noexcept {
     const Doubles quotient = where(q.in_front, s.high * q.reciprocal) + 0.0;
     const Doubles error = magnitude(quotient) * 0x1p-48;
@@ -148,14 +165,18 @@ TEXGEN_INLINE Floats nearest_quotients(const Twofold& s, const TwofoldDivisor& q
     }
     const Doubles middle = low * 0.5 + high * 0.5;  // next to 2^128 it is infinite, and the lane in doubt
     const Doubles leading_rest = (s.high - middle * q.part[0]) - middle * q.part[1];
-    Doubles remainder = leading_rest;
+    Doubles remainder;
     Doubles lost = s.lost + magnitude(middle) * q.lost;
-    // Nice scenes make nice numbers, which one double holds.
-    if (any_but_zero(s.low) || q.has_low) {
+    if (!precisely) {
+        const Doubles low_product = middle * q.low;
+        remainder = leading_rest + (s.low - low_product);
+        lost = lost + (magnitude(s.low) + magnitude(low_product)) * 0x1p-52;
+    } else {
+        const Doubles q_low = leading_27_bits(q.low);
         Doubles left[5];
         Doubles sum = two_sum(leading_rest, s.low, left[0]);
-        sum = two_sum(sum, -1.0 * (middle * q.part[2]), left[1]);
-        sum = two_sum(sum, -1.0 * (middle * q.part[3]), left[2]);
+        sum = two_sum(sum, -1.0 * (middle * q_low), left[1]);
+        sum = two_sum(sum, -1.0 * (middle * (q.low - q_low)), left[2]);
         Doubles rest = two_sum(left[0], left[1], left[3]);
         rest = two_sum(rest, left[2], left[4]);
         remainder = sum + rest;
