@@ -139,7 +139,8 @@ Target to_eigen(const Transform<To, From>& transform) noexcept {
 }
 
 // Makes an Affine3d or Affine3f of a Transform.
-// Bad input: empty where the last row is not exactly (0, 0, 0, 1), so that no projection is lost; every texgen matrix of a perspective projector is such a one.
+// Bad input: empty where the last row is not exactly (0, 0, 0, 1), so that no projection is lost; every texgen matrix of a
+// perspective projector is such a one.
 template <class Target = Eigen::Affine3d, class To, class From>
 std::optional<Target> to_eigen_affine(const Transform<To, From>& transform) noexcept {
     static_assert(std::is_same_v<Target, Eigen::Affine3d> || std::is_same_v<Target, Eigen::Affine3f>,
