@@ -5,8 +5,10 @@
 #include "detail/language.hpp"
 
 #include <optional>
+#include <span>
 
 #include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
 
 #include "detail/arithmetic/inverse.hpp"
 #include "detail/arithmetic/rounding.hpp"
@@ -36,6 +38,10 @@ public:
     const glm::dmat4& matrix() const noexcept { return matrix_; }
     glm::mat4 rounded() const noexcept { return glm::mat4(matrix_); }
 
+    // Returns the matrix M for v_to = v_from * M, as in HLSL's mul(v, M): the transpose of rounded(). What holds its rows one
+    // after another (row_major in HLSL, an XMFLOAT4X4) takes the memory of rounded() instead.
+    glm::mat4 rounded_for_row_vectors() const noexcept { return glm::transpose(rounded()); }
+
 private:
     glm::dmat4 matrix_;
 };
@@ -45,6 +51,18 @@ template <class A, class B, class C>
 Transform<A, C> operator*(const Transform<A, B>& a_from_b, const Transform<B, C>& b_from_c) noexcept {
     return Transform<A, C>(a_from_b.matrix() * b_from_c.matrix());
 }
+
+// Makes the Transform of a matrix M that was written for row vectors, v_to = v_from * M, as Direct3D's and Unreal's are:
+// from_row_vectors<Eye, World>(view) is its transpose.
+// Guarantee: each element is kept exactly; no allocation, noexcept.
+// Shape: matrix[column][row] is the element of M, which has its translation in row 3. Of 16 floats: row after row, as an
+// XMFLOAT4X4 is in memory. Bad input: as Transform.
+template <class To, class From>
+Transform<To, From> from_row_vectors(const glm::mat4& matrix) noexcept;
+template <class To, class From>
+Transform<To, From> from_row_vectors(const glm::dmat4& matrix) noexcept;
+template <class To, class From>
+Transform<To, From> from_row_vectors(std::span<const float, 16> rows) noexcept;
 
 // The roles, named as the papers name them; the type says destination from source.
 using ModelMatrix = Transform<World, Object>;                        // M

@@ -127,6 +127,64 @@ TEST_CASE("a transform holds doubles unchanged and rounds each element once") {
     CHECK(ModelMatrix(floats).rounded() == floats);
 }
 
+// As DirectX has them: 16 floats, row after row, and mul(v, M) for a row vector v.
+namespace direct3d_math {
+
+struct Float4x4 {
+    std::array<float, 16> m;
+
+    Rational element(std::size_t row, std::size_t column) const { return exactly(m[4 * row + column]); }
+};
+
+std::array<Rational, 4> mul(const std::array<Rational, 4>& v, const Float4x4& m) {
+    std::array<Rational, 4> result;
+    for (std::size_t column = 0; column < 4; ++column)
+        for (std::size_t row = 0; row < 4; ++row) result[column] += v[row] * m.element(row, column);
+    return result;
+}
+
+}  // namespace direct3d_math
+
+TEST_CASE("M v of what is made from_row_vectors is Direct3D's mul(v, M), exactly; and there is a way back") {
+    Random random(43);
+    for (int i = 0; i < 200; ++i) {
+        direct3d_math::Float4x4 rows{};
+        for (float& element : rows.m) element = random.uniform_float(-1e3, 1e3);
+        const texgen::ViewMatrix view = texgen::from_row_vectors<texgen::Eye, texgen::World>(rows.m);
+
+        std::array<Rational, 4> v, product;
+        for (Rational& component : v) component = exactly(random.uniform(-10.0, 10.0));
+        const RationalMatrix matrix = exactly(view.matrix());
+        for (std::size_t row = 0; row < 4; ++row)
+            for (std::size_t column = 0; column < 4; ++column) product[row] += matrix[row][column] * v[column];
+        REQUIRE(product == direct3d_math::mul(v, rows));
+
+        // The same as a matrix of GLM, whose elements are [column][row]; in double nothing is rounded either.
+        glm::mat4 as_glm;
+        for (int row = 0; row < 4; ++row)
+            for (int column = 0; column < 4; ++column)
+                as_glm[column][row] = rows.m[static_cast<std::size_t>(4 * row + column)];
+        REQUIRE(texgen::from_row_vectors<texgen::Eye, texgen::World>(as_glm).matrix() == view.matrix());
+        const glm::dmat4 in_double = random_matrix(random, 1e6);
+        const auto from_double = texgen::from_row_vectors<texgen::Eye, texgen::World>(in_double);
+        REQUIRE(from_double.matrix() == glm::transpose(in_double));
+
+        // Back: the matrix for v M is the one that was given, and its memory row after row that of rounded().
+        REQUIRE(view.rounded_for_row_vectors() == as_glm);
+        const glm::mat4 rounded = view.rounded();
+        for (std::size_t k = 0; k < 16; ++k) REQUIRE((&rounded[0][0])[k] == rows.m[k]);
+        REQUIRE(from_double.rounded_for_row_vectors() == support::rounded(in_double));
+    }
+}
+
+TEST_CASE("a translation of row vectors is a translation") {
+    // XMMatrixTranslation(1, 2, 3), as XMStoreFloat4x4 leaves it.
+    const std::array<float, 16> rows{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 2, 3, 1};
+    const ModelMatrix model = texgen::from_row_vectors<texgen::World, texgen::Object>(rows);
+    CHECK(model.matrix()[3] == glm::dvec4(1.0, 2.0, 3.0, 1.0));
+    CHECK(model.matrix() * glm::dvec4(0.0, 0.0, 0.0, 1.0) == glm::dvec4(1.0, 2.0, 3.0, 1.0));
+}
+
 TEST_CASE("exactly singular matrices are refused, 2000 of 2000") {
     Random random(43);
     int refused = 0, determinant_is_zero = 0;

@@ -40,6 +40,7 @@ MUTANTS = [
          ("composition is the other way round", "a_from_b.matrix() * b_from_c.matrix()",
           "b_from_c.matrix() * a_from_b.matrix()", "transform_test")),
     *_of("detail/matrices/transform.inc.hpp",
+         ("rows of row vectors stay rows", "columns[i / 4][i % 4] = rows", "columns[i % 4][i / 4] = rows", "transform_test"),
          ("an inverse may overflow", "return detail::is_finite(result.matrix()) ? std::optional(result) : std::nullopt;",
           "return std::optional(result);", "transform_test"),
          ("the rigid inverse is not transposed", "result[column][row] = m[row][column];",

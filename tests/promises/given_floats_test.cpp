@@ -74,6 +74,14 @@ glm::dmat4 transform(const Numbers& n) {
 }
 
 template <class Rounding>
+std::array<glm::dmat4, 2> from_row_vectors(const Numbers& n) {
+    std::array<float, 16> rows{};
+    for (std::size_t i = 0; i < 16; ++i) rows[i] = Rounding::round(n[i]);
+    return {texgen::from_row_vectors<texgen::World, texgen::Object>(rows).matrix(),
+            texgen::from_row_vectors<texgen::World, texgen::Object>(matrix<Rounding>(n)).matrix()};
+}
+
+template <class Rounding>
 glm::dmat4 from_eigen(const Numbers& n) {
     Eigen::Matrix4f m;
     for (std::size_t i = 0; i < 16; ++i) m(static_cast<Eigen::Index>(i)) = Rounding::round(n[i]);
@@ -285,6 +293,7 @@ TEST_CASE("floats that are rounded in place give the results of those floats") {
     for (int i = 0; i < 2000; ++i) {
         const Numbers numbers = random_numbers(random);
         REQUIRE(transform<InPlace>(numbers) == transform<ByMemory>(numbers));
+        REQUIRE(from_row_vectors<InPlace>(numbers) == from_row_vectors<ByMemory>(numbers));
         REQUIRE(remapped<InPlace>(numbers) == remapped<ByMemory>(numbers));
         REQUIRE(window<InPlace>(numbers) == window<ByMemory>(numbers));
         const auto one = clipped<InPlace>(numbers), other = clipped<ByMemory>(numbers);

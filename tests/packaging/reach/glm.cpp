@@ -46,6 +46,7 @@ void print_projector(const texgen::Projector& projector) {
     const CameraPose pose = inverse_rigid(view);
     print("V_e^-1", pose);
     print("inverse", *inverse(view));
+    print("of row vectors", from_row_vectors<Eye, World>(view.rounded_for_row_vectors()));
     print("T_e", eye_linear(projector, pose));
     glm::dmat4 model(1.0);
     model[0] = glm::dvec4(0.0, 2.0, 0.0, 0.0);

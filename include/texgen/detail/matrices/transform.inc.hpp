@@ -1,6 +1,24 @@
-// The bodies of the inverses of transform.hpp.
+// The bodies of transform.hpp.
 
 namespace TEXGEN_NAMESPACE {
+
+template <class To, class From>
+Transform<To, From> from_row_vectors(const glm::mat4& matrix) noexcept {
+    return Transform<To, From>(glm::transpose(matrix));
+}
+
+template <class To, class From>
+Transform<To, From> from_row_vectors(const glm::dmat4& matrix) noexcept {
+    return Transform<To, From>(glm::transpose(matrix));
+}
+
+// The rows of M are the columns of its transpose.
+template <class To, class From>
+Transform<To, From> from_row_vectors(std::span<const float, 16> rows) noexcept {
+    glm::mat4 columns;
+    for (glm::length_t i = 0; i < 16; ++i) columns[i / 4][i % 4] = rows[static_cast<std::size_t>(i)];
+    return Transform<To, From>(columns);
+}
 
 template <class To, class From>
 std::optional<Transform<From, To>> inverse(const Transform<To, From>& transform) noexcept {
