@@ -8,6 +8,7 @@
 #include <cmath>
 #include <optional>
 
+#include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -16,6 +17,7 @@
 #include "detail/arithmetic/expansion.hpp"
 #include "detail/arithmetic/inverse.hpp"
 #include "detail/arithmetic/rounding.hpp"
+#include "detail/matrices/required.hpp"
 #include "detail/matrices/vectors.hpp"
 #include "transform.hpp"
 
@@ -39,6 +41,18 @@ struct FrustumLens {
 // OpenGL.
 struct OrthographicLens {
     double left, right, bottom, top, z_near, z_far;
+};
+
+// Where the coordinates of pixels are whole: in the centres of pixels, as OpenCV counts them, so that the picture begins at
+// -0.5; or at their corners, so that the picture begins at 0 and the centre of its first pixel is (0.5, 0.5).
+enum class PixelCentre { integer, half };
+
+// The lens of a calibrated camera, in pixels, y down: K = (fx skew cx; 0 fy cy; 0 0 1), and the size of the picture. z_near and
+// z_far as those of a PerspectiveLens.
+struct PinholeLens {
+    double fx, fy, cx, cy, width, height, z_near, z_far;
+    detail::Required<PixelCentre> centre;
+    double skew = 0.0;
 };
 
 // Where a projector stands, what it looks at, and what is above, in the world.
@@ -86,6 +100,20 @@ inline std::optional<ProjectorProjection> frustum(const FrustumLens& lens, Conve
 // Source: OpenGL 2.1 specification, 2.11.2 (glOrtho).
 inline std::optional<ProjectorProjection> orthographic(const OrthographicLens& lens, Conventions conventions) noexcept;
 
+// Makes the projection of a calibrated camera, so that a projector throws a picture where the camera saw it: (s, t) of
+// the whole texture is the pixel K (R X + t) over the size, from the corner that the texture's origin is. For OpenGL, with the
+// pixel centres at half,
+//
+//     | 2 fx/width  -2 skew/width  1 - 2 cx/width        0      |
+//     |     0        2 fy/height   2 cy/height - 1       0      |
+//
+// and the rows z and w of perspective(). With the pixel centres at integers cx + 1/2 and cy + 1/2 stand for cx and cy.
+// Guarantee, shape: as perspective().
+// Bad input: empty unless fx, fy, width, height > 0 and 0 < z_near < z_far, and all but z_far are finite; and where doubles
+// cannot hold the matrix, as perspective().
+// Source: Hartley and Zisserman, Multiple View Geometry, 6.1; OpenCV's camera model without distortion.
+inline std::optional<ProjectorProjection> pinhole(const PinholeLens& lens, Conventions conventions) noexcept;
+
 // Makes the view V_p of a projector that stands at the position and looks at the target.
 // Guarantee: each element of the rotation within 4 double ulp of 1 (2^-50) of the definition's, its rows orthonormal within
 // that, with `up` as near to the view as 2^-98 rad; the translation -R position is within 1 ulp of its exact value for the
@@ -96,13 +124,22 @@ inline std::optional<ProjectorProjection> orthographic(const OrthographicLens& l
 // Source: Everitt, Projective Texture Mapping, V_p in (3); OpenGL utility library, gluLookAt.
 inline std::optional<ProjectorView> look_at(const Aim& aim) noexcept;
 
-// Makes a projector of a lens and an aim: empty where either is. Guarantees as perspective(), frustum(), orthographic() and
-// look_at().
+// Makes the view of a camera that OpenCV has posed, x_camera = R x + t, with x to the right, y down and z forwards:
+// diag(1, -1, -1) [R|t]. rotation[column][row] is the element of R; cv::Rodrigues() makes it of solvePnP()'s vector.
+// Guarantee: each element is kept exactly; no allocation, noexcept.
+// Shape: world to projector eye space.
+// Bad input: empty for what is not finite. That R is a rotation is not asked.
+inline std::optional<ProjectorView> view_from_opencv(const glm::dmat3& rotation,
+                                                     const glm::dvec3& translation) noexcept;
+
+// Makes a projector of a lens and an aim: empty where either is. Guarantees as those of the lens and of look_at().
 inline std::optional<Projector> make_projector(const PerspectiveLens& lens, const Aim& aim,
                                                Conventions conventions) noexcept;
 inline std::optional<Projector> make_projector(const FrustumLens& lens, const Aim& aim,
                                                Conventions conventions) noexcept;
 inline std::optional<Projector> make_projector(const OrthographicLens& lens, const Aim& aim,
+                                               Conventions conventions) noexcept;
+inline std::optional<Projector> make_projector(const PinholeLens& lens, const Aim& aim,
                                                Conventions conventions) noexcept;
 
 }  // namespace TEXGEN_NAMESPACE

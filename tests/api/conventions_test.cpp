@@ -75,6 +75,20 @@ std::vector<LensCase> all_lenses() {
         return texgen::orthographic({lens.left, lens.right, lens.bottom, lens.top, lens.z_near, lens.z_far},
                                     conventions);
     };
+    // The same rectangle as 640 x 480 pixels.
+    const auto pinhole = [](const LensCase& lens, Conventions conventions) {
+        const double width = lens.right - lens.left, height = lens.top - lens.bottom;
+        return texgen::pinhole({.fx = 640.0 * lens.z_near / width,
+                                .fy = 480.0 * lens.z_near / height,
+                                .cx = -640.0 * lens.left / width - 0.5,
+                                .cy = 480.0 * lens.top / height - 0.5,
+                                .width = 640.0,
+                                .height = 480.0,
+                                .z_near = lens.z_near,
+                                .z_far = lens.z_far,
+                                .centre = texgen::PixelCentre::integer},
+                               conventions);
+    };
     return {{"perspective", -0.3, 0.3, -0.2, 0.2, 0.5, 100.0, true, false, perspective},
             {"reversed", -0.3, 0.3, -0.2, 0.2, 0.5, 100.0, true, true, perspective},
             {"infinite", -0.3, 0.3, -0.2, 0.2, 0.5, infinity, true, false, perspective},
@@ -83,6 +97,8 @@ std::vector<LensCase> all_lenses() {
             {"off-axis frustum", -0.1, 0.7, -0.5, 0.2, 1.0, 10.0, true, false, frustum},
             {"wholly off-axis frustum", 0.25, 0.5, 1.0, 3.0, 0.5, 8.0, true, false, frustum},
             {"mirrored frustum", 0.4, -0.4, -0.2, 0.2, 0.5, 8.0, true, false, frustum},
+            {"pinhole", -0.3, 0.3, -0.2, 0.2, 0.5, 100.0, true, false, pinhole},
+            {"infinite off-axis pinhole", -0.1, 0.7, -0.5, 0.2, 1.0, infinity, true, false, pinhole},
             {"orthographic", -2.0, 2.0, -1.5, 1.5, 1.0, 20.0, false, false, orthographic},
             {"off-centre orthographic", 3.0, 5.0, -7.0, -6.5, -4.0, 20.0, false, false, orthographic},
             {"orthographic upside down", -1.0, 1.0, 1.0, -1.0, 0.0, 1.0, false, false, orthographic}};
@@ -157,7 +173,7 @@ TEST_CASE("corners, centre, near and far land where they should, for every lens,
             }
         }
     }
-    CHECK(combinations == 11 * 8 * 4 * 2);
+    CHECK(combinations == 13 * 8 * 4 * 2);
 }
 
 TEST_CASE("the NDC of a projector follows its depth range and its y direction") {

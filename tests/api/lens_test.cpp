@@ -217,12 +217,12 @@ TEST_CASE("a lens of any finite numbers has its matrix, each element within 4 ul
     double worst = 0.0;
     std::string worst_input;
     int accepted = 0, refused = 0;
-    for (int i = 0; i < 60000; ++i) {
+    for (int i = 0; i < 80000; ++i) {
         const double left = number(1.0), right = number(left), bottom = number(left), top = number(bottom);
         double z_near = number(right), z_far = number(z_near);
         const bool unit = random.coin(), reversed = random.coin();
         const Conventions conventions = with(unit ? DepthRange::zero_to_one : DepthRange::negative_one_to_one);
-        const int kind = i % 3;
+        const int kind = i % 4;
         if (kind != 1) z_near = std::fabs(z_near), z_far = std::fabs(z_far);
         if (!(z_near < z_far && z_far < infinity) || left == right || bottom == top) continue;
         if (kind != 1 && !(z_near > 0.0)) continue;
@@ -242,6 +242,29 @@ TEST_CASE("a lens of any finite numbers has its matrix, each element within 4 ul
             projection = orthographic({left, right, bottom, top, z_near, z_far}, conventions);
             exact = {2 / width, 2 / height, -sum_x, -sum_y, (unit ? -1 : -2) / (f - n), -(unit ? n : n + f) / (f - n)};
             place = {glm::ivec2(0, 0), {1, 1}, {3, 0}, {3, 1}, {2, 2}, {3, 2}};
+        } else if (kind == 2) {
+            const bool at_half = random.coin();
+            const texgen::PinholeLens lens{
+                .fx = std::fabs(left),
+                .fy = std::fabs(bottom),
+                .cx = right,
+                .cy = top,
+                .width = std::fabs(number(left)),
+                .height = std::fabs(number(top)),
+                .z_near = z_near,
+                .z_far = z_far,
+                .centre = at_half ? texgen::PixelCentre::half : texgen::PixelCentre::integer};
+            input += " " + hex(lens.width) + " " + hex(lens.height) + (at_half ? " half" : "");
+            projection = pinhole(lens, conventions);
+            const Depth depth = exact_depth(z_near, z_far, false, conventions.depth);
+            const Real edge = at_half ? 0 : 1, pixels_x(lens.width), pixels_y(lens.height);
+            exact = {2 * Real(lens.fx) / pixels_x,
+                     2 * Real(lens.fy) / pixels_y,
+                     (pixels_x - edge - 2 * Real(lens.cx)) / pixels_x,
+                     -(pixels_y - edge - 2 * Real(lens.cy)) / pixels_y,
+                     depth.scale,
+                     depth.offset};
+            place = {glm::ivec2(0, 0), {1, 1}, {2, 0}, {2, 1}, {2, 2}, {3, 2}};
         } else {
             const double aspect = std::fabs(left);
             double fovy = random.coin() ? std::min(std::fabs(right), 3.14) : random.uniform(0.0, 3.1415926);

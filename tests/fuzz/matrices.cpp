@@ -101,13 +101,16 @@ void projectors(Input& input) {
         const auto back = inverse_rigid(*view);
         must(texgen::detail::distance_from_rigid(back.matrix()) <= 1e-14, "and so is its inverse");
     }
+    const glm::dmat3 rotation(input.wide_matrix());
+    const auto of_opencv = texgen::view_from_opencv(rotation, aim.position);
+    must(!of_opencv || all_finite(of_opencv->matrix()), "a view is finite");
     double field[6];
     for (double& f : field) f = input.wide_number();
     bool any_bad = false;
     for (const double f : field) any_bad = any_bad || !std::isfinite(f);
     const auto& [a, b, c, d, e, f] = field;
     std::optional<texgen::Projector> projector;
-    switch (input.integer(0, 2)) {
+    switch (input.integer(0, 3)) {
         case 0: {
             const texgen::PerspectiveLens lens{input.coin() ? texgen::degrees(a) : texgen::radians(a), b, c, d,
                                                input.coin()};
@@ -120,6 +123,23 @@ void projectors(Input& input) {
         case 1: {
             const texgen::FrustumLens lens{a, b, c, d, e, f};
             require_projection(frustum(lens, conventions), any_bad || a == b || c == d || !(e > 0.0 && e < f));
+            projector = make_projector(lens, aim, conventions);
+            break;
+        }
+        case 2: {
+            const texgen::PinholeLens lens{a,
+                                           b,
+                                           e,
+                                           f,
+                                           c,
+                                           d,
+                                           input.wide_number(),
+                                           input.wide_number(),
+                                           input.coin() ? texgen::PixelCentre::half : texgen::PixelCentre::integer,
+                                           input.wide_number()};
+            require_projection(pinhole(lens, conventions), any_bad || !(a > 0.0 && b > 0.0 && c > 0.0 && d > 0.0) ||
+                                                               !(lens.z_near > 0.0 && lens.z_near < lens.z_far) ||
+                                                               !std::isfinite(lens.skew));
             projector = make_projector(lens, aim, conventions);
             break;
         }

@@ -914,6 +914,8 @@ Calls lens_calls(const Numbers& n) {
     const texgen::PerspectiveLens perspective{texgen::radians(a.x), a.y, a.z, z_far};
     const texgen::FrustumLens frustum{sides.x, sides.y, sides.z, sides.w, a.z, z_far};
     const texgen::OrthographicLens orthographic{sides.x, sides.y, sides.z, sides.w, a.z, z_far};
+    const texgen::PinholeLens pinhole{
+        a.x, a.y, sides.x, sides.y, sides.z, sides.w, a.z, z_far, texgen::PixelCentre::half};
     return calls_of([=] {
         if constexpr (Kind == 0) keep(texgen::perspective(perspective, texgen::opengl));
         if constexpr (Kind == 1) keep(texgen::frustum(frustum, texgen::opengl));
@@ -921,6 +923,8 @@ Calls lens_calls(const Numbers& n) {
         if constexpr (Kind == 3) keep(texgen::make_projector(perspective, aim, texgen::opengl));
         if constexpr (Kind == 4) keep(texgen::make_projector(frustum, aim, texgen::opengl));
         if constexpr (Kind == 5) keep(texgen::make_projector(orthographic, aim, texgen::opengl));
+        if constexpr (Kind == 6) keep(texgen::pinhole(pinhole, texgen::opengl));
+        if constexpr (Kind == 7) keep(texgen::make_projector(pinhole, aim, texgen::opengl));
     });
 }
 
@@ -1163,6 +1167,9 @@ inline const std::array workloads{
     Workload{"make_projector, frustum", 0, detail::ordinary_look, detail::hostile_look, detail::lens_calls<4>,
              detail::always},
     Workload{"make_projector, orthographic", 0, detail::ordinary_look, detail::hostile_look, detail::lens_calls<5>,
+             detail::always},
+    Workload{"pinhole", 0, detail::ordinary_look, detail::hostile_look, detail::lens_calls<6>, detail::always},
+    Workload{"make_projector, pinhole", 0, detail::ordinary_look, detail::hostile_look, detail::lens_calls<7>,
              detail::always},
     Workload{"TexGenUnit::generate, object linear", 27, detail::ordinary_vertex, detail::hostile_vertex,
              detail::unit_calls<texgen::TexGenMode::object_linear>, detail::always},

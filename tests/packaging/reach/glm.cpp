@@ -46,6 +46,8 @@ void print_projector(const texgen::Projector& projector) {
     const CameraPose pose = inverse_rigid(view);
     print("V_e^-1", pose);
     print("inverse", *inverse(view));
+    print("K", *pinhole({500.0, 510.0, 319.5, 239.5, 640.0, 480.0, 0.1, 10.0, PixelCentre::integer, 0.25}, opengl));
+    print("[R|t]", *view_from_opencv(glm::dmat3(view.matrix()), glm::dvec3(0.5, 1.0, 2.0)));
     print("of row vectors", from_row_vectors<Eye, World>(view.rounded_for_row_vectors()));
     print("T_e", eye_linear(projector, pose));
     glm::dmat4 model(1.0);

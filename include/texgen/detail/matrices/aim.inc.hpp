@@ -1,4 +1,4 @@
-// The bodies of the aim of projector.hpp, and what makes a projector of it and of a lens.
+// The bodies of the views of projector.hpp, and what makes a projector of an aim and a lens.
 
 namespace TEXGEN_DETAIL {
 
@@ -85,6 +85,17 @@ inline std::optional<ProjectorView> look_at(const Aim& aim) noexcept {
     return ProjectorView(matrix);
 }
 
+inline std::optional<ProjectorView> view_from_opencv(const glm::dmat3& rotation,
+                                                     const glm::dvec3& translation) noexcept {
+    glm::dmat4 matrix(rotation);
+    matrix[3] = {translation.x, translation.y, translation.z, 1.0};
+    for (glm::length_t column = 0; column < 4; ++column) {
+        matrix[column].y = -matrix[column].y;
+        matrix[column].z = -matrix[column].z;
+    }
+    return detail::is_finite(matrix) ? std::optional(ProjectorView(matrix)) : std::nullopt;
+}
+
 inline std::optional<Projector> make_projector(const PerspectiveLens& lens, const Aim& aim,
                                                Conventions conventions) noexcept {
     return detail::assemble(perspective(lens, conventions), look_at(aim), conventions);
@@ -96,6 +107,11 @@ inline std::optional<Projector> make_projector(const FrustumLens& lens, const Ai
 inline std::optional<Projector> make_projector(const OrthographicLens& lens, const Aim& aim,
                                                Conventions conventions) noexcept {
     return detail::assemble(orthographic(lens, conventions), look_at(aim), conventions);
+}
+
+inline std::optional<Projector> make_projector(const PinholeLens& lens, const Aim& aim,
+                                               Conventions conventions) noexcept {
+    return detail::assemble(pinhole(lens, conventions), look_at(aim), conventions);
 }
 
 }  // namespace TEXGEN_NAMESPACE

@@ -51,16 +51,28 @@ inline std::optional<ProjectorProjection> checked_projection(glm::dmat4 matrix, 
     return usable ? std::optional(ProjectorProjection(matrix)) : std::nullopt;
 }
 
-// The perspective matrix of the focal lengths on the diagonal, and of the off-axis terms in column z.
-inline std::optional<ProjectorProjection> checked_perspective(const glm::dvec2& focal_length,
+// The perspective matrix of the focal lengths on the diagonal, the skew beside them, and the off-axis terms in column z.
+inline std::optional<ProjectorProjection> checked_perspective(const glm::dvec2& focal_length, double skew,
                                                               const glm::dvec2& off_axis, const DepthRow& depth,
                                                               Conventions conventions) noexcept {
     glm::dmat4 matrix(0.0);
     matrix[0][0] = focal_length.x;
+    matrix[1][0] = skew;
     matrix[1][1] = focal_length.y;
     matrix[2] = {off_axis.x, off_axis.y, depth.scale, -1.0};
     matrix[3][2] = depth.offset;
     return checked_projection(matrix, conventions);
+}
+
+// 1 - 2 centre / size, where the centre is counted from the middle of the first pixel, or from its edge. Nothing is rounded
+// before the sum; it is one of quarters where it could leave the range.
+inline double off_axis_term(double centre, double size, PixelCentre convention) noexcept {
+    const double unit = larger(std::fabs(centre), size) < 0x1p1000 ? 1.0 : 0.25;
+    Expansion<3> sum;
+    sum.add(unit * size);
+    sum.add(-(2.0 * unit) * centre);
+    sum.add(convention == PixelCentre::integer ? -unit : 0.0);
+    return sum.estimate() / (unit * size);
 }
 
 }  // namespace TEXGEN_DETAIL
@@ -76,7 +88,7 @@ inline std::optional<ProjectorProjection> perspective(const PerspectiveLens& len
     const double focal_length =
         half_angle < 0x1p-30 ? 2.0 / lens.fovy.in_radians() : std::cos(half_angle) / std::sin(half_angle);
     return detail::checked_perspective(
-        {focal_length / lens.aspect, focal_length}, glm::dvec2(0.0),
+        {focal_length / lens.aspect, focal_length}, 0.0, glm::dvec2(0.0),
         detail::perspective_depth(lens.z_near, lens.z_far, lens.reversed_depth, conventions.depth), conventions);
 }
 
@@ -85,7 +97,7 @@ inline std::optional<ProjectorProjection> frustum(const FrustumLens& lens, Conve
     const detail::LensExtent width(lens.left, lens.right);
     const detail::LensExtent height(lens.bottom, lens.top);
     return detail::checked_perspective({width.twice_over_length(lens.z_near), height.twice_over_length(lens.z_near)},
-                                       {width.sum_over_length(), height.sum_over_length()},
+                                       0.0, {width.sum_over_length(), height.sum_over_length()},
                                        detail::perspective_depth(lens.z_near, lens.z_far, false, conventions.depth),
                                        conventions);
 }
@@ -106,6 +118,20 @@ inline std::optional<ProjectorProjection> orthographic(const OrthographicLens& l
     matrix[3][2] = -(zero_to_one ? depth.end_over_length(lens.z_near) : depth.sum_over_length());
     matrix[3][3] = 1.0;
     return detail::checked_projection(matrix, conventions);
+}
+
+// With x, y, z of the camera, x = x_eye, y = -y_eye and z = -z_eye: u = (fx x + skew y) / z + cx, and NDC x = 2 u / width - 1.
+inline std::optional<ProjectorProjection> pinhole(const PinholeLens& lens, Conventions conventions) noexcept {
+    if (!(lens.fx > 0.0 && lens.fy > 0.0 && lens.width > 0.0 && lens.height > 0.0)) return std::nullopt;
+    if (!(detail::is_finite(lens.width) && detail::is_finite(lens.height))) return std::nullopt;
+    if (!(lens.z_near > 0.0 && lens.z_near < lens.z_far)) return std::nullopt;
+    const detail::LensExtent width(0.0, lens.width);
+    const detail::LensExtent height(0.0, lens.height);
+    return detail::checked_perspective(
+        {width.twice_over_length(lens.fx), height.twice_over_length(lens.fy)}, -width.twice_over_length(lens.skew),
+        {detail::off_axis_term(lens.cx, lens.width, lens.centre),
+         -detail::off_axis_term(lens.cy, lens.height, lens.centre)},
+        detail::perspective_depth(lens.z_near, lens.z_far, false, conventions.depth), conventions);
 }
 
 }  // namespace TEXGEN_NAMESPACE
