@@ -50,6 +50,16 @@ inline ObjectTexgen object_linear(const Projector& projector, const ModelMatrix&
 inline EyeTexgen eye_linear(const Projector& projector, const CameraPose& world_from_eye,
                             TextureRegion region = whole_texture(), DepthMapping depth = DepthMapping::unit) noexcept;
 
+// Makes the texgen matrix of a projector that the camera carries, S P_p V, with V from the camera's eye space to the
+// projector's: a flashlight. It holds for all frames, wherever the camera goes; the identity is a light at the eye.
+// Guarantee: in double, 8 roundings a term at most; no allocation, noexcept.
+// Shape: the camera's eye points to homogeneous (s, t, r, q). Its planes are for glTexGen under the identity as MODELVIEW.
+// Bad input: as texture_from_world().
+// Source: Segal et al., Fast Shadows and Lighting Effects Using Texture Mapping; SGI's recipe for projective textures.
+inline EyeTexgen eye_linear(const ProjectorProjection& projection, const Transform<ProjectorEye, Eye>& view,
+                            Conventions conventions, TextureRegion region = whole_texture(),
+                            DepthMapping depth = DepthMapping::unit) noexcept;
+
 // Returns what OpenGL stores when the rows of `planes` are given to glTexGen under that MODELVIEW: each row p becomes p M^-1.
 // Guarantee: solved and refined, so that rounded to float it is within 0.54 ulp of its largest component while the
 // condition of M (rows and columns scaled) stays below 1e8; no allocation, noexcept.

@@ -158,6 +158,41 @@ TEST_CASE("eye linear is Everitt (4), T_e = S P_p V_p V_e^-1, and under MODELVIE
     }
 }
 
+TEST_CASE("the texgen of a light that the camera carries is S P_p V, one matrix for all poses of the camera") {
+    Random random(99);
+    for (int i = 0; i < 200; ++i) {
+        const Scene scene = random_scene(random, random.power_of_ten(-2.0, 2.0));
+        const auto region = texgen::atlas_tile({0.25, 0.5}, {0.75, 2.0});
+        // On the camera's side, and turned a little.
+        glm::dmat4 mounting = random.rotation();
+        mounting[3] = glm::dvec4(random.direction(), 1.0);
+        const texgen::Transform<texgen::ProjectorEye, texgen::Eye> view(mounting);
+        const EyeTexgen carried =
+            eye_linear(scene.projector.projection, view, texgen::vulkan, region, texgen::DepthMapping::ndc);
+        const glm::dmat4 s = scale_bias(texgen::vulkan, region, texgen::DepthMapping::ndc).matrix();
+        REQUIRE(is_product(carried.matrix(), {s, scene.projector.projection.matrix(), mounting}, 8));
+
+        // The same as a projector in the world, posed anew with the camera.
+        const CameraPose pose(scene.camera_pose);
+        const Projector posed{scene.projector.projection, view * inverse_rigid(pose), texgen::vulkan};
+        const EyeTexgen by_world = eye_linear(posed, pose, region, texgen::DepthMapping::ndc);
+        for (int column = 0; column < 4; ++column)
+            for (int row = 0; row < 4; ++row)
+                REQUIRE(std::fabs(by_world.matrix()[column][row] - carried.matrix()[column][row]) <= 1e-10);
+        // glTexGen keeps its rows as they are when MODELVIEW is the identity.
+        REQUIRE(eye_planes_as_stored(carried, texgen::Transform<texgen::Eye, texgen::Eye>(glm::dmat4(1.0)))->matrix() ==
+                carried.matrix());
+    }
+    // A light at the eye: the middle of what the camera sees has the middle of the slide.
+    const auto light = perspective(lens(), texgen::opengl);
+    const EyeTexgen headlight =
+        eye_linear(*light, texgen::Transform<texgen::ProjectorEye, texgen::Eye>(glm::dmat4(1.0)), texgen::opengl);
+    const glm::dvec4 strq = headlight.matrix() * glm::dvec4(0.0, 0.0, -7.0, 1.0);
+    CHECK(strq.x / strq.w == 0.5);
+    CHECK(strq.y / strq.w == 0.5);
+    CHECK(strq.w == 7.0);
+}
+
 TEST_CASE("the planes of S P_p V_p stored under MODELVIEW = V_e are T_e, as are those of S P_p under V_e V_p^-1") {
     Random random(93);
     for (int i = 0; i < 200; ++i) {

@@ -26,6 +26,11 @@ inline EyeTexgen eye_linear(const Projector& projector, const CameraPose& world_
     return detail::texture_from_projector_eye(projector, region, depth) * (projector.view * world_from_eye);
 }
 
+inline EyeTexgen eye_linear(const ProjectorProjection& projection, const Transform<ProjectorEye, Eye>& view,
+                            Conventions conventions, TextureRegion region, DepthMapping depth) noexcept {
+    return scale_bias(conventions, region, depth) * projection * view;
+}
+
 template <class Space>
 std::optional<EyeTexgen> eye_planes_as_stored(const Transform<Texture, Space>& planes,
                                               const Transform<Eye, Space>& modelview) noexcept {
