@@ -132,6 +132,15 @@ inline std::optional<ProjectorView> look_at(const Aim& aim) noexcept;
 inline std::optional<ProjectorView> view_from_opencv(const glm::dmat3& rotation,
                                                      const glm::dvec3& translation) noexcept;
 
+// Makes the view that a mirror shows: V R, R the reflection x - 2 n (n.x + d) / |n|^2 in the plane n.x + d = 0. A projector
+// with it throws a picture that was rendered with it back onto the plane: a planar reflection.
+// Guarantee: each element within 1 double ulp of its exact value, or 2^-96 of its terms where they cancel to less; no
+// allocation, noexcept.
+// Shape: world to the mirrored eye space; (n, d) over the world, n of any length. The handedness is the other one, as in every
+// mirror: what was front-facing faces back.
+// Bad input: empty where n is zero, and where the plane, the view or an element of the result is not finite.
+inline std::optional<ProjectorView> mirrored(const ProjectorView& view, const glm::dvec4& plane) noexcept;
+
 // Makes a projector of a lens and an aim: empty where either is. Guarantees as those of the lens and of look_at().
 inline std::optional<Projector> make_projector(const PerspectiveLens& lens, const Aim& aim,
                                                Conventions conventions) noexcept;

@@ -8,8 +8,14 @@
 #include <string>
 #include <utility>
 
+<<<<<<< HEAD:tests/api/aim_test.cpp
 #include "judges/oracle.hpp"
 #include "judges/real.hpp"
+=======
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+>>>>>>> 2f1de24 (A mirror's view is a projector's: planar reflections):tests/aim_test.cpp
 #include "support/hex.hpp"
 #include "support/random.hpp"
 #include "texgen/projector.hpp"
@@ -255,6 +261,81 @@ TEST_CASE("the position goes to the origin, the target onto the negative z axis,
     // gluLookAt's own example: from +z toward the origin it is a translation.
     const glm::dmat4 straight = look_at({{0, 0, 7}, {0, 0, 0}, {0, 3, 0}})->matrix();
     CHECK(straight == glm::dmat4{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, -7, 1}});
+}
+
+TEST_CASE("a mirrored view is V R, within 1 ulp or 2^-96 of its terms: at any distance, for planes of any length") {
+    Random random(88);
+    double worst = 0.0;
+    std::string worst_input;
+    for (int i = 0; i < 3000; ++i) {
+        const glm::dvec3 position = random.power_of_ten(-3.0, 8.0) * random.direction();
+        const auto view = look_at({position, position + random.direction(), random.direction()});
+        REQUIRE(view);
+        // Some planes stand near the camera, where the translation cancels; some have an axis for a normal.
+        glm::dvec3 normal = random.power_of_ten(-100.0, 100.0) * random.direction();
+        if (i % 4 == 0) normal = {0.0, normal.y, 0.0};
+        const double along = normal.x * position.x + normal.y * position.y + normal.z * position.z;
+        const glm::dvec4 plane(
+            normal, i % 3 == 0 ? -0.5 * along * random.uniform(0.999, 1.001) : along * random.uniform(-2.0, 2.0));
+        const auto mirrored = texgen::mirrored(*view, plane);
+        REQUIRE(mirrored);
+        Rational squared = 0;
+        for (int k = 0; k < 3; ++k) squared += exactly(plane[k]) * exactly(plane[k]);
+        for (int row = 0; row < 4; ++row) {
+            Rational factor = 0, size = 0;
+            for (int k = 0; k < 3; ++k) {
+                const Rational term = 2 * exactly(view->matrix()[k][row]) * exactly(plane[k]) / squared;
+                factor += term;
+                size += support::magnitude(term);
+            }
+            for (int column = 0; column < 4; ++column) {
+                const Rational element = exactly(view->matrix()[column][row]), component = exactly(plane[column]);
+                const Rational exact = element - factor * component;
+                const Rational terms = support::magnitude(element) + size * support::magnitude(component);
+                const double computed = mirrored->matrix()[column][row];
+                const Rational error = support::magnitude(exactly(computed) - exact);
+                if (error <= terms * support::power_of_two(-96)) continue;
+                const double ulps = support::ulp_error(computed, exact);
+                if (ulps > worst) worst = ulps, worst_input = hex(position) + " " + hex(normal) + " " + hex(plane.w);
+            }
+        }
+    }
+    CHECK_MESSAGE(worst <= 1.0, worst_input);
+    MESSAGE(worst, " ulp at most");
+}
+
+TEST_CASE("a mirrored view sees points as the view sees their mirror images, and points of the mirror where they are") {
+    // A floor at y = 1: what is at y = 3 is seen at y = -1.
+    const auto view = look_at({{4, 5, 6}, {0, 1, 0}, {0, 1, 0}});
+    const auto mirrored = texgen::mirrored(*view, {0.0, 2.0, 0.0, -2.0});
+    REQUIRE(mirrored);
+    const auto near_zero = [](const glm::dvec4& v) { return glm::length(v) < 1e-14; };
+    CHECK(near_zero(mirrored->matrix() * glm::dvec4(0.5, 3.0, -2.0, 1.0) -
+                    view->matrix() * glm::dvec4(0.5, -1.0, -2.0, 1.0)));
+    CHECK(near_zero(mirrored->matrix() * glm::dvec4(7.0, 1.0, 2.0, 1.0) -
+                    view->matrix() * glm::dvec4(7.0, 1.0, 2.0, 1.0)));
+    CHECK(glm::determinant(mirrored->matrix()) == doctest::Approx(-1.0));
+    const auto twice = texgen::mirrored(*mirrored, {0.0, -0.5, 0.0, 0.5});
+    REQUIRE(twice);
+    for (int column = 0; column < 4; ++column) CHECK(near_zero(twice->matrix()[column] - view->matrix()[column]));
+}
+
+TEST_CASE("a mirror that is no plane, or beyond the range, mirrors nothing") {
+    const texgen::ProjectorView view(glm::dmat4(1.0));
+    CHECK(texgen::mirrored(view, {0.0, 5e-324, 0.0, 0.0}));
+    CHECK_FALSE(texgen::mirrored(view, {0.0, 0.0, 0.0, 1.0}));
+    CHECK_FALSE(texgen::mirrored(view, {0.0, 1e-300, 0.0, 1e300}));
+    for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
+                             -std::numeric_limits<double>::infinity()}) {
+        for (int k = 0; k < 4; ++k) {
+            glm::dvec4 plane(0.5, 1.0, 0.25, 2.0);
+            plane[k] = bad;
+            CHECK_FALSE(texgen::mirrored(view, plane));
+            glm::dmat4 matrix(1.0);
+            matrix[k][k == 0 ? 2 : 0] = bad;
+            CHECK_FALSE(texgen::mirrored(texgen::ProjectorView(matrix), {0.5, 1.0, 0.25, 2.0}));
+        }
+    }
 }
 
 TEST_CASE("vectors of any length do, from the smallest to the largest") {

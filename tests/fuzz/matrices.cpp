@@ -104,6 +104,10 @@ void projectors(Input& input) {
     const glm::dmat3 rotation(input.wide_matrix());
     const auto of_opencv = texgen::view_from_opencv(rotation, aim.position);
     must(!of_opencv || all_finite(of_opencv->matrix()), "a view is finite");
+    const texgen::ProjectorView any_view(input.wide_matrix());
+    const glm::dvec4 plane(input.wide_vector3(), input.wide_number());
+    const auto mirrored = texgen::mirrored(any_view, plane);
+    must(!mirrored || (all_finite(mirrored->matrix()) && all_finite(any_view.matrix())), "a mirrored view is finite");
     double field[6];
     for (double& f : field) f = input.wide_number();
     bool any_bad = false;
@@ -155,6 +159,11 @@ void projectors(Input& input) {
         const auto object = object_linear(*projector, texgen::ModelMatrix(glm::dmat4(1.0)), region, depth);
         const auto eye = eye_linear(*projector, texgen::CameraPose(glm::dmat4(1.0)), region, depth);
         (void)projector->matrix();
+        const auto carried =
+            eye_linear(projector->projection, texgen::Transform<texgen::ProjectorEye, texgen::Eye>(glm::dmat4(1.0)),
+                       conventions, region, depth);
+        const auto of_lens = scale_bias(conventions, region, depth) * projector->projection;
+        if (all_finite(of_lens.matrix())) must(carried.matrix() == of_lens.matrix(), "a light at the eye is S P_p");
         for (int column = 0; column < 4; ++column) {
             for (int row = 0; row < 4; ++row) {
                 const double w = world.matrix()[column][row];

@@ -925,6 +925,11 @@ Calls lens_calls(const Numbers& n) {
         if constexpr (Kind == 5) keep(texgen::make_projector(orthographic, aim, texgen::opengl));
         if constexpr (Kind == 6) keep(texgen::pinhole(pinhole, texgen::opengl));
         if constexpr (Kind == 7) keep(texgen::make_projector(pinhole, aim, texgen::opengl));
+        if constexpr (Kind == 8) {
+            const glm::dmat4 view{glm::dvec4(aim.position, 0.0), glm::dvec4(aim.target, 0.0), glm::dvec4(aim.up, 0.0),
+                                  glm::dvec4(a, 1.0)};
+            keep(texgen::mirrored(texgen::ProjectorView(view), sides));
+        }
     });
 }
 
@@ -1171,6 +1176,7 @@ inline const std::array workloads{
     Workload{"pinhole", 0, detail::ordinary_look, detail::hostile_look, detail::lens_calls<6>, detail::always},
     Workload{"make_projector, pinhole", 0, detail::ordinary_look, detail::hostile_look, detail::lens_calls<7>,
              detail::always},
+    Workload{"mirrored", 0, detail::ordinary_look, detail::hostile_look, detail::lens_calls<8>, detail::always},
     Workload{"TexGenUnit::generate, object linear", 27, detail::ordinary_vertex, detail::hostile_vertex,
              detail::unit_calls<texgen::TexGenMode::object_linear>, detail::always},
     Workload{"TexGenUnit::generate, eye linear", 27, detail::ordinary_vertex, detail::hostile_vertex,

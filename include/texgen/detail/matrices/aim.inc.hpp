@@ -96,6 +96,31 @@ inline std::optional<ProjectorView> view_from_opencv(const glm::dmat3& rotation,
     return detail::is_finite(matrix) ? std::optional(ProjectorView(matrix)) : std::nullopt;
 }
 
+inline std::optional<ProjectorView> mirrored(const ProjectorView& view, const glm::dvec4& plane) noexcept {
+    const glm::dvec3 normal = detail::scaled_near_one(glm::dvec3(plane));
+    if (!(detail::length(normal) > 0.0)) return std::nullopt;
+    const double distance = std::scalbn(plane.w, -std::ilogb(detail::largest(glm::dvec3(plane))));
+    detail::DoubleDouble squared{0.0, 0.0};
+    for (glm::length_t i = 0; i < 3; ++i) squared = detail::add_product(squared, normal[i], normal[i]);
+    // V R = V - f (n, d), f = 2 V (n, 0) / |n|^2 a column, in two doubles.
+    glm::dmat4 matrix = view.matrix();
+    for (glm::length_t row = 0; row < 4; ++row) {
+        detail::DoubleDouble along{0.0, 0.0};
+        for (glm::length_t i = 0; i < 3; ++i) along = detail::add_product(along, matrix[i][row], 2.0 * normal[i]);
+        const double factor = along.high / squared.high;
+        const detail::DoubleDouble rest =
+            detail::add_product(detail::add_product(along, -factor, squared.high), -factor, squared.low);
+        const double rest_of_factor = rest.high / squared.high;
+        for (glm::length_t column = 0; column < 4; ++column) {
+            const double component = column < 3 ? normal[column] : distance;
+            const detail::DoubleDouble start{matrix[column][row], 0.0};
+            matrix[column][row] =
+                detail::add_product(detail::add_product(start, -factor, component), -rest_of_factor, component).high;
+        }
+    }
+    return detail::is_finite(matrix) ? std::optional(ProjectorView(matrix)) : std::nullopt;
+}
+
 inline std::optional<Projector> make_projector(const PerspectiveLens& lens, const Aim& aim,
                                                Conventions conventions) noexcept {
     return detail::assemble(perspective(lens, conventions), look_at(aim), conventions);
