@@ -8,14 +8,11 @@
 #include <string>
 #include <utility>
 
-<<<<<<< HEAD:tests/api/aim_test.cpp
-#include "judges/oracle.hpp"
-#include "judges/real.hpp"
-=======
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
->>>>>>> 2f1de24 (A mirror's view is a projector's: planar reflections):tests/aim_test.cpp
+#include "judges/oracle.hpp"
+#include "judges/real.hpp"
 #include "support/hex.hpp"
 #include "support/random.hpp"
 #include "texgen/projector.hpp"

@@ -9,11 +9,11 @@
 #include <span>
 #include <string>
 
+#include "judges/oracle.hpp"
+#include "judges/rational_matrix.hpp"
+#include "judges/real.hpp"
 #include "support/hex.hpp"
-#include "support/oracle.hpp"
 #include "support/random.hpp"
-#include "support/rational_matrix.hpp"
-#include "support/real.hpp"
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
 #include "texgen/texcoord.hpp"
