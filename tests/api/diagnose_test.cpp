@@ -48,8 +48,8 @@ using texgen::Eye;
 using texgen::LensFacts;
 using texgen::NdcY;
 using texgen::Object;
+using texgen::ProjectionSetup;
 using texgen::Projector;
-using texgen::Setup;
 using texgen::TextureOrigin;
 using texgen::TextureRegion;
 using texgen::Transform;
@@ -113,13 +113,13 @@ struct Parts {
 };
 
 template <class Space>
-Setup<Space> setup_of(const Parts& parts) {
-    Setup<Space> setup{.projector = parts.projector,
-                       .region = parts.region,
-                       .depth = parts.depth,
-                       .conventions = parts.conventions,
-                       .texels_per_unit = parts.texels_per_unit,
-                       .lens = parts.lens};
+ProjectionSetup<Space> setup_of(const Parts& parts) {
+    ProjectionSetup<Space> setup{.projector = parts.projector,
+                                 .region = parts.region,
+                                 .depth = parts.depth,
+                                 .conventions = parts.conventions,
+                                 .texels_per_unit = parts.texels_per_unit,
+                                 .lens = parts.lens};
     if (parts.pose) setup.world_from_space.emplace(*parts.pose);
     if (parts.texgen) setup.texgen.emplace(*parts.texgen);
     const glm::vec3& first = parts.points[0];
@@ -1210,7 +1210,7 @@ TEST_CASE("what is not finite is said of every argument, and what can be seen be
 
 TEST_CASE("a region without points or below a texel is said without any point") {
     const auto of_region = [](const TextureRegion& region) {
-        return diagnose(Setup<Object>{.region = region, .texels_per_unit = {256.0, 256.0}});
+        return diagnose(ProjectionSetup<Object>{.region = region, .texels_per_unit = {256.0, 256.0}});
     };
     CHECK(of_region(texgen::whole_texture()).empty());
     CHECK(of_region(texgen::atlas_tile({0.5, 0.0}, {0.25, 1.0})).contains(Defect::region_never_hit));
@@ -1225,7 +1225,7 @@ TEST_CASE("a fan whose vertices all miss the slide may be lit in its middle, and
     const auto projector =
         make_projector(lens, {.position = {0, 0, 0}, .target = {0, 0, -1}, .up = {0, 1, 0}}, texgen::opengl);
     REQUIRE(projector);
-    Setup<World> setup{.projector = projector, .points = texgen::world_space(around)};
+    ProjectionSetup<World> setup{.projector = projector, .points = texgen::world_space(around)};
     CHECK(diagnose(setup).empty());
     setup.points = texgen::world_space(std::span(around).first(2));
     CHECK(diagnose(setup).contains(Defect::region_never_hit));
@@ -1259,7 +1259,7 @@ TEST_CASE("the diagnosis allocates nothing") {
 }
 
 static_assert(noexcept(diagnose(std::declval<const Projector&>())));
-static_assert(noexcept(diagnose(std::declval<const Setup<Object>&>())));
+static_assert(noexcept(diagnose(std::declval<const ProjectionSetup<Object>&>())));
 static_assert(noexcept(diagnose(std::declval<const texgen::EyeTexgen&>())));
 static_assert(noexcept(texgen::diagnose(std::declval<const std::array<glm::vec4, 4>&>())));
 static_assert(noexcept(std::declval<const texgen::Finding&>().what()));

@@ -22,8 +22,8 @@ using texgen::Defect;
 using texgen::Diagnosis;
 using texgen::Eye;
 using texgen::Object;
+using texgen::ProjectionSetup;
 using texgen::Projector;
-using texgen::Setup;
 using texgen::Transform;
 using texgen::World;
 
@@ -71,7 +71,7 @@ texgen::Positions<Space> positions_of(const std::vector<glm::vec3>& points) {
 
 template <class Space>
 void diagnose_anything(Input& input) {
-    Setup<Space> setup;
+    ProjectionSetup<Space> setup;
     bool is_bad = false;
     if (input.coin()) {
         const glm::dmat4 projection = matrix_of(input), view = matrix_of(input);
@@ -140,7 +140,7 @@ void diagnose_what_is_right(Input& input) {
     const double distance = std::ldexp(1.0, input.integer(0, 13));
     const glm::dvec3 position = ordinary_vector(input, distance);
     const texgen::Aim aim{position, position + ordinary_vector(input, 2.0), ordinary_vector(input, 1.0)};
-    Setup<Space> setup;
+    ProjectionSetup<Space> setup;
     const double z_near = ordinary(input, 0.01, 2.0), z_far = z_near * ordinary(input, 5.0, 10000.0);
     if (input.coin()) {
         const texgen::PerspectiveLens lens{texgen::degrees(ordinary(input, 5.0, 110.0)), ordinary(input, 0.4, 2.5),

@@ -146,7 +146,7 @@ std::vector<texgen::Defect> diagnosed(const Numbers& n) {
     const std::array<glm::vec4, 4> planes{vector<Rounding>(n, 0), vector<Rounding>(n, 4), vector<Rounding>(n, 8),
                                           vector<Rounding>(n, 12)};
     const glm::vec3 lit = point<Rounding>(n, 16);
-    texgen::Setup<texgen::Object> setup;
+    texgen::ProjectionSetup<texgen::Object> setup;
     setup.points = texgen::object_space(std::span(&lit, 1));
     std::vector<texgen::Defect> result;
     for (const texgen::Finding& finding : texgen::diagnose(planes, setup)) result.push_back(finding.defect);

@@ -1024,7 +1024,7 @@ Calls diagnose_calls(const Numbers& n) {
                      texgen = reader.dmat4();
     const texgen::Projector projector{texgen::ProjectorProjection(projection), texgen::ProjectorView(view),
                                       texgen::opengl};
-    texgen::Setup<texgen::Object> setup;
+    texgen::ProjectionSetup<texgen::Object> setup;
     setup.projector = projector;
     setup.world_from_space = texgen::ModelMatrix(model);
     setup.texgen = texgen::ObjectTexgen(texgen);

@@ -141,7 +141,7 @@ void print_scene(const texgen::Projector& projector) {
     for (const Finding& finding : diagnose(planes(texgen))) print("finding", static_cast<double>(finding.defect));
     std::array<glm::vec3, 5> points{};
     for (const Finding& finding :
-         diagnose(Setup<Object>{.projector = projector, .texgen = texgen, .points = object_space(points)}))
+         diagnose(ProjectionSetup<Object>{.projector = projector, .texgen = texgen, .points = object_space(points)}))
         print("finding", static_cast<double>(finding.defect));
 #if __has_include(<Eigen/Core>)
     const Eigen::Matrix4d matrix = to_eigen(texgen);

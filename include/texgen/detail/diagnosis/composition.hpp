@@ -10,22 +10,10 @@
 
 #include <glm/mat4x4.hpp>
 
-#include "../../conventions.hpp"
-#include "../../scale_bias.hpp"
 #include "../arithmetic/inverse.hpp"
+#include "matrix_signs.hpp"
 
 namespace TEXGEN_DETAIL {
-
-inline glm::dmat4 transposed(const glm::dmat4& m) noexcept {
-    glm::dmat4 result(0.0);
-    for (glm::length_t column = 0; column < 4; ++column)
-        for (glm::length_t row = 0; row < 4; ++row) result[row][column] = m[column][row];
-    return result;
-}
-
-inline bool is_zero_row(const glm::dmat4& m, glm::length_t row) noexcept {
-    return m[0][row] == 0.0 && m[1][row] == 0.0 && m[2][row] == 0.0 && m[3][row] == 0.0;
-}
 
 // A product, and the sums of the magnitudes of its terms, which its rounding is relative to.
 struct Product {
@@ -110,16 +98,13 @@ struct Composition {
 };
 
 struct Factors {
-    glm::dmat4 projection, view;
+    glm::dmat4 scale_bias, projection, view;
     std::optional<glm::dmat4> pose;  // empty: the points are in the world
-    Conventions conventions;
-    TextureRegion region;
-    DepthMapping depth;
 };
 
 inline Product scale_bias_factor(const Factors& factors, const Composition& composition) noexcept {
     if (composition.scale_bias == ScaleBiasUse::left_out) return lens_factor(glm::dmat4(1.0));
-    glm::dmat4 matrix = texgen::scale_bias(factors.conventions, factors.region, factors.depth).matrix();
+    glm::dmat4 matrix = factors.scale_bias;
     if (composition.s_mirrored) matrix[0][0] = -matrix[0][0];
     if (composition.t_mirrored) matrix[1][1] = -matrix[1][1];
     if (composition.other_depth) {

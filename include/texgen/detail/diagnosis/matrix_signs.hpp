@@ -16,9 +16,19 @@
 #include "../arithmetic/inverse.hpp"
 #include "../arithmetic/rounding.hpp"
 #include "../language.hpp"
-#include "composition.hpp"
 
 namespace TEXGEN_DETAIL {
+
+inline glm::dmat4 transposed(const glm::dmat4& m) noexcept {
+    glm::dmat4 result(0.0);
+    for (glm::length_t column = 0; column < 4; ++column)
+        for (glm::length_t row = 0; row < 4; ++row) result[row][column] = m[column][row];
+    return result;
+}
+
+inline bool is_zero_row(const glm::dmat4& m, glm::length_t row) noexcept {
+    return m[0][row] == 0.0 && m[1][row] == 0.0 && m[2][row] == 0.0 && m[3][row] == 0.0;
+}
 
 // Whether a number has more bits than the round numbers of a scene that is aligned with the axes.
 inline bool is_long(double value) noexcept { return (bit_cast<std::uint64_t>(value) & 0x1fffffffff) != 0; }

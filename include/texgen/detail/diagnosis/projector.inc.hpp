@@ -1,0 +1,82 @@
+// What diagnose.hpp says of a projector: of its lens and its view.
+
+namespace TEXGEN_DETAIL {
+
+// Whether a matrix holds numbers to go on with; if not, says why.
+inline bool is_usable(const glm::dmat4& m, Diagnosis& diagnosis) noexcept {
+    if (!is_finite(m)) {
+        diagnosis.add(Defect::not_finite);
+        return false;
+    }
+    if (m == glm::dmat4(0.0)) {
+        diagnosis.add(Defect::never_written);
+        return false;
+    }
+    return true;
+}
+
+inline void examine_lens(const glm::dmat4& p, bool view_reflects, Conventions conventions, const LensFacts& facts,
+                         const Picture& picture, Diagnosis& diagnosis) noexcept {
+    const double unit = is_perspective(p) ? std::fabs(p[2].w) : p[3].w;
+    const double width = p[0].x / unit;
+    const double height = (conventions.ndc_y == NdcY::up ? p[1].y : -p[1].y) / unit;
+    if (unit < 0.0) diagnosis.add(Defect::everything_behind);
+    if (mistakes_depth(p, conventions.depth, facts.z_near, facts.z_far)) diagnosis.add(Defect::depth_range_mismatch);
+    if (is_perspective(p) && facts.fovy && mistakes_unit(height, *facts.fovy))
+        diagnosis.add(Defect::angle_unit_mistaken);
+
+    if (!facts.mirrored) {
+        // A tangent beyond 90 degrees turns both axes round: no lens does it, and an angle in the wrong unit does.
+        if (view_reflects) {
+            if (width * height > 0.0) diagnosis.add(Defect::mirrored);
+        } else if (width < 0.0 && height < 0.0) {
+            diagnosis.add(Defect::angle_unit_mistaken);
+        } else if (width < 0.0) {
+            diagnosis.add(Defect::mirrored);
+        } else if (height < 0.0) {
+            diagnosis.add(Defect::upside_down);
+        }
+    }
+
+    const glm::dvec2 size = picture.extent() * picture.texels_per_unit;
+    const double meant = facts.aspect ? *facts.aspect : picture.is_measured() ? size.x / size.y : 1.0;
+    const double aspect = std::fabs(height / width);
+    // Texels need not be square: without the aspect that was meant only the very inverse, in floats, is a mark.
+    const double rounding = facts.aspect ? 0x1p-12 : 0x1p-22;
+    if (std::fabs(meant - 1.0) > 0x1p-10 && std::fabs(aspect * meant - 1.0) <= rounding)
+        diagnosis.add(Defect::aspect_inverted);
+}
+
+inline void examine(const Projector& projector, const LensFacts& facts, const Picture& picture,
+                    Diagnosis& diagnosis) noexcept {
+    glm::dmat4 p = projector.projection.matrix();
+    glm::dmat4 v = projector.view.matrix();
+    const bool has_projection = is_usable(p, diagnosis);
+    const bool has_view = is_usable(v, diagnosis);
+
+    // A view is affine, and one that is not is no view; a rotation is no lens.
+    if (has_projection && has_view && is_lens(v) && distance_from_rigid(p) < 1e-3 &&
+        (is_perspective(v) || !is_lens(p))) {
+        diagnosis.add(Defect::view_projection_swapped);
+        std::swap(p, v);
+    }
+    if (has_view) {
+        if (is_affine_transposed(v)) {
+            diagnosis.add(Defect::transposed);
+            v = transposed(v);
+        }
+        if (!are_independent(v, axes)) diagnosis.add(Defect::rank_below_three);
+    }
+    if (has_projection) {
+        if (is_lens_transposed(p)) {
+            diagnosis.add(Defect::transposed);
+            p = transposed(p);
+        }
+        const bool regular = are_independent(p, {0, 1, 3});
+        if (!regular) diagnosis.add(Defect::rank_below_three);
+        const bool view_reflects = has_view && is_affine(v) && minor(v, axes, axes).value < 0.0;
+        if (regular && is_lens(p)) examine_lens(p, view_reflects, projector.conventions, facts, picture, diagnosis);
+    }
+}
+
+}  // namespace TEXGEN_DETAIL

@@ -1,0 +1,260 @@
+// The bodies of diagnose.hpp: all of a set-up together, and what is public.
+
+namespace TEXGEN_DETAIL {
+
+constexpr bool defects_stand_in_order() noexcept {
+    for (std::size_t i = 0; i < defect_count; ++i)
+        if (defects_in_words[i].defect != static_cast<Defect>(i)) return false;
+    return true;
+}
+static_assert(defects_stand_in_order());
+
+inline void examine(const Composition& composition, bool in_eye_space, Diagnosis& diagnosis) noexcept {
+    if (composition.transposed) diagnosis.add(Defect::transposed);
+    if (composition.order == Order::view_before_projection) diagnosis.add(Defect::view_projection_swapped);
+    if (composition.order == Order::wrong) diagnosis.add(Defect::wrong_order);
+    switch (composition.pose) {
+        case PoseUse::right:
+            break;
+        case PoseUse::inverted:
+            diagnosis.add(in_eye_space ? Defect::camera_not_inverted : Defect::model_inverted);
+            break;
+        case PoseUse::left_out:
+            diagnosis.add(in_eye_space ? Defect::camera_left_out : Defect::model_left_out);
+            break;
+        case PoseUse::doubled:
+            diagnosis.add(in_eye_space ? Defect::camera_inverse_doubled : Defect::model_doubled);
+            break;
+    }
+    if (composition.scale_bias == ScaleBiasUse::left_out) diagnosis.add(Defect::scale_bias_missing);
+    if (composition.scale_bias == ScaleBiasUse::doubled) diagnosis.add(Defect::scale_bias_doubled);
+    if (composition.other_depth) diagnosis.add(Defect::depth_range_mismatch);
+    if (composition.t_mirrored) diagnosis.add(Defect::upside_down);
+    if (composition.s_mirrored) diagnosis.add(Defect::mirrored);
+    if (composition.multiple < 0.0) diagnosis.add(Defect::everything_behind);
+}
+
+// All of a set-up but its points.
+struct SetupMatrices {
+    const Projector* projector = nullptr;
+    const glm::dmat4* pose = nullptr;    // null: not known, or the points are in the world
+    const glm::dmat4* texgen = nullptr;  // null: what the projector and the pose compose
+    bool are_planes = false;             // texgen is what hardware holds, in float whatever its numbers
+    bool in_world_space = false, in_eye_space = false;
+    Picture picture = {};
+    DepthMapping depth = DepthMapping::unit;
+    std::optional<Conventions> conventions = std::nullopt;
+    LensFacts lens = {};
+};
+
+inline bool is_nan(double value) noexcept { return !(std::fabs(value) <= std::numeric_limits<double>::infinity()); }
+
+inline bool are_numbers(const SetupMatrices& setup) noexcept {
+    const TextureRegion& region = setup.picture.region;
+    const LensFacts& lens = setup.lens;
+    // An infinite side of the region is none, but no scale-bias reaches it.
+    const auto is_side = [&](const glm::dvec2& side) {
+        return setup.projector != nullptr ? is_finite(side.x) && is_finite(side.y) : !is_nan(side.x) && !is_nan(side.y);
+    };
+    const auto is_given_finite = [](const std::optional<double>& value) { return !value || is_finite(*value); };
+    return is_side((region.min)()) && is_side((region.max)()) && is_finite(setup.picture.texels_per_unit.x) &&
+           is_finite(setup.picture.texels_per_unit.y) && is_given_finite(lens.aspect) && is_given_finite(lens.z_near) &&
+           !(lens.z_far && is_nan(*lens.z_far)) && !(lens.fovy && !is_finite(lens.fovy->in_radians()));
+}
+
+// Returns whether it is transposed.
+inline bool examine_alone(const glm::dmat4& texgen, const SetupMatrices& setup, Diagnosis& diagnosis) noexcept {
+    constexpr double margin = 0x1p-10;
+    const DepthRows rows = depth_rows(texgen);
+    if (!rows.are_parallel) {
+        const bool is_transposed = depth_rows(transposed(texgen)).are_parallel;
+        diagnosis.add(is_transposed ? Defect::transposed : Defect::wrong_order);
+        return is_transposed;
+    }
+    // As in mistakes_depth(): no range has infinity there.
+    if (rows.limit > margin && rows.limit < 1.0 - margin) diagnosis.add(Defect::depth_range_mismatch);
+    const std::optional<Conventions> conventions =
+        setup.projector != nullptr ? std::optional(setup.projector->conventions) : setup.conventions;
+    const bool is_placed = setup.in_world_space || setup.pose != nullptr;
+    if (conventions && is_placed && !setup.lens.mirrored &&
+        is_mirrored(texgen, setup.pose != nullptr ? *setup.pose : glm::dmat4(1.0), conventions->origin))
+        diagnosis.add(Defect::mirrored);
+    return false;
+}
+
+// Half the bound on the rounding of an element to float, relative to it.
+inline constexpr double expected_rounding = 0.5 * unit_roundoff_float;
+
+// The smaller of the magnitudes of both elements.
+inline glm::dmat4 smaller_elements(const glm::dmat4& a, const glm::dmat4& b) noexcept {
+    glm::dmat4 result(0.0);
+    for (glm::length_t column = 0; column < 4; ++column)
+        for (glm::length_t row = 0; row < 4; ++row)
+            result[column][row] = smaller(std::fabs(a[column][row]), std::fabs(b[column][row]));
+    return result;
+}
+
+// What floats lose of the matrix where the product is known: nothing of elements that are its own. The rounding of others moves the multiple that
+// fits best, so that one of few bits next to it is taken for what was meant.
+inline glm::dmat4 lost_of(const glm::dmat4& texgen, const Product& right) noexcept {
+    const double fitted = multiple_of(right, texgen, composed_in_float);
+    const double large = 0x1p37 * fitted;
+    const double of_few_bits = (fitted + large) - large;
+    const double multiple = std::fabs(fitted - of_few_bits) < 0x1p-20 * fitted ? of_few_bits : fitted;
+    return smaller_elements(texgen - multiple * right.value, expected_rounding * texgen);
+}
+
+inline Examined examine(const SetupMatrices& setup, Diagnosis& diagnosis) noexcept {
+    if (!are_numbers(setup)) diagnosis.add(Defect::not_finite);
+    if (setup.picture.is_empty()) diagnosis.add(Defect::region_never_hit);
+    const glm::dvec2 texels = setup.picture.extent() * setup.picture.texels_per_unit;
+    if (setup.picture.is_measured() && !setup.picture.is_empty() && smaller(texels.x, texels.y) < 1.0)
+        diagnosis.add(Defect::smaller_than_texel, smaller(texels.x, texels.y));
+
+    Examined examined;
+    std::optional<Factors> factors;
+    if (setup.projector != nullptr) {
+        examine(*setup.projector, setup.lens, setup.picture, diagnosis);
+        if (setup.pose != nullptr || setup.in_world_space) {
+            const Projector& projector = *setup.projector;
+            factors = Factors{texgen::scale_bias(projector.conventions, setup.picture.region, setup.depth).matrix(),
+                              projector.projection.matrix(), projector.view.matrix(), std::nullopt};
+        }
+    }
+    if (setup.pose != nullptr) {
+        if (!is_usable(*setup.pose, diagnosis)) factors.reset();
+        if (is_affine_transposed(*setup.pose)) diagnosis.add(Defect::transposed);
+        if (factors) factors->pose = *setup.pose;
+    }
+    std::optional<Product> right;
+    if (factors) {
+        right = right_composition(*factors);
+        if (!is_finite(right->value) || right->value == glm::dmat4(0.0)) right.reset();
+    }
+
+    if (setup.texgen == nullptr) {
+        if (!right) return examined;
+        examined.texgen = right->value;
+        const glm::dmat4& view = setup.projector->view.matrix();
+        if (is_in_float(view)) {
+            const Product lens = scale_bias_factor(*factors, {}) * lens_factor(factors->projection);
+            const glm::dmat4 by_view = lens.magnitude * rounded_magnitudes(view);
+            const glm::dmat4 by_all = factors->pose ? by_view * lens_factor(*factors->pose).magnitude : by_view;
+            examined.lost = expected_rounding * smaller_elements(by_all, right->value);
+        }
+        return examined;
+    }
+    const glm::dmat4& texgen = *setup.texgen;
+    if (!is_usable(texgen, diagnosis)) return examined;
+    if (is_opengl_default(texgen)) {
+        diagnosis.add(Defect::never_written);
+        return examined;
+    }
+    examined.texgen = texgen;
+    const bool in_float = setup.are_planes || is_in_float(texgen);
+    if (in_float) examined.lost = expected_rounding * rounded_magnitudes(texgen);
+    const bool has_q = !is_zero_row(texgen, 3);
+    const bool is_dependent = has_q && !are_independent(texgen, {0, 1, 3});
+    bool was_transposed = false;
+    const auto composition = right ? composition_of(texgen, *factors, *right, in_float) : std::nullopt;
+    if (composition) {
+        examine(*composition, setup.in_eye_space, diagnosis);
+        const bool is_right = mistakes(*composition) == 0 && composition->multiple > 0.0;
+        if (is_right) {
+            examined.right = right->value;
+            if (in_float) examined.lost = lost_of(texgen, *right);
+        }
+        if (is_right && is_dependent) diagnosis.add(Defect::rank_below_three);
+        was_transposed = composition->transposed;
+    } else if (is_dependent) {
+        diagnosis.add(Defect::rank_below_three);
+    } else if (right) {
+        diagnosis.add(Defect::not_of_this_set_up);
+    } else if (has_q) {
+        was_transposed = examine_alone(texgen, setup, diagnosis);
+    }
+    if (!has_q || (was_transposed && is_zero_row(transposed(texgen), 3))) diagnosis.add(Defect::q_row_zero);
+    if (!has_q) examined.texgen.reset();
+    return examined;
+}
+
+template <class Space>
+SetupMatrices matrices_of(const ProjectionSetup<Space>& setup, bool are_planes) noexcept {
+    return {setup.projector ? &*setup.projector : nullptr,
+            setup.world_from_space ? &setup.world_from_space->matrix() : nullptr,
+            setup.texgen ? &setup.texgen->matrix() : nullptr,
+            are_planes,
+            std::is_same_v<Space, World>,
+            std::is_same_v<Space, Eye>,
+            {setup.region, setup.texels_per_unit},
+            setup.depth,
+            setup.conventions,
+            setup.lens};
+}
+
+template <class Space>
+Diagnosis diagnose(const ProjectionSetup<Space>& setup, bool are_planes) noexcept {
+    Diagnosis diagnosis;
+    const SetupMatrices matrices = matrices_of(setup, are_planes);
+    const Examined examined = examine(matrices, diagnosis);
+    PointReport report(examined, matrices.picture, matrices.depth);
+    const std::size_t count = setup.points ? setup.points->size() : 0;
+    for (std::size_t i = 0; i < count; ++i) report.add(widened((*setup.points)[i]));
+    report.conclude(diagnosis);
+    return diagnosis;
+}
+
+}  // namespace TEXGEN_DETAIL
+
+namespace TEXGEN_NAMESPACE {
+
+inline std::string_view Finding::what() const noexcept {
+    return defects_in_words[static_cast<std::size_t>(defect)].what;
+}
+inline std::string_view Finding::remedy() const noexcept {
+    return defects_in_words[static_cast<std::size_t>(defect)].remedy;
+}
+
+inline bool Diagnosis::contains(Defect defect) const noexcept {
+    for (const Finding& finding : *this)
+        if (finding.defect == defect) return true;
+    return false;
+}
+
+inline void Diagnosis::add(Defect defect, double number) noexcept {
+    if (contains(defect)) return;
+    std::size_t i = size_++;
+    for (; i > 0 && defect < findings_[i - 1].defect; --i) findings_[i] = findings_[i - 1];
+    findings_[i] = {defect, number};
+}
+
+template <class Space>
+Diagnosis diagnose(const ProjectionSetup<Space>& setup) noexcept {
+    return detail::diagnose(setup, false);
+}
+
+inline Diagnosis diagnose(const Projector& projector) noexcept {
+    Diagnosis diagnosis;
+    const detail::Examined examined = detail::examine({.projector = &projector, .in_world_space = true}, diagnosis);
+    detail::PointReport(examined, {}, DepthMapping::unit).conclude(diagnosis);
+    return diagnosis;
+}
+
+template <class Space>
+Diagnosis diagnose(const Transform<Texture, Space>& texgen,
+                   const ProjectionSetup<std::type_identity_t<Space>>& setup) noexcept {
+    ProjectionSetup<Space> whole = setup;
+    whole.texgen = texgen;
+    return diagnose(whole);
+}
+
+template <class Space>
+Diagnosis diagnose(const std::array<glm::vec4, 4>& planes, const ProjectionSetup<Space>& setup) noexcept {
+    const glm::dmat4 rows(detail::widened(planes[0]), detail::widened(planes[1]), detail::widened(planes[2]),
+                          detail::widened(planes[3]));
+    ProjectionSetup<Space> whole = setup;
+    whole.texgen.emplace(detail::transposed(rows));
+    return detail::diagnose(whole, true);
+}
+
+}  // namespace TEXGEN_NAMESPACE
