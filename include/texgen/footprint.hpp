@@ -17,6 +17,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include <glm/vec2.hpp>
 
@@ -122,6 +123,20 @@ private:
     TexelsPerUnit texels_;
 };
 
+// How much a triangle is the "deer in headlights": lit by a projector that faces the camera, so that what is near to the
+// camera is far from the projector and gets few texels on many pixels, and what is far gets many on few.
+//
+// The area of the footprint goes with 1 / Q^3 = (w/q)^3, so between the vertices nearest to the camera and farthest from it
+// the level of detail rises by 3/2 log2(w_far / w_near) for the camera, and by 3/2 log2(q_near / q_far) for the projector.
+// The latter is the score, in levels: 0 for a parallel projector, negative where the projector stands with the camera and
+// evens out what the camera does, positive where both add up; infinite where the projector's plane is reached.
+// No allocation, noexcept.
+// Bad input: NaN where a clip_w is not positive, a clip_w or q not finite, or q is not positive at the vertex nearest to
+// the camera.
+// Source: Everitt, Projective Texture Mapping; the dueling frusta of Stamminger and Drettakis, Perspective Shadow Maps,
+// SIGGRAPH 2002.
+inline double headlights(const Triangle& triangle) noexcept;
+
 }  // namespace TEXGEN_COMPILER
 
 inline namespace TEXGEN_BUILD {
@@ -141,20 +156,6 @@ template <class CompiledWhereCalled = void>
 bool footprint(const FootprintSetup& setup, FragmentRect rect, Footprints out) noexcept;
 
 }  // namespace TEXGEN_BUILD
-
-// How much a triangle is the "deer in headlights": lit by a projector that faces the camera, so that what is near to the
-// camera is far from the projector and gets few texels on many pixels, and what is far gets many on few.
-//
-// The area of the footprint goes with 1 / Q^3 = (w/q)^3, so between the vertices nearest to the camera and farthest from it
-// the level of detail rises by 3/2 log2(w_far / w_near) for the camera, and by 3/2 log2(q_near / q_far) for the projector.
-// The latter is the score, in levels: 0 for a parallel projector, negative where the projector stands with the camera and
-// evens out what the camera does, positive where both add up; infinite where the projector's plane is reached.
-// No allocation, noexcept.
-// Bad input: NaN where a clip_w is not positive, a clip_w or q not finite, or q is not positive at the vertex nearest to
-// the camera.
-// Source: Everitt, Projective Texture Mapping; the dueling frusta of Stamminger and Drettakis, Perspective Shadow Maps,
-// SIGGRAPH 2002.
-inline double headlights(const Triangle& triangle) noexcept;
 
 }  // namespace TEXGEN_NAMESPACE
 

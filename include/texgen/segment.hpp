@@ -40,13 +40,13 @@ void interpolate(const Segment& segment, std::span<const float> alpha, TextureRe
 
 }  // namespace TEXGEN_BUILD
 
+inline namespace TEXGEN_COMPILER {
+
 // The work that the values of a segment need, for all alpha in [0, 1].
 // Guarantee: never nothing where a value is lit, never less than divide_and_test where one is dark or behind; affine where
 // q is the same at both ends. noexcept.
 // Bad input: an end that is not finite needs divide_and_test.
 inline Work work(const Segment& segment, TextureRegion region, Tolerance tolerance = exact) noexcept;
-
-inline namespace TEXGEN_COMPILER {
 
 // Bounds the error of s (x) and t (y) along a segment.
 // Guarantee: |computed - exact| is at most this for every alpha in [0, 1] with q > 0, the rounding to float included;

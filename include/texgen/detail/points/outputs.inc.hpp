@@ -97,5 +97,4 @@ void fill_blocks(Kernel kernel, const Job& job, std::size_t first, const One& on
 }
 
 }  // namespace TEXGEN_BUILD
-
 }  // namespace TEXGEN_DETAIL

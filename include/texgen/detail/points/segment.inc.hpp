@@ -130,10 +130,10 @@ inline void interpolate_job(const SegmentKernels& kernels, SegmentJob job, doubl
 }
 
 }  // namespace TEXGEN_BUILD
-
 }  // namespace TEXGEN_DETAIL
 
 namespace TEXGEN_NAMESPACE {
+inline namespace TEXGEN_COMPILER {
 
 inline Work work(const Segment& segment, TextureRegion region, Tolerance tolerance) noexcept {
     const glm::dvec4 a = detail::widened(segment.a);
@@ -157,8 +157,6 @@ inline Work work(const Segment& segment, TextureRegion region, Tolerance toleran
     return places.s == detail::Place::inside && places.t == detail::Place::inside ? Work::divide
                                                                                   : Work::divide_and_test;
 }
-
-inline namespace TEXGEN_COMPILER {
 
 inline glm::dvec2 error_bound(const Segment& segment, Tolerance tolerance) noexcept {
     constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -207,5 +205,4 @@ void interpolate(const Segment& segment, std::span<const float> alpha, TextureRe
 }
 
 }  // namespace TEXGEN_BUILD
-
 }  // namespace TEXGEN_NAMESPACE

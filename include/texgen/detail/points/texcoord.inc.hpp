@@ -137,7 +137,6 @@ void generate_all(const glm::dmat4& matrix, const Positions<Space>& positions, f
 }
 
 }  // namespace TEXGEN_BUILD
-
 }  // namespace TEXGEN_DETAIL
 
 namespace TEXGEN_NAMESPACE {
@@ -221,5 +220,4 @@ void project(const Transform<Texture, Space>& texture_from_space, Positions<Spac
 }
 
 }  // namespace TEXGEN_BUILD
-
 }  // namespace TEXGEN_NAMESPACE

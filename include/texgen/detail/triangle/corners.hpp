@@ -14,7 +14,6 @@
 #include "planes.hpp"
 
 namespace TEXGEN_DETAIL {
-
 inline namespace TEXGEN_BUILD {
 
 // A tile of two numerators F and of Q: the linear functions, their values at the corner fragments and bounds on their
@@ -144,5 +143,4 @@ inline Places places_of(const Corners& at, const LitTest& lit, double tolerance)
 }
 
 }  // namespace TEXGEN_BUILD
-
 }  // namespace TEXGEN_DETAIL

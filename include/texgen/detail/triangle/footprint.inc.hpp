@@ -190,8 +190,6 @@ inline std::optional<FootprintExtremes> FootprintSetup::extremes() const noexcep
     return detail::extremes_over(functions_, texels_, polygon);
 }
 
-}  // namespace TEXGEN_COMPILER
-
 inline double headlights(const Triangle& triangle) noexcept {
     const WindowVertex* nearest = &triangle.a;
     const WindowVertex* farthest = &triangle.a;
@@ -208,4 +206,5 @@ inline double headlights(const Triangle& triangle) noexcept {
     return far_q > 0.0 ? 1.5 * std::log2(near_q / far_q) : std::numeric_limits<double>::infinity();
 }
 
+}  // namespace TEXGEN_COMPILER
 }  // namespace TEXGEN_NAMESPACE

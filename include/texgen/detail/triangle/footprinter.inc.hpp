@@ -1,7 +1,6 @@
 // Footprints over a triangle's tiles, and the body of footprint(). Included by footprint.hpp.
 
 namespace TEXGEN_DETAIL {
-
 inline namespace TEXGEN_BUILD {
 
 // Footprints into the caller's arrays: in vectors where the tile is well in front, else in its halves, and at last one
@@ -32,13 +31,12 @@ private:
     // False where floats do not reach. They hold the numerators in texels relative to their largest, Q relative to its
     // own, and the factors that bring both back.
     bool fill_in_vectors(const Tile& tile, const Corners& at) noexcept {
-        const TexelsPerUnit& texels = texels_;
         const double numerator[2] = {functions_.largest(0, tile), functions_.largest(1, tile)};
-        const double largest = larger(numerator[0] * texels.s, numerator[1] * texels.t);
+        const double largest = larger(numerator[0] * texels_.s, numerator[1] * texels_.t);
         const bool filters = needs_filter();
         if (!(larger(numerator[0], numerator[1]) < 0x1p500) || !(at.largest_q < 0x1p200) || !(at.least_q > 0x1p-200))
             return false;
-        if (filters && (!is_usable(texels) || !(largest > 0x1p-500))) return false;
+        if (filters && (!is_usable(texels_) || !(largest > 0x1p-500))) return false;
 
         const double q_scale = reciprocal_power_of_two(at.largest_q);
         const double q_scale_squared = q_scale * q_scale;
@@ -52,14 +50,14 @@ private:
         job.q = {at.q_ramp.base * q_scale, at.q_ramp.dx * q_scale, at.q_ramp.dy * q_scale};
         job.derivatives_in_float = float_fits(tile, at, numerator);
         job.pitch = rect_.width;
-        const std::size_t offset = offset_of(tile.x, tile.y);
+        const std::size_t offset = offset_in(rect_, tile.x, tile.y);
         const auto array = [offset](const std::span<float>& span) {
             return span.empty() ? nullptr : span.data() + offset;
         };
         for (std::size_t k = 0; k < 2; ++k) {
             const Slope::Terms first = functions_.at_first(k, tile);
             job.slope[k] = scaled(first, q_scale_squared);
-            if (filters) job.texels[k] = scaled(first, (k == 0 ? texels.s : texels.t) * texel_scale);
+            if (filters) job.texels[k] = scaled(first, (k == 0 ? texels_.s : texels_.t) * texel_scale);
         }
         job.dx[0] = array(out_.dsdx);
         job.dx[1] = array(out_.dtdx);
@@ -70,12 +68,12 @@ private:
         if (!filters) return true;
 
         const double back = q_scale_squared / texel_scale;  // from a length of the job to texels, but for 1 / Q^2
-        const double determinant = std::fabs(functions_.determinant * texels.s * texels.t);
+        const double determinant = std::fabs(functions_.determinant * texels_.s * texels_.t);
         job.filters_in_float = job.derivatives_in_float || float_serves_filters(tile, at, job.texels);
         job.level_offset = static_cast<float>(2 * exponent_of(q_scale) - exponent_of(texel_scale));
         job.anisotropy_factor = factor_of(q_scale / (texel_scale * texel_scale * determinant));
-        job.major_factor[0] = factor_of(back / texels.s);
-        job.major_factor[1] = factor_of(back / texels.t);
+        job.major_factor[0] = factor_of(back / texels_.s);
+        job.major_factor[1] = factor_of(back / texels_.t);
         job.level = array(out_.level);
         job.anisotropy = array(out_.anisotropy);
         job.major[0] = array(out_.major_s);
@@ -135,25 +133,12 @@ private:
     }
 
     void store_rows(const Tile& tile, const Footprint& value) noexcept {
-        const auto put = [&](const std::span<float>& output, double number) {
-            if (output.empty()) return;
-            const auto rounded = static_cast<float>(number);
-            for (std::int64_t y = tile.y; y < tile.y + tile.height; ++y) {
-                float* const row = output.data() + offset_of(tile.x, y);
-                for (int i = 0; i < tile.width; ++i) row[i] = rounded;
-            }
-        };
-        put(out_.dsdx, value.dx.x);
-        put(out_.dtdx, value.dx.y);
-        put(out_.dsdy, value.dy.x);
-        put(out_.dtdy, value.dy.y);
-        put(out_.level, value.level);
-        put(out_.anisotropy, value.anisotropy);
-        put(out_.major_s, value.major.x);
-        put(out_.major_t, value.major.y);
+        const std::pair<const std::span<float>&, double> stores[] = {
+            {out_.dsdx, value.dx.x},       {out_.dtdx, value.dx.y},      {out_.dsdy, value.dy.x},
+            {out_.dtdy, value.dy.y},       {out_.level, value.level},    {out_.anisotropy, value.anisotropy},
+            {out_.major_s, value.major.x}, {out_.major_t, value.major.y}};
+        for (const auto& [output, number] : stores) fill_rows(output, rect_, tile, static_cast<float>(number));
     }
-
-    std::size_t offset_of(std::int64_t x, std::int64_t y) const noexcept { return offset_in(rect_, x, y); }
 
     const FootprintKernels& kernels_;
     const FootprintFunctions& functions_;
@@ -163,7 +148,6 @@ private:
 };
 
 }  // namespace TEXGEN_BUILD
-
 }  // namespace TEXGEN_DETAIL
 
 namespace TEXGEN_NAMESPACE {

@@ -1,7 +1,6 @@
 // A triangle's tiles from one tier to the next, and the body of interpolate(). Included by interpolate.hpp.
 
 namespace TEXGEN_DETAIL {
-
 inline namespace TEXGEN_BUILD {
 
 // Interpolates up to two coordinates, and the mask, of a triangle into the caller's arrays.
@@ -231,13 +230,7 @@ private:
     }
 
     void clear(const Tile& tile) noexcept {
-        for (const std::span<float>& output : {output_[0], output_[1], lit_}) {
-            if (output.empty()) continue;
-            for (std::int64_t y = tile.y; y < tile.y + tile.height; ++y) {
-                float* const row = output.data() + offset(tile.x, y);
-                for (int i = 0; i < tile.width; ++i) row[i] = 0.0f;
-            }
-        }
+        for (const std::span<float>& output : {output_[0], output_[1], lit_}) fill_rows(output, rect_, tile, 0.0f);
     }
 
     // What every kernel needs. A factor that the numerators and q share is free.
@@ -288,7 +281,6 @@ private:
 };
 
 }  // namespace TEXGEN_BUILD
-
 }  // namespace TEXGEN_DETAIL
 
 namespace TEXGEN_NAMESPACE {

@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
@@ -61,6 +62,16 @@ inline std::size_t count_of(const FragmentRect& rect) noexcept {
 // Where a fragment stands in the row-major outputs of a rectangle.
 inline std::size_t offset_in(const FragmentRect& rect, std::int64_t x, std::int64_t y) noexcept {
     return static_cast<std::size_t>((y - rect.y) * rect.width + (x - rect.x));
+}
+
+// Gives a tile of them one value; an empty output has none.
+inline void fill_rows(const std::span<float>& output, const FragmentRect& rect, const Tile& tile,
+                      float value) noexcept {
+    if (output.empty()) return;
+    for (std::int64_t y = tile.y; y < tile.y + tile.height; ++y) {
+        float* const row = output.data() + offset_in(rect, tile.x, y);
+        for (int i = 0; i < tile.width; ++i) row[i] = value;
+    }
 }
 
 // F(p) = base + (p - a) . (dx, dy), about the first vertex, which has the largest w: nothing cancels there that does

@@ -1,7 +1,6 @@
 // What is known of a tile before it is divided, what it gets, and the bodies of TriangleSetup. Included by interpolate.hpp.
 
 namespace TEXGEN_DETAIL {
-
 inline namespace TEXGEN_BUILD {
 
 // What a tile gets: the work; under a tolerance the length of its chunks (0: none), and the rule that serves them all with a
@@ -96,7 +95,6 @@ inline TileSurvey survey(const TriangleFunctions& triangle, const Tile& tile) no
 }
 
 }  // namespace TEXGEN_BUILD
-
 }  // namespace TEXGEN_DETAIL
 
 namespace TEXGEN_NAMESPACE {
