@@ -17,20 +17,32 @@ enum class DepthRange { negative_one_to_one, zero_to_one };  // NDC depth of the
 enum class NdcY { up, down };                                // where y grows to in NDC
 enum class TextureOrigin { bottom_left, top_left };          // the corner of the picture that (s, t) = (0, 0) addresses
 
-// Three independent choices of a graphics API. There is no default: the caller says which one the numbers follow.
+// Of the world and of the projector's eye, whose x is to the right and whose y is up: a right-handed eye looks down -z, a
+// left-handed one down +z.
+enum class Handedness { right, left };
+
+// Three independent choices of a graphics API, and the world's handedness. There is no default: the caller says which ones the
+// numbers follow.
 struct Conventions {
     detail::Required<DepthRange> depth;
     detail::Required<NdcY> ndc_y;
     detail::Required<TextureOrigin> origin;
+    detail::Required<Handedness> handedness;
 
     friend constexpr bool operator==(const Conventions&, const Conventions&) = default;
 };
 
-// What the graphics APIs do unless they are told otherwise.
-inline constexpr Conventions opengl{DepthRange::negative_one_to_one, NdcY::up, TextureOrigin::bottom_left};
-inline constexpr Conventions direct3d{DepthRange::zero_to_one, NdcY::up, TextureOrigin::top_left};
-inline constexpr Conventions metal{DepthRange::zero_to_one, NdcY::up, TextureOrigin::top_left};
-inline constexpr Conventions vulkan{DepthRange::zero_to_one, NdcY::down, TextureOrigin::top_left};
+// What the graphics APIs do unless they are told otherwise, in a right-handed world.
+inline constexpr Conventions opengl{DepthRange::negative_one_to_one, NdcY::up, TextureOrigin::bottom_left,
+                                    Handedness::right};
+inline constexpr Conventions direct3d{DepthRange::zero_to_one, NdcY::up, TextureOrigin::top_left, Handedness::right};
+inline constexpr Conventions metal{DepthRange::zero_to_one, NdcY::up, TextureOrigin::top_left, Handedness::right};
+inline constexpr Conventions vulkan{DepthRange::zero_to_one, NdcY::down, TextureOrigin::top_left, Handedness::right};
+
+// The same API in a left-handed world, as Unity's, Unreal's and that of XMMatrixLookAtLH: left_handed(direct3d).
+constexpr Conventions left_handed(Conventions api) noexcept {
+    return {api.depth, api.ndc_y, api.origin, Handedness::left};
+}
 
 // What r holds after the division: with unit a depth in [0, 1], as Everitt's matrix has it; with ndc the projector's own
 // depth, as SGI's recipe leaves it.

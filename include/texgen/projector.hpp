@@ -1,7 +1,7 @@
 #pragma once
 
-// Floor 2: the projector P_p V_p. A right-handed eye space that looks down -z, as OpenGL's; the conventions decide the
-// rest: where near and far land, and which way y points in NDC.
+// Floor 2: the projector P_p V_p. Its eye has x to the right and y up; the conventions decide the rest: whether it looks down
+// -z or +z, where near and far land, and which way y points in NDC.
 
 #include "detail/language.hpp"
 
@@ -76,13 +76,14 @@ struct Projector {
 //     |    0      0  (far + near)/(near - far)  2 far near/(near - far) |
 //     |    0      0           -1                     0           |
 //
-// zero_to_one has far/(near - far) and far near/(near - far) in row z; y down negates row y.
+// zero_to_one has far/(near - far) and far near/(near - far) in row z; y down negates row y, left-handed negates column z.
 // Guarantee: each element within 4 double ulp (those of subnormal numbers too), for every lens that is not refused; no
 // allocation, noexcept.
-// Shape: projector eye space (looking down -z) to projector clip space.
+// Shape: projector eye space (looking down -z, or +z where it is left-handed) to projector clip space.
 // Bad input: empty unless 0 < fovy < 180 degrees, aspect > 0 and finite, 0 < z_near < z_far, and z_near finite. Empty, too,
 // where doubles cannot hold the matrix: an element would be infinite, or the scale of x or y 0.
-// Source: Everitt, Projective Texture Mapping, P_p in (3); OpenGL 2.1 specification, 2.11 (gluPerspective's lens).
+// Source: Everitt, Projective Texture Mapping, P_p in (3); OpenGL 2.1 specification, 2.11 (gluPerspective's lens);
+// DirectXMath, XMMatrixPerspectiveFovLH.
 inline std::optional<ProjectorProjection> perspective(const PerspectiveLens& lens, Conventions conventions) noexcept;
 
 // Makes the projection of a lens that may be off its axis: (right + left)/(right - left) and (top + bottom)/(top - bottom)
@@ -118,19 +119,21 @@ inline std::optional<ProjectorProjection> pinhole(const PinholeLens& lens, Conve
 // Guarantee: each element of the rotation within 4 double ulp of 1 (2^-50) of the definition's, its rows orthonormal within
 // that, with `up` as near to the view as 2^-98 rad; the translation -R position is within 1 ulp of its exact value for the
 // rotation that is returned, at any distance from the origin and however it cancels. No allocation, noexcept.
-// Shape: world to projector eye space; the position goes to 0, the target onto the negative z axis, up has x = 0.
+// Shape: world to projector eye space; the position goes to 0, the target onto the negative z axis (positive where world and
+// eye are left-handed), up has x = 0.
 // Bad input: empty where target equals position, up is zero or parallel to the view, or a number is not finite, that of the
 // translation among them.
-// Source: Everitt, Projective Texture Mapping, V_p in (3); OpenGL utility library, gluLookAt.
-inline std::optional<ProjectorView> look_at(const Aim& aim) noexcept;
+// Source: Everitt, Projective Texture Mapping, V_p in (3); OpenGL utility library, gluLookAt; DirectXMath,
+// XMMatrixLookAtLH.
+inline std::optional<ProjectorView> look_at(const Aim& aim, Handedness handedness = Handedness::right) noexcept;
 
 // Makes the view of a camera that OpenCV has posed, x_camera = R x + t, with x to the right, y down and z forwards:
-// diag(1, -1, -1) [R|t]. rotation[column][row] is the element of R; cv::Rodrigues() makes it of solvePnP()'s vector.
+// diag(1, -1, -1) [R|t], or diag(1, -1, 1) [R|t] where the world is left-handed (then R mirrors). rotation[column][row] is the element of R; cv::Rodrigues() makes it of solvePnP()'s vector.
 // Guarantee: each element is kept exactly; no allocation, noexcept.
 // Shape: world to projector eye space.
 // Bad input: empty for what is not finite. That R is a rotation is not asked.
-inline std::optional<ProjectorView> view_from_opencv(const glm::dmat3& rotation,
-                                                     const glm::dvec3& translation) noexcept;
+inline std::optional<ProjectorView> view_from_opencv(const glm::dmat3& rotation, const glm::dvec3& translation,
+                                                     Handedness handedness = Handedness::right) noexcept;
 
 // Makes the view that a mirror shows: V R, R the reflection x - 2 n (n.x + d) / |n|^2 in the plane n.x + d = 0. A projector
 // with it throws a picture that was rendered with it back onto the plane: a planar reflection.
@@ -141,7 +144,7 @@ inline std::optional<ProjectorView> view_from_opencv(const glm::dmat3& rotation,
 // Bad input: empty where n is zero, and where the plane, the view or an element of the result is not finite.
 inline std::optional<ProjectorView> mirrored(const ProjectorView& view, const glm::dvec4& plane) noexcept;
 
-// Makes a projector of a lens and an aim: empty where either is. Guarantees as those of the lens and of look_at().
+// Makes a projector of a lens and an aim, both of the conventions' handedness: empty where either is. Guarantees as those of the lens and of look_at().
 inline std::optional<Projector> make_projector(const PerspectiveLens& lens, const Aim& aim,
                                                Conventions conventions) noexcept;
 inline std::optional<Projector> make_projector(const FrustumLens& lens, const Aim& aim,

@@ -25,6 +25,7 @@ using texgen::Conventions;
 using texgen::DepthMapping;
 using texgen::DepthRange;
 using texgen::FrustumLens;
+using texgen::Handedness;
 using texgen::NdcY;
 using texgen::OrthographicLens;
 using texgen::PerspectiveLens;
@@ -41,14 +42,16 @@ std::vector<Conventions> all_conventions() {
     for (const DepthRange depth : {DepthRange::negative_one_to_one, DepthRange::zero_to_one})
         for (const NdcY y : {NdcY::up, NdcY::down})
             for (const TextureOrigin origin : {TextureOrigin::bottom_left, TextureOrigin::top_left})
-                result.push_back({depth, y, origin});
+                for (const Handedness handedness : {Handedness::right, Handedness::left})
+                    result.push_back({depth, y, origin, handedness});
     return result;
 }
 
 std::string name(Conventions c) {
     return std::string(c.depth == DepthRange::zero_to_one ? "depth 0..1" : "depth -1..1") +
            (c.ndc_y == NdcY::up ? ", y up" : ", y down") +
-           (c.origin == TextureOrigin::top_left ? ", origin top left" : ", origin bottom left");
+           (c.origin == TextureOrigin::top_left ? ", origin top left" : ", origin bottom left") +
+           (c.handedness == Handedness::left ? ", left-handed" : ", right-handed");
 }
 
 // A lens of any kind as the rectangle of its near plane, and whether rays spread from the eye or run parallel.
@@ -105,10 +108,11 @@ std::vector<LensCase> all_lenses() {
 }
 
 // Position on the slide: x and y from -1 (left, bottom) to 1; depth z in front of the eye.
-glm::dvec4 eye_point(const LensCase& lens, double x, double y, double z) {
+glm::dvec4 eye_point(const LensCase& lens, Conventions conventions, double x, double y, double z) {
     const double spread = lens.spreads ? z / lens.z_near : 1.0;
     const auto between = [](double low, double high, double at) { return low + (high - low) * (at + 1.0) / 2.0; };
-    return {between(lens.left, lens.right, x) * spread, between(lens.bottom, lens.top, y) * spread, -z, 1.0};
+    return {between(lens.left, lens.right, x) * spread, between(lens.bottom, lens.top, y) * spread,
+            conventions.handedness == Handedness::left ? z : -z, 1.0};
 }
 
 // What the texture's depth is at the near plane (0) and at the far plane (1) by the definition of the conventions.
@@ -153,7 +157,8 @@ TEST_CASE("corners, centre, near and far land where they should, for every lens,
                                 CAPTURE(region.name);
                                 CAPTURE(x);
                                 CAPTURE(y);
-                                const glm::dvec4 strq = texture_from_eye.matrix() * eye_point(lens, x, y, z);
+                                const glm::dvec4 strq =
+                                    texture_from_eye.matrix() * eye_point(lens, conventions, x, y, z);
                                 // s runs from the left of the slide to its right. t runs up it, unless the origin is
                                 // its top left corner. The y direction of NDC is the projector's own affair.
                                 const double up = conventions.origin == TextureOrigin::bottom_left ? y : -y;
@@ -173,7 +178,7 @@ TEST_CASE("corners, centre, near and far land where they should, for every lens,
             }
         }
     }
-    CHECK(combinations == 13 * 8 * 4 * 2);
+    CHECK(combinations == 13 * 16 * 4 * 2);
 }
 
 TEST_CASE("the NDC of a projector follows its depth range and its y direction") {
@@ -182,7 +187,7 @@ TEST_CASE("the NDC of a projector follows its depth range and its y direction") 
             CAPTURE(lens.name);
             CAPTURE(name(conventions));
             const auto projection = lens.make(lens, conventions);
-            const glm::dvec4 top_right = projection->matrix() * eye_point(lens, 1.0, 1.0, lens.z_near);
+            const glm::dvec4 top_right = projection->matrix() * eye_point(lens, conventions, 1.0, 1.0, lens.z_near);
             CHECK(top_right.x / top_right.w == doctest::Approx(1.0).epsilon(1e-14));
             CHECK(top_right.y / top_right.w ==
                   doctest::Approx(conventions.ndc_y == NdcY::up ? 1.0 : -1.0).epsilon(1e-14));
@@ -193,10 +198,16 @@ TEST_CASE("the NDC of a projector follows its depth range and its y direction") 
 }
 
 TEST_CASE("the named conventions are those of their graphics APIs") {
-    CHECK(texgen::opengl == Conventions{DepthRange::negative_one_to_one, NdcY::up, TextureOrigin::bottom_left});
-    CHECK(texgen::direct3d == Conventions{DepthRange::zero_to_one, NdcY::up, TextureOrigin::top_left});
-    CHECK(texgen::metal == Conventions{DepthRange::zero_to_one, NdcY::up, TextureOrigin::top_left});
-    CHECK(texgen::vulkan == Conventions{DepthRange::zero_to_one, NdcY::down, TextureOrigin::top_left});
+    CHECK(texgen::opengl ==
+          Conventions{DepthRange::negative_one_to_one, NdcY::up, TextureOrigin::bottom_left, Handedness::right});
+    CHECK(texgen::direct3d ==
+          Conventions{DepthRange::zero_to_one, NdcY::up, TextureOrigin::top_left, Handedness::right});
+    CHECK(texgen::metal == Conventions{DepthRange::zero_to_one, NdcY::up, TextureOrigin::top_left, Handedness::right});
+    CHECK(texgen::vulkan ==
+          Conventions{DepthRange::zero_to_one, NdcY::down, TextureOrigin::top_left, Handedness::right});
+    for (const Conventions& api : {texgen::opengl, texgen::direct3d, texgen::metal, texgen::vulkan})
+        CHECK(texgen::left_handed(api) == Conventions{api.depth, api.ndc_y, api.origin, Handedness::left});
+    static_assert(texgen::left_handed(texgen::direct3d) != texgen::direct3d);
     static_assert(!std::is_default_constructible_v<TextureRegion>);
     static_assert(!std::is_convertible_v<double, texgen::Angle>);
 }

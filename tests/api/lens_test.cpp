@@ -28,7 +28,9 @@ using texgen::TextureOrigin;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double bound_in_ulps = 4.0;  // as perspective() states it
 
-Conventions with(DepthRange depth, NdcY y = NdcY::up) { return {depth, y, TextureOrigin::bottom_left}; }
+Conventions with(DepthRange depth, NdcY y = NdcY::up) {
+    return {depth, y, TextureOrigin::bottom_left, texgen::Handedness::right};
+}
 
 struct Depth {
     Real scale, offset;

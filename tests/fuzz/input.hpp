@@ -115,7 +115,8 @@ public:
         const unsigned bits = raw<std::uint8_t>();
         return {(bits & 1u) != 0u ? texgen::DepthRange::zero_to_one : texgen::DepthRange::negative_one_to_one,
                 (bits & 2u) != 0u ? texgen::NdcY::down : texgen::NdcY::up,
-                (bits & 4u) != 0u ? texgen::TextureOrigin::top_left : texgen::TextureOrigin::bottom_left};
+                (bits & 4u) != 0u ? texgen::TextureOrigin::top_left : texgen::TextureOrigin::bottom_left,
+                (bits & 8u) != 0u ? texgen::Handedness::left : texgen::Handedness::right};
     }
     texgen::TextureRegion region() {
         switch (integer(0, 3)) {

@@ -58,7 +58,7 @@ inline std::optional<Projector> assemble(const std::optional<ProjectorProjection
 
 namespace TEXGEN_NAMESPACE {
 
-inline std::optional<ProjectorView> look_at(const Aim& aim) noexcept {
+inline std::optional<ProjectorView> look_at(const Aim& aim, Handedness handedness) noexcept {
     // Where up is nearly parallel the rounding of target - position would turn the picture.
     const detail::Difference view = detail::scaled_difference(aim.target, aim.position);
     const glm::dvec3& forward = view.high;
@@ -69,8 +69,10 @@ inline std::optional<ProjectorView> look_at(const Aim& aim) noexcept {
     const glm::dvec3 side_direction = detail::scaled_near_one(sideways);
     if (!(detail::length(side_direction) > 0.0)) return std::nullopt;
 
-    const glm::dvec3 side = detail::normalized(side_direction);
-    const glm::dvec3 back = -detail::normalized(forward);
+    // A left-handed cross product has the other sign, and a left-handed eye looks down +z: half a turn about up.
+    const double sign = handedness == Handedness::left ? -1.0 : 1.0;
+    const glm::dvec3 side = sign * detail::normalized(side_direction);
+    const glm::dvec3 back = -sign * detail::normalized(forward);
     const glm::dvec3 upright = detail::normalized(detail::cross(back, side));
     glm::dmat4 matrix(1.0);
     for (glm::length_t i = 0; i < 3; ++i) {
@@ -85,13 +87,13 @@ inline std::optional<ProjectorView> look_at(const Aim& aim) noexcept {
     return ProjectorView(matrix);
 }
 
-inline std::optional<ProjectorView> view_from_opencv(const glm::dmat3& rotation,
-                                                     const glm::dvec3& translation) noexcept {
+inline std::optional<ProjectorView> view_from_opencv(const glm::dmat3& rotation, const glm::dvec3& translation,
+                                                     Handedness handedness) noexcept {
     glm::dmat4 matrix(rotation);
     matrix[3] = {translation.x, translation.y, translation.z, 1.0};
     for (glm::length_t column = 0; column < 4; ++column) {
         matrix[column].y = -matrix[column].y;
-        matrix[column].z = -matrix[column].z;
+        if (handedness == Handedness::right) matrix[column].z = -matrix[column].z;
     }
     return detail::is_finite(matrix) ? std::optional(ProjectorView(matrix)) : std::nullopt;
 }
@@ -123,20 +125,20 @@ inline std::optional<ProjectorView> mirrored(const ProjectorView& view, const gl
 
 inline std::optional<Projector> make_projector(const PerspectiveLens& lens, const Aim& aim,
                                                Conventions conventions) noexcept {
-    return detail::assemble(perspective(lens, conventions), look_at(aim), conventions);
+    return detail::assemble(perspective(lens, conventions), look_at(aim, conventions.handedness), conventions);
 }
 inline std::optional<Projector> make_projector(const FrustumLens& lens, const Aim& aim,
                                                Conventions conventions) noexcept {
-    return detail::assemble(frustum(lens, conventions), look_at(aim), conventions);
+    return detail::assemble(frustum(lens, conventions), look_at(aim, conventions.handedness), conventions);
 }
 inline std::optional<Projector> make_projector(const OrthographicLens& lens, const Aim& aim,
                                                Conventions conventions) noexcept {
-    return detail::assemble(orthographic(lens, conventions), look_at(aim), conventions);
+    return detail::assemble(orthographic(lens, conventions), look_at(aim, conventions.handedness), conventions);
 }
 
 inline std::optional<Projector> make_projector(const PinholeLens& lens, const Aim& aim,
                                                Conventions conventions) noexcept {
-    return detail::assemble(pinhole(lens, conventions), look_at(aim), conventions);
+    return detail::assemble(pinhole(lens, conventions), look_at(aim, conventions.handedness), conventions);
 }
 
 }  // namespace TEXGEN_NAMESPACE
