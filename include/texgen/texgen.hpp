@@ -16,5 +16,6 @@
 #include "projector.hpp"
 #include "scale_bias.hpp"
 #include "segment.hpp"
+#include "surface.hpp"
 #include "texcoord.hpp"
 #include "transform.hpp"

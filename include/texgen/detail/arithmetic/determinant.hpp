@@ -1,0 +1,91 @@
+#pragma once
+
+// Determinants whose terms may cancel to the last bit: in double or in two doubles where a bound decides, else as exact sums.
+
+#include <cmath>
+#include <limits>
+
+#include <glm/vec3.hpp>
+
+#include "../language.hpp"
+#include "expansion.hpp"
+#include "rounding.hpp"
+
+namespace TEXGEN_DETAIL {
+
+// A number within 2^-51 of itself, with its sign and its zeros, of which `close` is within `error`; grain() is a power of two of
+// which it is a multiple, or infinity.
+template <class Grain, class Exact>
+double settled(const DoubleDouble& close, double error, const Grain& grain, const Exact& exact) noexcept {
+    if (error <= 0x1p-54 * magnitude(close.high)) return close.high;
+    // Where the grain is that large, `close` is next to the one multiple that is meant, which is below 2^53 grains.
+    if (const double unit = grain(); error < 0.25 * unit) return std::nearbyint(close.high / unit) * unit;
+    return exact().estimate();
+}
+
+inline double smallest_last_bit(double a, double b, double c) noexcept {
+    return smaller(last_bit(a), smaller(last_bit(b), last_bit(c)));
+}
+
+// The determinant of three rows of floats. A product of two is exact in double, and nothing leaves the range.
+// What is not finite has the sign 0 and the value NaN.
+class FloatDeterminant {
+public:
+    FloatDeterminant(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) noexcept : row_{a, b, c} {}
+
+    int sign() const noexcept {
+        const double size = this->size();
+        const double sum = minor(1, 2) * row_[0].z + minor(2, 0) * row_[1].z + minor(0, 1) * row_[2].z;
+        const double value = magnitude(sum) > gamma(4) * size ? sum : this->value(size);
+        return value > 0.0 ? 1 : value < 0.0 ? -1 : 0;
+    }
+
+    // Within 2^-51 of itself.
+    double value() const noexcept { return value(size()); }
+
+private:
+    double minor(int i, int j) const noexcept { return row_[i].x * row_[j].y - row_[j].x * row_[i].y; }
+    DoubleDouble exact_minor(int i, int j) const noexcept {
+        return two_sum(row_[i].x * row_[j].y, -row_[j].x * row_[i].y);
+    }
+
+    double size() const noexcept {
+        const auto terms = [&](int i, int j, int k) {
+            return (magnitude(row_[i].x * row_[j].y) + magnitude(row_[j].x * row_[i].y)) * magnitude(row_[k].z);
+        };
+        return terms(1, 2, 0) + terms(2, 0, 1) + terms(0, 1, 2);
+    }
+
+    // Three products within 2^-103 of their terms, and two sums.
+    double value(double size) const noexcept {
+        if (!(size < 0x1p1000)) return std::numeric_limits<double>::quiet_NaN();
+        const auto terms = [&](int i, int j, int k) { return product(exact_minor(i, j), {row_[k].z, 0.0}); };
+        return settled(
+            sum(sum(terms(1, 2, 0), terms(2, 0, 1)), terms(0, 1, 2)), 0x1p-100 * size, [&] { return grain(); },
+            [&] { return exactly(); });
+    }
+
+    // Of the term of which it is the least: units of rows and of columns make no difference.
+    double grain() const noexcept {
+        glm::dvec3 last[3];
+        for (int i = 0; i < 3; ++i) last[i] = {last_bit(row_[i].x), last_bit(row_[i].y), last_bit(row_[i].z)};
+        const auto least = [&](int i, int j, int k) {
+            return smaller(last[i].x * last[j].y, last[j].x * last[i].y) * last[k].z;
+        };
+        return smaller(least(1, 2, 0), smaller(least(2, 0, 1), least(0, 1, 2)));
+    }
+
+    Expansion<12> exactly() const noexcept {
+        Expansion<12> sum;
+        for (int k = 0; k < 3; ++k) {
+            const DoubleDouble minor = exact_minor((k + 1) % 3, (k + 2) % 3);
+            sum.add_product(minor.low, row_[k].z);
+            sum.add_product(minor.high, row_[k].z);
+        }
+        return sum;
+    }
+
+    glm::dvec3 row_[3];
+};
+
+}  // namespace TEXGEN_DETAIL

@@ -1,0 +1,54 @@
+#pragma once
+
+// Floor 2: what the projection makes of a surface: which side of a triangle the projector sees, how large it is on the slide
+// and how its depth changes there.
+
+#include "detail/language.hpp"
+
+#include <optional>
+
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include "conventions.hpp"
+#include "detail/arithmetic/determinant.hpp"
+#include "detail/arithmetic/inverse.hpp"
+#include "detail/arithmetic/widen.hpp"
+
+namespace TEXGEN_NAMESPACE {
+
+enum class Facing { towards, away, edge_on };
+
+// Which side of a triangle the projector sees: `towards` where the corners run counter-clockwise as the slide is seen upright.
+// Guarantee: the exact sign of det [s t q], whatever cancels; also where some or all corners are behind the projector, as the
+// plane of the triangle has one side. A back face is lit by nothing: this is what to skip. No allocation, noexcept.
+// Shape: (s, t, r, q) of the corners in order; r is not looked at. t grows upwards with bottom_left.
+// Bad input: edge_on where an s, t or q is NaN or infinite, as where the projector is in the plane of the triangle, or the
+// triangle has no area.
+// Source: Olano, Greer, Triangle Scan Conversion using 2D Homogeneous Coordinates (1997).
+inline Facing facing(glm::vec4 a, glm::vec4 b, glm::vec4 c, TextureOrigin origin) noexcept;
+
+// The area of a triangle on the slide, in units of s times units of t: of texels, for a rectangle texture.
+// Guarantee: within 2^-50 of itself, whatever cancels; positive where t grows from the edge a b towards c when s grows to the
+// right from a to b, as det [s t q]; 0 where it is exactly that. Over the triangle's area in the scene it is the density of
+// texels there. No allocation, noexcept.
+// Shape: (s, t, r, q) of the corners in order; r is not looked at.
+// Bad input: empty unless all q > 0, and where an s, t or q is NaN or infinite.
+inline std::optional<double> slide_area(glm::vec4 a, glm::vec4 b, glm::vec4 c) noexcept;
+
+// How depth changes over the slide on the plane of a triangle: (A, B, C) with r/q = A s/q + B t/q + C. So the slopes of r are
+// two constants, dr/ds = A and dr/dt = B: what a shadow map's texels that lie beside the fragment are biased by, without a
+// constant to fit.
+// Guarantee: each within 2^-49 of itself, whatever cancels; some or all corners may be behind. No allocation, noexcept.
+// Shape: (s, t, r, q) of the corners in any order. In a fragment shader, for a map that has r and texels of that size,
+//
+//     float bias = dot(abs(plane.xy), 0.5 * texel);  // to any point of the texel that the fragment falls on
+//     bool lit = strq.z / strq.w <= texture(map, strq.xy / strq.w).r + bias;
+//
+// Bad input: empty where the projector sees the triangle edge on (facing()), or a number is NaN or infinite.
+// Source: Isidoro, Shadow Mapping: GPU-based Tips and Techniques, GDC 2006 (receiver plane depth bias).
+inline std::optional<glm::dvec3> receiver_plane(glm::vec4 a, glm::vec4 b, glm::vec4 c) noexcept;
+
+}  // namespace TEXGEN_NAMESPACE
+
+#include "detail/triangle/surface.inc.hpp"

@@ -1,0 +1,283 @@
+// What the projection makes of a surface, against exact values: the side that the projector sees, areas and slopes on the slide.
+
+#include "texgen/surface.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "support/exact.hpp"
+#include "support/hex.hpp"
+#include "support/random.hpp"
+#include "texgen/linear.hpp"
+#include "texgen/projector.hpp"
+
+namespace {
+
+using support::Dyadic;
+using support::hex;
+using support::Random;
+using texgen::Facing;
+using texgen::facing;
+using texgen::receiver_plane;
+using texgen::slide_area;
+using texgen::TextureOrigin;
+
+constexpr float nan_float = std::numeric_limits<float>::quiet_NaN();
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+using Corners = std::array<glm::vec4, 3>;
+
+std::string hex(const Corners& corners) { return hex(corners[0]) + " " + hex(corners[1]) + " " + hex(corners[2]); }
+
+// The determinant of three of the coordinates.
+Dyadic exact_determinant(const Corners& corners, int x, int y, int z) {
+    const auto at = [&](std::size_t corner, int k) { return Dyadic(static_cast<double>(corners[corner % 3][k])); };
+    Dyadic sum;
+    for (std::size_t i = 0; i < 3; ++i) sum = sum + (at(i, x) * at(i + 1, y) - at(i + 1, x) * at(i, y)) * at(i + 2, z);
+    return sum;
+}
+Dyadic exact_determinant(const Corners& corners) { return exact_determinant(corners, 0, 1, 3); }
+
+enum class Family { ordinary, behind, next_to_edge_on, edge_on, graded, any_bits };
+constexpr std::array families{Family::ordinary, Family::behind, Family::next_to_edge_on,
+                              Family::edge_on,  Family::graded, Family::any_bits};
+
+float small_number(Random& random) { return support::to_float(std::ldexp(random.integer(-1 << 20, 1 << 20), -18)); }
+
+Corners corners_of(Family family, Random& random) {
+    Corners corners{};
+    for (glm::vec4& corner : corners) {
+        corner = random.vector4(2.0);
+        corner.w = random.uniform_float(0.5, 4.0);
+    }
+    switch (family) {
+        case Family::ordinary:
+            break;
+        case Family::behind:
+            for (glm::vec4& corner : corners) corner.w = random.uniform_float(-4.0, 4.0);
+            break;
+        case Family::next_to_edge_on: {
+            // On the line of two others, rounded, and up to a few ulp beside it.
+            const double along = random.uniform(-1.0, 2.0);
+            for (int k = 0; k < 4; ++k) {
+                const double between =
+                    static_cast<double>(corners[0][k]) +
+                    along * (static_cast<double>(corners[1][k]) - static_cast<double>(corners[0][k]));
+                corners[2][k] = support::neighbour(support::to_float(between), random.integer(-2, 2));
+            }
+            break;
+        }
+        case Family::edge_on: {
+            // a, b and a + b or a power of two times a; up to units of coordinates and of corners.
+            for (int k = 0; k < 4; ++k) {
+                corners[0][k] = small_number(random);
+                corners[1][k] = small_number(random);
+                corners[2][k] = corners[0][k] + corners[1][k];
+            }
+            if (random.coin()) corners[1] = 4.0f * corners[2];
+            if (random.coin())
+                for (int k = 0; k < 4; ++k) {
+                    const float unit = std::ldexp(1.0f, random.integer(-60, 60));
+                    for (glm::vec4& corner : corners) corner[k] *= unit;
+                }
+            for (glm::vec4& corner : corners) corner *= std::ldexp(1.0f, random.integer(-20, 20));
+            // And one bit beside it.
+            if (random.coin()) {
+                float& number = corners[static_cast<std::size_t>(random.integer(0, 2))][random.integer(0, 3)];
+                number = support::neighbour(number, random.integer(-1, 1));
+            }
+            break;
+        }
+        case Family::graded:
+            for (glm::vec4& corner : corners)
+                for (int k = 0; k < 4; ++k)
+                    corner[k] = random.integer(0, 3) == 0 ? 0.0f : std::ldexp(corner[k], random.integer(-120, 120));
+            if (random.coin()) corners[2] = -corners[0];
+            break;
+        case Family::any_bits:
+            for (glm::vec4& corner : corners)
+                for (int k = 0; k < 4; ++k) do
+                        corner[k] = random.any_float();
+                    while (!std::isfinite(corner[k]));
+            break;
+    }
+    std::swap(corners[0], corners[static_cast<std::size_t>(random.integer(0, 2))]);
+    return corners;
+}
+
+Facing facing_of_sign(int sign, TextureOrigin origin) {
+    if (sign == 0) return Facing::edge_on;
+    return (sign > 0) == (origin == TextureOrigin::bottom_left) ? Facing::towards : Facing::away;
+}
+
+// |computed - n/d| over |n/d|; 0 where both are 0.
+double relative_error(double computed, const support::Quotient& exact) {
+    if (exact.n.sign() == 0) return computed == 0.0 ? 0.0 : HUGE_VAL;
+    return std::fabs(((Dyadic(computed) * exact.d - exact.n).estimate()) / exact.n.estimate());
+}
+
+}  // namespace
+
+TEST_CASE("facing is the exact sign of det [s t q], to the last bit of triangles that are edge on or next to it") {
+    Random random(401);
+    for (const Family family : families) {
+        int count[3] = {};
+        for (int i = 0; i < 100000; ++i) {
+            const Corners corners = corners_of(family, random);
+            const TextureOrigin origin = random.coin() ? TextureOrigin::bottom_left : TextureOrigin::top_left;
+            const int sign = exact_determinant(corners).sign();
+            REQUIRE_MESSAGE(facing(corners[0], corners[1], corners[2], origin) == facing_of_sign(sign, origin),
+                            hex(corners));
+            REQUIRE(facing(corners[1], corners[2], corners[0], origin) == facing_of_sign(sign, origin));
+            REQUIRE(facing(corners[1], corners[0], corners[2], origin) == facing_of_sign(-sign, origin));
+            ++count[1 + sign];
+        }
+        CAPTURE(static_cast<int>(family));
+        CHECK(std::min(count[0], count[2]) > 5000);
+        if (family == Family::edge_on) CHECK(count[1] > 20000);
+    }
+}
+
+TEST_CASE(
+    "a triangle faces a projector that stands in front of it, under all conventions and wherever its corners are") {
+    Random random(402);
+    int behind = 0;
+    for (int i = 0; i < 3000; ++i) {
+        const texgen::Conventions conventions =
+            std::array{texgen::opengl, texgen::direct3d, texgen::vulkan}[random.bits() % 3];
+        const glm::dvec3 position = 5.0 * random.direction();
+        const auto projector = make_projector(texgen::PerspectiveLens{texgen::degrees(50), 1.3, 0.1, 100},
+                                              {position, random.direction(), random.direction()}, conventions);
+        REQUIRE(projector);
+        std::array<glm::dvec3, 3> world;
+        for (glm::dvec3& corner : world) corner = 8.0 * random.direction();
+        const glm::dmat4 texgen = texture_from_world(*projector).matrix();
+        Corners strq;
+        for (std::size_t k = 0; k < 3; ++k) strq[k] = glm::vec4(texgen * glm::dvec4(world[k], 1.0));
+        const glm::dvec3 u = world[1] - world[0], v = world[2] - world[0], to = position - world[0];
+        const double volume =
+            to.x * (u.y * v.z - u.z * v.y) + to.y * (u.z * v.x - u.x * v.z) + to.z * (u.x * v.y - u.y * v.x);
+        if (std::fabs(volume) < 1e-3) continue;
+        REQUIRE(facing(strq[0], strq[1], strq[2], conventions.origin) ==
+                (volume > 0.0 ? Facing::towards : Facing::away));
+        behind += strq[0].w < 0.0f || strq[1].w < 0.0f || strq[2].w < 0.0f;
+    }
+    CHECK(behind > 500);
+}
+
+TEST_CASE("a number that is not finite is seen edge on, has no area and no plane; r is looked at by the plane alone") {
+    Random random(403);
+    for (const float bad : {nan_float, infinity, -infinity}) {
+        for (int k = 0; k < 12; ++k) {
+            Corners corners = corners_of(Family::ordinary, random);
+            corners[static_cast<std::size_t>(k / 4)][k % 4] = bad;
+            const auto& [a, b, c] = corners;
+            const bool of_r = k % 4 == 2;
+            CHECK((facing(a, b, c, TextureOrigin::bottom_left) == Facing::edge_on) == !of_r);
+            CHECK(slide_area(a, b, c).has_value() == of_r);
+            CHECK_FALSE(receiver_plane(a, b, c));
+        }
+    }
+    for (int i = 0; i < 50000; ++i) {
+        Corners corners{};
+        for (glm::vec4& corner : corners)
+            for (int k = 0; k < 4; ++k) corner[k] = random.any_float();
+        const auto area = slide_area(corners[0], corners[1], corners[2]);
+        REQUIRE((!area || std::isfinite(*area)));
+        const auto plane = receiver_plane(corners[0], corners[1], corners[2]);
+        REQUIRE((!plane || (std::isfinite(plane->x) && std::isfinite(plane->y) && std::isfinite(plane->z))));
+    }
+}
+
+TEST_CASE("slide_area is within 2^-50 of itself, and there where all q are positive") {
+    Random random(404);
+    double worst = 0.0;
+    std::string worst_input;
+    for (const Family family : families) {
+        int count = 0;
+        for (int i = 0; i < 5000; ++i) {
+            Corners corners = corners_of(family, random);
+            if (random.integer(0, 7) != 0)
+                for (glm::vec4& corner : corners)
+                    if (!(corner.w > 0.0f)) corner = -corner;
+            const auto area = slide_area(corners[0], corners[1], corners[2]);
+            const bool in_front = corners[0].w > 0.0f && corners[1].w > 0.0f && corners[2].w > 0.0f;
+            REQUIRE(area.has_value() == in_front);
+            if (!area) continue;
+            ++count;
+            Dyadic divisor(2.0);
+            for (const glm::vec4& corner : corners) divisor = divisor * Dyadic(static_cast<double>(corner.w));
+            const double error = relative_error(*area, {exact_determinant(corners), divisor});
+            if (error > worst) worst_input = hex(corners);
+            worst = std::max(worst, error);
+        }
+        CHECK(count > 1000);
+    }
+    CHECK_MESSAGE(worst <= 0x1p-50, worst_input);
+    MESSAGE(worst * 0x1p52, " times 2^-52 at most: ", worst_input);
+}
+
+TEST_CASE("the texels of a rectangle texture under a square of the scene") {
+    const auto projector = make_projector(texgen::PerspectiveLens{texgen::degrees(90), 1.0, 0.1, 100},
+                                          {{0, 0, 4}, {0, 0, 0}, {0, 1, 0}}, texgen::opengl);
+    REQUIRE(projector);
+    // At a distance of 4 the slide is 8 units wide: 64 texels a unit.
+    const glm::dmat4 texgen = texture_from_world(*projector, texgen::rectangle_texture(512, 512)).matrix();
+    const auto strq = [&](double x, double y) { return glm::vec4(texgen * glm::dvec4(x, y, 0.0, 1.0)); };
+    CHECK(*slide_area(strq(0, 0), strq(1, 0), strq(0, 1)) == doctest::Approx(2048.0).epsilon(1e-6));
+    CHECK(*slide_area(strq(0, 0), strq(0, 1), strq(1, 0)) == doctest::Approx(-2048.0).epsilon(1e-6));
+}
+
+TEST_CASE("receiver_plane has the depth of all corners' plane, each number within 2^-49 of itself") {
+    Random random(405);
+    double worst = 0.0;
+    std::string worst_input;
+    for (const Family family : families) {
+        int refused = 0;
+        for (int i = 0; i < 5000; ++i) {
+            const Corners corners = corners_of(family, random);
+            const auto plane = receiver_plane(corners[0], corners[1], corners[2]);
+            const Dyadic divisor = exact_determinant(corners);
+            REQUIRE_MESSAGE(plane.has_value() == (divisor.sign() != 0), hex(corners));
+            refused += !plane;
+            if (!plane) continue;
+            // Cramer's rule.
+            const std::array numerators{exact_determinant(corners, 2, 1, 3), exact_determinant(corners, 0, 2, 3),
+                                        exact_determinant(corners, 0, 1, 2)};
+            for (int k = 0; k < 3; ++k) {
+                const double error = relative_error((*plane)[k], {numerators[static_cast<std::size_t>(k)], divisor});
+                if (error > worst) worst_input = hex(corners);
+                worst = std::max(worst, error);
+            }
+        }
+        CHECK((refused > 500) == (family == Family::edge_on || family == Family::graded));
+    }
+    CHECK_MESSAGE(worst <= 0x1p-49, worst_input);
+    MESSAGE(worst * 0x1p52, " times 2^-52 at most: ", worst_input);
+}
+
+TEST_CASE("within a texel the receiver's depth differs by no more than the plane's slopes allow") {
+    Random random(406);
+    for (int i = 0; i < 2000; ++i) {
+        Corners corners = corners_of(Family::ordinary, random);
+        const auto plane = receiver_plane(corners[0], corners[1], corners[2]);
+        REQUIRE(plane);
+        glm::dvec4 point[2] = {glm::dvec4(0.0), glm::dvec4(0.0)};
+        for (glm::dvec4& p : point)
+            for (const glm::vec4& corner : corners) p += random.uniform(0.0, 1.0) * glm::dvec4(corner);
+        const glm::dvec3 one = glm::dvec3(point[0]) / point[0].w, other = glm::dvec3(point[1]) / point[1].w;
+        const double bias = std::fabs(plane->x * (other.x - one.x)) + std::fabs(plane->y * (other.y - one.y));
+        const double slack = 1e-13 * (std::fabs(plane->x) + std::fabs(plane->y) + std::fabs(plane->z) + 1.0) * 10.0;
+        REQUIRE(std::fabs(other.z - one.z) <= bias + slack);
+        REQUIRE(std::fabs(plane->x * one.x + plane->y * one.y + plane->z - one.z) <= slack);
+    }
+}
