@@ -1,4 +1,5 @@
-// What the projection makes of a surface, against exact values: the side that the projector sees, areas and slopes on the slide.
+// What the projection makes of a surface, against exact values: the side that the projector sees, areas and slopes on the slide,
+// and the homography of a quadrilateral.
 
 #include "texgen/surface.hpp"
 
@@ -16,17 +17,23 @@
 
 #include "support/exact.hpp"
 #include "support/hex.hpp"
+#include "support/oracle.hpp"
 #include "support/random.hpp"
+#include "support/real.hpp"
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
 
 namespace {
 
 using support::Dyadic;
+using support::exactly;
 using support::hex;
 using support::Random;
+using support::Rational;
 using texgen::Facing;
 using texgen::facing;
+using texgen::keystone;
+using texgen::quadrilateral;
 using texgen::receiver_plane;
 using texgen::slide_area;
 using texgen::TextureOrigin;
@@ -123,6 +130,81 @@ Facing facing_of_sign(int sign, TextureOrigin origin) {
 double relative_error(double computed, const support::Quotient& exact) {
     if (exact.n.sign() == 0) return computed == 0.0 ? 0.0 : HUGE_VAL;
     return std::fabs(((Dyadic(computed) * exact.d - exact.n).estimate()) / exact.n.estimate());
+}
+
+// ---- Quadrilaterals ------------------------------------------------------------------------------------------------
+
+using Quadrilateral = std::array<glm::dvec2, 4>;
+
+std::string hex(const Quadrilateral& corners) {
+    return hex(corners[0]) + " " + hex(corners[1]) + " " + hex(corners[2]) + " " + hex(corners[3]);
+}
+
+enum class Shape { ordinary, whole_numbers, next_to_a_triangle, far_away, any_unit, thin };
+constexpr std::array shapes{Shape::ordinary, Shape::whole_numbers, Shape::next_to_a_triangle,
+                            Shape::far_away, Shape::any_unit,      Shape::thin};
+
+Quadrilateral corners_of(Shape shape, Random& random) {
+    Quadrilateral corners{{{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}};
+    for (glm::dvec2& corner : corners) corner += glm::dvec2(random.uniform(-0.45, 0.45), random.uniform(-0.45, 0.45));
+    switch (shape) {
+        case Shape::ordinary:
+            break;
+        case Shape::whole_numbers:
+            for (glm::dvec2& corner : corners) corner = glm::dvec2(random.integer(-3, 3), random.integer(-3, 3));
+            break;
+        case Shape::next_to_a_triangle: {
+            // A corner on the diagonal of its neighbours, up to a few ulp.
+            const std::size_t k = random.bits() % 4;
+            const glm::dvec2 &from = corners[(k + 1) % 4], &to = corners[(k + 3) % 4];
+            corners[k] = from + random.uniform(-0.2, 1.2) * (to - from);
+            for (int i = 0; i < 2; ++i) corners[k][i] += random.integer(-4, 4) * support::double_ulp(corners[k][i]);
+            break;
+        }
+        case Shape::far_away: {
+            const glm::dvec2 away = random.power_of_ten(2.0, 7.0) * glm::dvec2(random.direction());
+            for (glm::dvec2& corner : corners) corner += away;
+            break;
+        }
+        case Shape::any_unit: {
+            const glm::dvec2 unit(random.power_of_ten(-100.0, 100.0), random.power_of_ten(-100.0, 100.0));
+            for (glm::dvec2& corner : corners) corner *= unit;
+            break;
+        }
+        case Shape::thin: {
+            // All corners next to one line.
+            const double width = random.power_of_ten(-18.0, -1.0);
+            const glm::dvec2 along = glm::dvec2(random.direction());
+            for (glm::dvec2& corner : corners)
+                corner = corner.x * along + width * corner.y * glm::dvec2(-along.y, along.x);
+            break;
+        }
+    }
+    if (random.coin()) std::swap(corners[1], corners[3]);
+    if (random.integer(0, 3) == 0) std::swap(corners[1], corners[2]);  // that one crosses itself
+    return corners;
+}
+
+Rational exact_area(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
+    return (exactly(b.x) - exactly(a.x)) * (exactly(c.y) - exactly(a.y)) -
+           (exactly(c.x) - exactly(a.x)) * (exactly(b.y) - exactly(a.y));
+}
+
+// The q of the corners, the largest 1; empty where they are not strictly convex.
+std::optional<std::array<Rational, 4>> exact_q(const Quadrilateral& corners) {
+    std::array<Rational, 4> area;
+    Rational least;
+    for (std::size_t i = 0; i < 4; ++i) {
+        area[i] = exact_area(corners[(i + 1) % 4], corners[(i + 2) % 4], corners[(i + 3) % 4]);
+        if (area[i] == 0 || (area[i] > 0) != (area[0] > 0)) return std::nullopt;
+        if (i == 0 || support::magnitude(area[i]) < least) least = support::magnitude(area[i]);
+    }
+    for (Rational& a : area) a = least / support::magnitude(a);
+    return area;
+}
+
+glm::dvec2 corner_of(const texgen::TextureRegion& region, std::size_t i) {
+    return {i == 1 || i == 2 ? region.max().x : region.min().x, i >= 2 ? region.max().y : region.min().y};
 }
 
 }  // namespace
@@ -280,4 +362,173 @@ TEST_CASE("within a texel the receiver's depth differs by no more than the plane
         REQUIRE(std::fabs(other.z - one.z) <= bias + slack);
         REQUIRE(std::fabs(plane->x * one.x + plane->y * one.y + plane->z - one.z) <= slack);
     }
+}
+
+TEST_CASE("a quadrilateral is refused exactly where it is not strictly convex, and its q are the homography's") {
+    Random random(407);
+    double worst = 0.0;
+    std::string worst_input;
+    for (const Shape shape : shapes) {
+        int count[2] = {};
+        for (int i = 0; i < 4000; ++i) {
+            const Quadrilateral corners = corners_of(shape, random);
+            const auto exact = exact_q(corners);
+            const auto strq = quadrilateral(corners);
+            bool is_in_range = true;
+            if (exact)
+                for (const Rational& q : *exact) is_in_range = is_in_range && q >= support::power_of_two(-126);
+            REQUIRE_MESSAGE(strq.has_value() == (exact.has_value() && is_in_range), hex(corners));
+            REQUIRE_MESSAGE(keystone(corners).has_value() == exact.has_value(), hex(corners));
+            ++count[strq.has_value()];
+            if (!strq) continue;
+            for (std::size_t k = 0; k < 4; ++k) {
+                const glm::vec4& corner = (*strq)[k];
+                const double error = support::ulp_error(corner.w, (*exact)[k]);
+                if (error > worst) worst_input = hex(corners);
+                worst = std::max(worst, error);
+                REQUIRE(corner.x == (k == 1 || k == 2 ? corner.w : 0.0f));
+                REQUIRE(corner.y == (k >= 2 ? corner.w : 0.0f));
+                REQUIRE(corner.z == 0.0f);
+            }
+        }
+        CAPTURE(static_cast<int>(shape));
+        CHECK(std::min(count[0], count[1]) > 200);
+    }
+    CHECK_MESSAGE(worst < 0.51, worst_input);
+}
+
+TEST_CASE(
+    "the corners of a quadrilateral get the corners of its region to the bit, where the floats about q allow it") {
+    Random random(408);
+    int exact = 0, all = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const Quadrilateral corners = corners_of(Shape::ordinary, random);
+        const auto region = i % 2 == 0 ? texgen::atlas_tile({random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)},
+                                                            {random.uniform(1.0, 3.0), random.uniform(1.0, 3.0)})
+                                       : texgen::rectangle_texture(random.integer(1, 8192), random.integer(1, 8192));
+        const auto strq = quadrilateral(corners, region);
+        const auto of_whole = quadrilateral(corners);
+        REQUIRE(strq.has_value() == of_whole.has_value());
+        if (!strq) continue;
+        for (std::size_t k = 0; k < 4; ++k) {
+            const glm::vec4& corner = (*strq)[k];
+            const float q = (*of_whole)[k].w;
+            const glm::vec2 wanted(corner_of(region, k));
+            REQUIRE(corner.w >= support::neighbour(q, -2));
+            REQUIRE(corner.w <= support::neighbour(q, 2));
+            bool is_exact = true;
+            for (int c = 0; c < 2; ++c) {
+                const float got = corner[c] / corner.w;
+                REQUIRE(std::fabs(got - wanted[c]) <= std::fabs(support::neighbour(wanted[c], 1) - wanted[c]));
+                is_exact = is_exact && got == wanted[c];
+            }
+            exact += is_exact;
+            ++all;
+        }
+    }
+    CHECK(exact > all / 100 * 95);
+    MESSAGE(exact, " of ", all, " corners are exact");
+}
+
+TEST_CASE("between its corners a quadrilateral has the exact homography's coordinates to 2^-20 of the largest") {
+    Random random(409);
+    for (int i = 0; i < 2000; ++i) {
+        const Quadrilateral corners = corners_of(Shape::ordinary, random);
+        const auto region = texgen::atlas_tile({random.uniform(-1.0, 0.9), random.uniform(-1.0, 0.9)},
+                                               {random.uniform(1.0, 3.0), random.uniform(1.0, 3.0)});
+        const auto exact = exact_q(corners);
+        const auto strq = quadrilateral(corners, region);
+        if (!strq) continue;
+        // A point of either triangle of the diagonal, as a rasteriser mixes them.
+        const std::size_t third = random.coin() ? 1 : 3;
+        glm::dvec4 mixed(0.0);
+        Rational s = 0, t = 0, q = 0;
+        for (const std::size_t k : {std::size_t{0}, third, std::size_t{2}}) {
+            const double weight = random.uniform(0.0, 1.0);
+            mixed += weight * glm::dvec4((*strq)[k]);
+            const Rational of_corner = exactly(weight) * (*exact)[k];
+            const glm::dvec2 corner = corner_of(region, k);
+            s += of_corner * exactly(corner.x);
+            t += of_corner * exactly(corner.y);
+            q += of_corner;
+        }
+        REQUIRE(support::absolute_error(mixed.x / mixed.w, Rational(s / q)) < 0x1p-20 * 3.0);
+        REQUIRE(support::absolute_error(mixed.y / mixed.w, Rational(t / q)) < 0x1p-20 * 3.0);
+    }
+}
+
+TEST_CASE("keystone is the exact homography, element by element within 2^-48 of its terms") {
+    Random random(410);
+    double worst = 0.0;
+    std::string worst_input;
+    for (const Shape shape : shapes) {
+        for (int i = 0; i < 1000; ++i) {
+            const Quadrilateral corners = corners_of(shape, random);
+            const auto q = exact_q(corners);
+            const auto region = i % 2 == 0 ? texgen::whole_texture()
+                                           : texgen::atlas_tile({random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)},
+                                                                {random.uniform(1.0, 3.0), random.uniform(1.0, 3.0)});
+            const auto matrix = keystone(corners, region);
+            if (!matrix) continue;
+            // What is 0 on the side from corner k on, and q on the opposite one.
+            const auto from_side = [&](std::size_t k) {
+                const glm::dvec2 &from = corners[k], &to = corners[(k + 1) % 4], &far = corners[(k + 2) % 4];
+                const Rational unit = (*q)[(k + 2) % 4] / exact_area(from, to, far);
+                return std::array<Rational, 3>{
+                    unit * (exactly(from.y) - exactly(to.y)), unit * (exactly(to.x) - exactly(from.x)),
+                    unit * (exactly(from.x) * exactly(to.y) - exactly(to.x) * exactly(from.y))};
+            };
+            const auto bottom = from_side(0), right = from_side(1), top = from_side(2), left = from_side(3);
+            for (std::size_t c = 0; c < 3; ++c) {
+                const std::array<std::array<Rational, 2>, 3> terms{
+                    std::array<Rational, 2>{exactly(region.min().x) * right[c], exactly(region.max().x) * left[c]},
+                    std::array<Rational, 2>{exactly(region.min().y) * top[c], exactly(region.max().y) * bottom[c]},
+                    std::array<Rational, 2>{right[c], left[c]}};
+                for (std::size_t r = 0; r < 3; ++r) {
+                    const double element =
+                        matrix->matrix()[c == 2 ? 3 : static_cast<int>(c)][r == 2 ? 3 : static_cast<int>(r)];
+                    const Rational size = support::magnitude(terms[r][0]) + support::magnitude(terms[r][1]);
+                    const Rational error = support::magnitude(exactly(element) - terms[r][0] - terms[r][1]);
+                    if (size == 0) {
+                        REQUIRE(error == 0);
+                        continue;
+                    }
+                    const double share = support::nearest<double>(Rational(error / size));
+                    if (share > worst) worst_input = hex(corners);
+                    worst = std::max(worst, share);
+                }
+                REQUIRE(matrix->matrix()[2] == glm::dvec4(0.0));
+            }
+        }
+    }
+    CHECK_MESSAGE(worst <= 0x1p-48, worst_input);
+    MESSAGE(worst * 0x1p52, " times 2^-52 at most: ", worst_input);
+}
+
+TEST_CASE(
+    "corners that are not finite, or of no size that products hold, are refused; a region's NaN stays where it is") {
+    const Quadrilateral square{{{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}};
+    for (const double bad : {std::numeric_limits<double>::quiet_NaN(), HUGE_VAL, -HUGE_VAL, 0x1p401, 0x1p-401}) {
+        for (int k = 0; k < 8; ++k) {
+            Quadrilateral corners = square;
+            corners[static_cast<std::size_t>(k / 2)][k % 2] = bad;
+            CHECK_FALSE(quadrilateral(corners));
+            CHECK_FALSE(keystone(corners));
+        }
+    }
+    const auto region = texgen::atlas_tile({0.0, std::numeric_limits<double>::quiet_NaN()}, {1.0, 1.0});
+    CHECK_FALSE(keystone(square, region));
+    const auto strq = quadrilateral(square, region);
+    REQUIRE(strq);
+    CHECK(std::isnan((*strq)[0].y));
+    CHECK((*strq)[2] == glm::vec4(1.0f, 1.0f, 0.0f, 1.0f));
+}
+
+TEST_CASE("Everitt's figure 2: a trapezoid's q are as the lengths of its parallel sides") {
+    const auto strq = quadrilateral({{{-2.0, 0.0}, {2.0, 0.0}, {1.0, 1.0}, {-1.0, 1.0}}});
+    REQUIRE(strq);
+    CHECK((*strq)[0] == glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
+    CHECK((*strq)[1] == glm::vec4(1.0f, 0.0f, 0.0f, 1.0f));
+    CHECK((*strq)[2] == glm::vec4(0.5f, 0.5f, 0.0f, 0.5f));
+    CHECK((*strq)[3] == glm::vec4(0.0f, 0.5f, 0.0f, 0.5f));
 }

@@ -1,12 +1,14 @@
 #pragma once
 
 // Floor 2: what the projection makes of a surface: which side of a triangle the projector sees, how large it is on the slide
-// and how its depth changes there.
+// and how its depth changes there; and the q of a quadrilateral that is given by its corners.
 
 #include "detail/language.hpp"
 
+#include <array>
 #include <optional>
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
@@ -14,6 +16,7 @@
 #include "detail/arithmetic/determinant.hpp"
 #include "detail/arithmetic/inverse.hpp"
 #include "detail/arithmetic/widen.hpp"
+#include "transform.hpp"
 
 namespace TEXGEN_NAMESPACE {
 
@@ -48,6 +51,27 @@ inline std::optional<double> slide_area(glm::vec4 a, glm::vec4 b, glm::vec4 c) n
 // Bad input: empty where the projector sees the triangle edge on (facing()), or a number is NaN or infinite.
 // Source: Isidoro, Shadow Mapping: GPU-based Tips and Techniques, GDC 2006 (receiver plane depth bias).
 inline std::optional<glm::dvec3> receiver_plane(glm::vec4 a, glm::vec4 b, glm::vec4 c) noexcept;
+
+// What a quadrilateral's corners need for the slide to fall on it in perspective: (s, t, 0, q) for textureProj, where s and t
+// alone would break along the diagonal.
+// Guarantee: strict convexity is decided exactly. The q are those of the homography that takes the corners to the region's, the
+// largest about 1, each within 2.5 float ulp. s/q and t/q rounded to float are the region's corner rounded to float: always
+// where that is 0 or a power of two, as in the whole texture, else where one of the five q about the exact one allows it, and
+// within 1 ulp where none does. Between the corners they stay within 2^-20 of the largest of those. No allocation, noexcept.
+// Shape: the corners that get (min, min), (max, min), (max, max), (min, max) of the region, in either winding, in any unit.
+// Bad input: empty for corners that are not strictly convex in that order, or a NaN; for a coordinate other than 0 whose
+// magnitude is not from 2^-400 to 2^400; and where a q would be below 2^-126. A NaN of the region stays in its coordinate.
+// Source: Everitt, Projective Texture Mapping, figure 2; Heckbert, Fundamentals of Texture Mapping and Image Warping (1989), 2.2.3.
+inline std::optional<std::array<glm::vec4, 4>> quadrilateral(const std::array<glm::dvec2, 4>& corners,
+                                                             const TextureRegion& region = whole_texture()) noexcept;
+
+// The same homography as a matrix: a slide that is to fill a quadrilateral of a window, or of a wall that was measured.
+// Guarantee: as quadrilateral(), with the same q; each element is the difference of two terms, or their sum, and within 2^-48
+// of the terms' magnitudes. No allocation, noexcept.
+// Shape: (x, y, z, 1) to (s, t, 0, q), whatever z is. q > 0 on the side of the horizon where the quadrilateral is.
+// Bad input: empty as quadrilateral(), though q may be of any size, and where an element is not finite.
+inline std::optional<WindowTexgen> keystone(const std::array<glm::dvec2, 4>& corners,
+                                            const TextureRegion& region = whole_texture()) noexcept;
 
 }  // namespace TEXGEN_NAMESPACE
 

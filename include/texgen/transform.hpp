@@ -24,6 +24,7 @@ struct Eye;
 struct ProjectorEye;
 struct ProjectorClip;
 struct Texture;
+struct Window;  // x, y in pixels (centres at +0.5), z the depth that the buffer holds; y as the viewport's
 
 // A 4x4 matrix of doubles from one space to another. There is no default: a Transform was always given a value.
 // Guarantee: holds its matrix unchanged; rounded() rounds each element once; no allocation, noexcept.
@@ -76,6 +77,7 @@ using ScaleBias = Transform<Texture, ProjectorClip>;                 // S
 using ObjectTexgen = Transform<Texture, Object>;                     // T_o
 using EyeTexgen = Transform<Texture, Eye>;                           // T_e
 using WorldTexgen = Transform<Texture, World>;                       // S P_p V_p
+using WindowTexgen = Transform<Texture, Window>;                     // T_w
 
 // Inverts a transform.
 // Guarantee: where it answers, each element of X = A^-1 is within 2 double ulp of the largest of its terms in X A X, while

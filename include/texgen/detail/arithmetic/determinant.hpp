@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include "../language.hpp"
@@ -87,5 +88,28 @@ private:
 
     glm::dvec3 row_[3];
 };
+
+// Twice the signed area of a triangle, positive where a, b, c run counter-clockwise, within 2^-51 of itself.
+// Precondition: each coordinate is 0, or its magnitude is from 2^-400 to 2^400.
+inline double twice_area(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) noexcept {
+    const auto product_of = [](double x, double x_from, double y, double y_from) {
+        return product(two_sum(x, -x_from), two_sum(y, -y_from));
+    };
+    const DoubleDouble left = product_of(b.x, a.x, c.y, a.y), right = product_of(c.x, a.x, b.y, a.y);
+    return settled(
+        sum(left, -right), 0x1p-100 * (magnitude(left.high) + magnitude(right.high)),
+        [&] { return smallest_last_bit(a.x, b.x, c.x) * smallest_last_bit(a.y, b.y, c.y); },
+        [&] {
+            Expansion<12> sum;
+            const auto add = [&sum](const glm::dvec2& from, const glm::dvec2& to) {
+                sum.add_product(from.x, to.y);
+                sum.add_product(-to.x, from.y);
+            };
+            add(a, b);
+            add(b, c);
+            add(c, a);
+            return sum;
+        });
+}
 
 }  // namespace TEXGEN_DETAIL

@@ -7,6 +7,58 @@ inline FloatDeterminant slide_determinant(const glm::dvec4& a, const glm::dvec4&
     return {{a.x, a.y, a.w}, {b.x, b.y, b.w}, {c.x, c.y, c.w}};
 }
 
+// The corners of a strictly convex quadrilateral, with the areas that say what its q are. Of homogeneous corners P_i =
+// (x, y, 1) the homography takes T_i = (s, t, 1) to area_i P_i, as area_0 P_0 - area_1 P_1 + area_2 P_2 - area_3 P_3 = 0 and
+// T_0 - T_1 + T_2 - T_3 = 0: q_i is 1 / area_i, up to a factor.
+class ConvexQuadrilateral {
+public:
+    static std::optional<ConvexQuadrilateral> of(const std::array<glm::dvec2, 4>& corners) noexcept {
+        const auto is_in_range = [](double x) {
+            return x == 0.0 || (magnitude(x) >= 0x1p-400 && magnitude(x) <= 0x1p400);
+        };
+        for (const glm::dvec2& corner : corners)
+            if (!is_in_range(corner.x) || !is_in_range(corner.y)) return std::nullopt;
+        ConvexQuadrilateral result(corners);
+        return result.least_area_ > 0.0 ? std::optional(result) : std::nullopt;
+    }
+
+    double q(std::size_t i) const noexcept { return least_area_ / area_[i]; }
+
+    // The linear function that is 0 on a side and q on the opposite one: x, y and a constant.
+    glm::dvec3 from_side(std::size_t i) const noexcept {
+        const glm::dvec2 &from = corner_[i], &to = corner_[(i + 1) % 4];
+        const double unit = winding_ * (least_area_ / area_[(i + 2) % 4]) / area_[(i + 3) % 4];
+        return unit * glm::dvec3(from.y - to.y, to.x - from.x, difference_of_products(from.x, to.y, to.x, from.y));
+    }
+
+private:
+    explicit ConvexQuadrilateral(const std::array<glm::dvec2, 4>& corners) noexcept : corner_(corners) {
+        for (std::size_t i = 0; i < 4; ++i)
+            area_[i] = twice_area(corners[(i + 1) % 4], corners[(i + 2) % 4], corners[(i + 3) % 4]);
+        winding_ = area_[0] < 0.0 ? -1.0 : 1.0;
+        for (double& area : area_) area *= winding_;
+        least_area_ = smaller(smaller(area_[0], area_[1]), smaller(area_[2], area_[3]));
+    }
+
+    std::array<glm::dvec2, 4> corner_;
+    std::array<double, 4> area_{};  // twice the area of the triangle of the other corners
+    double winding_ = 1.0, least_area_ = 0.0;
+};
+
+// (u q, v q, 0, q) for a corner of the region, such that the quotients are u and v.
+inline glm::vec4 strq_of_corner(float u, float v, float nearest_q) noexcept {
+    const auto times_q = [](float coordinate, float q) { return static_cast<float>(widened(coordinate) * widened(q)); };
+    const auto is_exact = [&](float coordinate, float q) { return times_q(coordinate, q) / q == coordinate; };
+    float q = nearest_q;
+    for (const int ulps : {0, 1, -1, 2, -2}) {
+        const auto near = bit_cast<float>(bit_cast<std::uint32_t>(nearest_q) + static_cast<std::uint32_t>(ulps));
+        if (!is_exact(u, near) || !is_exact(v, near)) continue;
+        q = near;
+        break;
+    }
+    return {times_q(u, q), times_q(v, q), 0.0f, q};
+}
+
 }  // namespace TEXGEN_DETAIL
 
 namespace TEXGEN_NAMESPACE {
@@ -36,6 +88,33 @@ inline std::optional<glm::dvec3> receiver_plane(glm::vec4 a, glm::vec4 b, glm::v
         if (!detail::is_finite(plane[k])) return std::nullopt;
     }
     return plane;
+}
+
+inline std::optional<std::array<glm::vec4, 4>> quadrilateral(const std::array<glm::dvec2, 4>& corners,
+                                                             const TextureRegion& region) noexcept {
+    const auto shape = detail::ConvexQuadrilateral::of(corners);
+    if (!shape) return std::nullopt;
+    const glm::vec2 least{(region.min)()}, greatest{(region.max)()};
+    std::array<glm::vec4, 4> strq{};
+    for (std::size_t i = 0; i < 4; ++i) {
+        const auto q = static_cast<float>(shape->q(i));
+        if (!(q >= 0x1p-126f)) return std::nullopt;
+        strq[i] = detail::strq_of_corner(i == 1 || i == 2 ? greatest.x : least.x, i >= 2 ? greatest.y : least.y, q);
+    }
+    return strq;
+}
+
+inline std::optional<WindowTexgen> keystone(const std::array<glm::dvec2, 4>& corners,
+                                            const TextureRegion& region) noexcept {
+    const auto shape = detail::ConvexQuadrilateral::of(corners);
+    if (!shape) return std::nullopt;
+    const glm::dvec3 from_bottom = shape->from_side(0), from_right = shape->from_side(1),
+                     from_top = shape->from_side(2), from_left = shape->from_side(3);
+    const glm::dvec2 &least = (region.min)(), &greatest = (region.max)();
+    const glm::dvec3 s = least.x * from_right + greatest.x * from_left,
+                     t = least.y * from_top + greatest.y * from_bottom, q = from_right + from_left;
+    const glm::dmat4 matrix(s.x, t.x, 0.0, q.x, s.y, t.y, 0.0, q.y, 0.0, 0.0, 0.0, 0.0, s.z, t.z, 0.0, q.z);
+    return detail::is_finite(matrix) ? std::optional(WindowTexgen(matrix)) : std::nullopt;
 }
 
 }  // namespace TEXGEN_NAMESPACE
