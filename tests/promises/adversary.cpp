@@ -35,12 +35,14 @@
 #include "support/outputs.hpp"
 #include "support/race.hpp"
 #include "support/random.hpp"
+#include "support/surfaces.hpp"
 #include "support/workloads.hpp"
 #include "texgen/clip.hpp"
 #include "texgen/coverage.hpp"
 #include "texgen/footprint.hpp"
 #include "texgen/interpolate.hpp"
 #include "texgen/linear.hpp"
+#include "texgen/surface.hpp"
 #include "texgen/texcoord.hpp"
 
 namespace {
@@ -687,6 +689,66 @@ Share clip_to_near_share(const Numbers& n) {
     return worst;
 }
 
+// ---- Surfaces --------------------------------------------------------------------------------------------------
+
+support::Corners surface_of(const Numbers& n) { return {floats4(n, 0), floats4(n, 4), floats4(n, 8)}; }
+Numbers begin_surface(Random& random) {
+    const support::Corners corners =
+        support::corners_of(support::corner_families[random.bits() % support::corner_families.size()], random);
+    Numbers n;
+    for (const glm::vec4& corner : corners)
+        for (int k = 0; k < 4; ++k) n.push_back(static_cast<double>(corner[k]));
+    return n;
+}
+
+Share facing_share(const Numbers& n) {
+    const support::Corners corners = surface_of(n);
+    const Dyadic exact = support::exact_determinant(corners);
+    const auto answer = texgen::facing(corners[0], corners[1], corners[2], texgen::TextureOrigin::bottom_left);
+    if (answer != support::facing_of_sign(exact.sign(), texgen::TextureOrigin::bottom_left)) return broken;
+    Dyadic terms;
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 1; j < 3; ++j)
+            terms = terms + magnitude(Dyadic(corners[i].x) * Dyadic(corners[(i + j) % 3].y) *
+                                      Dyadic(corners[(i + 2 * j) % 3].w));
+    return terms.sign() == 0 ? says_nothing : share_of_decision(std::fabs(exact.estimate()) / terms.estimate());
+}
+
+Share slide_area_share(const Numbers& n) {
+    const support::Corners corners = surface_of(n);
+    const auto area = texgen::slide_area(corners[0], corners[1], corners[2]);
+    if (!area) return says_nothing;
+    return support::relative_error(*area, support::exact_slide_area(corners)) / 0x1p-50;
+}
+
+Share receiver_plane_share(const Numbers& n) {
+    const support::Corners corners = surface_of(n);
+    const auto plane = texgen::receiver_plane(corners[0], corners[1], corners[2]);
+    const Dyadic divisor = support::exact_determinant(corners);
+    if (plane.has_value() != (divisor.sign() != 0)) return broken;
+    if (!plane) return says_nothing;
+    double worst = 0.0;
+    for (int k = 0; k < 3; ++k)
+        worst = std::max(worst, support::relative_error(
+                                    (*plane)[k], support::exact_receiver_plane(corners)[static_cast<std::size_t>(k)]));
+    return worst / 0x1p-49;
+}
+
+// The worst ulp of a q, where a half is allowed, and the refusal of what is not strictly convex.
+Share quadrilateral_share(const Numbers& n) {
+    if (!is_in_range(n, 0x1p-400, 0x1p400)) return says_nothing;
+    const support::Quadrilateral corners{glm::dvec2(n[0], n[1]), glm::dvec2(n[2], n[3]), glm::dvec2(n[4], n[5]),
+                                         glm::dvec2(n[6], n[7])};
+    const auto exact = support::exact_q(corners);
+    if (texgen::keystone(corners).has_value() && !exact) return broken;
+    const auto strq = texgen::quadrilateral(corners);
+    if (!exact) return strq ? broken : says_nothing;
+    if (!strq) return says_nothing;
+    double worst = 0.0;
+    for (std::size_t k = 0; k < 4; ++k) worst = std::max(worst, support::ulp_error((*strq)[k].w, (*exact)[k]));
+    return worst / 0.51;
+}
+
 const std::array promises{
     Promise{"generate: 2^-50 of the terms", 4,
             [](Random& random) {
@@ -724,6 +786,11 @@ const std::array promises{
             clip_to_slide_share},
     Promise{"clip to near: 1/2 ulp + clip_error", 24, [](Random& random) { return any_floats(random, 24); },
             clip_to_near_share},
+    Promise{"facing: the exact sign, a decision", 12, begin_surface, facing_share},
+    Promise{"slide_area: 2^-50 of itself", 12, begin_surface, slide_area_share},
+    Promise{"receiver_plane: 2^-49 of itself", 12, begin_surface, receiver_plane_share},
+    Promise{"quadrilateral: the homography's q, a decision", 0, support::detail::draw_quadrilateral,
+            quadrilateral_share},
 };
 
 // ---- The search ------------------------------------------------------------------------------------------------

@@ -24,11 +24,13 @@
 #include "support/hard_triangles.hpp"
 #include "support/outputs.hpp"
 #include "support/random.hpp"
+#include "support/surfaces.hpp"
 #include "texgen/clip.hpp"
 #include "texgen/footprint.hpp"
 #include "texgen/interpolate.hpp"
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
+#include "texgen/surface.hpp"
 #include "texgen/texcoord.hpp"
 
 namespace {
@@ -471,6 +473,46 @@ double of_clips(bool about_apex, std::uint64_t seed) {
     return worst;
 }
 
+struct WorstSurfaces {
+    double area = 0.0, plane = 0.0;  // relative, in 2^-52
+};
+constexpr std::array<const char*, support::corner_families.size()> corner_families{
+    "ordinary", "some corners behind", "next to edge on", "edge on, and a bit beside it", "graded", "any bits"};
+
+WorstSurfaces of_surfaces(support::CornerFamily family, std::uint64_t seed) {
+    Random random(seed);
+    WorstSurfaces worst;
+    for (int i = 0; i < 2000; ++i) {
+        const support::Corners corners = support::corners_of(family, random);
+        if (const auto area = texgen::slide_area(corners[0], corners[1], corners[2]))
+            worst.area =
+                std::max(worst.area, 0x1p52 * support::relative_error(*area, support::exact_slide_area(corners)));
+        const auto plane = texgen::receiver_plane(corners[0], corners[1], corners[2]);
+        const auto exact = support::exact_receiver_plane(corners);
+        for (int k = 0; k < 3 && plane; ++k)
+            worst.plane = std::max(worst.plane,
+                                   0x1p52 * support::relative_error((*plane)[k], exact[static_cast<std::size_t>(k)]));
+    }
+    return worst;
+}
+
+// The q of quadrilaterals, in float ulps.
+constexpr std::array<const char*, support::shapes.size()> shapes{
+    "ordinary", "whole numbers", "next to a triangle", "to 1e7 from the origin", "units to 1e100", "thin to 1e-18"};
+
+double of_quadrilaterals(support::Shape shape, std::uint64_t seed) {
+    Random random(seed);
+    double worst = 0.0;
+    for (int i = 0; i < 500; ++i) {
+        const support::Quadrilateral corners = support::corners_of(shape, random);
+        const auto strq = texgen::quadrilateral(corners);
+        if (!strq) continue;
+        const auto exact = support::exact_q(corners).value();
+        for (std::size_t k = 0; k < 4; ++k) worst = std::max(worst, support::ulp_error((*strq)[k].w, exact[k]));
+    }
+    return worst;
+}
+
 }  // namespace
 
 TEST_CASE("no ceiling is raised") {
@@ -523,5 +565,12 @@ TEST_CASE("no ceiling is raised") {
              of_poses(std::strtod(distance, nullptr), ++seed));
     hold("clip_to_slide, share of slide_clip_error", "ordinary", true, of_clips(false, ++seed));
     hold("clip_to_slide, share of slide_clip_error", "about the projector", true, of_clips(true, ++seed));
+    for (std::size_t i = 0; i < corner_families.size(); ++i) {
+        const WorstSurfaces worst = of_surfaces(support::corner_families[i], ++seed);
+        hold("slide_area, 2^-52 of itself", corner_families[i], false, worst.area);
+        hold("receiver_plane, 2^-52 of itself", corner_families[i], false, worst.plane);
+    }
+    for (std::size_t i = 0; i < shapes.size(); ++i)
+        hold("quadrilateral, ulp of q", shapes[i], false, of_quadrilaterals(support::shapes[i], ++seed));
     if (lowered != nullptr) ceilings.write(lowered);
 }

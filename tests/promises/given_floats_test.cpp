@@ -23,6 +23,7 @@
 #include "texgen/reference.hpp"
 #include "texgen/scale_bias.hpp"
 #include "texgen/scene.hpp"
+#include "texgen/surface.hpp"
 #include "texgen/texcoord.hpp"
 
 namespace {
@@ -279,6 +280,21 @@ std::optional<glm::vec2> divided(const Numbers& n) {
     return texgen::divide(vector<Rounding>(n, 0));
 }
 
+// Of a triangle that only the floats that were given put beside the edge.
+template <class Rounding>
+std::array<double, 6> of_surface(const Numbers& n) {
+    const glm::vec4 a = vector<Rounding>(n, 0), b = vector<Rounding>(n, 4), c = vector<Rounding>(n, 8);
+    Numbers next_to_edge_on = n;
+    for (std::size_t k = 0; k < 4; ++k) next_to_edge_on[8 + k] = n[12] * n[k] + n[13] * n[4 + k];
+    const glm::dvec3 plane = texgen::receiver_plane(a, b, c).value();
+    return {plane.x,
+            plane.y,
+            plane.z,
+            texgen::slide_area(a, b, c).value(),
+            texgen::slide_area(a, b, vector<Rounding>(next_to_edge_on, 8)).value(),
+            static_cast<double>(texgen::facing(a, b, vector<Rounding>(next_to_edge_on, 8), texgen::TextureOrigin{}))};
+}
+
 bool same(const texgen::ClipVertex& a, const texgen::ClipVertex& b) {
     return a.position == b.position && a.strq == b.strq;
 }
@@ -317,6 +333,7 @@ TEST_CASE("floats that are rounded in place give the results of those floats") {
         const auto slide = clipped_to_slide<InPlace>(numbers), other_slide = clipped_to_slide<ByMemory>(numbers);
         for (std::size_t k = 0; k < 8; ++k) REQUIRE(same(slide[k], other_slide[k]));
         REQUIRE(generated<InPlace>(numbers) == generated<ByMemory>(numbers));
+        REQUIRE(of_surface<InPlace>(numbers) == of_surface<ByMemory>(numbers));
     }
 }
 

@@ -154,6 +154,18 @@ void print_scene(const texgen::Projector& projector) {
 #endif
 }
 
+void print_surface() {
+    using namespace texgen;
+    const glm::vec4 a(0.25f, 0.5f, 0.75f, 1.0f), b(1.5f, 0.25f, 0.5f, 2.0f), c(0.1f, 1.3f, 0.7f, 1.7f);
+    print("facing", static_cast<double>(facing(a, b, c, TextureOrigin::bottom_left)));
+    print("area on the slide", *slide_area(a, b, c));
+    print("receiver plane", *receiver_plane(a, b, c));
+    const std::array<glm::dvec2, 4> corners{glm::dvec2(0.1, 0.2), glm::dvec2(3.1, -0.3), glm::dvec2(2.5, 2.25),
+                                            glm::dvec2(0.3, 1.1)};
+    for (const glm::vec4& corner : *quadrilateral(corners, rectangle_texture(640, 480))) print("corner", corner);
+    print("keystone", *keystone(corners));
+}
+
 void print_fixed_function() {
     using namespace texgen;
     TexGenUnit unit;
@@ -189,6 +201,7 @@ int main() {
         print_projector(*make_projector(off_centre, aim, conventions));
         print_scene(*make_projector(lens, aim, conventions));
     }
+    print_surface();
     print_fixed_function();
     return 0;
 }

@@ -15,21 +15,35 @@
 #include <string>
 #include <utility>
 
-#include "support/exact.hpp"
+#include "judges/exact.hpp"
+#include "judges/oracle.hpp"
 #include "support/hex.hpp"
-#include "support/oracle.hpp"
 #include "support/random.hpp"
-#include "support/real.hpp"
+#include "support/surfaces.hpp"
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
 
 namespace {
 
+using support::corner_families;
+using support::CornerFamily;
+using support::Corners;
+using support::corners_of;
 using support::Dyadic;
+using support::exact_area;
+using support::exact_determinant;
+using support::exact_q;
+using support::exact_receiver_plane;
+using support::exact_slide_area;
 using support::exactly;
+using support::facing_of_sign;
 using support::hex;
+using support::Quadrilateral;
 using support::Random;
 using support::Rational;
+using support::relative_error;
+using support::Shape;
+using support::shapes;
 using texgen::Facing;
 using texgen::facing;
 using texgen::keystone;
@@ -41,166 +55,12 @@ using texgen::TextureOrigin;
 constexpr float nan_float = std::numeric_limits<float>::quiet_NaN();
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
-using Corners = std::array<glm::vec4, 3>;
-
 std::string hex(const Corners& corners) { return hex(corners[0]) + " " + hex(corners[1]) + " " + hex(corners[2]); }
-
-// The determinant of three of the coordinates.
-Dyadic exact_determinant(const Corners& corners, int x, int y, int z) {
-    const auto at = [&](std::size_t corner, int k) { return Dyadic(static_cast<double>(corners[corner % 3][k])); };
-    Dyadic sum;
-    for (std::size_t i = 0; i < 3; ++i) sum = sum + (at(i, x) * at(i + 1, y) - at(i + 1, x) * at(i, y)) * at(i + 2, z);
-    return sum;
-}
-Dyadic exact_determinant(const Corners& corners) { return exact_determinant(corners, 0, 1, 3); }
-
-enum class Family { ordinary, behind, next_to_edge_on, edge_on, graded, any_bits };
-constexpr std::array families{Family::ordinary, Family::behind, Family::next_to_edge_on,
-                              Family::edge_on,  Family::graded, Family::any_bits};
-
-float small_number(Random& random) { return support::to_float(std::ldexp(random.integer(-1 << 20, 1 << 20), -18)); }
-
-Corners corners_of(Family family, Random& random) {
-    Corners corners{};
-    for (glm::vec4& corner : corners) {
-        corner = random.vector4(2.0);
-        corner.w = random.uniform_float(0.5, 4.0);
-    }
-    switch (family) {
-        case Family::ordinary:
-            break;
-        case Family::behind:
-            for (glm::vec4& corner : corners) corner.w = random.uniform_float(-4.0, 4.0);
-            break;
-        case Family::next_to_edge_on: {
-            // On the line of two others, rounded, and up to a few ulp beside it.
-            const double along = random.uniform(-1.0, 2.0);
-            for (int k = 0; k < 4; ++k) {
-                const double between =
-                    static_cast<double>(corners[0][k]) +
-                    along * (static_cast<double>(corners[1][k]) - static_cast<double>(corners[0][k]));
-                corners[2][k] = support::neighbour(support::to_float(between), random.integer(-2, 2));
-            }
-            break;
-        }
-        case Family::edge_on: {
-            // a, b and a + b or a power of two times a; up to units of coordinates and of corners.
-            for (int k = 0; k < 4; ++k) {
-                corners[0][k] = small_number(random);
-                corners[1][k] = small_number(random);
-                corners[2][k] = corners[0][k] + corners[1][k];
-            }
-            if (random.coin()) corners[1] = 4.0f * corners[2];
-            if (random.coin())
-                for (int k = 0; k < 4; ++k) {
-                    const float unit = std::ldexp(1.0f, random.integer(-60, 60));
-                    for (glm::vec4& corner : corners) corner[k] *= unit;
-                }
-            for (glm::vec4& corner : corners) corner *= std::ldexp(1.0f, random.integer(-20, 20));
-            // And one bit beside it.
-            if (random.coin()) {
-                float& number = corners[static_cast<std::size_t>(random.integer(0, 2))][random.integer(0, 3)];
-                number = support::neighbour(number, random.integer(-1, 1));
-            }
-            break;
-        }
-        case Family::graded:
-            for (glm::vec4& corner : corners)
-                for (int k = 0; k < 4; ++k)
-                    corner[k] = random.integer(0, 3) == 0 ? 0.0f : std::ldexp(corner[k], random.integer(-120, 120));
-            if (random.coin()) corners[2] = -corners[0];
-            break;
-        case Family::any_bits:
-            for (glm::vec4& corner : corners)
-                for (int k = 0; k < 4; ++k) do
-                        corner[k] = random.any_float();
-                    while (!std::isfinite(corner[k]));
-            break;
-    }
-    std::swap(corners[0], corners[static_cast<std::size_t>(random.integer(0, 2))]);
-    return corners;
-}
-
-Facing facing_of_sign(int sign, TextureOrigin origin) {
-    if (sign == 0) return Facing::edge_on;
-    return (sign > 0) == (origin == TextureOrigin::bottom_left) ? Facing::towards : Facing::away;
-}
-
-// |computed - n/d| over |n/d|; 0 where both are 0.
-double relative_error(double computed, const support::Quotient& exact) {
-    if (exact.n.sign() == 0) return computed == 0.0 ? 0.0 : HUGE_VAL;
-    return std::fabs(((Dyadic(computed) * exact.d - exact.n).estimate()) / exact.n.estimate());
-}
 
 // ---- Quadrilaterals ------------------------------------------------------------------------------------------------
 
-using Quadrilateral = std::array<glm::dvec2, 4>;
-
 std::string hex(const Quadrilateral& corners) {
     return hex(corners[0]) + " " + hex(corners[1]) + " " + hex(corners[2]) + " " + hex(corners[3]);
-}
-
-enum class Shape { ordinary, whole_numbers, next_to_a_triangle, far_away, any_unit, thin };
-constexpr std::array shapes{Shape::ordinary, Shape::whole_numbers, Shape::next_to_a_triangle,
-                            Shape::far_away, Shape::any_unit,      Shape::thin};
-
-Quadrilateral corners_of(Shape shape, Random& random) {
-    Quadrilateral corners{{{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}};
-    for (glm::dvec2& corner : corners) corner += glm::dvec2(random.uniform(-0.45, 0.45), random.uniform(-0.45, 0.45));
-    switch (shape) {
-        case Shape::ordinary:
-            break;
-        case Shape::whole_numbers:
-            for (glm::dvec2& corner : corners) corner = glm::dvec2(random.integer(-3, 3), random.integer(-3, 3));
-            break;
-        case Shape::next_to_a_triangle: {
-            // A corner on the diagonal of its neighbours, up to a few ulp.
-            const std::size_t k = random.bits() % 4;
-            const glm::dvec2 &from = corners[(k + 1) % 4], &to = corners[(k + 3) % 4];
-            corners[k] = from + random.uniform(-0.2, 1.2) * (to - from);
-            for (int i = 0; i < 2; ++i) corners[k][i] += random.integer(-4, 4) * support::double_ulp(corners[k][i]);
-            break;
-        }
-        case Shape::far_away: {
-            const glm::dvec2 away = random.power_of_ten(2.0, 7.0) * glm::dvec2(random.direction());
-            for (glm::dvec2& corner : corners) corner += away;
-            break;
-        }
-        case Shape::any_unit: {
-            const glm::dvec2 unit(random.power_of_ten(-100.0, 100.0), random.power_of_ten(-100.0, 100.0));
-            for (glm::dvec2& corner : corners) corner *= unit;
-            break;
-        }
-        case Shape::thin: {
-            // All corners next to one line.
-            const double width = random.power_of_ten(-18.0, -1.0);
-            const glm::dvec2 along = glm::dvec2(random.direction());
-            for (glm::dvec2& corner : corners)
-                corner = corner.x * along + width * corner.y * glm::dvec2(-along.y, along.x);
-            break;
-        }
-    }
-    if (random.coin()) std::swap(corners[1], corners[3]);
-    if (random.integer(0, 3) == 0) std::swap(corners[1], corners[2]);  // that one crosses itself
-    return corners;
-}
-
-Rational exact_area(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
-    return (exactly(b.x) - exactly(a.x)) * (exactly(c.y) - exactly(a.y)) -
-           (exactly(c.x) - exactly(a.x)) * (exactly(b.y) - exactly(a.y));
-}
-
-// The q of the corners, the largest 1; empty where they are not strictly convex.
-std::optional<std::array<Rational, 4>> exact_q(const Quadrilateral& corners) {
-    std::array<Rational, 4> area;
-    Rational least;
-    for (std::size_t i = 0; i < 4; ++i) {
-        area[i] = exact_area(corners[(i + 1) % 4], corners[(i + 2) % 4], corners[(i + 3) % 4]);
-        if (area[i] == 0 || (area[i] > 0) != (area[0] > 0)) return std::nullopt;
-        if (i == 0 || support::magnitude(area[i]) < least) least = support::magnitude(area[i]);
-    }
-    for (Rational& a : area) a = least / support::magnitude(a);
-    return area;
 }
 
 glm::dvec2 corner_of(const texgen::TextureRegion& region, std::size_t i) {
@@ -211,7 +71,7 @@ glm::dvec2 corner_of(const texgen::TextureRegion& region, std::size_t i) {
 
 TEST_CASE("facing is the exact sign of det [s t q], to the last bit of triangles that are edge on or next to it") {
     Random random(401);
-    for (const Family family : families) {
+    for (const CornerFamily family : corner_families) {
         int count[3] = {};
         for (int i = 0; i < 100000; ++i) {
             const Corners corners = corners_of(family, random);
@@ -225,7 +85,7 @@ TEST_CASE("facing is the exact sign of det [s t q], to the last bit of triangles
         }
         CAPTURE(static_cast<int>(family));
         CHECK(std::min(count[0], count[2]) > 5000);
-        if (family == Family::edge_on) CHECK(count[1] > 20000);
+        if (family == CornerFamily::edge_on) CHECK(count[1] > 20000);
     }
 }
 
@@ -260,7 +120,7 @@ TEST_CASE("a number that is not finite is seen edge on, has no area and no plane
     Random random(403);
     for (const float bad : {nan_float, infinity, -infinity}) {
         for (int k = 0; k < 12; ++k) {
-            Corners corners = corners_of(Family::ordinary, random);
+            Corners corners = corners_of(CornerFamily::ordinary, random);
             corners[static_cast<std::size_t>(k / 4)][k % 4] = bad;
             const auto& [a, b, c] = corners;
             const bool of_r = k % 4 == 2;
@@ -284,7 +144,7 @@ TEST_CASE("slide_area is within 2^-50 of itself, and there where all q are posit
     Random random(404);
     double worst = 0.0;
     std::string worst_input;
-    for (const Family family : families) {
+    for (const CornerFamily family : corner_families) {
         int count = 0;
         for (int i = 0; i < 5000; ++i) {
             Corners corners = corners_of(family, random);
@@ -296,9 +156,7 @@ TEST_CASE("slide_area is within 2^-50 of itself, and there where all q are posit
             REQUIRE(area.has_value() == in_front);
             if (!area) continue;
             ++count;
-            Dyadic divisor(2.0);
-            for (const glm::vec4& corner : corners) divisor = divisor * Dyadic(static_cast<double>(corner.w));
-            const double error = relative_error(*area, {exact_determinant(corners), divisor});
+            const double error = relative_error(*area, exact_slide_area(corners));
             if (error > worst) worst_input = hex(corners);
             worst = std::max(worst, error);
         }
@@ -323,7 +181,7 @@ TEST_CASE("receiver_plane has the depth of all corners' plane, each number withi
     Random random(405);
     double worst = 0.0;
     std::string worst_input;
-    for (const Family family : families) {
+    for (const CornerFamily family : corner_families) {
         int refused = 0;
         for (int i = 0; i < 5000; ++i) {
             const Corners corners = corners_of(family, random);
@@ -332,16 +190,14 @@ TEST_CASE("receiver_plane has the depth of all corners' plane, each number withi
             REQUIRE_MESSAGE(plane.has_value() == (divisor.sign() != 0), hex(corners));
             refused += !plane;
             if (!plane) continue;
-            // Cramer's rule.
-            const std::array numerators{exact_determinant(corners, 2, 1, 3), exact_determinant(corners, 0, 2, 3),
-                                        exact_determinant(corners, 0, 1, 2)};
+            const auto exact = exact_receiver_plane(corners);
             for (int k = 0; k < 3; ++k) {
-                const double error = relative_error((*plane)[k], {numerators[static_cast<std::size_t>(k)], divisor});
+                const double error = relative_error((*plane)[k], exact[static_cast<std::size_t>(k)]);
                 if (error > worst) worst_input = hex(corners);
                 worst = std::max(worst, error);
             }
         }
-        CHECK((refused > 500) == (family == Family::edge_on || family == Family::graded));
+        CHECK((refused > 500) == (family == CornerFamily::edge_on || family == CornerFamily::graded));
     }
     CHECK_MESSAGE(worst <= 0x1p-49, worst_input);
     MESSAGE(worst * 0x1p52, " times 2^-52 at most: ", worst_input);
@@ -350,7 +206,7 @@ TEST_CASE("receiver_plane has the depth of all corners' plane, each number withi
 TEST_CASE("within a texel the receiver's depth differs by no more than the plane's slopes allow") {
     Random random(406);
     for (int i = 0; i < 2000; ++i) {
-        Corners corners = corners_of(Family::ordinary, random);
+        Corners corners = corners_of(CornerFamily::ordinary, random);
         const auto plane = receiver_plane(corners[0], corners[1], corners[2]);
         REQUIRE(plane);
         glm::dvec4 point[2] = {glm::dvec4(0.0), glm::dvec4(0.0)};
