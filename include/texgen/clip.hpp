@@ -34,11 +34,6 @@ struct ClipVertex {
     glm::vec4 strq;
 };
 
-// The window's pixels that NDC [-1, 1] x [-1, 1] covers. A negative width or height mirrors.
-struct Viewport {
-    int x, y, width, height;
-};
-
 namespace detail {
 inline namespace TEXGEN_COMPILER {
 

@@ -31,6 +31,11 @@ struct FragmentRect {
     int x, y, width, height;
 };
 
+// The window's pixels that NDC [-1, 1] x [-1, 1] covers. A negative width or height mirrors.
+struct Viewport {
+    int x, y, width, height;
+};
+
 // What the fragments of a rectangle need, in the order of its cost.
 //   nothing          no fragment is lit: all are behind the projector, or outside one side of the region
 //   affine           q/w is constant there (an orthographic projector, a parallel view), or varies so little that straight
