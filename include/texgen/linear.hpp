@@ -10,10 +10,14 @@
 #include <optional>
 
 #include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
 #include "conventions.hpp"
 #include "detail/arithmetic/inverse.hpp"
+#include "detail/arithmetic/widen.hpp"
+#include "primitives.hpp"
 #include "projector.hpp"
 #include "scale_bias.hpp"
 #include "transform.hpp"
@@ -59,6 +63,35 @@ inline EyeTexgen eye_linear(const Projector& projector, const CameraPose& world_
 inline EyeTexgen eye_linear(const ProjectorProjection& projection, const Transform<ProjectorEye, Eye>& view,
                             Conventions conventions, TextureRegion region = whole_texture(),
                             DepthMapping depth = DepthMapping::unit) noexcept;
+
+// Makes the texgen matrix of a camera's window, T_w = S P_p V_p (W P_c V_c)^-1: it takes a fragment of the depth buffer to the
+// slide, for decals and projectors' light that are deferred, and for a photograph on a g-buffer. In a fragment shader:
+//
+//     vec4 strq = texture_from_window * vec4(gl_FragCoord.xy, texelFetch(depth, ivec2(gl_FragCoord.xy), 0).r, 1.0);
+//
+// Guarantee: in double, each row solved against V_c and P_c as they are. With m the products of the factors' magnitudes on the
+// fragment, s/q is within 2^-47 (m_s + |s/q| m_q) / |q| of its exact value, as far from the origin as 1e7, while the
+// condition of V_c and of P_c (rows and columns scaled) stays below 1e8. No allocation, noexcept.
+// Shape: (x, y, depth, 1) to homogeneous (s, t, r, q) over the camera's w: q > 0 in front of the projector for all that the
+// camera sees. The depth is what the buffer holds: NDC z, or (z + 1)/2 under OpenGL's range. y grows as NDC y does: for pixels
+// from the top down (Direct3D, Metal) give the viewport {x, y + height, width, -height}; with Vulkan's y down it is as it is.
+// Bad input: empty where V_c or P_c is singular to working precision, the viewport's width or height is 0, or a number is not
+// finite. The camera's conventions are its own.
+// Source: Everitt, Projective Texture Mapping, (4), with the window in the place of the eye.
+inline std::optional<WindowTexgen> window_linear(const Projector& projector, const Projector& camera,
+                                                 const Viewport& viewport, TextureRegion region = whole_texture(),
+                                                 DepthMapping depth = DepthMapping::unit) noexcept;
+
+enum class DepthBuffer { unorm16, unorm24, float32 };  // what a depth is rounded to
+
+// Bounds what s and t of a fragment may be off because the depth buffer holds a rounded depth.
+// Guarantee: s/q (x) and t/q (y) of this matrix differ by at most that between the fragment and any depth that is stored as
+// the fragment's; infinite where some of those depths are not in front of the projector. A reversed depth in float32 has small
+// depths far away, and so small errors. What the hardware rounds is taken as 0.6 of a step of the integers, as Direct3D
+// allows, and half an ulp of float, in which a shader reads it. No allocation, noexcept.
+// Bad input: infinite for what is not finite.
+inline glm::dvec2 depth_error_bound(const WindowTexgen& texture_from_window, glm::vec3 fragment,
+                                    DepthBuffer buffer) noexcept;
 
 // Returns what OpenGL stores when the rows of `planes` are given to glTexGen under that MODELVIEW: each row p becomes p M^-1.
 // Guarantee: solved and refined, so that rounded to float it is within 0.54 ulp of its largest component while the

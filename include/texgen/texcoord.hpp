@@ -41,7 +41,8 @@ struct HomogeneousTexcoords {
 };
 
 // A view of points with w = 1 in a known space: three arrays of floats that share a stride. It owns nothing, and reads
-// floats at any alignment. Made by object_space(), world_space() and eye_space().
+// floats at any alignment. Made by object_space(), world_space(), eye_space() and
+// window_space().
 template <class Space>
 class Positions {
 public:
@@ -122,6 +123,16 @@ inline Positions<Eye> eye_space(std::span<const float> x, std::span<const float>
 }
 inline Positions<Eye> eye_space(const float* first, std::size_t count, std::size_t stride_bytes) noexcept {
     return Positions<Eye>(first, count, stride_bytes);
+}
+
+// The same of fragments: x and y in pixels, z the depth that the buffer holds.
+inline Positions<Window> window_space(std::span<const glm::vec3> points) noexcept { return Positions<Window>(points); }
+inline Positions<Window> window_space(std::span<const float> x, std::span<const float> y,
+                                      std::span<const float> z) noexcept {
+    return Positions<Window>(x, y, z);
+}
+inline Positions<Window> window_space(const float* first, std::size_t count, std::size_t stride_bytes) noexcept {
+    return Positions<Window>(first, count, stride_bytes);
 }
 
 inline namespace TEXGEN_BUILD {

@@ -8,6 +8,37 @@ inline Transform<Texture, ProjectorEye> texture_from_projector_eye(const Project
     return scale_bias(projector.conventions, region, depth) * projector.projection;
 }
 
+inline glm::dvec4 row_of(const glm::dmat4& matrix, glm::length_t row) noexcept {
+    return {matrix[0][row], matrix[1][row], matrix[2][row], matrix[3][row]};
+}
+
+// rows A^-1, each row solved and refined by itself. Precondition: A is regular.
+inline glm::dmat4 solve_rows(const CertifiedInverse& inverse, const glm::dmat4& rows) noexcept {
+    glm::dmat4 solved(0.0);
+    for (glm::length_t row = 0; row < 4; ++row) {
+        const glm::dvec4 solution = inverse.solve_row(row_of(rows, row));
+        for (glm::length_t column = 0; column < 4; ++column) solved[column][row] = solution[column];
+    }
+    return solved;
+}
+
+// A row's value at (x, y, z, 1).
+inline Bounded row_at(const glm::dmat4& matrix, glm::length_t row, const glm::dvec3& v) noexcept {
+    const double terms[] = {matrix[0][row] * v.x, matrix[1][row] * v.y, matrix[2][row] * v.z, matrix[3][row]};
+    Bounded sum{0.0, 0.0};
+    for (const double term : terms) {
+        sum.value += term;
+        sum.error += gamma(5) * magnitude(term);
+    }
+    return sum;
+}
+
+// Of what is rounded to a depth of the buffer, how far it may be from that.
+inline double depth_rounding(DepthBuffer buffer, double depth) noexcept {
+    const double steps = buffer == DepthBuffer::unorm16 ? 0x1p16 - 1.0 : 0x1p24 - 1.0;
+    return half_ulp(magnitude(depth)) + (buffer == DepthBuffer::float32 ? 0.0 : 0.6 / steps);
+}
+
 }  // namespace TEXGEN_DETAIL
 
 namespace TEXGEN_NAMESPACE {
@@ -31,18 +62,54 @@ inline EyeTexgen eye_linear(const ProjectorProjection& projection, const Transfo
     return scale_bias(conventions, region, depth) * projection * view;
 }
 
+inline std::optional<WindowTexgen> window_linear(const Projector& projector, const Projector& camera,
+                                                 const Viewport& viewport, TextureRegion region,
+                                                 DepthMapping depth) noexcept {
+    if (viewport.width == 0 || viewport.height == 0) return std::nullopt;
+    const detail::CertifiedInverse view(camera.view.matrix()), projection(camera.projection.matrix());
+    if (!view.regular() || !projection.regular()) return std::nullopt;
+    // What is far from the origin cancels in V_p V_c^-1, before anything else.
+    const glm::dmat4 projector_from_camera = detail::solve_rows(view, projector.view.matrix());
+    glm::dmat4 result = detail::solve_rows(
+        projection, detail::texture_from_projector_eye(projector, region, depth).matrix() * projector_from_camera);
+    // W^-1: x_ndc = (x - centre) / half, y likewise, and the depth from [0, 1].
+    const double half_x = 0.5 * viewport.width, half_y = 0.5 * viewport.height;
+    const double half_z = camera.conventions.depth == DepthRange::negative_one_to_one ? 0.5 : 1.0;
+    result[0] /= half_x;
+    result[1] /= half_y;
+    result[2] /= half_z;
+    result[3] -= (viewport.x + half_x) * result[0] + (viewport.y + half_y) * result[1] + (1.0 - half_z) * result[2];
+    return detail::is_finite(result) ? std::optional(WindowTexgen(result)) : std::nullopt;
+}
+
+inline glm::dvec2 depth_error_bound(const WindowTexgen& texture_from_window, glm::vec3 fragment,
+                                    DepthBuffer buffer) noexcept {
+    const glm::dmat4& m = texture_from_window.matrix();
+    const glm::dvec3 v = detail::widened(fragment);
+    const double rounding = detail::depth_rounding(buffer, v.z);
+    const detail::Bounded q = detail::row_at(m, 3, v);
+    const double least_q = q.value - q.error, slope_q = m[2][3];
+    const double last_q = least_q - 1.001 * rounding * detail::magnitude(slope_q);
+    glm::dvec2 bound(std::numeric_limits<double>::infinity());
+    if (!(last_q > 0.0)) return bound;
+    for (glm::length_t row = 0; row < 2; ++row) {
+        // With d more depth, s/q changes by d (s' q - q' s) / (q (q + d q')), for s' and q' the slopes.
+        const detail::Bounded s = detail::row_at(m, row, v);
+        const double slope = m[2][row], numerator = detail::magnitude(slope * q.value - slope_q * s.value);
+        const double size = detail::magnitude(slope) * (q.error + detail::gamma(2) * detail::magnitude(q.value)) +
+                            detail::magnitude(slope_q) * (s.error + detail::gamma(2) * detail::magnitude(s.value));
+        const double error = 1.001 * rounding * (numerator + size) / least_q / last_q;
+        if (error >= 0.0) bound[row] = error;
+    }
+    return bound;
+}
+
 template <class Space>
 std::optional<EyeTexgen> eye_planes_as_stored(const Transform<Texture, Space>& planes,
                                               const Transform<Eye, Space>& modelview) noexcept {
     const detail::CertifiedInverse inverse(modelview.matrix());
     if (!inverse.regular()) return std::nullopt;
-    glm::dmat4 stored(0.0);
-    for (glm::length_t row = 0; row < 4; ++row) {
-        glm::dvec4 plane(0.0);
-        for (int column = 0; column < 4; ++column) plane[column] = planes.matrix()[column][row];
-        plane = inverse.solve_row(plane);
-        for (glm::length_t column = 0; column < 4; ++column) stored[column][row] = plane[column];
-    }
+    const glm::dmat4 stored = detail::solve_rows(inverse, planes.matrix());
     if (!detail::is_finite(stored)) return std::nullopt;
     return EyeTexgen(stored);
 }
