@@ -49,7 +49,7 @@ inline bool is_proper(const Box& box) noexcept {
 }
 
 // Whether a box is inside the inner side k, exactly.
-inline bool is_inside_inner_side(const LitForms& forms, std::size_t k, const Box& box) noexcept {
+inline bool is_inside_inner_side(const LitForms& forms, std::size_t k, const Box& box, CloseRows& close) noexcept {
     const std::array<double, 4> form = forms.inner_side(k);
     Point vertex{};
     for (std::size_t j = 0; j < 3; ++j) {
@@ -57,7 +57,7 @@ inline bool is_inside_inner_side(const LitForms& forms, std::size_t k, const Box
         vertex[j] = widened((form[j] > 0.0 ? box.min : box.max)[static_cast<glm::length_t>(j)]);
         if (!is_finite(vertex[j])) return false;
     }
-    return forms.inner_sign_at(k, form, vertex) >= 0;
+    return forms.inner_sign_at(k, form, vertex, close) >= 0;
 }
 
 // What the five planes say of a box, exactly. For a NaN, and for forms of which nothing is known: partial.
@@ -84,9 +84,10 @@ inline Coverage exact_coverage(const LitForms& forms, const Box& box) noexcept {
         }
         return true;
     };
+    CloseRows close;
     const auto sign_at_vertex = [&](std::size_t k, bool largest) {
         Point vertex{};
-        return take_vertex(k, largest, vertex) ? forms.sign_at(k, vertex) : largest ? 1 : -1;
+        return take_vertex(k, largest, vertex) ? forms.sign_at(k, vertex, close) : largest ? 1 : -1;
     };
     double size = 0.0;
     for (glm::length_t j = 0; j < 3; ++j) size += larger(std::fabs(min[j]), std::fabs(max[j]));
@@ -94,7 +95,7 @@ inline Coverage exact_coverage(const LitForms& forms, const Box& box) noexcept {
     const auto is_inside_side = [&](std::size_t k) {
         Point vertex{};
         return (take_vertex(k, false, vertex) && forms.is_inside_at(k, vertex, size)) ||
-               is_inside_inner_side(forms, k, box);
+               is_inside_inner_side(forms, k, box, close);
     };
     if (sign_at_vertex(LitForms::q, true) <= 0) return Coverage::outside;
     bool is_inside = sign_at_vertex(LitForms::q, false) > 0;

@@ -135,8 +135,9 @@ Numbers numbers(const Parts&... parts) {
 }
 
 // A number of a scene is 0 or neither very small nor very large.
-inline bool is_zero_or_between(float value, float least, float largest) {
-    return value == 0.0f || (std::fabs(value) >= least && std::fabs(value) <= largest);
+template <class Real>
+bool is_zero_or_between(Real value, Real least, Real largest) {
+    return value == Real(0) || (std::fabs(value) >= least && std::fabs(value) <= largest);
 }
 
 inline double always(const Numbers&) { return limit::any; }
@@ -746,8 +747,15 @@ inline Numbers draw_spheres(Random& random) {
 inline constexpr Hostile hostile_spheres{draw_spheres,
                                          "drawn: spheres of any numbers, under an aligned projector or any matrix"};
 
+// Bodies of a world, and a matrix as cameras of such sizes make it, where a sine that is 0 may be 2^-54. (As is_of_a_scene().)
+inline bool are_of_a_scene(const Numbers& n) {
+    const auto body_end = n.end() - 16;
+    return std::all_of(n.begin(), body_end, [](double x) { return is_zero_or_between(x, 0x1p-20, 0x1p20); }) &&
+           std::all_of(body_end, n.end(), [](double x) { return is_zero_or_between(x, 0x1p-60, 0x1p20); });
+}
 template <class Body, std::size_t Count>
 Calls coverage_calls(const Numbers& n) {
+    if (!are_of_a_scene(n)) return {};
     Reader reader(n);
     std::vector<Body> all;
     for (std::size_t i = 0; i < body_pattern; ++i) {
@@ -772,6 +780,7 @@ Calls coverage_calls(const Numbers& n) {
 // Asked once: the volume is made for it.
 template <class Body>
 Calls one_question_calls(const Numbers& n) {
+    if (!are_of_a_scene(n)) return {};
     Reader reader(n);
     const glm::vec3 a = reader.vec3(), b = reader.vec3();
     Numbers matrix(n.end() - 16, n.end());

@@ -30,6 +30,14 @@ namespace TEXGEN_DETAIL {
 // The coordinates of a vertex, or of the middle of a sphere.
 using Point = std::array<double, 3>;
 
+// What T_s, T_t and T_q are at the point that was last asked about, each once it is needed: what the forms are in doubt at is
+// the apex almost always, where all of them meet.
+struct CloseRows {
+    bool is_made[3] = {};
+    Point point = {};
+    CloseSum row[3];
+};
+
 class LitForms {
 public:
     static constexpr std::size_t count = lit_form_count;
@@ -72,9 +80,10 @@ public:
     }
 
     // -1, 0, 1: the sign of form k at a finite point, exactly.
-    int sign_at(std::size_t k, const Point& point) const noexcept {
-        const BoundedForm& form = forms_[k];
-        return certain_sign(value_of(form.a, form.d, point), [&] { return exactly_at(k, weight_[k], point); });
+    int sign_at(std::size_t k, const Point& point, CloseRows& close) const noexcept {
+        const Bounded value = value_of(forms_[k].a, forms_[k].d, point);
+        if (std::fabs(value.value) > value.error) return value.value > 0.0 ? 1 : -1;
+        return close_sign_at(k, weight_[k], point, close);
     }
 
     // Whether form k is so large at a finite point that its inner side is above 0 at every point of that size.
@@ -85,8 +94,11 @@ public:
 
     // Side k, the inner one: its coefficients, each rounded once, and its sign at a finite point, exactly.
     std::array<double, 4> inner_side(std::size_t k) const noexcept { return form_of(k, inner_weight_[k]); }
-    int inner_sign_at(std::size_t k, const std::array<double, 4>& form, const Point& point) const noexcept {
-        return certain_sign(value_of(form, form[3], point), [&] { return exactly_at(k, inner_weight_[k], point); });
+    int inner_sign_at(std::size_t k, const std::array<double, 4>& form, const Point& point,
+                      CloseRows& close) const noexcept {
+        const Bounded value = value_of(form, form[3], point);
+        if (std::fabs(value.value) > value.error) return value.value > 0.0 ? 1 : -1;
+        return close_sign_at(k, inner_weight_[k], point, close);
     }
 
     // In float, scaled by powers of two so that one bound serves all. With u = 2^-24 a coefficient is rounded (1 u), as are
@@ -271,6 +283,32 @@ private:
             }
         }
         while (form.term_count < 2) form.terms[form.term_count++] = {0.0, 3};
+    }
+
+    // From the rows in two doubles, and at last exactly. of_row is -1, 0 or 1.
+    int close_sign_at(std::size_t k, const Weight& weight, const Point& point, CloseRows& close) const noexcept {
+        if (point != close.point) close = {{}, point, {}};
+        const auto row_at = [&](std::size_t i) -> const CloseSum& {
+            CloseSum& row = close.row[i];
+            if (!close.is_made[i]) {
+                close.is_made[i] = true;
+                row = {rows_[i][3], 0.0, 0.0};
+                for (std::size_t j = 0; j < 3; ++j) row.add_product(rows_[i][j], point[j]);
+            }
+            return row;
+        };
+        CloseSum sum{};
+        if (weight.of_row != 0.0) {
+            const CloseSum& row = row_at(k / 2 % 2);
+            sum = {weight.of_row * row.high, weight.of_row * row.low, row.lost};
+        }
+        const CloseSum& row_of_q = row_at(2);
+        sum.add_product(weight.of_q, row_of_q.high);
+        sum.add_product(weight.of_q, row_of_q.low);
+        sum.lost += 1.001 * std::fabs(weight.of_q) * row_of_q.lost;
+        const double value = sum.high + sum.low;
+        if (std::fabs(value) <= sum.lost && sum.lost > 0.0) return exactly_at(k, weight, point).sign();
+        return value > 0.0 ? 1 : value < 0.0 ? -1 : 0;
     }
 
     using Exact = Expansion<24>;
