@@ -172,6 +172,17 @@ void projectors(Input& input) {
                      "with identities the three texgen matrices are one");
             }
         }
+        const texgen::Viewport viewport{input.integer(-9, 9), input.integer(-9, 9), input.integer(-99, 99),
+                                        input.integer(-99, 99)};
+        const texgen::Projector camera{texgen::ProjectorProjection(input.wide_matrix()), projector->view, conventions};
+        const auto window = window_linear(*projector, input.coin() ? camera : *projector, viewport, region, depth);
+        must(!window || all_finite(window->matrix()), "a window's texgen matrix is finite");
+        must(!window || (viewport.width != 0 && viewport.height != 0), "a window without an area has none");
+        if (window) {
+            const auto buffer = static_cast<texgen::DepthBuffer>(input.integer(0, 2));
+            const glm::dvec2 bound = depth_error_bound(*window, input.vector3(), buffer);
+            must(bound.x >= 0.0 && bound.y >= 0.0, "a depth's error bound is no NaN, and not negative");
+        }
         const auto rows = planes(world);
         for (int row = 0; row < 4; ++row)
             for (int column = 0; column < 4; ++column)

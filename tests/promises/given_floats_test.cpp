@@ -276,6 +276,12 @@ std::array<float, 12> generated(const Numbers& n) {
 }
 
 template <class Rounding>
+glm::dvec2 bound_of_depth(const Numbers& n) {
+    return texgen::depth_error_bound(texgen::WindowTexgen(matrix<ByMemory>(n)), point<Rounding>(n, 16),
+                                     texgen::DepthBuffer::float32);
+}
+
+template <class Rounding>
 std::optional<glm::vec2> divided(const Numbers& n) {
     return texgen::divide(vector<Rounding>(n, 0));
 }
@@ -334,6 +340,7 @@ TEST_CASE("floats that are rounded in place give the results of those floats") {
         for (std::size_t k = 0; k < 8; ++k) REQUIRE(same(slide[k], other_slide[k]));
         REQUIRE(generated<InPlace>(numbers) == generated<ByMemory>(numbers));
         REQUIRE(of_surface<InPlace>(numbers) == of_surface<ByMemory>(numbers));
+        REQUIRE(bound_of_depth<InPlace>(numbers) == bound_of_depth<ByMemory>(numbers));
     }
 }
 

@@ -928,6 +928,31 @@ inline Calls texture_from_world_calls(const Numbers& n) {
             {texgen::ProjectorProjection(projection), texgen::ProjectorView(view), texgen::opengl}));
     });
 }
+// A camera's projection and view; the projector is an ordinary one.
+inline Numbers ordinary_camera(Random& random) {
+    const texgen::Projector camera = ordinary_projector(random);
+    return numbers(camera.projection.matrix(), camera.view.matrix());
+}
+inline Numbers draw_camera(Random& random) {
+    return random.coin() ? draw_matrix(random)
+                         : numbers(ordinary_projector(random).projection.matrix(),
+                                   random.rigid(random.power_of_ten(-10.0, 10.0)));
+}
+inline constexpr Hostile hostile_camera{draw_camera, "drawn: a camera at any distance, or almost singular matrices"};
+inline Calls window_linear_calls(const Numbers& n) {
+    Random random(5);
+    return matrix_calls(n,
+                        [projector = ordinary_projector(random)](const glm::dmat4& projection, const glm::dmat4& view) {
+                            const texgen::Projector camera{texgen::ProjectorProjection(projection),
+                                                           texgen::ProjectorView(view), texgen::opengl};
+                            keep(window_linear(projector, camera, {0, 0, 1024, 768}));
+                        });
+}
+inline Calls depth_bound_calls(const Numbers& n) {
+    return matrix_calls(n, [](const glm::dmat4& m, const glm::dmat4& numbers) {
+        keep(depth_error_bound(texgen::WindowTexgen(m), glm::vec3(numbers[0]), texgen::DepthBuffer::unorm24));
+    });
+}
 inline Calls to_texture_calls(const Numbers& n) {
     return calls_of([strq = Reader(n).vec4()] { keep(texgen::to_texture(strq, texgen::opengl)); });
 }
@@ -1254,6 +1279,10 @@ inline const std::array workloads{
     Workload{"object_linear", 0, detail::ordinary_matrix, detail::hostile_matrix, detail::composed_calls<true>,
              detail::always},
     Workload{"eye_linear", 0, detail::ordinary_matrix, detail::hostile_matrix, detail::composed_calls<false>,
+             detail::always},
+    Workload{"window_linear", 0, detail::ordinary_camera, detail::hostile_camera, detail::window_linear_calls,
+             detail::always},
+    Workload{"depth_error_bound", 0, detail::ordinary_matrix, detail::hostile_matrix, detail::depth_bound_calls,
              detail::always},
     Workload{"scale_bias", 0, detail::ordinary_strq, detail::hostile_numbers<4>, detail::scale_bias_calls,
              detail::always},

@@ -58,6 +58,10 @@ void print_projector(const texgen::Projector& projector) {
     model[3] = glm::dvec4(0.1, 0.2, 0.3, 1.0);
     const ObjectTexgen texgen = object_linear(projector, ModelMatrix(model));
     print("T_o", texgen);
+    const Projector camera{projector.projection, ProjectorView(view.matrix()), projector.conventions};
+    const WindowTexgen of_window = *window_linear(projector, camera, {0, 0, 64, 64});
+    print("T_w", of_window);
+    print("a depth's error", depth_error_bound(of_window, {20.5f, 30.5f, 0.5f}, DepthBuffer::unorm24));
     for (const glm::vec4& plane : planes(texgen)) print("plane", plane);
     for (const glm::vec4& plane : clip_planes(texgen, whole_texture())) print("clip plane", plane);
 
