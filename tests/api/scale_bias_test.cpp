@@ -29,8 +29,8 @@ using texgen::TextureRegion;
 
 Conventions random_conventions(Random& random) {
     return {random.coin() ? DepthRange::negative_one_to_one : DepthRange::zero_to_one,
-            random.coin() ? NdcY::up : NdcY::down,
-            random.coin() ? TextureOrigin::bottom_left : TextureOrigin::top_left};
+            random.coin() ? NdcY::up : NdcY::down, random.coin() ? TextureOrigin::bottom_left : TextureOrigin::top_left,
+            random.coin() ? texgen::Handedness::right : texgen::Handedness::left};
 }
 
 TextureRegion random_region(Random& random) {

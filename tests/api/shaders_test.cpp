@@ -440,7 +440,7 @@ struct DeferredScene {
 
 DeferredScene deferred_scene(Random& random) {
     const texgen::Conventions reversed{texgen::DepthRange::zero_to_one, texgen::NdcY::up,
-                                       texgen::TextureOrigin::bottom_left};
+                                       texgen::TextureOrigin::bottom_left, texgen::Handedness::right};
     const auto camera =
         texgen::make_projector(
             texgen::PerspectiveLens{

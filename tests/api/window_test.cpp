@@ -47,7 +47,8 @@ struct Scene {
 Conventions any_conventions(Random& random) {
     return {random.coin() ? texgen::DepthRange::zero_to_one : texgen::DepthRange::negative_one_to_one,
             random.coin() ? texgen::NdcY::down : texgen::NdcY::up,
-            random.coin() ? texgen::TextureOrigin::top_left : texgen::TextureOrigin::bottom_left};
+            random.coin() ? texgen::TextureOrigin::top_left : texgen::TextureOrigin::bottom_left,
+            random.coin() ? texgen::Handedness::right : texgen::Handedness::left};
 }
 
 std::optional<Projector> any_projector(Random& random, const texgen::Aim& aim) {
