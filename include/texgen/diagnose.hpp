@@ -51,6 +51,7 @@ enum class Defect {
     model_doubled,
     scale_bias_missing,
     scale_bias_doubled,
+    mixed_handedness,
     depth_range_mismatch,
     angle_unit_mistaken,
     upside_down,
@@ -103,6 +104,10 @@ inline constexpr std::array<DefectInWords, defect_count> defects_in_words{{
      "Multiply by scale_bias() from the left."},
     {Defect::scale_bias_doubled, "The scale-bias is in the matrix twice.",
      "Leave out one of them, in the matrix or in the shader."},
+    {Defect::mixed_handedness,
+     "The lens is made for the other handedness: it looks down +z where the conventions' eye looks down -z, or the "
+     "reverse.",
+     "Take view, lens and conventions for one handedness: left_handed(...) for LookAtLH and PerspectiveFovLH."},
     {Defect::depth_range_mismatch, "The depth range is not that of the conventions.",
      "Build projection and scale-bias for one range: [-1, 1] for OpenGL, [0, 1] for Direct3D, Metal and Vulkan."},
     {Defect::angle_unit_mistaken,

@@ -140,7 +140,7 @@ inline std::optional<ProjectorView> view_from_opencv(const glm::dmat3& rotation,
 // Guarantee: each element within 1 double ulp of its exact value, or 2^-96 of its terms where they cancel to less; no
 // allocation, noexcept.
 // Shape: world to the mirrored eye space; (n, d) over the world, n of any length. The handedness is the other one, as in every
-// mirror: what was front-facing faces back.
+// mirror: what was front-facing faces back. (To diagnose() it is said as LensFacts::mirrored.)
 // Bad input: empty where n is zero, and where the plane, the view or an element of the result is not finite.
 inline std::optional<ProjectorView> mirrored(const ProjectorView& view, const glm::dvec4& plane) noexcept;
 

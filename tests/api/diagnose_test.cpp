@@ -45,6 +45,7 @@ using texgen::DepthMapping;
 using texgen::DepthRange;
 using texgen::Diagnosis;
 using texgen::Eye;
+using texgen::Handedness;
 using texgen::LensFacts;
 using texgen::NdcY;
 using texgen::Object;
@@ -148,7 +149,8 @@ std::string text(const Parts& parts) {
                   hex(parts.projector->view.matrix()) + " conventions " +
                   std::to_string(static_cast<int>(c.depth.operator DepthRange())) +
                   std::to_string(static_cast<int>(c.ndc_y.operator NdcY())) +
-                  std::to_string(static_cast<int>(c.origin.operator TextureOrigin()));
+                  std::to_string(static_cast<int>(c.origin.operator TextureOrigin())) +
+                  std::to_string(static_cast<int>(c.handedness.operator Handedness()));
     }
     if (parts.pose) result += " pose " + hex(*parts.pose);
     if (parts.texgen) result += " texgen " + hex(*parts.texgen);
@@ -187,9 +189,9 @@ double depth_in(const Rig& rig, Random& random) {
 
 // The point that the slide's (x, y) in [-1, 1] falls on at that depth, relative to the projector, in the world.
 glm::dvec3 in_the_light(const Rig& rig, const glm::dmat4& p, double x, double y, double depth) {
-    const double w = p[2][3] * -depth + p[3][3];
-    const glm::dvec3 eye{(x * w - p[2][0] * -depth - p[3][0]) / p[0][0], (y * w - p[2][1] * -depth - p[3][1]) / p[1][1],
-                         -depth};
+    const double z = rig.conventions.handedness == Handedness::left ? depth : -depth;
+    const double w = p[2][3] * z + p[3][3];
+    const glm::dvec3 eye{(x * w - p[2][0] * z - p[3][0]) / p[0][0], (y * w - p[2][1] * z - p[3][1]) / p[1][1], z};
     const glm::dmat4 axes = transposed(rig.view);
     return eye.x * xyz(axes[0]) + eye.y * xyz(axes[1]) + eye.z * xyz(axes[2]);
 }
@@ -207,8 +209,8 @@ glm::dvec3 somewhere_lit(const Rig& rig, const glm::dmat4& p, Random& random) {
 
 Conventions any_conventions(Random& random) {
     return {random.coin() ? DepthRange::negative_one_to_one : DepthRange::zero_to_one,
-            random.coin() ? NdcY::up : NdcY::down,
-            random.coin() ? TextureOrigin::bottom_left : TextureOrigin::top_left};
+            random.coin() ? NdcY::up : NdcY::down, random.coin() ? TextureOrigin::bottom_left : TextureOrigin::top_left,
+            random.coin() ? Handedness::right : Handedness::left};
 }
 
 // How far out of the ordinary a rig may be.
@@ -245,7 +247,7 @@ Rig random_rig(const Range& range, Random& random) {
     rig.aim.position = distance * random.direction();
     rig.aim.target = rig.aim.position + (1.0 + 0.01 * distance) * random.direction();
     rig.aim.up = random.direction();
-    const auto view = texgen::look_at(rig.aim);
+    const auto view = texgen::look_at(rig.aim, rig.conventions.handedness);
     REQUIRE(view);
     rig.view = view->matrix();
     rig.in = static_cast<In>(random.integer(0, 2));
@@ -464,6 +466,7 @@ enum class Thing {
     side_of_t,
     depth_of_lens,
     signs,
+    hand,
     aspect,
     exchange,
     transposed_projection,
@@ -502,6 +505,7 @@ constexpr std::array kinds{
     Kind{"a lens of the other range", Defect::depth_range_mismatch, Thing::depth_of_lens},
     Kind{"degrees for radians", Defect::angle_unit_mistaken, Thing::signs},
     Kind{"a mirrored lens", Defect::mirrored, Thing::signs},
+    Kind{"a lens of the other hand", Defect::mixed_handedness, Thing::hand},
     Kind{"a lens upside-down", Defect::upside_down, Thing::signs},
     Kind{"height over width", Defect::aspect_inverted, Thing::aspect},
     Kind{"view and projection exchanged", Defect::view_projection_swapped, Thing::exchange},
@@ -534,13 +538,17 @@ const char* one_hides(Thing a, Thing b) {
         return "there is no one scale-bias to be wrong in itself";
     if (a == Thing::q && (b == Thing::points || b == Thing::precision)) return "without q no point has coordinates";
     if (a == Thing::width) {
-        if (b == Thing::signs || b == Thing::aspect || b == Thing::depth_of_lens)
+        if (b == Thing::signs || b == Thing::hand || b == Thing::aspect || b == Thing::depth_of_lens)
             return "a lens without width is no lens, upright or not";
         if (is_composition(b) || b == Thing::points || b == Thing::precision || b == Thing::age)
             return "the line that it lights is that of many products";
     }
     if (a == Thing::exchange && (b == Thing::transposed_projection || b == Thing::transposed_view))
         return "a transposed matrix is neither a lens nor a pose, in whose place it may stand";
+    if (a == Thing::hand) {
+        if (b == Thing::signs) return "with both axes turned round it is the matrix of the other sign";
+        if (b == Thing::precision) return "what would be lit is behind";
+    }
     if (a == Thing::precision) {
         if (is_composition(b) || b == Thing::exchange || b == Thing::transposed_projection ||
             b == Thing::transposed_view || b == Thing::points)
@@ -582,6 +590,7 @@ Rig rig_for(const Faults& faults, Random& random) {
         if (faults.has(Thing::pose) && !needs_eye && rig.in != In::object) continue;
         const bool needs_lens = faults.has(Thing::aspect) || faults.has("degrees for radians");
         if (needs_lens && !rig.lens.is_symmetric()) continue;
+        if (faults.has(Defect::mixed_handedness) && rig.lens.kind == LensKind::orthographic) continue;
         if (faults.has(Thing::precision) && dot3(rig.aim.position, rig.aim.position) < 1e10) continue;
         return rig;
     }
@@ -589,7 +598,7 @@ Rig rig_for(const Faults& faults, Random& random) {
 
 Conventions of_other_range(Conventions c) {
     return {c.depth == DepthRange::zero_to_one ? DepthRange::negative_one_to_one : DepthRange::zero_to_one, c.ndc_y,
-            c.origin};
+            c.origin, c.handedness};
 }
 
 // The projector's two matrices, with what is wrong with them.
@@ -604,6 +613,7 @@ Projector spoilt_projector(const Rig& rig, const Faults& faults) {
         p[0][0] = focal_length / lens.aspect;
         p[1][1] = std::copysign(1.0, p[1][1]) * focal_length;
     }
+    if (faults.has("a lens of the other hand")) p[2] = -p[2];
     for (int i = 0; i < 4; ++i) {
         if (faults.has("a mirrored lens")) p[i][0] = -p[i][0];
         if (faults.has("a lens upside-down")) p[i][1] = -p[i][1];
@@ -841,7 +851,7 @@ TEST_CASE("no valid set-up of round numbers is found fault with, where factors c
         glm::dvec3 direction = axis();
         while (std::fabs(dot3(direction, rig.aim.up)) > 0.5) direction = axis();
         rig.aim.target = rig.aim.position + direction;
-        rig.view = texgen::look_at(rig.aim)->matrix();
+        rig.view = texgen::look_at(rig.aim, rig.conventions.handedness)->matrix();
         rig.in = static_cast<In>(random.integer(0, 2));
         if (rig.in != In::world && random.coin()) {
             rig.pose[3] = glm::dvec4(rig.aim.position + 2.0 * direction, 1.0);
@@ -912,7 +922,7 @@ Rig aligned_rig(Random& random) {
         direction += random.uniform(-2.0, 2.0) * aside;
     }
     rig.aim.target = rig.aim.position + direction;
-    const auto view = texgen::look_at(rig.aim);
+    const auto view = texgen::look_at(rig.aim, rig.conventions.handedness);
     if (!view) return aligned_rig(random);
     rig.view = view->matrix();
     rig.in = static_cast<In>(random.integer(0, 2));
@@ -1063,9 +1073,10 @@ TEST_CASE("a texgen matrix alone shows what its rows can show") {
 
 TEST_CASE("a projector alone shows what its matrices can show") {
     for (const Kind& kind : kinds) {
-        const bool is_shown = kind.thing == Thing::signs || kind.thing == Thing::exchange ||
-                              kind.thing == Thing::transposed_projection || kind.thing == Thing::transposed_view ||
-                              kind.thing == Thing::width || kind.thing == Thing::depth_of_lens;
+        const bool is_shown = kind.thing == Thing::signs || kind.thing == Thing::hand ||
+                              kind.thing == Thing::exchange || kind.thing == Thing::transposed_projection ||
+                              kind.thing == Thing::transposed_view || kind.thing == Thing::width ||
+                              kind.thing == Thing::depth_of_lens;
         if (!is_shown) continue;
         Random random(604);
         int found = 0;

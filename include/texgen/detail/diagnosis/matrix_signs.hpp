@@ -133,10 +133,17 @@ inline bool is_lens_transposed(const glm::dmat4& p) noexcept {
     return perspective || (is_affine_transposed(p) && is_lens(transposed(p)));
 }
 
+// Whether the lens looks down the other axis than eyes of that handedness do. Parallel light does not say where it looks; and
+// where both axes of the picture are turned round as well, the matrix has the other sign.
+inline bool mistakes_handedness(const glm::dmat4& p, Handedness handedness, double width, double height) noexcept {
+    const bool is_left = p[2].w > 0.0;
+    return is_perspective(p) && is_left != (handedness == Handedness::left) && (width > 0.0 || height > 0.0);
+}
+
 // near and far land on the ends of the range, and infinity beyond the far end: at 1 or more, or reversed at the low end
 // or less. So nothing valid has infinity between the ends, or a plane at the low end of the other range.
-inline bool mistakes_depth(const glm::dmat4& p, DepthRange range, const std::optional<double>& z_near,
-                           const std::optional<double>& z_far) noexcept {
+inline bool mistakes_depth(const glm::dmat4& p, DepthRange range, Handedness handedness,
+                           const std::optional<double>& z_near, const std::optional<double>& z_far) noexcept {
     constexpr double rounding = 0x1p-12;
     const double low = range == DepthRange::negative_one_to_one ? -1.0 : 0.0;
     const double other_low = -1.0 - low;
@@ -144,7 +151,8 @@ inline bool mistakes_depth(const glm::dmat4& p, DepthRange range, const std::opt
     if (is_perspective(p) && at_infinity > low + rounding && at_infinity < 1.0 - rounding) return true;
     const auto lands_on_other = [&](const std::optional<double>& distance) {
         if (!distance) return false;
-        const double z = p[2].w > 0.0 ? *distance : -*distance;
+        const bool is_ahead = is_perspective(p) ? p[2].w > 0.0 : handedness == Handedness::left;
+        const double z = is_ahead ? *distance : -*distance;
         const double depth = is_finite(z) ? (p[2].z * z + p[3].z) / (p[2].w * z + p[3].w) : at_infinity;
         return std::fabs(depth - other_low) < rounding;
     };
@@ -193,13 +201,16 @@ inline bool is_opengl_default(const glm::dmat4& m) noexcept {
     return m == initial;
 }
 
-// Whether the picture is mirrored in the world: to the right, up and forwards, as s, t and q say it, are a left-handed
-// system. Parallel light does not say which way is forwards.
-inline bool is_mirrored(const glm::dmat4& texgen, const glm::dmat4& world_from_space, TextureOrigin origin) noexcept {
+// Whether the picture is mirrored in the world: to the right, up and forwards, as s, t and q say it, have no positive
+// determinant in a left-handed one, or have one in a right-handed one. Parallel light does not say which way is forwards.
+inline bool is_mirrored(const glm::dmat4& texgen, const glm::dmat4& world_from_space,
+                        Conventions conventions) noexcept {
     const Minor picture = minor(texgen, {0, 1, 3}, axes);
     const Minor pose = minor(world_from_space, axes, axes);
     if (!picture.stands_out || !pose.stands_out) return false;
-    return ((picture.value > 0.0) == (pose.value > 0.0)) == (origin == TextureOrigin::bottom_left);
+    const bool is_left =
+        ((picture.value > 0.0) == (pose.value > 0.0)) == (conventions.origin == TextureOrigin::bottom_left);
+    return is_left != (conventions.handedness == Handedness::left);
 }
 
 }  // namespace TEXGEN_DETAIL

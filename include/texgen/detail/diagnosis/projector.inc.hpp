@@ -21,7 +21,9 @@ inline void examine_lens(const glm::dmat4& p, bool view_reflects, Conventions co
     const double width = p[0].x / unit;
     const double height = (conventions.ndc_y == NdcY::up ? p[1].y : -p[1].y) / unit;
     if (unit < 0.0) diagnosis.add(Defect::everything_behind);
-    if (mistakes_depth(p, conventions.depth, facts.z_near, facts.z_far)) diagnosis.add(Defect::depth_range_mismatch);
+    if (mistakes_handedness(p, conventions.handedness, width, height)) diagnosis.add(Defect::mixed_handedness);
+    if (mistakes_depth(p, conventions.depth, conventions.handedness, facts.z_near, facts.z_far))
+        diagnosis.add(Defect::depth_range_mismatch);
     if (is_perspective(p) && facts.fovy && mistakes_unit(height, *facts.fovy))
         diagnosis.add(Defect::angle_unit_mistaken);
 

@@ -76,8 +76,8 @@ inline bool examine_alone(const glm::dmat4& texgen, const SetupMatrices& setup, 
     const std::optional<Conventions> conventions =
         setup.projector != nullptr ? std::optional(setup.projector->conventions) : setup.conventions;
     const bool is_placed = setup.in_world_space || setup.pose != nullptr;
-    if (conventions && is_placed && !setup.lens.mirrored &&
-        is_mirrored(texgen, setup.pose != nullptr ? *setup.pose : glm::dmat4(1.0), conventions->origin))
+    if (conventions && is_placed && !setup.lens.mirrored && !diagnosis.contains(Defect::mixed_handedness) &&
+        is_mirrored(texgen, setup.pose != nullptr ? *setup.pose : glm::dmat4(1.0), *conventions))
         diagnosis.add(Defect::mirrored);
     return false;
 }
