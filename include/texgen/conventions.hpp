@@ -21,8 +21,8 @@ enum class TextureOrigin { bottom_left, top_left };          // the corner of th
 // left-handed one down +z.
 enum class Handedness { right, left };
 
-// Three independent choices of a graphics API, and the world's handedness. There is no default: the caller says which ones the
-// numbers follow.
+// Three independent choices of a graphics API, and the world's handedness. There is no default: the caller says which ones
+// the numbers follow.
 struct Conventions {
     detail::Required<DepthRange> depth;
     detail::Required<NdcY> ndc_y;

@@ -47,8 +47,8 @@ struct OrthographicLens {
 // -0.5; or at their corners, so that the picture begins at 0 and the centre of its first pixel is (0.5, 0.5).
 enum class PixelCentre { integer, half };
 
-// The lens of a calibrated camera, in pixels, y down: K = (fx skew cx; 0 fy cy; 0 0 1), and the size of the picture. z_near and
-// z_far as those of a PerspectiveLens.
+// The lens of a calibrated camera, in pixels, y down: K = (fx skew cx; 0 fy cy; 0 0 1), and the size of the picture. z_near
+// and z_far as those of a PerspectiveLens.
 struct PinholeLens {
     double fx, fy, cx, cy, width, height, z_near, z_far;
     detail::Required<PixelCentre> centre;
@@ -101,14 +101,14 @@ inline std::optional<ProjectorProjection> frustum(const FrustumLens& lens, Conve
 // Source: OpenGL 2.1 specification, 2.11.2 (glOrtho).
 inline std::optional<ProjectorProjection> orthographic(const OrthographicLens& lens, Conventions conventions) noexcept;
 
-// Makes the projection of a calibrated camera, so that a projector throws a picture where the camera saw it: (s, t) of
-// the whole texture is the pixel K (R X + t) over the size, from the corner that the texture's origin is. For OpenGL, with the
-// pixel centres at half,
+// Makes the projection of a calibrated camera, so that a projector throws a picture where the camera saw it. With (u, v) the
+// pixel K (R X + t), counted from the picture's edge, s is u/width, and t is v/height, or 1 - v/height where the texture's
+// origin is at the bottom. For OpenGL, with the pixel centres at half,
 //
 //     | 2 fx/width  -2 skew/width  1 - 2 cx/width        0      |
 //     |     0        2 fy/height   2 cy/height - 1       0      |
 //
-// and the rows z and w of perspective(). With the pixel centres at integers cx + 1/2 and cy + 1/2 stand for cx and cy.
+// and the rows z and w of perspective(). With the pixel centres at integers, cx + 1/2 and cy + 1/2 stand for cx and cy.
 // Guarantee, shape: as perspective().
 // Bad input: empty unless fx, fy, width, height > 0 and 0 < z_near < z_far, and all but z_far are finite; and where doubles
 // cannot hold the matrix, as perspective().
@@ -128,7 +128,8 @@ inline std::optional<ProjectorProjection> pinhole(const PinholeLens& lens, Conve
 inline std::optional<ProjectorView> look_at(const Aim& aim, Handedness handedness = Handedness::right) noexcept;
 
 // Makes the view of a camera that OpenCV has posed, x_camera = R x + t, with x to the right, y down and z forwards:
-// diag(1, -1, -1) [R|t], or diag(1, -1, 1) [R|t] where the world is left-handed (then R mirrors). rotation[column][row] is the element of R; cv::Rodrigues() makes it of solvePnP()'s vector.
+// diag(1, -1, -1) [R|t], or diag(1, -1, 1) [R|t] where the world is left-handed (then R mirrors). rotation[column][row] is
+// the element of R, which cv::Rodrigues() makes of solvePnP()'s vector.
 // Guarantee: each element is kept exactly; no allocation, noexcept.
 // Shape: world to projector eye space.
 // Bad input: empty for what is not finite. That R is a rotation is not asked.
@@ -139,12 +140,13 @@ inline std::optional<ProjectorView> view_from_opencv(const glm::dmat3& rotation,
 // with it throws a picture that was rendered with it back onto the plane: a planar reflection.
 // Guarantee: each element within 1 double ulp of its exact value, or 2^-96 of its terms where they cancel to less; no
 // allocation, noexcept.
-// Shape: world to the mirrored eye space; (n, d) over the world, n of any length. The handedness is the other one, as in every
-// mirror: what was front-facing faces back. (To diagnose() it is said as LensFacts::mirrored.)
+// Shape: world to the mirrored eye space; (n, d) over the world, n of any length. As in every mirror the handedness is the
+// other one: what was front-facing faces back, and diagnose() is told so by LensFacts::mirrored.
 // Bad input: empty where n is zero, and where the plane, the view or an element of the result is not finite.
 inline std::optional<ProjectorView> mirrored(const ProjectorView& view, const glm::dvec4& plane) noexcept;
 
-// Makes a projector of a lens and an aim, both of the conventions' handedness: empty where either is. Guarantees as those of the lens and of look_at().
+// Makes a projector of a lens and an aim, both of the conventions' handedness: empty where either is. Guarantees as those of
+// the lens and of look_at().
 inline std::optional<Projector> make_projector(const PerspectiveLens& lens, const Aim& aim,
                                                Conventions conventions) noexcept;
 inline std::optional<Projector> make_projector(const FrustumLens& lens, const Aim& aim,

@@ -30,7 +30,7 @@ using texgen::Handedness;
 using texgen::left_handed;
 using texgen::Projector;
 
-// DirectXMath's functions as their documentation states them, for row vectors: element [row][column] of M in v M. In 400 bits.
+// DirectXMath's functions as their documentation states them, for row vectors: element [row][column] of M in v M.
 namespace direct3d_math {
 
 RealMatrix look_at(const Aim& aim, Handedness handedness) {

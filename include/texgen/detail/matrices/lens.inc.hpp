@@ -122,7 +122,7 @@ inline std::optional<ProjectorProjection> orthographic(const OrthographicLens& l
     return detail::checked_projection(matrix, conventions);
 }
 
-// With x, y, z of the camera, x = x_eye, y = -y_eye and z = -z_eye: u = (fx x + skew y) / z + cx, and NDC x = 2 u / width - 1.
+// With the camera's x = x_eye, y = -y_eye and z = -z_eye: u = (fx x + skew y) / z + cx, and NDC x = 2 u / width - 1.
 inline std::optional<ProjectorProjection> pinhole(const PinholeLens& lens, Conventions conventions) noexcept {
     if (!(lens.fx > 0.0 && lens.fy > 0.0 && lens.width > 0.0 && lens.height > 0.0)) return std::nullopt;
     if (!(detail::is_finite(lens.width) && detail::is_finite(lens.height))) return std::nullopt;
