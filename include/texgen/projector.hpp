@@ -6,6 +6,7 @@
 #include "detail/language.hpp"
 
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include <glm/mat3x3.hpp>
@@ -115,6 +116,26 @@ inline std::optional<ProjectorProjection> orthographic(const OrthographicLens& l
 // Source: Hartley and Zisserman, Multiple View Geometry, 6.1; OpenCV's camera model without distortion.
 inline std::optional<ProjectorProjection> pinhole(const PinholeLens& lens, Conventions conventions) noexcept;
 
+// Narrows a lens to a picture of another aspect, width over height, so that all of the picture is in the light of the lens as
+// it was, about the same axis: what remains of the light would be bars.
+// Guarantee: the fovy within 4 double ulp, the sides of a rectangle within 2^-50 of its largest; one side of the picture
+// keeps its place, and a lens of that aspect stays as it is. No allocation, noexcept.
+// Bad input: a lens that perspective(), frustum() or orthographic() refuses, where the aspect is not positive and finite, or
+// the lens is one of those.
+inline PerspectiveLens contain(const PerspectiveLens& lens, double aspect) noexcept;
+inline FrustumLens contain(const FrustumLens& lens, double aspect) noexcept;
+inline OrthographicLens contain(const OrthographicLens& lens, double aspect) noexcept;
+
+// Crops a picture of another aspect, width over height, to the part about its middle that fills the light of a lens.
+// Guarantee: within 2^-51 of the largest side of the picture's region; a picture of the lens's aspect stays as it is. No
+// allocation, noexcept.
+// Bad input: a region without points where an aspect, the picture's or the lens's, is not positive and finite.
+inline TextureRegion cover(const PerspectiveLens& lens, double aspect,
+                           TextureRegion picture = whole_texture()) noexcept;
+inline TextureRegion cover(const FrustumLens& lens, double aspect, TextureRegion picture = whole_texture()) noexcept;
+inline TextureRegion cover(const OrthographicLens& lens, double aspect,
+                           TextureRegion picture = whole_texture()) noexcept;
+
 // Makes the view V_p of a projector that stands at the position and looks at the target.
 // Guarantee: each element of the rotation within 4 double ulp of 1 (2^-50) of the definition's, its rows orthonormal within
 // that, with `up` as near to the view as 2^-98 rad; the translation -R position is within 1 ulp of its exact value for the
@@ -159,4 +180,5 @@ inline std::optional<Projector> make_projector(const PinholeLens& lens, const Ai
 }  // namespace TEXGEN_NAMESPACE
 
 #include "detail/matrices/aim.inc.hpp"
+#include "detail/matrices/aspect.inc.hpp"
 #include "detail/matrices/lens.inc.hpp"

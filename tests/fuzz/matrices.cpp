@@ -113,6 +113,12 @@ void projectors(Input& input) {
     bool any_bad = false;
     for (const double f : field) any_bad = any_bad || !std::isfinite(f);
     const auto& [a, b, c, d, e, f] = field;
+    const texgen::PerspectiveLens any_lens{texgen::radians(a), b, c, d};
+    const auto contained = perspective(contain(any_lens, e), conventions);
+    must(!contained || (a > 0.0 && b > 0.0 && c > 0.0 && c < d && e > 0.0), "a lens that is none contains no picture");
+    const texgen::TextureRegion crop = cover(any_lens, e, region);
+    if (region.min().x <= region.max().x && region.max().x < 1e300 && region.min().x > -1e300)
+        must(!(crop.min().x < region.min().x || crop.max().x > region.max().x), "a crop is a part");
     std::optional<texgen::Projector> projector;
     switch (input.integer(0, 3)) {
         case 0: {

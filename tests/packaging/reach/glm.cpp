@@ -43,6 +43,9 @@ void print_projector(const texgen::Projector& projector) {
     const glm::vec4 clip(0.25f, -0.5f, 0.75f, 2.0f);
     print("remapped", to_texture(clip, projector.conventions));
     const ViewMatrix view(look_at(Aim{.position = {1, 2, 30}, .target = {0, 1, 0}, .up = {0.5, 1, 0}})->matrix());
+    const PerspectiveLens wide{degrees(40), 16.0 / 9.0, 0.1, 100.0};
+    print("contained", contain(wide, 2.5).fovy.in_radians());
+    print("covered", cover(wide, 2.5).min());
     print("mirrored", *mirrored(projector.view, {0.25, 1.0, -0.5, 3.0}));
     print("carried", eye_linear(projector.projection, Transform<ProjectorEye, Eye>(view.matrix()), opengl));
     const CameraPose pose = inverse_rigid(view);

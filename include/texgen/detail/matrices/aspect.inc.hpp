@@ -1,0 +1,78 @@
+// The bodies of what fits a picture into a lens of another aspect, of projector.hpp.
+
+namespace TEXGEN_DETAIL {
+
+inline bool is_aspect(double aspect) noexcept { return aspect > 0.0 && is_finite(aspect); }
+
+inline double aspect_of(const PerspectiveLens& lens) noexcept { return lens.aspect; }
+
+// In halves: no difference leaves the range.
+template <class RectangularLens>
+double aspect_of(const RectangularLens& lens) noexcept {
+    return std::fabs((0.5 * lens.right - 0.5 * lens.left) / (0.5 * lens.top - 0.5 * lens.bottom));
+}
+
+// Narrows [low, high] to that fraction about its middle.
+inline void narrow(double& low, double& high, double fraction) noexcept {
+    const double cut = (0.5 - 0.5 * fraction) * high - (0.5 - 0.5 * fraction) * low;
+    low += cut;
+    high -= cut;
+}
+
+template <class RectangularLens>
+RectangularLens contain_rectangle(RectangularLens lens, double aspect) noexcept {
+    const double of_lens = aspect_of(lens);
+    if (!is_aspect(aspect) || !is_aspect(of_lens)) {
+        lens.left = lens.right = std::numeric_limits<double>::quiet_NaN();
+    } else if (aspect < of_lens) {
+        narrow(lens.left, lens.right, aspect / of_lens);
+    } else {
+        narrow(lens.bottom, lens.top, of_lens / aspect);
+    }
+    return lens;
+}
+
+inline TextureRegion cover_aspect(double of_lens, double aspect, const TextureRegion& picture) noexcept {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    glm::dvec2 low = (picture.min)(), high = (picture.max)();
+    if (!is_aspect(aspect) || !is_aspect(of_lens)) return atlas_tile({nan, nan}, {nan, nan});
+    if (aspect > of_lens) {
+        narrow(low.x, high.x, of_lens / aspect);
+    } else {
+        narrow(low.y, high.y, aspect / of_lens);
+    }
+    return atlas_tile(low, high);
+}
+
+}  // namespace TEXGEN_DETAIL
+
+namespace TEXGEN_NAMESPACE {
+
+inline PerspectiveLens contain(const PerspectiveLens& lens, double aspect) noexcept {
+    PerspectiveLens result = lens;
+    result.aspect = aspect;
+    const double half_angle = 0.5 * lens.fovy.in_radians();
+    if (!detail::is_aspect(lens.aspect)) result.aspect = lens.aspect;
+    // An angle that is none keeps its number: its tangent could be that of another.
+    if (aspect > lens.aspect && half_angle > 0.0 && half_angle < 0.5 * 3.14159265358979323846)
+        result.fovy = radians(2.0 * std::atan(std::tan(half_angle) * (lens.aspect / aspect)));
+    return result;
+}
+inline FrustumLens contain(const FrustumLens& lens, double aspect) noexcept {
+    return detail::contain_rectangle(lens, aspect);
+}
+inline OrthographicLens contain(const OrthographicLens& lens, double aspect) noexcept {
+    return detail::contain_rectangle(lens, aspect);
+}
+
+inline TextureRegion cover(const PerspectiveLens& lens, double aspect, TextureRegion picture) noexcept {
+    return detail::cover_aspect(detail::aspect_of(lens), aspect, picture);
+}
+inline TextureRegion cover(const FrustumLens& lens, double aspect, TextureRegion picture) noexcept {
+    return detail::cover_aspect(detail::aspect_of(lens), aspect, picture);
+}
+inline TextureRegion cover(const OrthographicLens& lens, double aspect, TextureRegion picture) noexcept {
+    return detail::cover_aspect(detail::aspect_of(lens), aspect, picture);
+}
+
+}  // namespace TEXGEN_NAMESPACE
