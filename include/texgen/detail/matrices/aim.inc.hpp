@@ -89,19 +89,18 @@ inline std::optional<ProjectorView> look_at(const Aim& aim, Handedness handednes
 
 inline std::optional<ProjectorView> view_from_opencv(const glm::dmat3& rotation, const glm::dvec3& translation,
                                                      Handedness handedness) noexcept {
-    glm::dmat4 matrix(rotation);
-    matrix[3] = {translation.x, translation.y, translation.z, 1.0};
-    for (glm::length_t column = 0; column < 4; ++column) {
-        matrix[column].y = -matrix[column].y;
-        if (handedness == Handedness::right) matrix[column].z = -matrix[column].z;
-    }
+    const double forward = handedness == Handedness::right ? -1.0 : 1.0;
+    const auto turned = [forward](const glm::dvec3& v, double w) { return glm::dvec4(v.x, -v.y, forward * v.z, w); };
+    const glm::dmat4 matrix{turned(rotation[0], 0.0), turned(rotation[1], 0.0), turned(rotation[2], 0.0),
+                            turned(translation, 1.0)};
     return detail::is_finite(matrix) ? std::optional(ProjectorView(matrix)) : std::nullopt;
 }
 
 inline std::optional<ProjectorView> mirrored(const ProjectorView& view, const glm::dvec4& plane) noexcept {
-    const glm::dvec3 normal = detail::scaled_near_one(glm::dvec3(plane));
+    const glm::dvec3 direction{plane.x, plane.y, plane.z};
+    const glm::dvec3 normal = detail::scaled_near_one(direction);
     if (!(detail::length(normal) > 0.0)) return std::nullopt;
-    const double distance = std::scalbn(plane.w, -std::ilogb(detail::largest(glm::dvec3(plane))));
+    const double distance = std::scalbn(plane.w, -std::ilogb(detail::largest(direction)));
     detail::DoubleDouble squared{0.0, 0.0};
     for (glm::length_t i = 0; i < 3; ++i) squared = detail::add_product(squared, normal[i], normal[i]);
     // V R = V - f (n, d), f = 2 V (n, 0) / |n|^2 a column, in two doubles.
