@@ -1,10 +1,11 @@
 #pragma once
 
-// Floor 0: the input of every interpolator, and what it needs.
+// Floor 0: what is interpolated and what is culled, and what either needs.
 
 #include "detail/language.hpp"
 
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
 namespace TEXGEN_NAMESPACE {
@@ -45,5 +46,23 @@ struct Viewport {
 //   divide_and_test  one division a fragment; the sign of q or the sides of the region are tested
 // Where the region's border crosses an affine or quadratic rectangle, the mask is compared from the coordinates.
 enum class Work { nothing, affine, quadratic, divide, divide_and_test };
+
+// How much of a box or a sphere the slide lights. A point is lit where q > 0 and (s, t) is in the closed region, as real numbers or as the
+// floats that they are rounded to, which project() looks at.
+//   outside  no point of the closed body is lit, in either way
+//   partial  neither of the others, or not provably one of them
+//   inside   all points are lit, in both ways
+enum class Coverage { outside, partial, inside };
+
+// The points between two corners, both included. Extents may be infinite.
+struct Box {
+    glm::vec3 min, max;
+};
+
+// The points within `radius` of the centre, those at that distance included.
+struct Sphere {
+    glm::vec3 centre;
+    float radius;
+};
 
 }  // namespace TEXGEN_NAMESPACE

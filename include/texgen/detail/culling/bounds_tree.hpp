@@ -1,12 +1,10 @@
 #pragma once
 
-// The objects' bounds in the world, and what a projector lights of them at most. What the tree leaves out is dark for
-// certain; what it keeps is tested again in the object's own space.
+// A tree over the objects' bounds in the world, which leaves out what a projector does not light.
 
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -14,174 +12,11 @@
 #include <utility>
 #include <vector>
 
-#include <glm/mat4x4.hpp>
-#include <glm/vec3.hpp>
-#include <glm/vec4.hpp>
-
-#include "../../conventions.hpp"
-#include "../../coverage.hpp"
-#include "../arithmetic/inverse.hpp"
-#include "../arithmetic/nearest.hpp"
+#include "../../primitives.hpp"
 #include "../arithmetic/rounding.hpp"
-#include "../arithmetic/widen.hpp"
+#include "world_forms.hpp"
 
 namespace TEXGEN_DETAIL {
-
-// How many times the smallest element that is not 0 the largest is; infinite where an element is beyond 2^+-200, so that
-// a product of three matrices neither overflows nor underflows. r is in no form, and may be small.
-//
-// Each element of such a product, rounded, is a multiple of the product of the factors' last bits. So where the quotients of
-// M, and of S P and V together, are no larger than these, no element of T_o that is not 0 is below 2^-600 of the largest,
-// and coverage() of it is decided.
-inline double range_of(const glm::dmat4& m, bool without_r = false) noexcept {
-    double smallest = 0x1p200;
-    double largest = 0x1p-200;
-    for (glm::length_t column = 0; column < 4; ++column) {
-        for (glm::length_t row = 0; row < 4; ++row) {
-            const double size = std::fabs(m[column][row]);
-            if (!(size <= 0x1p200)) return std::numeric_limits<double>::infinity();
-            if (size == 0.0 || (without_r && row == 2)) continue;
-            if (size < 0x1p-200) return std::numeric_limits<double>::infinity();
-            smallest = smaller(smallest, size);
-            largest = larger(largest, size);
-        }
-    }
-    return largest / smallest;
-}
-inline constexpr double object_range = 0x1p240;
-inline constexpr double projector_range = 0x1p190;
-static_assert(object_range * projector_range * 0x1p165 < 0x1p600);  // three times 53 bits, two sums of four, and 2
-
-// Where M v is for the points v of an object's box. All numbers are finite.
-struct WorldBounds {
-    std::array<double, 3> min, max;
-    double size;  // >= |M| |v| in each component, which the rounding of any product with M goes by; < 0: no point
-
-    static constexpr double unbounded_size = 0x1p500;
-    static constexpr WorldBounds none() noexcept { return {{}, {}, -1.0}; }
-    static constexpr WorldBounds unbounded() noexcept { return {{}, {}, unbounded_size}; }
-
-    friend bool operator==(const WorldBounds&, const WorldBounds&) = default;
-};
-
-// Unbounded where a number is not finite, M is not affine or its exponents are far apart. Four terms a component, each rounded at most five times.
-inline WorldBounds world_bounds(const glm::dmat4& m, const Box& box) noexcept {
-    WorldBounds result = WorldBounds::none();
-    const glm::dvec3 low = widened(box.min);
-    const glm::dvec3 high = widened(box.max);
-    result.size = 0.0;
-    for (glm::length_t i = 0; i < 3; ++i) {
-        double least = m[3][i];
-        double largest = m[3][i];
-        double size = std::fabs(m[3][i]);
-        for (glm::length_t j = 0; j < 3; ++j) {
-            const double of_low = m[j][i] * low[j];
-            const double of_high = m[j][i] * high[j];
-            least += smaller(of_low, of_high);
-            largest += larger(of_low, of_high);
-            size += std::fabs(of_low) + std::fabs(of_high);
-        }
-        const auto axis = static_cast<std::size_t>(i);
-        result.min[axis] = least - gamma(8) * size;
-        result.max[axis] = largest + gamma(8) * size;
-        if (!(size < 0x1p400)) return WorldBounds::unbounded();
-        result.size = larger(result.size, size);
-    }
-    const bool is_affine = m[0][3] == 0.0 && m[1][3] == 0.0 && m[2][3] == 0.0 && m[3][3] == 1.0;
-    if (!is_affine || !(range_of(m) <= object_range)) return WorldBounds::unbounded();
-    return low.x > high.x || low.y > high.y || low.z > high.z ? WorldBounds::none() : result;
-}
-
-// The five forms of a slide in the world (the sides as u - min q and max q - u, and q), with room for what any T_o that is
-// composed in double may differ by. With T = S P V, computed in double, each element of T, of T_o = (S P)(V M) and of a
-// form errs by at most gamma(16) of the same product of magnitudes, and so does the form's value at M v: in all by less than
-// slack = gamma(64) (|S P| |V|)_form (size, size, size, 1). What rounding makes of a side (see RoundedSide) moves the form
-// by at most its width times |T_q| |v|, which is part of the slack. Where a form is below -slack over the bounds, so is that
-// of T_o over the box, and where all are above slack, so are those.
-class WorldForms {
-public:
-    // texture_from_eye is S P. Where coverage() may not be able to say, the forms say nothing; nor does that of an infinite
-    // side.
-    WorldForms(const glm::dmat4& texture_from_eye, const glm::dmat4& view, const TextureRegion& region) noexcept {
-        const glm::dmat4 matrix = texture_from_eye * view;
-        if (!(range_of(texture_from_eye, true) * range_of(view) <= projector_range)) return;
-        constexpr double infinity = std::numeric_limits<double>::infinity();
-        for (glm::length_t k = 0; k < 2; ++k) {
-            if (!LitForms::is_usable_side((region.min)()[k], -infinity)) return;
-            if (!LitForms::is_usable_side((region.max)()[k], infinity)) return;
-        }
-        glm::dmat4 magnitude(0.0);
-        for (glm::length_t column = 0; column < 4; ++column)
-            for (glm::length_t row = 0; row < 4; ++row)
-                for (glm::length_t k = 0; k < 4; ++k)
-                    magnitude[column][row] += std::fabs(texture_from_eye[k][row]) * std::fabs(view[column][k]);
-        for (std::size_t k = 0; k < 2; ++k) {
-            const auto row = static_cast<glm::length_t>(k);
-            const double min = (region.min)()[row];
-            const double max = (region.max)()[row];
-            set(2 * k, matrix, magnitude, row, 1.0, -min, width_of(RoundedSide::of_min(min)));
-            set(2 * k + 1, matrix, magnitude, row, -1.0, max, width_of(RoundedSide::of_max(max)));
-        }
-        set(4, matrix, magnitude, 3, 0.0, 1.0, 0.0);
-    }
-
-    // outside and inside for certain. A form over bounds is its value in the middle, give or take that of half the extents;
-    // the rounding of those is part of the slack.
-    Coverage coverage(const WorldBounds& bounds) const noexcept {
-        if (bounds.size < 0.0) return Coverage::outside;
-        double middle[3];
-        double half[3];
-        for (std::size_t j = 0; j < 3; ++j) {
-            middle[j] = 0.5 * (bounds.max[j] + bounds.min[j]);
-            half[j] = 0.5 * (bounds.max[j] - bounds.min[j]);
-        }
-        bool is_inside = true;
-        for (const Form& form : forms_) {
-            const auto& a = form.a;
-            const double value = a[0] * middle[0] + a[1] * middle[1] + a[2] * middle[2] + form.d;
-            const double change = std::fabs(a[0]) * half[0] + std::fabs(a[1]) * half[1] + std::fabs(a[2]) * half[2];
-            const double slack = form.slack_per_size * bounds.size + form.slack;
-            if (value + change < -slack) return Coverage::outside;
-            is_inside = is_inside && value - change > slack;
-        }
-        return is_inside ? Coverage::inside : Coverage::partial;
-    }
-
-private:
-    // The given side is between the outer and the inner one.
-    static double width_of(const RoundedSide& side) noexcept { return std::fabs(side.inner - side.outer); }
-
-    // of_row * row + of_q * q, times a power of two: the sum of the magnitudes becomes about 1. The side may be off by
-    // `width`.
-    void set(std::size_t k, const glm::dmat4& matrix, const glm::dmat4& magnitude, glm::length_t row, double of_row,
-             double of_q, double width) noexcept {
-        Form form;
-        double sizes[4];
-        double coefficients[4];
-        double sum = 0.0;
-        for (glm::length_t j = 0; j < 4; ++j) {
-            coefficients[j] = of_row * matrix[j][row] + of_q * matrix[j][3];
-            sizes[j] = std::fabs(of_row) * magnitude[j][row] + std::fabs(of_q) * magnitude[j][3];
-            sum += sizes[j];
-        }
-        if (!(sum > 0x1p-400 && sum < 0x1p400)) return;
-        const double scale = reciprocal_power_of_two(sum);
-        for (std::size_t j = 0; j < 3; ++j) form.a[j] = scale * coefficients[j];
-        form.d = scale * coefficients[3];
-        const double of_width = 1.1 * width * scale;
-        form.slack_per_size = gamma(64) * scale * (sizes[0] + sizes[1] + sizes[2]) + 0x1p-100 +
-                              of_width * (magnitude[0][3] + magnitude[1][3] + magnitude[2][3]);
-        form.slack = gamma(64) * scale * sizes[3] + 0x1p-100 + of_width * magnitude[3][3];
-        forms_[k] = form;
-    }
-
-    struct Form {
-        std::array<double, 3> a{};
-        double d = 0.0;
-        double slack_per_size = 1.0, slack = 1.0;
-    };
-    std::array<Form, 5> forms_;
-};
 
 class BoundsTree {
 public:

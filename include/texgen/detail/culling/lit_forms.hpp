@@ -24,6 +24,7 @@
 #include "../arithmetic/rounding.hpp"
 #include "../simd/box_kernels.hpp"
 #include "lit_test.hpp"
+#include "slide_planes.hpp"
 
 namespace TEXGEN_DETAIL {
 
@@ -44,21 +45,18 @@ public:
     static constexpr std::size_t q = side_count;
 
     LitForms(const glm::dmat4& matrix, const TextureRegion& region) noexcept {
-        const glm::dvec2& min = (region.min)();
-        const glm::dvec2& max = (region.max)();
-        is_usable_ = take_matrix(matrix) && take_sides(min, max);
-        lights_nothing_ =
-            is_finite(matrix) && (!(min.x <= max.x && min.y <= max.y) || (is_usable_ && is_zero(rows_[2])));
+        is_usable_ = take_matrix(matrix) && take_sides(region);
+        lights_nothing_ = is_finite(matrix) && (is_empty(region) || (is_usable_ && is_zero(rows_[2])));
         if (!is_usable_ || lights_nothing_) return;
         for (std::size_t k = 0; k < count; ++k) take_form(k);
         add_edge_forms();
         add_axis_forms();
     }
 
-    // Whether exact sums with this side of a region stay in the range of double; `none` is the infinity that is no side.
-    static bool is_usable_side(double side, double none) noexcept {
-        const double size = std::fabs(side);
-        return side == none || size == 0.0 || (size >= 0x1p-200 && size <= 0x1p200);
+    // Whether exact sums with this side of a region stay in the range of double.
+    static bool is_usable_side(const SlidePlane& side) noexcept {
+        const double size = std::fabs(side.bound);
+        return side.bound == side.none() || size == 0.0 || (size >= 0x1p-200 && size <= 0x1p200);
     }
 
     // Whether every point is dark: the region is empty or q is 0 everywhere.
@@ -69,7 +67,7 @@ public:
     bool are_usable() const noexcept { return is_usable_; }
 
     // Form k, times a positive number that brings its largest a near to 1.
-    const BoundedForm& operator[](std::size_t k) const noexcept { return forms_[k]; }
+    const LinearForm& operator[](std::size_t k) const noexcept { return forms_[k]; }
 
     // |a| of form k, or up to 2^-49 of it more.
     double slope(std::size_t k) const noexcept { return slopes_[k]; }
@@ -109,7 +107,7 @@ public:
     // A form is worth as much as it changes within the scene. How large that is, the distances of the sides from the
     // origin tell: a form that hardly changes there (q, nearly orthographic) is not scaled up to them.
     FloatForms in_float() const noexcept {
-        const auto gradient = [](const BoundedForm& form) {
+        const auto gradient = [](const LinearForm& form) {
             return std::fabs(form.a[0]) + std::fabs(form.a[1]) + std::fabs(form.a[2]);
         };
         double extent = 0.0;
@@ -120,7 +118,7 @@ public:
         double largest_d = 0.0;
         double narrowing = 0.0;
         for (std::size_t k = 0; k < count; ++k) {
-            const BoundedForm& form = forms_[k];
+            const LinearForm& form = forms_[k];
             const double size = larger(gradient(form), extent > 0.0 ? std::fabs(form.d) / extent : 0.0);
             const double scale = size > 0x1p-900 && size < 0x1p900 ? 0.125 * reciprocal_power_of_two(size) : 0.0;
             for (std::size_t j = 0; j < 3; ++j) {
@@ -154,7 +152,7 @@ public:
     // a combination of the five with weights that are exactly >= 0. Where one of them is negative over all of a convex
     // body, nothing of the body is lit. A pointer and a count: the constraints of a span's constructor would take every
     // user longer to compile than all of this header.
-    const BoundedForm* separating() const noexcept { return separating_.data(); }
+    const LinearForm* separating() const noexcept { return separating_.data(); }
     std::size_t separating_count() const noexcept { return separating_count_; }
 
 private:
@@ -195,22 +193,21 @@ private:
 
     // An infinite side is none, and q takes its place: it is one of the five all the same. An inner side that no float is
     // inside of is where -q is not below 0: nowhere in front.
-    bool take_sides(const glm::dvec2& min, const glm::dvec2& max) noexcept {
+    bool take_sides(const TextureRegion& region) noexcept {
+        const auto planes = slide_planes(region);
         for (std::size_t k = 0; k < side_count; ++k) {
-            const bool is_min = k % 2 == 0;
-            const double side = (is_min ? min : max)[static_cast<glm::length_t>(k / 2)];
-            const double none = is_min ? -infinity : infinity;
-            if (!is_usable_side(side, none)) return false;
-            const RoundedSide rounded = is_min ? RoundedSide::of_min(side) : RoundedSide::of_max(side);
+            const SlidePlane& plane = planes[k + 1];
+            if (!is_usable_side(plane)) return false;
+            const RoundedSide rounded = RoundedSide::of(plane);
             const auto weight = [&](double u) {
-                if (u == none) return Weight{0.0, 1.0};
-                if (u == -none) return Weight{0.0, -1.0};
-                return is_min ? Weight{1.0, -u} : Weight{-1.0, u};
+                if (u == plane.none()) return Weight{0.0, 1.0};
+                if (u == -plane.none()) return Weight{0.0, -1.0};
+                return Weight{plane.sign, -plane.sign * u};
             };
             side_[k] = rounded.outer;
             weight_[k] = weight(rounded.outer);
             inner_weight_[k] = weight(rounded.inner);
-            narrowing_[k] = side == none ? 0.0 : std::fabs(rounded.inner - rounded.outer);
+            narrowing_[k] = plane.bound == plane.none() ? 0.0 : std::fabs(rounded.inner - rounded.outer);
         }
         weight_[q] = {0.0, 1.0};
         return true;
@@ -239,7 +236,7 @@ private:
         const Row form = form_of(k, weight_[k]);
         const double largest = larger(larger(std::fabs(form[0]), std::fabs(form[1])), std::fabs(form[2]));
         const double scale = reciprocal_power_of_two(largest > 0.0 ? largest : larger(std::fabs(form[3]), 0x1p-900));
-        BoundedForm& bounded = forms_[k];
+        LinearForm& bounded = forms_[k];
         for (std::size_t j = 0; j < 3; ++j) {
             bounded.a[j] = scale * form[j];
             bounded.uses[j] = form[j] != 0.0;
@@ -252,7 +249,7 @@ private:
     }
 
     // What the coefficients carry already, and 8 u of each term for its own rounding, for the sums and for the bound's.
-    static void set_errors(BoundedForm& form, const Point& error_of_a, double error_of_d) noexcept {
+    static void set_errors(LinearForm& form, const Point& error_of_a, double error_of_d) noexcept {
         form.error_a = 0.0;
         for (std::size_t j = 0; j < 3; ++j)
             form.error_a = larger(form.error_a, 1.001 * (error_of_a[j] + gamma(8) * std::fabs(form.a[j])));
@@ -325,78 +322,8 @@ private:
         return sum;
     }
 
-    // The planes through an edge of the pyramid, where sides f and g meet, and parallel to an axis of the space: with
-    // coefficients f_k and g_k of that axis, |g_k| f + |f_k| g has none where f_k and g_k have opposite signs. The other
-    // coefficients are two products of rounded numbers and a sum: 4 u of the terms.
-    void add_edge_forms() noexcept {
-        for (std::size_t s = 0; s < 2; ++s) {
-            for (std::size_t t = 2; t < 4; ++t) {
-                const BoundedForm& f = forms_[s];
-                const BoundedForm& g = forms_[t];
-                for (std::size_t axis = 0; axis < 3; ++axis) {
-                    if (!(f.a[axis] < 0.0 ? g.a[axis] > 0.0 : f.a[axis] > 0.0 && g.a[axis] < 0.0)) continue;
-                    const double of_f = std::fabs(g.a[axis]);
-                    const double of_g = std::fabs(f.a[axis]);
-                    BoundedForm form{};
-                    Point error{};
-                    for (std::size_t j = 0; j < 3; ++j) {
-                        form.uses[j] = j != axis && (f.uses[j] || g.uses[j]);
-                        if (!form.uses[j]) continue;
-                        form.a[j] = of_f * f.a[j] + of_g * g.a[j];
-                        error[j] = gamma(5) * (of_f * std::fabs(f.a[j]) + of_g * std::fabs(g.a[j]));
-                    }
-                    form.d = of_f * f.d + of_g * g.d;
-                    set_errors(form, error, gamma(5) * (of_f * std::fabs(f.d) + of_g * std::fabs(g.d)));
-                    separating_[separating_count_++] = form;
-                }
-            }
-        }
-    }
-
-    // The planes through the apex that have x, y or z alone. alpha T_s + beta T_t + gamma T_q with the cofactors of that
-    // column of the 3x3 of the rows has no coefficient in the two others, and where alpha s + beta t + gamma has one sign
-    // at the corners of the region, it has it in all of the pyramid.
-    void add_axis_forms() noexcept {
-        const auto minor_of = [this](std::size_t k, std::size_t l, std::size_t m, std::size_t n) {
-            const double first = rows_[k][m] * rows_[l][n];
-            const double second = rows_[k][n] * rows_[l][m];
-            return Bounded{first - second, gamma(3) * (std::fabs(first) + std::fabs(second)) + 0x1p-1000};
-        };
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const std::size_t m = (axis + 1) % 3;
-            const std::size_t n = (axis + 2) % 3;
-            const Bounded cofactor[3] = {minor_of(1, 2, m, n), minor_of(2, 0, m, n), minor_of(0, 1, m, n)};
-            const auto dot = [&](double s, double t, double of_q) {
-                const double terms[3] = {cofactor[0].value * s, cofactor[1].value * t, cofactor[2].value * of_q};
-                const double error = cofactor[0].error * std::fabs(s) + cofactor[1].error * std::fabs(t) +
-                                     cofactor[2].error * std::fabs(of_q);
-                const double magnitude = std::fabs(terms[0]) + std::fabs(terms[1]) + std::fabs(terms[2]);
-                return Bounded{terms[0] + terms[1] + terms[2], 1.001 * error + gamma(5) * magnitude + 0x1p-1000};
-            };
-            bool is_positive = true;
-            bool is_negative = true;
-            for (const double s : {side_[0], side_[1]}) {
-                for (const double t : {side_[2], side_[3]}) {
-                    const Bounded corner = dot(s, t, 1.0);
-                    const bool is_certain = std::fabs(corner.value) >= corner.error && corner.error < 0x1p1000;
-                    is_positive = is_positive && is_certain && corner.value > 0.0;
-                    is_negative = is_negative && is_certain && corner.value < 0.0;
-                }
-            }
-            if (is_positive == is_negative) continue;
-            const double sign = is_positive ? 1.0 : -1.0;
-            const Bounded a = dot(rows_[0][axis], rows_[1][axis], rows_[2][axis]);
-            const Bounded d = dot(rows_[0][3], rows_[1][3], rows_[2][3]);
-            BoundedForm form{};
-            form.a[axis] = sign * a.value;
-            form.uses[axis] = true;
-            form.d = sign * d.value;
-            Point error{};
-            error[axis] = a.error;
-            set_errors(form, error, d.error);
-            separating_[separating_count_++] = form;
-        }
-    }
+    void add_edge_forms() noexcept;
+    void add_axis_forms() noexcept;
 
     static constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -406,12 +333,14 @@ private:
     std::array<Weight, count> weight_{};
     std::array<Weight, side_count> inner_weight_{};
     double largest_q_ = 0.0;  // of the three coefficients
-    std::array<BoundedForm, count> forms_{};
+    std::array<LinearForm, count> forms_{};
     std::array<double, count> slopes_{};
-    std::array<BoundedForm, 15> separating_{};
+    std::array<LinearForm, 15> separating_{};
     std::size_t separating_count_ = 0;
     bool is_usable_;
     bool lights_nothing_;
 };
 
 }  // namespace TEXGEN_DETAIL
+
+#include "separating_forms.inc.hpp"

@@ -10,6 +10,7 @@
 #include "../arithmetic/nearest.hpp"
 #include "../arithmetic/widen.hpp"
 #include "../language.hpp"
+#include "slide_planes.hpp"
 
 namespace TEXGEN_DETAIL {
 
@@ -34,6 +35,9 @@ struct RoundedSide {
     static RoundedSide of_max(double max) noexcept {
         const RoundedSide mirrored = of_min(-max);
         return {-mirrored.outer, -mirrored.inner};
+    }
+    static RoundedSide of(const SlidePlane& plane) noexcept {
+        return plane.sign > 0.0 ? of_min(plane.bound) : of_max(plane.bound);
     }
 };
 

@@ -128,14 +128,14 @@ void bound(const DoubleForms& forms, const BoxBlock& boxes, BoxBounds& bounds) n
 
 // What a form does not use is skipped, whatever the box has there. A NaN (of an infinity) proves nothing.
 template <class CompiledWhereCalled = void>
-void separate(const BoundedForm* forms, std::size_t count, const BoxBlock& boxes, double* least_of_largest) noexcept {
+void separate(const LinearForm* forms, std::size_t count, const BoxBlock& boxes, double* least_of_largest) noexcept {
     for (std::size_t i = 0; i < box_block; i += static_cast<std::size_t>(lanes)) {
         Doubles least = Doubles{} + 1.0;
         Doubles size[3];
         for (std::size_t j = 0; j < 3; ++j)
             size[j] = maximum(0.0 - load<Doubles>(boxes.min[j] + i), load<Doubles>(boxes.max[j] + i));
         for (std::size_t k = 0; k < count; ++k) {
-            const BoundedForm& form = forms[k];
+            const LinearForm& form = forms[k];
             Doubles largest = Doubles{} + (form.d + form.error_d);
             for (std::size_t j = 0; j < 3; ++j) {
                 if (!form.uses[j]) continue;

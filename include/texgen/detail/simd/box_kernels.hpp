@@ -9,9 +9,9 @@
 
 namespace TEXGEN_DETAIL {
 
-// a . (x, y, z) + d, known to within error_a (|x| + |y| + |z|) + error_d when it is computed in double in any order. A
-// coordinate whose coefficient is exactly 0 is not used: there a box may be infinite.
-struct BoundedForm {
+// a . (x, y, z) + d, known to within error_a size + error_d when it is computed in double in any order, where the size of a
+// point is |x| + |y| + |z|. A coordinate whose coefficient is exactly 0 is not used: there a box may be infinite.
+struct LinearForm {
     std::array<double, 3> a;
     double d;
     double error_a, error_d;
@@ -55,10 +55,7 @@ struct DoubleForms {
     std::array<Form, lit_form_count> form;
 };
 
-// What the five forms say of a box: the numbers of Coverage's enumerators, or doubt.
-inline constexpr int box_outside = 0;
-inline constexpr int box_partial = 1;
-inline constexpr int box_inside = 2;
+// What the five forms say of a box: the number of a Coverage (0 outside, 1 partial, 2 inside), or doubt.
 inline constexpr int box_doubtful = 3;
 
 // classify() takes a multiple of box_quantum.
@@ -84,7 +81,7 @@ struct BoxKernels {
     // What doubles are certain of, and where they are not, pairs of doubles. For proper boxes, which may be infinite.
     void (*bound)(const DoubleForms& forms, const BoxBlock& boxes, BoxBounds& bounds) noexcept;
     // The least over the forms of the largest value over each box, never below the exact one.
-    void (*separate)(const BoundedForm* forms, std::size_t count, const BoxBlock& boxes,
+    void (*separate)(const LinearForm* forms, std::size_t count, const BoxBlock& boxes,
                      double* least_of_largest) noexcept;
 };
 

@@ -1,0 +1,165 @@
+#pragma once
+
+// Where objects are in the world, and what a projector lights of it at most. What is outside there is dark for certain; what
+// is not is asked about again in the object's own space.
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+
+#include "../../conventions.hpp"
+#include "../../primitives.hpp"
+#include "../arithmetic/rounding.hpp"
+#include "../arithmetic/widen.hpp"
+#include "lit_forms.hpp"
+#include "slide_planes.hpp"
+
+namespace TEXGEN_DETAIL {
+
+// How many times the smallest element that is not 0 the largest is; infinite where an element is beyond 2^+-200, so that
+// a product of three matrices neither overflows nor underflows. r is in no form, and may be small.
+//
+// Each element of such a product, rounded, is a multiple of the product of the factors' last bits. So where the quotients of
+// M, and of S P and V together, are no larger than these, no element of T_o that is not 0 is below 2^-600 of the largest,
+// and coverage() of it is decided.
+inline double range_of(const glm::dmat4& m, bool without_r = false) noexcept {
+    double smallest = 0x1p200;
+    double largest = 0x1p-200;
+    for (glm::length_t column = 0; column < 4; ++column) {
+        for (glm::length_t row = 0; row < 4; ++row) {
+            const double size = std::fabs(m[column][row]);
+            if (!(size <= 0x1p200)) return std::numeric_limits<double>::infinity();
+            if (size == 0.0 || (without_r && row == 2)) continue;
+            if (size < 0x1p-200) return std::numeric_limits<double>::infinity();
+            smallest = smaller(smallest, size);
+            largest = larger(largest, size);
+        }
+    }
+    return largest / smallest;
+}
+inline constexpr double object_range = 0x1p240;
+inline constexpr double projector_range = 0x1p190;
+static_assert(object_range * projector_range * 0x1p165 < 0x1p600);  // three times 53 bits, two sums of four, and 2
+
+// Where M v is for the points v of an object's box. All numbers are finite.
+struct WorldBounds {
+    std::array<double, 3> min, max;
+    double size;  // >= |M| |v| in each component, which the rounding of any product with M goes by; < 0: no point
+
+    static constexpr double unbounded_size = 0x1p500;
+    static constexpr WorldBounds none() noexcept { return {{}, {}, -1.0}; }
+    static constexpr WorldBounds unbounded() noexcept { return {{}, {}, unbounded_size}; }
+
+    friend bool operator==(const WorldBounds&, const WorldBounds&) = default;
+};
+
+// Unbounded where a number is not finite, M is not affine or its exponents are far apart. Four terms a component, each rounded at most five times.
+inline WorldBounds world_bounds(const glm::dmat4& m, const Box& box) noexcept {
+    WorldBounds result = WorldBounds::none();
+    const glm::dvec3 low = widened(box.min);
+    const glm::dvec3 high = widened(box.max);
+    result.size = 0.0;
+    for (glm::length_t i = 0; i < 3; ++i) {
+        double least = m[3][i];
+        double largest = m[3][i];
+        double size = std::fabs(m[3][i]);
+        for (glm::length_t j = 0; j < 3; ++j) {
+            const double of_low = m[j][i] * low[j];
+            const double of_high = m[j][i] * high[j];
+            least += smaller(of_low, of_high);
+            largest += larger(of_low, of_high);
+            size += std::fabs(of_low) + std::fabs(of_high);
+        }
+        const auto axis = static_cast<std::size_t>(i);
+        result.min[axis] = least - gamma(8) * size;
+        result.max[axis] = largest + gamma(8) * size;
+        if (!(size < 0x1p400)) return WorldBounds::unbounded();
+        result.size = larger(result.size, size);
+    }
+    const bool is_affine = m[0][3] == 0.0 && m[1][3] == 0.0 && m[2][3] == 0.0 && m[3][3] == 1.0;
+    if (!is_affine || !(range_of(m) <= object_range)) return WorldBounds::unbounded();
+    return low.x > high.x || low.y > high.y || low.z > high.z ? WorldBounds::none() : result;
+}
+
+// The five forms of a slide in the world (the sides as u - min q and max q - u, and q), with room for what any T_o that is
+// composed in double may differ by. With T = S P V, computed in double, each element of T, of T_o = (S P)(V M) and of a
+// form errs by at most gamma(16) of the same product of magnitudes, and so does the form's value at M v: in all by less than
+// slack = gamma(64) (|S P| |V|)_form (size, size, size, 1). What rounding makes of a side (see RoundedSide) moves the form
+// by at most its width times |T_q| |v|, which is part of the slack. Where a form is below -slack over the bounds, so is that
+// of T_o over the box, and where all are above slack, so are those.
+class WorldForms {
+public:
+    // texture_from_eye is S P. Where coverage() may not be able to say, the forms say nothing; nor does that of an infinite
+    // side.
+    WorldForms(const glm::dmat4& texture_from_eye, const glm::dmat4& view, const TextureRegion& region) noexcept {
+        const glm::dmat4 matrix = texture_from_eye * view;
+        if (!(range_of(texture_from_eye, true) * range_of(view) <= projector_range)) return;
+        const auto planes = slide_planes(region);
+        for (const SlidePlane& plane : planes)
+            if (!LitForms::is_usable_side(plane)) return;
+        glm::dmat4 magnitude(0.0);
+        for (glm::length_t column = 0; column < 4; ++column)
+            for (glm::length_t row = 0; row < 4; ++row)
+                for (glm::length_t k = 0; k < 4; ++k)
+                    magnitude[column][row] += std::fabs(texture_from_eye[k][row]) * std::fabs(view[column][k]);
+        for (std::size_t k = 0; k < planes.size(); ++k) set(forms_[k], matrix, magnitude, planes[k]);
+    }
+
+    // outside and inside for certain. A form over bounds is its value in the middle, give or take that of half the extents;
+    // the rounding of those is part of the slack.
+    Coverage coverage(const WorldBounds& bounds) const noexcept {
+        if (bounds.size < 0.0) return Coverage::outside;
+        double middle[3];
+        double half[3];
+        for (std::size_t j = 0; j < 3; ++j) {
+            middle[j] = 0.5 * (bounds.max[j] + bounds.min[j]);
+            half[j] = 0.5 * (bounds.max[j] - bounds.min[j]);
+        }
+        bool is_inside = true;
+        for (const LinearForm& form : forms_) {
+            const auto& a = form.a;
+            const double value = a[0] * middle[0] + a[1] * middle[1] + a[2] * middle[2] + form.d;
+            const double change = std::fabs(a[0]) * half[0] + std::fabs(a[1]) * half[1] + std::fabs(a[2]) * half[2];
+            const double slack = form.error_a * bounds.size + form.error_d;
+            if (value + change < -slack) return Coverage::outside;
+            is_inside = is_inside && value - change > slack;
+        }
+        return is_inside ? Coverage::inside : Coverage::partial;
+    }
+
+private:
+    // sign (row - bound q), times a power of two: the sum of the magnitudes becomes about 1. The given side is between the
+    // outer and the inner one, and may be off by that.
+    static void set(LinearForm& form, const glm::dmat4& matrix, const glm::dmat4& magnitude,
+                    const SlidePlane& plane) noexcept {
+        const RoundedSide side = RoundedSide::of(plane);
+        const double width = plane.coordinate == 3 ? 0.0 : std::fabs(side.inner - side.outer);
+        const double of_q = -plane.sign * plane.bound;
+        double sizes[4];
+        double coefficients[4];
+        double sum = 0.0;
+        for (glm::length_t j = 0; j < 4; ++j) {
+            coefficients[j] = plane.sign * matrix[j][plane.coordinate] + of_q * matrix[j][3];
+            sizes[j] = magnitude[j][plane.coordinate] + std::fabs(of_q) * magnitude[j][3];
+            sum += sizes[j];
+        }
+        if (!(sum > 0x1p-400 && sum < 0x1p400)) return;
+        const double scale = reciprocal_power_of_two(sum);
+        for (std::size_t j = 0; j < 3; ++j) form.a[j] = scale * coefficients[j];
+        form.d = scale * coefficients[3];
+        const double of_width = 1.1 * width * scale;
+        form.error_a = gamma(64) * scale * (sizes[0] + sizes[1] + sizes[2]) + 0x1p-100 +
+                       of_width * (magnitude[0][3] + magnitude[1][3] + magnitude[2][3]);
+        form.error_d = gamma(64) * scale * sizes[3] + 0x1p-100 + of_width * magnitude[3][3];
+    }
+
+    // What is not set says nothing.
+    static constexpr LinearForm nothing{{}, 0.0, 1.0, 1.0, {}};
+    std::array<LinearForm, 5> forms_{nothing, nothing, nothing, nothing, nothing};
+};
+
+}  // namespace TEXGEN_DETAIL
