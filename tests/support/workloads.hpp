@@ -17,6 +17,7 @@
 #include <vector>
 
 #include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
@@ -33,6 +34,7 @@
 #include "texgen/interpolate.hpp"
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
+#include "texgen/scale_bias.hpp"
 #include "texgen/scene.hpp"
 #include "texgen/surface.hpp"
 #include "texgen/texcoord.hpp"
@@ -1123,21 +1125,47 @@ inline Calls unit_batch_calls(const Numbers& n) {
 // ---- Diagnosis ---------------------------------------------------------------------------------------------------------
 
 // A projection, a view, a model, and what claims to be their texgen matrix.
-inline Numbers ordinary_setup(Random& random) {
+inline Numbers setup_of(const texgen::Projector& projector, const texgen::ModelMatrix& model,
+                        const glm::dmat4& texgen) {
+    return numbers(projector.projection.matrix(), projector.view.matrix(), model.matrix(), texgen);
+}
+
+// What users upload: composed in double as a product is given here, or in float from its factors.
+template <class... Factors>
+glm::dmat4 composed(bool in_float, const Factors&... factors) {
+    return in_float ? glm::dmat4((glm::mat4(factors) * ...)) : (factors * ...);
+}
+
+// A set-up with one defect: the scale-bias or the model left out, or there twice, V before P, or the transpose.
+inline Numbers setup_with_one_defect(Random& random) {
     const texgen::Projector projector = ordinary_projector(random);
     const texgen::ModelMatrix model(random.rigid(1.0));
-    return numbers(projector.projection.matrix(), projector.view.matrix(), model.matrix(),
-                   object_linear(projector, model).matrix());
+    const glm::dmat4 s = texgen::scale_bias(projector.conventions).matrix(), p = projector.projection.matrix(),
+                     v = projector.view.matrix(), x = model.matrix();
+    const bool in_float = random.coin();
+    const std::array wrong{composed(in_float, p, v, x),    composed(in_float, s, s, p, v, x),
+                           composed(in_float, s, p, v),    composed(in_float, s, p, v, x, x),
+                           composed(in_float, s, v, p, x), glm::transpose(composed(in_float, s, p, v, x))};
+    return setup_of(projector, model, wrong[static_cast<std::size_t>(random.integer(0, 5))]);
 }
+
+inline Numbers valid_setup(Random& random) {
+    const texgen::Projector projector = ordinary_projector(random);
+    const texgen::ModelMatrix model(random.rigid(1.0));
+    return setup_of(projector, model,
+                    composed(random.coin(), texgen::scale_bias(projector.conventions).matrix(),
+                             projector.projection.matrix(), projector.view.matrix(), model.matrix()));
+}
+
 inline Numbers draw_setup(Random& random) {
-    Numbers n = ordinary_setup(random);
+    Numbers n = random.coin() ? valid_setup(random) : setup_with_one_defect(random);
     const int changes = random.integer(0, 6);
     for (int i = 0; i < changes; ++i) n[static_cast<std::size_t>(random.integer(0, 63))] = any_float(random);
     if (random.integer(0, 3) == 0) std::rotate(n.begin(), n.begin() + 16 * random.integer(1, 3), n.end());
     return n;
 }
 inline constexpr Hostile hostile_setup{draw_setup, "drawn: a set-up with wrong elements"};
-enum class Diagnosed { projector, setup, texgen, planes };
+enum class Diagnosed { projector, setup, valid_setup, texgen, planes };
 template <Diagnosed What>
 Calls diagnose_calls(const Numbers& n) {
     Reader reader(n);
@@ -1149,9 +1177,10 @@ Calls diagnose_calls(const Numbers& n) {
     setup.projector = projector;
     setup.world_from_space = texgen::ModelMatrix(model);
     setup.texgen = texgen::ObjectTexgen(texgen);
+    if (What == Diagnosed::valid_setup && !texgen::diagnose(setup).empty()) return {};
     return calls_of([=] {
         if constexpr (What == Diagnosed::projector) keep(texgen::diagnose(projector));
-        if constexpr (What == Diagnosed::setup) keep(texgen::diagnose(setup));
+        if constexpr (What == Diagnosed::setup || What == Diagnosed::valid_setup) keep(texgen::diagnose(setup));
         if constexpr (What == Diagnosed::texgen) keep(texgen::diagnose(*setup.texgen));
         if constexpr (What == Diagnosed::planes) keep(texgen::diagnose(planes(*setup.texgen)));
     });
@@ -1326,13 +1355,15 @@ inline const std::array workloads{
              detail::eye_plane_calls<false>, detail::always},
     Workload{"TexGenUnit::eye_plane_error_bound", 27, detail::ordinary_vertex, detail::hostile_vertex,
              detail::eye_plane_calls<true>, detail::always},
-    Workload{"diagnose a projector", 0, detail::ordinary_setup, detail::hostile_setup,
+    Workload{"diagnose a projector", 0, detail::valid_setup, detail::hostile_setup,
              detail::diagnose_calls<detail::Diagnosed::projector>, detail::always},
-    Workload{"diagnose a set-up", 0, detail::ordinary_setup, detail::hostile_setup,
+    Workload{"diagnose a set-up", 0, detail::setup_with_one_defect, detail::hostile_setup,
              detail::diagnose_calls<detail::Diagnosed::setup>, detail::always},
-    Workload{"diagnose a texgen matrix", 0, detail::ordinary_setup, detail::hostile_setup,
+    Workload{"diagnose a valid set-up", 0, detail::valid_setup, detail::hostile_setup,
+             detail::diagnose_calls<detail::Diagnosed::valid_setup>, detail::always},
+    Workload{"diagnose a texgen matrix", 0, detail::valid_setup, detail::hostile_setup,
              detail::diagnose_calls<detail::Diagnosed::texgen>, detail::always},
-    Workload{"diagnose planes", 0, detail::ordinary_setup, detail::hostile_setup,
+    Workload{"diagnose planes", 0, detail::valid_setup, detail::hostile_setup,
              detail::diagnose_calls<detail::Diagnosed::planes>, detail::always},
 };
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 
 #include <glm/mat4x4.hpp>
@@ -54,37 +55,53 @@ inline constexpr Closeness composed_in_float{0.0, 0x1p-16};
 
 // k where `given` is k times the product, in the rows (and, of what was read transposed, the columns) in which it is not
 // zero: planes that were never written say nothing. 0 where it is not.
-inline double multiple_of(const Product& product, const glm::dmat4& given, Closeness closeness,
-                          bool was_transposed = false) noexcept {
-    const auto says_nothing = [&](glm::length_t column) { return was_transposed && given[column] == glm::dvec4(0.0); };
-    double along = 0.0;
-    double norm = 0.0;
-    for (glm::length_t row = 0; row < 4; ++row) {
-        if (is_zero_row(given, row)) continue;
-        for (glm::length_t column = 0; column < 4; ++column) {
-            const double magnitude = product.magnitude[column][row];
-            if (!(magnitude > 0.0) || says_nothing(column)) continue;
-            const double value = product.value[column][row] / magnitude;
-            along += given[column][row] / magnitude * value;
-            norm += value * value;
+class Multiple {
+public:
+    Multiple(const Product& product, const glm::dmat4& given, bool was_transposed = false) noexcept
+        : product_(product), given_(given), was_transposed_(was_transposed) {
+        double along = 0.0;
+        double norm = 0.0;
+        for (glm::length_t row = 0; row < 4; ++row) {
+            if (is_zero_row(given, row)) continue;
+            for (glm::length_t column = 0; column < 4; ++column) {
+                const double magnitude = product.magnitude[column][row];
+                if (!(magnitude > 0.0) || says_nothing(column)) continue;
+                const double value = product.value[column][row] / magnitude;
+                along += given[column][row] / magnitude * value;
+                norm += value * value;
+            }
         }
+        multiple_ = along / norm;
     }
-    const double multiple = along / norm;
-    for (glm::length_t row = 0; row < 4; ++row) {
-        if (is_zero_row(given, row)) continue;
-        for (glm::length_t column = 0; column < 4; ++column) {
-            if (says_nothing(column)) continue;
-            const double value = product.value[column][row];
-            const double accepted =
-                closeness.of_element * std::fabs(value) + closeness.of_magnitude * product.magnitude[column][row];
-            if (!(std::fabs(given[column][row] - multiple * value) <= std::fabs(multiple) * accepted)) return 0.0;
+
+    double within(Closeness closeness) const noexcept {
+        for (glm::length_t row = 0; row < 4; ++row) {
+            if (is_zero_row(given_, row)) continue;
+            for (glm::length_t column = 0; column < 4; ++column) {
+                if (says_nothing(column)) continue;
+                const double value = product_.value[column][row];
+                const double accepted =
+                    closeness.of_element * std::fabs(value) + closeness.of_magnitude * product_.magnitude[column][row];
+                if (!(std::fabs(given_[column][row] - multiple_ * value) <= std::fabs(multiple_) * accepted))
+                    return 0.0;
+            }
         }
+        return is_finite(multiple_) ? multiple_ : 0.0;
     }
-    return is_finite(multiple) ? multiple : 0.0;
-}
+
+private:
+    bool says_nothing(glm::length_t column) const noexcept {
+        return was_transposed_ && given_[column] == glm::dvec4(0.0);
+    }
+
+    const Product& product_;
+    const glm::dmat4& given_;
+    bool was_transposed_;
+    double multiple_;
+};
 
 enum class Order { right, view_before_projection, wrong };
-enum class PoseUse { right, left_out, inverted, doubled };
+enum class PoseUse { right, inverted, left_out, doubled };
 enum class ScaleBiasUse { right, left_out, doubled };
 
 // How a matrix was made of its factors.
@@ -96,6 +113,18 @@ struct Composition {
     bool s_mirrored = false, t_mirrored = false, other_depth = false;
     double multiple = 1.0;
 };
+
+// Numbers that no scene has would cost time (subnormal ones) or products their range: small ones are 0, large ones none.
+inline glm::dmat4 as_in_scenes(glm::dmat4 m) noexcept {
+    for (glm::length_t column = 0; column < 4; ++column) {
+        for (glm::length_t row = 0; row < 4; ++row) {
+            double& element = m[column][row];
+            if (std::fabs(element) < 0x1p-150) element = 0.0;
+            if (std::fabs(element) > 0x1p150) element = std::numeric_limits<double>::quiet_NaN();
+        }
+    }
+    return m;
+}
 
 struct Factors {
     glm::dmat4 scale_bias, projection, view;
@@ -130,7 +159,7 @@ inline std::optional<Product> pose_factor(const Factors& factors, PoseUse use) n
             break;
     }
     const CertifiedInverse inverse(*factors.pose);
-    return inverse.regular() ? std::optional(pose_factor(inverse.matrix())) : std::nullopt;
+    return inverse.regular() ? std::optional(pose_factor(as_in_scenes(inverse.matrix()))) : std::nullopt;
 }
 
 inline Product right_composition(const Factors& factors) noexcept {
@@ -157,51 +186,156 @@ constexpr int mistakes(const Composition& c) noexcept {
            (c.scale_bias != ScaleBiasUse::right) + c.s_mirrored + c.t_mirrored + c.other_depth;
 }
 
-// The orders of S (0), P (1), V (2) and X (3), the right one left out and the most likely first: V before P, then the
-// row vectors' order, then the others.
-inline constexpr std::array<std::array<std::size_t, 4>, 23> wrong_orders{
+// S (0), P (1), V (2) and X (3) from left to right.
+using FactorOrder = std::array<std::size_t, 4>;
+inline constexpr FactorOrder right_order{0, 1, 2, 3};
+
+// The most likely first: V before P, then the row vectors' order, then the others.
+inline constexpr std::array<FactorOrder, 23> wrong_orders{
     {{0, 2, 1, 3}, {3, 2, 1, 0}, {3, 0, 1, 2}, {0, 1, 3, 2}, {1, 0, 2, 3}, {1, 2, 0, 3}, {1, 2, 3, 0}, {0, 3, 1, 2},
      {0, 2, 3, 1}, {0, 3, 2, 1}, {1, 0, 3, 2}, {1, 3, 0, 2}, {1, 3, 2, 0}, {2, 0, 1, 3}, {2, 0, 3, 1}, {2, 1, 0, 3},
      {2, 1, 3, 0}, {2, 3, 0, 1}, {2, 3, 1, 0}, {3, 0, 2, 1}, {3, 1, 0, 2}, {3, 1, 2, 0}, {3, 2, 0, 1}}};
 
-// The composition with the fewest mistakes that gives the matrix; empty where none with `most` does.
+// A row of what stands on the left of a product, or columns of what stands on the right, and the magnitudes of their terms.
+struct ProductRow {
+    glm::dvec4 value, magnitude;
+};
+struct ProductColumns {
+    std::array<glm::dvec4, 2> value, magnitude;
+};
+
+inline ProductRow operator*(const ProductRow& row, const Product& m) noexcept {
+    return {row.value * m.value, row.magnitude * m.magnitude};
+}
+inline ProductColumns operator*(const Product& m, const ProductColumns& c) noexcept {
+    return {{m.value * c.value[0], m.value * c.value[1]}, {m.magnitude * c.magnitude[0], m.magnitude * c.magnitude[1]}};
+}
+
+// What a matrix makes of two directions, seen along a row: few numbers, which tell products apart that are far from it. A
+// row or column that says nothing is not in them, and the others weigh about the same.
+class Glance {
+public:
+    Glance(const glm::dmat4& given, bool was_transposed) noexcept
+        : row_{{0.6, -0.9, 0.7, 0.8}, {}}, columns_{{{{0.9, -0.4, 0.7, 0.0}, {-0.5, 0.8, 0.9, 0.0}}}, {}} {
+        for (glm::length_t i = 0; i < 4; ++i) {
+            double largest = 0x1p-1000;
+            for (glm::length_t k = 0; k < 4; ++k) largest = larger(largest, std::fabs(given[k][i]));
+            row_.value[i] = is_zero_row(given, i) ? 0.0 : row_.value[i] / largest;
+            row_.magnitude[i] = std::fabs(row_.value[i]);
+            for (std::size_t k = 0; k < 2; ++k) {
+                if (was_transposed && given[i] == glm::dvec4(0.0)) columns_.value[k][i] = 0.0;
+                columns_.magnitude[k][i] = std::fabs(columns_.value[k][i]);
+            }
+        }
+        const glm::dvec4 seen = row_.value * given;
+        for (std::size_t k = 0; k < 2; ++k) given_[k] = dot(seen, columns_.value[k]);
+    }
+
+    const ProductRow& row() const noexcept { return row_; }
+    const ProductColumns& columns() const noexcept { return columns_; }
+
+    // Whether a multiple of the product may be what was given, composed in whatever way: two numbers g that are k times p,
+    // each within its share of the magnitudes m, differ in g0 p1 - g1 p0 by no more than g0 m1 + g1 m0.
+    bool may_give(const ProductRow& left, const ProductColumns& right) const noexcept {
+        constexpr double share = 1.01 * composed_in_float.of_magnitude;
+        const auto value = [&](std::size_t k) { return dot(left.value, right.value[k]); };
+        const auto error = [&](std::size_t k) { return share * dot(left.magnitude, right.magnitude[k]); };
+        const double accepted = std::fabs(given_[0]) * error(1) + std::fabs(given_[1]) * error(0) + 0x1p-1000;
+        return std::fabs(given_[0] * value(1) - given_[1] * value(0)) <= accepted && is_finite(accepted);
+    }
+
+private:
+    static double dot(const glm::dvec4& a, const glm::dvec4& b) noexcept {
+        return a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w;
+    }
+
+    ProductRow row_;
+    ProductColumns columns_;
+    std::array<double, 2> given_{};
+};
+
+// S, P, V and X as a mistake has them.
+using FactorsInUse = std::array<const Product*, 4>;
+
+inline Product product_of(const FactorsInUse& factors, const FactorOrder& order) noexcept {
+    const auto at = [&](std::size_t i) -> const Product& { return *factors[order[i]]; };
+    return at(0) * at(1) * (at(2) * at(3));
+}
+
+// Calls gives(order) for the wrong orders that may give the matrix, until one does.
+template <class Gives>
+bool any_wrong_order(const FactorsInUse& factors, const Glance& glance, const Gives& gives) noexcept {
+    std::array<std::array<ProductRow, 4>, 4> left;       // of factors a and b
+    std::array<std::array<ProductColumns, 4>, 4> right;  // of factors b and a
+    for (std::size_t a = 0; a < 4; ++a) {
+        const ProductRow row = glance.row() * *factors[a];
+        const ProductColumns columns = *factors[a] * glance.columns();
+        for (std::size_t b = 0; b < 4; ++b) {
+            if (a == b) continue;
+            left[a][b] = row * *factors[b];
+            right[b][a] = *factors[b] * columns;
+        }
+    }
+    for (const FactorOrder& order : wrong_orders)
+        if (glance.may_give(left[order[0]][order[1]], right[order[2]][order[3]]) && gives(order)) return true;
+    return false;
+}
+
+// The composition with the fewest mistakes, `most` or fewer, that gives the matrix as closely as `closest`; else
+// `in_float`, or if that is empty the first that gives the matrix as closely as float.
 inline std::optional<Composition> composition_of(const glm::dmat4& texgen, const Factors& factors, int most,
-                                                 Closeness closeness) noexcept {
+                                                 Closeness closest, std::optional<Composition> in_float) noexcept {
     const std::array<glm::dmat4, 2> given{texgen, detail::transposed(texgen)};
+    const std::array<Glance, 2> glances{Glance(given[0], false), Glance(given[1], true)};
+    const Product projection = lens_factor(factors.projection);
+    const Product view = pose_factor(factors.view);
+    // Each is made where it is used first.
+    std::array<std::optional<Product>, scale_bias_mistakes.size()> scale_biases;
+    std::array<std::optional<Product>, 4> poses;
     for (int allowed = 0; allowed <= most; ++allowed) {
-        for (const PoseUse pose : {PoseUse::right, PoseUse::inverted, PoseUse::left_out, PoseUse::doubled}) {
-            const std::optional<Product> x = pose_factor(factors, pose);
-            if (!x) continue;
-            for (const Composition& scale_bias_mistake : scale_bias_mistakes) {
+        for (std::size_t use = 0; use < (allowed == 0 ? 1 : poses.size()); ++use) {
+            const PoseUse pose = static_cast<PoseUse>(use);
+            if (allowed == (pose != PoseUse::right)) poses[use] = pose_factor(factors, pose);
+            if (!poses[use]) continue;
+            const auto columns = [&](const Glance& glance) {
+                return projection * (view * (*poses[use] * glance.columns()));
+            };
+            const std::array<ProductColumns, 2> lens{columns(glances[0]), columns(glances[1])};
+            for (std::size_t i = 0; i < scale_bias_mistakes.size(); ++i) {
                 for (const bool transposed : {false, true}) {
-                    Composition composition = scale_bias_mistake;
+                    Composition composition = scale_bias_mistakes[i];
                     composition.pose = pose;
                     composition.transposed = transposed;
                     const int without_order = mistakes(composition);
                     if (without_order > allowed || without_order + 1 < allowed) continue;
-                    const std::array<Product, 4> product{scale_bias_factor(factors, composition),
-                                                         lens_factor(factors.projection), pose_factor(factors.view),
-                                                         *x};
-                    const auto gives = [&](const std::array<std::size_t, 4>& order) {
-                        composition.multiple =
-                            multiple_of(product[order[0]] * product[order[1]] * (product[order[2]] * product[order[3]]),
-                                        given[transposed], closeness, transposed);
-                        return composition.multiple != 0.0;
+                    if (!scale_biases[i]) scale_biases[i] = scale_bias_factor(factors, composition);
+                    const FactorsInUse in_use{&*scale_biases[i], &projection, &view, &*poses[use]};
+                    const auto gives = [&](const FactorOrder& order) {
+                        const Product product = product_of(in_use, order);
+                        if (order == wrong_orders[0])
+                            composition.order = Order::view_before_projection;
+                        else if (order != right_order)
+                            composition.order = Order::wrong;
+                        const Multiple multiple(product, given[transposed], transposed);
+                        composition.multiple = multiple.within(closest);
+                        if (composition.multiple != 0.0) return true;
+                        if (in_float) return false;
+                        composition.multiple = multiple.within(composed_in_float);
+                        if (composition.multiple != 0.0) in_float = composition;
+                        return false;
                     };
-                    if (without_order == allowed) {
-                        if (gives({0, 1, 2, 3})) return composition;
-                        continue;
-                    }
-                    for (const std::array<std::size_t, 4>& order : wrong_orders) {
-                        if (!gives(order)) continue;
-                        composition.order = order == wrong_orders[0] ? Order::view_before_projection : Order::wrong;
+                    const Glance& glance = glances[transposed];
+                    const auto may_give = [&] {
+                        return glance.may_give(glance.row() * *scale_biases[i], lens[transposed]);
+                    };
+                    if (without_order < allowed ? any_wrong_order(in_use, glance, gives)
+                                                : may_give() && gives(right_order))
                         return composition;
-                    }
                 }
             }
         }
     }
-    return std::nullopt;
+    return in_float;
 }
 
 // The same for any closeness. What was composed in float is near to the right product and to others as well, where they
@@ -209,11 +343,14 @@ inline std::optional<Composition> composition_of(const glm::dmat4& texgen, const
 inline std::optional<Composition> composition_of(const glm::dmat4& texgen, const Factors& factors, const Product& right,
                                                  bool is_in_float) noexcept {
     const Closeness closest = is_in_float ? rounded_once : composed_in_double;
-    if (multiple_of(right, texgen, closest) > 0.0) return Composition{};
-    const bool is_near = multiple_of(right, texgen, composed_in_float) > 0.0;
-    const auto composition = composition_of(texgen, factors, is_near ? 1 : 2, closest);
-    if (composition) return composition;
-    return is_near ? Composition{} : composition_of(texgen, factors, 2, composed_in_float);
+    const Multiple multiple(right, texgen);
+    if (multiple.within(closest) > 0.0) return Composition{};
+    const bool is_near = multiple.within(composed_in_float) > 0.0;
+    const auto pose = factors.pose ? std::optional(as_in_scenes(*factors.pose)) : std::nullopt;
+    return composition_of(
+        as_in_scenes(texgen),
+        {as_in_scenes(factors.scale_bias), as_in_scenes(factors.projection), as_in_scenes(factors.view), pose},
+        is_near ? 1 : 2, closest, is_near ? std::optional(Composition{}) : std::nullopt);
 }
 
 }  // namespace TEXGEN_DETAIL
