@@ -191,8 +191,8 @@ using Setup = ProjectionSetup<Space>;
 // conventions, lens, pose of regular matrices and distance from the origin, but for what is true of it: that it lights
 // none of the points, shows all of them less than a texel, or loses half a texel (of a picture of 4096, where the
 // texture's size is not given). A lens that mirrors says so in its facts, a model may mirror. No allocation, noexcept.
-// Below a microsecond for what was composed in double, some where it was composed in float or a mistake is to be named; no
-// set-up takes 8 times that. Numbers beyond 2^150, and below 2^-150, are in no mistake that is named.
+// Below a microsecond for what was composed in double, microseconds where it was composed in float or has a mistake to be
+// named: at most 8 times what one with one defect costs. No mistake is named of numbers beyond 2^150 or below 2^-150.
 // What it sees: of a projector alone, its matrices' own marks (transposed, exchanged, of rank below 3, mirrored, reversed
 // depth in the wrong range); with facts of the lens also its depth range, aspect and angle. Of a texgen matrix alone,
 // those of its rows r and q. With the projector, and the model or the camera, which of their products it is, of up to
