@@ -264,9 +264,9 @@ int passes_for(const Method& method, const Workload& work, const texgen::Texture
 }
 
 // The methods take turns, so that a change of the machine's speed meets all of them; the median of the rounds counts.
-void measure_times(Comparison& comparison, const Workload& work, const texgen::TextureRegion& region) {
+void measure_times(Comparison& comparison, const Workload& work, const texgen::TextureRegion& region,
+                   double enough_seconds) {
     constexpr std::size_t fewest_rounds = 5, most_rounds = 21;
-    constexpr double enough_seconds = 0.8;
     std::array<int, methods.size()> passes{};
     for (std::size_t m = 0; m < methods.size(); ++m) passes[m] = passes_for(methods[m], work, region);
     std::array<std::vector<double>, methods.size()> seconds;
@@ -315,8 +315,28 @@ Comparison compare(const Workload& work, const texgen::TextureRegion& region) {
     Comparison comparison;
     comparison.evaluated_fragments = work.evaluated_fragments();
     measure_errors(comparison, work, region);
-    measure_times(comparison, work, region);
+    measure_times(comparison, work, region, 0.8);
     return comparison;
+}
+
+std::vector<Series> times_by_size() {
+    constexpr std::size_t triangle_count = 64;
+    std::vector<Series> series;
+    for (const Method& method : methods) series.push_back({method.name, Series::Mark::line, {}});
+    for (int side = 1; side <= 256; side *= 2) {
+        Workload work;
+        for (std::size_t i = 0; i < triangle_count; ++i) work.add_right_triangle(static_cast<int>(37 * i % 512), side);
+        Comparison comparison;
+        comparison.evaluated_fragments = work.evaluated_fragments();
+        for (const Method& method : methods) comparison.measurements.push_back({method.name, 0.0, {}});
+        measure_times(comparison, work, texgen::whole_texture(), 0.1);
+        for (std::size_t m = 0; m < methods.size(); ++m)
+            series[m].points.emplace_back(side, comparison.measurements[m].nanoseconds *
+                                                    static_cast<double>(comparison.evaluated_fragments) /
+                                                    triangle_count);
+    }
+    std::erase_if(series, [](const Series& s) { return s.name.ends_with("not skipped"); });
+    return series;
 }
 
 }  // namespace report

@@ -8,6 +8,7 @@
 #include <texgen/conventions.hpp>
 #include <texgen/primitives.hpp>
 
+#include "chart.hpp"
 #include "rasterizer.hpp"
 
 namespace report {
@@ -46,5 +47,8 @@ struct Comparison {
 
 // Runs the library and its peers over the work: first once for the errors, then in turns against the clock.
 Comparison compare(const Workload& work, const texgen::TextureRegion& region);
+
+// Nanoseconds a triangle, its set-up included, against how many fragments each side of it has: a line a method.
+std::vector<Series> times_by_size();
 
 }  // namespace report

@@ -56,7 +56,7 @@ std::vector<Cost> read_costs(const std::string& file) {
 
 std::string text_of(const std::vector<Cost>& costs) {
     if (costs.empty()) return {};
-    std::string text = formatted("\n%-30s %12s %12s %12s %12s\n", "a file that includes or calls", "seconds", "added",
+    std::string text = formatted("%-30s %12s %12s %12s %12s\n", "a file that includes or calls", "seconds", "added",
                                  "object kB", "code kB");
     for (const Row& row : rows_of(costs))
         text += formatted("%-30s %12s %12s %12s %12s\n", row.name.c_str(), row.seconds.c_str(), row.added.c_str(),
@@ -67,17 +67,18 @@ std::string text_of(const std::vector<Cost>& costs) {
 std::string html_of(const std::vector<Cost>& costs) {
     if (costs.empty()) return {};
     std::string html =
-        "<h2>What it costs to compile</h2>\n<p>A file that includes a header alone, and one that calls a function, "
+        "<p>A file that includes a header alone, and one that calls a function, "
         "compiled with -O2: the compiler's processor time, the least of some runs in turns; what a header costs as a "
         "multiple of GLM's matrix headers, what a call adds to the header that has it; and the bytes that the object "
         "gets, of these machine code. Kernels are in it for each instruction set that the machine may "
         "choose.</p>\n"
-        "<table>\n<tr><th>file</th><th>seconds</th><th>added</th><th>object kB</th><th>code kB</th></tr>\n";
+        "<div class=\"wide\"><table>\n<tr><th>file</th><th>seconds</th><th>added</th><th>object kB</th><th>code "
+        "kB</th></tr>\n";
     for (const Row& row : rows_of(costs))
         html += std::string(row.is_call ? "<tr class=\"library\"><td>" : "<tr><td>") + escaped(row.name) + "</td><td>" +
                 row.seconds + "</td><td>" + row.added + "</td><td>" + row.object + "</td><td>" + row.code +
                 "</td></tr>\n";
-    return html + "</table>\n";
+    return html + "</table></div>\n";
 }
 
 }  // namespace report

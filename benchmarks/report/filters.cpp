@@ -74,6 +74,12 @@ glm::vec3 colour_of_level(float level) {
     return colour * darkened_at_whole(level);
 }
 
+glm::vec3 colour_of_error(double texels) {
+    constexpr glm::vec3 least(0.08f, 0.25f, 0.6f), middle(0.97f), most(0.75f, 0.05f, 0.1f);
+    const float decades = std::log10(static_cast<float>(std::clamp(texels, 1e-4, 10.0))) + 4.0f;
+    return decades < 2.5f ? glm::mix(least, middle, decades / 2.5f) : glm::mix(middle, most, decades / 2.5f - 1.0f);
+}
+
 glm::vec3 colour_of_anisotropy(float anisotropy) {
     const float octaves = std::log2(anisotropy);
     const glm::vec3 colour = octaves <= 4.0f ? glm::mix(glm::vec3(0.1f, 0.1f, 0.2f), glm::vec3(1.0f), octaves / 4.0f)

@@ -36,6 +36,9 @@ private:
 // where it is minified, and a dark line at each whole level.
 glm::vec3 colour_of_level(float level);
 
+// An error as a colour: blue up to 1e-4 texel, white at 1/30, red from 10 texels on.
+glm::vec3 colour_of_error(double texels);
+
 // The anisotropy as a colour: black at 1, white at 16, red beyond, and a dark line at each power of two.
 glm::vec3 colour_of_anisotropy(float anisotropy);
 

@@ -26,10 +26,27 @@ std::string escaped(std::string_view text) {
     return result;
 }
 
-std::string figure(std::string_view svg, const std::string& name, const std::string& caption) {
-    if (svg.empty()) return {};
-    return "<figure><img alt=\"" + escaped(name) + "\" src=\"data:image/svg+xml;base64," + base64(svg) +
-           "\"><figcaption>" + escaped(caption) + "</figcaption></figure>\n";
+std::string unbroken(std::string_view option) {
+    std::string html;
+    for (const char c : option) html += c == '-' ? "&#8209;" : escaped(std::string_view(&c, 1));
+    return html;
+}
+
+std::string duration(double nanoseconds) {
+    return nanoseconds < 1e3   ? formatted("%.3g ns", nanoseconds)
+           : nanoseconds < 1e6 ? formatted("%.3g &micro;s", nanoseconds / 1e3)
+                               : formatted("%.3g ms", nanoseconds / 1e6);
+}
+
+std::string grouped(std::size_t count) {
+    std::string digits = std::to_string(count);
+    for (auto i = static_cast<std::ptrdiff_t>(digits.size()) - 3; i > 0; i -= 3)
+        digits.insert(static_cast<std::size_t>(i), "&#8239;");
+    return digits;
+}
+
+std::string folded(const std::string& title, const std::string& html) {
+    return html.empty() ? "" : "<details><summary>" + title + "</summary>\n" + html + "</details>\n";
 }
 
 std::string base64(std::string_view bytes) {

@@ -4,12 +4,18 @@
 #include <utility>
 #include <vector>
 
+#include "chart.hpp"
 #include "compare.hpp"
+#include "costs.hpp"
+#include "room.hpp"
+#include "timings.hpp"
+#include "worst_times.hpp"
 
 namespace report {
 
+// A picture as its file beside the page, and as what the page shows of it.
 struct PictureOfScene {
-    std::string file, caption, png;
+    std::string file, caption, png, jpeg;
 };
 
 struct SceneReport {
@@ -20,16 +26,19 @@ struct SceneReport {
 
 struct Report {
     std::vector<std::pair<std::string, std::string>> circumstances;  // compiler, flags, machine, ...
-    std::vector<SceneReport> scenes;
+    std::vector<SceneReport> scenes;                                 // the first opens the page
+    RoomReport room;
+    std::vector<PictureOfScene> room_pictures;
+    std::vector<Series> times_by_size, errors_by_distance;
+    std::vector<Timings> timings;  // these may be empty
+    std::vector<WorstTime> worst;
+    std::vector<Cost> costs;
 };
 
-// The table for a terminal, and where the library was at its worst.
+// The tables for a terminal, and where the library was at its worst.
 std::string text_of(const Report& report);
 
-// A gnuplot script, its data included, that draws time against error into `svg_file`.
-std::string plot_of(const Report& report, const std::string& svg_file);
-
-// The page, which needs no other file. `plot_svg` may be empty; `timings_html` goes between the table and the pictures.
-std::string html_of(const Report& report, const std::string& plot_svg, const std::string& timings_html);
+// The page, which needs no other file to be read: pictures, a table and a chart a task, the rest folded.
+std::string html_of(const Report& report);
 
 }  // namespace report

@@ -81,22 +81,17 @@ bool huffman_tables_fit(const std::string& jpeg) {
     }
 }
 
-// The mean of each factor x factor block of the decoded bytes; blocks at the right and the bottom may be cut.
-Picture reduced(const unsigned char* bytes, int width, int height, int factor) {
+// The mean of each factor x factor block of colour(x, y); blocks at the right and the bottom may be cut.
+template <class Colour>
+Picture reduced(int width, int height, int factor, const Colour& colour) {
     Picture picture((width + factor - 1) / factor, (height + factor - 1) / factor, glm::vec3(0));
     for (int y = 0; y < picture.height; ++y) {
         for (int x = 0; x < picture.width; ++x) {
             const int right = std::min((x + 1) * factor, width);
             const int bottom = std::min((y + 1) * factor, height);
-            glm::vec3 sum(0);
-            for (int row = y * factor; row < bottom; ++row) {
-                for (int column = x * factor; column < right; ++column) {
-                    const unsigned char* rgb = bytes + 3 * (static_cast<std::ptrdiff_t>(row) * width + column);
-                    sum += glm::vec3(rgb[0], rgb[1], rgb[2]);
-                }
-            }
-            const int count = (right - x * factor) * (bottom - y * factor);
-            picture.at(x, y) = sum / (255.0f * static_cast<float>(count));
+            for (int row = y * factor; row < bottom; ++row)
+                for (int column = x * factor; column < right; ++column) picture.at(x, y) += colour(column, row);
+            picture.at(x, y) /= static_cast<float>((right - x * factor) * (bottom - y * factor));
         }
     }
     return picture;
@@ -104,6 +99,18 @@ Picture reduced(const unsigned char* bytes, int width, int height, int factor) {
 
 unsigned char to_byte(float value) {
     return static_cast<unsigned char>(std::lround(255.0f * std::clamp(value, 0.0f, 1.0f)));
+}
+
+std::vector<unsigned char> bytes_of(const Picture& picture) {
+    std::vector<unsigned char> bytes;
+    bytes.reserve(3 * picture.pixels.size());
+    for (const glm::vec3& colour : picture.pixels)
+        for (int channel = 0; channel < 3; ++channel) bytes.push_back(to_byte(colour[channel]));
+    return bytes;
+}
+
+void append(void* text, void* data, int size) {
+    static_cast<std::string*>(text)->append(static_cast<const char*>(data), static_cast<std::size_t>(size));
 }
 
 }  // namespace
@@ -134,21 +141,38 @@ Picture load_picture(const std::filesystem::path& file) {
                       (reason.empty() ? "" : " (" + reason + ")")};
     }
     if (stream.was_read_beyond_end) throw Failure{"cannot use " + file.string() + ": the picture is cut off"};
-    return reduced(decoded, width, height, (std::max(width, height) + largest_side - 1) / largest_side);
+    const auto colour = [&](int x, int y) {
+        const unsigned char* rgb = decoded + 3 * (static_cast<std::ptrdiff_t>(y) * width + x);
+        return glm::vec3(rgb[0], rgb[1], rgb[2]) / 255.0f;
+    };
+    return reduced(width, height, (std::max(width, height) + largest_side - 1) / largest_side, colour);
 }
 
 std::string encode_png(const Picture& picture) {
-    std::vector<unsigned char> bytes;
-    bytes.reserve(3 * picture.pixels.size());
-    for (const glm::vec3& colour : picture.pixels)
-        for (int channel = 0; channel < 3; ++channel) bytes.push_back(to_byte(colour[channel]));
     std::string png;
-    const auto append = [](void* user, void* data, int size) {
-        static_cast<std::string*>(user)->append(static_cast<const char*>(data), static_cast<std::size_t>(size));
-    };
-    if (!stbi_write_png_to_func(append, &png, picture.width, picture.height, 3, bytes.data(), 3 * picture.width))
+    if (!stbi_write_png_to_func(append, &png, picture.width, picture.height, 3, bytes_of(picture).data(),
+                                3 * picture.width))
         throw Failure{"cannot encode a picture: out of memory"};
     return png;
+}
+
+std::string encode_jpeg(const Picture& picture) {
+    constexpr int quality = 75;
+    std::string jpeg;
+    if (!stbi_write_jpg_to_func(append, &jpeg, picture.width, picture.height, 3, bytes_of(picture).data(), quality))
+        throw Failure{"cannot encode a picture: out of memory"};
+    return jpeg;
+}
+
+Picture reduced(const Picture& picture, int factor) {
+    return reduced(picture.width, picture.height, factor, [&](int x, int y) { return picture.at(x, y); });
+}
+
+Picture cropped(const Picture& picture, int x, int y, int width, int height) {
+    Picture part(std::min(width, picture.width - x), std::min(height, picture.height - y), glm::vec3(0));
+    for (int row = 0; row < part.height; ++row)
+        for (int column = 0; column < part.width; ++column) part.at(column, row) = picture.at(x + column, y + row);
+    return part;
 }
 
 Picture with_white_border(const Picture& picture, int border) {

@@ -37,9 +37,21 @@ Picture load_picture(const std::filesystem::path& file);
 
 std::string encode_png(const Picture& picture);
 
+// With losses that the page's small pictures bear.
+std::string encode_jpeg(const Picture& picture);
+
+// The mean of each square of `factor` pixels.
+Picture reduced(const Picture& picture, int factor);
+
+// The part of at most that size that begins at (x, y).
+Picture cropped(const Picture& picture, int x, int y, int width, int height);
+
 // A slide that shows where it is turned, mirrored or stretched: letters, an arrow, its corners' coordinates, a ruler in
 // texels, and ramps along its sides. 1024 pixels square.
 Picture built_in_slide();
+
+// Small print and hairlines, two texels wide.
+Picture fine_slide();
 
 // The picture, of which the outermost pixels are white.
 Picture with_white_border(const Picture& picture, int border);

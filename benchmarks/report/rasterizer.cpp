@@ -159,6 +159,24 @@ std::size_t Workload::evaluated_fragments() const {
     return sum;
 }
 
+void Workload::add_right_triangle(int x, int side) {
+    const auto vertex = [&](int right, int up, float w, glm::vec2 st) {
+        const glm::vec2 at(x + right * side, x + up * side);
+        return texgen::WindowVertex{at + 0.25f, w, glm::vec4(w * st, 0.5f * w, w)};
+    };
+    const texgen::Triangle window{vertex(0, 0, 2.0f, {0.2f, 0.1f}), vertex(1, 0, 2.6f, {0.8f, 0.3f}),
+                                  vertex(0, 1, 2.3f, {0.3f, 0.9f})};
+    const std::size_t first = rects.size();
+    for (int y = 0; y < side; y += rect_height) {
+        for (int column = 0; column < side; column += rect_width) {
+            rects.push_back({x + column, x + y, std::min(rect_width, side - column), std::min(rect_height, side - y)});
+            coverage.push_back({});
+        }
+    }
+    jobs.push_back({triangles.size(), first, rects.size() - first});
+    triangles.push_back({.window = window, .depth = {}, .corners = {}, .colour = {}});
+}
+
 Workload rasterize(std::span<const Surface> surfaces, const Camera& camera, int width, int height, glm::vec2 offset) {
     Workload work;
     for (const Surface& surface : surfaces)
@@ -172,6 +190,17 @@ Workload rasterize(std::span<const Surface> surfaces, const Camera& camera, int 
         for (int y = clamped_floor(low, height); y < top; y += Workload::rect_height)
             append_band(work, coverage, y, std::min(Workload::rect_height, top - y));
         if (work.rects.size() > first) work.jobs.push_back({i, first, work.rects.size() - first});
+    }
+    return work;
+}
+
+Workload moved(Workload work, glm::ivec2 to) {
+    for (DrawnTriangle& triangle : work.triangles)
+        for (texgen::WindowVertex* vertex : {&triangle.window.a, &triangle.window.b, &triangle.window.c})
+            vertex->window += glm::vec2(to);
+    for (texgen::FragmentRect& rect : work.rects) {
+        rect.x += to.x;
+        rect.y += to.y;
     }
     return work;
 }

@@ -70,6 +70,9 @@ struct Workload {
         return std::span(rects).subspan(job.first_rect, job.rect_count);
     }
     std::size_t evaluated_fragments() const;
+
+    // Half of a square at (x, x), on the slide, with the rects of the whole.
+    void add_right_triangle(int x, int side);
 };
 
 // The texture coordinates of one rect, row by row.
@@ -89,6 +92,9 @@ struct RectCoordinates {
 // picture is shifted by `offset` pixels.
 Workload rasterize(std::span<const Surface> surfaces, const Camera& camera, int width, int height,
                    glm::vec2 offset = glm::vec2(0));
+
+// The same work in a larger window, of which the picture begins at the given pixel.
+Workload moved(Workload work, glm::ivec2 to);
 
 // Perspective-correct depth and attributes at the centre of a fragment.
 class AttributePlane {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <span>
@@ -12,6 +13,8 @@
 #include <texgen/interpolate.hpp>
 #include <texgen/reference.hpp>
 
+#include "../error.hpp"
+#include "../peers.hpp"
 #include "filters.hpp"
 #include "rasterizer.hpp"
 
@@ -36,6 +39,26 @@ void divide_regardless(const texgen::Triangle& triangle, const texgen::TextureRe
             out.lit[fragment] = lit ? 1.0f : 0.0f;
         }
     }
+}
+
+// What a user of GLM writes: plane equations in float.
+void divide_float_planes(const texgen::Triangle& triangle, const texgen::TextureRegion& region,
+                         texgen::FragmentRect rect, const texgen::Texcoords& out) {
+    const GlmPlanes planes(triangle);
+    planes(rect, [&](std::size_t fragment, float s, float t, float q) {
+        out.s[fragment] = s;
+        out.t[fragment] = t;
+        const bool is_lit = q > 0.0f && s >= static_cast<float>(region.min().x) &&
+                            s <= static_cast<float>(region.max().x) && t >= static_cast<float>(region.min().y) &&
+                            t <= static_cast<float>(region.max().y);
+        out.lit[fragment] = is_lit ? 1.0f : 0.0f;
+    });
+}
+
+// The error of s or t, whichever is larger, in texels.
+double error_at(const texgen::Triangle& triangle, int x, int y, float s, float t) {
+    const auto exact = texgen::reference::quotient<double>(texgen::reference::strq<double>(triangle, x + 0.5, y + 0.5));
+    return texture_size * finite(std::max(std::fabs(s - exact[0]), std::fabs(t - exact[1])));
 }
 
 // The footprints of one rect, row by row.
@@ -78,12 +101,14 @@ public:
                 const texgen::Texcoords out = coordinates_.of(rect);
                 if (view_.coordinates == Coordinates::ignoring_sign_of_q)
                     divide_regardless(triangle.window, scene_.region, rect, out);
+                else if (view_.coordinates == Coordinates::float_planes)
+                    divide_float_planes(triangle.window, scene_.region, rect, out);
                 else if (setup)
                     texgen::interpolate(*setup, rect, out);
                 else
                     std::ranges::fill(out.lit, 0.0f);
                 if (footprints) texgen::footprint(*footprints, rect, footprints_.of(rect));
-                draw_rect(rect, work.coverage[i], plane, triangle.colour);
+                draw_rect(rect, work.coverage[i], plane, triangle);
             }
         }
     }
@@ -92,21 +117,26 @@ public:
 
 private:
     void draw_rect(texgen::FragmentRect rect, const std::array<RowSpan, Workload::rect_height>& coverage,
-                   const AttributePlane& plane, glm::vec3 surface_colour) {
+                   const AttributePlane& plane, const DrawnTriangle& triangle) {
         for (int row = 0; row < rect.height; ++row) {
             const auto [begin, end] = coverage[static_cast<std::size_t>(row)];
             for (int column = begin; column < end; ++column) {
                 const int x = rect.x + column;
                 const int y = rect.y + row;
+                const int picture_x = x - scene_.corner.x;
                 // The window's y grows upwards, a picture's rows go down.
-                const int picture_y = colour_.height - 1 - y;
+                const int picture_y = colour_.height - 1 - (y - scene_.corner.y);
                 float& nearest = depth_[static_cast<std::size_t>(picture_y) * static_cast<std::size_t>(colour_.width) +
-                                        static_cast<std::size_t>(x)];
+                                        static_cast<std::size_t>(picture_x)];
                 const float depth = plane.depth(x, y);
                 if (!(depth < nearest)) continue;
                 nearest = depth;
-                colour_.at(x, picture_y) =
-                    shade(plane.attributes(x, y), surface_colour, static_cast<std::size_t>(row * rect.width + column));
+                const auto fragment = static_cast<std::size_t>(row * rect.width + column);
+                if (view_.sampling == Sampling::error_as_colour && coordinates_.lit[fragment] != 0.0f)
+                    colour_.at(picture_x, picture_y) = colour_of_error(
+                        error_at(triangle.window, x, y, coordinates_.s[fragment], coordinates_.t[fragment]));
+                else
+                    colour_.at(picture_x, picture_y) = shade(plane.attributes(x, y), triangle.colour, fragment);
             }
         }
     }
@@ -149,6 +179,7 @@ private:
                 return colour_of_level(footprint.level);
             case Sampling::anisotropy_as_colour:
                 return colour_of_anisotropy(footprint.anisotropy);
+            case Sampling::error_as_colour:
             case Sampling::bilinear:
                 break;
         }
@@ -170,14 +201,14 @@ Picture render(const Scene& scene, const View& view, int width, int height) {
     if (view.sampling != Sampling::bilinear) {
         const MipMap filters(*view.slide);
         Frame frame(scene, view, &filters, width, height);
-        frame.draw(rasterize(view.surfaces, scene.camera, width, height));
+        frame.draw(moved(rasterize(view.surfaces, scene.camera, width, height), scene.corner));
         return frame.colour();
     }
     Picture sum(width, height, glm::vec3(0));
     for (const glm::vec2 offset :
          {glm::vec2(-0.25f, -0.25f), glm::vec2(0.25f, -0.25f), glm::vec2(-0.25f, 0.25f), glm::vec2(0.25f, 0.25f)}) {
         Frame frame(scene, view, nullptr, width, height);
-        frame.draw(rasterize(view.surfaces, scene.camera, width, height, offset));
+        frame.draw(moved(rasterize(view.surfaces, scene.camera, width, height, offset), scene.corner));
         for (std::size_t i = 0; i < sum.pixels.size(); ++i) sum.pixels[i] += 0.25f * frame.colour().pixels[i];
     }
     return sum;

@@ -1,15 +1,17 @@
 // The report: renders the scenes with the library, checks every fragment against the reference, and sets run time and
 // error beside the loops that others write.
 
+#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <cstdio>
-#include <cstdlib>
 #include <exception>
 #include <fstream>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #if __has_include(<unistd.h>)
@@ -18,6 +20,7 @@
 
 #include "compare.hpp"
 #include "costs.hpp"
+#include "distances.hpp"
 #include "failure.hpp"
 #include "files.hpp"
 #include "page.hpp"
@@ -37,24 +40,33 @@ constexpr int smallest_side = 16;
 constexpr int largest_side = 4096;
 
 constexpr const char* usage =
-    "usage: texgen_report [--mesh FILE.obj] [--slide FILE.png|.jpg] [--size WxH] [--out DIR] [--costs FILE]\n"
-    "                     [--worst FILE] [--timings FILE.json]...\n"
+    "usage: %s [OPTION VALUE]...\n"
     "\n"
     "Renders texgen's scenes, checks every fragment against the reference, and writes pictures and index.html.\n"
     "\n"
-    "  --mesh FILE   a Wavefront OBJ file instead of the teapot; it is scaled to the teapot's size, y up\n"
-    "  --slide FILE  a PNG or JPEG picture instead of the built-in slide\n"
-    "  --size WxH    the size of the pictures, 16 to 4096 a side (default: 1024x1024)\n"
-    "  --out DIR     the folder of the report (default: report)\n"
-    "  --costs FILE  what costs.cmake wrote: what it costs to compile the headers and calls\n"
-    "  --worst FILE  what texgen_worst wrote: the worst input found for each function\n"
-    "  --timings FILE  what texgen_bench_o2, then what texgen_bench_native wrote with --benchmark_out\n"
-    "  --help        this text\n"
+    "  --mesh FILE     a Wavefront OBJ file instead of the teapot; it is scaled to the teapot's size, y up\n"
+    "  --slide FILE    a PNG or JPEG picture instead of the built-in slide\n"
+    "  --lens LENS     of the projector above the mesh: perspective:DEGREES, from 1 to 150, or orthographic:WIDTH, "
+    "from\n"
+    "                  0.1 to 100, of the slide's longer side; the mesh is 4 wide (default: perspective:30)\n"
+    "  --size WxH      the size of the pictures, 16 to 4096 a side (default: 1024x1024)\n"
+    "  --out DIR       the folder of the report (default: report)\n"
+    "  --timings FILE  what texgen_bench_o2, then what texgen_bench_native wrote with --benchmark_out; may be "
+    "repeated\n"
+    "  --worst FILE    what texgen_worst wrote: the worst input found for each function\n"
+    "  --costs FILE    what costs.cmake wrote: what it costs to compile the headers and calls\n"
+    "  --help          this text\n"
     "\n"
-    "Exit status: 0; 1 where the library broke a promise; 2 for a bad option, input or folder.\n";
+    "Exit status: 0; 1 where the library broke a promise; 2 for a bad option, input or folder: then nothing is "
+    "written.\n"
+    "\n"
+    "Example:\n"
+    "  printf 'v -1 0 1\\nv 1 0 1\\nv 0 0 -1\\nv 0 2 0\\nf 1 2 4\\nf 2 3 4\\nf 3 1 4\\n' >pyramid.obj\n"
+    "  %s --mesh pyramid.obj --lens perspective:20 --size 512x512 --out pyramid\n";
 
 struct Options {
     std::optional<fs::path> mesh, slide;
+    LensChoice lens;
     int width = 1024, height = 1024;
     fs::path out = "report";
     std::optional<std::string> costs, worst;
@@ -70,6 +82,19 @@ int parse_side(std::string_view text, std::string_view size) {
     return value;
 }
 
+LensChoice parse_lens(std::string_view text) {
+    const std::size_t colon = text.find(':');
+    const std::string_view kind = text.substr(0, colon);
+    const bool is_orthographic = kind == "orthographic";
+    const std::optional<double> extent =
+        number_of(colon == std::string_view::npos ? "" : std::string(text.substr(colon + 1)));
+    const auto [least, most] = is_orthographic ? std::pair(0.1, 100.0) : std::pair(1.0, 150.0);
+    if ((!is_orthographic && kind != "perspective") || !extent || *extent < least || *extent > most)
+        throw Failure{"bad lens '" + std::string(text) +
+                      "': wanted perspective:DEGREES, from 1 to 150, or orthographic:WIDTH, from 0.1 to 100"};
+    return {is_orthographic, *extent};
+}
+
 Options parse(const std::vector<std::string_view>& arguments) {
     Options options;
     for (std::size_t i = 0; i < arguments.size(); ++i) {
@@ -78,13 +103,14 @@ Options parse(const std::vector<std::string_view>& arguments) {
             options.help = true;
             continue;
         }
-        if (option != "--mesh" && option != "--slide" && option != "--size" && option != "--out" &&
-            option != "--costs" && option != "--worst" && option != "--timings")
+        if (option != "--mesh" && option != "--slide" && option != "--lens" && option != "--size" &&
+            option != "--out" && option != "--costs" && option != "--worst" && option != "--timings")
             throw Failure{"unknown option '" + std::string(option) + "'; --help lists them"};
         if (++i == arguments.size() || arguments[i].empty()) throw Failure{std::string(option) + " needs a value"};
         const std::string_view value = arguments[i];
         if (option == "--mesh") options.mesh = value;
         if (option == "--slide") options.slide = value;
+        if (option == "--lens") options.lens = parse_lens(value);
         if (option == "--out") options.out = value;
         if (option == "--costs") options.costs = value;
         if (option == "--worst") options.worst = value;
@@ -105,9 +131,12 @@ public:
         if (is_shown_) std::fputs("\r\033[K", stderr);
     }
 
+    explicit Progress(std::size_t steps) : steps_(steps) {}
+
     void show(const std::string& what) {
+        ++step_;
         if (!is_watched() || std::chrono::steady_clock::now() - start_ < std::chrono::seconds(1)) return;
-        std::fprintf(stderr, "\r\033[K%s", what.c_str());
+        std::fprintf(stderr, "\r\033[K%zu of %zu: %s", step_, steps_, what.c_str());
         std::fflush(stderr);
         is_shown_ = true;
     }
@@ -122,6 +151,7 @@ private:
     }
 
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+    std::size_t steps_, step_ = 0;
     bool is_shown_ = false;
 };
 
@@ -132,87 +162,102 @@ std::string processor() {
     return "unknown";
 }
 
-Report make_report(const Options& options, const Mesh& mesh, const Picture& slide) {
-    Progress progress;
+// Small enough for the page; filters are shown pixel for pixel instead, in a part that is neither near nor far.
+Picture embedded(const Picture& picture, Sampling sampling, int most) {
+    if (sampling == Sampling::nearest || sampling == Sampling::trilinear || sampling == Sampling::anisotropic)
+        return cropped(picture, picture.width * 3 / 8, picture.height * 17 / 64, 448, 320);
+    return reduced(picture, (std::max(picture.width, picture.height) + most - 1) / most);
+}
+
+PictureOfScene shown(const std::string& file, const std::string& caption, const Picture& picture,
+                     Sampling sampling = Sampling::bilinear, int most = 512) {
+    return {file, caption, encode_png(picture), encode_jpeg(embedded(picture, sampling, most))};
+}
+
+Report make_report(const Options& options, const Setting& setting) {
+    const std::vector<Scene> scenes = make_scenes(setting);
+    std::size_t steps = scenes.size() + 3;
+    for (const Scene& scene : scenes) steps += scene.views.size();
+    Progress progress(steps);
     Report report{.circumstances = {{"compiler", TEXGEN_REPORT_COMPILER},
                                     {"flags", TEXGEN_REPORT_FLAGS},
                                     {"processor", processor()},
                                     {"mesh", options.mesh ? options.mesh->filename().string() : "Newell's teapot"},
                                     {"slide", options.slide ? options.slide->filename().string() : "built in"},
                                     {"size", std::to_string(options.width) + "x" + std::to_string(options.height)}},
-                  .scenes = {}};
-    const double aspect = static_cast<double>(options.width) / options.height;
-    for (const Scene& scene : make_scenes(mesh, slide, aspect)) {
+                  .scenes = {},
+                  .room = {},
+                  .room_pictures = {},
+                  .times_by_size = {},
+                  .errors_by_distance = {},
+                  .timings = {},
+                  .worst = {},
+                  .costs = {}};
+    for (const Scene& scene : scenes) {
         SceneReport result{.name = scene.name, .title = scene.title, .comparison = {}, .pictures = {}};
         for (const View& view : scene.views) {
             progress.show("rendering " + view.file);
-            result.pictures.push_back(
-                {view.file, view.caption, encode_png(render(scene, view, options.width, options.height))});
+            result.pictures.push_back(shown(view.file, view.caption, render(scene, view, options.width, options.height),
+                                            view.sampling, report.scenes.empty() ? 1024 : 512));
         }
         progress.show("measuring " + scene.name);
-        result.comparison =
-            compare(rasterize(scene.views.front().surfaces, scene.camera, options.width, options.height), scene.region);
+        const Workload work = rasterize(scene.views.front().surfaces, scene.camera, options.width, options.height);
+        result.comparison = compare(moved(work, scene.corner), scene.region);
         report.scenes.push_back(std::move(result));
     }
+    progress.show("lighting the room");
+    report.room = make_room(*setting.slide, options.width, options.height);
+    report.room_pictures = {
+        shown("room.png", "A projector lights what its slide falls on; nothing casts shadows.", report.room.picture),
+        shown("room_work.png",
+              "The dearest work that a projector asks of each rectangle, for 1/512 texel of 4096: dark none, blue "
+              "affine, "
+              "green quadratic, yellow a division, red a division and a test.",
+              report.room.work_picture)};
+    progress.show("measuring triangles of all sizes");
+    report.times_by_size = times_by_size();
+    progress.show("measuring errors far from the origin");
+    report.errors_by_distance = errors_by_distance();
     return report;
-}
-
-// The plot as SVG, from a script that draws into name.svg; empty where there is no gnuplot. Run inside the folder, so
-// that no path needs quoting.
-std::string draw_plot(const Staging& staging, const std::string& name, const std::string& script) {
-    const fs::path svg = staging.folder() / (name + ".svg");
-    staging.write(name + ".gp", script);
-    const fs::path before = fs::current_path();
-    fs::current_path(staging.folder());
-    const int status = std::system(("gnuplot " + name + ".gp >gnuplot.log 2>&1").c_str());
-    fs::current_path(before);
-    std::error_code ignored;
-    fs::remove(staging.folder() / "gnuplot.log", ignored);
-    if (status == 0 && fs::exists(svg)) return read_file(svg);
-    fs::remove(svg, ignored);
-    return {};
 }
 
 int run(const Options& options) {
     // Everything that can be wrong with the input is found before anything is written.
     const Mesh mesh = options.mesh ? load_obj(*options.mesh) : teapot(12);
-    const Picture slide = options.slide ? load_picture(*options.slide) : built_in_slide();
+    const Setting setting{
+        .mesh = mesh,
+        .dense = options.mesh ? mesh : teapot(64),
+        .slide = std::make_shared<const Picture>(options.slide ? load_picture(*options.slide) : built_in_slide()),
+        .lens = options.lens,
+        .aspect = static_cast<double>(options.width) / options.height};
     std::vector<Timings> timings;
     for (const std::string& file : options.timings) timings.push_back(read_timings(file));
-    const std::vector<Cost> costs = options.costs ? read_costs(*options.costs) : std::vector<Cost>();
-    const std::vector<WorstTime> worst = options.worst ? read_worst_times(*options.worst) : std::vector<WorstTime>();
+    std::vector<Cost> costs;
+    if (options.costs) costs = read_costs(*options.costs);
+    std::vector<WorstTime> worst;
+    if (options.worst) worst = read_worst_times(*options.worst);
     static_cast<void>(Staging(options.out));
 
-    const Report report = make_report(options, mesh, slide);
-    const RoomReport room = make_room(slide, options.width, options.height);
+    Report report = make_report(options, setting);
+    report.timings = std::move(timings);
+    report.worst = std::move(worst);
+    report.costs = std::move(costs);
 
     const Staging staging(options.out);
-    const std::string name = "time_against_error";
-    const std::string plot = draw_plot(staging, name, plot_of(report, name + ".svg"));
-    std::vector<TimingsPlot> plots;
-    if (!plot.empty()) plots = plots_of(timings);
-    for (TimingsPlot& drawn : plots) drawn.svg = draw_plot(staging, drawn.name, drawn.script);
     for (const SceneReport& scene : report.scenes)
         for (const PictureOfScene& picture : scene.pictures) staging.write(picture.file, picture.png);
-    const std::string room_png = encode_png(room.picture), work_png = encode_png(room.work_picture);
-    staging.write("room.png", room_png);
-    staging.write("room_work.png", work_png);
-    staging.write("index.html", html_of(report, plot,
-                                        html_of(timings, plots) + html_of(worst) + html_of(costs) +
-                                            html_of(room, room_png, work_png)));
+    for (const PictureOfScene& picture : report.room_pictures) staging.write(picture.file, picture.png);
+    staging.write("index.html", html_of(report));
     staging.publish();
 
-    std::fputs(
-        (text_of(report) + "\n" + text_of(room) + "\n" + text_of(timings) + text_of(worst) + text_of(costs)).c_str(),
-        stdout);
-    if (plot.empty()) std::puts("\nno plot: gnuplot is missing or failed");
+    std::fputs(text_of(report).c_str(), stdout);
     std::printf("\nwritten to %s\n", (options.out / "index.html").string().c_str());
     for (const SceneReport& scene : report.scenes) {
         if (scene.comparison.is_as_promised()) continue;
         std::fprintf(stderr, "texgen_report: the library broke its promise in %s\n", scene.name.c_str());
         return 1;
     }
-    if (!room.is_same_picture()) {
+    if (!report.room.is_same_picture()) {
         std::fputs("texgen_report: what was skipped in the room changed its picture\n", stderr);
         return 1;
     }
@@ -235,7 +280,7 @@ int main(int count, char** arguments) {
     try {
         const report::Options options = report::parse({arguments + 1, arguments + count});
         if (!options.help) return report::run(options);
-        std::fputs(report::usage, stdout);
+        std::printf(report::usage, arguments[0], arguments[0]);
         return 0;
     } catch (const report::Failure& failure) {
         return report::fail(failure.message);

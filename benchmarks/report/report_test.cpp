@@ -92,13 +92,16 @@ TEST_CASE("a bad option is refused in one line") {
     const Workplace place;
     place.check_refusal("--colour red", "--colour");
     place.check_refusal("teapot.obj", "teapot.obj");
-    for (const char* option : {"--mesh", "--slide", "--size", "--out", "--costs", "--worst", "--timings"}) {
+    for (const char* option : {"--mesh", "--slide", "--lens", "--size", "--out", "--costs", "--worst", "--timings"}) {
         place.check_refusal(option, option);
         place.check_refusal(option + std::string(" ''"), option);
     }
     for (const char* size : {"64", "x", "64x", "x64", "15x64", "64x4097", "-64x64", "64x64x64", "64,64", "1e3x64",
                              "99999999999999999999x64"})
         place.check_refusal(std::string("--size ") + size, size);
+    for (const char* lens : {"30", "perspective", "perspective:", "perspective:0", "perspective:151",
+                             "perspective:wide", "orthographic:-1", "orthographic:1000", "fisheye:30"})
+        place.check_refusal(std::string("--lens ") + lens, lens);
 }
 
 TEST_CASE("a mesh that cannot be used is refused in one line") {
@@ -256,12 +259,14 @@ TEST_CASE("a run writes the page and the pictures, and nothing else") {
     }
     CHECK(pictures == std::vector<std::string>{"border.png", "border_missing.png", "facing_anisotropic.png",
                                                "facing_anisotropy.png", "facing_level.png", "facing_nearest.png",
-                                               "facing_trilinear.png", "orthographic.png", "reverse.png",
+                                               "facing_trilinear.png", "lost.png", "lost_error.png", "lost_kept.png",
+                                               "lost_kept_error.png", "orthographic.png", "reverse.png",
                                                "reverse_uncured.png", "room.png", "room_work.png", "teapot.png",
                                                "trapezoid.png", "trapezoid_real.png"});
     const std::string page = contents("deep/down/index.html");
     CHECK(page.ends_with("</html>\n"));
-    CHECK(page.find("data:image/png;base64,") != std::string::npos);
+    CHECK(page.size() < 1'000'000);
+    CHECK(page.find("data:image/jpeg;base64,") < page.find("<h2>"));
     CHECK(page.find("src=\"http") == std::string::npos);
     for (const std::string& file : place.files()) CHECK(file.find("/.") == std::string::npos);
 }
@@ -288,12 +293,77 @@ TEST_CASE("a run takes a mesh and a slide of the user's") {
     CHECK(contents("report/index.html").find("reverse.png") != std::string::npos);
 }
 
+TEST_CASE("a lens of the user's changes the picture") {
+    const Workplace place;
+    REQUIRE(place.run("--size 32x32 --out wide").status == 0);
+    REQUIRE(place.run("--size 32x32 --out narrow --lens perspective:8").status == 0);
+    REQUIRE(place.run("--size 32x32 --out parallel --lens orthographic:5.2").status == 0);
+    CHECK(contents("wide/teapot.png") != contents("narrow/teapot.png"));
+    CHECK(contents("parallel/teapot.png") == contents("wide/orthographic.png"));
+}
+
+TEST_CASE("in a browser the page fits a desk and a telephone, folded or not") {
+    const Workplace place;
+    const std::string find = "$(command -v chromium || command -v chromium-browser || command -v google-chrome)";
+    if (std::system(("test -n \"" + find + "\"").c_str()) != 0) {
+        MESSAGE("no browser looks at the page");
+        return;
+    }
+    const auto row = [](const std::string& scene, const char* name, const char* time) {
+        return "{\n\"run_name\": \"" + scene + " > " + name +
+               "\",\n\"aggregate_name\": \"median\",\n\"cpu_time\": " + time +
+               ",\n\"elements\": 1,\n\"row\": 0,\n\"texels\": 1e-3,\n\"ulp\": 2\n}\n";
+    };
+    std::string timings = "\"flags\": \"-O3 -march=native\",\n";
+    for (const char* scene : {"project planar, 1024", "rows, 1024x16, q/w by 1.3"})
+        timings += row(scene, "texgen, 1/512 texel of 4096", "0.25") + row(scene, "GLM, mat4 * vec4", "0.125");
+    write("timings.json", timings);
+    REQUIRE(place.run("--size 256x256 --timings timings.json --timings timings.json").status == 0);
+    for (const std::string width : {"400", "1280"}) {
+        write("frame.html",
+              "<body><script>function look(frame) {\n"
+              "const page = frame.contentDocument, faults = [], width = page.documentElement.clientWidth;\n"
+              "const top = page.images[0].getBoundingClientRect().top;\n"
+              "if (top > 400) faults.push('the first picture is at ' + top);\n"
+              "page.querySelectorAll('details').forEach(details => details.open = true);\n"
+              "if (page.documentElement.scrollWidth > width) faults.push('the page scrolls');\n"
+              "for (const image of page.images) if (!image.naturalWidth) faults.push('an empty picture');\n"
+              "for (const element of page.querySelectorAll('body *')) {\n"
+              "  const box = element.getBoundingClientRect(), around = element.parentElement.closest('.wide, svg');\n"
+              "  const limit = around ? around.getBoundingClientRect() : {left: 0, right: width, bottom: 1e9};\n"
+              "  const scrolls = around && around.className == 'wide';\n"
+              "  if (box.width && !scrolls && (box.left < limit.left - 1 || box.right > limit.right + 1 ||\n"
+              "      box.bottom > limit.bottom + 1)) faults.push(element.tagName + element.textContent.slice(0, 40));\n"
+              "}\n"
+              "document.body.dataset.faults = faults.join('; ') || 'none';\n"
+              "}</script><iframe height=900 width=" +
+                  width + " onload='look(this)' src=report/index.html></iframe></body>");
+        CHECK(
+            std::system(
+                (find + " --headless --no-sandbox --disable-gpu --allow-file-access-from-files --user-data-dir=browser "
+                        "--dump-dom \"file://$PWD/frame.html\" >seen.html 2>browser.log")
+                    .c_str()) == 0);
+        const std::string seen = contents("seen.html");
+        CAPTURE(seen);
+        CHECK(seen.find("data-faults=\"none\"") != std::string::npos);
+    }
+}
+
+TEST_CASE("the example of --help works as written") {
+    const Workplace place;
+    const std::string help = place.run("--help").output;
+    const std::string example = help.substr(help.find("Example:\n") + 9);
+    CHECK(std::system(("(" + example + ") >output 2>error").c_str()) == 0);
+    CHECK(contents("error") == "");
+    CHECK(contents("pyramid/index.html").ends_with("</html>\n"));
+}
+
 TEST_CASE("--help says how, and writes nothing") {
     const Workplace place;
     const Outcome outcome = place.run("--help");
     CHECK(outcome.status == 0);
     CHECK(outcome.error == "");
-    for (const char* option : {"--mesh", "--slide", "--size", "--out", "--costs", "--worst", "--timings"})
+    for (const char* option : {"--mesh", "--slide", "--lens", "--size", "--out", "--costs", "--worst", "--timings"})
         CHECK(outcome.output.find(option) != std::string::npos);
     CHECK(place.files().empty());
 }

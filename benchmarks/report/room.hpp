@@ -35,7 +35,7 @@ RoomReport make_room(const Picture& slide, int width, int height);
 
 std::string text_of(const RoomReport& room);
 
-// A section of the page, its pictures included: PNG files.
-std::string html_of(const RoomReport& room, const std::string& picture_png, const std::string& work_png);
+// A part of the page.
+std::string html_of(const RoomReport& room);
 
 }  // namespace report

@@ -32,13 +32,32 @@ double relative_height(const Picture& slide) {
     return static_cast<double>(slide.height) / std::max(slide.width, slide.height);
 }
 
-// `degrees` is the angle of the slide's longer side.
-texgen::PerspectiveLens walk_through_lens(const Picture& slide, double degrees = 30) {
-    const double half_height = relative_height(slide) * std::tan(0.5 * glm::radians(degrees));
-    return {.fovy = texgen::radians(2.0 * std::atan(half_height)),
-            .aspect = static_cast<double>(slide.width) / slide.height,
-            .z_near = 0.2,
-            .z_far = 1000};
+// The angle or the width is that of the slide's longer side.
+texgen::Projector projector_of(const LensChoice& lens, const Picture& slide, const texgen::Aim& aim) {
+    const double aspect = static_cast<double>(slide.width) / slide.height;
+    if (lens.is_orthographic) {
+        const double top = 0.5 * lens.extent * relative_height(slide);
+        return texgen::make_projector(texgen::OrthographicLens{.left = -top * aspect,
+                                                               .right = top * aspect,
+                                                               .bottom = -top,
+                                                               .top = top,
+                                                               .z_near = 0.2,
+                                                               .z_far = 1000},
+                                      aim, texgen::opengl)
+            .value();
+    }
+    const double half_height = relative_height(slide) * std::tan(0.5 * glm::radians(lens.extent));
+    return texgen::make_projector(texgen::PerspectiveLens{.fovy = texgen::radians(2.0 * std::atan(half_height)),
+                                                          .aspect = aspect,
+                                                          .z_near = 0.2,
+                                                          .z_far = 1000},
+                                  aim, texgen::opengl)
+        .value();
+}
+
+// From where its light comes: from a point, or from afar.
+glm::vec4 light_of(const LensChoice& lens, const texgen::Aim& aim) {
+    return lens.is_orthographic ? glm::vec4(aim.position - aim.target, 0) : glm::vec4(aim.position, 1);
 }
 
 struct Eye {
@@ -78,46 +97,50 @@ std::vector<Surface> mesh_on_floor(const texgen::Projector& projector, const Mes
 
 const Eye beside_walk_through{{1.2, 2.6, 9.2}, {-1.85, -3.75, 0.3}, 39};
 
-Scene walk_through(const Mesh& mesh, const std::shared_ptr<const Picture>& slide, double aspect) {
-    const texgen::Projector projector =
-        texgen::make_projector(walk_through_lens(*slide), walk_through_aim, texgen::opengl).value();
-    return {
-        .name = "teapot",
-        .title = "A mesh and a floor under a slide",
-        .camera = camera(beside_walk_through, aspect),
-        .shading = Shading::slide_as_light,
-        .light = glm::vec4(walk_through_aim.position, 1),
-        .region = texgen::whole_texture(),
-        .views = {{.file = "teapot.png",
-                   .caption = "The walk-through's projector: 30 degrees wide, at (2, 5, 5), aimed at (-2, -4, 0). "
-                              "The slide lies upright and unmirrored on the floor and on the mesh alike. A projected "
-                              "texture casts no shadow: the floor behind the mesh has its part of the slide too.",
-                   .surfaces = mesh_on_floor(projector, mesh),
-                   .slide = slide}}};
+// The walk-through's scene, by any lens.
+Scene mesh_under_slide(const Setting& setting, const LensChoice& lens, View view, const char* title) {
+    view.slide = setting.slide;
+    view.surfaces = mesh_on_floor(projector_of(lens, *setting.slide, walk_through_aim), setting.mesh);
+    return {.name = view.file.substr(0, view.file.find('.')),
+            .title = title,
+            .camera = camera(beside_walk_through, setting.aspect),
+            .shading = Shading::slide_as_light,
+            .light = light_of(lens, walk_through_aim),
+            .region = texgen::whole_texture(),
+            .views = {std::move(view)}};
 }
 
-Scene orthographic(const Mesh& mesh, const std::shared_ptr<const Picture>& slide, double aspect) {
-    const double half_height = 2.6 * relative_height(*slide);
-    const double half_width = half_height * slide->width / slide->height;
-    const texgen::OrthographicLens lens{.left = -half_width,
-                                        .right = half_width,
-                                        .bottom = -half_height,
-                                        .top = half_height,
-                                        .z_near = 0.2,
-                                        .z_far = 1000};
-    const texgen::Projector projector = texgen::make_projector(lens, walk_through_aim, texgen::opengl).value();
-    return {.name = "orthographic",
-            .title = "The same from an orthographic projector",
-            .camera = camera(beside_walk_through, aspect),
-            .shading = Shading::slide_as_light,
-            .light = glm::vec4(walk_through_aim.position - walk_through_aim.target, 0),
-            .region = texgen::whole_texture(),
-            .views = {{.file = "orthographic.png",
-                       .caption = "The same aim with parallel rays: q is 1 at every vertex, and nothing is divided by "
-                                  "it. On the floor the slide is a parallelogram with checks of one size; what makes "
-                                  "the far ones smaller is the camera.",
-                       .surfaces = mesh_on_floor(projector, mesh),
-                       .slide = slide}}};
+// Small triangles in the far corner of a large window, where plane equations in float lose the most.
+Scene lost(const Setting& setting) {
+    const std::vector<Surface> surfaces =
+        mesh_on_floor(projector_of(setting.lens, *setting.slide, walk_through_aim), setting.dense);
+    const auto view = [&](const char* file, const char* caption, Coordinates coordinates, Sampling sampling) {
+        return View{.file = file,
+                    .caption = caption,
+                    .surfaces = surfaces,
+                    .slide = setting.slide,
+                    .coordinates = coordinates,
+                    .sampling = sampling};
+    };
+    return {
+        .name = "lost",
+        .title = "What is lost, and what is kept: small triangles at the far corner of a window of 4096",
+        .camera = camera({{0.4, 0.6, 6.2}, {-2.1, -3.0, 0.0}, 34}, setting.aspect),
+        .shading = Shading::slide_as_light,
+        .light = light_of(setting.lens, walk_through_aim),
+        .region = texgen::whole_texture(),
+        .corner = {3072, 3072},
+        .views = {view("lost_kept.png", "By texgen.", Coordinates::library, Sampling::nearest),
+                  view("lost.png",
+                       "By plane equations in float: where a triangle has few fragments the slide falls apart into "
+                       "noise.",
+                       Coordinates::float_planes, Sampling::nearest),
+                  view("lost_kept_error.png", "The error of texgen: dark blue everywhere, 1e-4 texel of 4096 and less.",
+                       Coordinates::library, Sampling::error_as_colour),
+                  view("lost_error.png",
+                       "The error of plane equations in float: blue up to 1e-4 texel of 4096, white at 1/30, red from "
+                       "10 texels on.",
+                       Coordinates::float_planes, Sampling::error_as_colour)}};
 }
 
 // A quadrilateral of the window, w = 1, with the texture coordinates of a rectangle seen in perspective.
@@ -141,32 +164,29 @@ Scene qcoord(const std::shared_ptr<const Picture>& slide, double aspect) {
     const Surface projective = trapezoid(aspect);
     Surface real = projective;
     for (glm::vec4& strq : real.strq) strq /= strq.w;
-    return {
-        .name = "trapezoid",
-        .title = "The trapezoid, projective and real",
-        .camera = {glm::dmat4(1.0), glm::dvec3(0, 0, 1)},
-        .shading = Shading::slide_alone,
-        .light = glm::vec4(0, 0, 1, 0),
-        .region = texgen::whole_texture(),
-        .views = {{.file = "trapezoid.png",
-                   .caption = "Projective: (s, t, q) is interpolated and divided at each fragment. The narrow side "
-                              "has the smaller q; the slide looks like a board that leans back, and every straight "
-                              "line of it is straight.",
-                   .surfaces = {projective},
-                   .slide = slide},
-                  {.file = "trapezoid_real.png",
-                   .caption = "Real: divided at the vertices, then interpolated. Wrong: each triangle has an affine "
-                              "image of its own, and along the diagonal from the lower left to the upper right "
-                              "every line has a crease.",
-                   .surfaces = {real},
-                   .slide = slide}}};
+    return {.name = "trapezoid",
+            .title = "A trapezoid: divide at each fragment, not at the corners",
+            .camera = {glm::dmat4(1.0), glm::dvec3(0, 0, 1)},
+            .shading = Shading::slide_alone,
+            .light = glm::vec4(0, 0, 1, 0),
+            .region = texgen::whole_texture(),
+            .views = {
+                {.file = "trapezoid.png",
+                 .caption = "Divided by q at each fragment: the slide looks like a board that leans back, and every "
+                            "straight line of it is straight.",
+                 .surfaces = {projective},
+                 .slide = slide},
+                {.file = "trapezoid_real.png",
+                 .caption = "Divided at the corners already, which is wrong: each triangle has an affine image of its "
+                            "own, and lines have a crease along the diagonal.",
+                 .surfaces = {real},
+                 .slide = slide}}};
 }
 
 // A projector between two walls that stand open towards the camera: one before it, one behind it.
 Scene reverse(const std::shared_ptr<const Picture>& slide, double aspect) {
     const texgen::Aim aim{.position = {0, 1.8, 0}, .target = {-5, 2.2, 0}, .up = {0, 1, 0}};
-    const texgen::Projector projector =
-        texgen::make_projector(walk_through_lens(*slide, 40), aim, texgen::opengl).value();
+    const texgen::Projector projector = projector_of({.extent = 40}, *slide, aim);
     const auto wall = [&](float side) {
         return projected(projector, parallelogram({5.0f * side, -0.5f, 3.5f}, {-2.6f * side, 0, -7}, {0, 5.0f, 0}, 2),
                          in_place, plaster);
@@ -181,58 +201,56 @@ Scene reverse(const std::shared_ptr<const Picture>& slide, double aspect) {
     Surface stand{.mesh = body, .world_from_object = in_place, .strq = {}, .colour = steel};
     stand.strq.assign(body.positions.size(), glm::vec4(-1, -1, 0, 1));
     surfaces.push_back(std::move(stand));
-    return {
-        .name = "reverse",
-        .title = "Reverse projection",
-        .camera = camera({{0, 4.0, 13.5}, {0, 1.6, 0}, 46}, aspect),
-        .shading = Shading::slide_as_light,
-        .light = glm::vec4(aim.position, 1),
-        .region = texgen::whole_texture(),
-        .views = {{.file = "reverse.png",
-                   .caption = "A projector between two walls, aimed at the left one. The wall at its back has q < 0 "
-                              "and stays dark.",
-                   .surfaces = surfaces,
-                   .slide = slide},
-                  {.file = "reverse_uncured.png",
-                   .caption = "The same without the test of q: s/q and t/q fall inside the slide behind the "
-                              "projector too, and the wall there gets it upside down: a mirror image.",
-                   .surfaces = surfaces,
-                   .slide = slide,
-                   .coordinates = Coordinates::ignoring_sign_of_q}}};
+    return {.name = "reverse",
+            .title = "Behind the projector",
+            .camera = camera({{0, 4.0, 13.5}, {0, 1.6, 0}, 46}, aspect),
+            .shading = Shading::slide_as_light,
+            .light = glm::vec4(aim.position, 1),
+            .region = texgen::whole_texture(),
+            .views = {
+                {.file = "reverse.png",
+                 .caption = "A projector between two walls, aimed at the left one: the wall at its back has q < 0 and "
+                            "stays dark.",
+                 .surfaces = surfaces,
+                 .slide = slide},
+                {.file = "reverse_uncured.png",
+                 .caption = "Without the test of q the wall behind the projector gets the slide too, upside down.",
+                 .surfaces = surfaces,
+                 .slide = slide,
+                 .coordinates = Coordinates::ignoring_sign_of_q}}};
 }
 
 // The texture modulates the surface everywhere, so what confines the slide is the texture's own white border.
-Scene white_border(const Mesh& mesh, const std::shared_ptr<const Picture>& slide, double aspect) {
-    const texgen::Projector projector =
-        texgen::make_projector(walk_through_lens(*slide), walk_through_aim, texgen::opengl).value();
-    const std::vector<Surface> surfaces = mesh_on_floor(projector, mesh);
+Scene white_border(const Setting& setting) {
+    const std::vector<Surface> surfaces =
+        mesh_on_floor(projector_of(setting.lens, *setting.slide, walk_through_aim), setting.mesh);
     return {.name = "border",
-            .title = "A white border with modulate",
-            .camera = camera(beside_walk_through, aspect),
+            .title = "A white border",
+            .camera = camera(beside_walk_through, setting.aspect),
             .shading = Shading::modulate,
-            .light = glm::vec4(walk_through_aim.position, 1),
+            .light = light_of(setting.lens, walk_through_aim),
             // The border's texels reach as far as the clamp does, so the coordinates are needed far outside the slide.
             .region = texgen::atlas_tile({-1000, -1000}, {1000, 1000}),
             .views = {{.file = "border.png",
-                       .caption = "The texture is clamped to its edge and multiplies the colour of the surface. Its "
-                                  "outermost texels are white, so outside the slide nothing changes.",
+                       .caption = "The texture multiplies the colour of the surface and is clamped to its edge, whose "
+                                  "texels are white: outside the slide nothing changes.",
                        .surfaces = surfaces,
-                       .slide = std::make_shared<const Picture>(with_white_border(*slide, 2))},
+                       .slide = std::make_shared<const Picture>(with_white_border(*setting.slide, 2))},
                       {.file = "border_missing.png",
-                       .caption = "The same without the border: the clamp draws the slide's edge out over the floor.",
+                       .caption = "Without the border the clamp draws the slide's edge out over the floor.",
                        .surfaces = surfaces,
-                       .slide = slide}}};
+                       .slide = setting.slide}}};
 }
 
 // The projector stands at the far end of a floor and looks at the camera: where the camera sees the floor from near, the
 // slide is spread over many pixels a texel, and where it sees it from far, many texels fall on a pixel.
-Scene facing(const std::shared_ptr<const Picture>& slide, double aspect) {
-    const texgen::Aim aim{.position = {0.8, 2.2, -9}, .target = {-0.1, 0, -2.4}, .up = {0, 1, 0}};
-    const texgen::Projector projector =
-        texgen::make_projector(walk_through_lens(*slide, 34), aim, texgen::opengl).value();
+Scene facing(double aspect) {
+    const auto slide = std::make_shared<const Picture>(fine_slide());
+    const texgen::Aim aim{.position = {0.8, 2.2, -9}, .target = {-0.1, 0, -2.4}, .up = {0, -1, 0}};
+    const texgen::Projector projector = projector_of({.extent = 34}, *slide, aim);
     const std::vector<Surface> surfaces{
         projected(projector, parallelogram({-12, 0, 2.5f}, {24, 0, 0}, {0, 0, -10.5f}, 1), in_place, plaster)};
-    const Camera eye = camera({{0, 2.4, 5.0}, {0, 0, -4.2}, 40}, aspect);
+    const Camera eye = camera({{0.3, 2.4, 5.0}, {-0.1, 0, -2.6}, 22}, aspect);
     double score = 0.0;
     for (const DrawnTriangle& triangle : rasterize(surfaces, eye, 512, 512).triangles)
         score = std::max(score, texgen::headlights(triangle.window));
@@ -241,40 +259,51 @@ Scene facing(const std::shared_ptr<const Picture>& slide, double aspect) {
     };
     return {
         .name = "facing",
-        .title = "A projector that faces the camera: deer in headlights",
+        .title = "A projector that faces the camera: what filters need to know",
         .camera = eye,
         .shading = Shading::slide_alone,
         .light = glm::vec4(aim.position, 1),
         .region = texgen::whole_texture(),
-        .views = {view("facing_level.png",
-                       "The level of detail, from the footprints: blue where a texel covers many pixels, white at "
-                       "one texel a pixel, yellow to red where many texels fall on one; a line at each whole level. "
-                       "Between its nearest and its farthest corner the projector adds " +
-                           formatted("%.1f", score) + " levels to those of the camera.",
-                       Sampling::level_as_colour),
-                  view("facing_anisotropy.png",
-                       "The anisotropy: black where a pixel's footprint is round, white at 16 to 1, red beyond; a "
-                       "line at each power of two.",
-                       Sampling::anisotropy_as_colour),
-                  view("facing_nearest.png",
-                       "The nearest texel, one sample a pixel: towards the projector the slide falls apart into "
-                       "noise.",
-                       Sampling::nearest),
-                  view("facing_trilinear.png",
-                       "Trilinear, of the footprint's level: no noise, and no detail either, as the longer side of "
-                       "a footprint decides for both.",
-                       Sampling::trilinear),
-                  view("facing_anisotropic.png",
-                       "Anisotropic, up to 16 probes along the footprint's major axis: the detail across it is back.",
-                       Sampling::anisotropic)}};
+        .views = {
+            view("facing_nearest.png",
+                 "The nearest texel, a part of the picture pixel for pixel: the print falls apart.", Sampling::nearest),
+            view("facing_trilinear.png", "Trilinear, of the footprint's level: no noise, and no print either.",
+                 Sampling::trilinear),
+            view("facing_anisotropic.png",
+                 "Anisotropic, up to 16 probes along the footprint's major axis: the print is back.",
+                 Sampling::anisotropic),
+            view("facing_level.png",
+                 "The level of detail: blue where a texel covers many pixels, white at one, yellow to red where "
+                 "many fall on a pixel; the projector adds " +
+                     formatted("%.1f", score) + " levels to the camera's.",
+                 Sampling::level_as_colour),
+            view("facing_anisotropy.png",
+                 "The anisotropy: black where a pixel's footprint is round, white at 16 to 1, red beyond.",
+                 Sampling::anisotropy_as_colour)}};
 }
 
 }  // namespace
 
-std::vector<Scene> make_scenes(const Mesh& mesh, const Picture& slide, double aspect) {
-    const auto shared = std::make_shared<const Picture>(slide);
-    return {walk_through(mesh, shared, aspect), qcoord(shared, aspect), reverse(shared, aspect),
-            orthographic(mesh, shared, aspect), facing(shared, aspect), white_border(mesh, shared, aspect)};
+std::vector<Scene> make_scenes(const Setting& setting) {
+    const View first{.file = "teapot.png",
+                     .caption =
+                         "A slide falls on a mesh and on the floor, upright and unmirrored on both; nothing casts a "
+                         "shadow, so the floor behind the mesh has its part of it too.",
+                     .surfaces = {},
+                     .slide = {}};
+    const View parallel{.file = "orthographic.png",
+                        .caption =
+                            "Parallel rays: q is 1 at every vertex, and the slide's checks are of one size on the "
+                            "floor; what makes the far ones smaller is the camera.",
+                        .surfaces = {},
+                        .slide = {}};
+    return {mesh_under_slide(setting, setting.lens, first, "A mesh and a floor under a slide"),
+            lost(setting),
+            qcoord(setting.slide, setting.aspect),
+            reverse(setting.slide, setting.aspect),
+            mesh_under_slide(setting, {.is_orthographic = true, .extent = 5.2}, parallel, "Parallel rays"),
+            facing(setting.aspect),
+            white_border(setting)};
 }
 
 }  // namespace report

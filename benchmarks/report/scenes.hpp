@@ -24,11 +24,21 @@ enum class Shading {
 
 enum class Coordinates {
     library,             // texgen::interpolate
+    float_planes,        // plane equations in float, as a user of GLM writes them
     ignoring_sign_of_q,  // s/q and t/q wherever they fall: the reverse projection is not cured
 };
 
-// How the slide is looked up; or what footprints say of it, as colours. All but bilinear are drawn with one sample a pixel.
-enum class Sampling { bilinear, nearest, trilinear, anisotropic, level_as_colour, anisotropy_as_colour };
+// How the slide is looked up; or what footprints, or the reference, say of it, as colours. All but bilinear are drawn with
+// one sample a pixel.
+enum class Sampling {
+    bilinear,
+    nearest,
+    trilinear,
+    anisotropic,
+    level_as_colour,
+    anisotropy_as_colour,
+    error_as_colour
+};
 
 // One picture.
 struct View {
@@ -46,10 +56,23 @@ struct Scene {
     Shading shading;
     glm::vec4 light;  // the projector's position (w = 1), or the direction to it (w = 0)
     texgen::TextureRegion region;
+    glm::ivec2 corner{0, 0};  // where the picture begins in its window
     std::vector<View> views;
 };
 
-// `mesh` stands where the teapot stands. The camera has the given aspect.
-std::vector<Scene> make_scenes(const Mesh& mesh, const Picture& slide, double aspect);
+// Of the projector: the angle in degrees, or with parallel rays the width, of the slide's longer side.
+struct LensChoice {
+    bool is_orthographic = false;
+    double extent = 30;
+};
+
+// `mesh` stands where the teapot stands, `dense` where small triangles are shown. The camera has the given aspect.
+struct Setting {
+    Mesh mesh, dense;
+    std::shared_ptr<const Picture> slide;
+    LensChoice lens;
+    double aspect;
+};
+std::vector<Scene> make_scenes(const Setting& setting);
 
 }  // namespace report

@@ -87,4 +87,18 @@ Picture built_in_slide() {
     return slide;
 }
 
+Picture fine_slide() {
+    Picture slide(side, side, glm::vec3(1));
+    for (int line = 0; line < side / 16; ++line) {
+        const int middle = 16 * line + 8;
+        if (line % 4 != 3) {
+            const std::string words = "a slide as fine as small print, of letters with strokes one texel wide; ";
+            print(slide, words + words + words.substr(0, 30), side / 2, middle, 1, ink);
+        } else {
+            for (int x = 0; x < side; x += 2) fill(slide, x, middle - 6, x + 1, middle + 6, {0.75f, 0.1f, 0.15f});
+        }
+    }
+    return slide;
+}
+
 }  // namespace report

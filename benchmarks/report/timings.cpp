@@ -8,6 +8,7 @@
 #include <sstream>
 #include <utility>
 
+#include "chart.hpp"
 #include "failure.hpp"
 #include "files.hpp"
 #include "html.hpp"
@@ -177,6 +178,11 @@ std::vector<std::string> slower_stops(const std::vector<Timings>& builds) {
     return lines;
 }
 
+bool is_ours(const Timing& row) { return row.variant.find("texgen") != row.variant.npos; }
+
+// Without what each build has.
+std::string short_flags(const Timings& build) { return build.flags.substr(0, build.flags.find(" -DNDEBUG")); }
+
 // The row that a scene's others are compared with.
 const Timing* baseline(const Timings& build, const std::string& scene) {
     const auto found = std::ranges::find_if(
@@ -244,44 +250,64 @@ Timings read_timings(const std::string& file) {
     return timings;
 }
 
-std::vector<TimingsPlot> plots_of(const std::vector<Timings>& builds) {
-    std::vector<TimingsPlot> plots;
-    if (builds.empty()) return plots;
-    for (const std::string& scene : scenes_of(builds)) {
-        if (scene.find(", 1024") == scene.npos) continue;
+std::string table_of(const std::vector<Timings>& builds, const std::string& scene) {
+    const std::vector<Timing>& rows = builds.front().rows;
+    const bool has_errors =
+        std::ranges::any_of(rows, [&](const Timing& row) { return row.scene == scene && row.has_errors; });
+    std::string html = "<table>\n<tr><th>way</th>";
+    for (const Timings& build : builds) html += "<th>" + unbroken(short_flags(build)) + "</th>";
+    html += has_errors ? "<th>largest error</th></tr>\n" : "</tr>\n";
+    for (const Timing& row : rows) {
+        if (row.scene != scene || row.variant.starts_with("rejected")) continue;
+        html += is_ours(row) ? "<tr class=\"library\"><td>" : "<tr><td>";
+        html += escaped(row.variant) + "</td>";
         for (const Timings& build : builds) {
-            std::vector<Timing> rows;
-            for (const Timing& row : build.rows)
-                if (row.scene == scene && row.has_errors) rows.push_back(row);
-            const std::string name = formatted("timings_%zu", plots.size());
-            std::string script =
-                "set terminal svg size 760,420 font 'sans-serif,13' background 'white'\nset output '" + name +
-                ".svg'\nset logscale xy\nset format y '10^{%L}'\nset xlabel 'ns an element'\n"
-                "set ylabel 'largest error, texels of 4096'\nset grid\nset key outside right top reverse Left\n"
-                "set title \"" +
-                scene + ", " + build.flags + "\" noenhanced\n";
-            const auto point = [](const Timing& row) {
-                return formatted("%.6g %.6g\n", row.nanoseconds, std::max(row.texels, 1e-6));
-            };
-            for (std::size_t i = 0; i < rows.size(); ++i)
-                script += formatted("$row%zu << end\n", i) + point(rows[i]) + "end\n";
-            std::vector<Timing> in_time = rows;
-            std::ranges::sort(in_time, {}, &Timing::nanoseconds);
-            script += "$front << end\n";
-            double least = HUGE_VAL;
-            for (const Timing& row : in_time) {
-                if (row.texels >= least) continue;
-                least = row.texels;
-                script += point(row);
-            }
-            script += "end\nplot $front using 1:2 with steps linecolor 'grey' title 'Pareto front'";
-            for (std::size_t i = 0; i < rows.size(); ++i)
-                script += formatted(", \\\n     $row%zu using 1:2 with points pointtype %d pointsize 1.2 title \"%s\"",
-                                    i, rows[i].variant.starts_with("texgen") ? 7 : 6, rows[i].variant.c_str());
-            plots.push_back({scene + ", " + build.flags, name, script + "\n", {}});
+            const Timing* timing = build.find(scene, row.variant);
+            html += "<td>" + (timing == nullptr ? "" : duration(timing->nanoseconds)) + "</td>";
+        }
+        if (has_errors) html += "<td>" + (row.has_errors ? number(row.texels) : "") + "</td>";
+        html += "</tr>\n";
+    }
+    return html + "</table>\n";
+}
+
+std::string chart_of(const std::vector<Timings>& builds, const std::string& scene) {
+    std::vector<Series> series;
+    std::vector<Bar> bars;
+    for (const Timings& build : builds) {
+        for (const Timing& row : build.rows) {
+            if (row.scene != scene) continue;
+            if (&build == &builds.back()) bars.push_back({row.variant, row.nanoseconds});
+            if (!row.has_errors) continue;
+            const bool is_rejected = row.variant.starts_with("rejected");
+            series.push_back({is_rejected ? "rejected ways" : row.variant,
+                              &build == &builds.front() ? Series::Mark::ring : Series::Mark::dot,
+                              {{row.nanoseconds, std::max(row.texels, 1e-6)}}});
         }
     }
-    return plots;
+    // Footprints have errors of which only some rows know.
+    if (series.size() < bars.size())
+        return bars_of(bars, "Compiled with " + short_flags(builds.back()) + "; a shorter bar is faster.");
+    return chart_of(
+        series, "nanoseconds an element", "largest error, texels of 4096",
+        (builds.size() > 1 ? "Rings: " + short_flags(builds.front()) + ". Dots: " + short_flags(builds.back()) + ". "
+                           : "") +
+            "To the left is faster, further down more accurate.");
+}
+
+std::vector<Contest> contests_of(const std::vector<Timings>& builds, const std::string& scene,
+                                 const std::string& ours) {
+    std::vector<Contest> contests;
+    for (const Timings& build : builds) {
+        const Timing* best = nullptr;
+        for (const Timing& row : build.rows)
+            if (row.scene == scene && !is_ours(row) && !row.variant.starts_with("rejected") &&
+                !row.variant.starts_with("floor") && (best == nullptr || row.nanoseconds < best->nanoseconds))
+                best = &row;
+        const Timing* row = build.find(scene, ours);
+        if (row != nullptr && best != nullptr) contests.push_back({short_flags(build), *row, *best});
+    }
+    return contests;
 }
 
 std::string text_of(const std::vector<Timings>& builds) {
@@ -294,11 +320,13 @@ std::string text_of(const std::vector<Timings>& builds) {
     return text;
 }
 
-std::string html_of(const std::vector<Timings>& builds, const std::vector<TimingsPlot>& plots) {
+std::string promises_of(const std::vector<Timings>& builds) {
     if (builds.empty()) return {};
     std::string html =
-        "<h2>Speed promised and measured</h2>\n<p>Possible is the peer's time over that of storing the "
-        "results alone, on this processor.</p>\n<table>\n"
+        "<p>What the rows above were meant to reach, beside what they reach here. Possible is the peer's time over "
+        "that "
+        "of storing the results alone: where it is below the promise, no loop on this processor can keep it.</p>\n"
+        "<div class=\"wide\"><table>\n"
         "<tr><th>scene</th><th>row</th><th>against</th><th>build</th><th>promised</th><th>measured</th>"
         "<th>possible</th><th>kept</th></tr>\n";
     for (const Verdict& v : verdicts_of(builds)) {
@@ -308,14 +336,19 @@ std::string html_of(const std::vector<Timings>& builds, const std::vector<Timing
             html += "<td>" + escaped(*cell) + "</td>";
         html += "</tr>\n";
     }
-    html += "</table>\n";
+    html += "</table></div>\n";
     if (const std::vector<std::string> lines = slower_stops(builds); !lines.empty()) {
         html += "<p>Where accepting a larger error costs time:</p>\n<ul>\n";
         for (const std::string& line : lines) html += "<li>" + escaped(line) + "</li>\n";
         html += "</ul>\n";
     }
 
-    html += "<h2>Workloads</h2>\n<p>" + std::string(explanation) + "</p>\n";
+    return html;
+}
+
+std::string workloads_of(const std::vector<Timings>& builds) {
+    if (builds.empty()) return {};
+    std::string html = "<p>" + std::string(explanation) + "</p>\n";
     std::string header = "<tr><th></th>", names = "<tr><th>row</th>";
     for (const Timings& build : builds) {
         header += "<th colspan=\"4\">" + escaped(build.compiler + " " + build.flags) + "</th>";
@@ -325,9 +358,9 @@ std::string html_of(const std::vector<Timings>& builds, const std::vector<Timing
     std::string workload;
     for (const std::string& scene : scenes_of(builds)) {
         if (workload_of(scene) != workload) {
-            html += workload.empty() ? "" : "</table>\n";
+            html += workload.empty() ? "" : "</table></div>\n";
             workload = workload_of(scene);
-            html += "<h3>" + escaped(workload) + "</h3>\n<table>\n" + header;
+            html += "<h3>" + escaped(workload) + "</h3>\n<div class=\"wide\"><table>\n" + header;
         }
         html += formatted("<tr class=\"scene\"><td colspan=\"%zu\">", 1 + 4 * builds.size()) + escaped(scene) +
                 "</td></tr>\n";
@@ -339,9 +372,7 @@ std::string html_of(const std::vector<Timings>& builds, const std::vector<Timing
             html += "</tr>\n";
         }
     }
-    html += "</table>\n<div class=\"pictures\">\n";
-    for (const TimingsPlot& plot : plots) html += figure(plot.svg, plot.title, plot.title);
-    return html + "</div>\n";
+    return html + "</table></div>\n";
 }
 
 }  // namespace report

@@ -27,20 +27,22 @@ struct Timings {
 // From Google Benchmark's JSON. Throws Failure where it has no medians of rows that are named as the benchmarks' are.
 Timings read_timings(const std::string& file);
 
-struct TimingsPlot {
-    std::string title;
-    std::string name;    // of the files
-    std::string script;  // of gnuplot; it draws into name.svg
-    std::string svg;     // the picture, once it is drawn
-};
+// A scene's ways and their times in each build, and how they lie against one another.
+std::string table_of(const std::vector<Timings>& builds, const std::string& scene);
+std::string chart_of(const std::vector<Timings>& builds, const std::string& scene);
 
-// Run time against error with the Pareto front: the scenes of 1024 elements, each build.
-std::vector<TimingsPlot> plots_of(const std::vector<Timings>& builds);
+// One of the library's ways and the fastest of the others'; one a build.
+struct Contest {
+    std::string flags;
+    Timing ours, theirs;
+};
+std::vector<Contest> contests_of(const std::vector<Timings>& builds, const std::string& scene, const std::string& ours);
 
 // Promised against measured for a terminal.
 std::string text_of(const std::vector<Timings>& builds);
 
-// A part of the page; nothing without builds.
-std::string html_of(const std::vector<Timings>& builds, const std::vector<TimingsPlot>& plots);
+// Parts of the page, nothing without builds: every row, and what was promised of some.
+std::string workloads_of(const std::vector<Timings>& builds);
+std::string promises_of(const std::vector<Timings>& builds);
 
 }  // namespace report

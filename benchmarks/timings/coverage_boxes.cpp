@@ -173,7 +173,7 @@ void add_boxes(const std::string& name, std::size_t count, double spread, double
         texgen::coverage(work->transform(i), texgen::whole_texture(), std::span<const Box>(work->boxes()),
                          std::span(work->out()));
     });
-    add("one box at a time", [=](std::size_t i) {
+    add("texgen, one box at a time", [=](std::size_t i) {
         for (std::size_t k = 0; k < work->boxes().size(); ++k)
             work->out()[k] = work->volume(i).coverage(work->boxes()[k]);
     });

@@ -1,0 +1,35 @@
+#pragma once
+
+// The charts of the page, as SVG in the text of the page itself. A series has one colour in all of them.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <glm/vec2.hpp>
+
+namespace report {
+
+struct Series {
+    enum class Mark { dot, ring, line };
+
+    std::string name;
+    Mark mark;
+    std::vector<glm::dvec2> points;  // positive
+};
+
+// Both axes are logarithmic, and as long as the points need. The legend names each series once.
+std::string chart_of(const std::vector<Series>& series, const std::string& x, const std::string& y,
+                     const std::string& caption);
+
+// A bar as long as each time, from 0.
+struct Bar {
+    std::string name;
+    double nanoseconds;
+};
+std::string bars_of(const std::vector<Bar>& bars, const std::string& caption);
+
+// By what the series is called: the library's stops of the dial, then what others write.
+const char* colour_of(std::string_view series);
+
+}  // namespace report
