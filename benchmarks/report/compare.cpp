@@ -320,20 +320,19 @@ Comparison compare(const Workload& work, const texgen::TextureRegion& region) {
 }
 
 std::vector<Series> times_by_size() {
-    constexpr std::size_t triangle_count = 64;
     std::vector<Series> series;
     for (const Method& method : methods) series.push_back({method.name, Series::Mark::line, {}});
     for (int side = 1; side <= 256; side *= 2) {
+        const int count = std::clamp(65536 / (side * side), 2, 64);
         Workload work;
-        for (std::size_t i = 0; i < triangle_count; ++i) work.add_right_triangle(static_cast<int>(37 * i % 512), side);
+        for (int i = 0; i < count; ++i) work.add_right_triangle(37 * i % 512, side);
         Comparison comparison;
         comparison.evaluated_fragments = work.evaluated_fragments();
         for (const Method& method : methods) comparison.measurements.push_back({method.name, 0.0, {}});
         measure_times(comparison, work, texgen::whole_texture(), 0.1);
         for (std::size_t m = 0; m < methods.size(); ++m)
             series[m].points.emplace_back(side, comparison.measurements[m].nanoseconds *
-                                                    static_cast<double>(comparison.evaluated_fragments) /
-                                                    triangle_count);
+                                                    static_cast<double>(comparison.evaluated_fragments) / count);
     }
     std::erase_if(series, [](const Series& s) { return s.name.ends_with("not skipped"); });
     return series;
