@@ -953,6 +953,22 @@ TEST_CASE("what cancels to less than two doubles hold is not taken for 0") {
     CHECK(of(0x1p-130) == Coverage::inside);
 }
 
+TEST_CASE("a side is decided exactly where its terms have too many digits for two doubles") {
+    // At the point (1 + 2^-23, 2^-40, 0) s is (1 + 2^-23) q but for the tiny term of y.
+    const double side = 0x1.000002p0, q = 0x1.0000000000001p0;
+    for (const double tiny : {0x1p-100, -0x1p-100}) {
+        glm::dmat4 matrix(0.0);
+        matrix[0] = {q, 0.0, 0.0, 0.0};
+        matrix[1] = {tiny, 0.0, 0.0, 0.0};
+        matrix[3] = {0.0, 1.0, 0.0, q};
+        const glm::vec3 point(0x1.000002p0f, 0x1p-40f, 0.0f);
+        const texgen::LitVolume<texgen::World> volume(texgen::WorldTexgen(matrix),
+                                                      texgen::atlas_tile({side, 0.0}, {2.0, 2.0}));
+        CHECK(volume.coverage(texgen::Box{point, point}) ==
+              (tiny > 0.0 ? texgen::Coverage::inside : texgen::Coverage::partial));
+    }
+}
+
 TEST_CASE("what is no body, no slide or no number gets a safe answer") {
     const auto projector = texgen::make_projector(
         texgen::PerspectiveLens{.fovy = degrees(30), .aspect = 1, .z_near = 0.2, .z_far = 1000},

@@ -200,13 +200,14 @@ std::size_t cut_edges(std::span<ClipVertex> storage, std::size_t count, const Si
 template <class Space>
 std::array<glm::vec4, 5> clip_planes(const Transform<Texture, Space>& texgen, TextureRegion region) noexcept {
     std::array<glm::vec4, 5> result;
-    std::size_t count = 0;
+    glm::vec4* coefficients = result.data();
     for (const detail::SlidePlane& plane : detail::slide_planes(region)) {
-        glm::vec4& coefficients = result[count++];
-        for (glm::length_t column = 0; column < 4; ++column) {
-            const glm::dvec4& from = texgen.matrix()[column];
-            coefficients[column] = static_cast<float>(plane.at(from[plane.coordinate], from.w));
-        }
+        const glm::dmat4& m = texgen.matrix();
+        const auto at = [&](const glm::dvec4& column) {
+            const double u = plane.coordinate == 0 ? column.x : column.y;
+            return static_cast<float>(plane.at(u, column.w));
+        };
+        *coefficients++ = {at(m[0]), at(m[1]), at(m[2]), at(m[3])};
     }
     return result;
 }
