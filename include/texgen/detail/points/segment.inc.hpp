@@ -151,11 +151,10 @@ inline Work work(const Segment& segment, TextureRegion region, Tolerance toleran
     }
     at.least_q = detail::smaller(a.w, b.w);
     at.largest_q = detail::larger(a.w, b.w);
-    const detail::Places places = detail::places_of(at, detail::LitTest(region), detail::accepted(tolerance));
-    if (places.s == detail::Place::outside || places.t == detail::Place::outside) return Work::nothing;
+    const detail::SideCoverage lit = detail::coverage_of(at, detail::LitTest(region), detail::accepted(tolerance));
+    if (lit.s == Coverage::outside || lit.t == Coverage::outside) return Work::nothing;
     if (a.w == b.w) return Work::affine;
-    return places.s == detail::Place::inside && places.t == detail::Place::inside ? Work::divide
-                                                                                  : Work::divide_and_test;
+    return lit.s == Coverage::inside && lit.t == Coverage::inside ? Work::divide : Work::divide_and_test;
 }
 
 inline glm::dvec2 error_bound(const Segment& segment, Tolerance tolerance) noexcept {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "../../primitives.hpp"
 #include "../arithmetic/rounding.hpp"
 #include "../culling/lit_test.hpp"
 #include "../language.hpp"
@@ -124,22 +125,20 @@ inline SideOfBound side_of(const Corners& at, const Double2& bound, double toler
     return {{largest[0] < -margin[0], largest[1] < -margin[1]}, {least[0] > margin[0], least[1] > margin[1]}};
 }
 
-// Where a coordinate lies in the region, for all fragments at once.
-enum class Place { outside, across, inside };
-
-struct Places {
-    Place s, t;
+// How much of all fragments at once is between the sides of s, and of t.
+struct SideCoverage {
+    Coverage s, t;
 };
 
-inline Places places_of(const Corners& at, const LitTest& lit, double tolerance) noexcept {
+inline SideCoverage coverage_of(const Corners& at, const LitTest& lit, double tolerance) noexcept {
     const SideOfBound of_min = side_of(at, double2_of(lit.least(0), lit.least(1)), tolerance);
     const SideOfBound of_max = side_of(at, double2_of(lit.greatest(0), lit.greatest(1)), tolerance);
-    const auto place = [&](std::size_t k) {
-        if (of_min.all_below[k]) return Place::outside;
-        if (of_max.all_above[k]) return Place::outside;
-        return of_min.all_above[k] && of_max.all_below[k] && at.all_in_front() ? Place::inside : Place::across;
+    const auto coverage = [&](std::size_t k) {
+        if (of_min.all_below[k]) return Coverage::outside;
+        if (of_max.all_above[k]) return Coverage::outside;
+        return of_min.all_above[k] && of_max.all_below[k] && at.all_in_front() ? Coverage::inside : Coverage::partial;
     };
-    return {place(0), place(1)};
+    return {coverage(0), coverage(1)};
 }
 
 }  // namespace TEXGEN_BUILD

@@ -71,10 +71,10 @@ inline void choose_steps(Plan& plan, const Corners& at, double tolerance) noexce
 inline Plan choose_plan(const TriangleFunctions& triangle, const Tile& tile, const Corners& at) noexcept {
     Plan plan{Work::nothing, 0, StepRule::undecided, {}};
     if (at.all_behind()) return plan;
-    const Places places = places_of(at, triangle.lit, triangle.tolerance);
-    if (places.s == Place::outside || places.t == Place::outside) return plan;
+    const SideCoverage lit = coverage_of(at, triangle.lit, triangle.tolerance);
+    if (lit.s == Coverage::outside || lit.t == Coverage::outside) return plan;
 
-    plan.work = places.s == Place::inside && places.t == Place::inside ? Work::divide : Work::divide_and_test;
+    plan.work = lit.s == Coverage::inside && lit.t == Coverage::inside ? Work::divide : Work::divide_and_test;
     if (at.well_in_front() && is_constant(at.q_ramp)) plan.work = Work::affine;
     if (triangle.tolerance == 0.0 || !pays_for_chunks(tile)) return plan;
     plan.chunk = chunk_length(at, tile.width);
