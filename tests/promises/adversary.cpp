@@ -734,6 +734,75 @@ Share receiver_plane_share(const Numbers& n) {
     return worst / 0x1p-49;
 }
 
+// Each element of the lens of a calibrated camera within 4 ulp.
+Share pinhole_share(const Numbers& n) {
+    if (!is_in_range(n, 0x1p-200, 0x1p200)) return says_nothing;
+    const bool at_half = n[7] > 0.0;
+    const texgen::PinholeLens lens{.fx = std::fabs(n[0]),
+                                   .fy = std::fabs(n[1]),
+                                   .cx = n[2],
+                                   .cy = n[3],
+                                   .width = std::fabs(n[4]),
+                                   .height = std::fabs(n[5]),
+                                   .z_near = 0.1,
+                                   .z_far = 100.0,
+                                   .centre = at_half ? texgen::PixelCentre::half : texgen::PixelCentre::integer,
+                                   .skew = n[6]};
+    const auto projection = pinhole(lens, texgen::opengl);
+    if (lens.fx == 0.0 || lens.fy == 0.0 || lens.width == 0.0 || lens.height == 0.0)
+        return projection ? broken : says_nothing;
+    if (!projection) return broken;
+    const glm::dmat4& m = projection->matrix();
+    const Rational width = exactly(lens.width), height = exactly(lens.height), edge = at_half ? 0 : 1;
+    return 0.25 * std::max({support::ulp_error(m[0][0], Rational(2 * exactly(lens.fx) / width)),
+                            support::ulp_error(m[1][1], Rational(2 * exactly(lens.fy) / height)),
+                            support::ulp_error(m[1][0], Rational(-2 * exactly(lens.skew) / width)),
+                            support::ulp_error(m[2][0], Rational(1 - (2 * exactly(lens.cx) + edge) / width)),
+                            support::ulp_error(m[2][1], Rational((2 * exactly(lens.cy) + edge) / height - 1))});
+}
+Numbers begin_pinhole(Random& random) {
+    const double width = random.integer(1, 8192), height = random.integer(1, 8192);
+    return {random.uniform(0.5, 5.0) * width,
+            random.uniform(0.5, 5.0) * height,
+            0.5 * width + random.uniform(-1.0, 1.0),
+            0.5 * height + random.uniform(-1.0, 1.0),
+            width,
+            height,
+            random.uniform(-1.0, 1.0),
+            random.coin() ? 1.0 : -1.0};
+}
+
+// Each element of a view in a mirror within 1 ulp of V R, or 2^-96 of its terms.
+Share mirrored_share(const Numbers& n) {
+    if (!is_in_range(n, 0x1p-60, 0x1p60)) return says_nothing;
+    const glm::dmat4 view = double_matrix(n, 0);
+    const auto mirrored = texgen::mirrored(texgen::ProjectorView(view), {n[16], n[17], n[18], n[19]});
+    Rational squared = 0;
+    for (std::size_t k = 16; k < 19; ++k) squared += exactly(n[k]) * exactly(n[k]);
+    if (squared == 0) return mirrored ? broken : says_nothing;
+    if (!mirrored) return broken;
+    Share worst = 0.0;
+    for (int row = 0; row < 4; ++row) {
+        Rational factor = 0, size = 0;
+        for (int k = 0; k < 3; ++k) {
+            const Rational term = 2 * exactly(view[k][row]) * exactly(n[static_cast<std::size_t>(16 + k)]) / squared;
+            factor += term;
+            size += support::magnitude(term);
+        }
+        for (int column = 0; column < 4; ++column) {
+            const Rational element = exactly(view[column][row]);
+            const Rational component = exactly(n[static_cast<std::size_t>(16 + column)]);
+            const Rational exact = element - factor * component;
+            const Rational error = support::magnitude(exactly(mirrored->matrix()[column][row]) - exact);
+            const Rational terms = support::magnitude(element) + size * support::magnitude(component);
+            const Rational bound = std::max(Rational(terms * support::power_of_two(-96)),
+                                            support::power_of_two(support::ulp_exponent<double>(exact)));
+            worst = std::max(worst, support::nearest<double>(error / bound));
+        }
+    }
+    return worst;
+}
+
 // The worst ulp of a q, where a half is allowed, and the refusal of what is not strictly convex.
 Share quadrilateral_share(const Numbers& n) {
     if (!is_in_range(n, 0x1p-400, 0x1p400)) return says_nothing;
@@ -781,6 +850,14 @@ const std::array promises{
     Promise{"box: coverage, a decision", 25, begin_batch, coverage_share},
     Promise{"inverse: 2 ulp of the largest term", 0, begin_matrix, inverse_share},
     Promise{"inverse: inverse_error_bound", 0, begin_matrix, inverse_bound_share},
+    Promise{"pinhole: 4 ulp", 0, begin_pinhole, pinhole_share},
+    Promise{"mirrored: 1 ulp, or 2^-96 of the terms", 0,
+            [](Random& random) {
+                Numbers n(20);
+                for (double& x : n) x = random.uniform(-1.0, 1.0);
+                return n;
+            },
+            mirrored_share},
     Promise{"eye planes: 0.54 ulp of the largest", 20, begin_planes, eye_planes_share},
     Promise{"clip to the slide: slide_clip_error", 24, [](Random& random) { return any_floats(random, 24); },
             clip_to_slide_share},

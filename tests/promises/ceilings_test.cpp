@@ -392,6 +392,37 @@ double of_lenses(std::uint64_t seed) {
     return worst;
 }
 
+// The lenses of calibrated cameras, whose axis is near to the middle of the picture or anywhere, in double ulps.
+double of_pinholes(bool about_the_middle, std::uint64_t seed) {
+    Random random(seed);
+    double worst = 0.0;
+    for (int i = 0; i < 1000; ++i) {
+        const double width = random.integer(320, 8192), height = random.integer(240, 8192);
+        const auto centre = [&](double size) {
+            return about_the_middle ? 0.5 * size * (1.0 + random.power_of_ten(-16.0, -2.0))
+                                    : random.uniform(-1.0, 2.0) * size;
+        };
+        const texgen::PinholeLens lens{.fx = random.power_of_ten(2.0, 4.0),
+                                       .fy = random.power_of_ten(2.0, 4.0),
+                                       .cx = centre(width),
+                                       .cy = centre(height),
+                                       .width = width,
+                                       .height = height,
+                                       .z_near = 0.1,
+                                       .z_far = 100.0,
+                                       .centre = texgen::PixelCentre::integer,
+                                       .skew = random.uniform(-9.0, 9.0)};
+        const glm::dmat4 p = pinhole(lens, texgen::opengl).value().matrix();
+        const Rational w = support::exactly(width), h = support::exactly(height);
+        worst = std::max({worst, support::ulp_error(p[0][0], Rational(2 * support::exactly(lens.fx) / w)),
+                          support::ulp_error(p[1][1], Rational(2 * support::exactly(lens.fy) / h)),
+                          support::ulp_error(p[1][0], Rational(-2 * support::exactly(lens.skew) / w)),
+                          support::ulp_error(p[2][0], Rational(1 - (2 * support::exactly(lens.cx) + 1) / w)),
+                          support::ulp_error(p[2][1], Rational((2 * support::exactly(lens.cy) + 1) / h - 1))});
+    }
+    return worst;
+}
+
 // Views whose `up` is that near to where they look, or any: the rotation in double ulps of 1.
 double of_views(bool nearly_parallel, std::uint64_t seed) {
     Random random(seed);
@@ -572,5 +603,7 @@ TEST_CASE("no ceiling is raised") {
     }
     for (std::size_t i = 0; i < shapes.size(); ++i)
         hold("quadrilateral, ulp of q", shapes[i], false, of_quadrilaterals(support::shapes[i], ++seed));
+    hold("pinhole, ulp", "the axis anywhere", false, of_pinholes(false, ++seed));
+    hold("pinhole, ulp", "the axis near the middle", false, of_pinholes(true, ++seed));
     if (lowered != nullptr) ceilings.write(lowered);
 }

@@ -973,6 +973,17 @@ inline Calls product_calls(const Numbers& n) {
 inline Calls rounded_calls(const Numbers& n) {
     return matrix_calls(n, [](const glm::dmat4& m, const glm::dmat4&) { keep(texgen::ViewMatrix(m).rounded()); });
 }
+inline Calls row_vectors_calls(const Numbers& n) {
+    return matrix_calls(n, [](const glm::dmat4& m, const glm::dmat4&) {
+        keep(texgen::from_row_vectors<texgen::Eye, texgen::World>(m).rounded_for_row_vectors());
+    });
+}
+inline Calls carried_calls(const Numbers& n) {
+    return matrix_calls(n, [](const glm::dmat4& projection, const glm::dmat4& view) {
+        keep(texgen::eye_linear(texgen::ProjectorProjection(projection),
+                                texgen::Transform<texgen::ProjectorEye, texgen::Eye>(view), texgen::opengl));
+    });
+}
 inline Calls to_eigen_calls(const Numbers& n) {
     return matrix_calls(n, [](const glm::dmat4& m, const glm::dmat4&) {
         keep(texgen::to_eigen_affine<Eigen::Affine3d>(texgen::ViewMatrix(m)));
@@ -1038,7 +1049,7 @@ Calls lens_calls(const Numbers& n) {
     const texgen::FrustumLens frustum{sides.x, sides.y, sides.z, sides.w, a.z, z_far};
     const texgen::OrthographicLens orthographic{sides.x, sides.y, sides.z, sides.w, a.z, z_far};
     const texgen::PinholeLens pinhole{
-        a.x, a.y, sides.x, sides.y, sides.z, sides.w, a.z, z_far, texgen::PixelCentre::half};
+        a.x, a.y, sides.x, sides.y, std::fabs(sides.z), sides.w, a.z, z_far, texgen::PixelCentre::half};
     return calls_of([=] {
         if constexpr (Kind == 0) keep(texgen::perspective(perspective, texgen::opengl));
         if constexpr (Kind == 1) keep(texgen::frustum(frustum, texgen::opengl));
@@ -1053,6 +1064,9 @@ Calls lens_calls(const Numbers& n) {
                                   glm::dvec4(a, 1.0)};
             keep(texgen::mirrored(texgen::ProjectorView(view), sides));
         }
+        if constexpr (Kind == 9) keep(texgen::view_from_opencv({aim.position, aim.target, aim.up}, a));
+        if constexpr (Kind == 10) keep(texgen::contain(perspective, a.x + a.y));
+        if constexpr (Kind == 11) keep(texgen::cover(frustum, sides.y));
     });
 }
 
@@ -1309,6 +1323,10 @@ inline const std::array workloads{
              detail::always},
     Workload{"eye_linear", 0, detail::ordinary_matrix, detail::hostile_matrix, detail::composed_calls<false>,
              detail::always},
+    Workload{"eye_linear of what the camera carries", 0, detail::ordinary_matrix, detail::hostile_matrix,
+             detail::carried_calls, detail::always},
+    Workload{"from_row_vectors, rounded_for_row_vectors", 0, detail::ordinary_matrix, detail::hostile_matrix,
+             detail::row_vectors_calls, detail::always},
     Workload{"window_linear", 0, detail::ordinary_camera, detail::hostile_camera, detail::window_linear_calls,
              detail::always},
     Workload{"depth_error_bound", 0, detail::ordinary_matrix, detail::hostile_matrix, detail::depth_bound_calls,
@@ -1341,6 +1359,9 @@ inline const std::array workloads{
     Workload{"make_projector, pinhole", 0, detail::ordinary_look, detail::hostile_look, detail::lens_calls<7>,
              detail::always},
     Workload{"mirrored", 0, detail::ordinary_look, detail::hostile_look, detail::lens_calls<8>, detail::always},
+    Workload{"view_from_opencv", 0, detail::ordinary_look, detail::hostile_look, detail::lens_calls<9>, detail::always},
+    Workload{"contain", 0, detail::ordinary_look, detail::hostile_look, detail::lens_calls<10>, detail::always},
+    Workload{"cover", 0, detail::ordinary_look, detail::hostile_look, detail::lens_calls<11>, detail::always},
     Workload{"TexGenUnit::generate, object linear", 27, detail::ordinary_vertex, detail::hostile_vertex,
              detail::unit_calls<texgen::TexGenMode::object_linear>, detail::always},
     Workload{"TexGenUnit::generate, eye linear", 27, detail::ordinary_vertex, detail::hostile_vertex,
