@@ -66,7 +66,7 @@ add_call("Scene::update()" scene.hpp
     "Scene& scene, const SceneView& view, const SceneChanges& changes"
     "scene.update(view, changes)")
 add_call("diagnose()" diagnose.hpp
-    "const Setup<Object>& setup"
+    "const ProjectionSetup<Object>& setup"
     "diagnose(setup)")
 
 message(STATUS "texgen: measuring what headers and calls cost to compile, for half a minute")
