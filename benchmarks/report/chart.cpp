@@ -28,7 +28,7 @@ public:
             for (const double step : {1.0, 2.0, 5.0})
                 if (step == 1.0 || is_short) ticks_.push_back(step * decade);
         while (ticks_.size() > 2 && ticks_[1] <= least) ticks_.erase(ticks_.begin());
-        while (ticks_.size() > 2 && ticks_[ticks_.size() - 2] >= most) ticks_.pop_back();
+        while (ticks_.size() > 2 && 1.01 * ticks_[ticks_.size() - 2] >= most) ticks_.pop_back();
     }
 
     const std::vector<double>& ticks() const { return ticks_; }

@@ -163,15 +163,16 @@ std::string processor() {
 }
 
 // Small enough for the page; filters are shown pixel for pixel instead, in a part that is neither near nor far.
-Picture embedded(const Picture& picture, Sampling sampling, int most) {
+Picture embedded(const Picture& picture, Sampling sampling) {
+    constexpr int most = 512;
     if (sampling == Sampling::nearest || sampling == Sampling::trilinear || sampling == Sampling::anisotropic)
         return cropped(picture, picture.width * 3 / 8, picture.height * 17 / 64, 448, 320);
     return reduced(picture, (std::max(picture.width, picture.height) + most - 1) / most);
 }
 
 PictureOfScene shown(const std::string& file, const std::string& caption, const Picture& picture,
-                     Sampling sampling = Sampling::bilinear, int most = 512) {
-    return {file, caption, encode_png(picture), encode_jpeg(embedded(picture, sampling, most))};
+                     Sampling sampling = Sampling::bilinear) {
+    return {file, caption, encode_png(picture), encode_jpeg(embedded(picture, sampling))};
 }
 
 Report make_report(const Options& options, const Setting& setting) {
@@ -197,8 +198,8 @@ Report make_report(const Options& options, const Setting& setting) {
         SceneReport result{.name = scene.name, .title = scene.title, .comparison = {}, .pictures = {}};
         for (const View& view : scene.views) {
             progress.show("rendering " + view.file);
-            result.pictures.push_back(shown(view.file, view.caption, render(scene, view, options.width, options.height),
-                                            view.sampling, report.scenes.empty() ? 1024 : 512));
+            result.pictures.push_back(
+                shown(view.file, view.caption, render(scene, view, options.width, options.height), view.sampling));
         }
         progress.show("measuring " + scene.name);
         const Workload work = rasterize(scene.views.front().surfaces, scene.camera, options.width, options.height);
@@ -211,8 +212,7 @@ Report make_report(const Options& options, const Setting& setting) {
         shown("room.png", "A projector lights what its slide falls on; nothing casts shadows.", report.room.picture),
         shown("room_work.png",
               "The dearest work that a projector asks of each rectangle, for 1/512 texel of 4096: dark none, blue "
-              "affine, "
-              "green quadratic, yellow a division, red a division and a test.",
+              "affine, green quadratic, yellow a division, red a division and a test.",
               report.room.work_picture)};
     progress.show("measuring triangles of all sizes");
     report.times_by_size = times_by_size();

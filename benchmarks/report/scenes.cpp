@@ -114,7 +114,7 @@ Scene mesh_under_slide(const Setting& setting, const LensChoice& lens, View view
 Scene lost(const Setting& setting) {
     const std::vector<Surface> surfaces =
         mesh_on_floor(projector_of(setting.lens, *setting.slide, walk_through_aim), setting.dense);
-    const auto view = [&](const char* file, const char* caption, Coordinates coordinates, Sampling sampling) {
+    const auto view = [&](const char* file, const std::string& caption, Coordinates coordinates, Sampling sampling) {
         return View{.file = file,
                     .caption = caption,
                     .surfaces = surfaces,
@@ -130,12 +130,14 @@ Scene lost(const Setting& setting) {
         .light = light_of(setting.lens, walk_through_aim),
         .region = texgen::whole_texture(),
         .corner = {3072, 3072},
-        .views = {view("lost_kept.png", "By texgen.", Coordinates::library, Sampling::nearest),
+        .views = {view("lost_kept.png",
+                       "By texgen; the mesh has " + std::to_string(setting.dense.triangles.size()) + " triangles.",
+                       Coordinates::library, Sampling::nearest),
                   view("lost.png",
                        "By plane equations in float: where a triangle has few fragments the slide falls apart into "
                        "noise.",
                        Coordinates::float_planes, Sampling::nearest),
-                  view("lost_kept_error.png", "The error of texgen: dark blue everywhere, 1e-4 texel of 4096 and less.",
+                  view("lost_kept_error.png", "The error of texgen: dark blue everywhere, about 1e-4 texel of 4096.",
                        Coordinates::library, Sampling::error_as_colour),
                   view("lost_error.png",
                        "The error of plane equations in float: blue up to 1e-4 texel of 4096, white at 1/30, red from "
@@ -267,10 +269,11 @@ Scene facing(double aspect) {
         .views = {
             view("facing_nearest.png",
                  "The nearest texel, a part of the picture pixel for pixel: the print falls apart.", Sampling::nearest),
-            view("facing_trilinear.png", "Trilinear, of the footprint's level: no noise, and no print either.",
+            view("facing_trilinear.png",
+                 "Trilinear, of the footprint's level: no noise, and the far print is blurred away.",
                  Sampling::trilinear),
             view("facing_anisotropic.png",
-                 "Anisotropic, up to 16 probes along the footprint's major axis: the print is back.",
+                 "Anisotropic, up to 16 probes along the footprint's major axis: more of the print is kept.",
                  Sampling::anisotropic),
             view("facing_level.png",
                  "The level of detail: blue where a texel covers many pixels, white at one, yellow to red where "
