@@ -116,7 +116,7 @@ TEXGEN_INLINE Again fill_block_again(const DividedOutput& output, const Terms& t
                 divide_certainly<true>(numerators, numerator, numerator_error, terms.q.nearly_at(at),
                                        terms.q.error_at(at), terms.tolerance(), value, doubt);
             const bool is_decided = !any(doubt.rounding | narrow(doubt.side & ~are_dark));
-            effort = {is_decided ? Rung::each_lane : Rung::closely};
+            effort = {is_decided ? Rung::each_lane : Rung::closely, false, effort.precisely && !is_decided};
             if (is_decided) {
                 store_points(output, i, numerators, value, narrow(in_front));
                 continue;

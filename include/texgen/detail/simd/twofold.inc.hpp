@@ -11,17 +11,26 @@ TEXGEN_INLINE Doubles two_sum(const Doubles& a, const Doubles& b, Doubles& error
     return sum;
 }
 
+// The same where |b| <= |a|; elsewhere only the sum is right.
+TEXGEN_INLINE Doubles quick_two_sum(const Doubles& a, Doubles b, Doubles& error) noexcept {
+    const Doubles sum = a + b;
+    error = b - (sum - a);
+    return sum;
+}
+
 // A number as an unevaluated sum, high the nearest double, and a bound on what that lacks: 0 where it is exact. A sum is made
-// either precisely, or quickly: then what its leading part leaves, about 2^-28 of its terms, is added in one double.
+// either precisely, or quickly: then what its leading part leaves is added in one double, which no tie is certain by.
 struct Twofold {
     Doubles high, low, lost;
 };
 
-// Quickly: a sum, what is left of it in at most six terms, and their magnitudes. The low part is exact where the sum is
-// the larger one, as it is where what is lost is small beside it.
+// Quickly: a sum, what is left of it in at most six terms, and their magnitudes. The low part is exact where what is lost is
+// small beside the sum.
 TEXGEN_INLINE Twofold twofold_of(const Doubles& sum, const Doubles& rest, const Doubles& size) noexcept {
-    const Doubles high = sum + rest;
-    return {high, rest - (high - sum), size * 0x1p-50};
+    Twofold result;
+    result.high = quick_two_sum(sum, rest, result.low);
+    result.lost = size * 0x1p-51;
+    return result;
 }
 
 TEXGEN_INLINE double leading_29_bits(double value) noexcept {
@@ -61,19 +70,28 @@ struct TwofoldForm {
 
     TEXGEN_INLINE Twofold at(const PointLanes& at, bool precisely) const noexcept {
         const Doubles(&v)[3] = at.v;
+        Doubles x = v[0] * high[0], y = v[1] * high[1], z = v[2] * high[2];
+        Doubles x_rest{}, y_rest{}, z_rest{};
+        if (!is_short) {
+            x_rest = v[0] * low[0];
+            y_rest = v[1] * low[1];
+            z_rest = v[2] * low[2];
+            if (!precisely) {
+                x = quick_two_sum(x, x_rest, x_rest);
+                y = quick_two_sum(y, y_rest, y_rest);
+                z = quick_two_sum(z, z_rest, z_rest);
+            }
+        }
         Doubles error[3];
-        Doubles sum = two_sum(v[0] * high[0], Doubles{} + form.w, error[0]);
-        sum = two_sum(sum, v[1] * high[1], error[1]);
-        sum = two_sum(sum, v[2] * high[2], error[2]);
+        Doubles sum = two_sum(x, Doubles{} + form.w, error[0]);
+        sum = two_sum(sum, y, error[1]);
+        sum = two_sum(sum, z, error[2]);
         if (!precisely) {
             Doubles rest = (error[0] + error[1]) + error[2];
             Doubles size = (magnitude(error[0]) + magnitude(error[1])) + magnitude(error[2]);
             if (!is_short) {
-                const Doubles x = v[0] * low[0];
-                const Doubles y = v[1] * low[1];
-                const Doubles z = v[2] * low[2];
-                rest = rest + ((x + y) + z);
-                size = size + ((magnitude(x) + magnitude(y)) + magnitude(z));
+                rest = rest + ((x_rest + y_rest) + z_rest);
+                size = size + ((magnitude(x_rest) + magnitude(y_rest)) + magnitude(z_rest));
             }
             return twofold_of(sum, rest, size);
         }
@@ -81,8 +99,8 @@ struct TwofoldForm {
         Doubles left[5]{};
         Doubles rest = error[0];
         if (!is_short) {
-            rest = two_sum(v[0] * low[0], v[1] * low[1], left[0]);
-            rest = two_sum(rest, v[2] * low[2], left[1]);
+            rest = two_sum(x_rest, y_rest, left[0]);
+            rest = two_sum(rest, z_rest, left[1]);
             rest = two_sum(rest, error[0], left[2]);
         }
         rest = two_sum(rest, error[1], left[3]);
@@ -125,7 +143,7 @@ struct TwofoldDivisor {
     Doubles part[2];  // high in parts of 27 bits and less, whose products with 25 bits are exact
 
     TEXGEN_INLINE explicit TwofoldDivisor(const Twofold& q) noexcept {
-        in_front = greater(q.high, 0.0) & at_most(q.lost, q.high * 0x1p-52);
+        in_front = greater(q.high, 0.0) & at_most(q.lost, q.high * 0x1p-50);
         is_known = in_front | at_most(q.lost * 2.0, -1.0 * q.high);
         high = q.high;
         low = q.low;
@@ -149,7 +167,7 @@ TEXGEN_INLINE bool divide_nearly(const Doubles& s, const Doubles& s_error, const
 // The floats nearest to s / q in front, 0 elsewhere; `is_known` loses the lanes in front where that is in doubt.
 // As nearest_quotient(): two neighbours are left, and the sign of s - middle q decides. That is a small number beside both
 // products (either will do where they are no further apart than the tolerance), so s - middle q' is exact for the leading
-// 53 bits q' of q; and precisely the rest is summed exactly where it is but short.
+// 53 bits q' of q; and precisely the rest is summed exactly where it is but short, as it is of ties.
 TEXGEN_INLINE Floats nearest_quotients(const Twofold& s, const TwofoldDivisor& q, double tolerance, bool precisely,
                                        LongWords& is_known) noexcept {
     const Doubles quotient = where(q.in_front, s.high * q.reciprocal) + 0.0;
@@ -157,7 +175,7 @@ TEXGEN_INLINE Floats nearest_quotients(const Twofold& s, const TwofoldDivisor& q
     const Floats first = to_floats(quotient - error);
     const Doubles low = to_doubles(first);
     const Doubles high = to_doubles(to_floats(quotient + error));
-    const LongWords is_precise = at_most(s.lost, magnitude(s.high) * 0x1p-52);
+    const LongWords is_precise = at_most(s.lost, magnitude(s.high) * 0x1p-50);
     const LongWords is_alone = at_most(high, low) | at_most(high - low, Doubles{} + tolerance);
     if (!any(~is_alone)) {
         is_known &= ~q.in_front | is_precise;
@@ -173,14 +191,12 @@ TEXGEN_INLINE Floats nearest_quotients(const Twofold& s, const TwofoldDivisor& q
         lost = lost + (magnitude(s.low) + magnitude(low_product)) * 0x1p-52;
     } else {
         const Doubles q_low = leading_27_bits(q.low);
-        Doubles left[5];
+        const Doubles last_product = middle * (q.low - q_low);
+        Doubles left[2];
         Doubles sum = two_sum(leading_rest, s.low, left[0]);
         sum = two_sum(sum, -1.0 * (middle * q_low), left[1]);
-        sum = two_sum(sum, -1.0 * (middle * (q.low - q_low)), left[2]);
-        Doubles rest = two_sum(left[0], left[1], left[3]);
-        rest = two_sum(rest, left[2], left[4]);
-        remainder = sum + rest;
-        lost = lost + (magnitude(left[3]) + magnitude(left[4]));
+        remainder = sum + ((left[0] + left[1]) - last_product);
+        lost = lost + (magnitude(left[0]) + magnitude(left[1]) + magnitude(last_product)) * 0x1p-51;
     }
     is_known &= ~q.in_front | (is_precise & (is_alone | at_most(lost * 2.0, magnitude(remainder))));
     return to_floats(middle + (where(greater(remainder, 0.0), error) - where(greater(-1.0 * remainder, 0.0), error)));
