@@ -136,12 +136,6 @@ Numbers numbers(const Parts&... parts) {
     return n;
 }
 
-// A number of a scene is 0 or neither very small nor very large.
-template <class Real>
-bool is_zero_or_between(Real value, Real least, Real largest) {
-    return value == Real(0) || (std::fabs(value) >= least && std::fabs(value) <= largest);
-}
-
 inline double always(const Numbers&) { return limit::any; }
 inline double of_touching(const Numbers&) { return limit::touching; }
 
@@ -211,6 +205,34 @@ inline glm::dmat4 drawn_texgen(Random& random) {
     }
 }
 
+// ---- Numbers of a scene --------------------------------------------------------------------------------------------
+
+// What the limits are about: positions and coordinates of a world, of a camera and of slides as they are. Beyond, where
+// floats of all sizes meet in one sum, ties may differ from their middle by less than two doubles hold, and are decided one
+// by one.
+template <class Number>
+bool is_between(Number value, double least, double largest) {
+    const double size = std::fabs(static_cast<double>(value));
+    return size == 0.0 || (size >= least && size <= largest);
+}
+template <glm::length_t N, class T, glm::qualifier Q>
+bool is_between(const glm::vec<N, T, Q>& v, double least, double largest) {
+    bool all = true;
+    for (glm::length_t i = 0; i < N; ++i) all = all && is_between(v[i], least, largest);
+    return all;
+}
+// A position, or a coordinate.
+template <class Value>
+bool is_of_a_scene(const Value& value) {
+    return is_between(value, 0x1p-20, 0x1p20);
+}
+// A matrix, whose zeros may be what rounding makes of them.
+inline bool is_of_a_scene(const glm::dmat4& matrix) {
+    bool all = true;
+    for (glm::length_t i = 0; i < 4; ++i) all = all && is_between(matrix[i], 0x1p-60, 0x1p30);
+    return all;
+}
+
 // ---- Points --------------------------------------------------------------------------------------------------------
 
 inline constexpr std::size_t pattern = 8;
@@ -268,9 +290,15 @@ std::shared_ptr<PointBatch> batch_of(const Numbers& n) {
 
 inline constexpr texgen::Tolerance tolerance = texgen::texels(1.0 / 512.0, 4096.0);
 
+inline bool is_of_a_scene(const PointBatch& batch) {
+    return is_of_a_scene(batch.texgen.matrix()) &&
+           std::all_of(batch.points.begin(), batch.points.end(), [](const glm::vec3& p) { return is_of_a_scene(p); });
+}
 template <std::size_t Count, bool IsExact>
 Calls project_calls(const Numbers& n) {
-    return calls_of([batch = batch_of<Count>(n)] {
+    const auto batch = batch_of<Count>(n);
+    if (!is_of_a_scene(*batch)) return {};
+    return calls_of([batch] {
         texgen::project(batch->texgen, texgen::world_space(batch->points), texgen::whole_texture(),
                         {.s = batch->out[0], .t = batch->out[1], .r = batch->out[2], .lit = batch->out[3]},
                         IsExact ? texgen::exact : tolerance);
@@ -278,7 +306,9 @@ Calls project_calls(const Numbers& n) {
 }
 template <std::size_t Count>
 Calls project_pairs_calls(const Numbers& n) {
-    return calls_of([batch = batch_of<Count>(n), st = std::vector<glm::vec2>(Count)]() mutable {
+    const auto batch = batch_of<Count>(n);
+    if (!is_of_a_scene(*batch)) return {};
+    return calls_of([batch, st = std::vector<glm::vec2>(Count)]() mutable {
         texgen::project(batch->texgen, texgen::world_space(batch->points), st);
         keep(st[0]);
     });
@@ -354,7 +384,8 @@ Calls segment_calls(const Numbers& n) {
     for (std::size_t i = 0; i < Count; ++i)
         job->alpha.push_back(i < pattern ? reader.single() : job->alpha[i - pattern]);
     for (const float alpha : job->alpha)
-        if (!(alpha >= 0.0f && alpha <= 1.0f)) return {};
+        if (!(alpha >= 0.0f && alpha <= 1.0f && is_of_a_scene(alpha))) return {};
+    if (!is_of_a_scene(job->segment.a) || !is_of_a_scene(job->segment.b)) return {};
     for (std::vector<float>& out : job->out) out.resize(Count);
     return calls_of([job] {
         texgen::interpolate(job->segment, job->alpha, texgen::whole_texture(),
@@ -464,15 +495,11 @@ texgen::FragmentRect rect_of(const Numbers& n) {
     return {pixel(n[21]), pixel(n[22]), Width, Height};
 }
 
-// What the limits are about: a triangle of a window, of a camera and of slides as they are. Beyond, where floats of all sizes
-// meet in one triangle, ties may differ from their middle by less than two doubles hold, and are decided one by one.
+// A triangle of a window, with pixels as they may be outside of it.
 inline bool is_of_a_scene(const texgen::Triangle& triangle) {
     bool all = true;
-    for (const texgen::WindowVertex* v : {&triangle.a, &triangle.b, &triangle.c}) {
-        all = all && is_zero_or_between(v->clip_w, 0x1p-20f, 0x1p20f);
-        for (const float pixel : {v->window.x, v->window.y}) all = all && is_zero_or_between(pixel, 0x1p-10f, 0x1p30f);
-        for (glm::length_t k = 0; k < 4; ++k) all = all && is_zero_or_between(v->strq[k], 0x1p-20f, 0x1p20f);
-    }
+    for (const texgen::WindowVertex* v : {&triangle.a, &triangle.b, &triangle.c})
+        all = all && is_of_a_scene(v->clip_w) && is_between(v->window, 0x1p-10, 0x1p30) && is_of_a_scene(v->strq);
     return all;
 }
 
@@ -752,8 +779,8 @@ inline constexpr Hostile hostile_spheres{draw_spheres,
 // Bodies of a world, and a matrix as cameras of such sizes make it, where a sine that is 0 may be 2^-54. (As is_of_a_scene().)
 inline bool are_of_a_scene(const Numbers& n) {
     const auto body_end = n.end() - 16;
-    return std::all_of(n.begin(), body_end, [](double x) { return is_zero_or_between(x, 0x1p-20, 0x1p20); }) &&
-           std::all_of(body_end, n.end(), [](double x) { return is_zero_or_between(x, 0x1p-60, 0x1p20); });
+    return std::all_of(n.begin(), body_end, [](double x) { return is_between(x, 0x1p-20, 0x1p20); }) &&
+           std::all_of(body_end, n.end(), [](double x) { return is_between(x, 0x1p-60, 0x1p20); });
 }
 template <class Body, std::size_t Count>
 Calls coverage_calls(const Numbers& n) {
@@ -839,9 +866,7 @@ Calls clip_calls(const Numbers& n) {
     for (texgen::ClipVertex& vertex : polygon) {
         vertex.position = reader.vec4();
         vertex.strq = reader.vec4();
-        for (const glm::vec4& v : {vertex.position, vertex.strq})
-            for (glm::length_t k = 0; k < 4; ++k)
-                if (!is_zero_or_between(v[k], 0x1p-20f, 0x1p20f)) return {};
+        if (!is_of_a_scene(vertex.position) || !is_of_a_scene(vertex.strq)) return {};
     }
     return calls_of([polygon, out = std::array<texgen::ClipVertex, 12>{}]() mutable {
         if constexpr (ToNear)
