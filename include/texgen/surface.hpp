@@ -20,6 +20,7 @@
 
 namespace TEXGEN_NAMESPACE {
 
+// The side of a triangle that the projector sees.
 enum class Facing { towards, away, edge_on };
 
 // Which side of a triangle the projector sees: `towards` where the corners run counter-clockwise as the slide is seen upright.
