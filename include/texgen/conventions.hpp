@@ -9,7 +9,7 @@
 #include "detail/matrices/required.hpp"
 
 // 0.2.0: 10000 major + 100 minor + patch.
-#define TEXGEN_VERSION 200
+#define TEXGEN_VERSION 300
 
 namespace TEXGEN_NAMESPACE {
 
