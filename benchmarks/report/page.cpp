@@ -58,7 +58,7 @@ constexpr const char* explanation =
     "away from 0. p99.9 is the error that one fragment in a thousand exceeds. A wrong decision is a fragment that is "
     "lit and should be dark, or the reverse. Times are medians of the interpolation alone, the set-up of the triangles "
     "included, in processor time; the loops take turns on the same list of triangles and rectangles. All are compiled "
-    "with the flags above; the library's kernels choose the machine's instruction set at run time.";
+    "with the flags named last; the library's kernels choose the machine's instruction set at run time.";
 
 // What a reader wants done, and the workload that shows it.
 struct Task {
