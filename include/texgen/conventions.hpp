@@ -8,7 +8,7 @@
 
 #include "detail/matrices/required.hpp"
 
-// 0.2.0: 10000 major + 100 minor + patch.
+// 0.3.0: 10000 major + 100 minor + patch.
 #define TEXGEN_VERSION 300
 
 namespace TEXGEN_NAMESPACE {
