@@ -169,7 +169,8 @@ void print_surface() {
     print("receiver plane", *receiver_plane(a, b, c));
     const std::array<glm::dvec2, 4> corners{glm::dvec2(0.1, 0.2), glm::dvec2(3.1, -0.3), glm::dvec2(2.5, 2.25),
                                             glm::dvec2(0.3, 1.1)};
-    for (const glm::vec4& corner : *quadrilateral(corners, rectangle_texture(640, 480))) print("corner", corner);
+    const auto strq = *quadrilateral(corners, rectangle_texture(640, 480));
+    for (const glm::vec4& corner : strq) print("corner", corner);
     print("keystone", *keystone(corners));
 }
 
