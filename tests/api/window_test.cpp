@@ -17,133 +17,28 @@
 #include "judges/real.hpp"
 #include "support/hex.hpp"
 #include "support/random.hpp"
+#include "support/windows.hpp"
 #include "texgen/clip.hpp"
 #include "texgen/linear.hpp"
 #include "texgen/texcoord.hpp"
 
 namespace {
 
+using support::at;
 using support::exactly;
 using support::hex;
 using support::operator*;
 using support::Random;
-using support::Rational;
+using support::random_fragment;
+using support::random_window_scene;
 using support::RationalMatrix;
+using support::RationalVector;
+using support::window_from_ndc;
+using support::WindowScene;
 using texgen::Conventions;
 using texgen::DepthBuffer;
 using texgen::Projector;
-using texgen::TextureRegion;
 using texgen::Viewport;
-using texgen::WindowTexgen;
-
-struct Scene {
-    Projector projector, camera;
-    Viewport viewport;
-    TextureRegion region;
-    texgen::DepthMapping depth;
-    texgen::Aim projector_aim, camera_aim;
-};
-
-Conventions any_conventions(Random& random) {
-    return {random.coin() ? texgen::DepthRange::zero_to_one : texgen::DepthRange::negative_one_to_one,
-            random.coin() ? texgen::NdcY::down : texgen::NdcY::up,
-            random.coin() ? texgen::TextureOrigin::top_left : texgen::TextureOrigin::bottom_left,
-            random.coin() ? texgen::Handedness::right : texgen::Handedness::left};
-}
-
-std::optional<Projector> any_projector(Random& random, const texgen::Aim& aim) {
-    const Conventions conventions = any_conventions(random);
-    const double z_near = random.power_of_ten(-2.0, 0.0), z_far = z_near * random.power_of_ten(1.0, 6.0);
-    switch (random.integer(0, 3)) {
-        case 0:
-            return make_projector(texgen::OrthographicLens{-2.0, 3.0, -2.5, 2.0, -1.0, 30.0}, aim, conventions);
-        case 1:
-            return make_projector(texgen::FrustumLens{-z_near, 0.5 * z_near, -0.7 * z_near, z_near, z_near, z_far}, aim,
-                                  conventions);
-        default:
-            return make_projector(
-                texgen::PerspectiveLens{texgen::degrees(random.uniform(20.0, 100.0)), random.uniform(0.5, 2.0), z_near,
-                                        random.coin() ? HUGE_VAL : z_far, random.coin()},
-                aim, conventions);
-    }
-}
-
-// A camera and a projector that look at one place, `distance` from the origin.
-Scene random_scene(Random& random, double distance) {
-    const glm::dvec3 place = distance * random.direction();
-    const auto aim = [&] {
-        const glm::dvec3 position = place + random.uniform(2.0, 8.0) * random.direction();
-        return texgen::Aim{position, place + 0.5 * random.direction(), random.direction()};
-    };
-    const texgen::Aim of_projector = aim(), of_camera = aim();
-    const auto projector = any_projector(random, of_projector), camera = any_projector(random, of_camera);
-    REQUIRE(projector);
-    REQUIRE(camera);
-    const int width = random.integer(1, 4096), height = random.integer(1, 4096);
-    const Viewport viewport{random.integer(-50, 500), random.integer(-50, 500), random.coin() ? width : -width,
-                            random.coin() ? height : -height};
-    return {*projector,
-            *camera,
-            viewport,
-            random.coin() ? texgen::whole_texture() : texgen::atlas_tile({0.125, 0.3}, {2.5, 0.7}),
-            random.coin() ? texgen::DepthMapping::unit : texgen::DepthMapping::ndc,
-            of_projector,
-            of_camera};
-}
-
-// W, from its definition.
-glm::dmat4 window_from_ndc(const Viewport& viewport, Conventions conventions) {
-    const bool halves = conventions.depth == texgen::DepthRange::negative_one_to_one;
-    glm::dmat4 w(1.0);
-    w[0][0] = 0.5 * viewport.width;
-    w[1][1] = 0.5 * viewport.height;
-    w[2][2] = halves ? 0.5 : 1.0;
-    w[3] = glm::dvec4(viewport.x + 0.5 * viewport.width, viewport.y + 0.5 * viewport.height, halves ? 0.5 : 0.0, 1.0);
-    return w;
-}
-
-RationalMatrix magnitudes(RationalMatrix m) {
-    for (auto& row : m)
-        for (Rational& element : row) element = support::magnitude(element);
-    return m;
-}
-
-using RationalVector = std::array<Rational, 4>;
-
-RationalVector at(const RationalMatrix& m, const glm::dvec3& v) {
-    RationalVector result;
-    for (std::size_t row = 0; row < 4; ++row)
-        result[row] = m[row][0] * exactly(v.x) + m[row][1] * exactly(v.y) + m[row][2] * exactly(v.z) + m[row][3];
-    return result;
-}
-
-// The exact product of the numbers that were given, and the product of its factors' magnitudes.
-struct ExactWindow {
-    RationalMatrix product, terms;
-};
-ExactWindow exact_window(const Scene& scene) {
-    const std::array factors{
-        exactly(scale_bias(scene.projector.conventions, scene.region, scene.depth).matrix()),
-        exactly(scene.projector.projection.matrix()),
-        exactly(scene.projector.view.matrix()),
-        support::inverse(exactly(scene.camera.view.matrix())).value(),
-        support::inverse(exactly(scene.camera.projection.matrix())).value(),
-        support::inverse(exactly(window_from_ndc(scene.viewport, scene.camera.conventions))).value()};
-    ExactWindow result{factors[0], magnitudes(factors[0])};
-    for (std::size_t i = 1; i < factors.size(); ++i) {
-        result.product = result.product * factors[i];
-        result.terms = result.terms * magnitudes(factors[i]);
-    }
-    return result;
-}
-
-glm::dvec3 random_fragment(Random& random, const Viewport& viewport) {
-    const double depth = std::array{random.uniform(0.0, 1.0), 1.0 - random.power_of_ten(-7.0, -1.0),
-                                    random.power_of_ten(-7.0, -1.0)}[random.bits() % 3];
-    const glm::dvec3 fragment(viewport.x + viewport.width * random.uniform(0.0, 1.0),
-                              viewport.y + viewport.height * random.uniform(0.0, 1.0), depth);
-    return {support::to_float(fragment.x), support::to_float(fragment.y), support::to_float(fragment.z)};
-}
 
 }  // namespace
 
@@ -154,24 +49,15 @@ TEST_CASE(
     std::string worst_input;
     for (const double distance : {0.0, 1.0, 1e3, 1e5, 1e7}) {
         for (int i = 0; i < 40; ++i) {
-            const Scene scene = random_scene(random, distance);
+            const WindowScene scene = random_window_scene(random, distance);
             const auto texgen = window_linear(scene.projector, scene.camera, scene.viewport, scene.region, scene.depth);
             REQUIRE(texgen);
-            const ExactWindow exact = exact_window(scene);
-            const RationalMatrix computed = exactly(texgen->matrix());
+            const support::ExactWindow exact(scene);
             for (int k = 0; k < 10; ++k) {
                 const glm::dvec3 fragment = random_fragment(random, scene.viewport);
-                const RationalVector strq = at(exact.product, fragment), got = at(computed, fragment);
-                const RationalVector terms = at(magnitudes(exact.terms), glm::abs(fragment));
-                if (strq[3] == 0 || got[3] == 0) continue;
-                for (std::size_t c = 0; c < 3; ++c) {
-                    const Rational u = strq[c] / strq[3];
-                    const Rational bound = (terms[c] + support::magnitude(u) * terms[3]) / support::magnitude(strq[3]);
-                    const double share =
-                        support::nearest<double>(Rational(support::magnitude(got[c] / got[3] - u) / bound));
-                    if (share > worst) worst_input = hex(fragment) + " " + hex(scene.camera.view.matrix());
-                    worst = std::max(worst, share);
-                }
+                const double share = exact.share_of_terms(*texgen, fragment);
+                if (share > worst) worst_input = hex(fragment) + " " + hex(scene.camera.view.matrix());
+                worst = std::max(worst, share);
             }
         }
     }
@@ -183,7 +69,7 @@ TEST_CASE("what the camera sees gets by its fragment the coordinate that it has 
     Random random(422);
     int seen = 0, behind = 0;
     for (int i = 0; i < 4000; ++i) {
-        const Scene scene = random_scene(random, random.power_of_ten(-1.0, 2.0));
+        const WindowScene scene = random_window_scene(random, random.power_of_ten(-1.0, 2.0));
         const glm::dvec3 point = scene.camera_aim.target + 9.0 * random.direction();
         const glm::dvec4 clip = scene.camera.matrix().matrix() * glm::dvec4(point, 1.0);
         if (!(clip.w > 0.01)) continue;
@@ -232,7 +118,7 @@ TEST_CASE("rows from the top down: Direct3D and Metal by a viewport of negative 
 TEST_CASE("project() takes fragments of a depth buffer, and gives the nearest floats") {
     Random random(423);
     for (int i = 0; i < 50; ++i) {
-        const Scene scene = random_scene(random, random.power_of_ten(0.0, 4.0));
+        const WindowScene scene = random_window_scene(random, random.power_of_ten(0.0, 4.0));
         const auto texgen = window_linear(scene.projector, scene.camera, scene.viewport, scene.region, scene.depth);
         REQUIRE(texgen);
         std::vector<glm::vec3> fragments;
@@ -263,7 +149,7 @@ TEST_CASE("depth_error_bound holds for every depth that is stored as the fragmen
     double least_share = 1.0;
     int bounded = 0, unbounded = 0;
     for (int i = 0; i < 3000; ++i) {
-        const Scene scene = random_scene(random, random.power_of_ten(-1.0, 2.0));
+        const WindowScene scene = random_window_scene(random, random.power_of_ten(-1.0, 2.0));
         const auto texgen = window_linear(scene.projector, scene.camera, scene.viewport, scene.region, scene.depth);
         REQUIRE(texgen);
         const glm::vec3 fragment(random_fragment(random, scene.viewport));
@@ -371,7 +257,7 @@ TEST_CASE("the exact poses' T_w, up to 1e7 from the origin: within 0.002 texel o
 
 TEST_CASE("a camera without an inverse, a viewport without an area and what is not finite have no T_w") {
     Random random(426);
-    const Scene scene = random_scene(random, 1.0);
+    const WindowScene scene = random_window_scene(random, 1.0);
     const auto texgen_of = [&](const Projector& camera, const Viewport& viewport) {
         return window_linear(scene.projector, camera, viewport);
     };

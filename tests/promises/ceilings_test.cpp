@@ -25,6 +25,7 @@
 #include "support/outputs.hpp"
 #include "support/random.hpp"
 #include "support/surfaces.hpp"
+#include "support/windows.hpp"
 #include "texgen/clip.hpp"
 #include "texgen/footprint.hpp"
 #include "texgen/interpolate.hpp"
@@ -527,6 +528,21 @@ WorstSurfaces of_surfaces(support::CornerFamily family, std::uint64_t seed) {
     return worst;
 }
 
+// T_w of cameras and projectors that far away, in 2^-53 of the terms of s and q.
+double of_windows(double distance, std::uint64_t seed) {
+    Random random(seed);
+    double worst = 0.0;
+    for (int i = 0; i < 60; ++i) {
+        const support::WindowScene scene = support::random_window_scene(random, distance);
+        const auto texgen = window_linear(scene.projector, scene.camera, scene.viewport, scene.region, scene.depth);
+        const support::ExactWindow exact(scene);
+        for (int k = 0; k < 8; ++k)
+            worst = std::max(
+                worst, 0x1p53 * exact.share_of_terms(texgen.value(), support::random_fragment(random, scene.viewport)));
+    }
+    return worst;
+}
+
 // The q of quadrilaterals, in float ulps.
 constexpr std::array<const char*, support::shapes.size()> shapes{
     "ordinary", "whole numbers", "next to a triangle", "to 1e7 from the origin", "units to 1e100", "thin to 1e-18"};
@@ -605,5 +621,8 @@ TEST_CASE("no ceiling is raised") {
         hold("quadrilateral, ulp of q", shapes[i], false, of_quadrilaterals(support::shapes[i], ++seed));
     hold("pinhole, ulp", "the axis anywhere", false, of_pinholes(false, ++seed));
     hold("pinhole, ulp", "the axis near the middle", false, of_pinholes(true, ++seed));
+    for (const char* const distance : {"1", "1e3", "1e5", "1e7"})
+        hold("window_linear, 2^-53 of its terms", std::string(distance) + " from the origin", false,
+             of_windows(std::strtod(distance, nullptr), ++seed));
     if (lowered != nullptr) ceilings.write(lowered);
 }
