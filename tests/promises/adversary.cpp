@@ -36,6 +36,7 @@
 #include "support/race.hpp"
 #include "support/random.hpp"
 #include "support/surfaces.hpp"
+#include "support/windows.hpp"
 #include "support/workloads.hpp"
 #include "texgen/clip.hpp"
 #include "texgen/coverage.hpp"
@@ -689,6 +690,57 @@ Share clip_to_near_share(const Numbers& n) {
     return worst;
 }
 
+// A fragment, and a camera's projection and view: s/q, t/q and r/q within 2^-47 (m_s + |s/q| m_q) / |q|.
+Share window_share(const Numbers& n) {
+    if (!is_in_range(n, 0x1p-40, 0x1p40)) return says_nothing;
+    Random random(9);
+    support::WindowScene scene = support::random_window_scene(random, 10.0);
+    scene.camera.projection = texgen::ProjectorProjection(double_matrix(n, 3));
+    scene.camera.view = texgen::ProjectorView(double_matrix(n, 19));
+    for (const std::size_t i : {3u, 19u}) {
+        const RationalMatrix m = exactly(double_matrix(n, i));
+        if (!support::inverse(m) || !(scaled_condition(m) < 1e8)) return says_nothing;
+    }
+    const auto texgen = window_linear(scene.projector, scene.camera, scene.viewport, scene.region, scene.depth);
+    if (!texgen) return broken;
+    return support::ExactWindow(scene).share_of_terms(*texgen, {n[0], n[1], n[2]}) / 0x1p-47;
+}
+Numbers begin_window(Random& random) {
+    const support::WindowScene scene = support::random_window_scene(random, random.power_of_ten(-1.0, 7.0));
+    return support::detail::numbers(glm::vec3(support::random_fragment(random, scene.viewport)),
+                                    scene.camera.projection.matrix(), scene.camera.view.matrix());
+}
+
+// No depth that is stored as the fragment's is further off than depth_error_bound().
+Share depth_bound_share(const Numbers& n) {
+    const glm::dmat4 matrix = double_matrix(n, 4);
+    if (!is_in_range(n, 0x1p-300, 0x1p300)) return says_nothing;
+    const glm::vec3 fragment(floats4(n, 0));
+    const glm::dvec2 bound = depth_error_bound(texgen::WindowTexgen(matrix), fragment, texgen::DepthBuffer::float32);
+    const RationalMatrix m = exactly(matrix);
+    const auto z = static_cast<double>(fragment.z);
+    Share worst = says_nothing;
+    for (const int direction : {-1, 1}) {
+        const double other = 0.5 * z + 0.5 * static_cast<double>(support::neighbour(fragment.z, direction));
+        const auto here = support::at(m, glm::dvec3(fragment)),
+                   there = support::at(m, glm::dvec3(fragment.x, fragment.y, other));
+        for (std::size_t k = 0; k < 2; ++k) {
+            const double b = bound[static_cast<int>(k)];
+            if (!std::isfinite(b)) continue;
+            if (!(here[3] > 0 && there[3] > 0)) return broken;
+            const Rational change = support::magnitude(there[k] / there[3] - here[k] / here[3]);
+            if (change > exactly(b)) return broken;
+            if (b > 0.0) worst = std::max(worst, support::nearest<double>(Rational(change / exactly(b))));
+        }
+    }
+    return worst;
+}
+Numbers begin_depth(Random& random) {
+    Numbers n = any_floats(random, 4);
+    for (const double x : support::detail::numbers(random.rigid(2.0))) n.push_back(x);
+    return n;
+}
+
 // ---- Surfaces --------------------------------------------------------------------------------------------------
 
 support::Corners surface_of(const Numbers& n) { return {floats4(n, 0), floats4(n, 4), floats4(n, 8)}; }
@@ -863,6 +915,8 @@ const std::array promises{
             clip_to_slide_share},
     Promise{"clip to near: 1/2 ulp + clip_error", 24, [](Random& random) { return any_floats(random, 24); },
             clip_to_near_share},
+    Promise{"window_linear: 2^-47 of the terms", 3, begin_window, window_share},
+    Promise{"depth_error_bound", 4, begin_depth, depth_bound_share},
     Promise{"facing: the exact sign, a decision", 12, begin_surface, facing_share},
     Promise{"slide_area: 2^-50 of itself", 12, begin_surface, slide_area_share},
     Promise{"receiver_plane: 2^-49 of itself", 12, begin_surface, receiver_plane_share},
