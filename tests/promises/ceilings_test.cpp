@@ -509,7 +509,8 @@ struct WorstSurfaces {
     double area = 0.0, plane = 0.0;  // relative, in 2^-52
 };
 constexpr std::array<const char*, support::corner_families.size()> corner_families{
-    "ordinary", "some corners behind", "next to edge on", "edge on, and a bit beside it", "graded", "any bits"};
+    "ordinary", "some corners behind", "next to edge on", "edge on, and a bit beside it", "graded",
+    "any bits", "one far to the side"};
 
 WorstSurfaces of_surfaces(support::CornerFamily family, std::uint64_t seed) {
     Random random(seed);
@@ -617,6 +618,7 @@ TEST_CASE("no ceiling is raised") {
         hold("slide_area, 2^-52 of itself", corner_families[i], false, worst.area);
         hold("receiver_plane, 2^-52 of itself", corner_families[i], false, worst.plane);
     }
+    seed = 9060;
     for (std::size_t i = 0; i < shapes.size(); ++i)
         hold("quadrilateral, ulp of q", shapes[i], false, of_quadrilaterals(support::shapes[i], ++seed));
     hold("pinhole, ulp", "the axis anywhere", false, of_pinholes(false, ++seed));

@@ -32,9 +32,10 @@ inline Dyadic exact_determinant(const Corners& corners, int x, int y, int z) {
 }
 inline Dyadic exact_determinant(const Corners& corners) { return exact_determinant(corners, 0, 1, 3); }
 
-enum class CornerFamily { ordinary, behind, next_to_edge_on, edge_on, graded, any_bits };
-inline constexpr std::array corner_families{CornerFamily::ordinary, CornerFamily::behind, CornerFamily::next_to_edge_on,
-                                            CornerFamily::edge_on,  CornerFamily::graded, CornerFamily::any_bits};
+enum class CornerFamily { ordinary, behind, next_to_edge_on, edge_on, graded, any_bits, far_corner };
+inline constexpr std::array corner_families{
+    CornerFamily::ordinary, CornerFamily::behind,   CornerFamily::next_to_edge_on, CornerFamily::edge_on,
+    CornerFamily::graded,   CornerFamily::any_bits, CornerFamily::far_corner};
 
 inline float small_number(Random& random) { return to_float(std::ldexp(random.integer(-1 << 20, 1 << 20), -18)); }
 
@@ -80,6 +81,14 @@ inline Corners corners_of(CornerFamily family, Random& random) {
                 float& number = corners[static_cast<std::size_t>(random.integer(0, 2))][random.integer(0, 3)];
                 number = neighbour(number, random.integer(-1, 1));
             }
+            break;
+        }
+        case CornerFamily::far_corner: {
+            // One is so far to the side that the others decide by what no two doubles hold beside it: it cancels wholly.
+            corners[0].x = std::ldexp(corners[0].x, random.integer(20, 120));
+            const float unit = std::ldexp(1.0f, random.integer(-4, 4));
+            corners[2].y = unit * corners[1].y;
+            corners[2].w = unit * corners[1].w;
             break;
         }
         case CornerFamily::graded:
