@@ -163,7 +163,7 @@ TEST_CASE("slide_area is within 2^-50 of itself, and there where all q are posit
         CHECK(count > 1000);
     }
     CHECK_MESSAGE(worst <= 0x1p-50, worst_input);
-    MESSAGE(worst * 0x1p52, " times 2^-52 at most: ", worst_input);
+    MESSAGE((worst * 0x1p52), " times 2^-52 at most: ", worst_input);
 }
 
 TEST_CASE("the texels of a rectangle texture under a square of the scene") {
@@ -200,7 +200,7 @@ TEST_CASE("receiver_plane has the depth of all corners' plane, each number withi
         CHECK((refused > 500) == (family == CornerFamily::edge_on || family == CornerFamily::graded));
     }
     CHECK_MESSAGE(worst <= 0x1p-49, worst_input);
-    MESSAGE(worst * 0x1p52, " times 2^-52 at most: ", worst_input);
+    MESSAGE((worst * 0x1p52), " times 2^-52 at most: ", worst_input);
 }
 
 TEST_CASE("within a texel the receiver's depth differs by no more than the plane's slopes allow") {
@@ -358,7 +358,7 @@ TEST_CASE("keystone is the exact homography, element by element within 2^-48 of 
         }
     }
     CHECK_MESSAGE(worst <= 0x1p-48, worst_input);
-    MESSAGE(worst * 0x1p52, " times 2^-52 at most: ", worst_input);
+    MESSAGE((worst * 0x1p52), " times 2^-52 at most: ", worst_input);
 }
 
 TEST_CASE(

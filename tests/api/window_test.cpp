@@ -62,7 +62,7 @@ TEST_CASE(
         }
     }
     CHECK_MESSAGE(worst <= 0x1p-47, worst_input);
-    MESSAGE(worst * 0x1p53, " times 2^-53 at most");
+    MESSAGE((worst * 0x1p53), " times 2^-53 at most");
 }
 
 TEST_CASE("what the camera sees gets by its fragment the coordinate that it has in the world, with the sign of q") {
