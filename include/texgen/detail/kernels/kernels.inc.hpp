@@ -11,6 +11,10 @@
 #include "points.inc.hpp"
 #include "segments.inc.hpp"
 
+#include "batch_set_up.inc.hpp"
+
+#include "batch_fragments.inc.hpp"
+#include "batch_tiles.inc.hpp"
 #include "boxes.inc.hpp"
 #include "footprint.inc.hpp"
 
@@ -36,6 +40,11 @@ const Table& kernels() noexcept {
         return table;
     } else if constexpr (std::is_same_v<Table, FootprintKernels>) {
         static constexpr FootprintKernels table{.differentiate = differentiate<>, .filter = filter<>};
+        return table;
+    } else if constexpr (std::is_same_v<Table, BatchKernels>) {
+        static constexpr BatchKernels table{.set_up = set_up_batch<>,
+                                            .divide_tiles = divide_batch_tiles<>,
+                                            .divide_fragments = divide_batch_fragments<>};
         return table;
     } else {
         static constexpr BoxKernels table{.classify = classify<>, .bound = bound<>, .separate = separate<>};

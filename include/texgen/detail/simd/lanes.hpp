@@ -21,6 +21,7 @@
 
 #include "../arithmetic/rounding.hpp"
 #include "../language.hpp"
+#include "batch_jobs.hpp"
 #include "box_kernels.hpp"
 #include "jobs.hpp"
 
@@ -37,6 +38,7 @@
 #define TEXGEN_BUILD TEXGEN_NAMED(TEXGEN_COMPILER, _scalar)
 #define TEXGEN_INLINE inline
 #define TEXGEN_APART
+#define TEXGEN_UNROLL
 
 namespace TEXGEN_DETAIL {
 
@@ -70,6 +72,7 @@ inline Double2 larger(const Double2& a, const Double2& b) noexcept {
 #include "../kernels/kernels.inc.hpp"
 #undef TEXGEN_ISA
 #undef TEXGEN_INLINE
+#undef TEXGEN_UNROLL
 #undef TEXGEN_APART
 
 namespace TEXGEN_DETAIL {
@@ -116,6 +119,13 @@ namespace of_flags = scalar;
 
 #define TEXGEN_INLINE [[gnu::always_inline]] inline
 #define TEXGEN_APART [[gnu::noinline]]  // what is rare, so that it costs the rest no registers
+
+// GCC keeps a loop over an array of vectors, and so the array in memory, below -O3.
+#ifdef __clang__
+#define TEXGEN_UNROLL
+#else
+#define TEXGEN_UNROLL _Pragma("GCC unroll 32")
+#endif
 
 // GCC 12 converts eight floats the generic way in two halves.
 #ifdef __clang__
@@ -234,10 +244,17 @@ namespace of_flags = TEXGEN_FLAGS(flags_);
 #undef TEXGEN_STACK_HOLDS_NARROW_VECTORS
 #undef TEXGEN_EIGHT_DOUBLES
 #undef TEXGEN_INLINE
+#undef TEXGEN_UNROLL
 #undef TEXGEN_APART
 
 #endif
 #undef TEXGEN_HAS_VECTORS
+
+namespace TEXGEN_DETAIL {
+inline namespace TEXGEN_BUILD {
+struct ThisBuild;  // what members of a class of all builds are compiled for
+}
+}  // namespace TEXGEN_DETAIL
 
 #ifdef TEXGEN_SEPARATE_KERNELS
 #ifdef TEXGEN_DEFINE_KERNELS
@@ -252,6 +269,7 @@ TEXGEN_EXTERN template const PointKernels& chosen<PointKernels>() noexcept;
 TEXGEN_EXTERN template const SegmentKernels& chosen<SegmentKernels>() noexcept;
 TEXGEN_EXTERN template const FootprintKernels& chosen<FootprintKernels>() noexcept;
 TEXGEN_EXTERN template const BoxKernels& chosen<BoxKernels>() noexcept;
+TEXGEN_EXTERN template const BatchKernels& chosen<BatchKernels>() noexcept;
 }  // namespace TEXGEN_BUILD
 }  // namespace TEXGEN_DETAIL
 #undef TEXGEN_EXTERN

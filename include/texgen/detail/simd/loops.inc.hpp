@@ -244,6 +244,12 @@ TEXGEN_INLINE void store_interleaved(float* to, const Floats& a, const Floats& b
     }
 }
 
+template <class Vector>
+TEXGEN_INLINE void transpose(Vector (&rows)[lanes]) noexcept {
+    for (int i = 0; i < lanes; ++i)
+        for (int k = 0; k < i; ++k) std::swap(rows[i].lane[k], rows[k].lane[i]);
+}
+
 TEXGEN_INLINE bool any(const Words& mask) noexcept {
     int all = 0;
     for (int i = 0; i < lanes; ++i) all |= mask.lane[i];

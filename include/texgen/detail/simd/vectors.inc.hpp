@@ -215,6 +215,23 @@ TEXGEN_INLINE void store_interleaved(float* to, const Vector& a, const Vector& b
     store_interleaved(to + 2 * n, ac_high, bd_high);
 }
 
+// Lane i of vector k becomes lane k of vector i.
+template <class Vector>
+TEXGEN_INLINE void transpose(Vector (&rows)[lanes]) noexcept {
+    using Lanes = std::make_integer_sequence<int, lanes>;
+    TEXGEN_UNROLL
+    for (int size = 1; size < lanes; size *= 2) {
+        Vector mixed[lanes];
+        TEXGEN_UNROLL
+        for (int i = 0; i < lanes / 2; ++i) {
+            mixed[2 * i] = zipped<0>(rows[i], rows[i + lanes / 2], Lanes());
+            mixed[2 * i + 1] = zipped<lanes / 2>(rows[i], rows[i + lanes / 2], Lanes());
+        }
+        TEXGEN_UNROLL
+        for (int i = 0; i < lanes; ++i) rows[i] = mixed[i];
+    }
+}
+
 TEXGEN_INLINE bool any(const Words& mask) noexcept {
 #if TEXGEN_LANE_BYTES == 64
     using Quadwords [[gnu::vector_size(32)]] = long long;

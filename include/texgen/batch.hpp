@@ -1,0 +1,104 @@
+#pragma once
+
+// Floor 9: many triangles at once, for a rasteriser, a lightmap baker or a visibility buffer. They are made ready in the lanes of
+// vectors, and small tiles are divided without what a large one is surveyed for; what that leaves in doubt is done by
+// TriangleSetup, one by one.
+
+#include "detail/language.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "conventions.hpp"
+#include "detail/assert.hpp"
+#include "detail/culling/lit_test.hpp"
+#include "detail/simd/batch_jobs.hpp"
+#include "detail/simd/lanes.hpp"
+#include "footprint.hpp"
+#include "interpolate.hpp"
+#include "primitives.hpp"
+#include "texcoord.hpp"
+
+namespace TEXGEN_NAMESPACE {
+
+// The id of a fragment that no triangle covers.
+inline constexpr std::uint32_t no_triangle = 0xffffffff;
+
+inline namespace TEXGEN_COMPILER {
+
+// Triangles made ready for interpolation, in the order in which they were given. A triangle is known by its index.
+class TriangleBatch {
+public:
+    explicit TriangleBatch(TextureRegion region, Tolerance tolerance = exact) noexcept
+        : region_(region), tolerance_(tolerance), lit_(region) {}
+
+    // Makes triangles ready, in place of those that it had.
+    // Guarantee: each as TriangleSetup::of() does, in double about the vertex with the largest clip_w; nothing of the caller's is
+    // kept but copies, of 244 bytes a triangle. Memory is allocated only when the count exceeds all former ones; noexcept.
+    // Shapes: as TriangleSetup::of(). Fewer than 2^32 - 1 triangles (asserted).
+    // Bad input: what TriangleSetup::of() refuses is dark: all that is computed of it is 0.
+    template <class CompiledWhereCalled = detail::ThisBuild>
+    void assign(std::span<const Triangle> triangles) noexcept;
+
+    std::size_t size() const noexcept { return size_; }
+    const TextureRegion& region() const noexcept { return region_; }
+    Tolerance tolerance() const noexcept { return tolerance_; }
+
+    // What the rest of the library reads.
+    const Triangle& triangle(std::size_t i) const noexcept { return triangles_[i]; }
+    const detail::BatchPlanes* planes() const noexcept { return planes_.data(); }
+    const detail::LitTest& lit() const noexcept { return lit_; }
+
+private:
+    TextureRegion region_;
+    Tolerance tolerance_;
+    detail::LitTest lit_;
+    std::size_t size_ = 0;
+    std::vector<Triangle> triangles_;  // whole blocks and one more
+    std::vector<detail::BatchPlanes> planes_;
+};
+
+}  // namespace TEXGEN_COMPILER
+
+inline namespace TEXGEN_BUILD {
+
+// Writes s/q, t/q and r/q of every fragment of a rectangle of each triangle, and whether it is lit: of rects[i] those of
+// triangle i, behind those of the rectangle before it.
+// Guarantee: each value as interpolate(TriangleSetup, rects[i], ...) has it: with `exact` the same bits, else within the same
+// bound of the exact value. Everything is written: where that says Work::nothing, or a triangle is refused, all outputs are 0.
+// No allocation, noexcept.
+// Shapes: as many rectangles as triangles, of no negative size, and outputs of all their fragments together, or empty ones
+// (all asserted; else nothing is written). Fragments outside a triangle get the values of its plane; where the interpolated
+// 1/w is not positive nothing is promised.
+// Cost: a rectangle of up to 64 fragments takes least beside that of a TriangleSetup; from a thousand on they cost the same.
+// Bad input: an empty rectangle has no values.
+template <class CompiledWhereCalled = void>
+void interpolate(const TriangleBatch& batch, std::span<const FragmentRect> rects, Texcoords out) noexcept;
+
+// Writes the same of a visibility buffer: of fragment k of the rectangle, row by row, those of triangle ids[k].
+// Guarantee: as above for the triangle's fragment. Where ids[k] is no_triangle, or its triangle is refused, all outputs are 0.
+// A fragment that is not lit has lit = 0, and s, t, r of its triangle's plane or 0. No allocation, noexcept.
+// Shapes: width * height ids, each no_triangle or below batch.size(), and as many floats an output, or none (asserted).
+// Cost: least where neighbours have one id; ids in any order take about half as long again.
+// Bad input: an empty rectangle does nothing; an id beyond the batch is no triangle.
+template <class CompiledWhereCalled = void>
+void interpolate(const TriangleBatch& batch, std::span<const std::uint32_t> ids, FragmentRect rect,
+                 Texcoords out) noexcept;
+
+// Writes the footprints of a visibility buffer, as textureGrad takes them: of fragment k that of triangle ids[k].
+// Guarantee: as footprint() of a FootprintSetup of the triangle has it, for a rectangle of the neighbours in a row with one id.
+// Where that writes nothing, ids[k] is no_triangle or its triangle is refused, all outputs are 0. No allocation, noexcept.
+// Shapes: as above.
+// Cost: a FootprintSetup for each run of one id in a row.
+// Bad input: as of footprint(), and above.
+template <class CompiledWhereCalled = void>
+void footprint(const TriangleBatch& batch, std::span<const std::uint32_t> ids, FragmentRect rect, TexelsPerUnit texels,
+               Footprints out) noexcept;
+
+}  // namespace TEXGEN_BUILD
+
+}  // namespace TEXGEN_NAMESPACE
+
+#include "detail/triangle/batch.inc.hpp"

@@ -1,0 +1,101 @@
+// The inner loops of a batch: fragments of any of its triangles. Included by kernels.inc.hpp.
+
+namespace TEXGEN_DETAIL::TEXGEN_ISA {
+
+// The functions of one triangle, as BatchLanes has those of several.
+struct OneTriangle {
+    const double* value;
+    TEXGEN_INLINE Doubles operator[](std::size_t k) const noexcept { return Doubles{} + value[k]; }
+};
+
+// A vector of fragments at (x, y): quotients, and in_front where they are. Returns the lanes in doubt.
+template <std::size_t Numerators, class Functions>
+TEXGEN_INLINE Words divide_lanes(const Functions& functions, const Doubles& x, const Doubles& y, double tolerance,
+                                 Floats (&quotient)[Numerators], Words& in_front) noexcept {
+    const Doubles p_x = x - functions[BatchPlanes::origin];
+    const Doubles p_y = y - functions[BatchPlanes::origin + 1];
+    const Doubles stretch = magnitude(p_x) * functions[BatchPlanes::per_reach] +
+                            (magnitude(p_y) * functions[BatchPlanes::per_reach + 1] + 1.001);
+    const Doubles q =
+        functions[BatchPlanes::q] + (functions[BatchPlanes::q + 1] * p_x + functions[BatchPlanes::q + 2] * p_y);
+    const Doubles q_error = functions[BatchPlanes::q + 3] * stretch;
+    const LongWords front = greater(q, q_error * 0x1p24);
+    Words doubtful = narrow(~(front | greater(q * -1.0, q_error)));
+    in_front = narrow(front);
+    const Doubles reciprocal = where(front, 1.0 / q);
+    const Doubles relative_error = q_error * (reciprocal * 1.0001) + 8.0 * unit_roundoff_double;
+    const Doubles stretched = stretch * (reciprocal * 1.0001);
+    TEXGEN_UNROLL
+    for (std::size_t k = 0; k < Numerators; ++k) {
+        const std::size_t place = BatchPlanes::of_numerator[k];
+        const Doubles f = functions[place] + (functions[place + 1] * p_x + functions[place + 2] * p_y);
+        const Doubles u = f * reciprocal + 0.0;  // no -0
+        const Doubles size = magnitude(u);
+        const Doubles error = functions[place + 3] * stretched + size * relative_error;
+        if (tolerance > 0.0) {
+            quotient[k] = to_floats(u);
+            const Doubles written = error + size * (1.0001 * unit_roundoff_float) + 0x1p-149;
+            if (!any(~at_most(written, Doubles{} + tolerance))) continue;
+        }
+        quotient[k] = to_floats(u - error);
+        doubtful |= bits(quotient[k]) ^ bits(to_floats(u + error));
+    }
+    return doubtful;
+}
+
+template <std::size_t Numerators>
+TEXGEN_INLINE Undecided divide_all_fragments(const FragmentsJob& job, std::size_t first) noexcept {
+    constexpr auto size = static_cast<std::size_t>(lanes);
+    BatchPlanes none{};
+    none.value[BatchPlanes::q] = -1.0;  // behind everywhere, without a doubt
+    const FragmentOutputs out(job);
+    ScratchOutputs<size> scratch;
+    const FragmentOutputs in_scratch = scratch.in_place_of(out);
+    FragmentWalk<Doubles, double> walk(job.width, 1.0 / job.width, static_cast<double>(first));
+    const double left = job.x + 0.5;
+    const double top = job.y + 0.5;
+    const auto planes_of = [&](std::uint32_t id) { return id < job.triangles ? &job.planes[id] : &none; };
+    for (std::size_t n = first; n < job.count;) {
+        const std::size_t begin = n;
+        const std::size_t end = job.count - begin < exact_block ? job.count : begin + exact_block;
+        std::uint64_t doubtful = 0;
+        for (; n < end; n += size, walk.advance()) {
+            std::uint32_t last_ids[lanes];
+            const std::uint32_t* ids = job.ids + n;
+            if (n + size > job.count) {
+                for (std::size_t i = 0; i < size; ++i) last_ids[i] = n + i < job.count ? ids[i] : ids[0];
+                ids = last_ids;
+            }
+            const Doubles x = walk.x + left;
+            const Doubles y = walk.y + top;
+            Floats quotient[Numerators];
+            Words in_front;
+            Words in_doubt;
+            if (!any(load<Words>(ids) ^ (Words{} + static_cast<int>(ids[0])))) {
+                const OneTriangle functions{planes_of(ids[0])->value};
+                in_doubt = divide_lanes(functions, x, y, job.tolerance, quotient, in_front);
+            } else {
+                const BatchPlanes* of_lane[lanes];
+                TEXGEN_UNROLL
+                for (std::size_t i = 0; i < size; ++i) of_lane[i] = planes_of(ids[i]);
+                BatchLanes functions;
+                functions.load_from(of_lane, Numerators == 3);
+                in_doubt = divide_lanes(functions, x, y, job.tolerance, quotient, in_front);
+            }
+            const bool is_whole = n + size <= job.count;
+            (is_whole ? out : in_scratch).put(is_whole ? n : 0, quotient, in_front);
+            doubtful |= std::uint64_t{bits_of(in_doubt)} << (n - begin);
+        }
+        if (n > job.count) scratch.copy_to(out, n - size, job.count + size - n);
+        if (doubtful != 0) return {begin, doubtful};
+    }
+    return {job.count, 0};
+}
+
+template <class = void>
+Undecided divide_batch_fragments(const FragmentsJob& original, std::size_t first) noexcept {
+    const FragmentsJob job = original;
+    return job.out[2] != nullptr ? divide_all_fragments<3>(job, first) : divide_all_fragments<2>(job, first);
+}
+
+}  // namespace TEXGEN_DETAIL::TEXGEN_ISA

@@ -1,0 +1,242 @@
+// The inner loops of a batch: a block of triangles made ready, and their functions in lanes. Included by kernels.inc.hpp.
+
+namespace TEXGEN_DETAIL::TEXGEN_ISA {
+
+// A triangle in each lane: x, y, w, s, t, r, q of its vertices, the one of the largest w first, as TrianglePlanes has them.
+struct TriangleLanes {
+    Doubles vertex[3][7];
+
+    TEXGEN_INLINE explicit TriangleLanes(const float* triangles) noexcept {
+        Floats given[3][8];
+        TEXGEN_UNROLL
+        for (std::size_t i = 0; i < 3; ++i) {
+            TEXGEN_UNROLL
+            for (std::size_t first = 0; first < 8; first += static_cast<std::size_t>(lanes)) {
+                Floats column[lanes];
+                TEXGEN_UNROLL
+                for (std::size_t j = 0; j < static_cast<std::size_t>(lanes); ++j)
+                    column[j] = load<Floats>(triangles + (3 * j + i) * BatchVertex::size + first);
+                transpose(column);
+                TEXGEN_UNROLL
+                for (std::size_t j = 0; j < static_cast<std::size_t>(lanes); ++j) given[i][first + j] = column[j];
+            }
+        }
+        const Doubles a = to_doubles(given[0][2]);
+        const Doubles b = to_doubles(given[1][2]);
+        const Doubles c = to_doubles(given[2][2]);
+        const LongWords is_b = greater(b, a) & at_most(c, b);
+        const Words b_first = narrow(is_b);
+        const Words c_first = narrow(~is_b & greater(c, a));
+        TEXGEN_UNROLL
+        for (std::size_t k = 0; k < 7; ++k) {
+            const std::size_t from = k < 3 ? k : BatchVertex::strq + (k - 3);
+            TEXGEN_UNROLL
+            for (std::size_t i = 0; i < 3; ++i)
+                vertex[i][k] = to_doubles(select(b_first, given[(i + 1) % 3][from],
+                                                 select(c_first, given[(i + 2) % 3][from], given[i][from])));
+        }
+    }
+};
+
+// As TrianglePlanes, with the same operations in the same order: what they err by is said there. Where the sign of the area is
+// in doubt, or a number is not one, the error of q is infinite: those lanes are returned.
+TEXGEN_INLINE Words set_up_lanes(const float* triangles, BatchPlanes* planes) noexcept {
+    const TriangleLanes given(triangles);
+    const Doubles* const a = given.vertex[0];
+    const Doubles* const b = given.vertex[1];
+    const Doubles* const c = given.vertex[2];
+    const Doubles b_x = b[0] - a[0];
+    const Doubles b_y = b[1] - a[1];
+    const Doubles c_x = c[0] - a[0];
+    const Doubles c_y = c[1] - a[1];
+    const Doubles left = b_x * c_y;
+    const Doubles right = b_y * c_x;
+    const Doubles area = left - right;
+    const Doubles area_terms = magnitude(left) + magnitude(right);
+    const Doubles w_bc = b[2] * c[2];
+    const Doubles w_ac = a[2] * c[2];
+    const Doubles w_ab = a[2] * b[2];
+    const Doubles factor =
+        with_sign_of(1.0 / power_of_two_below(area_terms * maximum(maximum(w_bc, w_ac), w_ab)), area);
+    const Doubles weight_a = w_bc * factor;
+    const Doubles weight_b = w_ac * factor;
+    const Doubles weight_c = w_ab * factor;
+
+    // Beyond its vertices a small tile is as far from the first as it is large.
+    const Doubles size_b_x = magnitude(b_x);
+    const Doubles size_b_y = magnitude(b_y);
+    const Doubles size_c_x = magnitude(c_x);
+    const Doubles size_c_y = magnitude(c_y);
+    const Doubles reach_x = maximum(size_b_x, size_c_x) + 8.0;
+    const Doubles reach_y = maximum(size_b_y, size_c_y) + 8.0;
+    const Doubles base_terms = (size_b_x * size_c_y + size_b_y * size_c_x) * batch_plane_error;
+    const Doubles b_dx_terms = size_c_y * reach_x * batch_plane_error;
+    const Doubles c_dx_terms = size_b_y * reach_x * batch_plane_error;
+    const Doubles b_dy_terms = size_c_x * reach_y * batch_plane_error;
+    const Doubles c_dy_terms = size_b_x * reach_y * batch_plane_error;
+
+    Doubles value[BatchPlanes::count];
+    Doubles all_errors{};
+    TEXGEN_UNROLL
+    for (std::size_t k = 0; k < 4; ++k) {
+        constexpr std::size_t place[4] = {BatchPlanes::s, BatchPlanes::t, BatchPlanes::r, BatchPlanes::q};
+        Doubles* const function = &value[place[k]];
+        const Doubles at_a = a[3 + k] * weight_a;
+        const Doubles at_b = b[3 + k] * weight_b;
+        const Doubles at_c = c[3 + k] * weight_c;
+        const Doubles b_minus_a = at_b - at_a;
+        const Doubles c_minus_a = at_c - at_a;
+        function[0] = at_a * area;
+        function[1] = b_minus_a * c_y - c_minus_a * b_y;
+        function[2] = c_minus_a * b_x - b_minus_a * c_x;
+        const Doubles size_a = magnitude(at_a);
+        const Doubles b_and_a = magnitude(at_b) + size_a;
+        const Doubles c_and_a = magnitude(at_c) + size_a;
+        function[3] = maximum(size_a * base_terms, maximum(b_and_a * b_dx_terms + c_and_a * c_dx_terms,
+                                                           b_and_a * b_dy_terms + c_and_a * c_dy_terms));
+        all_errors = all_errors + (size_a + b_and_a + c_and_a);
+    }
+    // What is not finite is in that sum, or makes a NaN of it.
+    const LongWords is_known = greater(magnitude(area), area_terms * gamma(4)) & greater(a[2], 0.0) &
+                               greater(b[2], 0.0) & greater(c[2], 0.0) &
+                               at_most(all_errors * area_terms * (reach_x + reach_y), Doubles{} + 0x1p1000);
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    value[BatchPlanes::q + 3] = where(is_known, value[BatchPlanes::q + 3]) + where(~is_known, Doubles{} + infinity);
+    value[BatchPlanes::origin] = a[0];
+    value[BatchPlanes::origin + 1] = a[1];
+    value[BatchPlanes::per_reach] = 1.0 / reach_x;
+    value[BatchPlanes::per_reach + 1] = 1.0 / reach_y;
+    constexpr auto count = static_cast<int>(BatchPlanes::count);
+    TEXGEN_UNROLL
+    for (int first = 0; first < count; first += lanes) {
+        // The last square overlaps the one before.
+        const int begin = first + lanes <= count ? first : count - lanes;
+        Doubles row[lanes];
+        TEXGEN_UNROLL
+        for (int j = 0; j < lanes; ++j) row[j] = value[begin + j];
+        transpose(row);
+        TEXGEN_UNROLL
+        for (int j = 0; j < lanes; ++j) store(&planes[j].value[begin], row[j]);
+    }
+    return narrow(~is_known);
+}
+
+// A bit for each lane that is set.
+TEXGEN_INLINE unsigned bits_of(const Words& mask) noexcept {
+    unsigned result = 0;
+    if (any(mask))
+        for (int i = 0; i < lanes; ++i) result |= lane(mask, i) != 0 ? 1u << i : 0u;
+    return result;
+}
+
+template <class = void>
+unsigned set_up_batch(const float* triangles, BatchPlanes* planes) noexcept {
+    unsigned unknown = 0;
+    for (std::size_t i = 0; i < batch_block; i += static_cast<std::size_t>(lanes))
+        unknown |= bits_of(set_up_lanes(triangles + 3 * BatchVertex::size * i, planes + i)) << i;
+    return unknown;
+}
+
+// The functions of a triangle in each lane.
+struct BatchLanes {
+    Doubles value[BatchPlanes::count]{};
+
+    TEXGEN_INLINE const Doubles& operator[](std::size_t k) const noexcept { return value[k]; }
+
+    // Of r only with_r.
+    TEXGEN_INLINE void load_from(const BatchPlanes* const (&planes)[lanes], bool with_r) noexcept {
+        constexpr auto count = static_cast<int>(BatchPlanes::count);
+        TEXGEN_UNROLL
+        for (int first = 0; first < count; first += lanes) {
+            if (!with_r && first >= static_cast<int>(BatchPlanes::r)) break;
+            const int begin = first + lanes <= count ? first : count - lanes;
+            Doubles row[lanes];
+            TEXGEN_UNROLL
+            for (int j = 0; j < lanes; ++j) row[j] = load<Doubles>(&planes[j]->value[begin]);
+            transpose(row);
+            TEXGEN_UNROLL
+            for (int j = 0; j < lanes; ++j) value[begin + j] = row[j];
+        }
+    }
+};
+
+// The columns and rows of a vector of fragments, which follow one another row by row. Half of one more keeps the quotient by
+// the width away from the integers.
+template <class Vector, class Scalar>
+struct FragmentWalk {
+    Vector number, x, y;  // number: half of one more
+    Scalar width, per_width;
+    Scalar rows_per_vector;  // where it has whole ones
+
+    TEXGEN_INLINE FragmentWalk(Scalar row, Scalar per_row, double first) noexcept
+        : number(indices<Vector>() + static_cast<Scalar>(first + 0.5)),
+          width(row),
+          per_width(per_row),
+          rows_per_vector(static_cast<Scalar>(size) * per_row) {
+        place();
+    }
+
+    // Where vectors have whole rows, all have the same columns.
+    template <bool HasWholeRows = false>
+    TEXGEN_INLINE void advance() noexcept {
+        if constexpr (HasWholeRows) {
+            y = y + rows_per_vector;
+        } else {
+            number = number + static_cast<Scalar>(size);
+            place();
+        }
+    }
+
+private:
+    static constexpr int size = static_cast<int>(sizeof(Vector) / sizeof(Scalar));
+
+    // Adding and taking `rounder` leaves the nearest integer.
+    TEXGEN_INLINE void place() noexcept {
+        constexpr auto rounder = static_cast<Scalar>(sizeof(Scalar) == sizeof(double) ? 0x1.8p52 : 0x1.8p23);
+        y = ((number * per_width - Scalar(0.5)) + rounder) - rounder;
+        x = (number - Scalar(0.5)) - y * width;
+    }
+};
+
+// Where the values of fragments go: whole vectors, of which what is too much is written again by those that follow.
+struct FragmentOutputs {
+    float* out[3];
+    float* lit;
+    float min[2], max[2];
+
+    TEXGEN_INLINE explicit FragmentOutputs(const BatchJob& job) noexcept
+        : out{job.out[0], job.out[1], job.out[2]},
+          lit(job.lit),
+          min{job.min[0], job.min[1]},
+          max{job.max[0], job.max[1]} {}
+
+    template <std::size_t Numerators, class Vector, class Mask>
+    TEXGEN_INLINE void put(std::size_t n, const Vector (&value)[Numerators], const Mask& in_front) const noexcept {
+        TEXGEN_UNROLL
+        for (std::size_t k = 0; k < Numerators; ++k)
+            if (out[k] != nullptr) store(out[k] + n, value[k]);
+        if (lit != nullptr)
+            store(lit + n, one_where(in_front & inside(value[0], min[0], max[0]) & inside(value[1], min[1], max[1])));
+    }
+};
+
+// In place of those, where a vector would be written beyond their end.
+template <std::size_t Size>
+struct ScratchOutputs {
+    float values[4][Size];
+
+    TEXGEN_INLINE FragmentOutputs in_place_of(const FragmentOutputs& original) noexcept {
+        FragmentOutputs result = original;
+        for (std::size_t k = 0; k < 3; ++k) result.out[k] = original.out[k] == nullptr ? nullptr : values[k];
+        result.lit = original.lit == nullptr ? nullptr : values[3];
+        return result;
+    }
+    void copy_to(const FragmentOutputs& original, std::size_t n, std::size_t count) const noexcept {
+        for (std::size_t k = 0; k < 4; ++k) {
+            float* const to = k < 3 ? original.out[k] : original.lit;
+            for (std::size_t i = 0; to != nullptr && i < count; ++i) to[n + i] = values[k][i];
+        }
+    }
+};
+
+}  // namespace TEXGEN_DETAIL::TEXGEN_ISA

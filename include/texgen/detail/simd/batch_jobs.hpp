@@ -1,0 +1,77 @@
+#pragma once
+
+// What the kernels of a batch of triangles are given and what they return; see detail/kernels/batch_*.inc.hpp.
+
+#include <cstddef>
+#include <cstdint>
+
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
+
+#include "../arithmetic/rounding.hpp"
+#include "../language.hpp"
+#include "jobs.hpp"
+
+namespace TEXGEN_DETAIL {
+
+// Triangles are made ready, and tiles divided, so many at once.
+inline constexpr std::size_t batch_block = 8;
+
+// A vertex as the kernels read it: x, y, w and from `strq` on s, t, r, q, of `size` floats; they load eight.
+struct BatchVertex {
+    struct Layout {
+        glm::vec2 window;
+        float clip_w;
+        glm::vec4 strq;
+    };
+    static constexpr std::size_t size = sizeof(Layout) / sizeof(float);
+    static constexpr std::size_t strq = size - 4;
+};
+
+// The linear functions of a triangle (triangle/planes.hpp), each as base, dx, dy about the vertex of the largest w and e: their
+// errors x and y from there are at most e (1 + |x| per_reach[0] + |y| per_reach[1]).
+struct alignas(32) BatchPlanes {
+    static constexpr std::size_t s = 0, t = 4, q = 8, origin = 12, per_reach = 14, r = 16, count = 20;
+    static constexpr std::size_t of_numerator[3] = {s, t, r};
+
+    double value[count];
+};
+
+// Of the magnitudes of a plane's terms, see TrianglePlanes::error().
+inline constexpr double batch_plane_error = 1.0001 * gamma(20);
+
+// Tiles of more fragments are left to a TriangleSetup, which costs little beside them and resumes where one is in doubt.
+inline constexpr std::size_t largest_batch_tile = 512;
+
+// An output is null, or an array of `count` floats; r is not computed where it has none.
+struct BatchJob {
+    const BatchPlanes* planes;
+    double tolerance;
+    float* out[3];
+    float* lit;
+    std::size_t count;
+    float min[2], max[2];  // the region
+};
+
+// A tile of each triangle: x, y, width, height. Their values follow one another.
+struct TilesJob : BatchJob {
+    const int (*tiles)[4];
+    std::size_t tile_count;
+};
+
+// Triangle ids[k] of `triangles` at fragment k of a rectangle; any other id is no triangle.
+struct FragmentsJob : BatchJob {
+    const std::uint32_t* ids;
+    std::uint32_t triangles;
+    int x, y, width;
+};
+
+struct BatchKernels {
+    // A block; a float behind its last vertex is read. A bit for each triangle whose functions are not known.
+    unsigned (*set_up)(const float* triangles, BatchPlanes* planes) noexcept;
+    // From a tile on that begins a block, with values from output `done` on. Stops at a block that has tiles in doubt.
+    Undecided (*divide_tiles)(const TilesJob& job, std::size_t first, std::size_t done) noexcept;
+    Undecided (*divide_fragments)(const FragmentsJob& job, std::size_t first) noexcept;
+};
+
+}  // namespace TEXGEN_DETAIL

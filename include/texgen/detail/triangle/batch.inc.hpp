@@ -1,0 +1,236 @@
+// The bodies of TriangleBatch, and how its triangles come to their kernels and out of doubt. Included by batch.hpp.
+
+namespace TEXGEN_DETAIL {
+
+// Where vectors leave open whether a triangle has an area, or is refused: all that is refused is behind.
+inline BatchPlanes batch_planes(const Triangle& triangle) noexcept {
+    BatchPlanes result{};
+    result.value[BatchPlanes::q] = -1.0;
+    const TrianglePlanes planes(triangle);
+    if (!planes.is_usable()) return result;
+    const auto reach_of = [&](glm::length_t axis) {
+        return larger(std::fabs(planes.to_b()[axis]), std::fabs(planes.to_c()[axis])) + 8.0;
+    };
+    const double reach_x = reach_of(0);
+    const double reach_y = reach_of(1);
+    constexpr std::size_t place[4] = {BatchPlanes::s, BatchPlanes::t, BatchPlanes::r, BatchPlanes::q};
+    for (std::size_t k = 0; k < 4; ++k) {
+        const Plane plane = planes.plane(static_cast<glm::length_t>(k));
+        double* const function = &result.value[place[k]];
+        function[0] = plane.value.base;
+        function[1] = plane.value.dx;
+        function[2] = plane.value.dy;
+        function[3] = batch_plane_error *
+                      larger(plane.magnitude.base, larger(plane.magnitude.dx * reach_x, plane.magnitude.dy * reach_y));
+    }
+    const glm::dvec2 origin = planes.corner(0);
+    result.value[BatchPlanes::origin] = origin.x;
+    result.value[BatchPlanes::origin + 1] = origin.y;
+    result.value[BatchPlanes::per_reach] = 1.0 / reach_x;
+    result.value[BatchPlanes::per_reach + 1] = 1.0 / reach_y;
+    return result;
+}
+
+// The outputs of `count` values from `first` on.
+template <class Outputs>
+Outputs part_of(const Outputs& all, std::size_t first, std::size_t count) noexcept {
+    Outputs part = all;
+    for_each_output(part, [&](std::span<float>& output) {
+        if (!output.empty()) output = output.subspan(first, count);
+    });
+    return part;
+}
+
+template <class Function>
+void for_each_output(Texcoords& out, const Function& function) noexcept {
+    for (std::span<float>* output : {&out.s, &out.t, &out.r, &out.lit}) function(*output);
+}
+template <class Function>
+void for_each_output(Footprints& out, const Function& function) noexcept {
+    for (std::span<float>* output :
+         {&out.dsdx, &out.dtdx, &out.dsdy, &out.dtdy, &out.level, &out.anisotropy, &out.major_s, &out.major_t})
+        function(*output);
+}
+
+template <class Outputs>
+void clear(Outputs& out) noexcept {
+    for_each_output(out, [](std::span<float>& output) {
+        for (float& value : output) value = 0.0f;
+    });
+}
+
+inline namespace TEXGEN_BUILD {
+
+// A rectangle of one triangle, by its own set-up.
+template <class CompiledWhereCalled = void>
+void interpolate_apart(const TriangleBatch& batch, std::size_t triangle, const FragmentRect& rect,
+                       Texcoords out) noexcept {
+    const auto setup = TriangleSetup::of(batch.triangle(triangle), batch.region(), batch.tolerance());
+    if (!setup || interpolate(*setup, rect, out) == Work::nothing) clear(out);
+}
+
+// What every kernel is given of a batch.
+inline void describe(BatchJob& job, const TriangleBatch& batch, const Texcoords& out, std::size_t count) noexcept {
+    job.planes = batch.planes();
+    job.tolerance = accepted(batch.tolerance());
+    const auto array = [](const std::span<float>& output) { return output.empty() ? nullptr : output.data(); };
+    job.out[0] = array(out.s);
+    job.out[1] = array(out.t);
+    job.out[2] = array(out.r);
+    job.lit = array(out.lit);
+    job.count = count;
+    batch.lit().copy_to(job.min, job.max);
+}
+
+// Leaves the outputs that are computed; false if there are none.
+template <class Outputs>
+bool take_computed(Outputs& out, std::size_t count) noexcept {
+    bool any = false;
+    for_each_output(out, [&](std::span<float>& output) {
+        if (!is_computed(output, count)) output = {};
+        any = any || !output.empty();
+    });
+    return any;
+}
+
+// Calls run(triangle, row part, first fragment) for the runs of one id in a row among `count` fragments from `first` on, of
+// those that is_wanted(fragment).
+template <class IsWanted, class Run>
+void for_each_run(std::span<const std::uint32_t> ids, const FragmentRect& rect, std::size_t first, std::size_t count,
+                  const IsWanted& is_wanted, const Run& run) noexcept {
+    const auto width = static_cast<std::size_t>(rect.width);
+    for (std::size_t begin = first; begin < first + count;) {
+        std::size_t end = begin + 1;
+        const std::size_t row = begin / width;
+        const std::size_t end_of_row = (std::min)((row + 1) * width, first + count);
+        if (is_wanted(begin)) {
+            while (end < end_of_row && ids[end] == ids[begin] && is_wanted(end)) ++end;
+            const FragmentRect part{static_cast<int>(rect.x + static_cast<std::int64_t>(begin % width)),
+                                    static_cast<int>(rect.y + static_cast<std::int64_t>(row)),
+                                    static_cast<int>(end - begin), 1};
+            run(ids[begin], part, begin);
+        }
+        begin = end;
+    }
+}
+
+}  // namespace TEXGEN_BUILD
+
+}  // namespace TEXGEN_DETAIL
+
+namespace TEXGEN_NAMESPACE {
+
+inline namespace TEXGEN_COMPILER {
+
+template <class CompiledWhereCalled>
+void TriangleBatch::assign(std::span<const Triangle> triangles) noexcept {
+    using detail::batch_block;
+    static_assert(sizeof(Triangle) == 3 * sizeof(detail::BatchVertex::Layout));
+    TEXGEN_ASSERT(triangles.size() < no_triangle);
+    size_ = triangles.size();
+    const std::size_t whole = (size_ + batch_block - 1) / batch_block * batch_block;
+    if (whole > planes_.size()) {
+        triangles_.resize(whole + 1);  // kernels read beyond the last
+        planes_.resize(whole);
+    }
+    std::copy(triangles.begin(), triangles.end(), triangles_.begin());
+    const detail::BatchKernels& kernels = detail::chosen<detail::BatchKernels>();
+    for (std::size_t first = 0; first < size_; first += batch_block) {
+        unsigned unknown = kernels.set_up(&triangles_[first].a.window.x, &planes_[first]);
+        for (std::size_t i = first; unknown != 0; unknown >>= 1, ++i)
+            if ((unknown & 1u) != 0) planes_[i] = detail::batch_planes(triangles_[i]);
+    }
+}
+
+}  // namespace TEXGEN_COMPILER
+
+inline namespace TEXGEN_BUILD {
+
+template <class CompiledWhereCalled>
+void interpolate(const TriangleBatch& batch, std::span<const FragmentRect> rects, Texcoords out) noexcept {
+    static_assert(sizeof(FragmentRect) == sizeof(int[4]));
+    TEXGEN_ASSERT(rects.size() == batch.size());
+    if (rects.size() != batch.size() || rects.empty()) return;
+    const auto area = [](const FragmentRect& rect) {
+        TEXGEN_ASSERT(rect.width >= 0 && rect.height >= 0);
+        return rect.width > 0 && rect.height > 0 ? detail::count_of(rect) : 0;
+    };
+    std::size_t count = 0;
+    for (const FragmentRect& rect : rects) count += area(rect);
+    if (!detail::take_computed(out, count)) return;
+    detail::TilesJob job{};
+    detail::describe(job, batch, out, count);
+    job.tiles = reinterpret_cast<const int(*)[4]>(rects.data());
+    job.tile_count = rects.size();
+    const detail::BatchKernels& kernels = detail::chosen<detail::BatchKernels>();
+    std::size_t known = 0;
+    std::size_t done = 0;
+    for (detail::Undecided doubt = kernels.divide_tiles(job, 0, 0); doubt.begin < rects.size();) {
+        for (; known < doubt.begin; ++known) done += area(rects[known]);
+        for (; known < (std::min)(doubt.begin + detail::batch_block, rects.size()); ++known, doubt.values >>= 1) {
+            const std::size_t values = area(rects[known]);
+            if ((doubt.values & 1u) != 0)
+                detail::interpolate_apart(batch, known, rects[known], detail::part_of(out, done, values));
+            done += values;
+        }
+        doubt = kernels.divide_tiles(job, known, done);
+    }
+}
+
+template <class CompiledWhereCalled>
+void interpolate(const TriangleBatch& batch, std::span<const std::uint32_t> ids, FragmentRect rect,
+                 Texcoords out) noexcept {
+    TEXGEN_ASSERT(rect.width >= 0 && rect.height >= 0);
+    if (rect.width <= 0 || rect.height <= 0) return;
+    const std::size_t count = detail::count_of(rect);
+    TEXGEN_ASSERT(ids.size() == count);
+    if (ids.size() != count || !detail::take_computed(out, count)) return;
+    detail::FragmentsJob job{};
+    detail::describe(job, batch, out, count);
+    job.ids = ids.data();
+    job.triangles = static_cast<std::uint32_t>(batch.size());
+    job.x = rect.x;
+    job.y = rect.y;
+    job.width = rect.width;
+    const detail::BatchKernels& kernels = detail::chosen<detail::BatchKernels>();
+    for (detail::Undecided doubt = kernels.divide_fragments(job, 0); doubt.begin < count;) {
+        const std::size_t left = (std::min)(detail::exact_block, count - doubt.begin);
+        detail::for_each_run(
+            ids, rect, doubt.begin, left,
+            [&](std::size_t fragment) { return (doubt.values >> (fragment - doubt.begin) & 1u) != 0; },
+            [&](std::uint32_t id, const FragmentRect& part, std::size_t first) {
+                detail::interpolate_apart(batch, id, part,
+                                          detail::part_of(out, first, static_cast<std::size_t>(part.width)));
+            });
+        doubt = kernels.divide_fragments(job, doubt.begin + left);
+    }
+}
+
+template <class CompiledWhereCalled>
+void footprint(const TriangleBatch& batch, std::span<const std::uint32_t> ids, FragmentRect rect, TexelsPerUnit texels,
+               Footprints out) noexcept {
+    TEXGEN_ASSERT(rect.width >= 0 && rect.height >= 0);
+    if (rect.width <= 0 || rect.height <= 0) return;
+    const std::size_t count = detail::count_of(rect);
+    TEXGEN_ASSERT(ids.size() == count);
+    if (ids.size() != count || !detail::take_computed(out, count)) return;
+    std::uint32_t known = no_triangle;
+    std::optional<FootprintSetup> setup;
+    detail::for_each_run(
+        ids, rect, 0, count, [](std::size_t) { return true; },
+        [&](std::uint32_t id, const FragmentRect& part, std::size_t first) {
+            Footprints here = detail::part_of(out, first, static_cast<std::size_t>(part.width));
+            if (id != known) {
+                setup.reset();
+                if (id < batch.size())
+                    if (const auto triangle = TriangleSetup::of(batch.triangle(id), batch.region(), batch.tolerance()))
+                        setup.emplace(*triangle, texels);
+                known = id;
+            }
+            if (!setup || !footprint(*setup, part, here)) detail::clear(here);
+        });
+}
+
+}  // namespace TEXGEN_BUILD
+
+}  // namespace TEXGEN_NAMESPACE

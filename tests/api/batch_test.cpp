@@ -1,0 +1,346 @@
+// A batch gives every fragment what a TriangleSetup of its triangle does.
+
+#include <doctest/doctest.h>
+
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "judges/exact.hpp"
+#include "judges/fragments.hpp"
+#include "judges/verdict.hpp"
+#include "support/footprint_outputs.hpp"
+#include "support/hard_triangles.hpp"
+#include "support/hex.hpp"
+#include "support/near_cut.hpp"
+#include "support/outputs.hpp"
+#include "support/random.hpp"
+#include "texgen/batch.hpp"
+
+namespace {
+
+using support::count_of;
+using support::Outputs;
+using support::Random;
+using support::Shot;
+using texgen::FragmentRect;
+using texgen::no_triangle;
+using texgen::Tolerance;
+using texgen::Triangle;
+using texgen::TriangleBatch;
+using texgen::TriangleSetup;
+using texgen::Work;
+
+// Not to be accepted: a number that is none, a w that is not positive, no area.
+Triangle refused(Random& random) {
+    Triangle triangle = support::make_triangle(support::Family::friendly, random);
+    texgen::WindowVertex& vertex = random.coin() ? triangle.b : triangle.c;
+    switch (random.integer(0, 4)) {
+        case 0:
+            vertex.strq[random.integer(0, 3)] = std::numeric_limits<float>::quiet_NaN();
+            break;
+        case 1:
+            vertex.window.x = std::numeric_limits<float>::infinity();
+            break;
+        case 2:
+            vertex.clip_w = random.coin() ? 0.0f : -1.0f;
+            break;
+        case 3:
+            vertex.clip_w = std::numeric_limits<float>::quiet_NaN();
+            break;
+        default:
+            vertex.window = triangle.a.window;
+            break;
+    }
+    return triangle;
+}
+
+Shot draw(Random& random) {
+    Shot shot{};
+    const int kind = random.integer(0, 29);
+    if (kind < 18) {
+        shot = support::hard_families[static_cast<std::size_t>(kind)].make(random);
+    } else if (kind < 21) {
+        const support::NearCut cut = support::near_cut(random, random.integer(1, 20), random.integer(1, 8));
+        shot = {cut.triangle, cut.rect};
+    } else if (kind < 23) {
+        shot = {refused(random), {random.integer(-9, 9), random.integer(-9, 9), 3, 5}};
+    } else {
+        shot = support::hard_families[0].make(random);
+    }
+    switch (random.integer(0, 11)) {
+        case 0:
+            shot.rect.width = shot.rect.height = 8;
+            break;
+        case 1:
+            shot.rect.width = 64, shot.rect.height = 1;
+            break;
+        case 2:
+            shot.rect.width = 1, shot.rect.height = random.integer(1, 40);
+            break;
+        case 3:
+            shot.rect.width = random.coin() ? 0 : 3, shot.rect.height = 0;
+            break;
+        case 4:
+            shot.rect.width = 16, shot.rect.height = random.integer(1, 8);
+            break;
+        default:
+            break;
+    }
+    if (random.integer(0, 60) == 0) shot.rect.width = random.integer(30, 80), shot.rect.height = 30;
+    return shot;
+}
+
+texgen::TextureRegion draw_region(Random& random) {
+    switch (random.integer(0, 3)) {
+        case 0:
+            return support::everywhere();
+        case 1:
+            return texgen::atlas_tile({0.25, 0.125}, {0.5, 0.75});
+        default:
+            return texgen::whole_texture();
+    }
+}
+
+// What a TriangleSetup writes for a rectangle, and whether it writes s, t and r; 0 where there is none.
+struct Expected {
+    Outputs out;
+    Work work = Work::nothing;
+
+    Expected(const Triangle& triangle, const texgen::TextureRegion& region, const FragmentRect& rect, unsigned asked,
+             Tolerance tolerance)
+        : out(count_of(rect), asked) {
+        if (const auto setup = TriangleSetup::of(triangle, region, tolerance))
+            work = interpolate(*setup, rect, out.spans());
+    }
+};
+
+// Whether `count` values of a batch from `first` on are what a setup says of them with `exact`.
+bool agree(const Expected& expected, const Outputs& out, std::size_t first, std::size_t count) {
+    bool all = true;
+    for (std::size_t k = 0; k < 4; ++k) {
+        if (!out.asked(k)) continue;
+        for (std::size_t i = 0; i < count; ++i) {
+            const float value = out[k][first + i];
+            if (expected.work != Work::nothing)
+                all = all && support::same_bits(value, expected.out[k][i]);
+            else
+                all = all && (k == 3 ? support::same_bits(value, 0.0f) : !Outputs::is_poison(value));
+        }
+    }
+    return all;
+}
+
+struct Drawn {
+    std::vector<Triangle> triangles;
+    std::vector<FragmentRect> rects;
+    std::size_t fragments = 0;
+
+    Drawn(Random& random, int count) {
+        for (int i = 0; i < count; ++i) {
+            const Shot shot = draw(random);
+            triangles.push_back(shot.triangle);
+            rects.push_back(shot.rect);
+            fragments += count_of(shot.rect);
+        }
+    }
+};
+
+}  // namespace
+
+TEST_CASE("with exact, rectangles of a batch have the bits that each has alone, whatever is asked for") {
+    Random random(1);
+    for (int round = 0; round < 400; ++round) {
+        const texgen::TextureRegion region = draw_region(random);
+        TriangleBatch batch(region);
+        for (int again = 0; again < 2; ++again) {
+            const Drawn drawn(random, random.integer(0, 30));
+            const auto asked = static_cast<unsigned>(random.coin() ? 15 : random.integer(0, 15));
+            Outputs out(drawn.fragments, asked, static_cast<std::size_t>(random.integer(0, 7)));
+            batch.assign(drawn.triangles);
+            CHECK(batch.size() == drawn.triangles.size());
+            interpolate(batch, drawn.rects, out.spans());
+            CHECK(out.pads_are_intact());
+            std::size_t first = 0;
+            for (std::size_t i = 0; i < drawn.rects.size(); ++i) {
+                const std::size_t count = count_of(drawn.rects[i]);
+                const Expected expected(drawn.triangles[i], region, drawn.rects[i], asked, texgen::exact);
+                if (!agree(expected, out, first, count))
+                    FAIL_CHECK(support::hex(drawn.triangles[i]), " at ", drawn.rects[i].x, " ", drawn.rects[i].y, " ",
+                               drawn.rects[i].width, " x ", drawn.rects[i].height, " asked ", asked);
+                first += count;
+            }
+        }
+    }
+}
+
+TEST_CASE("with exact, a visibility buffer has the bits that each fragment has alone") {
+    Random random(2);
+    for (int round = 0; round < 150; ++round) {
+        const texgen::TextureRegion region = draw_region(random);
+        const Drawn drawn(random, random.integer(0, 12));
+        TriangleBatch batch(region);
+        batch.assign(drawn.triangles);
+        FragmentRect rect{random.integer(-20, 600), random.integer(-20, 600), random.integer(1, 40),
+                          random.integer(1, 6)};
+        if (!drawn.rects.empty() && random.coin()) rect.x = drawn.rects[0].x, rect.y = drawn.rects[0].y;
+        std::vector<std::uint32_t> ids(count_of(rect));
+        const int longest = random.integer(1, 30);
+        for (std::size_t i = 0; i < ids.size();) {
+            const auto id = static_cast<std::uint32_t>(random.integer(-1, static_cast<int>(batch.size()) - 1));
+            for (int run = random.integer(1, longest); run > 0 && i < ids.size(); --run) ids[i++] = id;
+        }
+        const auto asked = static_cast<unsigned>(random.coin() ? 15 : random.integer(0, 15));
+        Outputs out(ids.size(), asked, static_cast<std::size_t>(random.integer(0, 7)));
+        interpolate(batch, ids, rect, out.spans());
+        CHECK(out.pads_are_intact());
+        for (std::size_t i = 0; i < ids.size(); ++i) {
+            const Shot shot{{}, rect};
+            const std::int64_t x = shot.x(static_cast<std::int64_t>(i) % rect.width);
+            const std::int64_t y = shot.y(static_cast<std::int64_t>(i) / rect.width);
+            if (x > 0x7fffffff || y > 0x7fffffff) continue;
+            const FragmentRect one{static_cast<int>(x), static_cast<int>(y), 1, 1};
+            if (ids[i] == no_triangle) {
+                for (std::size_t k = 0; k < 4; ++k) CHECK((!out.asked(k) || support::same_bits(out[k][i], 0.0f)));
+                continue;
+            }
+            const Expected expected(drawn.triangles[ids[i]], region, one, asked, texgen::exact);
+            if (!agree(expected, out, i, 1))
+                FAIL_CHECK(support::hex(drawn.triangles[ids[i]]), " at ", one.x, " ", one.y, " asked ", asked);
+        }
+    }
+}
+
+TEST_CASE("with a tolerance, rectangles and visibility buffers are within it, and lit is what s and t say") {
+    Random random(3);
+    int judged = 0;
+    for (int round = 0; round < 120; ++round) {
+        const texgen::TextureRegion region = draw_region(random);
+        const Tolerance tolerance{random.power_of_ten(-8.0, -1.0)};
+        const Drawn drawn(random, random.integer(1, 12));
+        TriangleBatch batch(region, tolerance);
+        batch.assign(drawn.triangles);
+        Outputs out(drawn.fragments);
+        interpolate(batch, drawn.rects, out.spans());
+        CHECK(out.pads_are_intact());
+        std::size_t first = 0;
+        for (std::size_t i = 0; i < drawn.rects.size(); first += count_of(drawn.rects[i]), ++i) {
+            const FragmentRect& rect = drawn.rects[i];
+            const auto setup = TriangleSetup::of(drawn.triangles[i], region, tolerance);
+            const std::size_t count = count_of(rect);
+            if (count == 0) continue;
+            const bool is_nothing = !setup || setup->work(rect) == Work::nothing;
+            const Shot shot{drawn.triangles[i], rect};
+            const std::optional<support::ExactTriangle> exact =
+                setup ? std::optional<support::ExactTriangle>(shot.triangle) : std::nullopt;
+            std::vector<std::uint32_t> ids(count, static_cast<std::uint32_t>(i));
+            Outputs by_id(count);
+            interpolate(batch, ids, rect, by_id.spans());
+            CHECK(by_id.pads_are_intact());
+            for (std::size_t n = 0; n < count; n += 1 + count / 16) {
+                if (!setup) {
+                    for (std::size_t k = 0; k < 4; ++k) {
+                        CHECK(support::same_bits(out[k][first + n], 0.0f));
+                        CHECK(support::same_bits(by_id[k][n], 0.0f));
+                    }
+                    continue;
+                }
+                const std::int64_t x = shot.x(static_cast<std::int64_t>(n) % rect.width);
+                const std::int64_t y = shot.y(static_cast<std::int64_t>(n) / rect.width);
+                if (!exact->has_positive_w(x, y)) continue;
+                ++judged;
+                const auto at = exact->at(x, y);
+                const std::string wrong = what_is_wrong(at, region, tolerance, out, first + n);
+                if (!wrong.empty() && !(is_nothing && out[3][first + n] == 0.0f))
+                    FAIL_CHECK(wrong, " ", support::hex(shot.triangle), " tolerance ", tolerance.value, " fragment ", n,
+                               " of ", rect.x, " ", rect.y, " ", rect.width, " x ", rect.height);
+                const std::string wrong_by_id = what_is_wrong(at, region, tolerance, by_id, n);
+                if (!wrong_by_id.empty() && !(is_nothing && by_id[3][n] == 0.0f))
+                    FAIL_CHECK(wrong_by_id, " ", support::hex(shot.triangle), " tolerance ", tolerance.value, " at ", x,
+                               " ", y);
+            }
+        }
+    }
+    CHECK(judged > 2000);
+}
+
+TEST_CASE("few friendly tiles need a set-up of their own") {
+    for (const Tolerance tolerance : {texgen::exact, texgen::texels(1.0 / 512, 4096)}) {
+        Random random(4);
+        int doubtful = 0;
+        for (int round = 0; round < 100; ++round) {
+            std::vector<Triangle> triangles;
+            std::vector<FragmentRect> rects;
+            for (int i = 0; i < 8; ++i) {
+                triangles.push_back(support::make_triangle(support::Family::friendly, random));
+                const FragmentRect pixel = support::pixel_near(triangles.back(), random);
+                rects.push_back({pixel.x, pixel.y, 8, 8});
+            }
+            TriangleBatch batch(support::everywhere(), tolerance);
+            batch.assign(triangles);
+            Outputs out(512);
+            texgen::detail::TilesJob job{};
+            texgen::detail::describe(job, batch, out.spans(), 512);
+            job.tiles = reinterpret_cast<const int(*)[4]>(rects.data());
+            job.tile_count = 8;
+            doubtful +=
+                std::popcount(texgen::detail::chosen<texgen::detail::BatchKernels>().divide_tiles(job, 0, 0).values);
+        }
+        CHECK(doubtful < 40);  // of 800; s or t is 0 in some
+    }
+}
+
+TEST_CASE("footprints of a visibility buffer are those of the runs of one id in a row") {
+    Random random(5);
+    for (int round = 0; round < 60; ++round) {
+        const Drawn drawn(random, random.integer(1, 9));
+        TriangleBatch batch(texgen::whole_texture());
+        batch.assign(drawn.triangles);
+        const FragmentRect rect{random.integer(-20, 600), random.integer(-20, 600), random.integer(1, 20), 3};
+        std::vector<std::uint32_t> ids(count_of(rect));
+        for (std::size_t i = 0; i < ids.size();) {
+            const auto id = static_cast<std::uint32_t>(random.integer(-1, static_cast<int>(batch.size()) - 1));
+            for (int run = random.integer(1, 9); run > 0 && i < ids.size(); --run) ids[i++] = id;
+        }
+        const auto asked = static_cast<unsigned>(random.coin() ? 255 : random.integer(0, 255));
+        support::FootprintOutputs out(rect, asked);
+        const texgen::TexelsPerUnit texels{1024.0, 512.0};
+        footprint(batch, ids, rect, texels, out.spans());
+        CHECK(out.pads_are_intact());
+        for (std::size_t begin = 0; begin < ids.size();) {
+            std::size_t end = begin + 1;
+            const auto width = static_cast<std::size_t>(rect.width);
+            while (end < ids.size() && end / width == begin / width && ids[end] == ids[begin]) ++end;
+            const FragmentRect run{rect.x + static_cast<int>(begin % width), rect.y + static_cast<int>(begin / width),
+                                   static_cast<int>(end - begin), 1};
+            support::FootprintOutputs expected(run, asked);
+            bool is_written = false;
+            if (ids[begin] != no_triangle)
+                if (const auto setup = TriangleSetup::of(drawn.triangles[ids[begin]], texgen::whole_texture()))
+                    is_written = footprint(texgen::FootprintSetup(*setup, texels), run, expected.spans());
+            for (std::size_t k = 0; k < 8; ++k)
+                for (std::size_t i = begin; out.asked(k) && i < end; ++i)
+                    CHECK(support::same_bits(out[k][i], is_written ? expected[k][i - begin] : 0.0f));
+            begin = end;
+        }
+    }
+}
+
+TEST_CASE("memory is allocated only when there are more triangles than ever") {
+    Random random(6);
+    const Drawn drawn(random, 100);
+    TriangleBatch batch(texgen::whole_texture());
+    batch.assign(drawn.triangles);
+    const auto* const planes = batch.planes();
+    for (const std::size_t count : {std::size_t{3}, std::size_t{0}, std::size_t{97}, std::size_t{100}}) {
+        batch.assign(std::span(drawn.triangles).first(count));
+        CHECK(batch.size() == count);
+        CHECK(batch.planes() == planes);
+    }
+}
