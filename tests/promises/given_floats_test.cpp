@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "support/random.hpp"
+#include "texgen/batch.hpp"
 #include "texgen/clip.hpp"
 #include "texgen/coverage.hpp"
 #include "texgen/diagnose.hpp"
@@ -200,6 +201,18 @@ std::array<float, 48> by_setup(const Numbers& n) {
 }
 
 template <class Rounding>
+std::array<float, 48> by_batch(const Numbers& n) {
+    std::array<float, 48> out{};
+    const std::span<float> all(out);
+    texgen::TriangleBatch batch(texgen::whole_texture());
+    const std::array triangles{triangle<Rounding>(n)};
+    batch.assign(triangles);
+    const std::array rects{texgen::FragmentRect{3, 5, 16, 1}};
+    texgen::interpolate(batch, rects, {.s = all.first(16), .t = all.subspan(16, 16), .r = all.last(16), .lit = {}});
+    return out;
+}
+
+template <class Rounding>
 std::array<double, 8> bounds_of_setup(const Numbers& n) {
     const texgen::Segment segment{vector<Rounding>(n, 0), vector<Rounding>(n, 4)};
     const texgen::FragmentRect rect{3, 5, 16, 1};
@@ -323,6 +336,8 @@ TEST_CASE("floats that are rounded in place give the results of those floats") {
         REQUIRE(mixed<InPlace>(numbers) == mixed<ByMemory>(numbers));
         REQUIRE(by_reference<InPlace>(numbers) == by_reference<ByMemory>(numbers));
         REQUIRE(by_setup<InPlace>(numbers) == by_setup<ByMemory>(numbers));
+        REQUIRE(by_batch<InPlace>(numbers) == by_batch<ByMemory>(numbers));
+        REQUIRE(by_setup<InPlace>(numbers) == by_batch<InPlace>(numbers));
         REQUIRE(along_segment<InPlace>(numbers) == along_segment<ByMemory>(numbers));
         REQUIRE(projected<InPlace>(numbers) == projected<ByMemory>(numbers));
         REQUIRE(divided<InPlace>(numbers) == divided<ByMemory>(numbers));

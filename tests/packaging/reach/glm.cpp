@@ -3,10 +3,12 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <span>
 #include <vector>
 
+#include <texgen/batch.hpp>
 #include <texgen/diagnose.hpp>
 #include <texgen/scene.hpp>
 #include <texgen/texgen.hpp>
@@ -120,6 +122,17 @@ void print_projector(const texgen::Projector& projector) {
     for (const float value : fragment_s) print("fragment s", static_cast<double>(value));
     for (const float value : fragment_t) print("fragment t", static_cast<double>(value));
     if (!setup) return;
+    TriangleBatch batch(whole_texture());
+    batch.assign({&triangle, 1});
+    const FragmentRect rect{10, 20, 20, 3};
+    interpolate(batch, std::span(&rect, 1), {fragment_s, fragment_t, {}, {}});
+    for (const float value : fragment_s) print("fragment s of a batch", static_cast<double>(value));
+    std::array<std::uint32_t, 60> ids{};
+    for (std::size_t i = 0; i < ids.size(); i += 3) ids[i] = no_triangle;
+    interpolate(batch, ids, rect, {fragment_s, fragment_t, {}, {}});
+    for (const float value : fragment_t) print("fragment t by ids", static_cast<double>(value));
+    footprint(batch, ids, rect, {256.0, 256.0}, {fragment_s, fragment_t, {}, {}, {}, {}, {}, {}});
+    for (const float value : fragment_s) print("ds/dx by ids", static_cast<double>(value));
     const FootprintSetup footprints(*setup, {256.0, 256.0});
     print("footprints within", footprints.error_bound({10, 20, 20, 3}));
     if (const auto extremes = footprints.extremes()) print("largest level", extremes->largest_level);

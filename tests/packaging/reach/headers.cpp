@@ -10,6 +10,7 @@
 #define max(a, b) (((a) > (b)) ? (a) : (b))
 #endif
 
+#include <texgen/batch.hpp>
 #include <texgen/clip.hpp>
 #include <texgen/conventions.hpp>
 #include <texgen/coverage.hpp>
@@ -39,6 +40,11 @@ void call(const texgen::ObjectTexgen& texgen, texgen::Positions<texgen::Object> 
         interpolate(*setup, {0, 0, 1, 1}, out);
         footprint(FootprintSetup(*setup, {1.0, 1.0}), {0, 0, 1, 1}, footprints);
     }
+    TriangleBatch batch(whole_texture());
+    batch.assign({});
+    interpolate(batch, std::span<const FragmentRect>(), out);
+    interpolate(batch, std::span<const std::uint32_t>(), {0, 0, 0, 0}, out);
+    footprint(batch, {}, {0, 0, 0, 0}, {1.0, 1.0}, footprints);
     interpolate(Segment{}, out.s, whole_texture(), out);
     diagnose(texgen);
     diagnose(planes(texgen));

@@ -5,12 +5,14 @@
 // The calls are macros: the text of each is a part of every program. A function would hide what the compiler may lose.
 
 #include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <span>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
+#include <texgen/batch.hpp>
 #include <texgen/texgen.hpp>
 
 #if __has_include(<Eigen/Core>)
@@ -76,6 +78,24 @@ constexpr Triangle triangle{{{0.0f, 0.0f}, 1.0f, {0.1f, 0.2f, 0.3f, 1.0f}},
 #define INTERPOLATE(...)                                                        \
     const auto setup = TriangleSetup::of(triangle, whole_texture(), tolerance); \
     if (setup) interpolate(*setup, {3, 4, count, 1}, {SPANS(__VA_ARGS__)})
+
+#define INTERPOLATE_BATCH(...)                       \
+    TriangleBatch batch(whole_texture(), tolerance); \
+    batch.assign({&triangle, 1});                    \
+    const FragmentRect rect{3, 4, count, 1};         \
+    interpolate(batch, std::span(&rect, 1), {SPANS(__VA_ARGS__)})
+
+#define INTERPOLATE_IDS(...)                                     \
+    TriangleBatch batch(whole_texture(), tolerance);             \
+    batch.assign({&triangle, 1});                                \
+    const std::vector<std::uint32_t> ids(std::size_t{count}, 0); \
+    interpolate(batch, ids, {3, 4, count, 1}, {SPANS(__VA_ARGS__)})
+
+#define DERIVATIVES_OF_IDS(...)                                  \
+    TriangleBatch batch(whole_texture(), tolerance);             \
+    batch.assign({&triangle, 1});                                \
+    const std::vector<std::uint32_t> ids(std::size_t{count}, 0); \
+    footprint(batch, ids, {3, 4, count, 1}, {1024.0, 512.0}, {SPANS(__VA_ARGS__), {}, {}, {}, {}})
 
 #define INTERPOLATE_SEGMENT(...)                                                             \
     float alpha[count];                                                                      \
@@ -244,6 +264,9 @@ FOUR_OUTPUTS(PROJECT_PLANAR, true)
 FOUR_OUTPUTS(PROJECT_STRIDED, true)
 FOUR_OUTPUTS(GENERATE, true)
 FOUR_OUTPUTS(INTERPOLATE, true)
+FOUR_OUTPUTS(INTERPOLATE_BATCH, true)
+FOUR_OUTPUTS(INTERPOLATE_IDS, true)
+FOUR_OUTPUTS(DERIVATIVES_OF_IDS, true)
 FOUR_OUTPUTS(INTERPOLATE_SEGMENT, true)
 FOUR_OUTPUTS(DERIVATIVES, true)
 FOUR_OUTPUTS(FILTERS, false)
@@ -295,6 +318,9 @@ int main() {
     PROJECT_STRIDED_masks(masks);
     GENERATE_masks(masks);
     INTERPOLATE_masks(masks);
+    INTERPOLATE_BATCH_masks(masks);
+    INTERPOLATE_IDS_masks(masks);
+    DERIVATIVES_OF_IDS_masks(masks);
     INTERPOLATE_SEGMENT_masks(masks);
     DERIVATIVES_masks(masks);
     FILTERS_masks(masks);
