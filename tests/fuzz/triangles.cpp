@@ -12,6 +12,7 @@
 #include "judges/fragments.hpp"
 #include "judges/verdict.hpp"
 #include "support/outputs.hpp"
+#include "texgen/batch.hpp"
 #include "texgen/clip.hpp"
 #include "texgen/interpolate.hpp"
 #include "texgen/reference.hpp"
@@ -103,6 +104,57 @@ void interpolate_triangle(Input& input) {
     }
 }
 
+// A batch writes its outputs only, and with `exact` what each of its triangles has alone.
+void interpolate_batch(Input& input) {
+    std::vector<texgen::Triangle> triangles;
+    std::vector<FragmentRect> rects;
+    std::size_t fragments = 0;
+    for (std::size_t i = input.size(10); i > 0; --i) {
+        triangles.push_back({input.vertex(), input.vertex(), input.vertex()});
+        rects.push_back(
+            {input.integer(-300, 300), input.integer(-300, 300), input.integer(0, 17), input.integer(0, 9)});
+        if (input.integer(0, 7) == 0) rects.back().x = input.raw<int>(), rects.back().y = input.raw<int>();
+        fragments += support::count_of(rects.back());
+    }
+    const texgen::TextureRegion region = input.region();
+    const Tolerance tolerance = input.tolerance();
+    const unsigned asked = input.raw<std::uint8_t>() & 15u;
+    texgen::TriangleBatch batch(region, tolerance);
+    batch.assign(triangles);
+    Outputs out(fragments, asked, input.size(7));
+    interpolate(batch, rects, out.spans());
+    must(out.pads_are_intact(), "a batch writes its outputs only");
+
+    const FragmentRect rect{input.integer(-300, 300), input.integer(-300, 300), input.integer(1, 20),
+                            input.integer(1, 4)};
+    std::vector<std::uint32_t> ids(support::count_of(rect));
+    for (std::uint32_t& id : ids) {
+        id = static_cast<std::uint32_t>(input.integer(0, static_cast<int>(triangles.size())));
+        if (id == triangles.size()) id = texgen::no_triangle;
+    }
+    Outputs by_id(ids.size(), asked, input.size(7));
+    interpolate(batch, ids, rect, by_id.spans());
+    must(by_id.pads_are_intact(), "a visibility buffer writes its outputs only");
+    if (tolerance.value > 0.0) return;
+    const auto has = [&](const Outputs& all, std::size_t first, std::size_t i, const FragmentRect& part) {
+        Outputs alone(support::count_of(part), asked);
+        const auto setup = TriangleSetup::of(triangles[i], region);
+        const bool is_written = setup && interpolate(*setup, part, alone.spans()) != Work::nothing;
+        for (std::size_t k = 0; k < 4; ++k)
+            for (std::size_t n = 0; asked >> k & 1u && n < alone.size(); ++n)
+                if (is_written || k == 3)
+                    must(fuzz::same(all[k][first + n], is_written ? alone[k][n] : 0.0f),
+                         "a fragment's bits are those that its triangle has alone");
+    };
+    for (std::size_t i = 0, first = 0; i < rects.size(); first += support::count_of(rects[i]), ++i)
+        has(out, first, i, rects[i]);
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+        const auto width = static_cast<std::size_t>(rect.width);
+        const FragmentRect one{rect.x + static_cast<int>(i % width), rect.y + static_cast<int>(i / width), 1, 1};
+        if (ids[i] != texgen::no_triangle) has(by_id, i, ids[i], one);
+    }
+}
+
 std::vector<ClipVertex> polygon_of(Input& input) {
     std::vector<ClipVertex> polygon(input.size(9));
     for (ClipVertex& v : polygon) v = {input.vector4(), input.vector4()};
@@ -157,12 +209,15 @@ void clip_slide(Input& input) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     Input input(data, size);
-    switch (input.integer(0, 3)) {
+    switch (input.integer(0, 4)) {
         case 0:
             clip_near(input);
             break;
         case 1:
             clip_slide(input);
+            break;
+        case 2:
+            interpolate_batch(input);
             break;
         default:
             interpolate_triangle(input);

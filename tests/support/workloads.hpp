@@ -25,6 +25,7 @@
 #include "support/random.hpp"
 #include "support/stopwatch.hpp"
 #include "support/triangles.hpp"
+#include "texgen/batch.hpp"
 #include "texgen/clip.hpp"
 #include "texgen/coverage.hpp"
 #include "texgen/diagnose.hpp"
@@ -547,6 +548,41 @@ Calls open_triangle_calls(const Numbers& n) {
     if (!call) return {};
     return calls_of([call] {
         keep(texgen::interpolate(call->setup, call->rect, {.s = call->out[0], .t = call->out[1], .r = {}, .lit = {}}));
+    });
+}
+// A batch of eight of them, made ready and divided.
+template <bool IsExact>
+Calls batch_calls(const Numbers& n) {
+    const auto call = tile_call<8, 8, IsExact>(n, wide_open());
+    if (!call) return {};
+    struct Batch {
+        texgen::TriangleBatch batch{wide_open(), IsExact ? texgen::exact : tolerance};
+        std::vector<texgen::Triangle> triangles;
+        std::vector<texgen::FragmentRect> rects;
+        std::vector<float> out[2];
+    };
+    auto all = std::make_shared<Batch>();
+    all->triangles.assign(8, triangle_of(n));
+    all->rects.assign(8, call->rect);
+    for (std::vector<float>& out : all->out) out.resize(512);
+    return calls_of([all] {
+        all->batch.assign(all->triangles);
+        interpolate(all->batch, all->rects, {.s = all->out[0], .t = all->out[1], .r = {}, .lit = {}});
+        keep(all->out[0].data());
+    });
+}
+// The fragments of one of eight triangles that are the same, in runs of `Run`.
+template <std::size_t Run>
+Calls visibility_calls(const Numbers& n) {
+    const auto call = tile_call<64, 4, true>(n, wide_open());
+    if (!call) return {};
+    auto batch = std::make_shared<texgen::TriangleBatch>(wide_open());
+    batch->assign(std::vector<texgen::Triangle>(8, triangle_of(n)));
+    std::vector<std::uint32_t> ids(256);
+    for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = static_cast<std::uint32_t>(i / Run % 8);
+    return calls_of([call, batch, ids] {
+        interpolate(*batch, ids, call->rect, {.s = call->out[0], .t = call->out[1], .r = {}, .lit = {}});
+        keep(call->out[0].data());
     });
 }
 inline Calls setup_calls(const Numbers& n) {
@@ -1281,6 +1317,14 @@ inline const std::array workloads{
              detail::one_output_calls<64, 4, false>, detail::triangle_limit<64, 4>},
     Workload{"interpolate a triangle, exact, lit alone, 64 x 4", 23, detail::ordinary_triangle,
              detail::hostile_triangle, detail::one_output_calls<64, 4, true>, detail::triangle_limit<64, 4>},
+    Workload{"interpolate a batch, exact, 8 x 8", 23, detail::ordinary_triangle, detail::hostile_triangle,
+             detail::batch_calls<true>, detail::triangle_limit<8, 8>},
+    Workload{"interpolate a batch, tolerance, 8 x 8", 23, detail::ordinary_triangle, detail::hostile_triangle,
+             detail::batch_calls<false>, detail::triangle_limit<8, 8>},
+    Workload{"interpolate ids, exact, in runs", 23, detail::ordinary_triangle, detail::hostile_triangle,
+             detail::visibility_calls<8>, detail::triangle_limit<64, 4>},
+    Workload{"interpolate ids, exact, mixed", 23, detail::ordinary_triangle, detail::hostile_triangle,
+             detail::visibility_calls<1>, detail::triangle_limit<64, 4>},
     Workload{"FootprintSetup", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::footprint_setup_calls,
              detail::always},
     Workload{"FootprintSetup::at", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::footprint_at_calls,
