@@ -23,6 +23,7 @@ void add_generate();
 void add_project();
 void add_segment();
 void add_rows();
+void add_visibility();
 void add_coverage();
 void add_scenes();
 void add_footprints();

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include <texgen/batch.hpp>
 #include <texgen/interpolate.hpp>
 #include <texgen/reference.hpp>
 
@@ -216,6 +217,30 @@ void add_method(const std::shared_ptr<Rows>& rows, const std::string& name, doub
     add_row(rows->scene, name, tolerance, run, check);
 }
 
+// All triangles at once, timed with the first.
+void add_batch(const std::shared_ptr<Rows>& rows) {
+    for (const Stop& stop : dial) {
+        const std::size_t count = rows->scene.elements;
+        const std::size_t all = count * rows->scene.inputs;
+        auto batch = std::make_shared<texgen::TriangleBatch>(texgen::whole_texture(), stop.tolerance);
+        const auto run = [=](std::size_t i) {
+            if (i != 0) return;
+            batch->assign(rows->triangles);
+            texgen::interpolate(*batch, rows->rects,
+                                {.s = {output(all, 0), all}, .t = {output(all, 1), all}, .r = {}, .lit = {}});
+        };
+        const auto check = [=](std::size_t i, Errors& errors) {
+            rows->define();
+            run(0);
+            for (std::size_t k = 0; k < count; ++k) {
+                errors.add(output(all, 0)[i * count + k], rows->exact[i][k].s);
+                errors.add(output(all, 1)[i * count + k], rows->exact[i][k].t);
+            }
+        };
+        add_row(rows->scene, std::string(stop.name) + ", in a batch", stop.tolerance.value, run, check);
+    }
+}
+
 template <class Method>
 void add_peer(const std::shared_ptr<Rows>& rows, const std::string& name) {
     add_method(rows, name, promises_nothing, [](const Triangle& triangle) { return Method(triangle); });
@@ -228,6 +253,7 @@ void add_scene(const Shape& shape) {
             return Ours{texgen::TriangleSetup::of(triangle, texgen::whole_texture(), tolerance)};
         });
     }
+    if (shape.times_set_up) add_batch(rows);
     add_peer<GlmLoop<report::GlmPlanes>>(rows, "GLM, plane equations");
     add_peer<GlmLoop<report::GlmBarycentric>>(rows, "GLM, barycentric");
     add_peer<EigenRows>(rows, "Eigen, plane equations in arrays");

@@ -1,0 +1,93 @@
+// Visibility buffers: the fragments of a rectangle, each of the triangle that its id names, to s, t.
+
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <texgen/batch.hpp>
+#include <texgen/reference.hpp>
+
+#include "../peers.hpp"
+#include "bench.hpp"
+
+namespace bench {
+
+namespace {
+
+constexpr texgen::FragmentRect rect{0, 0, 128, 64};
+constexpr std::size_t count = 128 * 64;
+
+struct Buffer {
+    std::vector<texgen::Triangle> triangles;
+    std::vector<std::uint32_t> ids;
+};
+
+// 256 triangles that cover the rectangle, in runs of so many fragments.
+std::shared_ptr<Buffer> make_buffer(std::size_t run) {
+    std::mt19937 random(11);
+    const auto between = [&](double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(random);
+    };
+    auto buffer = std::make_shared<Buffer>();
+    for (int i = 0; i < 256; ++i) {
+        const auto vertex = [&](double x, double y, double q_over_w, double s, double t) {
+            const double w = static_cast<float>(between(1, 4));
+            const double q = w * q_over_w;
+            return texgen::WindowVertex{glm::vec2(x, y), static_cast<float>(w), glm::vec4(s * q, t * q, 0.5 * q, q)};
+        };
+        const double x = between(-40, -1), y = between(-40, -1);
+        buffer->triangles.push_back({vertex(x, y, 2, between(0, 0.2), between(0, 0.2)),
+                                     vertex(x + 300, y, 2.6, between(0.8, 1), between(0, 0.3)),
+                                     vertex(x, y + 300, 2.3, between(0, 0.3), between(0.8, 1))});
+    }
+    while (buffer->ids.size() < count) buffer->ids.insert(buffer->ids.end(), run, random() % 256);
+    return buffer;
+}
+
+void add_buffer(const std::string& name, std::size_t run) {
+    const std::shared_ptr<Buffer> buffer = make_buffer(run);
+    const Scene scene{"visibility buffer, " + name, 1, count};
+    const auto check = [=](std::size_t, Errors& errors) {
+        for (std::size_t k = 0; k < count; ++k) {
+            const auto x = static_cast<long double>(k % 128) + 0.5L, y = static_cast<long double>(k / 128) + 0.5L;
+            const auto exact = texgen::reference::quotient<long double>(
+                texgen::reference::strq<long double>(buffer->triangles[buffer->ids[k]], x, y));
+            errors.add(output(count, 0)[k], static_cast<double>(exact[0]));
+            errors.add(output(count, 1)[k], static_cast<double>(exact[1]));
+        }
+    };
+    for (const Stop& stop : dial) {
+        auto batch = std::make_shared<texgen::TriangleBatch>(texgen::whole_texture(), stop.tolerance);
+        batch->assign(buffer->triangles);
+        const auto interpolate = [=](std::size_t) {
+            texgen::interpolate(*batch, buffer->ids, rect,
+                                {.s = {output(count, 0), count}, .t = {output(count, 1), count}, .r = {}, .lit = {}});
+        };
+        add_row(scene, stop.name, stop.tolerance.value, interpolate, check);
+    }
+    std::vector<report::GlmPlanes> planes(buffer->triangles.begin(), buffer->triangles.end());
+    const auto look_up = [=](std::size_t) {
+        float* const s = output(count, 0);
+        float* const t = output(count, 1);
+        for (std::size_t k = 0; k < count; ++k) {
+            const report::GlmPlanes& plane = planes[buffer->ids[k]];
+            const glm::vec3 centre(static_cast<float>(k % 128) + 0.5f, static_cast<float>(k / 128) + 0.5f, 1.0f);
+            const float q = glm::dot(plane.q, centre);
+            s[k] = glm::dot(plane.s, centre) / q;
+            t[k] = glm::dot(plane.t, centre) / q;
+        }
+    };
+    add_row(scene, "GLM, plane equations looked up", promises_nothing, look_up, check);
+}
+
+}  // namespace
+
+void add_visibility() {
+    add_buffer("128x64, runs of 8", 8);
+    add_buffer("128x64, ids in any order", 1);
+}
+
+}  // namespace bench
