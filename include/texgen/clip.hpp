@@ -7,12 +7,21 @@
 #include "detail/language.hpp"
 
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
 #include <span>
 
 #include <glm/vec4.hpp>
 
 #include "conventions.hpp"
+#include "detail/arithmetic/expansion.hpp"
+#include "detail/arithmetic/nearest.hpp"
+#include "detail/arithmetic/widen.hpp"
+#include "detail/assert.hpp"
+#include "detail/culling/slide_planes.hpp"
 #include "primitives.hpp"
 #include "transform.hpp"
 

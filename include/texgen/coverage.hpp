@@ -4,9 +4,16 @@
 
 #include "detail/language.hpp"
 
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
 #include <span>
 
 #include "conventions.hpp"
+#include "detail/arithmetic/widen.hpp"
+#include "detail/assert.hpp"
 #include "detail/culling/lit_forms.hpp"
 #include "detail/simd/lanes.hpp"
 #include "primitives.hpp"

@@ -5,8 +5,10 @@
 
 #include "detail/language.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <optional>
 #include <span>
 #include <vector>
@@ -15,6 +17,7 @@
 
 #include "conventions.hpp"
 #include "coverage.hpp"
+#include "detail/assert.hpp"
 #include "detail/culling/bounds_tree.hpp"
 #include "detail/culling/changes.hpp"
 #include "linear.hpp"

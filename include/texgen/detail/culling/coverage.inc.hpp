@@ -1,18 +1,6 @@
 // Boxes and spheres against the forms of a slide: in floats, in double, and at last exactly.
 
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <optional>
-
-#include "../arithmetic/widen.hpp"
-#include "../assert.hpp"
-
-namespace TEXGEN_NAMESPACE {
-
-namespace detail {
-inline namespace TEXGEN_COMPILER {
+namespace TEXGEN_DETAIL {
 
 // Whether a box is inside the inner side k, exactly.
 inline bool is_inside_inner_side(const LitForms& forms, std::size_t k, const Box& box, CloseRows& close) noexcept {
@@ -257,9 +245,9 @@ inline Coverage coverage_of(const LitForms& forms, const Sphere& sphere) noexcep
     return Coverage::partial;
 }
 
-}  // namespace TEXGEN_COMPILER
-}  // namespace detail
+}  // namespace TEXGEN_DETAIL
 
+namespace TEXGEN_NAMESPACE {
 inline namespace TEXGEN_BUILD {
 
 template <class Space>
@@ -309,5 +297,4 @@ void coverage(const Transform<Texture, Space>& texture_from_space, const Texture
 }
 
 }  // namespace TEXGEN_BUILD
-
 }  // namespace TEXGEN_NAMESPACE

@@ -1,16 +1,6 @@
 // Polygons at the camera's near plane, and their vertices in the window.
 
-#include <cmath>
-#include <limits>
-#include <utility>
-
-#include "../arithmetic/widen.hpp"
-#include "../assert.hpp"
-
-namespace TEXGEN_NAMESPACE {
-
-namespace detail {
-inline namespace TEXGEN_COMPILER {
+namespace TEXGEN_DETAIL {
 
 inline bool is_finite(const glm::vec4& v) noexcept {
     constexpr float largest = (std::numeric_limits<float>::max)();
@@ -102,9 +92,9 @@ std::size_t cut_convex(std::span<ClipVertex> storage, std::size_t count, const C
     return written < 3 ? 0 : written;
 }
 
-}  // namespace TEXGEN_COMPILER
-}  // namespace detail
+}  // namespace TEXGEN_DETAIL
 
+namespace TEXGEN_NAMESPACE {
 inline namespace TEXGEN_COMPILER {
 
 inline WindowVertex to_window(const ClipVertex& vertex, Viewport viewport) noexcept {
@@ -151,5 +141,4 @@ inline std::size_t clip_to_near(std::span<const ClipVertex> polygon, std::span<C
 }
 
 }  // namespace TEXGEN_COMPILER
-
 }  // namespace TEXGEN_NAMESPACE

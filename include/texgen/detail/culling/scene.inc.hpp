@@ -1,14 +1,6 @@
 // What a scene does from frame to frame.
 
-#include <algorithm>
-#include <cstring>
-
-#include "../assert.hpp"
-
-namespace TEXGEN_NAMESPACE {
-
-namespace detail {
-inline namespace TEXGEN_COMPILER {
+namespace TEXGEN_DETAIL {
 
 // Elements come in order, and have no default.
 template <class Element>
@@ -27,9 +19,9 @@ inline bool have_same_bits(const glm::dmat4& a, const glm::dmat4& b) noexcept {
     return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
-}  // namespace TEXGEN_COMPILER
-}  // namespace detail
+}  // namespace TEXGEN_DETAIL
 
+namespace TEXGEN_NAMESPACE {
 inline namespace TEXGEN_COMPILER {
 
 inline Scene::Scene(DepthMapping depth) noexcept : depth_(depth) {}
@@ -175,5 +167,4 @@ inline void Scene::merge_pairs(std::size_t kept) noexcept {
 }
 
 }  // namespace TEXGEN_COMPILER
-
 }  // namespace TEXGEN_NAMESPACE

@@ -1,20 +1,6 @@
 // Polygons at the planes of the slide: in double, in two doubles, and at last exactly; and the planes of a matrix.
 
-#include <cmath>
-#include <cstdint>
-#include <optional>
-
-#include "../arithmetic/expansion.hpp"
-#include "../arithmetic/nearest.hpp"
-#include "../arithmetic/rounding.hpp"
-#include "../arithmetic/widen.hpp"
-#include "../assert.hpp"
-#include "slide_planes.hpp"
-
-namespace TEXGEN_NAMESPACE {
-
-namespace detail {
-inline namespace TEXGEN_COMPILER {
+namespace TEXGEN_DETAIL {
 
 // The signed distance of (s, t, r, q) from a plane of the slide: sign (u - bound q), in no unit; inside is >= 0.
 class SlideDistance {
@@ -194,8 +180,9 @@ std::size_t cut_edges(std::span<ClipVertex> storage, std::size_t count, const Si
     return written < 3 || touches ? 0 : written;
 }
 
-}  // namespace TEXGEN_COMPILER
-}  // namespace detail
+}  // namespace TEXGEN_DETAIL
+
+namespace TEXGEN_NAMESPACE {
 
 template <class Space>
 std::array<glm::vec4, 5> clip_planes(const Transform<Texture, Space>& texgen, TextureRegion region) noexcept {
@@ -242,5 +229,4 @@ inline std::size_t clip_to_slide(std::span<const ClipVertex> polygon, TextureReg
 }
 
 }  // namespace TEXGEN_COMPILER
-
 }  // namespace TEXGEN_NAMESPACE
