@@ -35,12 +35,9 @@ public:
     // refinement with a doubled residual: two, and more where elements are far apart, until each is as good as its terms.
     explicit CertifiedInverse(const glm::dmat4& matrix) noexcept;
 
-    // Whether beta() < 1. False for what is not finite.
+    // Whether norm(I - B X) + 5 u norm(|X| |B|) for the X of the elimination is below 1, which proves that A is regular. For
+    // an exactly singular A it is at least 1 for every X: with y B = 0, y (I - B X) = y. False for what is not finite.
     bool regular() const noexcept { return beta_ < 1.0; }
-
-    // norm(I - B X) + 5 u norm(|X| |B|) for the X of the elimination: below 1 proves that A is regular. For an exactly
-    // singular A it is at least 1 for every X: with y B = 0, y (I - B X) = y.
-    double beta() const noexcept { return beta_; }
 
     // A^-1 = C X R; each element within 2 ulp of the largest of its terms in A^-1 A A^-1 while the condition of B stays
     // below 1e8 and its terms, in X B X, above least_scaled.

@@ -40,14 +40,6 @@ void classify(const FloatForms& original, const float* boxes, std::size_t count,
     }
 }
 
-// What is added, and what the rounded sum leaves: Knuth's two_sum(), see rounding.hpp.
-TEXGEN_INLINE Doubles add_exactly(Doubles& sum, const Doubles& term) noexcept {
-    const Doubles before = sum;
-    sum = before + term;
-    const Doubles term_part = sum - before;
-    return (before - (sum - term_part)) + (term - term_part);
-}
-
 // Bounds on a form, whose signs are right, where it is largest or least. In double a coefficient, a product and three sums
 // are rounded; no error is infinite, as an infinite value has the right sign.
 TEXGEN_INLINE void bound_form(const ExactForm& form, bool largest, const BoxBlock& boxes, std::size_t i,
@@ -80,12 +72,15 @@ TEXGEN_INLINE void bound_exactly(const ExactForm& form, bool largest, const BoxB
             vertex[j] = load<Doubles>(((form.rounded[j] > 0.0) == largest ? boxes.max : boxes.min)[j] + i);
     }
     const auto term = [&](std::size_t k) { return vertex[form.terms[k].coordinate] * form.terms[k].factor; };
-    Doubles high = term(0);
-    Doubles low = add_exactly(high, term(1));
+    Doubles low, rest;
+    Doubles high = two_sum(term(0), term(1), low);
     Doubles lost{};
-    for (std::size_t k = 2; k < form.term_count; ++k)
-        lost = lost + magnitude(add_exactly(low, add_exactly(high, term(k))));
-    add_exactly(high, low);
+    for (std::size_t k = 2; k < form.term_count; ++k) {
+        high = two_sum(high, term(k), rest);
+        low = two_sum(low, rest, rest);
+        lost = lost + magnitude(rest);
+    }
+    high = high + low;
     lost = lost + lost;
     lower = maximum(high - lost - least_lit, lower);
     upper = minimum(high + lost - least_lit, upper);

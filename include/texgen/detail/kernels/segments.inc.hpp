@@ -132,7 +132,7 @@ TEXGEN_INLINE std::size_t fill_segment_all_float_of(const SegmentJob& job, std::
             store_value(i, from * (of_both * next_q));
             if (next < end) store_value(next, next_from * (of_both * q));
         }
-        if (any_not_finite(sum)) return begin;
+        if (largest_lane(magnitude_bits(sum - sum)) != 0) return begin;
     }
     return job.count;
 }

@@ -26,23 +26,18 @@ struct Lanes {
         return *this = of([&](int i) { return lane[i] | b.lane[i]; });
     }
 
-    friend Lanes operator+(const Lanes& a, const Lanes& b) noexcept {
-        return of([&](int i) { return a.lane[i] + b.lane[i]; });
+    // The operand on the right is Lanes or one number for all.
+    Lanes operator+(const auto& b) const noexcept {
+        return of([&](int i) { return lane[i] + at(b, i); });
     }
-    friend Lanes operator-(const Lanes& a, const Lanes& b) noexcept {
-        return of([&](int i) { return a.lane[i] - b.lane[i]; });
+    Lanes operator-(const auto& b) const noexcept {
+        return of([&](int i) { return lane[i] - at(b, i); });
     }
-    friend Lanes operator+(const Lanes& a, T b) noexcept {
-        return of([&](int i) { return a.lane[i] + b; });
+    Lanes operator*(const auto& b) const noexcept {
+        return of([&](int i) { return lane[i] * at(b, i); });
     }
-    friend Lanes operator-(const Lanes& a, T b) noexcept {
-        return of([&](int i) { return a.lane[i] - b; });
-    }
-    friend Lanes operator*(const Lanes& a, T b) noexcept {
-        return of([&](int i) { return a.lane[i] * b; });
-    }
-    friend Lanes operator*(const Lanes& a, const Lanes& b) noexcept {
-        return of([&](int i) { return a.lane[i] * b.lane[i]; });
+    Lanes operator&(const auto& b) const noexcept {
+        return of([&](int i) { return lane[i] & at(b, i); });
     }
     friend Lanes operator*(T a, const Lanes& b) noexcept { return b * a; }
     friend Lanes operator+(T a, const Lanes& b) noexcept { return b + a; }
@@ -55,12 +50,6 @@ struct Lanes {
     friend Lanes operator/(T a, const Lanes& b) noexcept {
         return of([&](int i) { return a / b.lane[i]; });
     }
-    friend Lanes operator&(const Lanes& a, const Lanes& b) noexcept {
-        return of([&](int i) { return a.lane[i] & b.lane[i]; });
-    }
-    friend Lanes operator&(const Lanes& a, T b) noexcept {
-        return of([&](int i) { return a.lane[i] & b; });
-    }
     friend Lanes operator|(const Lanes& a, const Lanes& b) noexcept {
         return of([&](int i) { return a.lane[i] | b.lane[i]; });
     }
@@ -70,6 +59,10 @@ struct Lanes {
     friend Lanes operator^(const Lanes& a, const Lanes& b) noexcept {
         return of([&](int i) { return a.lane[i] ^ b.lane[i]; });
     }
+
+private:
+    static T at(T number, int) noexcept { return number; }
+    static T at(const Lanes& many, int i) noexcept { return many.lane[i]; }
 };
 
 using Doubles = Lanes<double>;
@@ -112,7 +105,8 @@ TEXGEN_INLINE LongWords greater(const Doubles& a, double b) noexcept {
 TEXGEN_INLINE LongWords greater(const Doubles& a, const Doubles& b) noexcept {
     return LongWords::of([&](int i) { return a.lane[i] > b.lane[i] ? -1 : 0; });
 }
-TEXGEN_INLINE LongWords at_most(const Doubles& a, const Doubles& b) noexcept {
+template <class Vector>
+TEXGEN_INLINE Words at_most(const Vector& a, const Vector& b) noexcept {
     return LongWords::of([&](int i) { return a.lane[i] <= b.lane[i] ? -1 : 0; });
 }
 TEXGEN_INLINE Doubles leading_27_bits(const Doubles& a) noexcept {
@@ -157,11 +151,13 @@ TEXGEN_INLINE WideWords is_negative(const WideFloats& a) noexcept {
 TEXGEN_INLINE WideFloats select(const WideWords& mask, const WideFloats& a, const WideFloats& b) noexcept {
     return from_bits((mask & signed_bits(a)) | (~mask & signed_bits(b)));
 }
-TEXGEN_INLINE WideWords minimum(const WideWords& a, const WideWords& b) noexcept {
-    return WideWords::of([&](int i) { return a.lane[i] < b.lane[i] ? a.lane[i] : b.lane[i]; });
+template <class Vector>
+TEXGEN_INLINE Vector minimum(const Vector& a, const Vector& b) noexcept {
+    return Vector::of([&](int i) { return a.lane[i] < b.lane[i] ? a.lane[i] : b.lane[i]; });
 }
-TEXGEN_INLINE WideWords maximum(const WideWords& a, const WideWords& b) noexcept {
-    return WideWords::of([&](int i) { return a.lane[i] > b.lane[i] ? a.lane[i] : b.lane[i]; });
+template <class Vector>
+TEXGEN_INLINE Vector maximum(const Vector& a, const Vector& b) noexcept {
+    return Vector::of([&](int i) { return a.lane[i] > b.lane[i] ? a.lane[i] : b.lane[i]; });
 }
 TEXGEN_INLINE int largest_lane(const WideWords& a) noexcept {
     int largest = a.lane[0];
@@ -169,29 +165,8 @@ TEXGEN_INLINE int largest_lane(const WideWords& a) noexcept {
     return largest;
 }
 
-TEXGEN_INLINE bool any_not_finite(const WideFloats& a) noexcept {
-    const WideFloats zero = a - a;
-    return largest_lane(magnitude_bits(zero)) != 0;
-}
-
-TEXGEN_INLINE WideFloats minimum(const WideFloats& a, const WideFloats& b) noexcept {
-    return WideFloats::of([&](int i) { return a.lane[i] < b.lane[i] ? a.lane[i] : b.lane[i]; });
-}
-TEXGEN_INLINE WideFloats maximum(const WideFloats& a, const WideFloats& b) noexcept {
-    return WideFloats::of([&](int i) { return a.lane[i] > b.lane[i] ? a.lane[i] : b.lane[i]; });
-}
 TEXGEN_INLINE WideWords less(const WideFloats& a, const WideFloats& b) noexcept {
     return WideWords::of([&](int i) { return a.lane[i] < b.lane[i] ? -1 : 0; });
-}
-TEXGEN_INLINE WideWords at_most(const WideFloats& a, const WideFloats& b) noexcept {
-    return WideWords::of([&](int i) { return a.lane[i] <= b.lane[i] ? -1 : 0; });
-}
-
-TEXGEN_INLINE Doubles minimum(const Doubles& a, const Doubles& b) noexcept {
-    return Doubles::of([&](int i) { return a.lane[i] < b.lane[i] ? a.lane[i] : b.lane[i]; });
-}
-TEXGEN_INLINE Doubles maximum(const Doubles& a, const Doubles& b) noexcept {
-    return Doubles::of([&](int i) { return a.lane[i] > b.lane[i] ? a.lane[i] : b.lane[i]; });
 }
 TEXGEN_INLINE Doubles magnitude(const Doubles& a) noexcept {
     return Doubles::of([&](int i) { return a.lane[i] < 0.0 ? -a.lane[i] : a.lane[i]; });

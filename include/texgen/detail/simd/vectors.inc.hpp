@@ -84,8 +84,14 @@ TEXGEN_INLINE WideWords magnitude_bits(const WideFloats& a) noexcept {
     return __builtin_bit_cast(WideWords, a) & 0x7fffffff;
 }
 TEXGEN_INLINE WideWords signed_bits(const WideFloats& a) noexcept { return __builtin_bit_cast(WideWords, a); }
-TEXGEN_INLINE WideWords minimum(const WideWords& a, const WideWords& b) noexcept { return a < b ? a : b; }
-TEXGEN_INLINE WideWords maximum(const WideWords& a, const WideWords& b) noexcept { return a > b ? a : b; }
+template <class Vector>
+TEXGEN_INLINE Vector minimum(const Vector& a, const Vector& b) noexcept {
+    return a < b ? a : b;
+}
+template <class Vector>
+TEXGEN_INLINE Vector maximum(const Vector& a, const Vector& b) noexcept {
+    return a > b ? a : b;
+}
 
 TEXGEN_INLINE WideFloats from_bits(const WideWords& words) noexcept { return __builtin_bit_cast(WideFloats, words); }
 TEXGEN_INLINE WideFloats to_numbers(const WideWords& words) noexcept {
@@ -111,17 +117,9 @@ TEXGEN_INLINE int largest_lane(const WideWords& a) noexcept {
             maximum(a, rotated<Distance>(a, std::make_integer_sequence<int, wide_lanes>())));
 }
 
-TEXGEN_INLINE bool any_not_finite(const WideFloats& a) noexcept {
-    const WideFloats zero = a - a;
-    return largest_lane(magnitude_bits(zero)) != 0;
-}
-TEXGEN_INLINE WideFloats minimum(const WideFloats& a, const WideFloats& b) noexcept { return a < b ? a : b; }
-TEXGEN_INLINE WideFloats maximum(const WideFloats& a, const WideFloats& b) noexcept { return a > b ? a : b; }
 TEXGEN_INLINE WideWords less(const WideFloats& a, const WideFloats& b) noexcept { return a < b; }
 TEXGEN_INLINE WideWords at_most(const WideFloats& a, const WideFloats& b) noexcept { return a <= b; }
 
-TEXGEN_INLINE Doubles minimum(const Doubles& a, const Doubles& b) noexcept { return a < b ? a : b; }
-TEXGEN_INLINE Doubles maximum(const Doubles& a, const Doubles& b) noexcept { return a > b ? a : b; }
 TEXGEN_INLINE Doubles magnitude(const Doubles& a) noexcept {
     return __builtin_bit_cast(Doubles, __builtin_bit_cast(LongWords, a) & 0x7fffffffffffffffLL);
 }
@@ -138,10 +136,8 @@ TEXGEN_INLINE void store(void* to, const Vector& values) noexcept {
 }
 
 // A mask: all ones where it holds, else zero.
-TEXGEN_INLINE Words inside(const Floats& values, float min, float max) noexcept {
-    return (values >= min) & (values <= max);
-}
-TEXGEN_INLINE WideWords inside(const WideFloats& values, float min, float max) noexcept {
+template <class Vector>
+TEXGEN_INLINE auto inside(const Vector& values, float min, float max) noexcept {
     return (values >= min) & (values <= max);
 }
 
