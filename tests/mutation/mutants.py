@@ -247,7 +247,7 @@ MUTANTS = [
           "cost_of_triangles_test"),
          ("the area of rounded differences", "return all_exact ? difference_of_products(to_b_.x, to_c_.y, to_b_.y, to_c_.x) : exact_area().estimate();",
           "return difference_of_products(to_b_.x, to_c_.y, to_b_.y, to_c_.x);", "footprint_test"),
-         ("det J is a sum of doubles", "if (std::fabs(sum) > 0x1p-4 * magnitude) return sum * scale;",
+         ("det J is a sum of doubles", "return (std::fabs(sum) > 0x1p-4 * size ? sum : determinant.exactly().estimate()) * scale;",
           "return sum * scale;", "footprint_test"),
          ("the second half starts where the first does", "second.x += first.width;", "", "interpolate_test"),
          ("the gradient's sign", "b_minus_a * to_c_.y - c_minus_a * to_b_.y,",

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -35,14 +36,28 @@ public:
     FloatDeterminant(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) noexcept : row_{a, b, c} {}
 
     int sign() const noexcept {
-        const double size = this->size();
-        const double sum = minor(1, 2) * row_[0].z + minor(2, 0) * row_[1].z + minor(0, 1) * row_[2].z;
+        const auto [sum, size] = nearly();
         const double value = magnitude(sum) > gamma(4) * size ? sum : this->value(size);
         return value > 0.0 ? 1 : value < 0.0 ? -1 : 0;
     }
 
     // Within 2^-51 of itself.
     double value() const noexcept { return value(size()); }
+
+    // In double, within gamma(4) of the sum of its terms' magnitudes, which is the other one.
+    std::pair<double, double> nearly() const noexcept {
+        return {minor(1, 2) * row_[0].z + minor(2, 0) * row_[1].z + minor(0, 1) * row_[2].z, size()};
+    }
+
+    Expansion<12> exactly() const noexcept {
+        Expansion<12> sum;
+        for (int k = 0; k < 3; ++k) {
+            const DoubleDouble minor = exact_minor((k + 1) % 3, (k + 2) % 3);
+            sum.add_product(minor.low, row_[k].z);
+            sum.add_product(minor.high, row_[k].z);
+        }
+        return sum;
+    }
 
 private:
     double minor(int i, int j) const noexcept { return row_[i].x * row_[j].y - row_[j].x * row_[i].y; }
@@ -74,16 +89,6 @@ private:
             return smaller(last[i].x * last[j].y, last[j].x * last[i].y) * last[k].z;
         };
         return smaller(least(1, 2, 0), smaller(least(2, 0, 1), least(0, 1, 2)));
-    }
-
-    Expansion<12> exactly() const noexcept {
-        Expansion<12> sum;
-        for (int k = 0; k < 3; ++k) {
-            const DoubleDouble minor = exact_minor((k + 1) % 3, (k + 2) % 3);
-            sum.add_product(minor.low, row_[k].z);
-            sum.add_product(minor.high, row_[k].z);
-        }
-        return sum;
     }
 
     glm::dvec3 row_[3];

@@ -19,6 +19,7 @@
 #include <glm/vec4.hpp>
 
 #include "../../primitives.hpp"
+#include "../arithmetic/determinant.hpp"
 #include "../arithmetic/expansion.hpp"
 #include "../arithmetic/nearest.hpp"
 #include "../arithmetic/rounding.hpp"
@@ -166,26 +167,15 @@ public:
     // The Jacobian determinant of (s/q, t/q), times Q^3: the same everywhere. With M the matrix of the corners' (s, t, q),
     // the planes are M times the edge functions, whose determinant is area^2. Within 2^-46 of itself; its sign is exact.
     double jacobian_determinant() const noexcept {
-        const WindowVertex* const corner[] = {&triangle_.a, &triangle_.b, &triangle_.c, &triangle_.a, &triangle_.b};
+        const auto row = [](const WindowVertex& corner) {
+            const glm::dvec4 strq = widened(corner.strq);
+            return glm::dvec3(strq.y, strq.w, strq.x);
+        };
+        const FloatDeterminant determinant(row(triangle_.a), row(triangle_.b), row(triangle_.c));
+        const auto [sum, size] = determinant.nearly();
         const double area = twice_area();
         const double scale = (area * weight_[0]) * (area * weight_[1]) * weight_[2];
-        double sum = 0.0;
-        double magnitude = 0.0;
-        double term[3][3];
-        for (int i = 0; i < 3; ++i) {
-            term[i][0] = widened(corner[i]->strq.x);
-            term[i][1] = widened(corner[i + 1]->strq.y) * widened(corner[i + 2]->strq.w);
-            term[i][2] = -widened(corner[i + 2]->strq.y) * widened(corner[i + 1]->strq.w);
-            sum += term[i][0] * (term[i][1] + term[i][2]);
-            magnitude += std::fabs(term[i][0]) * (std::fabs(term[i][1]) + std::fabs(term[i][2]));
-        }
-        if (std::fabs(sum) > 0x1p-4 * magnitude) return sum * scale;
-        Expansion<12> exact;
-        for (const auto& [s, left, right] : term) {
-            exact.add_product(s, left);
-            exact.add_product(s, right);
-        }
-        return exact.estimate() * scale;
+        return (std::fabs(sum) > 0x1p-4 * size ? sum : determinant.exactly().estimate()) * scale;
     }
 
     // What F is made of, c_i = value weight: a coordinate of corner i, and w_j w_k times the common factor; both are exact.
