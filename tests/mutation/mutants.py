@@ -412,7 +412,7 @@ MUTANTS = [
          ("a left-handed picture is mirrored", "return is_left != (conventions.handedness == Handedness::left);",
           "return is_left;", "diagnose_test"),
          ("a lens may have any hand", "return is_perspective(p) && is_left !=", "return false && is_left !=", "diagnose_test"),
-         ("a lens that is transposed is none", "return perspective || (is_affine_transposed(p) && is_lens(transposed(p)));",
+         ("a lens that is transposed is none", "return perspective || (is_affine_transposed(p) && is_lens(glm::transpose(p)));",
           "return false;", "diagnose_test"),
          ("every matrix is in float",
           "if ((bit_cast<std::uint64_t>(m[column][row]) & 0x1fffffff) != 0) return false;", "", "diagnose_test"),

@@ -285,7 +285,7 @@ bool any_wrong_order(const FactorsInUse& factors, const Glance& glance, const Gi
 // `in_float`, or if that is empty the first that gives the matrix as closely as float.
 inline std::optional<Composition> composition_of(const glm::dmat4& texgen, const Factors& factors, int most,
                                                  Closeness closest, std::optional<Composition> in_float) noexcept {
-    const std::array<glm::dmat4, 2> given{texgen, detail::transposed(texgen)};
+    const std::array<glm::dmat4, 2> given{texgen, glm::transpose(texgen)};
     const std::array<Glance, 2> glances{Glance(given[0], false), Glance(given[1], true)};
     const Product projection = lens_factor(factors.projection);
     const Product view = pose_factor(factors.view);

@@ -9,7 +9,10 @@
 #include <cstdint>
 #include <optional>
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
 #include <glm/vec3.hpp>
 
 #include "../../conventions.hpp"
@@ -18,13 +21,6 @@
 #include "../language.hpp"
 
 namespace TEXGEN_DETAIL {
-
-inline glm::dmat4 transposed(const glm::dmat4& m) noexcept {
-    glm::dmat4 result(0.0);
-    for (glm::length_t column = 0; column < 4; ++column)
-        for (glm::length_t row = 0; row < 4; ++row) result[row][column] = m[column][row];
-    return result;
-}
 
 inline bool is_zero_row(const glm::dmat4& m, glm::length_t row) noexcept {
     return m[0][row] == 0.0 && m[1][row] == 0.0 && m[2][row] == 0.0 && m[3][row] == 0.0;
@@ -77,20 +73,14 @@ inline Minor minor(const glm::dmat4& m, const std::array<glm::length_t, 3>& rows
     const auto row = [&](std::size_t i) {
         return glm::dvec3(m[columns[0]][rows[i]], m[columns[1]][rows[i]], m[columns[2]][rows[i]]);
     };
-    const auto magnitude = [](const glm::dvec3& v) {
-        return glm::dvec3(std::fabs(v.x), std::fabs(v.y), std::fabs(v.z));
-    };
-    const auto dot = [](const glm::dvec3& a, const glm::dvec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; };
-    const auto cross = [](const glm::dvec3& a, const glm::dvec3& b, double sign) {
-        return glm::dvec3(a.y * b.z + sign * (a.z * b.y), a.z * b.x + sign * (a.x * b.z),
-                          a.x * b.y + sign * (a.y * b.x));
-    };
+    const auto magnitude = [](const glm::dvec3& v, const glm::dvec3& w) { return glm::dot(glm::abs(v), glm::abs(w)); };
     const glm::dvec3 a = row(0), b = row(1), c = row(2);
-    const glm::dvec3 of_a = cross(b, c, -1.0), of_b = cross(c, a, -1.0), of_c = cross(a, b, -1.0);
-    const double value = dot(a, of_a);
-    const double change =
-        dot(magnitude(a), magnitude(of_a)) + dot(magnitude(b), magnitude(of_b)) + dot(magnitude(c), magnitude(of_c));
-    const double terms = dot(magnitude(a), cross(magnitude(b), magnitude(c), 1.0));
+    const glm::dvec3 of_a = glm::cross(b, c);
+    const double value = glm::dot(a, of_a);
+    const double change = magnitude(a, of_a) + magnitude(b, glm::cross(c, a)) + magnitude(c, glm::cross(a, b));
+    const double terms =
+        magnitude(a, {std::fabs(b.y * c.z) + std::fabs(b.z * c.y), std::fabs(b.z * c.x) + std::fabs(b.x * c.z),
+                      std::fabs(b.x * c.y) + std::fabs(b.y * c.x)});
     const double rounding = is_in_float(m) ? 0x1p-22 : 0x1p-44;
     return {value, std::fabs(value) > rounding * change + 0x1p-48 * terms};
 }
@@ -130,7 +120,7 @@ inline bool is_perspective(const glm::dmat4& p) noexcept { return is_lens(p) && 
 inline bool is_lens_transposed(const glm::dmat4& p) noexcept {
     const bool perspective = p[3].x == 0.0 && p[3].y == 0.0 && std::fabs(p[3].z) == 1.0 && p[3].w == 0.0 &&
                              p[0].w == 0.0 && p[1].w == 0.0 && p[2].w != 0.0 && std::fabs(p[2].w) != 1.0;
-    return perspective || (is_affine_transposed(p) && is_lens(transposed(p)));
+    return perspective || (is_affine_transposed(p) && is_lens(glm::transpose(p)));
 }
 
 // Whether the lens looks down the other axis than eyes of that handedness do. Parallel light does not say where it looks; and
@@ -180,18 +170,14 @@ struct DepthRows {
 inline DepthRows depth_rows(const glm::dmat4& m) noexcept {
     const glm::dvec3 r{m[0].z, m[1].z, m[2].z};
     const glm::dvec3 q{m[0].w, m[1].w, m[2].w};
-    const auto largest = [](const glm::dvec3& v) {
-        return larger(std::fabs(v.x), larger(std::fabs(v.y), std::fabs(v.z)));
-    };
-    const glm::dvec3 cross{r.y * q.z - r.z * q.y, r.z * q.x - r.x * q.z, r.x * q.y - r.y * q.x};
+    const auto largest = [](glm::dvec3 v) { return larger(std::fabs(v.x), larger(std::fabs(v.y), std::fabs(v.z))); };
     // Where the limit is 0 by cancellation, r is what q's rounding has left.
     const double rounding = is_in_float(m) ? 0x1p-20 : 0x1p-44;
     const double size_r = largest(r);
     const double size_q = largest(q);
-    const bool are_parallel = !(largest(cross) > (0x1p-14 * size_r + rounding * size_q) * size_q);
-    const double squared = q.x * q.x + q.y * q.y + q.z * q.z;
-    const bool is_parallel_light = size_q == 0.0;
-    return {are_parallel, is_parallel_light, squared > 0.0 ? (r.x * q.x + r.y * q.y + r.z * q.z) / squared : 0.0};
+    const bool are_parallel = !(largest(glm::cross(r, q)) > (0x1p-14 * size_r + rounding * size_q) * size_q);
+    const double squared = glm::dot(q, q);
+    return {are_parallel, size_q == 0.0, squared > 0.0 ? glm::dot(r, q) / squared : 0.0};
 }
 
 // OpenGL's initial planes: S = (1, 0, 0, 0), T = (0, 1, 0, 0), R and Q zero.

@@ -65,14 +65,14 @@ inline void examine(const Projector& projector, const LensFacts& facts, const Pi
     if (has_view) {
         if (is_affine_transposed(v)) {
             diagnosis.add(Defect::transposed);
-            v = transposed(v);
+            v = glm::transpose(v);
         }
         if (!are_independent(v, axes)) diagnosis.add(Defect::rank_below_three);
     }
     if (has_projection) {
         if (is_lens_transposed(p)) {
             diagnosis.add(Defect::transposed);
-            p = transposed(p);
+            p = glm::transpose(p);
         }
         const bool regular = are_independent(p, {0, 1, 3});
         if (!regular) diagnosis.add(Defect::rank_below_three);

@@ -13,19 +13,12 @@ inline void examine(const Composition& composition, bool in_eye_space, Diagnosis
     if (composition.transposed) diagnosis.add(Defect::transposed);
     if (composition.order == Order::view_before_projection) diagnosis.add(Defect::view_projection_swapped);
     if (composition.order == Order::wrong) diagnosis.add(Defect::wrong_order);
-    switch (composition.pose) {
-        case PoseUse::right:
-            break;
-        case PoseUse::inverted:
-            diagnosis.add(in_eye_space ? Defect::camera_not_inverted : Defect::model_inverted);
-            break;
-        case PoseUse::left_out:
-            diagnosis.add(in_eye_space ? Defect::camera_left_out : Defect::model_left_out);
-            break;
-        case PoseUse::doubled:
-            diagnosis.add(in_eye_space ? Defect::camera_inverse_doubled : Defect::model_doubled);
-            break;
-    }
+    const auto add_pose = [&](PoseUse use, Defect of_camera, Defect of_model) {
+        if (composition.pose == use) diagnosis.add(in_eye_space ? of_camera : of_model);
+    };
+    add_pose(PoseUse::inverted, Defect::camera_not_inverted, Defect::model_inverted);
+    add_pose(PoseUse::left_out, Defect::camera_left_out, Defect::model_left_out);
+    add_pose(PoseUse::doubled, Defect::camera_inverse_doubled, Defect::model_doubled);
     if (composition.scale_bias == ScaleBiasUse::left_out) diagnosis.add(Defect::scale_bias_missing);
     if (composition.scale_bias == ScaleBiasUse::doubled) diagnosis.add(Defect::scale_bias_doubled);
     if (composition.other_depth) diagnosis.add(Defect::depth_range_mismatch);
@@ -67,7 +60,7 @@ inline bool examine_alone(const glm::dmat4& texgen, const SetupMatrices& setup, 
     constexpr double margin = 0x1p-10;
     const DepthRows rows = depth_rows(texgen);
     if (!rows.are_parallel) {
-        const bool is_transposed = depth_rows(transposed(texgen)).are_parallel;
+        const bool is_transposed = depth_rows(glm::transpose(texgen)).are_parallel;
         diagnosis.add(is_transposed ? Defect::transposed : Defect::wrong_order);
         return is_transposed;
     }
@@ -173,7 +166,7 @@ inline Examined examine(const SetupMatrices& setup, Diagnosis& diagnosis) noexce
     } else if (has_q) {
         was_transposed = examine_alone(texgen, setup, diagnosis);
     }
-    if (!has_q || (was_transposed && is_zero_row(transposed(texgen), 3))) diagnosis.add(Defect::q_row_zero);
+    if (!has_q || (was_transposed && is_zero_row(glm::transpose(texgen), 3))) diagnosis.add(Defect::q_row_zero);
     if (!has_q) examined.texgen.reset();
     return examined;
 }
@@ -253,7 +246,7 @@ Diagnosis diagnose(const std::array<glm::vec4, 4>& planes, const ProjectionSetup
     const glm::dmat4 rows(detail::widened(planes[0]), detail::widened(planes[1]), detail::widened(planes[2]),
                           detail::widened(planes[3]));
     ProjectionSetup<Space> whole = setup;
-    whole.texgen.emplace(detail::transposed(rows));
+    whole.texgen.emplace(glm::transpose(rows));
     return detail::diagnose(whole, true);
 }
 
