@@ -34,12 +34,42 @@ namespace TEXGEN_NAMESPACE {
 // The way from object space to the eye, prepared once for a MODELVIEW, as far as the unit's modes need it.
 class TexGenUnit::EyeSpace {
 public:
-    EyeSpace(const glm::mat4& modelview, const TexGenUnit& unit) noexcept;
+    EyeSpace(const glm::mat4& modelview, const TexGenUnit& unit) noexcept
+        : scaling_(unit.normal_scaling_), rows_(glm::transpose(modelview)) {
+        for (const CoordinateState& coordinate : unit.states_) {
+            if (!coordinate.enabled) continue;
+            wants_position_ = wants_position_ || coordinate.mode != TexGenMode::object_linear;
+            wants_normal_ = wants_normal_ || detail::uses_normal(coordinate.mode);
+        }
+        if (!wants_normal_) return;
+        const detail::CertifiedInverse inverse(detail::widened(modelview));
+        inverse_ =
+            glm::dmat3(inverse.regular() ? inverse.matrix() : glm::dmat4(std::numeric_limits<double>::quiet_NaN()));
+        const glm::dvec3 third_row(inverse_[0][2], inverse_[1][2], inverse_[2][2]);
+        const double size = detail::largest(third_row);
+        // A zero row has no scale to take away; only a projective M has one.
+        if (size > 0.0) {
+            const int exponent = std::ilogb(size);
+            const glm::dvec3 near_one = detail::times_power_of_two(third_row, -exponent);
+            rescale_ = std::scalbn(1.0 / detail::length(near_one), -exponent);
+        }
+    }
 
     bool wants_position() const noexcept { return wants_position_; }
     bool wants_normal() const noexcept { return wants_normal_; }
-    glm::dvec4 position(const glm::vec4& position) const noexcept;
-    glm::dvec3 normal(const glm::vec3& normal) const noexcept;  // under the unit's normal scaling
+    glm::dvec4 position(const glm::vec4& position) const noexcept {
+        return {detail::cancelling_dot(rows_[0], position), detail::cancelling_dot(rows_[1], position),
+                detail::cancelling_dot(rows_[2], position), detail::cancelling_dot(rows_[3], position)};
+    }
+
+    // Under the unit's normal scaling.
+    glm::dvec3 normal(const glm::vec3& normal) const noexcept {
+        const glm::dvec3 row = detail::widened(normal);
+        const glm::dvec3 result(detail::dot(row, inverse_[0]), detail::dot(row, inverse_[1]),
+                                detail::dot(row, inverse_[2]));
+        if (scaling_ == NormalScaling::rescale) return result * rescale_;
+        return scaling_ == NormalScaling::normalize ? detail::direction(result) : result;
+    }
 
 private:
     bool wants_position_ = false, wants_normal_ = false;
@@ -108,46 +138,6 @@ inline glm::dvec4 TexGenUnit::eye_plane_error_bound(Coordinate coordinate, glm::
 inline void TexGenUnit::set_normal_scaling(NormalScaling scaling) noexcept {
     if (scaling == NormalScaling::none || scaling == NormalScaling::rescale || scaling == NormalScaling::normalize)
         normal_scaling_ = scaling;
-}
-
-inline TexGenUnit::EyeSpace::EyeSpace(const glm::mat4& modelview, const TexGenUnit& unit) noexcept
-    : scaling_(unit.normal_scaling_), rows_(glm::transpose(modelview)) {
-    for (const CoordinateState& coordinate : unit.states_) {
-        if (!coordinate.enabled) continue;
-        wants_position_ = wants_position_ || coordinate.mode != TexGenMode::object_linear;
-        wants_normal_ = wants_normal_ || detail::uses_normal(coordinate.mode);
-    }
-    if (!wants_normal_) return;
-    const detail::CertifiedInverse inverse(detail::widened(modelview));
-    inverse_ = glm::dmat3(inverse.regular() ? inverse.matrix() : glm::dmat4(std::numeric_limits<double>::quiet_NaN()));
-    const glm::dvec3 third_row(inverse_[0][2], inverse_[1][2], inverse_[2][2]);
-    const double size = detail::largest(third_row);
-    // A zero row has no scale to take away; only a projective M has one.
-    if (size > 0.0) {
-        const int exponent = std::ilogb(size);
-        const glm::dvec3 near_one = detail::times_power_of_two(third_row, -exponent);
-        rescale_ = std::scalbn(1.0 / detail::length(near_one), -exponent);
-    }
-}
-
-inline glm::dvec4 TexGenUnit::EyeSpace::position(const glm::vec4& position) const noexcept {
-    return {detail::cancelling_dot(rows_[0], position), detail::cancelling_dot(rows_[1], position),
-            detail::cancelling_dot(rows_[2], position), detail::cancelling_dot(rows_[3], position)};
-}
-
-inline glm::dvec3 TexGenUnit::EyeSpace::normal(const glm::vec3& normal) const noexcept {
-    const glm::dvec3 row = detail::widened(normal);
-    const glm::dvec3 result(detail::dot(row, inverse_[0]), detail::dot(row, inverse_[1]),
-                            detail::dot(row, inverse_[2]));
-    switch (scaling_) {
-        case NormalScaling::rescale:
-            return result * rescale_;
-        case NormalScaling::normalize:
-            return detail::direction(result);
-        case NormalScaling::none:
-            break;
-    }
-    return result;
 }
 
 inline glm::vec4 TexGenUnit::generate(const FixedFunctionVertex& vertex, const EyeSpace& eye_space) const noexcept {
