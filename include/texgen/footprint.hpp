@@ -2,12 +2,8 @@
 
 // Floor 8: footprints. What a fragment covers of the texture: the derivatives of s/q and t/q by the window's x and y, and
 // what filters make of them. Projection varies them wildly within one triangle, and where q is near 0 a difference of two
-// fragments tells nothing; so they are computed in closed form, from the set-up that interpolates.
-//
-// With S, T, Q the linear functions of the set-up (detail/planes.hpp),
-//   J = d(s/q, t/q) / d(x, y) = ((S_x Q - S Q_x, S_y Q - S Q_y), (T_x Q - T Q_x, T_y Q - T Q_y)) / Q^2,
-//   det J = D / Q^3, D the determinant of the coefficients of S, T, Q.
-// The first column of J Q^2 is affine in y and does not depend on x, the second is affine in x and does not depend on y.
+// fragments tells nothing; so they are computed in closed form, from the set-up that interpolates: see Slope in
+// detail/triangle/planes.hpp.
 
 #include "detail/language.hpp"
 

@@ -3,14 +3,9 @@
 // Floor 7: (s, t, r) over the fragments of triangles: interpolate s, t, r, q perspective-correctly, then divide by q, per
 // fragment. Segments are in segment.hpp.
 //
-// The dial chooses between three tiers (detail/simd/tiers.hpp). All begin with the homogeneous values at the corners of the
-// rectangle, which decide whether anything is lit at all (Work::nothing).
-//
-//   exact           divide in double and round to float with a certificate: always the nearest float
-//   polynomial      under a tolerance: in float, along chunks of a row, about the value in the middle, by a polynomial of
-//                   degree 2, 4 or 8, or by a division, the first whose bound fits
-//   float_divided   where a chunk's bound does not fit: functions in double, rounded and divided in float, if that fits,
-//                   else exact
+// The dial chooses between three tiers (detail/simd/tiers.hpp): exact; under a tolerance polynomial, by the first degree whose
+// bound fits, or by a division; and where a chunk's bound does not fit float_divided, if that fits, else exact. All begin with
+// the homogeneous values at the corners of the rectangle, which decide whether anything is lit at all (Work::nothing).
 //
 // Where q changes sign the rectangle is cut until its parts are on one side. What is still in doubt (ties, and the last
 // parts) is decided closely, to twice the precision of double; and what that leaves, fragment by fragment, exactly.
