@@ -134,11 +134,12 @@ struct GenerateJob : PointInput {
     float* strq;
 };
 
-// The derivatives of s (0) and t (1) over a rectangle, and what filters make of them. Of d/dx Q^2 and d/dy Q^2 the one
-// grows by twist a row, the other shrinks by twist a column. An output is null or an array whose rows are pitch apart.
+// The derivatives of s (0) and t (1) over a rectangle, and what filters make of them. Slopes are d/dx Q^2 and
+// d/dy Q^2. An output is null or an array whose rows are pitch apart.
 struct FootprintJob {
     struct Slope {
-        double dx, dy, twist;
+        double dx, dy;
+        double twist;  // a step of y adds it to dx, a step of x takes it from dy
     };
 
     // The sum of two squares of `texels` that the filters need in float, when the largest of the job is about 1.

@@ -42,7 +42,7 @@ private:
         const double q_scale_squared = q_scale * q_scale;
         const double texel_scale = reciprocal_power_of_two(largest);
         const auto scaled = [](const Slope::Terms& terms, double factor) {
-            return FootprintJob::Slope{terms.dx * factor, terms.dy * factor, terms.twist * factor};
+            return Slope::Terms{terms.dx * factor, terms.dy * factor, terms.twist * factor};
         };
         FootprintJob job{};
         job.width = tile.width;
@@ -71,9 +71,9 @@ private:
         const double determinant = std::fabs(functions_.determinant * texels_.s * texels_.t);
         job.filters_in_float = job.derivatives_in_float || float_serves_filters(tile, at, job.texels);
         job.level_offset = static_cast<float>(2 * exponent_of(q_scale) - exponent_of(texel_scale));
-        job.anisotropy_factor = factor_of(q_scale / (texel_scale * texel_scale * determinant));
-        job.major_factor[0] = factor_of(back / texels_.s);
-        job.major_factor[1] = factor_of(back / texels_.t);
+        job.anisotropy_factor = static_cast<float>(q_scale / (texel_scale * texel_scale * determinant));
+        job.major_factor[0] = static_cast<float>(back / texels_.s);
+        job.major_factor[1] = static_cast<float>(back / texels_.t);
         job.level = array(out_.level);
         job.anisotropy = array(out_.anisotropy);
         job.major[0] = array(out_.major_s);
@@ -83,8 +83,6 @@ private:
         return true;
     }
 
-    static float factor_of(double factor) noexcept { return static_cast<float>(factor); }
-
     static int exponent_of(double power_of_two) noexcept {
         return static_cast<int>(bit_cast<std::uint64_t>(power_of_two) >> 52) - 1023;
     }
@@ -92,8 +90,7 @@ private:
     // Whether columns of J Q^2 and Q in float are within 2^-19 of themselves, which leaves level, anisotropy and major within
     // 2^-16. With u = 2^-24 base, slope, product and sum of a component N are rounded: u (2 |N| + 2 |twist| width), where |N|
     // is at most about 1; and one of the columns is nowhere shorter than at the first fragment less what the twist takes.
-    static bool float_serves_filters(const Tile& tile, const Corners& at,
-                                     const FootprintJob::Slope (&texels)[2]) noexcept {
+    static bool float_serves_filters(const Tile& tile, const Corners& at, const Slope::Terms (&texels)[2]) noexcept {
         constexpr double u = 1.001 * unit_roundoff_float;
         const auto length = [](double s, double t) { return std::sqrt(s * s + t * t); };
         const double twist = length(texels[0].twist, texels[1].twist);

@@ -93,10 +93,7 @@ inline bool is_constant(const Ramp& ramp) noexcept { return ramp.dx == 0.0 && ra
 //   d(f/q)/dy Q^2 = F_y Q - F Q_y =  area (mu_ab (c - p).x + mu_bc (a - p).x + mu_ca (b - p).x):
 // the one does not depend on x, nor the other on y. `magnitude` is the same with the absolute values of all terms.
 struct Slope {
-    struct Terms {
-        double dx, dy;  // at the first vertex
-        double twist;   // a step of y adds it to dx, a step of x takes it from dy
-    };
+    using Terms = FootprintJob::Slope;  // at the first vertex
     Terms value, magnitude;
 };
 
@@ -168,8 +165,7 @@ public:
     // the planes are M times the edge functions, whose determinant is area^2. Within 2^-46 of itself; its sign is exact.
     double jacobian_determinant() const noexcept {
         const auto row = [](const WindowVertex& corner) {
-            const glm::dvec4 strq = widened(corner.strq);
-            return glm::dvec3(strq.y, strq.w, strq.x);
+            return glm::dvec3(widened(corner.strq.y), widened(corner.strq.w), widened(corner.strq.x));
         };
         const FloatDeterminant determinant(row(triangle_.a), row(triangle_.b), row(triangle_.c));
         const auto [sum, size] = determinant.nearly();
