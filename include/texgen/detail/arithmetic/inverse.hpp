@@ -9,7 +9,9 @@
 #include <limits>
 #include <utility>
 
+#include <glm/common.hpp>
 #include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
 
 #include "rounding.hpp"
 
@@ -22,6 +24,11 @@ inline bool is_finite(const glm::dmat4& matrix) noexcept {
         for (glm::length_t row = 0; row < 4; ++row)
             if (!is_finite(matrix[column][row])) return false;
     return true;
+}
+
+// The magnitudes of the elements.
+inline glm::dmat4 absolute(const glm::dmat4& m) noexcept {
+    return {glm::abs(m[0]), glm::abs(m[1]), glm::abs(m[2]), glm::abs(m[3])};
 }
 
 // An element other than 0 that scaling makes smaller could be rounded there, and B would be another matrix: one of rank 3
@@ -348,15 +355,9 @@ inline glm::dvec4 CertifiedInverse::error_of_row(const glm::dvec4& solution, con
 
 inline glm::dmat4 CertifiedInverse::error_of(const glm::dmat4& solution, const glm::dmat4& rows) const noexcept {
     const double r = contraction();
-    glm::dmat4 result(0.0);
-    for (glm::length_t row = 0; row < 4; ++row) {
-        const auto row_of = [row](const glm::dmat4& m) {
-            return glm::dvec4(m[0][row], m[1][row], m[2][row], m[3][row]);
-        };
-        const glm::dvec4 bound = error_of_row(row_of(solution), row_of(rows), r);
-        for (glm::length_t column = 0; column < 4; ++column) result[column][row] = bound[column];
-    }
-    return result;
+    const glm::dmat4 solved = glm::transpose(solution), given = glm::transpose(rows);
+    return glm::transpose(glm::dmat4(error_of_row(solved[0], given[0], r), error_of_row(solved[1], given[1], r),
+                                     error_of_row(solved[2], given[2], r), error_of_row(solved[3], given[3], r)));
 }
 
 // How far the 3x3 part is from orthonormal, and the last row from (0, 0, 0, 1): the largest deviation.

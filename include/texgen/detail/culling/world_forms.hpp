@@ -13,6 +13,7 @@
 
 #include "../../conventions.hpp"
 #include "../../primitives.hpp"
+#include "../arithmetic/inverse.hpp"
 #include "../arithmetic/rounding.hpp"
 #include "../arithmetic/widen.hpp"
 #include "lit_forms.hpp"
@@ -101,11 +102,7 @@ public:
         const auto planes = slide_planes(region);
         for (const SlidePlane& plane : planes)
             if (!LitForms::is_usable_side(plane)) return;
-        glm::dmat4 magnitude(0.0);
-        for (glm::length_t column = 0; column < 4; ++column)
-            for (glm::length_t row = 0; row < 4; ++row)
-                for (glm::length_t k = 0; k < 4; ++k)
-                    magnitude[column][row] += std::fabs(texture_from_eye[k][row]) * std::fabs(view[column][k]);
+        const glm::dmat4 magnitude = absolute(texture_from_eye) * absolute(view);
         for (std::size_t k = 0; k < planes.size(); ++k) set(forms_[k], matrix, magnitude, planes[k]);
     }
 

@@ -25,12 +25,7 @@ inline Product operator*(const Product& a, const Product& b) noexcept {
     return {a.value * b.value, a.magnitude * b.magnitude};
 }
 
-inline Product lens_factor(const glm::dmat4& m) noexcept {
-    Product result{m, m};
-    for (glm::length_t column = 0; column < 4; ++column)
-        for (glm::length_t row = 0; row < 4; ++row) result.magnitude[column][row] = std::fabs(m[column][row]);
-    return result;
-}
+inline Product lens_factor(const glm::dmat4& m) noexcept { return {m, absolute(m)}; }
 
 // Rotations and inverses carry noise relative to the largest element of a column, also where they hold a zero.
 inline Product pose_factor(const glm::dmat4& m) noexcept {

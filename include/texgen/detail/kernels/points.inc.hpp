@@ -178,8 +178,15 @@ TEXGEN_INLINE PointExtent extent_of(const PointJob& job, std::size_t begin, std:
     return {x, y, z};
 }
 
-TEXGEN_INLINE Doubles at(const PointForm& form, const Doubles& x, const Doubles& y, const Doubles& z) noexcept {
-    return x * form.x + (y * form.y + (z * form.z + form.w));
+template <class Job>
+TEXGEN_INLINE PointLanes load_points(const Job& job, std::size_t i) noexcept {
+    Floats x, y, z;
+    load_points(job, i, x, y, z);
+    return {{to_doubles(x), to_doubles(y), to_doubles(z)}};
+}
+
+TEXGEN_INLINE Doubles at(const PointForm& form, const PointLanes& point) noexcept {
+    return point.v[0] * form.x + (point.v[1] * form.y + (point.v[2] * form.z + form.w));
 }
 
 // A block of points, with errors that hold for all of it. Returns what is in doubt (it is written all the same).
@@ -191,15 +198,11 @@ TEXGEN_INLINE Doubt fill_points_block(const PointJob& job, std::size_t begin, st
     const double q_error = gamma(5) * extent.magnitude_of(job.q);
     Doubt doubt;
     for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(lanes)) {
-        Floats xs, ys, zs;
-        load_points(job, i, xs, ys, zs);
-        const Doubles x = to_doubles(xs);
-        const Doubles y = to_doubles(ys);
-        const Doubles z = to_doubles(zs);
+        const PointLanes point = load_points(job, i);
         Doubles numerator[2];
-        for (std::size_t k = 0; k < Numerators; ++k) numerator[k] = at(job.numerator[k], x, y, z);
+        for (std::size_t k = 0; k < Numerators; ++k) numerator[k] = at(job.numerator[k], point);
         Floats value[2];
-        const LongWords in_front = divide_certainly<Signed>(Numerators, numerator, numerator_error, at(job.q, x, y, z),
+        const LongWords in_front = divide_certainly<Signed>(Numerators, numerator, numerator_error, at(job.q, point),
                                                             q_error, job.tolerance, value, doubt);
         store_points(job, i, Numerators, value, narrow(in_front));
     }
@@ -216,11 +219,7 @@ struct PointTerms {
     TEXGEN_INLINE explicit PointTerms(const PointJob& points) noexcept : job(points), q(points.q) {
         for (int k = 0; k < job.numerators; ++k) numerator[k] = TwofoldForm(points.numerator[k]);
     }
-    TEXGEN_INLINE PointLanes load(std::size_t i) const noexcept {
-        Floats x, y, z;
-        load_points(job, i, x, y, z);
-        return {{to_doubles(x), to_doubles(y), to_doubles(z)}};
-    }
+    TEXGEN_INLINE PointLanes load(std::size_t i) const noexcept { return load_points(job, i); }
     TEXGEN_INLINE LongWords are_dark(const PointLanes& at) const noexcept {
         const Doubles zero =
             (at.v[0] + at.v[1] + at.v[2]) * (q.is_finite ? 0.0 : std::numeric_limits<double>::quiet_NaN());
@@ -304,7 +303,7 @@ struct FormsInDouble {
                                 const WideFloats& z) const noexcept {
         const PointForm& form = k == 0 ? job.q : job.numerator[k - 1];
         const auto value = [&form](const Doubles& vx, const Doubles& vy, const Doubles& vz) {
-            return detail::TEXGEN_ISA::at(form, vx, vy, vz);
+            return detail::TEXGEN_ISA::at(form, {{vx, vy, vz}});
         };
         return in_double(value, x, y, z);
     }
@@ -372,18 +371,13 @@ template <class CompiledWhereCalled = void>
 void generate_points(const GenerateJob& original) noexcept {
     const GenerateJob job = original;
     for (std::size_t i = 0; i < job.count; i += static_cast<std::size_t>(lanes)) {
-        Floats xs, ys, zs;
-        load_points(job, i, xs, ys, zs);
-        const Doubles x = to_doubles(xs);
-        const Doubles y = to_doubles(ys);
-        const Doubles z = to_doubles(zs);
+        const PointLanes point = load_points(job, i);
         if (job.strq != nullptr) {
-            store_interleaved(job.strq + 4 * i, to_floats(at(job.form[0], x, y, z)),
-                              to_floats(at(job.form[1], x, y, z)), to_floats(at(job.form[2], x, y, z)),
-                              to_floats(at(job.form[3], x, y, z)));
+            store_interleaved(job.strq + 4 * i, to_floats(at(job.form[0], point)), to_floats(at(job.form[1], point)),
+                              to_floats(at(job.form[2], point)), to_floats(at(job.form[3], point)));
         } else {
             for (std::size_t k = 0; k < 4; ++k)
-                if (job.out[k] != nullptr) store(job.out[k] + i, to_floats(at(job.form[k], x, y, z)));
+                if (job.out[k] != nullptr) store(job.out[k] + i, to_floats(at(job.form[k], point)));
         }
     }
 }

@@ -8,18 +8,11 @@ inline Transform<Texture, ProjectorEye> texture_from_projector_eye(const Project
     return scale_bias(projector.conventions, region, depth) * projector.projection;
 }
 
-inline glm::dvec4 row_of(const glm::dmat4& matrix, glm::length_t row) noexcept {
-    return {matrix[0][row], matrix[1][row], matrix[2][row], matrix[3][row]};
-}
-
 // rows A^-1, each row solved and refined by itself. Precondition: A is regular.
 inline glm::dmat4 solve_rows(const CertifiedInverse& inverse, const glm::dmat4& rows) noexcept {
-    glm::dmat4 solved(0.0);
-    for (glm::length_t row = 0; row < 4; ++row) {
-        const glm::dvec4 solution = inverse.solve_row(row_of(rows, row));
-        for (glm::length_t column = 0; column < 4; ++column) solved[column][row] = solution[column];
-    }
-    return solved;
+    const glm::dmat4 row = glm::transpose(rows);
+    return glm::transpose(glm::dmat4(inverse.solve_row(row[0]), inverse.solve_row(row[1]), inverse.solve_row(row[2]),
+                                     inverse.solve_row(row[3])));
 }
 
 // A row's value at (x, y, z, 1).
@@ -122,11 +115,8 @@ glm::dmat4 eye_planes_error_bound(const Transform<Texture, Space>& planes, const
 
 template <class Space>
 std::array<glm::vec4, 4> planes(const Transform<Texture, Space>& transform) noexcept {
-    const glm::mat4 m = transform.rounded();
-    std::array<glm::vec4, 4> rows;
-    for (glm::length_t row = 0; row < 4; ++row)
-        rows[static_cast<std::size_t>(row)] = {m[0][row], m[1][row], m[2][row], m[3][row]};
-    return rows;
+    const glm::mat4 rows = glm::transpose(transform.rounded());
+    return {rows[0], rows[1], rows[2], rows[3]};
 }
 
 }  // namespace TEXGEN_NAMESPACE
