@@ -25,7 +25,6 @@
 
 #include "conventions.hpp"
 #include "detail/arithmetic/nearest.hpp"
-#include "detail/arithmetic/widen.hpp"
 #include "detail/assert.hpp"
 #include "detail/culling/lit_test.hpp"
 #include "detail/simd/lanes.hpp"

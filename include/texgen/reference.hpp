@@ -12,7 +12,6 @@
 #include <span>
 
 #include <Eigen/Core>
-#include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 
 #include "conventions.hpp"

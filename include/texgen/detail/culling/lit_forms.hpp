@@ -9,7 +9,6 @@
 // lit, its rounding to float included; where all is lit, the inner sides say (see RoundedSide).
 
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

@@ -54,13 +54,11 @@ void differentiate(const FootprintJob& original) noexcept {
         differentiate_rows<Doubles, double>(job);
 }
 
-// function(index): in float, or in double and rounded.
-template <bool InFloat, class Function>
-TEXGEN_INLINE WideFloats rounded(const WideFloats& index, const Function& function) noexcept {
-    if constexpr (InFloat)
-        return function(index, float());
-    else
-        return in_double([&](const Doubles& i) { return function(i, double()); }, index);
+// base + dx i of each index i: in float, or in double and rounded.
+template <bool InFloat>
+TEXGEN_INLINE WideFloats linear(const WideFloats& index, double base, double dx) noexcept {
+    if constexpr (InFloat) return index * static_cast<float>(dx) + static_cast<float>(base);
+    return in_double([&](const Doubles& i) { return i * dx + base; }, index);
 }
 
 TEXGEN_INLINE WideFloats larger_of(const WideFloats& a, const WideFloats& b) noexcept {
@@ -110,17 +108,9 @@ TEXGEN_INLINE int filter_rows(const FootprintJob& job, int first) noexcept {
         for (int begin = 0; begin < job.width; begin += count) {
             const int x = start_of_vector(begin, count, job.width);
             const WideFloats index = lane + static_cast<float>(x);
-            const auto linear = [](const auto& i, double base, double dx, auto scalar) {
-                return i * static_cast<decltype(scalar)>(dx) + static_cast<decltype(scalar)>(base);
-            };
-            const WideFloats q = rounded<InFloat>(
-                index, [&](const auto& i, auto scalar) { return linear(i, q_base, job.q.dx, scalar); });
-            const WideFloats s_dy = rounded<InFloat>(index, [&](const auto& i, auto scalar) {
-                return linear(i, job.texels[0].dy, -job.texels[0].twist, scalar);
-            });
-            const WideFloats t_dy = rounded<InFloat>(index, [&](const auto& i, auto scalar) {
-                return linear(i, job.texels[1].dy, -job.texels[1].twist, scalar);
-            });
+            const WideFloats q = linear<InFloat>(index, q_base, job.q.dx);
+            const WideFloats s_dy = linear<InFloat>(index, job.texels[0].dy, -job.texels[0].twist);
+            const WideFloats t_dy = linear<InFloat>(index, job.texels[1].dy, -job.texels[1].twist);
             const WideFloats square = larger_of(s_dy * s_dy + t_dy * t_dy, WideFloats{} + static_cast<float>(dx_dx));
             too_small = maximum(too_small, (WideWords{} + smallest) - signed_bits(square));
             if (!Shape || level != nullptr) {

@@ -138,8 +138,7 @@ inline namespace TEXGEN_COMPILER {
 inline Work work(const Segment& segment, TextureRegion region, Tolerance tolerance) noexcept {
     const glm::dvec4 a = detail::widened(segment.a);
     const glm::dvec4 b = detail::widened(segment.b);
-    // A product with 0 is 0 for numbers only.
-    if (!(0.0 * (a.x + a.y + a.w) == 0.0 && 0.0 * (b.x + b.y + b.w) == 0.0)) return Work::divide_and_test;
+    if (!detail::is_finite(a.x + a.y + a.w) || !detail::is_finite(b.x + b.y + b.w)) return Work::divide_and_test;
     if (a.w <= 0.0 && b.w <= 0.0) return Work::nothing;
 
     // A tile of one row whose corners are the ends: given, so without an error.
@@ -160,9 +159,8 @@ inline Work work(const Segment& segment, TextureRegion region, Tolerance toleran
 inline glm::dvec2 error_bound(const Segment& segment, Tolerance tolerance) noexcept {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     const detail::SegmentJob job = detail::segment_job(segment, 0, 2);
-    // A product with 0 is 0 for numbers only.
     const double sum = job.a[0] + job.a[1] + job.b[0] + job.b[1] + job.q_a + job.q_b;
-    if (!(0.0 * sum == 0.0)) return {infinity, infinity};
+    if (!detail::is_finite(sum)) return {infinity, infinity};
     if (job.q_a <= 0.0 && job.q_b <= 0.0) return {0.0, 0.0};
     if (job.q_a <= 0.0 || job.q_b <= 0.0) return {infinity, infinity};
     const detail::SegmentBounds bounds(job);

@@ -6,7 +6,6 @@
 // F = sum E_i c_i as in planes.hpp, but from the differences between the fragment and the corners: what is large at a far
 // corner never enters.
 
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

@@ -8,7 +8,6 @@
 // ever formed.
 
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -16,7 +15,6 @@
 #include <span>
 
 #include <glm/vec2.hpp>
-#include <glm/vec4.hpp>
 
 #include "../../primitives.hpp"
 #include "../arithmetic/determinant.hpp"
