@@ -45,7 +45,7 @@ public:
 
     LitForms(const glm::dmat4& matrix, const TextureRegion& region) noexcept {
         is_usable_ = take_matrix(matrix) && take_sides(region);
-        lights_nothing_ = is_finite(matrix) && (is_empty(region) || (is_usable_ && is_zero(rows_[2])));
+        lights_nothing_ = is_finite(matrix) && (is_empty(region) || (is_usable_ && rows_[2] == Row{}));
         if (!is_usable_ || lights_nothing_) return;
         for (std::size_t k = 0; k < count; ++k) take_form(k);
         add_edge_forms();
@@ -156,10 +156,6 @@ public:
 
 private:
     using Row = std::array<double, 4>;
-
-    static bool is_zero(const Row& row) noexcept {
-        return row[0] == 0.0 && row[1] == 0.0 && row[2] == 0.0 && row[3] == 0.0;
-    }
 
     // Form k is of_row * (T_s or T_t) + of_q * T_q.
     struct Weight {

@@ -32,12 +32,10 @@ struct RoundedSide {
         if (std::fabs(min) < 0x1p-126) return {-0x1p-126, first > 0.0f ? 0x1p-126 : widened(first)};
         return {widened(float_before(first)), widened(first)};
     }
-    static RoundedSide of_max(double max) noexcept {
-        const RoundedSide mirrored = of_min(-max);
-        return {-mirrored.outer, -mirrored.inner};
-    }
     static RoundedSide of(const SlidePlane& plane) noexcept {
-        return plane.sign > 0.0 ? of_min(plane.bound) : of_max(plane.bound);
+        if (plane.sign > 0.0) return of_min(plane.bound);
+        const RoundedSide mirrored = of_min(-plane.bound);
+        return {-mirrored.outer, -mirrored.inner};
     }
 };
 
