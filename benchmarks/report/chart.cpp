@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <regex>
+#include <set>
 #include <utility>
 
 #include "html.hpp"
@@ -10,69 +13,57 @@ namespace report {
 
 namespace {
 
-constexpr double left = 58, right = 8, top = 8, bottom = 44, width = 560, height = 330;
+// On both sides of a script; no name has it, for a name is one line.
+const std::string mark = "\n<!-- gnuplot -->\n";
 
-// A logarithmic axis from the decade, or the half or fifth of one, below the least value to the one above the largest.
-class Axis {
-public:
-    Axis(const std::vector<Series>& series, int dimension, double from, double to) : from_(from), to_(to) {
-        double least = HUGE_VAL, most = 0;
-        for (const Series& s : series) {
-            for (const glm::dvec2& point : s.points) {
-                least = std::min(least, point[dimension]);
-                most = std::max(most, point[dimension]);
-            }
-        }
-        const bool is_short = most < 300 * least;
-        for (double decade = std::pow(10, std::floor(std::log10(least))); decade < 12 * most; decade *= 10)
-            for (const double step : {1.0, 2.0, 5.0})
-                if (step == 1.0 || is_short) ticks_.push_back(step * decade);
-        while (ticks_.size() > 2 && ticks_[1] <= least) ticks_.erase(ticks_.begin());
-        while (ticks_.size() > 2 && 1.01 * ticks_[ticks_.size() - 2] >= most) ticks_.pop_back();
-    }
+// As gnuplot takes text literally.
+std::string literal(const std::string& text) { return "'" + std::regex_replace(text, std::regex("'"), "''") + "'"; }
 
-    const std::vector<double>& ticks() const { return ticks_; }
-    double operator()(double value) const {
-        return from_ + (to_ - from_) * std::log(value / ticks_.front()) / std::log(ticks_.back() / ticks_.front());
-    }
-
-private:
-    double from_, to_;
-    std::vector<double> ticks_;
-};
-
-std::string tick_label(double value) {
-    if (value > 0.009 && value < 900) return formatted("%.3g", value);
-    return "10<tspan dy=\"-5\" font-size=\"10\">" + formatted("%.0f", std::log10(value)) + "</tspan>";
+std::string figure_of(double height, const std::string& script, const std::string& caption) {
+    return "<figure class=\"chart\">" + mark + "reset\nset encoding utf8\n" +
+           formatted("set terminal svg dynamic size 440,%g font 'sans-serif,13' linewidth 2\n", height) + script +
+           mark + "<figcaption>" + escaped(caption) + "</figcaption></figure>\n";
 }
 
-std::string swatch(const Series& series) {
-    const char* colour = colour_of(series.name);
-    const char* shape = series.mark == Series::Mark::line
-                            ? "<path d=\"M0 7h22\" stroke=\"%s\" stroke-width=\"3\" fill=\"none\"/>"
-                        : series.mark == Series::Mark::ring
-                            ? "<circle cx=\"11\" cy=\"7\" r=\"5\" stroke=\"%s\" stroke-width=\"2\" fill=\"none\"/>"
-                            : "<circle cx=\"11\" cy=\"7\" r=\"6\" fill=\"%s\"/>";
-    return "<svg class=\"swatch\" viewBox=\"0 0 22 14\">" + formatted(shape, colour) + "</svg>";
+// It ends a little beyond the points. Its numbers are decades and, where those are few, 2 and 5 of each: one at least.
+std::string axis_of(const std::vector<Series>& series, int dimension, const std::string& title) {
+    std::vector<double> values;
+    for (const Series& s : series)
+        for (const glm::dvec2& point : s.points) values.push_back(point[dimension]);
+    const auto [least, most] = std::ranges::minmax(values);
+    const double margin = std::max({1.2, std::pow(most / least, 0.05), std::sqrt(2.6 * least / most)});
+    const std::string axis = dimension == 0 ? "x" : "y", digits = most < 300 * least ? "1 2 5" : "1";
+    return "set " + axis + "label " + literal(title) + "\nset " + axis +
+           formatted("range [%g:%g]\n", least / margin, most * margin) + "set " + axis + "tics ()\n" +
+           "set for [d=-12:12] for [m in '" + digits + "'] " + axis + "tics add (label(m, d) m * 10.0**d)\n";
 }
 
-std::string drawn(const Series& series, const Axis& x, const Axis& y) {
-    const char* colour = colour_of(series.name);
-    std::string svg;
-    if (series.mark == Series::Mark::line) {
-        svg += "<polyline fill=\"none\" stroke-width=\"2\" stroke=\"" + std::string(colour) + "\" points=\"";
-        for (const glm::dvec2& point : series.points) svg += formatted("%.1f,%.1f ", x(point.x), y(point.y));
-        svg += "\"/>";
+std::vector<std::string> split(const std::string& text, const std::string& separator) {
+    const std::regex regex(separator);
+    return {std::sregex_token_iterator(text.begin(), text.end(), regex, -1), {}};
+}
+
+// One a script; none where gnuplot is missing or fails. It runs inside the folder, so that no path needs quoting.
+std::vector<std::string> drawn(const std::string& scripts, const Staging& folder) {
+    folder.write("charts", scripts);
+    const std::filesystem::path before = std::filesystem::current_path();
+    std::filesystem::current_path(folder.folder());
+    const int status = std::system("gnuplot --default-settings charts >charts.svg 2>charts.log");
+    std::filesystem::current_path(before);
+    if (status != 0) return {};
+    // What is empty or as it would be anyway, and what shows or names the same for each.
+    const std::regex needless(
+        R"(<title>Gnuplot</title>|<desc>.*</desc>|<g [^>]*>\s*</g>\s*| (id|stroke-linecap|stroke-linejoin)="[^"]*")");
+    const std::string svg = std::regex_replace(read_file(folder.folder() / "charts.svg"), needless, "");
+    std::vector<std::string> pictures = split(svg, "</svg>");
+    pictures.pop_back();  // what follows the last
+    for (std::string& picture : pictures) {
+        picture = picture.erase(0, picture.find("<svg")) + "</svg>";
+        // The first defines the shapes of points for all.
+        const std::size_t from = picture.find("<defs>"), to = picture.find("</defs>");
+        if (&picture != &pictures.front() && to != picture.npos) picture.erase(from, to + 7 - from);
     }
-    const bool is_ring = series.mark == Series::Mark::ring;
-    const double radius = series.mark == Series::Mark::line ? 3.5 : 6;
-    for (const glm::dvec2& point : series.points)
-        svg +=
-            formatted("<circle cx=\"%.1f\" cy=\"%.1f\" r=\"%g\" fill=\"%s\" stroke=\"%s\" stroke-width=\"%g\"><title>",
-                      x(point.x), y(point.y), radius, is_ring ? "none" : colour, is_ring ? colour : "#fff",
-                      is_ring ? 2.5 : 1.0) +
-            escaped(series.name) + formatted(": %.4g, %.3g</title></circle>\n", point.x, point.y);
-    return svg;
+    return pictures;
 }
 
 }  // namespace
@@ -94,45 +85,52 @@ const char* colour_of(std::string_view series) {
     return "#9a9aa5";
 }
 
-std::string chart_of(const std::vector<Series>& series, const std::string& x_label, const std::string& y_label,
+std::string chart_of(const std::vector<Series>& series, const std::string& x, const std::string& y,
                      const std::string& caption) {
-    const Axis x(series, 0, left, width - right), y(series, 1, height - bottom, top);
-    std::string svg = formatted("<svg viewBox=\"0 0 %g %g\" role=\"img\">", width, height);
-    svg += "<g stroke=\"#dde0e8\">";
-    for (const double tick : x.ticks()) svg += formatted("<path d=\"M%.1f %gV%g\"/>", x(tick), top, height - bottom);
-    for (const double tick : y.ticks()) svg += formatted("<path d=\"M%g %.1fH%g\"/>", left, y(tick), width - right);
-    svg += "</g>\n<g text-anchor=\"middle\">";
-    for (const double tick : x.ticks())
-        svg += formatted("<text x=\"%.1f\" y=\"%g\">", std::min(x(tick), width - 20), height - bottom + 18) +
-               tick_label(tick) + "</text>";
-    svg += formatted("<text x=\"%g\" y=\"%g\">", (left + width - right) / 2, height - 6) + escaped(x_label) + "</text>";
-    svg += formatted("<text transform=\"translate(14 %g) rotate(-90)\">", (top + height - bottom) / 2) +
-           escaped(y_label) + "</text></g>\n<g text-anchor=\"end\">";
-    for (const double tick : y.ticks())
-        svg += formatted("<text x=\"%g\" y=\"%.1f\">", left - 6, std::max(y(tick) + 4, top + 8)) + tick_label(tick) +
-               "</text>";
-    svg += "</g>\n";
-    std::string legend, named;
+    constexpr const char* styles[] = {"points pointtype 7", "points pointtype 6",
+                                      "linespoints pointtype 7 pointsize 0.6"};
+    constexpr const char* look =
+        "set logscale xy\nset nomxtics\nset nomytics\nset tics scale 0 textcolor rgb '#444a55'\nset pointsize 1.2\n"
+        "set xlabel offset 0,0.6\nset border 3 linewidth 0.5 linecolor rgb '#9a9aa5'\n"
+        "set grid linetype 1 linewidth 0.5 linecolor rgb '#dde0e8'\n"
+        "set key below height 1 left Left reverse noenhanced samplen 1 maxcols 1\n"
+        "label(m, d) = m eq '1' && abs(d) > 2 ? sprintf('10^{%d}', d) : sprintf('%g', m * 10.0**d)\n";
+    std::string plot = "plot ", data;
+    std::set<std::string> names;
     for (const Series& s : series) {
-        svg += drawn(s, x, y);
-        if (named.find("|" + s.name + "|") != named.npos) continue;
-        named += "|" + s.name + "|";
-        legend += "<span>" + swatch(s) + escaped(s.name) + "</span> ";
+        plot += std::string("'-' with ") + styles[static_cast<int>(s.mark)] + " linecolor rgb '" + colour_of(s.name) +
+                "' title " + literal(names.insert(s.name).second ? s.name : "") + ",";
+        for (const glm::dvec2& point : s.points) data += formatted("%.4g %.4g\n", point.x, point.y);
+        data += "e\n";
     }
-    return "<figure class=\"chart\">" + svg + "</svg>\n<p class=\"legend\">" + legend + "</p>\n<figcaption>" +
-           escaped(caption) + "</figcaption></figure>\n";
+    plot.back() = '\n';
+    return figure_of(300 + 19 * static_cast<double>(names.size()),
+                     look + axis_of(series, 0, x) + axis_of(series, 1, y) + plot + data, caption);
 }
 
 std::string bars_of(const std::vector<Bar>& bars, const std::string& caption) {
-    double most = 0;
-    for (const Bar& bar : bars) most = std::max(most, bar.nanoseconds);
-    std::string html = "<figure class=\"chart\">\n";
-    for (const Bar& bar : bars)
-        html += "<div class=\"bar\"><span>" + escaped(bar.name) + "</span><span>" +
-                formatted("<i style=\"width:%.1f%%;background:%s\"></i>", 75 * bar.nanoseconds / most,
-                          colour_of(bar.name)) +
-                duration(bar.nanoseconds) + "</span></div>\n";
-    return html + "<figcaption>" + escaped(caption) + "</figcaption></figure>\n";
+    double most = 0, y = 0;
+    std::string script = "set margins 0,0,0,0\nunset border\nunset tics\nunset key\n";
+    for (const Bar& bar : bars) {
+        most = std::max(most, bar.nanoseconds);
+        y -= 1;
+        script += "set label " + literal(bar.name) + formatted(" at 0,%g noenhanced\n", y + 0.75) + "set label " +
+                  literal(duration(bar.nanoseconds)) + formatted(" at %g,%g offset 0.5\n", bar.nanoseconds, y + 0.3) +
+                  formatted("set object rectangle from 0,%g to %g,%g fillcolor rgb '%s' fillstyle solid noborder\n",
+                            y + 0.1, bar.nanoseconds, y + 0.5, colour_of(bar.name));
+    }
+    return figure_of(-38 * y, script + formatted("plot [0:%g] [%g:0] NaN\n", most / 0.8, y), caption);
+}
+
+std::string with_charts_drawn(const std::string& page, const Staging& folder) {
+    const std::vector<std::string> pieces = split(page, mark);  // text and scripts by turns
+    std::string scripts, html = pieces.front();
+    for (std::size_t i = 1; i < pieces.size(); i += 2) scripts += pieces[i] + "\n";
+    std::vector<std::string> pictures = drawn(scripts, folder);
+    if (2 * pictures.size() + 1 != pieces.size())
+        pictures.assign(pieces.size() / 2, std::string("<p>") + no_chart + "</p>");
+    for (std::size_t i = 1; i < pieces.size(); i += 2) html += pictures[i / 2] + "\n" + pieces[i + 1];
+    return html;
 }
 
 }  // namespace report

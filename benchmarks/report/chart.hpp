@@ -1,12 +1,14 @@
 #pragma once
 
-// The charts of the page, as SVG in the text of the page itself. A series has one colour in all of them.
+// The charts of the page, drawn by gnuplot. A series has one colour in all of them.
 
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <glm/vec2.hpp>
+
+#include "files.hpp"
 
 namespace report {
 
@@ -28,6 +30,11 @@ struct Bar {
     double nanoseconds;
 };
 std::string bars_of(const std::vector<Bar>& bars, const std::string& caption);
+
+// What those return is to be drawn yet. Here one run of gnuplot in the given folder puts SVG into the text of the page;
+// where it is missing or fails, no_chart stands in the place of each chart.
+std::string with_charts_drawn(const std::string& page, const Staging& folder);
+inline constexpr const char* no_chart = "No chart: gnuplot is missing or failed.";
 
 // By what the series is called: the library's stops of the dial, then what others write.
 const char* colour_of(std::string_view series);

@@ -34,7 +34,7 @@ std::string unbroken(std::string_view option) {
 
 std::string duration(double nanoseconds) {
     return nanoseconds < 1e3   ? formatted("%.3g ns", nanoseconds)
-           : nanoseconds < 1e6 ? formatted("%.3g &micro;s", nanoseconds / 1e3)
+           : nanoseconds < 1e6 ? formatted("%.3g \u00b5s", nanoseconds / 1e3)
                                : formatted("%.3g ms", nanoseconds / 1e6);
 }
 

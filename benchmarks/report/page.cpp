@@ -42,11 +42,6 @@ td { white-space: nowrap; } th:first-child, td:first-child { white-space: normal
 tr.scene td { text-align: left; font-weight: 600; padding: 0.9rem 0 0.15rem; }
 tr.library td { background: #eaf3fb; }
 .wide { overflow-x: auto; }
-.chart text { font-size: 14px; fill: #333; } .chart circle { stroke-opacity: 1; }
-.legend { margin: 0.4rem 0 0; font-size: 0.85rem; } .legend span { margin-right: 0.9rem; display: inline-block; }
-.swatch { width: 22px; height: 14px; margin-right: 0.3rem; }
-.bar { display: grid; grid-template-columns: 40% 60%; font-size: 0.85rem; align-items: center; margin: 2px 0; }
-.bar span { overflow-wrap: anywhere; } .bar i { display: inline-block; height: 0.9em; margin-right: 0.4rem; vertical-align: middle; }
 dl { display: grid; grid-template-columns: max-content 1fr; gap: 0 1rem; } dt { color: #667; } dd { margin: 0; }
 details { margin-top: 0.6rem; } summary { cursor: pointer; } code { font-size: 0.8rem; overflow-wrap: anywhere; }
 @media (max-width: 32rem) { table { font-size: 0.8rem; } th, td { padding: 0.15rem 0.25rem; } }
@@ -200,8 +195,10 @@ std::string pictures_task(const Report& report) {
                         escaped(m.method) + "</td><td>" + duration(m.nanoseconds) + "</td><td>" +
                         number(m.errors.max_texels) + "</td></tr>\n";
             // Where a loop gives what is no number there is no place on an axis.
-            if (m.errors.max_texels < 1e9)
-                series.push_back({m.method, Series::Mark::dot, {{m.nanoseconds, std::max(m.errors.max_texels, 1e-6)}}});
+            if (m.errors.max_texels >= 1e9) continue;
+            auto found = std::ranges::find(series, m.method, &Series::name);
+            if (found == series.end()) found = series.insert(found, {m.method, Series::Mark::dot, {}});
+            found->points.emplace_back(m.nanoseconds, std::max(m.errors.max_texels, 1e-6));
         }
     }
     return html + "</table></div>\n" +

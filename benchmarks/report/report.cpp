@@ -247,10 +247,12 @@ int run(const Options& options) {
     for (const SceneReport& scene : report.scenes)
         for (const PictureOfScene& picture : scene.pictures) staging.write(picture.file, picture.png);
     for (const PictureOfScene& picture : report.room_pictures) staging.write(picture.file, picture.png);
-    staging.write("index.html", html_of(report));
+    const std::string page = with_charts_drawn(html_of(report), Staging(options.out));
+    staging.write("index.html", page);
     staging.publish();
 
     std::fputs(text_of(report).c_str(), stdout);
+    if (page.find(no_chart) != page.npos) std::printf("\n%s\n", no_chart);
     std::printf("\nwritten to %s\n", (options.out / "index.html").string().c_str());
     for (const SceneReport& scene : report.scenes) {
         if (scene.comparison.is_as_promised()) continue;

@@ -93,6 +93,8 @@ std::string timing_of(const std::string& scene, const std::string& variant, cons
            ",\n\"elements\": 1,\n\"row\": 0,\n\"texels\": 1e-3,\n\"ulp\": 2\n},\n";
 }
 
+bool has_gnuplot() { return std::system("command -v gnuplot >/dev/null") == 0; }
+
 }  // namespace
 
 TEST_CASE("a bad option is refused in one line") {
@@ -182,7 +184,31 @@ TEST_CASE("timings become the page's tables and charts, which say where others a
     CHECK(page.find("<h3>Bodies</h3>") == std::string::npos);
     CHECK(page.find("1.50 times the time of GLM, mat4 * vec4") < page.find("<h2>"));
     CHECK(page.find("<b>not the fastest</b>") != std::string::npos);
-    CHECK(page.find("<title>GLM, mat4 * vec4: 2, 0.001</title>") != std::string::npos);
+    CHECK(page.find(has_gnuplot() ? "<title>GLM, mat4 * vec4</title>" : "No chart") != std::string::npos);
+}
+
+TEST_CASE("without gnuplot, and with one that fails, the page says so in the place of its charts and is complete") {
+    const Workplace place;
+    write("gnuplot", "#!/bin/sh\necho '<svg'\nexit 1\n");
+    fs::permissions("gnuplot", fs::perms::owner_all);
+    for (const char* path : {"/nowhere", "."}) {
+        CHECK(std::system(
+                  ("PATH=" + std::string(path) + " '" TEXGEN_REPORT_PROGRAM "' --size 16x16 >output").c_str()) == 0);
+        const std::string page = contents("report/index.html");
+        CHECK(page.find("No chart: gnuplot is missing or failed.") != std::string::npos);
+        CHECK(page.find("<svg") == std::string::npos);
+        CHECK(page.ends_with("</html>\n"));
+        CHECK(contents("output").find("No chart: gnuplot is missing or failed.") != std::string::npos);
+    }
+}
+
+TEST_CASE("names of timings are text to gnuplot, and nothing that it executes") {
+    const Workplace place;
+    write("timings.json", timing_of("project planar, 1024", "texgen, `touch one`' . system('touch two') #", "3") +
+                              timing_of("project planar, 1024", "GLM, {/=99 @mat4} \\", "2"));
+    CHECK(place.run("--size 16x16 --timings timings.json").status == 0);
+    CHECK((contents("report/index.html").find("No chart") == std::string::npos) == has_gnuplot());
+    for (const std::string& file : place.files()) CHECK((file.starts_with("report") || file == "timings.json"));
 }
 
 TEST_CASE("costs that are none are refused in one line") {
