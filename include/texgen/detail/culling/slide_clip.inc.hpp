@@ -189,12 +189,11 @@ std::array<glm::vec4, 5> clip_planes(const Transform<Texture, Space>& texgen, Te
     std::array<glm::vec4, 5> result;
     glm::vec4* coefficients = result.data();
     for (const detail::SlidePlane& plane : detail::slide_planes(region)) {
-        const glm::dmat4& m = texgen.matrix();
-        const auto at = [&](const glm::dvec4& column) {
-            const double u = plane.coordinate == 0 ? column.x : column.y;
-            return static_cast<float>(plane.at(u, column.w));
-        };
-        *coefficients++ = {at(m[0]), at(m[1]), at(m[2]), at(m[3])};
+        for (glm::length_t i = 0; i < 4; ++i) {
+            const glm::dvec4& column = texgen.matrix()[i];
+            (*coefficients)[i] = static_cast<float>(plane.at(plane.coordinate == 0 ? column.x : column.y, column.w));
+        }
+        ++coefficients;
     }
     return result;
 }

@@ -110,8 +110,8 @@ TEXGEN_INLINE void prepare(const BatchJob& job, const BatchLanes& planes, std::s
         store(&tiles.error[k][first],
               (f.error + largest * q.error) * (reciprocal * 1.0001) + largest * (8.0 * unit_roundoff_double));
         if (k < 2) {
-            is_dark |= are_beyond(f, q, size_q, job.min[k], -1.0, job.tolerance);
-            is_dark |= are_beyond(f, q, size_q, job.max[k], 1.0, job.tolerance);
+            is_dark |= are_beyond(f, q, size_q, static_cast<double>(job.min[k]), -1.0, job.tolerance);
+            is_dark |= are_beyond(f, q, size_q, static_cast<double>(job.max[k]), 1.0, job.tolerance);
         }
         if (!has_tolerance) continue;
         const Doubles u = (f.at[0] + (f.dx * half_x + f.dy * half_y)) * per_q;

@@ -90,9 +90,11 @@ inline std::optional<ProjectorView> look_at(const Aim& aim, Handedness handednes
 inline std::optional<ProjectorView> view_from_opencv(const glm::dmat3& rotation, const glm::dvec3& translation,
                                                      Handedness handedness) noexcept {
     const double forward = handedness == Handedness::right ? -1.0 : 1.0;
-    const auto turned = [forward](const glm::dvec3& v, double w) { return glm::dvec4(v.x, -v.y, forward * v.z, w); };
-    const glm::dmat4 matrix{turned(rotation[0], 0.0), turned(rotation[1], 0.0), turned(rotation[2], 0.0),
-                            turned(translation, 1.0)};
+    glm::dmat4 matrix(0.0);
+    for (glm::length_t column = 0; column < 4; ++column) {
+        const glm::dvec3& v = column < 3 ? rotation[column] : translation;
+        matrix[column] = {v.x, -v.y, forward * v.z, column < 3 ? 0.0 : 1.0};
+    }
     return detail::is_finite(matrix) ? std::optional(ProjectorView(matrix)) : std::nullopt;
 }
 

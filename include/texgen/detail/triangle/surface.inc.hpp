@@ -51,9 +51,9 @@ inline glm::vec4 strq_of_corner(float u, float v, float nearest_q) noexcept {
     const auto is_exact = [&](float coordinate, float q) { return times_q(coordinate, q) / q == coordinate; };
     float q = nearest_q;
     for (const int ulps : {0, 1, -1, 2, -2}) {
-        const auto near = bit_cast<float>(bit_cast<std::uint32_t>(nearest_q) + static_cast<std::uint32_t>(ulps));
-        if (!is_exact(u, near) || !is_exact(v, near)) continue;
-        q = near;
+        const auto neighbour = bit_cast<float>(bit_cast<std::uint32_t>(nearest_q) + static_cast<std::uint32_t>(ulps));
+        if (!is_exact(u, neighbour) || !is_exact(v, neighbour)) continue;
+        q = neighbour;
         break;
     }
     return {times_q(u, q), times_q(v, q), 0.0f, q};
