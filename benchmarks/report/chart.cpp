@@ -17,7 +17,11 @@ namespace {
 const std::string mark = "\n<!-- gnuplot -->\n";
 
 // As gnuplot takes text literally.
-std::string literal(const std::string& text) { return "'" + std::regex_replace(text, std::regex("'"), "''") + "'"; }
+std::string literal(const std::string& text) {
+    std::string quoted(1, '\'');
+    quoted += std::regex_replace(text, std::regex("'"), "''");
+    return quoted += '\'';
+}
 
 std::string figure_of(double height, const std::string& script, const std::string& caption) {
     return "<figure class=\"chart\">" + mark + "reset\nset encoding utf8\n" +
