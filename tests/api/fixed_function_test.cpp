@@ -4,15 +4,14 @@
 
 #include <array>
 #include <bit>
-#include <boost/multiprecision/cpp_int.hpp>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "judges/rational_matrix.hpp"
 #include "support/hex.hpp"
 #include "support/random.hpp"
 #include "texgen/linear.hpp"
@@ -27,7 +26,7 @@ using texgen::FixedFunctionVertex;
 using texgen::TexGenMode;
 using texgen::TexGenUnit;
 using NormalScaling = TexGenUnit::NormalScaling;
-using Rational = boost::multiprecision::cpp_rational;
+using support::Rational;
 
 constexpr std::array coordinates{Coordinate::s, Coordinate::t, Coordinate::r, Coordinate::q};
 constexpr std::array modes{TexGenMode::object_linear, TexGenMode::eye_linear, TexGenMode::sphere_map,
@@ -69,37 +68,11 @@ bool same_bits(const glm::vec4& a, const glm::vec4& b) {
 
 // ---- The same mathematics in other numbers: an exact inverse in rationals, the modes in long double. ----
 
-// M^-1 by Gauss-Jordan, [row][column]; empty exactly where M is singular.
-using RationalMatrix = std::array<std::array<Rational, 4>, 4>;
+using support::RationalMatrix;
 
+// Empty exactly where M is singular.
 std::optional<RationalMatrix> exact_inverse(const glm::mat4& m) {
-    RationalMatrix left, right;
-    for (std::size_t i = 0; i < 4; ++i)
-        for (std::size_t j = 0; j < 4; ++j) {
-            left[i][j] = Rational(static_cast<double>(m[static_cast<int>(j)][static_cast<int>(i)]));
-            right[i][j] = i == j ? 1 : 0;
-        }
-    for (std::size_t column = 0; column < 4; ++column) {
-        std::size_t pivot = column;
-        while (pivot < 4 && left[pivot][column] == 0) ++pivot;
-        if (pivot == 4) return std::nullopt;
-        std::swap(left[pivot], left[column]);
-        std::swap(right[pivot], right[column]);
-        const Rational divisor = left[column][column];
-        for (std::size_t k = 0; k < 4; ++k) {
-            left[column][k] /= divisor;
-            right[column][k] /= divisor;
-        }
-        for (std::size_t row = 0; row < 4; ++row) {
-            const Rational factor = left[row][column];
-            if (row == column || factor == 0) continue;
-            for (std::size_t k = 0; k < 4; ++k) {
-                left[row][k] -= factor * left[column][k];
-                right[row][k] -= factor * right[column][k];
-            }
-        }
-    }
-    return right;
+    return support::inverse(support::exactly(glm::dmat4(m)));
 }
 
 using LongVector = std::array<long double, 4>;

@@ -31,16 +31,6 @@ inline BatchPlanes batch_planes(const Triangle& triangle) noexcept {
     return result;
 }
 
-// The outputs of `count` values from `first` on.
-template <class Outputs>
-Outputs part_of(const Outputs& all, std::size_t first, std::size_t count) noexcept {
-    Outputs part = all;
-    for_each_output(part, [&](std::span<float>& output) {
-        if (!output.empty()) output = output.subspan(first, count);
-    });
-    return part;
-}
-
 template <class Function>
 void for_each_output(Texcoords& out, const Function& function) noexcept {
     for (std::span<float>* output : {&out.s, &out.t, &out.r, &out.lit}) function(*output);
@@ -50,6 +40,16 @@ void for_each_output(Footprints& out, const Function& function) noexcept {
     for (std::span<float>* output :
          {&out.dsdx, &out.dtdx, &out.dsdy, &out.dtdy, &out.level, &out.anisotropy, &out.major_s, &out.major_t})
         function(*output);
+}
+
+// The outputs of `count` values from `first` on.
+template <class Outputs>
+Outputs part_of(const Outputs& all, std::size_t first, std::size_t count) noexcept {
+    Outputs part = all;
+    for_each_output(part, [&](std::span<float>& output) {
+        if (!output.empty()) output = output.subspan(first, count);
+    });
+    return part;
 }
 
 template <class Outputs>
