@@ -299,6 +299,34 @@ TEST_CASE("with a tolerance, rectangles and visibility buffers are within it, an
     CHECK(judged > 2000);
 }
 
+TEST_CASE(
+    "whatever tolerance a tile is divided in float for, it is within it: from far below what floats can to above") {
+    Random random(7);
+    for (int round = 0; round < 60; ++round) {
+        // s and t run from about -1 to 1 and 0 stands in the tile, so that the steps from the middle are all there is to round.
+        const auto strq = [&](double q, double s, double t) {
+            return glm::vec4(support::to_float(s * q), support::to_float(t * q), 0.0f, support::to_float(q));
+        };
+        const auto near_one = [&] { return random.uniform(0.9, 1.1); };
+        const Triangle triangle{{{0.0f, 0.0f}, 1.0f, strq(near_one(), -near_one(), -near_one())},
+                                {{8.0f, 0.0f}, 1.0f, strq(near_one() * 1.3, near_one(), -near_one())},
+                                {{0.0f, 8.0f}, 1.0f, strq(near_one() * 1.2, -near_one(), near_one())}};
+        const FragmentRect rect{0, 0, 8, 8};
+        const support::ExactTriangle exact(triangle);
+        for (double tolerance = 0x1p-25; tolerance < 0x1p-18; tolerance *= 1.15) {
+            TriangleBatch batch(support::everywhere(), {tolerance});
+            batch.assign({&triangle, 1});
+            Outputs out(count_of(rect));
+            interpolate(batch, {&rect, 1}, out.spans());
+            for (std::size_t n = 0; n < count_of(rect); ++n) {
+                const auto at = exact.at(static_cast<std::int64_t>(n % 8), static_cast<std::int64_t>(n / 8));
+                const std::string wrong = what_is_wrong(at, support::everywhere(), {tolerance}, out, n);
+                REQUIRE_MESSAGE(wrong.empty(), wrong, " ", support::hex(triangle), " tolerance ", tolerance, " at ", n);
+            }
+        }
+    }
+}
+
 TEST_CASE("few friendly tiles need a set-up of their own") {
     for (const Tolerance tolerance : {texgen::exact, texgen::texels(1.0 / 512, 4096)}) {
         Random random(4);

@@ -328,6 +328,8 @@ MUTANTS = [
           "", "batch_test"),
          ("a polynomial serves any tile in float", "is_polynomial &= at_most(rest + step * share, tolerance);",
           "", "batch_test"),
+         ("the roundings of a tile in float count a tenth", "(extent * stretched * 3.1 + 8.1)",
+          "(extent * stretched * 0.31 + 0.81)", "batch_test"),
          ("the upper side of the region darkens what is inside", "are_beyond(f, q, size_q, static_cast<double>(job.max[k]), 1.0, job.tolerance)",
           "are_beyond(f, q, size_q, static_cast<double>(job.max[k]), -1.0, job.tolerance)", "batch_test"),
          ("the last tile of a batch writes whole vectors", "shape.end + static_cast<std::size_t>(wide_lanes) <= job.count",
