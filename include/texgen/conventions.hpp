@@ -4,6 +4,8 @@
 
 #include "detail/language.hpp"
 
+#include <optional>
+
 #include <glm/vec2.hpp>
 
 #include "detail/matrices/required.hpp"
@@ -48,8 +50,9 @@ constexpr Conventions left_handed(Conventions api) noexcept {
 // depth, as SGI's recipe leaves it.
 enum class DepthMapping { unit, ndc };
 
-// The closed rectangle of texture coordinates that the slide covers. min() is the corner that TextureOrigin addresses.
-// A rectangle with min() > max() in a component, or with a NaN, contains no point, so nothing is lit in it.
+// The closed rectangle of texture coordinates that the slide covers, and how deep its light reaches where with_depth() says
+// so: else to infinity. min() is the corner that TextureOrigin addresses.
+// A region with min() > max() in a component or in its depth, or with a NaN, contains no point, so nothing is lit in it.
 // Its functions are constexpr where GLM's are: not under GLM_FORCE_INTRINSICS. min and max stand in parentheses because
 // <windows.h> makes macros of them; where it is included, a call is (region.min)().
 class TextureRegion {
@@ -57,8 +60,26 @@ public:
     constexpr const glm::dvec2&(min)() const noexcept { return min_; }
     constexpr const glm::dvec2&(max)() const noexcept { return max_; }
 
+    // The same rectangle, lit only where r_min <= r <= r_max too: in a projector's volume, from its near plane to its far
+    // one, as the matrix maps them to r. An infinite limit is none.
+    [[nodiscard]] GLM_CONSTEXPR TextureRegion with_depth(double r_min = 0.0, double r_max = 1.0) const noexcept {
+        TextureRegion region(min_, max_);
+        region.depth_ = glm::dvec2(r_min, r_max);
+        return region;
+    }
+    // The whole depth of a projector, reversed or not, with r as the mapping has it: [0, 1], or the range of NDC.
+    [[nodiscard]] GLM_CONSTEXPR TextureRegion with_depth(Conventions conventions, DepthMapping mapping) const noexcept {
+        return with_depth(
+            mapping == DepthMapping::ndc && conventions.depth == DepthRange::negative_one_to_one ? -1.0 : 0.0, 1.0);
+    }
+
+    // The limits of r, as they were given; empty: r does not matter.
+    GLM_CONSTEXPR std::optional<glm::dvec2> depth() const noexcept { return depth_; }
+
     friend constexpr bool operator==(const TextureRegion& a, const TextureRegion& b) noexcept {
-        return a.min_.x == b.min_.x && a.min_.y == b.min_.y && a.max_.x == b.max_.x && a.max_.y == b.max_.y;
+        return a.min_.x == b.min_.x && a.min_.y == b.min_.y && a.max_.x == b.max_.x && a.max_.y == b.max_.y &&
+               a.depth_.has_value() == b.depth_.has_value() &&
+               (!a.depth_ || (a.depth_->x == b.depth_->x && a.depth_->y == b.depth_->y));
     }
 
     friend GLM_CONSTEXPR TextureRegion whole_texture() noexcept;
@@ -70,6 +91,7 @@ private:
 
     glm::dvec2 min_;
     glm::dvec2 max_;
+    std::optional<glm::dvec2> depth_;
 };
 
 // [0, 1] x [0, 1]: all of a texture that is addressed by fractions.

@@ -128,7 +128,7 @@ inline OrthographicLens contain(const OrthographicLens& lens, double aspect) noe
 
 // Crops a picture of another aspect, width over height, to the part about its middle that fills the light of a lens.
 // Guarantee: within 2^-51 of the largest side of the picture's region; a picture of the lens's aspect stays as it is. No
-// allocation, noexcept.
+// allocation, noexcept. The picture's depth is kept.
 // Bad input: a region without points where an aspect, the picture's or the lens's, is not positive and finite.
 inline TextureRegion cover(const PerspectiveLens& lens, double aspect,
                            TextureRegion picture = whole_texture()) noexcept;

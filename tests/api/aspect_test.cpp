@@ -150,6 +150,7 @@ TEST_CASE("a 4:3 picture in a 16:9 light has bars at its sides, or loses its top
     CHECK(crop.max().x == 1.0);
     CHECK(crop.min().y == doctest::Approx(0.125).epsilon(1e-15));
     CHECK(crop.max().y == doctest::Approx(0.875).epsilon(1e-15));
+    CHECK(cover(lens, 4.0 / 3.0, texgen::whole_texture().with_depth(0.25, 0.5)) == crop.with_depth(0.25, 0.5));
     // The same light, the same picture: nothing changes.
     CHECK(cover(lens, lens.aspect, texgen::rectangle_texture(640, 480)) == texgen::rectangle_texture(640, 480));
     CHECK(contain(lens, lens.aspect).fovy == lens.fovy);

@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "support/hex.hpp"
+#include "texgen/detail/culling/slide_planes.hpp"
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
 #include "texgen/scale_bias.hpp"
@@ -146,6 +148,12 @@ TEST_CASE("corners, centre, near and far land where they should, for every lens,
                     ++combinations;
                     const auto texture_from_eye = scale_bias(conventions, region.region, mapping) * *projection;
                     const glm::dvec2 low = region.region.min(), high = region.region.max();
+                    const double of_near = expected_depth(lens, conventions, mapping, false);
+                    const double of_far = expected_depth(lens, conventions, mapping, true);
+                    const TextureRegion volume = region.region.with_depth(conventions, mapping);
+                    REQUIRE(volume.depth() == glm::dvec2(std::min(of_near, of_far), std::max(of_near, of_far)));
+                    REQUIRE((scale_bias(conventions, volume, mapping) * *projection).matrix() ==
+                            texture_from_eye.matrix());
                     for (const bool at_far : {false, true}) {
                         // The infinitely far plane is met in the limit.
                         const bool limit = at_far && !(lens.z_far < infinity);
@@ -320,3 +328,65 @@ TEST_CASE("angles, tolerances and regions say what they were given") {
     CHECK(texgen::rectangle_texture(640, 480) == texgen::atlas_tile({0, 0}, {640, 480}));
     CHECK(texgen::whole_texture().max() == glm::dvec2(1.0, 1.0));
 }
+
+TEST_CASE("a region has the depth that it was given, and is another region with another") {
+    const TextureRegion tile = texgen::atlas_tile({0.25, 0.5}, {0.5, 0.625});
+    CHECK_FALSE(tile.depth());
+    const TextureRegion volume = tile.with_depth();
+    CHECK(volume.depth() == glm::dvec2(0.0, 1.0));
+    CHECK(volume.min() == tile.min());
+    CHECK(volume.max() == tile.max());
+    CHECK(tile.with_depth(-infinity, 0.5).depth() == glm::dvec2(-infinity, 0.5));
+    CHECK(volume.with_depth(-2.0, 3.0).depth() == glm::dvec2(-2.0, 3.0));
+
+    const std::vector<TextureRegion> all_different{tile,
+                                                   volume,
+                                                   tile.with_depth(0.0, 0.5),
+                                                   tile.with_depth(0.5, 1.0),
+                                                   tile.with_depth(-infinity, infinity),
+                                                   texgen::whole_texture().with_depth()};
+    for (std::size_t i = 0; i < all_different.size(); ++i)
+        for (std::size_t j = 0; j < all_different.size(); ++j)
+            CHECK((all_different[i] == all_different[j]) == (i == j));
+    CHECK(tile.with_depth(nan_double, 1.0) != tile.with_depth(nan_double, 1.0));
+}
+
+TEST_CASE("the planes of a slide are q, the sides of s and t, and those of r where there is a depth") {
+    using texgen::detail::SlidePlane;
+    const TextureRegion tile = texgen::atlas_tile({0.25, 0.5}, {0.75, 0.625});
+    const std::vector<SlidePlane> expected{{3, 1.0, 0.0},    {0, 1.0, 0.25},   {0, -1.0, 0.75},    {1, 1.0, 0.5},
+                                           {1, -1.0, 0.625}, {2, 1.0, -0.125}, {2, -1.0, infinity}};
+    const auto check = [&](const TextureRegion& region, std::size_t count) {
+        const auto planes = texgen::detail::slide_planes(region);
+        REQUIRE(planes.size() == count);
+        std::size_t k = 0;
+        for (const SlidePlane& plane : planes) {
+            CHECK(plane.coordinate == expected[k].coordinate);
+            CHECK(plane.sign == expected[k].sign);
+            CHECK(plane.bound == expected[k].bound);
+            CHECK(&plane == &planes[k]);
+            ++k;
+        }
+        CHECK(k == count);
+    };
+    check(tile, 5);
+    check(tile.with_depth(-0.125, infinity), 7);
+    CHECK(texgen::detail::slide_planes(tile.with_depth(-0.125, infinity))[6].none() == infinity);
+}
+
+TEST_CASE("a region is empty where its depth is, or one of its numbers is none") {
+    using texgen::detail::is_empty;
+    const TextureRegion tile = texgen::whole_texture();
+    CHECK_FALSE(is_empty(tile));
+    CHECK_FALSE(is_empty(tile.with_depth()));
+    CHECK_FALSE(is_empty(tile.with_depth(0.5, 0.5)));
+    CHECK_FALSE(is_empty(tile.with_depth(-infinity, infinity)));
+    CHECK(is_empty(tile.with_depth(0.5, 0.25)));
+    CHECK(is_empty(tile.with_depth(nan_double, 1.0)));
+    CHECK(is_empty(tile.with_depth(0.0, nan_double)));
+    CHECK(is_empty(texgen::atlas_tile({0.0, 1.0}, {1.0, 0.5}).with_depth()));
+}
+
+static_assert(texgen::whole_texture().with_depth() == texgen::whole_texture().with_depth(0.0, 1.0));
+static_assert(texgen::whole_texture().with_depth(texgen::opengl, DepthMapping::ndc).depth()->x == -1.0);
+static_assert(!texgen::whole_texture().depth());

@@ -186,14 +186,14 @@ namespace TEXGEN_NAMESPACE {
 
 template <class Space>
 std::array<glm::vec4, 5> clip_planes(const Transform<Texture, Space>& texgen, TextureRegion region) noexcept {
+    const auto planes = detail::slide_planes(region);
     std::array<glm::vec4, 5> result;
-    glm::vec4* coefficients = result.data();
-    for (const detail::SlidePlane& plane : detail::slide_planes(region)) {
+    for (std::size_t k = 0; k < result.size(); ++k) {
+        const detail::SlidePlane& plane = planes[k];
         for (glm::length_t i = 0; i < 4; ++i) {
             const glm::dvec4& column = texgen.matrix()[i];
-            (*coefficients)[i] = static_cast<float>(plane.at(plane.coordinate == 0 ? column.x : column.y, column.w));
+            result[k][i] = static_cast<float>(plane.at(column[plane.coordinate], column.w));
         }
-        ++coefficients;
     }
     return result;
 }
@@ -213,8 +213,9 @@ inline std::size_t clip_to_slide(std::span<const ClipVertex> polygon, TextureReg
 
     // q >= 0 comes first, so that what satisfies a side is a cone. Then q = 0 is left only where s = t = 0.
     std::size_t count = polygon.size();
-    for (const detail::SlidePlane& plane : detail::slide_planes(region)) {
-        const detail::SlideDistance side(plane);
+    const auto planes = detail::slide_planes(region);
+    for (std::size_t k = 0; k < planes.without_depth; ++k) {
+        const detail::SlideDistance side(planes[k]);
         count = detail::cut_edges(
             out, count, [&](const ClipVertex& v) { return side.sign(v); },
             [&](const ClipVertex& inside, const ClipVertex& outside) { return cut_at(side, inside, outside); });

@@ -103,7 +103,7 @@ public:
         for (const SlidePlane& plane : planes)
             if (!LitForms::is_usable_side(plane)) return;
         const glm::dmat4 magnitude = absolute(texture_from_eye) * absolute(view);
-        for (std::size_t k = 0; k < planes.size(); ++k) set(forms_[k], matrix, magnitude, planes[k]);
+        for (std::size_t k = 0; k < forms_.size(); ++k) set(forms_[k], matrix, magnitude, planes[k]);
     }
 
     // outside and inside for certain. A form over bounds is its value in the middle, give or take that of half the extents;

@@ -41,7 +41,9 @@ inline TextureRegion cover_aspect(double of_lens, double aspect, const TextureRe
     } else {
         narrow(low.y, high.y, aspect / of_lens);
     }
-    return atlas_tile(low, high);
+    const TextureRegion part = atlas_tile(low, high);
+    const std::optional<glm::dvec2> depth = picture.depth();
+    return depth ? part.with_depth(depth->x, depth->y) : part;
 }
 
 }  // namespace TEXGEN_DETAIL
