@@ -210,17 +210,16 @@ std::string cells_of(const Timings& build, const std::string& scene, const std::
 }
 
 constexpr const char* explanation =
-    "Each row computes what its scene asks for, is checked against the definitions in long double, and is then timed: "
-    "medians of rounds in random order, in processor time, over inputs that change. A time is that of one element: a "
-    "point, a value of alpha, a fragment; for the set-up a triangle. Generate: points to s, t, r, q. Project: "
-    "points to s/q, t/q. Segment: a segment at an array of alpha to s, t. Rows: fragments of a triangle to s, t; q/w "
-    "grows along the rows by the given factor, or not at all (parallel); set-up counts only where it says so. "
-    "Coverage: a box or a sphere "
-    "against one projector. Scene: an update, from frame to frame. Frame: an update and the coordinates of what is "
-    "lit. Errors are the largest, in texels of "
-    "4096 and in units in the last place of float. Speed is relative to the first GLM row of the scene in the same "
-    "run. "
-    "Floors only move bytes.";
+    "Each row computes what its scene asks for, is checked against the definitions in long double, and is then "
+    "timed: medians of rounds in random order, in processor time, over inputs that change. A time is that of one "
+    "element: a point, a value of alpha, a fragment; for the set-up a triangle. Matrices: T_o or T_e made anew, "
+    "as floats, 1000 from the origin. Generate: points to s, t, r, q. Project: points to s/q, t/q. Segment: a "
+    "segment at an array of alpha to s, t, by the C_u note's option (2), interpolate then divide, unless it says "
+    "another. Rows: fragments of a triangle to s, t; q/w grows along the rows by the given factor, or not at all "
+    "(parallel); set-up counts only where it says so. Coverage: a box or a sphere against one projector. Scene: "
+    "an update, from frame to frame. Frame: an update and the coordinates of what is lit. Errors are the "
+    "largest, in texels of 4096 and in units in the last place of float. Speed is relative to the first GLM row "
+    "of the scene in the same run. Floors only move bytes.";
 
 }  // namespace
 

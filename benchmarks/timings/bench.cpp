@@ -149,6 +149,7 @@ int main(int count, char** arguments) {
     benchmark::AddCustomContext("flags", TEXGEN_REPORT_FLAGS);
     benchmark::Initialize(&all_count, all.data());
     if (benchmark::ReportUnrecognizedArguments(all_count, all.data())) return 2;
+    bench::add_matrices();
     bench::add_generate();
     bench::add_project();
     bench::add_segment();

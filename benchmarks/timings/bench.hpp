@@ -19,6 +19,7 @@
 namespace bench {
 
 // The workloads.
+void add_matrices();
 void add_generate();
 void add_project();
 void add_segment();

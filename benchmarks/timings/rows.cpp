@@ -115,6 +115,15 @@ struct GlmLoop {
     }
 };
 
+// The C_u note's option (3) over a triangle: the quotients of its vertices, interpolated as ordinary coordinates are.
+struct DividedAtVertices : GlmLoop<report::GlmPlanes> {
+    explicit DividedAtVertices(Triangle triangle) : GlmLoop(divided(triangle)) {}
+    static const Triangle& divided(Triangle& triangle) {
+        for (texgen::WindowVertex* vertex : {&triangle.a, &triangle.b, &triangle.c}) vertex->strq /= vertex->strq.w;
+        return triangle;
+    }
+};
+
 struct EigenRows {
     report::EigenPlanes<4096> peer;
     explicit EigenRows(const Triangle& triangle) : peer(triangle) {}
@@ -257,6 +266,7 @@ void add_scene(const Shape& shape) {
     add_peer<GlmLoop<report::GlmPlanes>>(rows, "GLM, plane equations");
     add_peer<GlmLoop<report::GlmBarycentric>>(rows, "GLM, barycentric");
     add_peer<EigenRows>(rows, "Eigen, plane equations in arrays");
+    add_peer<DividedAtVertices>(rows, "rejected: divided at the vertices: option (3)");
     add_peer<ForwardDifferences>(rows, "rejected: forward differences");
     add_peer<DivisionEvery16>(rows, "rejected: division every 16");
 #ifdef TEXGEN_BENCH_ESTIMATE

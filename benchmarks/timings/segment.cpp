@@ -1,5 +1,6 @@
-// A segment at an array of alpha to s, t.
+// A segment at an array of alpha to s, t, by the three options of the C_u note.
 
+#include <cmath>
 #include <memory>
 #include <random>
 #include <string>
@@ -7,6 +8,11 @@
 
 #include <Eigen/Core>
 #include <glm/common.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <texgen/interpolate.hpp>
 #include <texgen/reference.hpp>
@@ -21,6 +27,33 @@ namespace {
 constexpr Eigen::Index block = 256;
 constexpr std::size_t segment_count = 8;
 
+// A segment in space, and the projector's matrix. The elements and coordinates are so short that their products and sums are
+// floats: the ends' (s, t, r, q) are exact, and every option has the same segment.
+struct Projected {
+    glm::mat4 texture_from_space;
+    glm::vec3 a, b;
+
+    texgen::Segment segment() const {
+        return {texture_from_space * glm::vec4(a, 1), texture_from_space * glm::vec4(b, 1)};
+    }
+};
+
+// (s, t, q) of the ends, s and t divided.
+Projected projected(const glm::dvec3& position, const glm::dvec3& a, const glm::dvec3& b) {
+    const glm::dmat4 bias(0.5, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, 0.5, 0, 0.5, 0.5, 0.5, 1);
+    glm::dmat4 matrix =
+        bias * glm::perspective(1.0, 1.0, 0.5, 100.0) * glm::lookAt(position, glm::dvec3(0), glm::dvec3(0, 1, 0));
+    for (int column = 0; column < 4; ++column) matrix[column] = glm::round(matrix[column] * 64.0) / 64.0;
+    const glm::dmat4 rows = glm::transpose(matrix);
+    const auto point = [&](const glm::dvec3& stq) {
+        const glm::dvec3 homogeneous(stq.x * stq.z, stq.y * stq.z, stq.z);
+        const glm::dvec3 from_zero = homogeneous - glm::dvec3(rows[0].w, rows[1].w, rows[3].w);
+        const glm::dmat3 stq_rows{glm::dvec3(rows[0]), glm::dvec3(rows[1]), glm::dvec3(rows[3])};
+        return glm::vec3(glm::round(from_zero * glm::inverse(stq_rows) * 256.0) / 256.0);
+    };
+    return {glm::mat4(matrix), point(a), point(b)};
+}
+
 class Segments {
 public:
     explicit Segments(std::size_t count)
@@ -29,14 +62,17 @@ public:
         const auto between = [&](double low, double high) {
             return std::uniform_real_distribution<double>(low, high)(random);
         };
-        const auto end = [&](double q, double s, double t) { return glm::vec4(s * q, t * q, 0.5 * q, q); };
-        for (std::size_t i = 0; i < segment_count; ++i)
-            segments_.push_back({end(between(1, 2), between(0, 0.3), between(0, 0.3)),
-                                 end(between(1, 8), between(0.7, 1), between(0.7, 1))});
+        for (std::size_t i = 0; i < segment_count; ++i) {
+            const glm::dvec3 position(between(-2, 2), between(1, 3), between(3, 5));
+            const glm::dvec3 a(between(0, 0.3), between(0, 0.3), between(1, 2));
+            projected_.push_back(projected(position, a, glm::dvec3(between(0.7, 1), between(0.7, 1), between(1, 8))));
+            segments_.push_back(projected_.back().segment());
+        }
     }
 
     const Scene& scene() const { return scene_; }
     std::size_t size() const { return scene_.elements; }
+    const Projected& in_space(std::size_t i) const { return projected_[i]; }
     const texgen::Segment& segment(std::size_t i) const { return segments_[i]; }
     const float* alpha() const { return input(size()); }
     float* s() const { return output(size(), 0); }
@@ -53,6 +89,7 @@ public:
 
 private:
     Scene scene_;
+    std::vector<Projected> projected_;
     std::vector<texgen::Segment> segments_;
 };
 
@@ -82,6 +119,25 @@ void short_mix(const Segments& work, std::size_t i) {
     const texgen::Segment segment = work.segment(i);
     const glm::vec4 difference = segment.b - segment.a;
     glm_loop(work, [&](float alpha) { return segment.a + alpha * difference; });
+}
+
+void direct_projection(const Segments& work, std::size_t i) {
+    const Projected projected = work.in_space(i);
+    glm_loop(work, [&](float alpha) {
+        return projected.texture_from_space * glm::vec4(glm::mix(projected.a, projected.b, alpha), 1.0f);
+    });
+}
+
+void divided_ends(const Segments& work, std::size_t i) {
+    const texgen::Segment segment = work.segment(i);
+    const glm::vec4 a = segment.a / segment.a.w, b = segment.b / segment.b.w;
+    const float* alpha = work.alpha();
+    float *s = work.s(), *t = work.t();
+    for (std::size_t k = 0; k < work.size(); ++k) {
+        const glm::vec4 mixed = glm::mix(a, b, alpha[k]);
+        s[k] = mixed.x;
+        t[k] = mixed.y;
+    }
 }
 
 void eigen_arrays(const Segments& work, std::size_t i) {
@@ -123,7 +179,9 @@ void add_scene(std::size_t count) {
         add(stop.name, stop.tolerance.value,
             [tolerance = stop.tolerance](const Segments& segments, std::size_t i) { ours(segments, i, tolerance); });
     add("GLM, mix", promises_nothing, glm_mix);
+    add("GLM, mat4 * mix of points: option (1)", promises_nothing, direct_projection);
     add("Eigen, array blocks", promises_nothing, eigen_arrays);
+    add("rejected: divided at the ends: option (3)", promises_nothing, divided_ends);
     add("rejected: A + a(B-A)", promises_nothing, short_mix);
 #ifdef TEXGEN_BENCH_ESTIMATE
     add("rejected: rcp", promises_nothing, estimated<0>);
