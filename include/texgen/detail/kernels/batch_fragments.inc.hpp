@@ -1,4 +1,4 @@
-// The inner loops of a batch: fragments of any of its triangles. Included by kernels.inc.hpp.
+// The inner loops of a batch: fragments of any of its triangles. Included by batch.inc.hpp.
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 

@@ -1,4 +1,4 @@
-// The inner loops of a batch: a block of triangles made ready, and their functions in lanes. Included by kernels.inc.hpp.
+// The inner loops of a batch: a block of triangles made ready, and their functions in lanes. Included by batch.inc.hpp.
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 

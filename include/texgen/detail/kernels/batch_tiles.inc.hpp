@@ -1,4 +1,4 @@
-// The inner loops of a batch: small tiles, without what a large one is surveyed for. Included by kernels.inc.hpp.
+// The inner loops of a batch: small tiles, without what a large one is surveyed for. Included by batch.inc.hpp.
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 

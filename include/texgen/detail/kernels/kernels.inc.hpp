@@ -1,6 +1,12 @@
-// The inner loops, a file a concern, and the tables of them. Included by lanes.hpp once per instruction set, inside that set's
-// target region, so that one source serves all of them. A kernel gets plain numbers; the only decisions that it makes are how a
-// chunk of a row is divided and what is in doubt.
+// The inner loops, a file a concern, and the tables of them. Included by instruction_sets.inc.hpp once per instruction set, inside
+// that set's target region, so that one source serves all of them. A kernel gets plain numbers; the only decisions that it makes
+// are how a chunk of a row is divided and what is in doubt.
+
+#ifdef TEXGEN_HAS_VECTORS
+#include "../simd/vectors.inc.hpp"
+#else
+#include "../simd/loops.inc.hpp"
+#endif
 
 #include "stores.inc.hpp"
 #include "tiles.inc.hpp"
@@ -11,45 +17,60 @@
 #include "points.inc.hpp"
 #include "segments.inc.hpp"
 
-#include "batch_set_up.inc.hpp"
-
-#include "batch_fragments.inc.hpp"
-#include "batch_tiles.inc.hpp"
 #include "boxes.inc.hpp"
 #include "footprint.inc.hpp"
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-template <class Table>
-const Table& kernels() noexcept {
-    if constexpr (std::is_same_v<Table, TileKernels>) {
+// The kernels of a kind, compiled where it is asked for.
+template <class Table, class CompiledWhereCalled = void>
+struct KernelTable;
+
+template <class CompiledWhereCalled>
+struct KernelTable<TileKernels, CompiledWhereCalled> {
+    static const TileKernels& get() noexcept {
         static constexpr TileKernels table{.fill_exact = fill_tile_exact<>,
                                            .fill_float_divided = fill_tile_float_divided<>,
                                            .fill_polynomial = fill_tile_polynomial<>,
                                            .fill_closely = fill_tile_closely<>};
         return table;
-    } else if constexpr (std::is_same_v<Table, PointKernels>) {
+    }
+};
+
+template <class CompiledWhereCalled>
+struct KernelTable<PointKernels, CompiledWhereCalled> {
+    static const PointKernels& get() noexcept {
         static constexpr PointKernels table{.fill_exact = fill_points_exact<>,
                                             .fill_all_float = fill_points_within<FormsInFloat>,
                                             .fill_float_divided = fill_points_within<FormsInDouble>,
                                             .generate = generate_points<>};
         return table;
-    } else if constexpr (std::is_same_v<Table, SegmentKernels>) {
+    }
+};
+
+template <class CompiledWhereCalled>
+struct KernelTable<SegmentKernels, CompiledWhereCalled> {
+    static const SegmentKernels& get() noexcept {
         static constexpr SegmentKernels table{.fill_exact = fill_segment_exact<>,
                                               .fill_all_float = fill_segment_all_float<>};
         return table;
-    } else if constexpr (std::is_same_v<Table, FootprintKernels>) {
+    }
+};
+
+template <class CompiledWhereCalled>
+struct KernelTable<FootprintKernels, CompiledWhereCalled> {
+    static const FootprintKernels& get() noexcept {
         static constexpr FootprintKernels table{.differentiate = differentiate<>, .filter = filter<>};
         return table;
-    } else if constexpr (std::is_same_v<Table, BatchKernels>) {
-        static constexpr BatchKernels table{.set_up = set_up_batch<>,
-                                            .divide_tiles = divide_batch_tiles<>,
-                                            .divide_fragments = divide_batch_fragments<>};
-        return table;
-    } else {
+    }
+};
+
+template <class CompiledWhereCalled>
+struct KernelTable<BoxKernels, CompiledWhereCalled> {
+    static const BoxKernels& get() noexcept {
         static constexpr BoxKernels table{.classify = classify<>, .bound = bound<>, .separate = separate<>};
         return table;
     }
-}
+};
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA

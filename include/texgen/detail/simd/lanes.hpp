@@ -1,6 +1,6 @@
 #pragma once
 
-// Which vectors the inner loops run on. The only file with #if on instruction sets.
+// Which vectors the inner loops run on. The only file with #if on instruction sets, with instruction_sets.inc.hpp beside it.
 //
 // With GCC 12 or Clang the kernels are written on the vectors of the language, and compiled once for the instruction set of
 // the flags and, on x86-64, once more for AVX2 and for AVX-512; the machine decides which runs. A table of kernels is
@@ -21,7 +21,6 @@
 
 #include "../arithmetic/rounding.hpp"
 #include "../language.hpp"
-#include "batch_jobs.hpp"
 #include "box_kernels.hpp"
 #include "jobs.hpp"
 
@@ -35,6 +34,7 @@
 
 #ifndef TEXGEN_HAS_VECTORS
 
+#define TEXGEN_FLAGS(name) scalar
 #define TEXGEN_BUILD TEXGEN_NAMED(TEXGEN_COMPILER, _scalar)
 #define TEXGEN_INLINE inline
 #define TEXGEN_APART
@@ -66,55 +66,36 @@ inline Double2 larger(const Double2& a, const Double2& b) noexcept {
 
 }  // namespace TEXGEN_DETAIL
 
-#define TEXGEN_ISA scalar
-#include "loops.inc.hpp"
-
-#include "../kernels/kernels.inc.hpp"
-#undef TEXGEN_ISA
-#undef TEXGEN_INLINE
-#undef TEXGEN_UNROLL
-#undef TEXGEN_APART
-
-namespace TEXGEN_DETAIL {
-inline namespace TEXGEN_BUILD {
-template <class Table>
-const Table& chosen() noexcept {
-    return scalar::kernels<Table>();
-}
-namespace of_flags = scalar;
-}  // namespace TEXGEN_BUILD
-}  // namespace TEXGEN_DETAIL
-
 #else
 
 #if defined(__AVX512F__) && defined(__AVX512VL__) && defined(__AVX512DQ__) && defined(__AVX512BW__)
 #define TEXGEN_FLAGS(name) name##avx512
-#define TEXGEN_LANE_BYTES 64
+#define TEXGEN_BYTES_BY_FLAGS 64
 #elif defined(__AVX2__) && defined(__FMA__)
 #define TEXGEN_FLAGS(name) name##avx2
-#define TEXGEN_LANE_BYTES 32
+#define TEXGEN_BYTES_BY_FLAGS 32
 #elif defined(__AVX__) && defined(__FMA__)
 #define TEXGEN_FLAGS(name) name##avx_fma
-#define TEXGEN_LANE_BYTES 32
+#define TEXGEN_BYTES_BY_FLAGS 32
 #elif defined(__AVX__)
 #define TEXGEN_FLAGS(name) name##avx
-#define TEXGEN_LANE_BYTES 32
+#define TEXGEN_BYTES_BY_FLAGS 32
 #elif defined(__SSE4_1__)
 #define TEXGEN_FLAGS(name) name##sse4
-#define TEXGEN_LANE_BYTES 16
+#define TEXGEN_BYTES_BY_FLAGS 16
 #elif defined(__aarch64__)
 #define TEXGEN_FLAGS(name) name##neon
-#define TEXGEN_LANE_BYTES 16
+#define TEXGEN_BYTES_BY_FLAGS 16
 #else
 #define TEXGEN_FLAGS(name) name##base
-#define TEXGEN_LANE_BYTES 16
+#define TEXGEN_BYTES_BY_FLAGS 16
 #endif
 
 // The stack of Win64 is aligned to 16 bytes, but GCC keeps wider vectors there as if it were to theirs (its bug 54412).
 #if defined(_WIN64) && !defined(__clang__)
 #define TEXGEN_STACK_HOLDS_NARROW_VECTORS
-#undef TEXGEN_LANE_BYTES
-#define TEXGEN_LANE_BYTES 16
+#undef TEXGEN_BYTES_BY_FLAGS
+#define TEXGEN_BYTES_BY_FLAGS 16
 #endif
 
 #define TEXGEN_INLINE [[gnu::always_inline]] inline
@@ -145,115 +126,51 @@ TEXGEN_INLINE Double2 magnitude(const Double2& a) noexcept { return larger(a, -a
 
 }  // namespace TEXGEN_DETAIL
 
-// Vector arguments never cross a call that is not inlined, so their calling convention does not matter.
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wpsabi"
-
-#define TEXGEN_ISA TEXGEN_FLAGS(flags_)
-#include "vectors.inc.hpp"
-
-#include "../kernels/kernels.inc.hpp"
-#undef TEXGEN_ISA
-#undef TEXGEN_LANE_BYTES
-
 // The compilers of CUDA and HIP read a file for the device too, as if its processor were this one.
 #if defined(__x86_64__) && !defined(TEXGEN_NO_DISPATCH) && !defined(__AVX512F__) && \
     !defined(TEXGEN_STACK_HOLDS_NARROW_VECTORS) && !defined(__CUDACC__) && !defined(__HIP__)
-
+#define TEXGEN_DISPATCHES
 #define TEXGEN_BUILD TEXGEN_NAMED(TEXGEN_COMPILER, TEXGEN_FLAGS(_dispatched_))
-
-#define TEXGEN_ISA avx512
-#define TEXGEN_LANE_BYTES 64
-#ifdef __clang__
-#pragma clang attribute push(__attribute__((target("avx512f,avx512vl,avx512dq,avx512bw,avx2,fma"))), \
-                             apply_to = function)
 #else
-#pragma GCC push_options
-#pragma GCC target("avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,prefer-vector-width=512")
+#define TEXGEN_BUILD TEXGEN_NAMED(TEXGEN_COMPILER, TEXGEN_FLAGS(_))
 #endif
-#include "vectors.inc.hpp"
 
-#include "../kernels/kernels.inc.hpp"
-#ifdef __clang__
-#pragma clang attribute pop
-#else
-#pragma GCC pop_options
 #endif
-#undef TEXGEN_ISA
-#undef TEXGEN_LANE_BYTES
 
-#define TEXGEN_ISA avx2
-#define TEXGEN_LANE_BYTES 32
-#ifdef __clang__
-#pragma clang attribute push(__attribute__((target("avx2,fma"))), apply_to = function)
-#else
-#pragma GCC push_options
-#pragma GCC target("avx2,fma")
-#endif
-#include "vectors.inc.hpp"
-
-#include "../kernels/kernels.inc.hpp"
-#ifdef __clang__
-#pragma clang attribute pop
-#else
-#pragma GCC pop_options
-#endif
-#undef TEXGEN_ISA
-#undef TEXGEN_LANE_BYTES
+#define TEXGEN_KERNELS "../kernels/kernels.inc.hpp"
+#include "instruction_sets.inc.hpp"
+#undef TEXGEN_KERNELS
 
 namespace TEXGEN_DETAIL {
 inline namespace TEXGEN_BUILD {
+
+namespace of_flags = TEXGEN_FLAGS(flags_);
 
 template <class Table>
 const Table& choose() noexcept {
+#ifdef TEXGEN_DISPATCHES
     __builtin_cpu_init();
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq") &&
         __builtin_cpu_supports("avx512bw"))
-        return avx512::kernels<Table>();
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return avx2::kernels<Table>();
-    return TEXGEN_FLAGS(flags_)::kernels<Table>();
+        return avx512::KernelTable<Table>::get();
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return avx2::KernelTable<Table>::get();
+#endif
+    return of_flags::KernelTable<Table>::get();
 }
 
 template <class Table>
 const Table& chosen() noexcept {
+#ifdef TEXGEN_DISPATCHES
     static const Table& table = choose<Table>();
     return table;
-}
-namespace of_flags = TEXGEN_FLAGS(flags_);
-
-}  // namespace TEXGEN_BUILD
-}  // namespace TEXGEN_DETAIL
-
 #else
-
-#define TEXGEN_BUILD TEXGEN_NAMED(TEXGEN_COMPILER, TEXGEN_FLAGS(_))
-
-namespace TEXGEN_DETAIL {
-inline namespace TEXGEN_BUILD {
-template <class Table>
-const Table& chosen() noexcept {
-    return TEXGEN_FLAGS(flags_)::kernels<Table>();
+    return choose<Table>();
+#endif
 }
-namespace of_flags = TEXGEN_FLAGS(flags_);
-}  // namespace TEXGEN_BUILD
-}  // namespace TEXGEN_DETAIL
 
-#endif
-
-#pragma GCC diagnostic pop
-#undef TEXGEN_STACK_HOLDS_NARROW_VECTORS
-#undef TEXGEN_EIGHT_DOUBLES
-#undef TEXGEN_INLINE
-#undef TEXGEN_UNROLL
-#undef TEXGEN_APART
-
-#endif
-#undef TEXGEN_HAS_VECTORS
-
-namespace TEXGEN_DETAIL {
-inline namespace TEXGEN_BUILD {
 struct ThisBuild;  // what members of a class of all builds are compiled for
-}
+
+}  // namespace TEXGEN_BUILD
 }  // namespace TEXGEN_DETAIL
 
 #ifdef TEXGEN_SEPARATE_KERNELS
@@ -269,8 +186,6 @@ TEXGEN_EXTERN template const PointKernels& chosen<PointKernels>() noexcept;
 TEXGEN_EXTERN template const SegmentKernels& chosen<SegmentKernels>() noexcept;
 TEXGEN_EXTERN template const FootprintKernels& chosen<FootprintKernels>() noexcept;
 TEXGEN_EXTERN template const BoxKernels& chosen<BoxKernels>() noexcept;
-TEXGEN_EXTERN template const BatchKernels& chosen<BatchKernels>() noexcept;
 }  // namespace TEXGEN_BUILD
 }  // namespace TEXGEN_DETAIL
-#undef TEXGEN_EXTERN
 #endif

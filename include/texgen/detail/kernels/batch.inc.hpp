@@ -1,0 +1,20 @@
+// The inner loops of batches, and the table of them. Included by instruction_sets.inc.hpp once per instruction set.
+
+#include "batch_set_up.inc.hpp"
+
+#include "batch_fragments.inc.hpp"
+#include "batch_tiles.inc.hpp"
+
+namespace TEXGEN_DETAIL::TEXGEN_ISA {
+
+template <class CompiledWhereCalled>
+struct KernelTable<BatchKernels, CompiledWhereCalled> {
+    static const BatchKernels& get() noexcept {
+        static constexpr BatchKernels table{.set_up = set_up_batch<>,
+                                            .divide_tiles = divide_batch_tiles<>,
+                                            .divide_fragments = divide_batch_fragments<>};
+        return table;
+    }
+};
+
+}  // namespace TEXGEN_DETAIL::TEXGEN_ISA
