@@ -9,7 +9,7 @@
 //   TEXGEN_SCALAR            plain loops, as for every other compiler
 //   TEXGEN_NO_DISPATCH       only the instruction set of the flags
 //   TEXGEN_SEPARATE_KERNELS  the kernels are compiled in one file for all others of the same compiler and flags: in the
-//                            file that defines TEXGEN_DEFINE_KERNELS too, before it includes texgen
+//                            file that defines TEXGEN_DEFINE_KERNELS too, before it includes texgen.hpp (and batch.hpp)
 
 #include <cmath>
 #include <cstddef>
