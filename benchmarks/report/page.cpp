@@ -30,10 +30,11 @@ body { font: 16px/1.5 system-ui, sans-serif; color: #1c1e24; background: #fff;
 h1, h2, h3 { line-height: 1.2; } h1 { margin: 0; } h2 { margin-top: 3rem; } h3 { margin-top: 2rem; }
 .lead { font-size: 1.15rem; margin: 0.3rem 0 1rem; }
 .first, .task, .pictures { display: grid; gap: 1.5rem; grid-template-columns: repeat(auto-fit, minmax(min(100%, 20rem), 1fr)); }
-.first, .pairs { grid-template-columns: repeat(auto-fit, minmax(min(100%, 26rem), 1fr)); }
+.first { grid-template-columns: repeat(auto-fit, minmax(min(100%, 26rem), 1fr)); }
+.pairs { grid-template-columns: repeat(auto-fit, minmax(min(100%, 20rem), 25rem)); }
 .first > *, .task > *, .pictures > * { min-width: 0; }
 .first ul { margin: 0; padding-left: 1.2rem; } .first li { margin-bottom: 0.8rem; }
-.pictures figure { max-width: 34rem; }
+.pictures figure { max-width: 25rem; }
 figure { margin: 0; } .chart { max-width: 36rem; } figure img, .chart > svg { width: 100%; display: block; }
 figcaption { font-size: 0.9rem; margin-top: 0.4rem; color: #444a55; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: 0.92rem; }
@@ -93,9 +94,10 @@ constexpr Task footprints{
 constexpr const Task* tasks[] = {&points, &rows, &small_triangles, &bodies, &scenes, &footprints};
 
 std::string figure(const PictureOfScene& picture, const std::string& title) {
-    return "<figure><a href=\"" + picture.file + "\"><img alt=\"" + escaped(title) +
-           "\" src=\"data:image/jpeg;base64," + base64(picture.jpeg) + "\"></a><figcaption>" +
-           escaped(picture.caption) + "</figcaption></figure>\n";
+    const char* type = picture.embedded.starts_with("\x89PNG") ? "png" : "jpeg";
+    return "<figure><a href=\"" + picture.file + "\"><img alt=\"" + escaped(title) + "\" src=\"data:image/" + type +
+           ";base64," + base64(picture.embedded) + "\"></a><figcaption>" + escaped(picture.caption) +
+           "</figcaption></figure>\n";
 }
 
 std::string figures(const std::vector<PictureOfScene>& pictures, const std::string& title) {

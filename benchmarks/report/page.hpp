@@ -15,7 +15,7 @@ namespace report {
 
 // A picture as its file beside the page, and as what the page shows of it.
 struct PictureOfScene {
-    std::string file, caption, png, jpeg;
+    std::string file, caption, png, embedded;  // embedded: PNG or JPEG, whichever is smaller
 };
 
 struct SceneReport {

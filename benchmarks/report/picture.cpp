@@ -81,20 +81,40 @@ bool huffman_tables_fit(const std::string& jpeg) {
     }
 }
 
-// The mean of each factor x factor block of colour(x, y); blocks at the right and the bottom may be cut.
+// The mean of each factor x factor block of colour(x, y); a pixel counts by how much of it is in the block, and blocks at the
+// right and the bottom may be cut.
 template <class Colour>
-Picture reduced(int width, int height, int factor, const Colour& colour) {
-    Picture picture((width + factor - 1) / factor, (height + factor - 1) / factor, glm::vec3(0));
+Picture reduced(int width, int height, float factor, const Colour& colour) {
+    const auto blocks = [factor](int side) {
+        return static_cast<int>(std::ceil(static_cast<float>(side) / factor - 1e-3f));
+    };
+    const auto share = [factor](int pixel, int block) {
+        const auto from = static_cast<float>(pixel), to = from + 1.0f, start = static_cast<float>(block) * factor;
+        return std::max(0.0f, std::min(to, start + factor) - std::max(from, start));
+    };
+    const auto last = [factor](int block, int side) {
+        return std::min(static_cast<int>(std::ceil(static_cast<float>(block + 1) * factor)), side);
+    };
+    Picture picture(blocks(width), blocks(height), glm::vec3(0));
     for (int y = 0; y < picture.height; ++y) {
         for (int x = 0; x < picture.width; ++x) {
-            const int right = std::min((x + 1) * factor, width);
-            const int bottom = std::min((y + 1) * factor, height);
-            for (int row = y * factor; row < bottom; ++row)
-                for (int column = x * factor; column < right; ++column) picture.at(x, y) += colour(column, row);
-            picture.at(x, y) /= static_cast<float>((right - x * factor) * (bottom - y * factor));
+            float sum = 0.0f;
+            for (int row = static_cast<int>(static_cast<float>(y) * factor); row < last(y, height); ++row) {
+                for (int column = static_cast<int>(static_cast<float>(x) * factor); column < last(x, width); ++column) {
+                    const float weight = share(row, y) * share(column, x);
+                    picture.at(x, y) += weight * colour(column, row);
+                    sum += weight;
+                }
+            }
+            picture.at(x, y) /= sum;
         }
     }
     return picture;
+}
+
+// How many pixels a side become one where at most so many are wanted.
+float factor_of(const Picture& picture, int most) {
+    return std::max(1.0f, static_cast<float>(std::max(picture.width, picture.height)) / static_cast<float>(most));
 }
 
 unsigned char to_byte(float value) {
@@ -145,7 +165,8 @@ Picture load_picture(const std::filesystem::path& file) {
         const unsigned char* rgb = decoded + 3 * (static_cast<std::ptrdiff_t>(y) * width + x);
         return glm::vec3(rgb[0], rgb[1], rgb[2]) / 255.0f;
     };
-    return reduced(width, height, (std::max(width, height) + largest_side - 1) / largest_side, colour);
+    const int factor = (std::max(width, height) + largest_side - 1) / largest_side;
+    return reduced(width, height, static_cast<float>(factor), colour);
 }
 
 std::string encode_png(const Picture& picture) {
@@ -157,15 +178,26 @@ std::string encode_png(const Picture& picture) {
 }
 
 std::string encode_jpeg(const Picture& picture) {
-    constexpr int quality = 75;
+    constexpr int quality = 70;
     std::string jpeg;
     if (!stbi_write_jpg_to_func(append, &jpeg, picture.width, picture.height, 3, bytes_of(picture).data(), quality))
         throw Failure{"cannot encode a picture: out of memory"};
     return jpeg;
 }
 
-Picture reduced(const Picture& picture, int factor) {
-    return reduced(picture.width, picture.height, factor, [&](int x, int y) { return picture.at(x, y); });
+Picture reduced(const Picture& picture, int most) {
+    return reduced(picture.width, picture.height, factor_of(picture, most),
+                   [&](int x, int y) { return picture.at(x, y); });
+}
+
+Picture thinned(const Picture& picture, int most) {
+    const float factor = factor_of(picture, most);
+    const auto size = [factor](int side) { return std::max(1, static_cast<int>(static_cast<float>(side) / factor)); };
+    const auto middle = [factor](int i) { return static_cast<int>((static_cast<float>(i) + 0.5f) * factor); };
+    Picture part(size(picture.width), size(picture.height), glm::vec3(0));
+    for (int y = 0; y < part.height; ++y)
+        for (int x = 0; x < part.width; ++x) part.at(x, y) = picture.at(middle(x), middle(y));
+    return part;
 }
 
 Picture cropped(const Picture& picture, int x, int y, int width, int height) {

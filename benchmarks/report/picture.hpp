@@ -40,8 +40,10 @@ std::string encode_png(const Picture& picture);
 // With losses that the page's small pictures bear.
 std::string encode_jpeg(const Picture& picture);
 
-// The mean of each square of `factor` pixels.
-Picture reduced(const Picture& picture, int factor);
+// At most so many pixels a side: each is the mean of what it covers, or as it is in the middle of that, where colours stand
+// for numbers.
+Picture reduced(const Picture& picture, int most);
+Picture thinned(const Picture& picture, int most);
 
 // The part of at most that size that begins at (x, y).
 Picture cropped(const Picture& picture, int x, int y, int width, int height);

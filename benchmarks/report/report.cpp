@@ -162,17 +162,44 @@ std::string processor() {
     return "unknown";
 }
 
-// Small enough for the page; filters are shown pixel for pixel instead, in a part that is neither near nor far.
-Picture embedded(const Picture& picture, Sampling sampling) {
-    constexpr int most = 512;
-    if (sampling == Sampling::nearest || sampling == Sampling::trilinear || sampling == Sampling::anisotropic)
-        return cropped(picture, picture.width * 3 / 8, picture.height * 17 / 64, 448, 320);
-    return reduced(picture, (std::max(picture.width, picture.height) + most - 1) / most);
+// How much of a picture the page needs, which has 400 pixels for one, and more for the first.
+enum class InPage { first, reduced, thinned, part };
+
+// Filters are shown pixel for pixel, in a part that is neither near nor far.
+InPage in_page(Sampling sampling) {
+    switch (sampling) {
+        case Sampling::nearest:
+        case Sampling::trilinear:
+        case Sampling::anisotropic:
+            return InPage::part;
+        case Sampling::level_as_colour:
+        case Sampling::anisotropy_as_colour:
+            return InPage::thinned;
+        case Sampling::error_as_colour:
+        case Sampling::bilinear:
+            break;
+    }
+    return InPage::reduced;
 }
 
-PictureOfScene shown(const std::string& file, const std::string& caption, const Picture& picture,
-                     Sampling sampling = Sampling::bilinear) {
-    return {file, caption, encode_png(picture), encode_jpeg(embedded(picture, sampling))};
+Picture embedded(const Picture& picture, InPage in_page) {
+    switch (in_page) {
+        case InPage::first:
+            return reduced(picture, 512);
+        case InPage::thinned:
+            return thinned(picture, 400);
+        case InPage::part:
+            return cropped(picture, picture.width * 3 / 8, picture.height * 17 / 64, 344, 256);
+        case InPage::reduced:
+            break;
+    }
+    return reduced(picture, 400);
+}
+
+PictureOfScene shown(const std::string& file, const std::string& caption, const Picture& picture, InPage in_page) {
+    const Picture small = embedded(picture, in_page);
+    const std::string png = encode_png(small), jpeg = encode_jpeg(small);
+    return {file, caption, encode_png(picture), png.size() < jpeg.size() ? png : jpeg};
 }
 
 Report make_report(const Options& options, const Setting& setting) {
@@ -198,8 +225,9 @@ Report make_report(const Options& options, const Setting& setting) {
         SceneReport result{.name = scene.name, .title = scene.title, .comparison = {}, .pictures = {}};
         for (const View& view : scene.views) {
             progress.show("rendering " + view.file);
-            result.pictures.push_back(
-                shown(view.file, view.caption, render(scene, view, options.width, options.height), view.sampling));
+            const bool is_first = &view == &scenes.front().views.front();
+            result.pictures.push_back(shown(view.file, view.caption, render(scene, view, options.width, options.height),
+                                            is_first ? InPage::first : in_page(view.sampling)));
         }
         progress.show("measuring " + scene.name);
         const Workload work = rasterize(scene.views.front().surfaces, scene.camera, options.width, options.height);
@@ -209,11 +237,12 @@ Report make_report(const Options& options, const Setting& setting) {
     progress.show("lighting the room");
     report.room = make_room(*setting.slide, options.width, options.height);
     report.room_pictures = {
-        shown("room.png", "A projector lights what its slide falls on; nothing casts shadows.", report.room.picture),
+        shown("room.png", "A projector lights what its slide falls on; nothing casts shadows.", report.room.picture,
+              InPage::reduced),
         shown("room_work.png",
               "The dearest work that a projector asks of each rectangle, for 1/512 texel of 4096: dark none, blue "
               "affine, green quadratic, yellow a division, red a division and a test.",
-              report.room.work_picture)};
+              report.room.work_picture, InPage::thinned)};
     progress.show("measuring triangles of all sizes");
     report.times_by_size = times_by_size();
     progress.show("measuring errors far from the origin");
