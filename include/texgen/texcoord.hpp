@@ -30,7 +30,8 @@
 
 namespace TEXGEN_NAMESPACE {
 
-// Divided coordinates, planar. An empty span is not computed. lit is 1 where the slide falls and 0 elsewhere.
+// Divided coordinates, planar. An empty span is not computed. lit is 1 where the slide falls and 0 elsewhere: in the sides
+// of its region and, where it has one, in its depth.
 struct Texcoords {
     std::span<float> s, t, r, lit;
 };
@@ -155,8 +156,9 @@ void generate(const Transform<Texture, Space>& texture_from_space, Positions<Spa
 // Guarantee: in front (q > 0, decided exactly) each is within max(tolerance, 1/2 ulp) of the exact value of the given
 // numbers (r: the tolerance relative to max(1, |r|)). With `exact` each is the nearest float, whatever the layout, the
 // count, the place or the build, as long as no product of a matrix element and a coordinate leaves 2^-900 .. 2^1000.
-// lit = 1 inside the closed region, decided from the s and t that are (or would be) written. Behind, s = t = r = lit = 0.
-// No allocation, noexcept.
+// lit = 1 inside the closed region, decided from the s and t, and with a depth from the r, that are (or would be) written.
+// Behind, s = t = r = lit = 0. r costs a depth no more than itself, and points that s and t leave dark in company not even
+// that. No allocation, noexcept.
 // Shapes: as many outputs as positions, or none (asserted); outputs must not overlap the positions.
 // Bad input: NaN and infinity spoil their own point only; a point whose q is NaN is behind.
 // Source: Everitt, Projective Texture Mapping, section 2; the reverse projection is behind q = 0.

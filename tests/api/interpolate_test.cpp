@@ -108,14 +108,17 @@ TEST_CASE("every fragment is the nearest float of the exact rational, in every f
     for (const HardFamily& family : support::hard_families) {
         CAPTURE(std::string(family.name));
         Random random(++seed);
-        constexpr int members = 150;
+        constexpr int members = 180;
         int hard = 0;
         Seen seen;
         for (int i = 0; i < members; ++i) {
             const Shot shot = family.make(random);
             hard += family.is_hard(shot, ExactTriangle(shot.triangle));
             Outputs out(count_of(shot.rect), Outputs::all, static_cast<std::size_t>(random.integer(0, 15)));
-            require_right(shot, random.coin() ? everywhere() : texgen::whole_texture(), out, seen);
+            const texgen::TextureRegion region = random.coin()
+                                                     ? support::region_at(shot, ExactTriangle(shot.triangle), random)
+                                                     : texgen::whole_texture();
+            require_right(shot, random.integer(0, 2) == 0 ? region : everywhere(), out, seen);
         }
         CHECK(hard >= family.least_share * members);
         CHECK(seen.in_front > 500);
@@ -228,13 +231,13 @@ TEST_CASE("a value depends neither on what else is asked, nor on the alignment, 
         +[](Random& r) { return support::detail::constant_q(r); },
         +[](Random& r) { return row_of_ties(1, 1, r); },
     };
-    const texgen::TextureRegion region = texgen::atlas_tile({0.1, 0.2}, {0.9, 0.7});
+    const texgen::TextureRegion sides = texgen::atlas_tile({0.1, 0.2}, {0.9, 0.7});
     for (const int width : awkward_widths()) {
         for (const auto make : makers) {
             Shot shot = make(random);
             shot.rect.width = width;
             shot.rect.height = random.integer(1, width < 70 ? 5 : 2);
-            const TriangleSetup setup = setup_of(shot.triangle, region);
+            const TriangleSetup setup = setup_of(shot.triangle, random.coin() ? sides : sides.with_depth(0.25, 0.8));
             Outputs all(count_of(shot.rect));
             const Work work = interpolate(setup, shot.rect, all.spans());
             for (unsigned asked = 0; asked < Outputs::all; ++asked) {
@@ -257,10 +260,13 @@ TEST_CASE("a mask without coordinates is right in rows wider than the scratch of
             shot.rect = {-100, random.integer(0, 800), width, 3};
             Outputs out(count_of(shot.rect), asked, 1);
             require_right(shot, texgen::whole_texture(), out, seen);
+            Outputs of_volume(count_of(shot.rect), asked, 1);
+            require_right(shot, texgen::whole_texture().with_depth(random.uniform(0.0, 1.0), HUGE_VAL), of_volume,
+                          seen);
         }
     }
-    CHECK(seen.lit > 1000);
-    CHECK(seen.dark > 1000);
+    CHECK(seen.lit > 2000);
+    CHECK(seen.dark > 2000);
 }
 
 TEST_CASE("the order of the vertices and the winding do not change a bit") {

@@ -250,7 +250,7 @@ texgen::TextureRegion any_region(const Case& c, Random& random) {
     const Homogeneous at = exactly_at(c.segment, c.alphas[c.alphas.size() / 2]);
     if (at.q.sign() <= 0 || random.integer(0, 3) == 0)
         return random.coin() ? everywhere() : texgen::atlas_tile({0.1, 0.2}, {0.7, 0.9});
-    return support::region_about(at.over_q(0), at.over_q(1), random);
+    return support::region_about(at, random);
 }
 
 struct Tally {
@@ -389,10 +389,12 @@ TEST_CASE("a value on a segment depends neither on its place, nor on what else i
         for (std::size_t count = middle < 3 ? 0 : middle - 3; count <= middle + 5; ++count) {
             const SegmentFamily& family = families[static_cast<std::size_t>(random.integer(0, 12))];
             const Case c = family.make(random, count);
+            const texgen::TextureRegion region =
+                random.coin() ? texgen::whole_texture() : texgen::whole_texture().with_depth(-0.5, 0.5);
             Outputs one_by_one(count);
             for (std::size_t i = 0; i < count; ++i) {
                 const texgen::Texcoords all = one_by_one.spans();
-                interpolate(c.segment, std::span(c.alphas).subspan(i, 1), texgen::whole_texture(),
+                interpolate(c.segment, std::span(c.alphas).subspan(i, 1), region,
                             {.s = all.s.subspan(i, 1),
                              .t = all.t.subspan(i, 1),
                              .r = all.r.subspan(i, 1),
@@ -404,8 +406,7 @@ TEST_CASE("a value on a segment depends neither on its place, nor on what else i
                 std::vector<float> shifted(shift);
                 shifted.insert(shifted.end(), c.alphas.begin(), c.alphas.end());
                 Outputs out(count, asked, static_cast<std::size_t>(random.integer(0, 15)));
-                interpolate(c.segment, std::span<const float>(shifted).subspan(shift), texgen::whole_texture(),
-                            out.spans());
+                interpolate(c.segment, std::span<const float>(shifted).subspan(shift), region, out.spans());
                 REQUIRE_MESSAGE(out.pads_are_intact(), hex(c.segment));
                 for (std::size_t k = 0; k < 4; ++k)
                     if (out.asked(k)) REQUIRE_MESSAGE(same_bits(out[k], one_by_one[k]), family.name, hex(c.segment));

@@ -239,7 +239,7 @@ texgen::TextureRegion any_region(const Batch& batch, Random& random) {
     const Homogeneous at = exactly_at(batch.matrix, batch.points[batch.points.size() / 2]);
     if (at.q.sign() <= 0 || random.integer(0, 3) == 0)
         return random.coin() ? everywhere() : texgen::atlas_tile({0.1, 0.2}, {0.7, 0.9});
-    return support::region_about(at.over_q(0), at.over_q(1), random);
+    return support::region_about(at, random);
 }
 
 struct Tally {
@@ -441,7 +441,8 @@ TEST_CASE("a point's bits do not depend on how the positions are laid out, nor o
             for (float& value : line) value = random.uniform_float(-3.0, 3.0);
             for (std::size_t i = 0; i < count; ++i) batch.points[i] = {line[i], line[i + 1], line[i + 2]};
         }
-        const texgen::TextureRegion region = texgen::atlas_tile({0.1, 0.1}, {0.7, 0.9});
+        const texgen::TextureRegion sides = texgen::atlas_tile({0.1, 0.1}, {0.7, 0.9});
+        const texgen::TextureRegion region = random.coin() ? sides : sides.with_depth(0.1, 0.95);
 
         // One by one.
         Outputs expected(count);

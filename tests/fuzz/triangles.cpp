@@ -77,9 +77,7 @@ void interpolate_triangle(Input& input) {
         if (!exact.has_positive_w(x, y)) continue;
         const support::Homogeneous at = exact.at(x, y);
         if (work == Work::nothing) {
-            const bool is_lit = at.q.sign() > 0 && support::contains(region, support::nearest_float(at.over_q(0)),
-                                                                     support::nearest_float(at.over_q(1)));
-            must(!is_lit, "nothing is done only where nothing is lit");
+            must(!support::contains(region, at), "nothing is done only where nothing is lit");
         } else if (at.q.sign() > 0) {
             for (std::size_t k = 0; k < 2; ++k)
                 if (out.asked(k) && std::isfinite(bound[static_cast<int>(k)]))

@@ -221,10 +221,27 @@ private:
     std::array<Plane, 5> planes_;
 };
 
+// The limits of s (0), of t (1) and of r (2): infinite where there is no depth.
+inline glm::dvec2 limits_of(const texgen::TextureRegion& region, std::size_t coordinate) {
+    if (coordinate == 2) return region.depth().value_or(glm::dvec2(-HUGE_VAL, HUGE_VAL));
+    const auto k = static_cast<int>(coordinate);
+    return {region.min()[k], region.max()[k]};
+}
+
 // The closed region, asked about floats as they are.
-inline bool contains(const texgen::TextureRegion& region, float s, float t) {
-    return static_cast<double>(s) >= region.min().x && static_cast<double>(s) <= region.max().x &&
-           static_cast<double>(t) >= region.min().y && static_cast<double>(t) <= region.max().y;
+inline bool contains(const texgen::TextureRegion& region, std::size_t coordinate, float value) {
+    if (coordinate == 2 && !region.depth()) return true;
+    const glm::dvec2 limits = limits_of(region, coordinate);
+    return static_cast<double>(value) >= limits.x && static_cast<double>(value) <= limits.y;
+}
+inline bool contains(const texgen::TextureRegion& region, float s, float t, float r) {
+    return contains(region, 0, s) && contains(region, 1, t) && contains(region, 2, r);
+}
+inline bool contains(const texgen::TextureRegion& region, const Homogeneous& at) {
+    if (at.q.sign() <= 0) return false;
+    for (std::size_t k = 0; k < 3; ++k)
+        if (!contains(region, k, nearest_float(at.over_q(k)))) return false;
+    return true;
 }
 
 }  // namespace support

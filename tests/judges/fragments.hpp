@@ -87,4 +87,13 @@ inline texgen::TriangleSetup setup_of(const texgen::Triangle& triangle,
     return texgen::TriangleSetup::of(triangle, region, tolerance).value();
 }
 
+// With a side next to the coordinates of a fragment of the rectangle, at one of its corners more often than not.
+inline texgen::TextureRegion region_at(const Shot& shot, const ExactTriangle& exact, Random& random) {
+    const auto somewhere = [&](int length) {
+        return random.integer(0, 2) == 0 ? random.integer(0, length - 1) : random.coin() ? 0 : length - 1;
+    };
+    const Homogeneous at = exact.at(shot.x(somewhere(shot.rect.width)), shot.y(somewhere(shot.rect.height)));
+    return at.q.sign() > 0 ? region_about(at, random) : texgen::whole_texture();
+}
+
 }  // namespace support

@@ -1,8 +1,9 @@
 #pragma once
 
 // What the contract says of one divided coordinate: in front of the projector within the tolerance, behind it 0, and lit
-// where the written s and t are inside the closed region.
+// where the written s and t, and r where it has a depth, are inside the closed region.
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -37,8 +38,9 @@ inline bool is_outside_for_sure(const Quotient& u, double min, double max, doubl
     return size < 0x1p127 && (compare(u, min - slack) < 0 || compare(u, max + slack) > 0);
 }
 
-// A region with a side through (s, t), a unit or two beside it, or anywhere: of doubles, and of floats.
-inline texgen::TextureRegion region_about(const Quotient& s, const Quotient& t, Random& random) {
+// A region with a side through (s, t), and with a limit of its depth through r, a unit or two beside it, or anywhere: of
+// doubles, and of floats.
+inline texgen::TextureRegion region_about(const Homogeneous& at, Random& random) {
     const double size = random.power_of_ten(-3.0, 3.0);
     const auto side_at = [&](const Quotient& u) {
         const double value = u.estimate();
@@ -77,8 +79,25 @@ inline texgen::TextureRegion region_about(const Quotient& s, const Quotient& t, 
                 return glm::dvec2(side, side_at(u));  // inverted half of the time
         }
     };
-    const glm::dvec2 of_s = sides(s), of_t = random.coin() ? sides(t) : glm::dvec2(-HUGE_VAL, HUGE_VAL);
-    return texgen::atlas_tile({of_s.x, of_t.x}, {of_s.y, of_t.y});
+    const glm::dvec2 none(-HUGE_VAL, HUGE_VAL);
+    const Quotient s = at.over_q(0), t = at.over_q(1), r = at.over_q(2);
+    const glm::dvec2 of_s = sides(s), of_t = random.coin() ? sides(t) : none;
+    const texgen::TextureRegion region = texgen::atlas_tile({of_s.x, of_t.x}, {of_s.y, of_t.y});
+    // What s and t leave dark says nothing of a depth.
+    switch (random.integer(0, 5)) {
+        case 0:
+            return region;
+        case 1:
+            return region.with_depth(side_at(r), HUGE_VAL);
+        case 2:
+            return texgen::atlas_tile({none.x, none.x}, {none.y, none.y}).with_depth(-HUGE_VAL, side_at(r));
+        case 3:
+            return region.with_depth(sides(r).x, sides(r).y);
+        default: {
+            const glm::dvec2 of_r = sides(r);
+            return texgen::atlas_tile({none.x, none.x}, {none.y, none.y}).with_depth(of_r.x, of_r.y);
+        }
+    }
 }
 
 // Empty where output i is what it must be; otherwise what is wrong with it. Outputs that were not asked for are not
@@ -102,19 +121,24 @@ inline std::string what_is_wrong(const Homogeneous& exact, const texgen::Texture
     }
     if (!out.asked(3)) return {};
     const float lit = out.lit()[i];
-    if (out.asked(0) && out.asked(1)) {
-        if (lit != (contains(region, out.s()[i], out.t()[i]) ? 1.0f : 0.0f))
-            return "lit is not what s and t say:" + show();
-        return {};
-    }
     if (lit != 0.0f && lit != 1.0f) return "lit is neither 0 nor 1:" + show();
-    const double limit = tolerance.value > 0.0 ? tolerance.value : 0.0;
-    const Quotient s = exact.over_q(0), t = exact.over_q(1);
-    const glm::dvec2 &min = region.min(), &max = region.max();
-    if (lit == 0.0f && is_inside_for_sure(s, min.x, max.x, limit) && is_inside_for_sure(t, min.y, max.y, limit))
-        return "inside and not lit:" + show();
-    if (lit == 1.0f && (is_outside_for_sure(s, min.x, max.x, limit) || is_outside_for_sure(t, min.y, max.y, limit)))
-        return "outside and lit:" + show();
+    bool all_inside = true, any_outside = false;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Quotient u = exact.over_q(k);
+        if (out.asked(k) || !(tolerance.value > 0.0)) {
+            const bool is_inside = contains(region, k, out.asked(k) ? out[k][i] : nearest_float(u));
+            all_inside = all_inside && is_inside;
+            any_outside = any_outside || !is_inside;
+            continue;
+        }
+        if (k == 2 && !region.depth()) continue;
+        const glm::dvec2 limits = limits_of(region, k);
+        const double limit = tolerance.value * (k == 2 ? std::max(1.0, std::fabs(u.estimate())) : 1.0);
+        all_inside = all_inside && is_inside_for_sure(u, limits.x, limits.y, limit);
+        any_outside = any_outside || is_outside_for_sure(u, limits.x, limits.y, limit);
+    }
+    if (lit == 0.0f && all_inside) return "inside and not lit:" + show();
+    if (lit == 1.0f && any_outside) return "outside and lit:" + show();
     return {};
 }
 

@@ -501,8 +501,7 @@ Share work_share(const Numbers& n) {
         const std::int64_t x = 20 + i % 3, y = 20 + i / 3;
         if (!exact.has_positive_w(x, y)) return says_nothing;
         const Homogeneous at = exact.at(x, y);
-        const bool lit = at.q.sign() > 0 && support::contains(region, support::nearest_float(at.over_q(0)),
-                                                              support::nearest_float(at.over_q(1)));
+        const bool lit = support::contains(region, at);
         if (lit != (work == texgen::Work::divide)) return broken;
         if (at.q.sign() > 0) nearest = std::min(nearest, distance_to_region(at));
     }

@@ -45,7 +45,7 @@ void check(const Outputs& out, std::size_t i, const Homogeneous& exact, double t
         else
             REQUIRE_MESSAGE(is_within(out[k][i], u, tolerance), where);
     }
-    const bool is_lit = exact.q.sign() > 0 && support::contains(everywhere(), out.s()[i], out.t()[i]);
+    const bool is_lit = exact.q.sign() > 0 && support::contains(everywhere(), out.s()[i], out.t()[i], 0.0f);
     REQUIRE_MESSAGE(out.lit()[i] == (is_lit ? 1.0f : 0.0f), where);
 }
 
@@ -86,8 +86,8 @@ TEST_CASE("points in doubt have the same bits in vectors and one by one") {
             const int numerators = row == 0 ? 2 : 1;
             std::array<std::vector<float>, 3> in_vectors, one_by_one;
             for (auto* arrays : {&in_vectors, &one_by_one}) arrays->fill(std::vector<float>(count));
-            texgen::detail::PointJob job =
-                texgen::detail::point_job(cloud.matrix, row, numerators, everywhere(), texgen::exact);
+            texgen::detail::PointJob job = texgen::detail::point_job(
+                cloud.matrix, row, numerators, texgen::detail::LitTest(everywhere()), texgen::exact);
             job.count = count;
             job.interleaved_xyz = true;
             job.x = &cloud.points[0].x;
@@ -180,7 +180,8 @@ TEST_CASE("two doubles leave none of these points in doubt") {
     const auto& kernels = texgen::detail::chosen<texgen::detail::PointKernels>();
     for (const support::Cloud& cloud : support::doubtful_clouds(count, random)) {
         std::vector<float> s(count), t(count);
-        texgen::detail::PointJob job = texgen::detail::point_job(cloud.matrix, 0, 2, everywhere(), texgen::exact);
+        texgen::detail::PointJob job =
+            texgen::detail::point_job(cloud.matrix, 0, 2, texgen::detail::LitTest(everywhere()), texgen::exact);
         job.count = count;
         job.interleaved_xyz = true;
         job.x = &cloud.points[0].x;

@@ -106,8 +106,9 @@ std::string what_is_wrong(const Homogeneous& exact, const TextureRegion& region,
         if (!keeps(out[k][i], u, tolerance, state)) return "should be " + hex(u.estimate()) + ": " + text;
         seen.flushed += out[k][i] == 0.0f && std::fabs(u.estimate()) > 0x1p-140;
     }
-    const bool is_inside = support::contains(region, as_read(out.s()[i], state), as_read(out.t()[i], state));
-    return out.lit()[i] == (is_inside ? 1.0f : 0.0f) ? "" : "lit is not what s and t say: " + text;
+    const bool is_inside =
+        support::contains(region, as_read(out.s()[i], state), as_read(out.t()[i], state), as_read(out.r()[i], state));
+    return out.lit()[i] == (is_inside ? 1.0f : 0.0f) ? "" : "lit is not what s, t and r say: " + text;
 }
 
 Tolerance any_tolerance(Random& random) {
@@ -116,7 +117,8 @@ Tolerance any_tolerance(Random& random) {
 
 // Sides that are normal floats, or none.
 TextureRegion any_region(Random& random) {
-    return random.coin() ? support::everywhere() : texgen::atlas_tile({0.0, 0.25}, {1.0, 0.75});
+    const TextureRegion region = random.coin() ? support::everywhere() : texgen::atlas_tile({0.0, 0.25}, {1.0, 0.75});
+    return random.coin() ? region : region.with_depth(random.coin() ? 0.0 : -HUGE_VAL, 0.5);
 }
 
 // Every test goes through the states that the machine has.
@@ -201,40 +203,43 @@ TEST_CASE("sums that decide have the same bits, and bounds in double hold") {
 }
 
 TEST_CASE("a 0 that was subnormal is on the side of the region, and neither work nor coverage leaves it out") {
-    // s/q = -1e-39, of numbers that are none: where it is written as -0, it is lit.
-    const auto vertex = [](float x, float y) {
-        return texgen::WindowVertex{{x, y}, 1.0f, {-1e-30f, 5e8f, 0.0f, 1e9f}};
-    };
-    const texgen::Triangle triangle{vertex(0.0f, 0.0f), vertex(64.0f, 0.0f), vertex(0.0f, 64.0f)};
-    const Segment segment{triangle.a.strq, triangle.b.strq};
-    glm::dmat4 matrix(0.0);
-    matrix[3] = {-1e-30, 5e8, 0.0, 1e9};
-    const TextureRegion region = texgen::whole_texture();
-    in_every_state([&](const FloatState& state, Random&) {
-        Outputs out(16), of_segment(16), of_points(16);
-        const std::vector<float> alpha(16, 0.5f);
-        const std::vector<glm::vec3> points(16, glm::vec3(0.5f));
-        Work work = Work::nothing, work_of_segment = Work::nothing;
-        Coverage answer = Coverage::outside;
-        under(state, [&] {
-            const auto setup = TriangleSetup::of(triangle, region);
-            work = interpolate(*setup, {1, 1, 16, 1}, out.spans());
-            work_of_segment = texgen::work(segment, region);
-            interpolate(segment, alpha, region, of_segment.spans());
-            answer = coverage(ObjectTexgen(matrix), region, Box{glm::vec3(0.0f), glm::vec3(1.0f)});
-            project(ObjectTexgen(matrix), texgen::object_space(points), region, of_points.spans());
+    // s/q, or r/q, is -1e-39, of numbers that are none: where it is written as -0, it is lit.
+    for (const int coordinate : {0, 2}) {
+        CAPTURE(coordinate);
+        glm::vec4 strq(5e8f, 5e8f, 5e8f, 1e9f);
+        strq[coordinate] = -1e-30f;
+        const auto vertex = [&](float x, float y) { return texgen::WindowVertex{{x, y}, 1.0f, strq}; };
+        const texgen::Triangle triangle{vertex(0.0f, 0.0f), vertex(64.0f, 0.0f), vertex(0.0f, 64.0f)};
+        const Segment segment{triangle.a.strq, triangle.b.strq};
+        glm::dmat4 matrix(0.0);
+        matrix[3] = glm::dvec4(strq);
+        const TextureRegion region = texgen::whole_texture().with_depth();
+        in_every_state([&](const FloatState& state, Random&) {
+            Outputs out(16), of_segment(16), of_points(16);
+            const std::vector<float> alpha(16, 0.5f);
+            const std::vector<glm::vec3> points(16, glm::vec3(0.5f));
+            Work work = Work::nothing, work_of_segment = Work::nothing;
+            Coverage answer = Coverage::outside;
+            under(state, [&] {
+                const auto setup = TriangleSetup::of(triangle, region);
+                work = interpolate(*setup, {1, 1, 16, 1}, out.spans());
+                work_of_segment = texgen::work(segment, region);
+                interpolate(segment, alpha, region, of_segment.spans());
+                answer = coverage(ObjectTexgen(matrix), region, Box{glm::vec3(0.0f), glm::vec3(1.0f)});
+                project(ObjectTexgen(matrix), texgen::object_space(points), region, of_points.spans());
+            });
+            const float lit = of_segment.lit()[0];
+            if (state.flushes) CHECK(lit == 1.0f);
+            CHECK(of_points.lit()[0] == lit);
+            if (work != Work::nothing) CHECK(out.lit()[0] == lit);
+            if (lit == 1.0f) {
+                CHECK(work != Work::nothing);
+                CHECK(work_of_segment != Work::nothing);
+                CHECK(answer != Coverage::outside);
+            }
+            if (coordinate == 0) CHECK(answer != Coverage::inside);
         });
-        const float lit = of_segment.lit()[0];
-        if (state.flushes) CHECK(lit == 1.0f);
-        CHECK(of_points.lit()[0] == lit);
-        if (work != Work::nothing) CHECK(out.lit()[0] == lit);
-        if (lit == 1.0f) {
-            CHECK(work != Work::nothing);
-            CHECK(work_of_segment != Work::nothing);
-            CHECK(answer != Coverage::outside);
-        }
-        CHECK(answer != Coverage::inside);
-    });
+    }
 }
 
 TEST_CASE("fragments of triangles: the sign of q is exact, and errors are within half an ulp or the tolerance") {
@@ -264,10 +269,12 @@ TEST_CASE("fragments of triangles: the sign of q is exact, and errors are within
                     const Homogeneous at = exact.at(x, y);
                     std::string wrong;
                     if (work == Work::nothing) {
-                        const glm::dvec2 &min = region.min(), &max = region.max();
-                        if (at.q.sign() > 0 && support::is_inside_for_sure(at.over_q(0), min.x, max.x, 0.0) &&
-                            support::is_inside_for_sure(at.over_q(1), min.y, max.y, 0.0))
-                            wrong = "lit, and nothing was done";
+                        bool is_lit = at.q.sign() > 0;
+                        for (std::size_t c = 0; c < 3 && is_lit; ++c) {
+                            const glm::dvec2 limits = support::limits_of(region, c);
+                            is_lit = support::is_inside_for_sure(at.over_q(c), limits.x, limits.y, 0.0);
+                        }
+                        if (is_lit) wrong = "lit, and nothing was done";
                     } else {
                         wrong = what_is_wrong(at, region, tolerance, state, out, k, seen);
                         if (work == Work::divide && out.lit()[k] != 1.0f) wrong = "dark, and no test was needed";

@@ -1,10 +1,13 @@
 #pragma once
 
-// The region in floats: which (s, t) are lit, and which real numbers are once they are rounded.
+// The region in floats: which (s, t, r) are lit, and which real numbers are once they are rounded.
 
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
+
+#include <glm/vec2.hpp>
 
 #include "../../conventions.hpp"
 #include "../arithmetic/nearest.hpp"
@@ -44,15 +47,31 @@ class LitTest {
 public:
     explicit LitTest(const TextureRegion& region) noexcept
         : min_{float_at_least((region.min)().x), float_at_least((region.min)().y)},
-          max_{-float_at_least(-(region.max)().x), -float_at_least(-(region.max)().y)} {}
+          max_{-float_at_least(-(region.max)().x), -float_at_least(-(region.max)().y)} {
+        const std::optional<glm::dvec2> depth = region.depth();
+        has_depth_ = depth.has_value();
+        if (!depth) return;
+        r_min_ = float_at_least(depth->x);
+        r_max_ = -float_at_least(-depth->y);
+    }
 
+    // Of s and t. Where there is a depth, r has to be in [r_min, r_max] as well.
     float operator()(float s, float t) const noexcept { return is_inside(s, t, min_, max_) ? 1.0f : 0.0f; }
 
     // The bounds of s (0) and of t (1).
     double least(std::size_t coordinate) const noexcept { return widened(min_[coordinate]); }
     double greatest(std::size_t coordinate) const noexcept { return widened(max_[coordinate]); }
 
-    // The same as the kernels take them.
+    bool has_depth() const noexcept { return has_depth_; }
+    float r_min() const noexcept { return r_min_; }
+    float r_max() const noexcept { return r_max_; }
+    LitTest without_depth() const noexcept {
+        LitTest sides = *this;
+        sides.has_depth_ = false;
+        return sides;
+    }
+
+    // The sides of s and t as the kernels take them.
     void copy_to(float (&min)[2], float (&max)[2]) const noexcept {
         for (std::size_t k = 0; k < 2; ++k) {
             min[k] = min_[k];
@@ -63,6 +82,8 @@ public:
 private:
     float min_[2];
     float max_[2];
+    bool has_depth_;
+    float r_min_ = 0.0f, r_max_ = 0.0f;
 };
 
 }  // namespace TEXGEN_DETAIL

@@ -18,6 +18,7 @@
 #include "segments.inc.hpp"
 
 #include "boxes.inc.hpp"
+#include "depth.inc.hpp"
 #include "footprint.inc.hpp"
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
@@ -53,6 +54,14 @@ struct KernelTable<SegmentKernels, CompiledWhereCalled> {
     static const SegmentKernels& get() noexcept {
         static constexpr SegmentKernels table{.fill_exact = fill_segment_exact<>,
                                               .fill_all_float = fill_segment_all_float<>};
+        return table;
+    }
+};
+
+template <class CompiledWhereCalled>
+struct KernelTable<DepthKernels, CompiledWhereCalled> {
+    static const DepthKernels& get() noexcept {
+        static constexpr DepthKernels table{.any_lit = any_lit<>, .darken = darken<>};
         return table;
     }
 };

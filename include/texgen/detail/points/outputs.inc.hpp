@@ -19,8 +19,9 @@ inline float* array_of(const std::span<float>& output, std::size_t count) noexce
 // turn.
 struct PointOutputs {
     float* coordinate[2] = {};
-    float* lit = nullptr;
+    float* lit = nullptr;  // with one coordinate, r: what is lit so far, and stays so between r_min and r_max
     float* st = nullptr;
+    float r_min = 0.0f, r_max = 0.0f;
 
     bool are_complete(int numerators) const noexcept {
         return st != nullptr || (coordinate[0] != nullptr && (numerators == 1 || coordinate[1] != nullptr));
@@ -28,20 +29,22 @@ struct PointOutputs {
 };
 
 // Calls group(first, numerators, outputs) for the coordinates that are computed together: s and t where both are asked for
-// or the mask is, either one alone, and r.
+// or the mask is, either one alone, and r, which takes from the mask what a depth does not hold.
 template <class Group>
-void for_each_group(const Texcoords& out, std::size_t count, const Group& group) noexcept {
+void for_each_group(const Texcoords& out, std::size_t count, const LitTest& region, const Group& group) noexcept {
     float* const s = array_of(out.s, count);
     float* const t = array_of(out.t, count);
     float* const r = array_of(out.r, count);
     float* const lit = array_of(out.lit, count);
     if (lit != nullptr || (s != nullptr && t != nullptr))
-        group(0, 2, PointOutputs{{s, t}, lit, nullptr});
+        group(0, 2, PointOutputs{{s, t}, lit});
     else if (s != nullptr)
-        group(0, 1, PointOutputs{{s, nullptr}, nullptr, nullptr});
+        group(0, 1, PointOutputs{{s}});
     else if (t != nullptr)
-        group(1, 1, PointOutputs{{t, nullptr}, nullptr, nullptr});
-    if (r != nullptr) group(2, 1, PointOutputs{{r, nullptr}, nullptr, nullptr});
+        group(1, 1, PointOutputs{{t}});
+    float* const darkened = region.has_depth() ? lit : nullptr;
+    if (r != nullptr || darkened != nullptr)
+        group(2, 1, PointOutputs{{r}, darkened, nullptr, region.r_min(), region.r_max()});
 }
 
 // What one job does: `count` points or values, padded to `whole`, a multiple of point_quantum; the results belong at `first`.
@@ -52,9 +55,32 @@ struct Batch {
 // Copies hold a block of every kernel, so that its certificate serves as much as it would without them.
 inline constexpr std::size_t copy_size = float_block;
 
+inline namespace TEXGEN_BUILD {
+
+// Runs a job for the r of a batch, and takes the light where that is beyond the depth. A part that is dark already needs none.
+template <class Job, class Run>
+void darken_batch(Job job, const PointOutputs& out, const Batch& batch, const Run& run) noexcept {
+    constexpr std::size_t size = 4 * copy_size;
+    const auto [first, count, whole] = batch;
+    const DepthKernels& depth = chosen<DepthKernels>();
+    float buffer[size];
+    for (std::size_t begin = 0; begin < count; begin += size, job.advance(job.count)) {
+        job.count = whole - begin < size ? whole - begin : size;
+        const std::size_t part = count - begin < job.count ? count - begin : job.count;
+        float* const lit = out.lit + first + begin;
+        float* const r = out.coordinate[0] != nullptr ? out.coordinate[0] + first + begin : nullptr;
+        if (r == nullptr && !depth.any_lit(lit, part)) continue;
+        job.out[0] = r != nullptr && part == job.count ? r : buffer;
+        run(job);
+        depth.darken(lit, job.out[0], part, out.r_min, out.r_max);
+        if (r != nullptr && job.out[0] == buffer) std::memcpy(r, buffer, part * sizeof(float));
+    }
+}
+
 // Runs a job for a batch. What has no place of its own goes through buffers.
 template <class Job, class Run>
 void run_batch(Job job, const PointOutputs& out, const Batch& batch, const Run& run) noexcept {
+    if (job.numerators == 1 && out.lit != nullptr) return darken_batch(job, out, batch, run);
     const auto [first, count, whole] = batch;
     if (count == whole && out.are_complete(job.numerators)) {
         job.count = count;
@@ -83,8 +109,6 @@ void run_batch(Job job, const PointOutputs& out, const Batch& batch, const Run& 
         job.advance(job.count);
     }
 }
-
-inline namespace TEXGEN_BUILD {
 
 // The values of a job from `first` on by its kernel, and by one(job, i) what that cannot decide.
 template <class Kernel, class Job, class One>

@@ -97,6 +97,27 @@ inline SegmentJob segment_job(const Segment& segment, int first, int numerators)
     return job;
 }
 
+// A tile of one row whose corners are the ends: given, so without an error. Of two coordinates.
+inline Corners segment_corners(const glm::dvec4& a, const glm::dvec4& b, glm::length_t first,
+                               glm::length_t second) noexcept {
+    Corners at{};
+    for (std::size_t i = 0; i < 4; ++i) {
+        const glm::dvec4& end = i % 2 == 0 ? a : b;
+        at.numerator[i] = double2_of(end[first], end[second]);
+        at.q[i] = end.w;
+    }
+    at.least_q = smaller(a.w, b.w);
+    at.largest_q = larger(a.w, b.w);
+    return at;
+}
+
+inline Coverage depth_coverage_of(const Segment& segment, const LitTest& lit, double accepted) noexcept {
+    if (!lit.has_depth()) return Coverage::inside;
+    const glm::dvec4 a = widened(segment.a), b = widened(segment.b);
+    if (!is_finite(a.z + a.w) || !is_finite(b.z + b.w)) return Coverage::partial;
+    return depth_coverage_of(segment_corners(a, b, 2, 2), lit, accepted);
+}
+
 inline namespace TEXGEN_BUILD {
 
 // The nearest floats from `first` on: in vectors; what those cannot decide value by value.
@@ -141,19 +162,14 @@ inline Work work(const Segment& segment, TextureRegion region, Tolerance toleran
     if (!detail::is_finite(a.x + a.y + a.w) || !detail::is_finite(b.x + b.y + b.w)) return Work::divide_and_test;
     if (a.w <= 0.0 && b.w <= 0.0) return Work::nothing;
 
-    // A tile of one row whose corners are the ends: given, so without an error.
-    detail::Corners at{};
-    for (std::size_t i = 0; i < 4; ++i) {
-        const glm::dvec4& end = i % 2 == 0 ? a : b;
-        at.numerator[i] = detail::double2_of(end.x, end.y);
-        at.q[i] = end.w;
-    }
-    at.least_q = detail::smaller(a.w, b.w);
-    at.largest_q = detail::larger(a.w, b.w);
-    const detail::SideCoverage lit = detail::coverage_of(at, detail::LitTest(region), detail::accepted(tolerance));
-    if (lit.s == Coverage::outside || lit.t == Coverage::outside) return Work::nothing;
+    const detail::LitTest sides(region);
+    const double accepted = detail::accepted(tolerance);
+    const auto [s, t] = detail::coverage_of(detail::segment_corners(a, b, 0, 1), sides, accepted);
+    const Coverage r = detail::depth_coverage_of(segment, sides, accepted);
+    if (s == Coverage::outside || t == Coverage::outside || r == Coverage::outside) return Work::nothing;
     if (a.w == b.w) return Work::affine;
-    return lit.s == Coverage::inside && lit.t == Coverage::inside ? Work::divide : Work::divide_and_test;
+    const bool all_inside = s == Coverage::inside && t == Coverage::inside && r == Coverage::inside;
+    return all_inside ? Work::divide : Work::divide_and_test;
 }
 
 inline glm::dvec2 error_bound(const Segment& segment, Tolerance tolerance) noexcept {
@@ -184,9 +200,12 @@ void interpolate(const Segment& segment, std::span<const float> alpha, TextureRe
     for ([[maybe_unused]] const float a : alpha) TEXGEN_ASSERT(!(a < 0.0f) && !(a > 1.0f));
     const double accepted = detail::accepted(tolerance);
     const detail::SegmentKernels& kernels = detail::chosen<detail::SegmentKernels>();
-    detail::for_each_group(out, alpha.size(), [&](int first, int numerators, const detail::PointOutputs& outputs) {
+    const detail::LitTest given(region);
+    const bool tests_r = detail::depth_coverage_of(segment, given, accepted) != Coverage::inside;
+    const detail::LitTest lit = tests_r ? given : given.without_depth();
+    detail::for_each_group(out, alpha.size(), lit, [&](int first, int numerators, const detail::PointOutputs& outputs) {
         detail::SegmentJob job = detail::segment_job(segment, first, numerators);
-        detail::LitTest(region).copy_to(job.min, job.max);
+        lit.copy_to(job.min, job.max);
         const auto run = [&](const detail::SegmentJob& part) { detail::interpolate_job(kernels, part, accepted); };
 
         const std::size_t whole = alpha.size() / detail::point_quantum * detail::point_quantum;

@@ -53,14 +53,14 @@ inline void project_one(const PointJob& job, std::size_t i) noexcept {
 }
 
 // A job without points: the forms of these rows over the row of q.
-inline PointJob point_job(const glm::dmat4& matrix, int row, int numerators, const TextureRegion& region,
+inline PointJob point_job(const glm::dmat4& matrix, int row, int numerators, const LitTest& lit,
                           Tolerance tolerance) noexcept {
     PointJob job{};
     job.numerators = numerators;
     for (int k = 0; k < numerators; ++k) job.numerator[k] = form(matrix, row + k);
     job.q = form(matrix, 3);
     job.tolerance = accepted(tolerance);
-    LitTest(region).copy_to(job.min, job.max);
+    lit.copy_to(job.min, job.max);
     return job;
 }
 
@@ -205,9 +205,11 @@ template <class Space>
 void project(const Transform<Texture, Space>& texture_from_space, Positions<Space> positions, TextureRegion region,
              Texcoords out, Tolerance tolerance) noexcept {
     const glm::dmat4& matrix = texture_from_space.matrix();
-    detail::for_each_group(out, positions.size(), [&](int row, int numerators, const detail::PointOutputs& outputs) {
-        detail::project_all(positions, detail::point_job(matrix, row, numerators, region, tolerance), outputs);
-    });
+    const detail::LitTest lit(region);
+    detail::for_each_group(
+        out, positions.size(), lit, [&](int row, int numerators, const detail::PointOutputs& outputs) {
+            detail::project_all(positions, detail::point_job(matrix, row, numerators, lit, tolerance), outputs);
+        });
 }
 
 template <class Space>
@@ -215,7 +217,8 @@ void project(const Transform<Texture, Space>& texture_from_space, Positions<Spac
              Tolerance tolerance) noexcept {
     TEXGEN_ASSERT(st.size() == positions.size());
     if (st.empty() || st.size() != positions.size()) return;
-    detail::project_all(positions, detail::point_job(texture_from_space.matrix(), 0, 2, whole_texture(), tolerance),
+    const detail::LitTest unused(whole_texture());
+    detail::project_all(positions, detail::point_job(texture_from_space.matrix(), 0, 2, unused, tolerance),
                         {{}, nullptr, &st[0].x});
 }
 

@@ -193,6 +193,13 @@ struct SegmentKernels {
     std::size_t (*fill_all_float)(const SegmentJob&, std::size_t first) noexcept;
 };
 
+// What the depth of a region takes from a mask.
+struct DepthKernels {
+    bool (*any_lit)(const float* lit, std::size_t count) noexcept;
+    // lit becomes 0 where r is not in [min, max].
+    void (*darken)(float* lit, const float* r, std::size_t count, float min, float max) noexcept;
+};
+
 struct FootprintKernels {
     void (*differentiate)(const FootprintJob&) noexcept;
     // The first row from `first` on with a fragment that floats do not serve, or the height.

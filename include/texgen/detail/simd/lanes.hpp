@@ -184,6 +184,7 @@ inline namespace TEXGEN_BUILD {
 TEXGEN_EXTERN template const TileKernels& chosen<TileKernels>() noexcept;
 TEXGEN_EXTERN template const PointKernels& chosen<PointKernels>() noexcept;
 TEXGEN_EXTERN template const SegmentKernels& chosen<SegmentKernels>() noexcept;
+TEXGEN_EXTERN template const DepthKernels& chosen<DepthKernels>() noexcept;
 TEXGEN_EXTERN template const FootprintKernels& chosen<FootprintKernels>() noexcept;
 TEXGEN_EXTERN template const BoxKernels& chosen<BoxKernels>() noexcept;
 }  // namespace TEXGEN_BUILD

@@ -5,9 +5,11 @@
 
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include "../../primitives.hpp"
 #include "../arithmetic/rounding.hpp"
+#include "../arithmetic/widen.hpp"
 #include "../culling/lit_test.hpp"
 #include "../language.hpp"
 #include "../simd/lanes.hpp"
@@ -139,6 +141,16 @@ inline SideCoverage coverage_of(const Corners& at, const LitTest& lit, double to
         return of_min.all_above[k] && of_max.all_below[k] && at.all_in_front() ? Coverage::inside : Coverage::partial;
     };
     return {coverage(0), coverage(1)};
+}
+
+// The same of a depth, by corners whose numerators are r twice. An infinite limit is none.
+inline Coverage depth_coverage_of(const Corners& at, const LitTest& lit, double tolerance) noexcept {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const double min = widened(lit.r_min()), max = widened(lit.r_max());
+    const SideOfBound of = side_of(at, double2_of(min, max), tolerance);
+    if (of.all_below[0] || of.all_above[1]) return Coverage::outside;
+    const bool is_inside = (of.all_above[0] || min == -infinity) && (of.all_below[1] || max == infinity);
+    return is_inside && at.all_in_front() ? Coverage::inside : Coverage::partial;
 }
 
 }  // namespace TEXGEN_BUILD

@@ -8,7 +8,7 @@ inline namespace TEXGEN_BUILD {
 class TileFootprinter {
 public:
     TileFootprinter(const FootprintKernels& kernels, const FootprintFunctions& functions, const TexelsPerUnit& texels,
-                    FragmentRect rect, const Footprints& out) noexcept
+                    const Tile& rect, const Footprints& out) noexcept
         : kernels_(kernels), functions_(functions), texels_(texels), rect_(rect), out_(out) {}
 
     void fill_all(const Tile& tile, const Corners& at) noexcept {
@@ -140,7 +140,7 @@ private:
     const FootprintKernels& kernels_;
     const FootprintFunctions& functions_;
     TexelsPerUnit texels_;
-    FragmentRect rect_;
+    Tile rect_;
     Footprints out_;
 };
 
@@ -162,7 +162,7 @@ bool footprint(const FootprintSetup& setup, FragmentRect rect, Footprints out) n
     const detail::FootprintFunctions& functions = setup.functions();
     const detail::TileSurvey found = detail::survey(functions.triangle, tile);
     if (found.plan.work == Work::nothing) return false;
-    detail::TileFootprinter(detail::chosen<detail::FootprintKernels>(), functions, setup.texels(), rect, out)
+    detail::TileFootprinter(detail::chosen<detail::FootprintKernels>(), functions, setup.texels(), tile, out)
         .fill_all(tile, found.at);
     return true;
 }

@@ -9,7 +9,7 @@ public:
     static constexpr int scratch_width = 512;
 
     // `close` is what is known of the functions that add() says, or nothing yet.
-    TileInterpolator(const TileKernels& kernels, const TriangleFunctions& triangle, FragmentRect rect,
+    TileInterpolator(const TileKernels& kernels, const TriangleFunctions& triangle, const Tile& rect,
                      std::optional<CloseRamps>& close) noexcept
         : kernels_(kernels), triangle_(triangle), rect_(rect), close_(close) {}
 
@@ -59,7 +59,11 @@ public:
 
 private:
     static Plan plan_without_survey(const Tile& tile, const Corners& at) noexcept {
-        return {Work::divide, pays_for_chunks(tile) ? chunk_length(at, tile.width) : 0, StepRule::undecided, {}};
+        return {Work::divide,
+                pays_for_chunks(tile) ? chunk_length(at, tile.width) : 0,
+                StepRule::undecided,
+                {},
+                Coverage::inside};
     }
 
     void fill(const Tile& tile) noexcept {
@@ -75,8 +79,7 @@ private:
 
     // They are made when a tile first needs them, for all of the rectangle.
     CloseRamps close_ramps(const Tile& tile) noexcept {
-        const Tile all{rect_.x, rect_.y, rect_.width, rect_.height};
-        if (!close_) close_ = ClosePlanes(triangle_.planes, all).ramps(coordinate_[0], coordinate_[count_ - 1]);
+        if (!close_) close_ = ClosePlanes(triangle_.planes, rect_).ramps(coordinate_[0], coordinate_[count_ - 1]);
         return close_->moved_to(tile);
     }
 
@@ -268,7 +271,7 @@ private:
 
     const TileKernels& kernels_;
     const TriangleFunctions& triangle_;
-    FragmentRect rect_;
+    Tile rect_;  // whose fragments the outputs have
     std::size_t count_ = 0;
     glm::length_t coordinate_[2] = {};
     PlaneOf<Double2> planes_;
@@ -279,6 +282,44 @@ private:
     std::span<float> lit_;
     float scratch_[2][scratch_width];  // coordinates that only the mask needs, a row at a time
 };
+
+// Takes the light of fragments whose r, which nobody asked for, is outside the depth, in parts that a buffer holds. A part that
+// is dark already needs no r, nor one that is all inside.
+inline void darken_beyond_depth(const TileKernels& kernels, const TriangleFunctions& triangle, const Tile& rect,
+                                const std::span<float>& lit) noexcept {
+    constexpr int size = 1024;
+    float r[size];
+    const DepthKernels& depth = chosen<DepthKernels>();
+    Tile part = rect;
+    for (std::int64_t x_rest = rect.width; x_rest > 0; x_rest -= part.width, part.x += part.width) {
+        part.width = x_rest < size ? static_cast<int>(x_rest) : size;
+        const int rows = size / part.width;
+        part.y = rect.y;
+        for (int y_rest = rect.height; y_rest > 0; y_rest -= part.height, part.y += part.height) {
+            part.height = y_rest < rows ? y_rest : rows;
+            const auto width = static_cast<std::size_t>(part.width);
+            const auto for_each_row = [&](const auto& function) {
+                for (int y = 0; y < part.height; ++y)
+                    function(lit.data() + offset_in(rect, part.x, part.y + y), r + static_cast<std::size_t>(y) * width);
+            };
+            bool any = false;
+            for_each_row([&](const float* row, const float*) { any = any || depth.any_lit(row, width); });
+            const Coverage coverage = any ? depth_coverage_of(triangle, part) : Coverage::inside;
+            if (coverage == Coverage::inside) continue;
+            if (coverage == Coverage::outside) {
+                fill_rows(lit, rect, part, 0.0f);
+                continue;
+            }
+            std::optional<CloseRamps> close;
+            TileInterpolator interpolator(kernels, triangle, part, close);
+            interpolator.add(2, std::span<float>(r, width * static_cast<std::size_t>(part.height)));
+            interpolator.interpolate(part);
+            for_each_row([&](float* row, const float* row_r) {
+                depth.darken(row, row_r, width, triangle.lit.r_min(), triangle.lit.r_max());
+            });
+        }
+    }
+}
 
 }  // namespace TEXGEN_BUILD
 }  // namespace TEXGEN_DETAIL
@@ -311,14 +352,14 @@ Work interpolate(const TriangleSetup& setup, FragmentRect rect, Texcoords out) n
     const auto interpolate_one = [&](glm::length_t coordinate, const std::span<float>& output) {
         if (output.empty()) return;
         std::optional<detail::CloseRamps> close;
-        detail::TileInterpolator interpolator(kernels, setup.functions(), rect, close);
+        detail::TileInterpolator interpolator(kernels, setup.functions(), tile, close);
         interpolator.add(coordinate, output);
         if (coordinate == 2) return interpolator.interpolate(tile);
         interpolator.interpolate(tile, interpolator.corners_at(tile), plan);
     };
     const bool both = !out.s.empty() && !out.t.empty();
     if (both || !out.lit.empty()) {
-        detail::TileInterpolator interpolator(kernels, setup.functions(), rect, found.close);
+        detail::TileInterpolator interpolator(kernels, setup.functions(), tile, found.close);
         interpolator.add(out.s, out.t, out.lit);
         if (both)
             interpolator.interpolate(tile, found.at, plan);
@@ -329,6 +370,12 @@ Work interpolate(const TriangleSetup& setup, FragmentRect rect, Texcoords out) n
         interpolate_one(1, out.t);
     }
     interpolate_one(2, out.r);
+    if (plan.depth == Coverage::inside || out.lit.empty()) return plan.work;
+    const detail::LitTest& lit = setup.functions().lit;
+    if (out.r.empty())
+        detail::darken_beyond_depth(kernels, setup.functions(), tile, out.lit);
+    else
+        detail::chosen<detail::DepthKernels>().darken(out.lit.data(), out.r.data(), count, lit.r_min(), lit.r_max());
     return plan.work;
 }
 

@@ -59,13 +59,12 @@ inline std::size_t count_of(const FragmentRect& rect) noexcept {
 }
 
 // Where a fragment stands in the row-major outputs of a rectangle.
-inline std::size_t offset_in(const FragmentRect& rect, std::int64_t x, std::int64_t y) noexcept {
+inline std::size_t offset_in(const Tile& rect, std::int64_t x, std::int64_t y) noexcept {
     return static_cast<std::size_t>((y - rect.y) * rect.width + (x - rect.x));
 }
 
 // Gives a tile of them one value; an empty output has none.
-inline void fill_rows(const std::span<float>& output, const FragmentRect& rect, const Tile& tile,
-                      float value) noexcept {
+inline void fill_rows(const std::span<float>& output, const Tile& rect, const Tile& tile, float value) noexcept {
     if (output.empty()) return;
     for (std::int64_t y = tile.y; y < tile.y + tile.height; ++y) {
         float* const row = output.data() + offset_in(rect, tile.x, y);
