@@ -96,8 +96,16 @@ private:
     std::size_t stride_bytes_;
 };
 
+// One point with w = 1 in a known space.
+template <class Space>
+struct Position {
+    glm::vec3 point;
+
+    explicit Position(const glm::vec3& of_space) noexcept : point(of_space) {}
+};
+
 // Points of a space from an array of vectors, from three arrays (of one size, asserted), or from x, y, z that follow one
-// another every stride_bytes.
+// another every stride_bytes; and one point.
 inline Positions<Object> object_space(std::span<const glm::vec3> points) noexcept { return Positions<Object>(points); }
 inline Positions<Object> object_space(std::span<const float> x, std::span<const float> y,
                                       std::span<const float> z) noexcept {
@@ -106,6 +114,7 @@ inline Positions<Object> object_space(std::span<const float> x, std::span<const 
 inline Positions<Object> object_space(const float* first, std::size_t count, std::size_t stride_bytes) noexcept {
     return Positions<Object>(first, count, stride_bytes);
 }
+inline Position<Object> object_space(const glm::vec3& point) noexcept { return Position<Object>(point); }
 
 // The same of points in the world.
 inline Positions<World> world_space(std::span<const glm::vec3> points) noexcept { return Positions<World>(points); }
@@ -116,6 +125,7 @@ inline Positions<World> world_space(std::span<const float> x, std::span<const fl
 inline Positions<World> world_space(const float* first, std::size_t count, std::size_t stride_bytes) noexcept {
     return Positions<World>(first, count, stride_bytes);
 }
+inline Position<World> world_space(const glm::vec3& point) noexcept { return Position<World>(point); }
 
 // The same of points in the eye's space.
 inline Positions<Eye> eye_space(std::span<const glm::vec3> points) noexcept { return Positions<Eye>(points); }
@@ -125,6 +135,7 @@ inline Positions<Eye> eye_space(std::span<const float> x, std::span<const float>
 inline Positions<Eye> eye_space(const float* first, std::size_t count, std::size_t stride_bytes) noexcept {
     return Positions<Eye>(first, count, stride_bytes);
 }
+inline Position<Eye> eye_space(const glm::vec3& point) noexcept { return Position<Eye>(point); }
 
 // The same of fragments: x and y in pixels, z the depth that the buffer holds.
 inline Positions<Window> window_space(std::span<const glm::vec3> points) noexcept { return Positions<Window>(points); }
@@ -135,6 +146,7 @@ inline Positions<Window> window_space(std::span<const float> x, std::span<const 
 inline Positions<Window> window_space(const float* first, std::size_t count, std::size_t stride_bytes) noexcept {
     return Positions<Window>(first, count, stride_bytes);
 }
+inline Position<Window> window_space(const glm::vec3& point) noexcept { return Position<Window>(point); }
 
 inline namespace TEXGEN_BUILD {
 
@@ -171,6 +183,14 @@ template <class Space>
 void project(const Transform<Texture, Space>& texture_from_space, Positions<Space> positions, std::span<glm::vec2> st,
              Tolerance tolerance = exact) noexcept;
 
+// Divides one point: (s/q, t/q), empty behind the projector.
+// Guarantee: the floats that the others give with `exact`: each the nearest; empty for q <= 0, decided exactly, and for a NaN
+// q. No allocation, noexcept.
+// Source: as above.
+template <class Space>
+std::optional<glm::vec2> project(const Transform<Texture, Space>& texture_from_space,
+                                 Position<Space> position) noexcept;
+
 }  // namespace TEXGEN_BUILD
 
 // Bounds the error of each coordinate (s, t, r, q) that generate() gives of these positions.
@@ -203,5 +223,6 @@ inline std::optional<glm::vec2> divide(glm::vec4 strq) noexcept {
 
 }  // namespace TEXGEN_NAMESPACE
 
+#include "detail/points/one_point.inc.hpp"
 #include "detail/points/outputs.inc.hpp"
 #include "detail/points/texcoord.inc.hpp"

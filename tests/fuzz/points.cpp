@@ -168,6 +168,19 @@ void project_points(Input& input) {
         for (std::size_t i = 0; i < count; ++i)
             must(same(pairs[1 + i].x, out.s()[i]) && same(pairs[1 + i].y, out.t()[i]), "pairs are s and t");
 
+    // One point has the same bits.
+    for (const std::size_t i : {judged[0] % count, judged[1] % count}) {
+        if (!has_promised_bits(matrix)) continue;
+        glm::vec2 in_array(-7.0f);
+        project(texgen, texgen::object_space(std::span(&points[i], 1)), std::span(&in_array, 1));
+        const auto alone = project(texgen, texgen::object_space(points[i]));
+        must(same(alone.value_or(glm::vec2(0.0f)).x, in_array.x) && same(alone.value_or(glm::vec2(0.0f)).y, in_array.y),
+             "one point has the bits that it has in an array");
+        if (is_judged(matrix, points[i]))
+            must(alone.has_value() == (support::exactly_at(matrix, points[i]).q.sign() > 0),
+                 "one point is empty behind, and there only");
+    }
+
     // A point that is no number spoils nothing but itself.
     const std::size_t bad = spoilt % count;
     points[bad][static_cast<int>(bad % 3)] = bad % 2 == 0 ? std::numeric_limits<float>::quiet_NaN() : HUGE_VALF;

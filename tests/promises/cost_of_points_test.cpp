@@ -41,9 +41,9 @@ struct Planes {
 // A call of project() on a cloud.
 class Projection {
 public:
-    enum class Way { interleaved_lit, planar, strided, lit_only, one_coordinate, pairs };
-    static constexpr std::array ways{Way::interleaved_lit, Way::planar,         Way::strided,
-                                     Way::lit_only,        Way::one_coordinate, Way::pairs};
+    enum class Way { interleaved_lit, planar, strided, lit_only, one_coordinate, pairs, one_by_one };
+    static constexpr std::array ways{Way::interleaved_lit, Way::planar, Way::strided,   Way::lit_only,
+                                     Way::one_coordinate,  Way::pairs,  Way::one_by_one};
 
     Projection(const support::Cloud& cloud, Way way, Tolerance tolerance)
         : texgen_(cloud.matrix),
@@ -76,6 +76,9 @@ public:
                 return run(texgen::world_space(planes_.x, planes_.y, planes_.z), {out(0), {}, {}, {}});
             case Way::pairs:
                 return project(texgen_, interleaved, pairs_, tolerance_);
+            case Way::one_by_one:
+                for (std::size_t i = 0; i < points_.size(); ++i)
+                    pairs_[i] = project(texgen_, texgen::world_space(points_[i])).value_or(glm::vec2(0.0f));
         }
     }
 

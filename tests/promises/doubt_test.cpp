@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -103,6 +104,27 @@ TEST_CASE("points in doubt have the same bits in vectors and one by one") {
                 for (std::size_t i = 0; i < count; ++i)
                     REQUIRE_MESSAGE(same_or_both_nan(in_vectors[k][i], one_by_one[k][i]), cloud.name, " at ",
                                     support::hex(cloud.points[i]), ": ", in_vectors[k][i], " ", one_by_one[k][i]);
+        }
+    }
+}
+
+TEST_CASE("one point has the bits that it has in a batch, and is empty behind") {
+    Random random(59);
+    constexpr std::size_t count = 320;
+    for (const support::Cloud& cloud : support::doubtful_clouds(count, random)) {
+        const texgen::WorldTexgen texgen(cloud.matrix);
+        std::vector<glm::vec2> st(count);
+        project(texgen, texgen::world_space(cloud.points), st);
+        const bool is_number = 0.0 * (cloud.matrix[0][0] + cloud.matrix[0][3] + cloud.matrix[3][3]) == 0.0;
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::string where = cloud.name + " at " + support::hex(cloud.points[i]);
+            const std::optional<glm::vec2> alone = project(texgen, texgen::world_space(cloud.points[i]));
+            const glm::vec2 value = alone.value_or(glm::vec2(0.0f));
+            REQUIRE_MESSAGE(same_or_both_nan(value.x, st[i].x), where, ": ", value.x, " ", st[i].x);
+            REQUIRE_MESSAGE(same_or_both_nan(value.y, st[i].y), where, ": ", value.y, " ", st[i].y);
+            const bool is_in_front = is_number && is_finite(cloud.points[i]) &&
+                                     support::exactly_at(cloud.matrix, cloud.points[i]).q.sign() > 0;
+            if (is_number) REQUIRE_MESSAGE(alone.has_value() == is_in_front, where);
         }
     }
 }

@@ -274,6 +274,14 @@ std::array<glm::vec2, 2> projected(const Numbers& n) {
 }
 
 template <class Rounding>
+std::array<std::optional<glm::vec2>, 2> projected_alone(const Numbers& n) {
+    const texgen::ObjectTexgen texture_from_object(matrix<Rounding>(n));
+    const glm::vec3 other(Rounding::round(n[19]), Rounding::round(n[20]), Rounding::round(n[21]));
+    return {texgen::project(texture_from_object, texgen::object_space(point<Rounding>(n, 16))),
+            texgen::project(texture_from_object, texgen::object_space(other))};
+}
+
+template <class Rounding>
 std::array<float, 12> generated(const Numbers& n) {
     const texgen::ObjectTexgen texture_from_object(matrix<Rounding>(n));
     const glm::vec3 given = point<Rounding>(n, 16);
@@ -340,6 +348,7 @@ TEST_CASE("floats that are rounded in place give the results of those floats") {
         REQUIRE(by_setup<InPlace>(numbers) == by_batch<InPlace>(numbers));
         REQUIRE(along_segment<InPlace>(numbers) == along_segment<ByMemory>(numbers));
         REQUIRE(projected<InPlace>(numbers) == projected<ByMemory>(numbers));
+        REQUIRE(projected_alone<InPlace>(numbers) == projected_alone<ByMemory>(numbers));
         REQUIRE(divided<InPlace>(numbers) == divided<ByMemory>(numbers));
         REQUIRE(from_eigen<InPlace>(numbers) == from_eigen<ByMemory>(numbers));
         REQUIRE(stored_plane<InPlace>(numbers) == stored_plane<ByMemory>(numbers));

@@ -314,6 +314,11 @@ Calls project_pairs_calls(const Numbers& n) {
         keep(st[0]);
     });
 }
+inline Calls project_point_calls(const Numbers& n) {
+    const auto batch = batch_of<1>(n);
+    if (!is_of_a_scene(*batch)) return {};
+    return calls_of([batch] { keep(texgen::project(batch->texgen, texgen::world_space(batch->points[0]))); });
+}
 template <std::size_t Count>
 Calls generate_calls(const Numbers& n) {
     return calls_of([batch = batch_of<Count>(n)] {
@@ -1280,6 +1285,8 @@ inline const std::array workloads{
              detail::always},
     Workload{"generate to four arrays, 1024 points", 24, detail::ordinary_points, detail::hostile_points,
              detail::generate_planar_calls<1024>, detail::always},
+    Workload{"project a point", 24, detail::ordinary_points, detail::hostile_points, detail::project_point_calls,
+             detail::always},
     Workload{"project_error_bound, 1024 points", 24, detail::ordinary_points, detail::hostile_points,
              detail::project_bound_calls, detail::always},
     Workload{"generate_error_bound, 1024 points", 24, detail::ordinary_points, detail::hostile_points,

@@ -85,6 +85,7 @@ void print_projector(const texgen::Projector& projector) {
     for (std::size_t i = 0; i < points.size(); ++i) {
         print("strq", strq[i]);
         print("st", st[i]);
+        if (const auto alone = project(texgen, object_space(points[i]))) print("st", *alone);
         print("s", static_cast<double>(s[i]));
         print("t", static_cast<double>(t[i]));
         print("r", static_cast<double>(r[i]));

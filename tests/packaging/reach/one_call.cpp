@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <optional>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -309,6 +310,18 @@ void run_clip(const char* name, Clip clip) {
     print(out[0].position), print(out[1].strq), print(out[2].position), print(out[3].strq), print(out[4].strq);
 }
 
+// It writes through no span; its result is a local variable all the same.
+[[gnu::noinline]] void project_alone() {
+    std::optional<glm::vec2> st = glm::vec2(unwritten);
+    same_bits = true;
+    std::printf("project a point");
+    for (int i = 0; i < 4; ++i) {
+        st = project(WorldTexgen(matrix()), world_space(point(i)));
+        print(st.has_value() ? 1.0f : 0.0f), print(st.value_or(glm::vec2(0.0f)));
+    }
+    std::printf("\n");
+}
+
 }  // namespace
 
 int main() {
@@ -335,6 +348,7 @@ int main() {
     COVERAGE_OF_SPHERES_all();
     VOLUME_AND_BOXES_all();
     VOLUME_AND_SPHERES_all();
+    project_alone();
     run_clip("clip_to_near", clip_near);
     run_clip("clip_to_slide", clip_slide);
 }

@@ -31,27 +31,6 @@ void for_each_batch(const Positions<Space>& positions, const Run& run) noexcept 
     }
 }
 
-// One point of a job, every decision exact.
-inline void project_one(const PointJob& job, std::size_t i) noexcept {
-    const glm::dvec3 v = job.interleaved_xyz ? widened(glm::vec3(job.x[3 * i], job.x[3 * i + 1], job.x[3 * i + 2]))
-                                             : widened(glm::vec3(job.x[i], job.y[i], job.z[i]));
-    const auto exact_q = [&] { return exactly_at(job.q, v); };
-    const Bounded q = value_at(job.q, v);
-    const bool in_front = certain_sign(q, exact_q) > 0;
-    float value[2] = {0.0f, 0.0f};
-    for (int k = 0; k < job.numerators; ++k) {
-        const PointForm& numerator = job.numerator[k];
-        if (in_front)
-            value[k] = certain_quotient(
-                value_at(numerator, v), q, [&] { return exactly_at(numerator, v); }, exact_q);
-        if (job.interleaved_st)
-            job.out[0][2 * i + static_cast<std::size_t>(k)] = value[k];
-        else
-            job.out[k][i] = value[k];
-    }
-    if (job.lit != nullptr) job.lit[i] = in_front && is_inside(value[0], value[1], job.min, job.max) ? 1.0f : 0.0f;
-}
-
 // A job without points: the forms of these rows over the row of q.
 inline PointJob point_job(const glm::dmat4& matrix, int row, int numerators, const LitTest& lit,
                           Tolerance tolerance) noexcept {
@@ -220,6 +199,12 @@ void project(const Transform<Texture, Space>& texture_from_space, Positions<Spac
     const detail::LitTest unused(whole_texture());
     detail::project_all(positions, detail::point_job(texture_from_space.matrix(), 0, 2, unused, tolerance),
                         {{}, nullptr, &st[0].x});
+}
+
+template <class Space>
+std::optional<glm::vec2> project(const Transform<Texture, Space>& texture_from_space,
+                                 Position<Space> position) noexcept {
+    return detail::project_point(texture_from_space.matrix(), detail::widened(position.point));
 }
 
 }  // namespace TEXGEN_BUILD

@@ -57,6 +57,12 @@ struct alignas(16) Double2 {
 };
 inline Double2 double2_of(double first, double second) noexcept { return {{first, second}}; }
 inline Double2 magnitude(const Double2& a) noexcept { return {{magnitude(a[0]), magnitude(a[1])}}; }
+inline Double2 leading_27_bits(const Double2& a) noexcept {
+    const auto leading = [](double value) {
+        return bit_cast<double>(bit_cast<std::uint64_t>(value) & ~std::uint64_t{0x3ffffff});
+    };
+    return {{leading(a[0]), leading(a[1])}};
+}
 inline Double2 smaller(const Double2& a, const Double2& b) noexcept {
     return {{smaller(a[0], b[0]), smaller(a[1], b[1])}};
 }
@@ -122,7 +128,13 @@ using Double2 [[gnu::vector_size(16)]] = double;
 TEXGEN_INLINE Double2 double2_of(double first, double second) noexcept { return Double2{first, second}; }
 TEXGEN_INLINE Double2 smaller(const Double2& a, const Double2& b) noexcept { return a < b ? a : b; }
 TEXGEN_INLINE Double2 larger(const Double2& a, const Double2& b) noexcept { return a > b ? a : b; }
-TEXGEN_INLINE Double2 magnitude(const Double2& a) noexcept { return larger(a, -a); }
+using Bits2 [[gnu::vector_size(16)]] = long long;
+TEXGEN_INLINE Double2 magnitude(const Double2& a) noexcept {
+    return __builtin_bit_cast(Double2, __builtin_bit_cast(Bits2, a) & 0x7fffffffffffffffLL);
+}
+TEXGEN_INLINE Double2 leading_27_bits(const Double2& a) noexcept {
+    return __builtin_bit_cast(Double2, __builtin_bit_cast(Bits2, a) & ~0x3ffffffLL);
+}
 
 }  // namespace TEXGEN_DETAIL
 

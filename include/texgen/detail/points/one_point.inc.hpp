@@ -1,0 +1,143 @@
+// One point: in double with a bound on its error; what that leaves in doubt in two doubles, and what those leave by exact sums.
+// Included by texcoord.hpp.
+
+namespace TEXGEN_DETAIL {
+
+// Two forms side by side, as a matrix has them in its columns.
+struct FormPair {
+    Double2 x, y, z, w;
+
+    FormPair(const PointForm& a, const PointForm& b) noexcept
+        : x(double2_of(a.x, b.x)), y(double2_of(a.y, b.y)), z(double2_of(a.z, b.z)), w(double2_of(a.w, b.w)) {}
+
+    PointForm form(std::size_t k) const noexcept { return {x[k], y[k], z[k], w[k]}; }
+};
+
+// Exactly a + b. As two_sum() of numbers.
+inline Double2 two_sum(const Double2& a, const Double2& b, Double2& error) noexcept {
+    const Double2 sum = a + b;
+    const Double2 b_part = sum - a;
+    error = (a - (sum - b_part)) + (b - b_part);
+    return sum;
+}
+
+// Two sums in two doubles each, and what they left out at most.
+struct CloseSums {
+    Double2 high, low, lost;
+
+    // A sum in one double, and what that left.
+    template <std::size_t Count>
+    CloseSums(const Double2& sum, const Double2 (&left)[Count]) noexcept : lost{} {
+        Double2 error;
+        Double2 rest = left[0];
+        for (std::size_t i = 1; i < Count; ++i) {
+            rest = two_sum(rest, left[i], error);
+            lost = lost + magnitude(error);
+        }
+        high = two_sum(sum, rest, low);
+    }
+
+    // Whether it is certain to this share of itself, as 0 is where it is exact.
+    bool is_within(double share, std::size_t k) const noexcept { return lost[k] <= share * std::fabs(high[k]); }
+};
+
+// At a point of floats: coefficients in two parts have exact products, without fma().
+inline CloseSums closely_at(const FormPair& forms, const glm::dvec3& v) noexcept {
+    const Double2 x = leading_27_bits(forms.x), y = leading_27_bits(forms.y), z = leading_27_bits(forms.z);
+    Double2 left[6];
+    Double2 sum = two_sum(x * v.x, forms.w, left[3]);
+    sum = two_sum(sum, y * v.y, left[4]);
+    sum = two_sum(sum, z * v.z, left[5]);
+    left[0] = (forms.x - x) * v.x;
+    left[1] = (forms.y - y) * v.y;
+    left[2] = (forms.z - z) * v.z;
+    return {sum, left};
+}
+
+// The floats nearest to two numerators over q at a point of floats, every decision exact. False where q is not positive, or
+// is no number.
+inline bool divide_exactly(const FormPair& numerators, const PointForm& q_form, const glm::dvec3& v,
+                           float (&value)[2]) noexcept {
+    const auto exact_q = [&] { return exactly_at(q_form, v); };
+    const Bounded q = value_at(q_form, v);
+    if (certain_sign(q, exact_q) <= 0) return false;
+    for (std::size_t k = 0; k < 2; ++k) {
+        const PointForm form = numerators.form(k);
+        value[k] = certain_quotient(
+            value_at(form, v), q, [&] { return exactly_at(form, v); }, exact_q);
+    }
+    return true;
+}
+
+// The same, in two doubles where they suffice.
+inline bool divide_closely(const FormPair& numerators, const PointForm& q_form, const glm::dvec3& v,
+                           float (&value)[2]) noexcept {
+    const auto exactly = [&] { return divide_exactly(numerators, q_form, v, value); };
+    const CloseSums q = closely_at({q_form, q_form}, v);
+    if (!q.is_within(0x1p-51, 0)) return exactly();
+    if (!(q.high[0] > 0.0)) return false;
+    const CloseSums s = closely_at(numerators, v);
+    if (!(s.is_within(0x1p-51, 0) && s.is_within(0x1p-51, 1))) return exactly();
+    float other[2];
+    double middle[2];
+    bool is_alone[2];
+    for (std::size_t k = 0; k < 2; ++k) {
+        const double quotient = s.high[k] / q.high[0] + 0.0;  // no -0
+        const double error = 0x1p-48 * std::fabs(quotient);
+        value[k] = static_cast<float>(quotient - error);
+        other[k] = static_cast<float>(quotient + error);
+        is_alone[k] = value[k] == other[k];
+        middle[k] = is_alone[k] ? 0.0 : middle_of(value[k], other[k]);
+    }
+    if (is_alone[0] && is_alone[1]) return true;
+    // As nearest_to(). Next to a tie s.high - middle q.high is exact, part by part.
+    const Double2 factor = double2_of(middle[0], middle[1]);
+    const Double2 q_high = leading_27_bits(q.high), q_low = leading_27_bits(q.low);
+    const Double2 left[3] = {s.low, -(factor * q_low), -(factor * (q.low - q_low))};
+    CloseSums rest((s.high - factor * q_high) - factor * (q.high - q_high), left);
+    rest.lost = rest.lost + (s.lost + magnitude(factor) * q.lost);
+    for (std::size_t k = 0; k < 2; ++k) {
+        if (is_alone[k] || rest.high[k] < -rest.lost[k]) continue;
+        if (!rest.is_within(0.5, k)) return exactly();
+        value[k] = rest.high[k] > 0.0 ? other[k] : static_cast<float>(middle[k]);
+    }
+    return true;
+}
+
+// One point of a job.
+inline void project_one(const PointJob& job, std::size_t i) noexcept {
+    const glm::dvec3 v = job.interleaved_xyz ? widened(glm::vec3(job.x[3 * i], job.x[3 * i + 1], job.x[3 * i + 2]))
+                                             : widened(glm::vec3(job.x[i], job.y[i], job.z[i]));
+    float value[2];
+    const bool in_front = divide_closely({job.numerator[0], job.numerator[1]}, job.q, v, value);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(job.numerators); ++k)
+        (job.interleaved_st ? job.out[0][2 * i + k] : job.out[k][i]) = in_front ? value[k] : 0.0f;
+    if (job.lit != nullptr) job.lit[i] = in_front && is_inside(value[0], value[1], job.min, job.max) ? 1.0f : 0.0f;
+}
+
+// What project_point() leaves.
+inline std::optional<glm::vec2> project_closely(const glm::dmat4& matrix, const glm::dvec3& v) noexcept {
+    float value[2];
+    if (!divide_closely({form(matrix, 0), form(matrix, 1)}, form(matrix, 3), v, value)) return std::nullopt;
+    return glm::vec2(value[0], value[1]);
+}
+
+// (s/q, t/q) of a point, empty behind. The error of a quotient is that of certain_quotient(), where q's is small beside q.
+inline std::optional<glm::vec2> project_point(const glm::dmat4& matrix, const glm::dvec3& v) noexcept {
+    const Bounded q = value_at(form(matrix, 3), v);
+    if (q.value > 0x1p20 * q.error) {
+        const double reciprocal = 1.0 / q.value;
+        const double relative_error = reciprocal * (q.error * 1.001) + 4.0 * unit_roundoff_double;
+        const FormPair forms(form(matrix, 0), form(matrix, 1));
+        const Double2 x = forms.x * v.x, y = forms.y * v.y, z = forms.z * v.z;
+        const Double2 quotient = (x + y + z + forms.w) * reciprocal;
+        const Double2 terms = magnitude(x) + magnitude(y) + magnitude(z) + magnitude(forms.w);
+        const Double2 error = magnitude(quotient) * relative_error + terms * (reciprocal * (gamma(5) * 1.001));
+        if (rounds_alone(quotient[0], error[0]) && rounds_alone(quotient[1], error[1]))
+            return glm::vec2(static_cast<float>(quotient[0]), static_cast<float>(quotient[1]));
+    }
+    if (q.value < -q.error) return std::nullopt;
+    return project_closely(matrix, v);
+}
+
+}  // namespace TEXGEN_DETAIL
