@@ -28,13 +28,19 @@ struct CloseSums {
     // A sum in one double, and what that left.
     template <std::size_t Count>
     CloseSums(const Double2& sum, const Double2 (&left)[Count]) noexcept : lost{} {
-        Double2 error;
+        Double2 error, third{};
         Double2 rest = left[0];
         for (std::size_t i = 1; i < Count; ++i) {
             rest = two_sum(rest, left[i], error);
+            third = third + error;
             lost = lost + magnitude(error);
         }
         high = two_sum(sum, rest, low);
+        if (is_within(0x1p-60, 0) && is_within(0x1p-60, 1)) return;
+        // Beside a sum that cancels that is much, and is kept.
+        rest = two_sum(low, third, error);
+        high = two_sum(high, rest, low);
+        lost = lost * 0x1p-49 + magnitude(error);
     }
 
     // Whether it is certain to this share of itself, as 0 is where it is exact.
