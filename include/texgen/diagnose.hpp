@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <initializer_list>
 #include <limits>
 #include <optional>
 #include <string_view>
@@ -33,16 +34,28 @@
 
 namespace TEXGEN_NAMESPACE {
 
-// In the order of the findings: numbers that mean nothing, how a product was made, what the lens does, and last what may
-// be no more than the consequence of those before it.
+// In the order of the findings: numbers that mean nothing, why a lens or an aim is refused, how a product was made, what the
+// lens does, and last what may be no more than the consequence of those before it.
 enum class Defect {
     not_finite,
+    angle_out_of_range,
+    aspect_not_positive,
+    near_not_in_front,
+    far_not_beyond_near,
+    lens_without_extent,
+    focal_length_not_positive,
+    picture_without_size,
+    target_at_position,
+    up_is_zero,
+    up_parallel_to_view,
+    beyond_double,
     never_written,
     q_row_zero,
     rank_below_three,
     transposed,
     view_projection_swapped,
     wrong_order,
+    view_not_inverted,
     camera_not_inverted,
     camera_left_out,
     camera_inverse_doubled,
@@ -51,6 +64,7 @@ enum class Defect {
     model_doubled,
     scale_bias_missing,
     scale_bias_doubled,
+    bias_without_w,
     mixed_handedness,
     depth_range_mismatch,
     angle_unit_mistaken,
@@ -77,6 +91,27 @@ struct DefectInWords {
 inline constexpr std::array<DefectInWords, defect_count> defects_in_words{{
     {Defect::not_finite, "A number is infinite or not a number.",
      "Look for a division by zero, an empty lens or an uninitialised value before it."},
+    {Defect::angle_out_of_range, "The lens's angle is not between 0 and 180 degrees, both excluded.",
+     "Pass the full vertical angle, as texgen::degrees() or texgen::radians()."},
+    {Defect::aspect_not_positive, "The lens's aspect is not positive.",
+     "Pass width / height, both positive and neither a division of integers."},
+    {Defect::near_not_in_front, "The near plane is not in front of the projector.",
+     "Pass a z_near above 0: a distance, not a coordinate."},
+    {Defect::far_not_beyond_near, "The far plane is not beyond the near plane.",
+     "Pass z_near < z_far; reversed depth is a flag of the lens, not an order."},
+    {Defect::lens_without_extent, "The lens has no width or no height: left equals right, or bottom equals top.",
+     "Pass two sides that differ."},
+    {Defect::focal_length_not_positive, "A focal length is not positive.",
+     "Pass fx and fy in pixels, as the camera's matrix K has them on its diagonal."},
+    {Defect::picture_without_size, "The picture has no width or no height.", "Pass its size in pixels."},
+    {Defect::target_at_position, "The projector looks at the point where it stands.",
+     "Pass a target that differs from the position."},
+    {Defect::up_is_zero, "The up direction is zero.", "Pass a direction, as (0, 1, 0)."},
+    {Defect::up_parallel_to_view,
+     "The up direction is parallel to the view, so that it does not say how to turn the picture.",
+     "Pass another up: for a projector that looks straight down, the direction of the picture's upper side."},
+    {Defect::beyond_double, "A number of the lens's or the view's matrix is beyond what a double holds.",
+     "Check the units: numbers are too large or too close to one another."},
     {Defect::never_written, "The matrix was never written: it is zero, or holds OpenGL's default planes.",
      "Upload S P_p V_p M (object linear) or S P_p V_p V_e^-1 (eye linear) before it is used."},
     {Defect::q_row_zero, "Row q is zero, so that nothing can be divided by q.",
@@ -89,6 +124,8 @@ inline constexpr std::array<DefectInWords, defect_count> defects_in_words{{
      "Compose P_p V_p, the projection on the left."},
     {Defect::wrong_order, "The factors stand in the wrong order.",
      "Compose S P_p V_p M or S P_p V_p V_e^-1: column vectors, the first transform on the right."},
+    {Defect::view_not_inverted, "The projector's pose stands where its view belongs, the pose's inverse.",
+     "Pass V_p as look_at() makes it, from the world to the projector: invert the pose."},
     {Defect::camera_not_inverted, "The camera's view matrix stands where its inverse belongs.",
      "Pass the camera's pose, V_e^-1."},
     {Defect::camera_left_out, "The camera's inverse is missing.",
@@ -105,6 +142,8 @@ inline constexpr std::array<DefectInWords, defect_count> defects_in_words{{
      "Multiply by scale_bias() from the left."},
     {Defect::scale_bias_doubled, "The scale-bias is in the matrix twice.",
      "Leave out one of them, in the matrix or in the shader."},
+    {Defect::bias_without_w, "The bias is added without w: clip * 0.5 + 0.5 before the division.",
+     "Multiply the bias by w, as scale_bias() and to_texture() do, or divide first."},
     {Defect::mixed_handedness,
      "The lens is made for the other handedness: it looks down +z where the conventions' eye looks down -z, or the "
      "reverse.",
@@ -210,6 +249,15 @@ template <class Space>
 Diagnosis diagnose(const Transform<Texture, Space>& texgen,
                    const ProjectionSetup<std::type_identity_t<Space>>& setup = {}) noexcept;
 
+// Says why make_projector(lens, aim, conventions) is empty: each way in which the lens and the aim are refused.
+// Guarantee: empty where, and only where, make_projector() makes a projector. No allocation, noexcept.
+// An angle of more than a turn is taken for degrees that were passed as radians.
+// Bad input: what is not finite is reported, and the rest is examined without it.
+inline Diagnosis diagnose(const PerspectiveLens& lens, const Aim& aim, Conventions conventions) noexcept;
+inline Diagnosis diagnose(const FrustumLens& lens, const Aim& aim, Conventions conventions) noexcept;
+inline Diagnosis diagnose(const OrthographicLens& lens, const Aim& aim, Conventions conventions) noexcept;
+inline Diagnosis diagnose(const PinholeLens& lens, const Aim& aim, Conventions conventions) noexcept;
+
 // Says the same of planes S, T, R, Q as glGetTexGen or planes() returns them.
 template <class Space = Object>
 Diagnosis diagnose(const std::array<glm::vec4, 4>& planes, const ProjectionSetup<Space>& setup = {}) noexcept;
@@ -218,4 +266,6 @@ Diagnosis diagnose(const std::array<glm::vec4, 4>& planes, const ProjectionSetup
 
 #include "detail/diagnosis/points.inc.hpp"
 #include "detail/diagnosis/projector.inc.hpp"
+#include "detail/diagnosis/refusals.inc.hpp"
+#include "detail/diagnosis/see_through.inc.hpp"
 #include "detail/diagnosis/set_up.inc.hpp"

@@ -104,10 +104,10 @@ inline bool is_affine(const glm::dmat4& m) noexcept {
     return m[0].w == 0.0 && m[1].w == 0.0 && m[2].w == 0.0 && m[3].w != 0.0;
 }
 
-// The form that every lens has, on the axis or off it: x and y cross neither into one another nor into depth and w.
+// The form that every lens has, on the axis or off it: x and y cross neither into depth and w nor, but for a skew of x,
+// into one another.
 inline bool is_lens(const glm::dmat4& p) noexcept {
-    const bool apart =
-        p[0].y == 0.0 && p[0].z == 0.0 && p[0].w == 0.0 && p[1].x == 0.0 && p[1].z == 0.0 && p[1].w == 0.0;
+    const bool apart = p[0].y == 0.0 && p[0].z == 0.0 && p[0].w == 0.0 && p[1].z == 0.0 && p[1].w == 0.0;
     const bool perspective = p[2].w != 0.0 && p[3].w == 0.0 && p[3].x == 0.0 && p[3].y == 0.0;
     const bool parallel = p[2].w == 0.0 && p[3].w != 0.0 && p[2].x == 0.0 && p[2].y == 0.0;
     return apart && (perspective || parallel);
@@ -150,12 +150,15 @@ inline bool mistakes_depth(const glm::dmat4& p, DepthRange range, Handedness han
 }
 
 // Whether the focal length is that of an angle whose number was taken for one of the other unit, and not that of fovy.
+// Degrees taken for radians are many turns, so that the rounding of their number is one of the angle.
 inline bool mistakes_unit(double focal_length, const Angle& fovy) noexcept {
     const auto is_of = [&](double angle) {
         const double expected = std::cos(0.5 * angle) / std::sin(0.5 * angle);
         return std::fabs(focal_length - expected) <= 0x1p-16 * std::fabs(expected);
     };
-    return !is_of(fovy.in_radians()) && (is_of(fovy.in_degrees()) || is_of(degrees(fovy.in_radians()).in_radians()));
+    if (is_of(fovy.in_radians())) return false;
+    const double turned = 2.0 * std::atan2(1.0, focal_length) - fovy.in_degrees();
+    return std::fabs(std::sin(0.5 * turned)) <= 0x1p-16 || is_of(degrees(fovy.in_radians()).in_radians());
 }
 
 // Row r against row q. Every lens has (0, 0, e, f) in row z and (0, 0, w, h) in row w, so that r = limit q + constant, the

@@ -21,24 +21,12 @@ inline void examine(const Composition& composition, bool in_eye_space, Diagnosis
     add_pose(PoseUse::doubled, Defect::camera_inverse_doubled, Defect::model_doubled);
     if (composition.scale_bias == ScaleBiasUse::left_out) diagnosis.add(Defect::scale_bias_missing);
     if (composition.scale_bias == ScaleBiasUse::doubled) diagnosis.add(Defect::scale_bias_doubled);
+    if (composition.scale_bias == ScaleBiasUse::without_w) diagnosis.add(Defect::bias_without_w);
     if (composition.other_depth) diagnosis.add(Defect::depth_range_mismatch);
     if (composition.t_mirrored) diagnosis.add(Defect::upside_down);
     if (composition.s_mirrored) diagnosis.add(Defect::mirrored);
     if (composition.multiple < 0.0) diagnosis.add(Defect::everything_behind);
 }
-
-// All of a set-up but its points.
-struct SetupMatrices {
-    const Projector* projector = nullptr;
-    const glm::dmat4* pose = nullptr;    // null: not known, or the points are in the world
-    const glm::dmat4* texgen = nullptr;  // null: what the projector and the pose compose
-    bool are_planes = false;             // texgen is what hardware holds, in float whatever its numbers
-    bool in_world_space = false, in_eye_space = false;
-    Picture picture = {};
-    DepthMapping depth = DepthMapping::unit;
-    std::optional<Conventions> conventions = std::nullopt;
-    LensFacts lens = {};
-};
 
 inline bool is_nan(double value) noexcept { return !(std::fabs(value) <= std::numeric_limits<double>::infinity()); }
 
@@ -117,7 +105,11 @@ inline Examined examine(const SetupMatrices& setup, Diagnosis& diagnosis) noexce
     if (setup.pose != nullptr) {
         if (!is_usable(*setup.pose, diagnosis)) factors.reset();
         if (is_affine_transposed(*setup.pose)) diagnosis.add(Defect::transposed);
-        if (factors) factors->pose = *setup.pose;
+        glm::dmat4 turned_and_scaled = *setup.pose;
+        turned_and_scaled[3] = glm::dvec4(0.0);
+        if (turned_and_scaled == glm::dmat4(0.0)) diagnosis.add(Defect::rank_below_three);
+        // The identity stands in every order, and adds noise to none.
+        if (factors && *setup.pose != glm::dmat4(1.0)) factors->pose = *setup.pose;
     }
     std::optional<Product> right;
     if (factors) {
@@ -128,6 +120,7 @@ inline Examined examine(const SetupMatrices& setup, Diagnosis& diagnosis) noexce
     if (setup.texgen == nullptr) {
         if (!right) return examined;
         examined.texgen = right->value;
+        if (!are_independent(right->value, {0, 1, 3})) diagnosis.add(Defect::rank_below_three);
         const glm::dmat4& view = setup.projector->view.matrix();
         if (is_in_float(view)) {
             const Product lens = scale_bias_factor(*factors, {}) * lens_factor(factors->projection);
@@ -162,7 +155,8 @@ inline Examined examine(const SetupMatrices& setup, Diagnosis& diagnosis) noexce
     } else if (is_dependent) {
         diagnosis.add(Defect::rank_below_three);
     } else if (right) {
-        diagnosis.add(Defect::not_of_this_set_up);
+        if (!look_through(as_in_scenes(texgen), as_in_scenes(*factors), setup, diagnosis))
+            diagnosis.add(Defect::not_of_this_set_up);
     } else if (has_q) {
         was_transposed = examine_alone(texgen, setup, diagnosis);
     }

@@ -1,0 +1,236 @@
+#pragma once
+
+// The factors of a texgen matrix, the scale-bias S, the projector's P and V, and the pose X (the model matrix M or the
+// camera's V_e^-1), their products and what rounding may change of these; and which products a matrix is at a glance.
+
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include <glm/common.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
+
+#include "../arithmetic/inverse.hpp"
+#include "../arithmetic/rounding.hpp"
+#include "matrix_signs.hpp"
+
+namespace TEXGEN_DETAIL {
+
+// A product, and the sums of the magnitudes of its terms, which its rounding is relative to.
+struct Product {
+    glm::dmat4 value, magnitude;
+};
+
+inline Product operator*(const Product& a, const Product& b) noexcept {
+    return {a.value * b.value, a.magnitude * b.magnitude};
+}
+
+inline Product lens_factor(const glm::dmat4& m) noexcept { return {m, absolute(m)}; }
+
+// Rotations and inverses carry noise relative to the largest element of a column, also where they hold a zero.
+inline Product pose_factor(const glm::dmat4& m) noexcept {
+    Product result = lens_factor(m);
+    for (glm::length_t column = 0; column < 4; ++column) {
+        glm::dvec4& c = result.magnitude[column];
+        c.x = c.y = c.z = larger(c.x, larger(c.y, c.z));
+    }
+    return result;
+}
+
+// What a matrix may differ from a product by: a share of the element, and of the magnitudes of its terms.
+struct Closeness {
+    double of_element, of_magnitude;
+};
+
+// Composed in double, of the same factors, and rounded once at most.
+inline constexpr Closeness composed_in_double{0.0, 0x1p-44};
+inline constexpr Closeness rounded_once{0x1p-23, 0x1p-44};
+// Three products in float of factors rounded to float err by 16 * 2^-24 at most; a float inverse may be among them.
+inline constexpr Closeness composed_in_float{0.0, 0x1p-16};
+
+// k where `given` is k times the product, in the rows (and, of what was read transposed, the columns) in which it is not
+// zero: planes that were never written say nothing. 0 where it is not.
+class Multiple {
+public:
+    Multiple(const Product& product, const glm::dmat4& given, bool was_transposed = false) noexcept
+        : product_(product), given_(given), was_transposed_(was_transposed) {
+        double along = 0.0;
+        double norm = 0.0;
+        for (glm::length_t row = 0; row < 4; ++row) {
+            if (is_zero_row(given, row)) continue;
+            for (glm::length_t column = 0; column < 4; ++column) {
+                const double magnitude = product.magnitude[column][row];
+                if (!(magnitude > 0.0) || says_nothing(column)) continue;
+                const double value = product.value[column][row] / magnitude;
+                along += given[column][row] / magnitude * value;
+                norm += value * value;
+            }
+        }
+        multiple_ = along / norm;
+    }
+
+    double within(Closeness closeness) const noexcept {
+        for (glm::length_t row = 0; row < 4; ++row) {
+            if (is_zero_row(given_, row)) continue;
+            for (glm::length_t column = 0; column < 4; ++column) {
+                if (says_nothing(column)) continue;
+                const double value = product_.value[column][row];
+                const double accepted =
+                    closeness.of_element * std::fabs(value) + closeness.of_magnitude * product_.magnitude[column][row];
+                if (!(std::fabs(given_[column][row] - multiple_ * value) <= std::fabs(multiple_) * accepted))
+                    return 0.0;
+            }
+        }
+        return is_finite(multiple_) ? multiple_ : 0.0;
+    }
+
+private:
+    bool says_nothing(glm::length_t column) const noexcept {
+        return was_transposed_ && given_[column] == glm::dvec4(0.0);
+    }
+
+    const Product& product_;
+    const glm::dmat4& given_;
+    bool was_transposed_;
+    double multiple_;
+};
+
+enum class Order { right, view_before_projection, wrong };
+enum class PoseUse { right, inverted, left_out, doubled };
+enum class ScaleBiasUse { right, left_out, doubled, without_w };
+
+// How a matrix was made of its factors.
+struct Composition {
+    bool transposed = false;
+    Order order = Order::right;
+    PoseUse pose = PoseUse::right;
+    ScaleBiasUse scale_bias = ScaleBiasUse::right;
+    bool s_mirrored = false, t_mirrored = false, other_depth = false;
+    double multiple = 1.0;
+};
+
+// Numbers that no scene has would cost time (subnormal ones) or products their range: small ones are 0, large ones none.
+inline glm::dmat4 as_in_scenes(glm::dmat4 m) noexcept {
+    for (glm::length_t column = 0; column < 4; ++column) {
+        for (glm::length_t row = 0; row < 4; ++row) {
+            double& element = m[column][row];
+            if (std::fabs(element) < 0x1p-150) element = 0.0;
+            if (std::fabs(element) > 0x1p150) element = std::numeric_limits<double>::quiet_NaN();
+        }
+    }
+    return m;
+}
+
+struct Factors {
+    glm::dmat4 scale_bias, projection, view;
+    std::optional<glm::dmat4> pose;  // empty: the points are in the world
+};
+
+inline Factors as_in_scenes(const Factors& factors) noexcept {
+    return {as_in_scenes(factors.scale_bias), as_in_scenes(factors.projection), as_in_scenes(factors.view),
+            factors.pose ? std::optional(as_in_scenes(*factors.pose)) : std::nullopt};
+}
+
+inline Product scale_bias_factor(const Factors& factors, const Composition& composition) noexcept {
+    if (composition.scale_bias == ScaleBiasUse::left_out) return lens_factor(glm::dmat4(1.0));
+    glm::dmat4 matrix = factors.scale_bias;
+    if (composition.s_mirrored) matrix[0][0] = -matrix[0][0];
+    if (composition.t_mirrored) matrix[1][1] = -matrix[1][1];
+    if (composition.other_depth) {
+        const bool halves = matrix[3][2] != 0.0;
+        matrix[2][2] = halves ? 1.0 : 0.5;
+        matrix[3][2] = halves ? 0.0 : 0.5;
+    }
+    const Product once = lens_factor(matrix);
+    return composition.scale_bias == ScaleBiasUse::doubled ? once * once : once;
+}
+
+// The pose as a mistake would use it; empty for an inverse that does not exist.
+inline std::optional<Product> pose_factor(const Factors& factors, PoseUse use) noexcept {
+    if (!factors.pose) return use == PoseUse::right ? std::optional(lens_factor(glm::dmat4(1.0))) : std::nullopt;
+    switch (use) {
+        case PoseUse::right:
+            return pose_factor(*factors.pose);
+        case PoseUse::left_out:
+            return lens_factor(glm::dmat4(1.0));
+        case PoseUse::doubled:
+            return pose_factor(*factors.pose) * pose_factor(*factors.pose);
+        case PoseUse::inverted:
+            break;
+    }
+    const CertifiedInverse inverse(*factors.pose);
+    return inverse.regular() ? std::optional(pose_factor(as_in_scenes(inverse.matrix()))) : std::nullopt;
+}
+
+// V X, and S P V X.
+inline Product pose_product(const Factors& factors) noexcept {
+    const Product view = pose_factor(factors.view);
+    return factors.pose ? view * pose_factor(*factors.pose) : view;
+}
+inline Product right_composition(const Factors& factors) noexcept {
+    return scale_bias_factor(factors, {}) * lens_factor(factors.projection) * pose_product(factors);
+}
+
+// Whether rows s, t and q are right, and row r = a z + b w is that of a lens or a scale-bias for the other range: by far
+// nearer to it than to the right one, and, where rounding could have moved the right one there, as near as the other rows
+// are to theirs.
+inline bool is_of_other_range(const glm::dmat4& texgen, const glm::dmat4& scale_bias, const Product& right) noexcept {
+    if (is_zero_row(texgen, 2)) return false;
+    glm::dmat4 other_rows = texgen;
+    for (glm::length_t column = 0; column < 4; ++column) other_rows[column][2] = 0.0;
+    const double multiple = Multiple(right, other_rows).within(composed_in_float);
+    if (!(multiple > 0.0)) return false;
+    // How far row `row` of the matrix is from a times that of the right product and b times its row q.
+    const auto distance = [&](glm::length_t row, double a, double b) {
+        double result = 0.0;
+        for (glm::length_t column = 0; column < 4; ++column) {
+            const double value = a * right.value[column][row] + b * right.value[column][3];
+            const double magnitude =
+                std::fabs(a) * right.magnitude[column][row] + std::fabs(b) * right.magnitude[column][3];
+            const double error = std::fabs(texgen[column][row] - multiple * value);
+            if (error > 0.0) result = larger(result, error / (multiple * magnitude));
+        }
+        return result;
+    };
+    const double to_right = distance(2, 1.0, 0.0);
+    const double rounding = larger(larger(distance(0, 1.0, 0.0), distance(1, 1.0, 0.0)),
+                                   larger(distance(3, 1.0, 0.0), unit_roundoff_float));
+    const double accepted = to_right > composed_in_float.of_magnitude ? composed_in_float.of_magnitude : 4.0 * rounding;
+    // z, (z + w) / 2, 2 z - w and (z + 3 w) / 4, of r = scale z + bias w.
+    const double scale = scale_bias[2][2], bias = scale_bias[3][2];
+    for (const glm::dvec2& row :
+         {glm::dvec2(1.0, 0.0), glm::dvec2(0.5, 0.5), glm::dvec2(2.0, -1.0), glm::dvec2(0.25, 0.75)}) {
+        const double to_other = distance(2, row.x / scale, row.y - row.x * bias / scale);
+        if (to_other <= accepted && 8.0 * to_other < to_right) return true;
+    }
+    return false;
+}
+
+// Whether the matrix is clip * scale + bias, the bias not times w: of x and y, and of z and w or not. Scale and bias are those
+// of S or 1/2, in either direction of t; the sum of a glm::mat4 and a number has the bias in every column.
+inline bool is_bias_without_w(const glm::dmat4& texgen, const Factors& factors) noexcept {
+    // Of parallel light w is 1.
+    if (!is_perspective(factors.projection)) return false;
+    const Product clip = lens_factor(factors.projection) * pose_product(factors);
+    const auto is_row = [&](glm::length_t row, double scale, const glm::dvec4& bias) {
+        for (glm::length_t column = 0; column < 4; ++column) {
+            const double magnitude = std::fabs(scale) * clip.magnitude[column][row] + std::fabs(bias[column]);
+            const double value = scale * clip.value[column][row] + bias[column];
+            if (!(std::fabs(texgen[column][row] - value) <= composed_in_float.of_magnitude * magnitude)) return false;
+        }
+        return true;
+    };
+    const glm::dvec4 constant(0.0, 0.0, 0.0, 1.0);
+    const auto is_biased = [&](glm::length_t row) {
+        const double scale = factors.scale_bias[row][row];
+        const glm::dvec4 bias = factors.scale_bias[3][row] * constant;
+        return is_row(row, scale, bias) || is_row(row, -scale, bias) || is_row(row, 0.5, 0.5 * constant) ||
+               is_row(row, 0.5, glm::dvec4(0.5));
+    };
+    return is_biased(0) && is_biased(1) &&
+           (is_row(3, 1.0, glm::dvec4(0.0)) || is_row(3, 0.5, 0.5 * constant) || is_row(3, 0.5, glm::dvec4(0.5)));
+}
+
+}  // namespace TEXGEN_DETAIL

@@ -1,0 +1,102 @@
+// What diagnose.hpp says of a lens and an aim that make no projector.
+
+namespace TEXGEN_DETAIL {
+
+inline void require_finite(std::initializer_list<double> numbers, Diagnosis& diagnosis) noexcept {
+    for (const double number : numbers)
+        if (!is_finite(number)) diagnosis.add(Defect::not_finite);
+}
+
+// Of numbers that are finite: whether they keep the rule. The others are said by themselves.
+inline void require(bool keeps_rule, std::initializer_list<double> numbers, Defect defect,
+                    Diagnosis& diagnosis) noexcept {
+    bool all_finite = true;
+    for (const double number : numbers) all_finite = all_finite && is_finite(number);
+    if (all_finite && !keeps_rule) diagnosis.add(defect);
+}
+
+// Of a lens whose far plane may be infinitely far.
+inline void examine_planes(double z_near, double z_far, Diagnosis& diagnosis) noexcept {
+    require_finite({z_near, z_far == std::numeric_limits<double>::infinity() ? 0.0 : z_far}, diagnosis);
+    require(z_near > 0.0, {z_near}, Defect::near_not_in_front, diagnosis);
+    require(z_near < z_far, {z_near, z_far}, Defect::far_not_beyond_near, diagnosis);
+}
+
+template <class RectangularLens>
+void examine_rectangle(const RectangularLens& lens, Diagnosis& diagnosis) noexcept {
+    require_finite({lens.left, lens.right, lens.bottom, lens.top, lens.z_near, lens.z_far}, diagnosis);
+    require(lens.left != lens.right, {lens.left, lens.right}, Defect::lens_without_extent, diagnosis);
+    require(lens.bottom != lens.top, {lens.bottom, lens.top}, Defect::lens_without_extent, diagnosis);
+    require(lens.z_near < lens.z_far, {lens.z_near, lens.z_far}, Defect::far_not_beyond_near, diagnosis);
+}
+
+inline void examine(const PerspectiveLens& lens, Diagnosis& diagnosis) noexcept {
+    const double angle = lens.fovy.in_radians();
+    require_finite({angle, lens.aspect}, diagnosis);
+    constexpr double half_turn = 3.14159265358979323846;
+    require(0.5 * angle > 0.0 && 0.5 * angle<0.5 * half_turn, {angle}, std::fabs(angle)> 2.0 * half_turn
+                ? Defect::angle_unit_mistaken
+                : Defect::angle_out_of_range,
+            diagnosis);
+    require(lens.aspect > 0.0, {lens.aspect}, Defect::aspect_not_positive, diagnosis);
+    examine_planes(lens.z_near, lens.z_far, diagnosis);
+}
+inline void examine(const FrustumLens& lens, Diagnosis& diagnosis) noexcept {
+    examine_rectangle(lens, diagnosis);
+    require(lens.z_near > 0.0, {lens.z_near}, Defect::near_not_in_front, diagnosis);
+}
+inline void examine(const OrthographicLens& lens, Diagnosis& diagnosis) noexcept { examine_rectangle(lens, diagnosis); }
+inline void examine(const PinholeLens& lens, Diagnosis& diagnosis) noexcept {
+    require_finite({lens.fx, lens.fy, lens.cx, lens.cy, lens.width, lens.height, lens.skew}, diagnosis);
+    require(lens.fx > 0.0, {lens.fx}, Defect::focal_length_not_positive, diagnosis);
+    require(lens.fy > 0.0, {lens.fy}, Defect::focal_length_not_positive, diagnosis);
+    require(lens.width > 0.0, {lens.width}, Defect::picture_without_size, diagnosis);
+    require(lens.height > 0.0, {lens.height}, Defect::picture_without_size, diagnosis);
+    examine_planes(lens.z_near, lens.z_far, diagnosis);
+}
+
+inline void examine(const Aim& aim, Diagnosis& diagnosis) noexcept {
+    const auto is_number = [&](const glm::dvec3& v) {
+        require_finite({v.x, v.y, v.z}, diagnosis);
+        return is_finite(v.x) && is_finite(v.y) && is_finite(v.z);
+    };
+    const bool has_position = is_number(aim.position), has_target = is_number(aim.target), has_up = is_number(aim.up);
+    // As look_at() decides.
+    const Difference view = scaled_difference(aim.target, aim.position);
+    const glm::dvec3 up = scaled_near_one(aim.up);
+    const bool has_both = has_position && has_target;
+    const bool looks_somewhere = has_both && length(view.high) > 0.0, points_somewhere = has_up && length(up) > 0.0;
+    if (has_both && !looks_somewhere) diagnosis.add(Defect::target_at_position);
+    if (has_up && !points_somewhere) diagnosis.add(Defect::up_is_zero);
+    if (looks_somewhere && points_somewhere && !(length(cross(view, up)) > 0x1p-98))
+        diagnosis.add(Defect::up_parallel_to_view);
+}
+
+template <class Lens>
+Diagnosis diagnose(const Lens& lens, const Aim& aim, Conventions conventions) noexcept {
+    Diagnosis diagnosis;
+    if (make_projector(lens, aim, conventions)) return diagnosis;
+    examine(lens, diagnosis);
+    examine(aim, diagnosis);
+    if (diagnosis.empty()) diagnosis.add(Defect::beyond_double);
+    return diagnosis;
+}
+
+}  // namespace TEXGEN_DETAIL
+
+namespace TEXGEN_NAMESPACE {
+
+inline Diagnosis diagnose(const PerspectiveLens& lens, const Aim& aim, Conventions conventions) noexcept {
+    return detail::diagnose(lens, aim, conventions);
+}
+inline Diagnosis diagnose(const FrustumLens& lens, const Aim& aim, Conventions conventions) noexcept {
+    return detail::diagnose(lens, aim, conventions);
+}
+inline Diagnosis diagnose(const OrthographicLens& lens, const Aim& aim, Conventions conventions) noexcept {
+    return detail::diagnose(lens, aim, conventions);
+}
+inline Diagnosis diagnose(const PinholeLens& lens, const Aim& aim, Conventions conventions) noexcept {
+    return detail::diagnose(lens, aim, conventions);
+}
+
+}  // namespace TEXGEN_NAMESPACE

@@ -1,0 +1,109 @@
+// What diagnose.hpp says of a texgen matrix that no order and no use of its factors gives: what else it was made of, and the
+// lens that is seen through it, P' = S^-1 T X^-1 V^-1.
+
+namespace TEXGEN_DETAIL {
+
+// All of a set-up but its points.
+struct SetupMatrices {
+    const Projector* projector = nullptr;
+    const glm::dmat4* pose = nullptr;    // null: not known, or the points are in the world
+    const glm::dmat4* texgen = nullptr;  // null: what the projector and the pose compose
+    bool are_planes = false;             // texgen is what hardware holds, in float whatever its numbers
+    bool in_world_space = false, in_eye_space = false;
+    Picture picture = {};
+    DepthMapping depth = DepthMapping::unit;
+    std::optional<Conventions> conventions = std::nullopt;
+    LensFacts lens = {};
+};
+
+// S^-1 T, or what that does to magnitudes.
+inline glm::dmat4 before_scale_bias(glm::dmat4 texgen, const glm::dmat4& scale_bias) noexcept {
+    for (glm::length_t column = 0; column < 4; ++column)
+        for (glm::length_t row = 0; row < 3; ++row)
+            texgen[column][row] = (texgen[column][row] - scale_bias[3][row] * texgen[column][3]) / scale_bias[row][row];
+    return texgen;
+}
+inline glm::dmat4 magnitude_before_scale_bias(glm::dmat4 magnitude, const glm::dmat4& scale_bias) noexcept {
+    for (glm::length_t column = 0; column < 4; ++column)
+        for (glm::length_t row = 0; row < 3; ++row)
+            magnitude[column][row] += 2.0 * std::fabs(scale_bias[3][row] / scale_bias[row][row]) * magnitude[column][3];
+    return magnitude;
+}
+
+// Whether the projector's pose stands where its view belongs.
+inline bool has_pose_for_view(const glm::dmat4& texgen, const Factors& factors) noexcept {
+    const CertifiedInverse inverse(factors.view);
+    if (!inverse.regular()) return false;
+    Factors with_pose = factors;
+    with_pose.view = as_in_scenes(inverse.matrix());
+    return Multiple(right_composition(with_pose), texgen).within(composed_in_float) > 0.0;
+}
+
+// P', the projection that a texgen matrix has in it, of a w as large as that of P; what rounding can have left of a zero is
+// 0. Empty where V X is singular, or so much is left that it is no lens.
+inline std::optional<glm::dmat4> lens_within(const glm::dmat4& texgen, const Factors& factors) noexcept {
+    const Product pose = pose_product(factors);
+    const CertifiedInverse inverse(pose.value);
+    if (!inverse.regular()) return std::nullopt;
+    const glm::dmat4 back = inverse.matrix();
+    glm::dmat4 p = before_scale_bias(texgen, factors.scale_bias) * back;
+    const glm::dmat4 terms =
+        magnitude_before_scale_bias(absolute(p), factors.scale_bias) * pose.magnitude * absolute(back);
+    for (glm::length_t column = 0; column < 4; ++column)
+        for (glm::length_t row = 0; row < 4; ++row)
+            if (std::fabs(p[column][row]) <= composed_in_float.of_magnitude * terms[column][row]) p[column][row] = 0.0;
+    const bool was_perspective = is_perspective(factors.projection);
+    const double unit = was_perspective ? p[2].w / factors.projection[2].w : p[3].w / factors.projection[3].w;
+    if (is_zero_row(texgen, 2))
+        for (glm::length_t column = 0; column < 4; ++column) p[column][2] = unit * factors.projection[column][2];
+    p *= 1.0 / std::fabs(unit);
+    return is_finite(p) && is_lens(p) && is_perspective(p) == was_perspective ? std::optional(p) : std::nullopt;
+}
+
+// The distance at which a lens has that depth; infinite where it has it nowhere in front.
+inline double distance_of(double depth, const glm::dmat4& p, Handedness handedness) noexcept {
+    const double per_z = depth * p[2].w - p[2].z;
+    const bool is_ahead = is_perspective(p) ? p[2].w > 0.0 : handedness == Handedness::left;
+    const double z = (p[3].z - depth * p[3].w) / per_z;
+    const double distance = is_ahead ? z : -z;
+    return is_finite(distance) && (distance > 0.0 || !is_perspective(p)) ? distance
+                                                                         : std::numeric_limits<double>::infinity();
+}
+
+// What a lens was meant to be: what is known of it, and else what the projector's is.
+inline LensFacts meant_by(const glm::dmat4& p, Conventions conventions, LensFacts facts) noexcept {
+    if (!facts.fovy && is_perspective(p) && p[2].x == 0.0 && p[2].y == 0.0)
+        facts.fovy = radians(2.0 * std::atan2(std::fabs(p[2].w), std::fabs(p[1].y)));
+    if (!facts.aspect) facts.aspect = std::fabs(p[1].y / p[0].x);
+    const double low = conventions.depth == DepthRange::negative_one_to_one ? -1.0 : 0.0;
+    if (!facts.z_near) facts.z_near = distance_of(low, p, conventions.handedness);
+    if (!facts.z_far) facts.z_far = distance_of(1.0, p, conventions.handedness);
+    facts.mirrored = false;
+    return facts;
+}
+
+// Looks through a product that is none of its factors; says what it finds, and whether it found anything.
+inline bool look_through(const glm::dmat4& texgen, const Factors& factors, const SetupMatrices& setup,
+                         Diagnosis& diagnosis) noexcept {
+    if (has_pose_for_view(texgen, factors)) {
+        diagnosis.add(Defect::view_not_inverted);
+        return true;
+    }
+    const glm::dmat4& given = factors.projection;
+    if (!is_lens(given)) return false;
+    auto p = lens_within(texgen, factors);
+    if (!p) return false;
+    const Conventions conventions = setup.projector->conventions;
+    // The projector's own lens may mirror; what is seen is whether this one does what that one does.
+    const double turns_y = conventions.ndc_y == NdcY::up ? 1.0 : -1.0;
+    for (glm::length_t column = 0; column < 4; ++column) {
+        if (given[0].x < 0.0) (*p)[column].x = -(*p)[column].x;
+        if (turns_y * given[1].y < 0.0) (*p)[column].y = -(*p)[column].y;
+    }
+    Diagnosis of_lens;
+    examine_lens(*p, false, conventions, meant_by(given, conventions, setup.lens), setup.picture, of_lens);
+    for (const Finding& finding : of_lens) diagnosis.add(finding.defect, finding.number);
+    return !of_lens.empty();
+}
+
+}  // namespace TEXGEN_DETAIL
