@@ -113,7 +113,7 @@ constexpr std::array<Method, 6> methods{{{"texgen, exact", texgen_exact},
                                          {"Eigen, plane equations", eigen_planes}}};
 
 struct Exact {
-    double s, t;
+    double s, t, r;
     bool in_front, lit, near_border, on_slide;
 };
 
@@ -125,6 +125,7 @@ Exact exact_at(const texgen::Triangle& triangle, const texgen::TextureRegion& re
     const auto quotient = texgen::reference::quotient<long double>(strq);
     const auto s = static_cast<double>(quotient[0]);
     const auto t = static_cast<double>(quotient[1]);
+    const auto r = static_cast<double>(quotient[2]);
     const glm::dvec2& min = region.min();
     const glm::dvec2& max = region.max();
     // lit is decided from the computed coordinates: within their error of the border both answers are right.
@@ -134,6 +135,7 @@ Exact exact_at(const texgen::Triangle& triangle, const texgen::TextureRegion& re
     };
     return {.s = s,
             .t = t,
+            .r = r,
             .in_front = true,
             .lit = is_within(s, min.x, max.x) && is_within(t, min.y, max.y),
             .near_border = is_near(s, min.x) || is_near(s, max.x) || is_near(t, min.y) || is_near(t, max.y),
@@ -203,7 +205,8 @@ void check_promise(Comparison& comparison, const texgen::Triangle& triangle, con
     check.for_each([&](std::size_t i, int x, int y) {
         if (!exact[i].in_front) return;
         for (const auto& [computed, wanted] :
-             {std::pair{coordinates.s[i], exact[i].s}, std::pair{coordinates.t[i], exact[i].t}}) {
+             {std::pair{coordinates.s[i], exact[i].s}, std::pair{coordinates.t[i], exact[i].t},
+              std::pair{coordinates.r[i], exact[i].r}}) {
             if (std::fabs(wanted) < std::numeric_limits<float>::min()) continue;
             const double ulp = in_ulp(computed - wanted, wanted);
             if (ulp <= comparison.largest_ulp) continue;
@@ -235,7 +238,7 @@ void measure_errors(Comparison& comparison, const Workload& work, const texgen::
                 });
             }
             if (!setup) continue;
-            const texgen::Work done = texgen::interpolate(*setup, rect, coordinates.of(rect));
+            const texgen::Work done = texgen::interpolate(*setup, rect, coordinates.with_r(rect));
             comparison.fragments_of_work[static_cast<std::size_t>(done)] += coordinates.of(rect).s.size();
             if (done != texgen::Work::nothing && is_one_signed(triangle))
                 check_promise(comparison, triangle, check, exact, coordinates);

@@ -39,7 +39,7 @@ struct Comparison {
     std::size_t covered_fragments = 0, evaluated_fragments = 0;
     std::vector<Measurement> measurements;           // the library first: exact, then within 1/512 texel
     std::array<std::size_t, 5> fragments_of_work{};  // by texgen::Work, of the library, exact
-    double largest_ulp = 0;                          // of the library, on every fragment for which it makes its promise
+    double largest_ulp = 0;  // of the library's s, t and r, on every fragment for which it makes its promise
     Witness largest_ulp_at{};
 
     bool is_as_promised() const;

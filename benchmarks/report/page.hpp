@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,6 +23,7 @@ struct SceneReport {
     std::string name, title;
     Comparison comparison;
     std::vector<PictureOfScene> pictures;
+    std::size_t shadowed_by_themselves = 0;  // fragments, with the receiver plane's bias: none
 };
 
 struct Report {

@@ -9,6 +9,9 @@
 
 namespace report {
 
+// Where a picture shows nothing.
+inline constexpr glm::vec3 backdrop(0.11f, 0.12f, 0.15f);
+
 // Colours from 0 to 1, the top row first.
 struct Picture {
     int width = 0, height = 0;

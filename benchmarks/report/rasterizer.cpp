@@ -41,7 +41,7 @@ Attributes blended(const std::array<Attributes, 3>& corners, glm::vec3 weights) 
 
 void append_triangle(std::vector<DrawnTriangle>& triangles, const std::array<glm::vec4, 3>& positions,
                      const std::array<glm::vec4, 3>& strq, const std::array<Attributes, 3>& corners, glm::vec3 colour,
-                     texgen::Viewport viewport, glm::vec2 offset) {
+                     std::uint32_t source, texgen::Viewport viewport, glm::vec2 offset) {
     const Polygon polygon = clipped(positions, strq);
     // The clip carries four numbers a vertex: a second pass over the corners' weights says where each new vertex lies.
     const Polygon weights = clipped(positions, {glm::vec4(1, 0, 0, 0), glm::vec4(0, 1, 0, 0), glm::vec4(0, 0, 1, 0)});
@@ -55,13 +55,16 @@ void append_triangle(std::vector<DrawnTriangle>& triangles, const std::array<glm
     for (std::size_t i = 2; i < polygon.count; ++i) {
         const texgen::Triangle triangle{vertex(0), vertex(i - 1), vertex(i)};
         if (!std::isnormal(edge(triangle.a.window, triangle.b.window, triangle.c.window))) continue;
-        triangles.push_back(
-            {triangle, {depth(0), depth(i - 1), depth(i)}, {attributes(0), attributes(i - 1), attributes(i)}, colour});
+        triangles.push_back({triangle,
+                             {depth(0), depth(i - 1), depth(i)},
+                             {attributes(0), attributes(i - 1), attributes(i)},
+                             colour,
+                             source});
     }
 }
 
-void append_surface(std::vector<DrawnTriangle>& triangles, const Surface& surface, const Camera& camera,
-                    texgen::Viewport viewport, glm::vec2 offset) {
+void append_surface(std::vector<DrawnTriangle>& triangles, const Surface& surface, std::uint32_t source,
+                    const Camera& camera, texgen::Viewport viewport, glm::vec2 offset) {
     const glm::dmat4& world_from_object = surface.world_from_object.matrix();
     const glm::mat4 clip_from_object(camera.clip_from_world * world_from_object);
     const glm::mat3 normal_matrix(glm::transpose(glm::inverse(glm::dmat3(world_from_object))));
@@ -75,7 +78,7 @@ void append_surface(std::vector<DrawnTriangle>& triangles, const Surface& surfac
             corners[i] = {glm::vec3(glm::mat4(world_from_object) * position),
                           normal_matrix * surface.mesh.normals[indices[i]]};
         }
-        append_triangle(triangles, positions, strq, corners, surface.colour, viewport, offset);
+        append_triangle(triangles, positions, strq, corners, surface.colour, source++, viewport, offset);
     }
 }
 
@@ -174,13 +177,16 @@ void Workload::add_right_triangle(int x, int side) {
         }
     }
     jobs.push_back({triangles.size(), first, rects.size() - first});
-    triangles.push_back({.window = window, .depth = {}, .corners = {}, .colour = {}});
+    triangles.push_back({.window = window, .depth = {}, .corners = {}, .colour = {}, .source = {}});
 }
 
 Workload rasterize(std::span<const Surface> surfaces, const Camera& camera, int width, int height, glm::vec2 offset) {
     Workload work;
-    for (const Surface& surface : surfaces)
-        append_surface(work.triangles, surface, camera, {0, 0, width, height}, offset);
+    std::uint32_t source = 0;
+    for (const Surface& surface : surfaces) {
+        append_surface(work.triangles, surface, source, camera, {0, 0, width, height}, offset);
+        source += static_cast<std::uint32_t>(surface.mesh.triangles.size());
+    }
     for (std::size_t i = 0; i < work.triangles.size(); ++i) {
         const texgen::Triangle& triangle = work.triangles[i].window;
         const auto [low, high] = std::minmax({triangle.a.window.y, triangle.b.window.y, triangle.c.window.y});

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -44,6 +45,7 @@ struct DrawnTriangle {
     glm::vec3 depth;  // z/w at the three corners
     std::array<Attributes, 3> corners;
     glm::vec3 colour;
+    std::uint32_t source;  // which triangle of the surfaces it is, or is a part of
 };
 
 // The covered fragments [begin, end) of one row of a rect, counted from the rect's left side.
@@ -77,7 +79,7 @@ struct Workload {
 
 // The texture coordinates of one rect, row by row.
 struct RectCoordinates {
-    std::array<float, Workload::rect_area> s, t, lit;
+    std::array<float, Workload::rect_area> s, t, r, lit;
 
     texgen::Texcoords of(texgen::FragmentRect rect) {
         const std::size_t count = static_cast<std::size_t>(rect.width) * static_cast<std::size_t>(rect.height);
@@ -85,6 +87,11 @@ struct RectCoordinates {
                 .t = std::span(t).first(count),
                 .r = {},
                 .lit = std::span(lit).first(count)};
+    }
+    texgen::Texcoords with_r(texgen::FragmentRect rect) {
+        texgen::Texcoords out = of(rect);
+        out.r = std::span(r).first(out.s.size());
+        return out;
     }
 };
 

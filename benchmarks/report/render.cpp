@@ -22,8 +22,6 @@ namespace report {
 
 namespace {
 
-constexpr glm::vec3 backdrop(0.11f, 0.12f, 0.15f);
-
 // What a program that forgets q <= 0 would do.
 void divide_regardless(const texgen::Triangle& triangle, const texgen::TextureRegion& region, texgen::FragmentRect rect,
                        const texgen::Texcoords& out) {
@@ -78,6 +76,11 @@ struct RectFootprints {
     }
 };
 
+void darken(const ShadowTest& test, const texgen::Texcoords& out) {
+    for (std::size_t i = 0; i < out.lit.size(); ++i)
+        if (out.lit[i] != 0.0f && !test.is_lit(out.s[i], out.t[i], out.r[i])) out.lit[i] = 0.0f;
+}
+
 class Frame {
 public:
     Frame(const Scene& scene, const View& view, const MipMap* filters, int width, int height)
@@ -98,7 +101,7 @@ public:
                                    texgen::texels_per_unit(scene_.region, view_.slide->width, view_.slide->height));
             for (std::size_t i = job.first_rect; i < job.first_rect + job.rect_count; ++i) {
                 const texgen::FragmentRect rect = work.rects[i];
-                const texgen::Texcoords out = coordinates_.of(rect);
+                const texgen::Texcoords out = view_.shadow ? coordinates_.with_r(rect) : coordinates_.of(rect);
                 if (view_.coordinates == Coordinates::ignoring_sign_of_q)
                     divide_regardless(triangle.window, scene_.region, rect, out);
                 else if (view_.coordinates == Coordinates::float_planes)
@@ -107,6 +110,7 @@ public:
                     texgen::interpolate(*setup, rect, out);
                 else
                     std::ranges::fill(out.lit, 0.0f);
+                if (view_.shadow) darken(ShadowTest(*view_.shadow, triangle), out);
                 if (footprints) texgen::footprint(*footprints, rect, footprints_.of(rect));
                 draw_rect(rect, work.coverage[i], plane, triangle);
             }
@@ -155,7 +159,8 @@ private:
 
         const glm::vec3 normal = towards_camera < 0.0f ? -glm::normalize(at.normal) : glm::normalize(at.normal);
         const glm::vec3 to_projector = glm::normalize(glm::vec3(scene_.light) - scene_.light.w * at.position);
-        const float diffuse = std::max(0.0f, glm::dot(normal, to_projector));
+        const float diffuse =
+            scene_.shading == Shading::slide_as_paint ? 0.8f : std::max(0.0f, glm::dot(normal, to_projector));
         return colour * (0.08f + 0.26f * headlight + 1.05f * diffuse * slide);
     }
 
@@ -181,6 +186,7 @@ private:
                 return colour_of_anisotropy(footprint.anisotropy);
             case Sampling::error_as_colour:
             case Sampling::bilinear:
+            case Sampling::depth_from_projector:
                 break;
         }
         return view_.slide->sample(st.x, st.y);
@@ -198,17 +204,19 @@ private:
 }  // namespace
 
 Picture render(const Scene& scene, const View& view, int width, int height) {
+    if (view.sampling == Sampling::depth_from_projector) return picture_of(*view.shadow->map);
+    const Camera& camera = view.camera ? *view.camera : scene.camera;
     if (view.sampling != Sampling::bilinear) {
         const MipMap filters(*view.slide);
         Frame frame(scene, view, &filters, width, height);
-        frame.draw(moved(rasterize(view.surfaces, scene.camera, width, height), scene.corner));
+        frame.draw(moved(rasterize(view.surfaces, camera, width, height), scene.corner));
         return frame.colour();
     }
     Picture sum(width, height, glm::vec3(0));
     for (const glm::vec2 offset :
          {glm::vec2(-0.25f, -0.25f), glm::vec2(0.25f, -0.25f), glm::vec2(-0.25f, 0.25f), glm::vec2(0.25f, 0.25f)}) {
         Frame frame(scene, view, nullptr, width, height);
-        frame.draw(moved(rasterize(view.surfaces, scene.camera, width, height, offset), scene.corner));
+        frame.draw(moved(rasterize(view.surfaces, camera, width, height, offset), scene.corner));
         for (std::size_t i = 0; i < sum.pixels.size(); ++i) sum.pixels[i] += 0.25f * frame.colour().pixels[i];
     }
     return sum;

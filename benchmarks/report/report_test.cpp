@@ -291,12 +291,34 @@ TEST_CASE("a run writes the page and the pictures, and nothing else") {
         pictures.push_back(path.filename().string());
         CHECK(contents(path).starts_with(png_signature));
     }
-    CHECK(pictures == std::vector<std::string>{"border.png", "border_missing.png", "facing_anisotropic.png",
-                                               "facing_anisotropy.png", "facing_level.png", "facing_nearest.png",
-                                               "facing_trilinear.png", "lost.png", "lost_error.png", "lost_kept.png",
-                                               "lost_kept_error.png", "orthographic.png", "reverse.png",
-                                               "reverse_uncured.png", "room.png", "room_work.png", "teapot.png",
-                                               "trapezoid.png", "trapezoid_real.png"});
+    CHECK(pictures == std::vector<std::string>{"border.png",
+                                               "border_missing.png",
+                                               "facing_anisotropic.png",
+                                               "facing_anisotropy.png",
+                                               "facing_level.png",
+                                               "facing_nearest.png",
+                                               "facing_projector.png",
+                                               "facing_trilinear.png",
+                                               "keystone.png",
+                                               "keystone_missing.png",
+                                               "keystone_projector.png",
+                                               "lost.png",
+                                               "lost_error.png",
+                                               "lost_kept.png",
+                                               "lost_kept_error.png",
+                                               "orthographic.png",
+                                               "orthographic_projector.png",
+                                               "reverse.png",
+                                               "reverse_projector.png",
+                                               "reverse_uncured.png",
+                                               "room.png",
+                                               "room_work.png",
+                                               "shadow.png",
+                                               "shadow_constant.png",
+                                               "shadow_projector.png",
+                                               "teapot.png",
+                                               "trapezoid.png",
+                                               "trapezoid_real.png"});
     const std::string page = contents("deep/down/index.html");
     CHECK(page.ends_with("</html>\n"));
     CHECK(page.size() < 1'000'000);

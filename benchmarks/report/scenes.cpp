@@ -12,6 +12,7 @@
 #include <texgen/footprint.hpp>
 #include <texgen/linear.hpp>
 #include <texgen/projector.hpp>
+#include <texgen/surface.hpp>
 #include <texgen/texcoord.hpp>
 
 #include "html.hpp"
@@ -32,8 +33,14 @@ double relative_height(const Picture& slide) {
     return static_cast<double>(slide.height) / std::max(slide.width, slide.height);
 }
 
+struct Depth {
+    double z_near, z_far;
+};
+constexpr Depth any_depth{0.2, 1000}, walk_through_depth{8, 16};
+
 // The angle or the width is that of the slide's longer side.
-texgen::Projector projector_of(const LensChoice& lens, const Picture& slide, const texgen::Aim& aim) {
+texgen::Projector projector_of(const LensChoice& lens, const Picture& slide, const texgen::Aim& aim,
+                               const Depth& depth = any_depth) {
     const double aspect = static_cast<double>(slide.width) / slide.height;
     if (lens.is_orthographic) {
         const double top = 0.5 * lens.extent * relative_height(slide);
@@ -41,16 +48,16 @@ texgen::Projector projector_of(const LensChoice& lens, const Picture& slide, con
                                                                .right = top * aspect,
                                                                .bottom = -top,
                                                                .top = top,
-                                                               .z_near = 0.2,
-                                                               .z_far = 1000},
+                                                               .z_near = depth.z_near,
+                                                               .z_far = depth.z_far},
                                       aim, texgen::opengl)
             .value();
     }
     const double half_height = relative_height(slide) * std::tan(0.5 * glm::radians(lens.extent));
     return texgen::make_projector(texgen::PerspectiveLens{.fovy = texgen::radians(2.0 * std::atan(half_height)),
                                                           .aspect = aspect,
-                                                          .z_near = 0.2,
-                                                          .z_far = 1000},
+                                                          .z_near = depth.z_near,
+                                                          .z_far = depth.z_far},
                                   aim, texgen::opengl)
         .value();
 }
@@ -80,10 +87,33 @@ texgen::ModelMatrix placed(glm::dvec3 position, double turn_degrees, double scal
     return texgen::ModelMatrix(glm::scale(matrix, glm::dvec3(scale)));
 }
 
-Surface projected(const texgen::Projector& projector, Mesh mesh, const texgen::ModelMatrix& model, glm::vec3 colour) {
+Surface projected(const texgen::ObjectTexgen& texgen, Mesh mesh, const texgen::ModelMatrix& model, glm::vec3 colour) {
     std::vector<glm::vec4> strq(mesh.positions.size());
-    texgen::generate(texgen::object_linear(projector, model), texgen::object_space(mesh.positions), std::span(strq));
+    texgen::generate(texgen, texgen::object_space(mesh.positions), std::span(strq));
     return {std::move(mesh), model, std::move(strq), colour};
+}
+
+Surface projected(const texgen::Projector& projector, Mesh mesh, const texgen::ModelMatrix& model, glm::vec3 colour) {
+    return projected(texgen::object_linear(projector, model), std::move(mesh), model, colour);
+}
+
+// What a projector sees of the surfaces that its slide falls on.
+std::shared_ptr<const DepthMap> seen_from(const texgen::Projector& projector, const texgen::Aim& aim,
+                                          const Picture& slide, std::span<const Surface> surfaces) {
+    constexpr int longer = 512;
+    const int side = std::max(slide.width, slide.height);
+    const auto texels = [&](int pixels) { return std::max(1, longer * pixels / side); };
+    return std::make_shared<const DepthMap>(make_depth_map(surfaces, {projector.matrix().matrix(), aim.position},
+                                                           texels(slide.width), texels(slide.height)));
+}
+
+View from_projector(std::string file, const std::string& sentence, std::shared_ptr<const DepthMap> map) {
+    return {.file = std::move(file),
+            .caption = sentence + " " + key_of(*map),
+            .surfaces = {},
+            .slide = {},
+            .sampling = Sampling::depth_from_projector,
+            .shadow = Shadow{std::move(map), {}}};
 }
 
 const texgen::ModelMatrix in_place(glm::dmat4(1.0));
@@ -96,11 +126,13 @@ std::vector<Surface> mesh_on_floor(const texgen::Projector& projector, const Mes
 }
 
 const Eye beside_walk_through{{1.2, 2.6, 9.2}, {-1.85, -3.75, 0.3}, 39};
+const Eye near_mesh{{0.4, 0.6, 6.2}, {-2.1, -3.0, 0.0}, 34};
 
 // The walk-through's scene, by any lens.
 Scene mesh_under_slide(const Setting& setting, const LensChoice& lens, View view, const char* title) {
     view.slide = setting.slide;
-    view.surfaces = mesh_on_floor(projector_of(lens, *setting.slide, walk_through_aim), setting.mesh);
+    view.surfaces =
+        mesh_on_floor(projector_of(lens, *setting.slide, walk_through_aim, walk_through_depth), setting.mesh);
     return {.name = view.file.substr(0, view.file.find('.')),
             .title = title,
             .camera = camera(beside_walk_through, setting.aspect),
@@ -108,6 +140,43 @@ Scene mesh_under_slide(const Setting& setting, const LensChoice& lens, View view
             .light = light_of(lens, walk_through_aim),
             .region = texgen::whole_texture(),
             .views = {std::move(view)}};
+}
+
+Scene shadows(const Setting& setting) {
+    const texgen::Projector projector =
+        projector_of(setting.lens, *setting.slide, walk_through_aim, walk_through_depth);
+    const std::vector<Surface> surfaces = mesh_on_floor(projector, setting.mesh);
+    const auto map = seen_from(projector, walk_through_aim, *setting.slide, surfaces);
+    const std::span<const glm::vec4> floor = surfaces.front().strq;
+    const auto corner = [&](std::size_t i) {
+        return texgen::WindowVertex{{}, 1, floor[surfaces.front().mesh.triangles.front()[i]]};
+    };
+    const double of_floor = climb({corner(0), corner(1), corner(2)}, *map);
+    const auto view = [&](const char* file, const char* caption, std::optional<double> constant_bias) {
+        return View{.file = file,
+                    .caption = caption,
+                    .surfaces = surfaces,
+                    .slide = setting.slide,
+                    .shadow = Shadow{map, constant_bias}};
+    };
+    return {
+        .name = "shadow",
+        .title = "Shadows by r",
+        .camera = camera(near_mesh, setting.aspect),
+        .shading = Shading::slide_as_paint,
+        .light = light_of(setting.lens, walk_through_aim),
+        .region = texgen::whole_texture(),
+        .views = {view("shadow.png",
+                       "The slide falls on what r says is nearest to the projector, give or take what each "
+                       "triangle's own plane climbs within a texel of the map (receiver_plane); sides that face away "
+                       "are dark (facing).",
+                       std::nullopt),
+                  view("shadow_constant.png",
+                       "With one bias for all, which is what the floor needs: steeper triangles shadow themselves "
+                       "and one another.",
+                       of_floor),
+                  from_projector("shadow_projector.png",
+                                 "What the projector sees, in its own window: the rest is in shadow.", map)}};
 }
 
 // Small triangles in the far corner of a large window, where plane equations in float lose the most.
@@ -125,7 +194,7 @@ Scene lost(const Setting& setting) {
     return {
         .name = "lost",
         .title = "What is lost, and what is kept: small triangles at the far corner of a window of 4096",
-        .camera = camera({{0.4, 0.6, 6.2}, {-2.1, -3.0, 0.0}, 34}, setting.aspect),
+        .camera = camera(near_mesh, setting.aspect),
         .shading = Shading::slide_as_light,
         .light = light_of(setting.lens, walk_through_aim),
         .region = texgen::whole_texture(),
@@ -145,18 +214,16 @@ Scene lost(const Setting& setting) {
                        Coordinates::float_planes, Sampling::error_as_colour)}};
 }
 
-// A quadrilateral of the window, w = 1, with the texture coordinates of a rectangle seen in perspective.
+// A trapezoid of the window, w = 1, with the q that makes it a rectangle seen in perspective.
 Surface trapezoid(double aspect) {
-    Surface surface{.mesh = {}, .world_from_object = in_place, .strq = {}, .colour = glm::vec3(1)};
-    const float narrow = 0.35f, wide = 0.9f;
-    const float half_width = aspect < 1.0 ? 1.0f : static_cast<float>(1.0 / aspect);
-    const float half_height = aspect < 1.0 ? static_cast<float>(aspect) : 1.0f;
-    for (const auto& [x, y, s, t, q] :
-         {std::array{-wide, -0.8f, 0.0f, 0.0f, wide}, std::array{wide, -0.8f, 1.0f, 0.0f, wide},
-          std::array{narrow, 0.8f, 1.0f, 1.0f, narrow}, std::array{-narrow, 0.8f, 0.0f, 1.0f, narrow}}) {
-        surface.mesh.positions.emplace_back(half_width * x, half_height * y, 0.0f);
+    const double narrow = 0.35, wide = 0.9, high = 0.8, half_width = std::min(1.0, 1.0 / aspect);
+    const std::array<glm::dvec2, 4> corners{{{-wide, -high}, {wide, -high}, {narrow, high}, {-narrow, high}}};
+    const std::array<glm::vec4, 4> strq = texgen::quadrilateral(corners).value();
+    Surface surface{
+        .mesh = {}, .world_from_object = in_place, .strq = {strq.begin(), strq.end()}, .colour = glm::vec3(1)};
+    for (const glm::dvec2& corner : corners) {
+        surface.mesh.positions.emplace_back(half_width * corner.x, half_width * aspect * corner.y, 0.0);
         surface.mesh.normals.emplace_back(0, 0, 1);
-        surface.strq.emplace_back(s * q, t * q, 0.0f, q);
     }
     surface.mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
     return surface;
@@ -185,10 +252,65 @@ Scene qcoord(const std::shared_ptr<const Picture>& slide, double aspect) {
                  .slide = slide}}};
 }
 
+// The projector's own body, which gets no slide: it lies around the centre of projection, where q is nearly 0.
+Surface body_of(const texgen::Aim& aim, double floor) {
+    const auto foot = static_cast<float>(floor - aim.position.y);
+    Mesh body = box({-0.3f, -0.3f, -0.25f}, {0.5f, 0.3f, 0.25f});
+    append(body, box({-0.5f, -0.15f, -0.15f}, {-0.3f, 0.15f, 0.15f}));
+    append(body, box({0.04f, foot, -0.06f}, {0.16f, -0.3f, 0.06f}));
+    const glm::dvec3 ahead = aim.target - aim.position;
+    const texgen::ModelMatrix model = placed(aim.position, glm::degrees(std::atan2(ahead.z, -ahead.x)), 1);
+    std::vector<glm::vec4> strq(body.positions.size(), glm::vec4(-1, -1, 0, 1));
+    return {std::move(body), model, std::move(strq), steel};
+}
+
+// A projector that stands beside its wall. What it throws there becomes a rectangle where the slide is warped the other way.
+Scene keystone(const std::shared_ptr<const Picture>& slide, double aspect) {
+    const texgen::Aim aim{.position = {-1.9, 1.7, 2.5}, .target = {0.5, 2.0, 0}, .up = {0, 1, 0}};
+    const texgen::Projector projector = projector_of({.extent = 37}, *slide, aim, {1, 20});
+    const texgen::WorldTexgen as_it_is = texgen::texture_from_world(projector);
+    const double half_height = 0.92 * relative_height(*slide), half_width = half_height * slide->width / slide->height;
+    std::array<glm::dvec2, 4> corners{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
+    for (glm::dvec2& corner : corners) {
+        const glm::dvec4 on_wall(aim.target + glm::dvec3(half_width * corner.x, half_height * corner.y, 0), 1);
+        const glm::dvec4 strq = as_it_is.matrix() * on_wall;
+        corner = glm::dvec2(strq) / strq.w;
+    }
+    const glm::dmat4 corrected = texgen::keystone(corners).value().matrix() * as_it_is.matrix();
+    const auto surfaces = [&](const glm::dmat4& texture_from_world) {
+        const texgen::ObjectTexgen texgen(texture_from_world);
+        return std::vector<Surface>{
+            projected(texgen, parallelogram({-7, -0.5f, 0}, {14, 0, 0}, {0, 6.5f, 0}, 4), in_place, plaster),
+            projected(texgen, parallelogram({-7, -0.5f, 20}, {14, 0, 0}, {0, 0, -20}, 4), in_place, plaster),
+            body_of(aim, -0.5)};
+    };
+    return {
+        .name = "keystone",
+        .title = "From the side, corrected",
+        .camera = camera({{0, 1.9, 9.6}, {0, 1.9, 0}, 36}, aspect),
+        .shading = Shading::slide_as_light,
+        .light = glm::vec4(aim.position, 1),
+        .region = texgen::whole_texture(),
+        .views = {{.file = "keystone.png",
+                   .caption = "A projector that stands at the left of its wall throws an upright rectangle: "
+                              "keystone of that rectangle's corners is part of its matrix.",
+                   .surfaces = surfaces(corrected),
+                   .slide = slide},
+                  {.file = "keystone_missing.png",
+                   .caption = "Without it the slide is larger where the wall is farther away.",
+                   .surfaces = surfaces(as_it_is.matrix()),
+                   .slide = slide},
+                  {.file = "keystone_projector.png",
+                   .caption = "The first picture from where the projector is: what it has to throw, in its own window.",
+                   .surfaces = surfaces(corrected),
+                   .slide = slide,
+                   .camera = Camera{projector.matrix().matrix(), aim.position}}}};
+}
+
 // A projector between two walls that stand open towards the camera: one before it, one behind it.
 Scene reverse(const std::shared_ptr<const Picture>& slide, double aspect) {
     const texgen::Aim aim{.position = {0, 1.8, 0}, .target = {-5, 2.2, 0}, .up = {0, 1, 0}};
-    const texgen::Projector projector = projector_of({.extent = 40}, *slide, aim);
+    const texgen::Projector projector = projector_of({.extent = 40}, *slide, aim, {3.5, 6.5});
     const auto wall = [&](float side) {
         return projected(projector, parallelogram({5.0f * side, -0.5f, 3.5f}, {-2.6f * side, 0, -7}, {0, 5.0f, 0}, 2),
                          in_place, plaster);
@@ -196,13 +318,7 @@ Scene reverse(const std::shared_ptr<const Picture>& slide, double aspect) {
     std::vector<Surface> surfaces{
         projected(projector, parallelogram({-7, -0.5f, 20}, {14, 0, 0}, {0, 0, -40}, 4), in_place, plaster), wall(-1),
         wall(1)};
-    // The projector's own body lies around the centre of projection, where q is nearly 0: it gets no slide.
-    Mesh body = box({-0.3f, 1.5f, -0.25f}, {0.5f, 2.1f, 0.25f});
-    append(body, box({-0.5f, 1.65f, -0.15f}, {-0.3f, 1.95f, 0.15f}));
-    append(body, box({0.04f, -0.5f, -0.06f}, {0.16f, 1.5f, 0.06f}));
-    Surface stand{.mesh = body, .world_from_object = in_place, .strq = {}, .colour = steel};
-    stand.strq.assign(body.positions.size(), glm::vec4(-1, -1, 0, 1));
-    surfaces.push_back(std::move(stand));
+    surfaces.push_back(body_of(aim, -0.5));
     return {.name = "reverse",
             .title = "Behind the projector",
             .camera = camera({{0, 4.0, 13.5}, {0, 1.6, 0}, 46}, aspect),
@@ -219,7 +335,10 @@ Scene reverse(const std::shared_ptr<const Picture>& slide, double aspect) {
                  .caption = "Without the test of q the wall behind the projector gets the slide too, upside down.",
                  .surfaces = surfaces,
                  .slide = slide,
-                 .coordinates = Coordinates::ignoring_sign_of_q}}};
+                 .coordinates = Coordinates::ignoring_sign_of_q},
+                from_projector("reverse_projector.png",
+                               "What the projector sees: the wall before it, and nothing of the one at its back.",
+                               seen_from(projector, aim, *slide, surfaces))}};
 }
 
 // The texture modulates the surface everywhere, so what confines the slide is the texture's own white border.
@@ -249,7 +368,7 @@ Scene white_border(const Setting& setting) {
 Scene facing(double aspect) {
     const auto slide = std::make_shared<const Picture>(fine_slide());
     const texgen::Aim aim{.position = {0.8, 2.2, -9}, .target = {-0.1, 0, -2.4}, .up = {0, -1, 0}};
-    const texgen::Projector projector = projector_of({.extent = 34}, *slide, aim);
+    const texgen::Projector projector = projector_of({.extent = 34}, *slide, aim, {3, 14});
     const std::vector<Surface> surfaces{
         projected(projector, parallelogram({-12, 0, 2.5f}, {24, 0, 0}, {0, 0, -10.5f}, 1), in_place, plaster)};
     const Camera eye = camera({{0.3, 2.4, 5.0}, {-0.1, 0, -2.6}, 22}, aspect);
@@ -275,14 +394,20 @@ Scene facing(double aspect) {
             view("facing_anisotropic.png",
                  "Anisotropic, up to 16 probes along the footprint's major axis: more of the print is kept.",
                  Sampling::anisotropic),
-            view("facing_level.png",
-                 "The level of detail: blue where a texel covers many pixels, white at one, yellow to red where "
-                 "many fall on a pixel; the projector adds " +
-                     formatted("%.1f", score) + " levels to the camera's.",
-                 Sampling::level_as_colour),
+            view(
+                "facing_level.png",
+                "The level of detail: blue where a texel covers many pixels, white at one, yellow where many fall on a "
+                "pixel, and a line at each whole level; the projector adds " +
+                    formatted("%.1f", score) + " levels to the camera's.",
+                Sampling::level_as_colour),
             view("facing_anisotropy.png",
-                 "The anisotropy: black where a pixel's footprint is round, white at 16 to 1, red beyond.",
-                 Sampling::anisotropy_as_colour)}};
+                 "The anisotropy: the longer a pixel's footprint is than wide, the lighter, with a line at each power "
+                 "of "
+                 "two.",
+                 Sampling::anisotropy_as_colour),
+            from_projector("facing_projector.png",
+                           "What the projector sees, with its head down: the floor towards the camera.",
+                           seen_from(projector, aim, *slide, surfaces))}};
 }
 
 }  // namespace
@@ -300,11 +425,19 @@ std::vector<Scene> make_scenes(const Setting& setting) {
                             "floor; what makes the far ones smaller is the camera.",
                         .surfaces = {},
                         .slide = {}};
+    const LensChoice rays{.is_orthographic = true, .extent = 5.2};
+    Scene under_rays = mesh_under_slide(setting, rays, parallel, "Parallel rays");
+    under_rays.views.push_back(
+        from_projector("orthographic_projector.png", "What the projector sees: the far is as large as the near.",
+                       seen_from(projector_of(rays, *setting.slide, walk_through_aim, walk_through_depth),
+                                 walk_through_aim, *setting.slide, under_rays.views.front().surfaces)));
     return {mesh_under_slide(setting, setting.lens, first, "A mesh and a floor under a slide"),
+            shadows(setting),
             lost(setting),
             qcoord(setting.slide, setting.aspect),
+            keystone(setting.slide, setting.aspect),
             reverse(setting.slide, setting.aspect),
-            mesh_under_slide(setting, {.is_orthographic = true, .extent = 5.2}, parallel, "Parallel rays"),
+            std::move(under_rays),
             facing(setting.aspect),
             white_border(setting)};
 }

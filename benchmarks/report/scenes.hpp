@@ -10,6 +10,7 @@
 #include <glm/vec4.hpp>
 #include <texgen/conventions.hpp>
 
+#include "depth_map.hpp"
 #include "mesh.hpp"
 #include "picture.hpp"
 #include "rasterizer.hpp"
@@ -18,6 +19,7 @@ namespace report {
 
 enum class Shading {
     slide_as_light,  // Lambert's law for the projector's light, on top of a dim light at the camera
+    slide_as_paint,  // as bright at any angle, on top of the same
     modulate,        // the camera's light times the texture, clamped to its edge
     slide_alone      // the texture as it is
 };
@@ -37,7 +39,8 @@ enum class Sampling {
     anisotropic,
     level_as_colour,
     anisotropy_as_colour,
-    error_as_colour
+    error_as_colour,
+    depth_from_projector  // not by the camera: the map of the view's shadow
 };
 
 // One picture.
@@ -47,6 +50,8 @@ struct View {
     std::shared_ptr<const Picture> slide;
     Coordinates coordinates = Coordinates::library;
     Sampling sampling = Sampling::bilinear;
+    std::optional<Shadow> shadow{};
+    std::optional<Camera> camera{};  // in the place of the scene's
 };
 
 // The first view is the one that is timed and checked; further ones show it next to what it would be otherwise.
