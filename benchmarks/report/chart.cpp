@@ -92,7 +92,8 @@ const char* colour_of(std::string_view series) {
 std::string chart_of(const std::vector<Series>& series, const std::string& x, const std::string& y,
                      const std::string& caption) {
     constexpr const char* styles[] = {"points pointtype 7", "points pointtype 6",
-                                      "linespoints pointtype 7 pointsize 0.6"};
+                                      "linespoints pointtype 7 pointsize 0.6",
+                                      "linespoints pointtype 6 pointsize 0.6 dashtype 2"};
     constexpr const char* look =
         "set logscale xy\nset nomxtics\nset nomytics\nset tics scale 0 textcolor rgb '#444a55'\nset pointsize 1.2\n"
         "set xlabel offset 0,0.6\nset border 3 linewidth 0.5 linecolor rgb '#9a9aa5'\n"

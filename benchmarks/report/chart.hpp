@@ -13,7 +13,7 @@
 namespace report {
 
 struct Series {
-    enum class Mark { dot, ring, line };
+    enum class Mark { dot, ring, line, dashes };
 
     std::string name;
     Mark mark;

@@ -4,9 +4,12 @@
 #include <cmath>
 #include <cstdio>
 #include <ctime>
+#include <functional>
 #include <limits>
+#include <memory>
 #include <utility>
 
+#include <texgen/batch.hpp>
 #include <texgen/interpolate.hpp>
 #include <texgen/reference.hpp>
 
@@ -18,6 +21,7 @@ namespace report {
 namespace {
 
 constexpr double accepted_texels = 1.0 / 512;
+constexpr int largest_triangle_side = 64;
 
 using Rects = std::span<const texgen::FragmentRect>;
 
@@ -248,44 +252,78 @@ void measure_errors(Comparison& comparison, const Workload& work, const texgen::
         comparison.measurements.push_back({methods[m].name, 0.0, collectors[m].finish()});
 }
 
+using Run = std::function<void()>;
+
 // Time of the processor, which other programs do not slow down by taking turns with this one.
-double seconds_for(const Method& method, const Workload& work, const texgen::TextureRegion& region, int passes) {
-    static RectCoordinates coordinates;
+double seconds_for(const Run& run, int passes) {
     const std::clock_t start = std::clock();
-    for (int pass = 0; pass < passes; ++pass)
-        for (const Workload::Job& job : work.jobs)
-            method.run(work.triangles[job.triangle].window, region, work.rects_of(job), coordinates);
+    for (int pass = 0; pass < passes; ++pass) run();
     return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC / passes;
 }
 
 // So many that one measurement takes a millisecond, the clock's step being a microsecond.
-int passes_for(const Method& method, const Workload& work, const texgen::TextureRegion& region) {
+int passes_for(const Run& run) {
     constexpr double enough_seconds = 1e-3;
     int passes = 1;
-    while (passes < 1024 && passes * seconds_for(method, work, region, passes) < enough_seconds) passes *= 2;
+    while (passes < 1024 && passes * seconds_for(run, passes) < enough_seconds) passes *= 2;
     return passes;
 }
 
-// The methods take turns, so that a change of the machine's speed meets all of them; the median of the rounds counts.
-void measure_times(Comparison& comparison, const Workload& work, const texgen::TextureRegion& region,
-                   double enough_seconds) {
+// Seconds a run. They take turns, so that a change of the machine's speed meets all of them; the median of the rounds counts.
+std::vector<double> medians_of(const std::vector<Run>& runs, double enough_seconds) {
     constexpr std::size_t fewest_rounds = 5, most_rounds = 21;
-    std::array<int, methods.size()> passes{};
-    for (std::size_t m = 0; m < methods.size(); ++m) passes[m] = passes_for(methods[m], work, region);
-    std::array<std::vector<double>, methods.size()> seconds;
+    std::vector<int> passes;
+    for (const Run& run : runs) passes.push_back(passes_for(run));
+    std::vector<std::vector<double>> seconds(runs.size());
     double total = 0;
     for (std::size_t round = 0; round < most_rounds && (round < fewest_rounds || total < enough_seconds); ++round) {
-        for (std::size_t turn = 0; turn < methods.size(); ++turn) {
-            const std::size_t m = (turn + round) % methods.size();
-            seconds[m].push_back(seconds_for(methods[m], work, region, passes[m]));
-            total += passes[m] * seconds[m].back();
+        for (std::size_t turn = 0; turn < runs.size(); ++turn) {
+            const std::size_t i = (turn + round) % runs.size();
+            seconds[i].push_back(seconds_for(runs[i], passes[i]));
+            total += passes[i] * seconds[i].back();
         }
     }
-    for (std::size_t m = 0; m < methods.size(); ++m) {
-        const auto middle = seconds[m].begin() + static_cast<std::ptrdiff_t>(seconds[m].size() / 2);
-        std::nth_element(seconds[m].begin(), middle, seconds[m].end());
-        comparison.measurements[m].nanoseconds = 1e9 * *middle / static_cast<double>(comparison.evaluated_fragments);
+    std::vector<double> medians;
+    for (std::vector<double>& of_run : seconds) {
+        const auto middle = of_run.begin() + static_cast<std::ptrdiff_t>(of_run.size() / 2);
+        std::nth_element(of_run.begin(), middle, of_run.end());
+        medians.push_back(*middle);
     }
+    return medians;
+}
+
+std::vector<Run> runs_of(const Workload& work, const texgen::TextureRegion& region) {
+    static RectCoordinates coordinates;
+    std::vector<Run> runs;
+    for (const Method& method : methods)
+        runs.emplace_back([&work, &region, &method] {
+            for (const Workload::Job& job : work.jobs)
+                method.run(work.triangles[job.triangle].window, region, work.rects_of(job), coordinates);
+        });
+    return runs;
+}
+
+// The triangles of the work at once, each with one rectangle.
+Run batch_of(const Workload& work, int side, texgen::Tolerance tolerance) {
+    struct Batch {
+        texgen::TriangleBatch setups;
+        std::vector<texgen::Triangle> triangles;
+        std::vector<texgen::FragmentRect> rects;
+        std::vector<float> s, t, lit;
+    };
+    const auto batch =
+        std::make_shared<Batch>(Batch{texgen::TriangleBatch(texgen::whole_texture(), tolerance), {}, {}, {}, {}, {}});
+    for (const Workload::Job& job : work.jobs) {
+        const texgen::FragmentRect& first = work.rects[job.first_rect];
+        batch->triangles.push_back(work.triangles[job.triangle].window);
+        batch->rects.push_back({first.x, first.y, side, side});
+    }
+    for (std::vector<float>* out : {&batch->s, &batch->t, &batch->lit})
+        out->resize(batch->rects.size() * static_cast<std::size_t>(side * side));
+    return [batch] {
+        batch->setups.assign(batch->triangles);
+        texgen::interpolate(batch->setups, batch->rects, {.s = batch->s, .t = batch->t, .r = {}, .lit = batch->lit});
+    };
 }
 
 }  // namespace
@@ -318,27 +356,44 @@ Comparison compare(const Workload& work, const texgen::TextureRegion& region) {
     Comparison comparison;
     comparison.evaluated_fragments = work.evaluated_fragments();
     measure_errors(comparison, work, region);
-    measure_times(comparison, work, region, 0.8);
+    const std::vector<double> seconds = medians_of(runs_of(work, region), 0.8);
+    for (std::size_t m = 0; m < methods.size(); ++m)
+        comparison.measurements[m].nanoseconds = 1e9 * seconds[m] / static_cast<double>(comparison.evaluated_fragments);
     return comparison;
 }
 
 std::vector<Series> times_by_size() {
     std::vector<Series> series;
     for (const Method& method : methods) series.push_back({method.name, Series::Mark::line, {}});
-    for (int side = 1; side <= 256; side *= 2) {
-        const int count = std::clamp(65536 / (side * side), 2, 64);
+    const texgen::Tolerance accepted = texgen::texels(accepted_texels, texture_size);
+    series.push_back({"texgen, exact, in a batch", Series::Mark::dashes, {}});
+    series.push_back({"texgen, 1/512 texel, in a batch", Series::Mark::dashes, {}});
+    const texgen::TextureRegion region = texgen::whole_texture();
+    for (int side = 1; side <= largest_triangle_side; side *= 2) {
+        constexpr int count = 64;
         Workload work;
         for (int i = 0; i < count; ++i) work.add_right_triangle(37 * i % 512, side);
-        Comparison comparison;
-        comparison.evaluated_fragments = work.evaluated_fragments();
-        for (const Method& method : methods) comparison.measurements.push_back({method.name, 0.0, {}});
-        measure_times(comparison, work, texgen::whole_texture(), 0.1);
-        for (std::size_t m = 0; m < methods.size(); ++m)
-            series[m].points.emplace_back(side, comparison.measurements[m].nanoseconds *
-                                                    static_cast<double>(comparison.evaluated_fragments) / count);
+        std::vector<Run> runs = runs_of(work, region);
+        runs.push_back(batch_of(work, side, texgen::exact));
+        runs.push_back(batch_of(work, side, accepted));
+        const std::vector<double> seconds = medians_of(runs, 0.15);
+        for (std::size_t i = 0; i < runs.size(); ++i)
+            series[i].points.emplace_back(side * side, 1e9 * seconds[i] / count);
     }
     std::erase_if(series, [](const Series& s) { return s.name.ends_with("not skipped"); });
     return series;
+}
+
+std::optional<double> overtakes_at(const Series& ours, const Series& theirs) {
+    for (std::size_t i = ours.points.size(); i-- > 0;) {
+        const double lead = std::log(theirs.points[i].y / ours.points[i].y);
+        if (lead >= 0) continue;
+        if (i + 1 == ours.points.size()) return std::nullopt;
+        // Straight lines between the points, as the chart has them.
+        const double next = std::log(theirs.points[i + 1].y / ours.points[i + 1].y);
+        return ours.points[i].x * std::pow(ours.points[i + 1].x / ours.points[i].x, lead / (lead - next));
+    }
+    return 0.0;
 }
 
 }  // namespace report

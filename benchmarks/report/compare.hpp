@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -48,7 +49,10 @@ struct Comparison {
 // Runs the library and its peers over the work: first once for the errors, then in turns against the clock.
 Comparison compare(const Workload& work, const texgen::TextureRegion& region);
 
-// Nanoseconds a triangle, its set-up included, against how many fragments each side of it has: a line a method.
+// Nanoseconds a triangle, its set-up included, against the fragments of its rectangle, 1 to 4096: a line a method.
 std::vector<Series> times_by_size();
+
+// From how many fragments on ours takes no longer than theirs: 0 where it never takes longer, empty where that is beyond the last.
+std::optional<double> overtakes_at(const Series& ours, const Series& theirs);
 
 }  // namespace report

@@ -87,7 +87,7 @@ Picture picture_of(const DepthMap& map) {
 std::string key_of(const DepthMap& map) {
     const bool has_nothing = std::ranges::count(map.triangle, DepthMap::nothing) != 0;
     const bool has_beyond = std::ranges::any_of(map.r, [](float r) { return r > 1.0f && r < HUGE_VALF; });
-    return std::string("The darker the farther, with a line at each tenth of r between the near and the far plane") +
+    return std::string("the darker the farther, with a line at each tenth of r between the near and the far plane") +
            (has_beyond ? "; red beyond" : "") + (has_nothing ? "; black where nothing is." : ".");
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 
 #include "html.hpp"
 
@@ -101,7 +102,8 @@ std::string figure(const PictureOfScene& picture, const std::string& title) {
 }
 
 std::string figures(const std::vector<PictureOfScene>& pictures, const std::string& title) {
-    std::string html = pictures.size() % 2 == 0 ? "<div class=\"pictures pairs\">\n" : "<div class=\"pictures\">\n";
+    std::string html = pictures.size() % 3 != 0 && pictures.size() % 2 == 0 ? "<div class=\"pictures pairs\">\n"
+                                                                            : "<div class=\"pictures\">\n";
     for (const PictureOfScene& picture : pictures) html += figure(picture, title);
     return html + "</div>\n";
 }
@@ -122,13 +124,39 @@ std::string contest_of(const Report& report, const Task& task) {
     return text.empty() ? "" : "<p>" + text + "</p>\n";
 }
 
+// From which size on each of the library's ways is the faster one.
+std::string crossings_of(const std::vector<Series>& series) {
+    const auto is_library = [](const Series& s) { return s.name.starts_with("texgen"); };
+    std::string html =
+        "<p>From how many fragments on a triangle takes no longer than by the loop of "
+        "others:</p>\n<table>\n<tr><th>way</th>";
+    for (const Series& theirs : series)
+        if (!is_library(theirs)) html += "<th>" + escaped(theirs.name) + "</th>";
+    html += "</tr>\n";
+    for (const Series& ours : series) {
+        if (!is_library(ours)) continue;
+        html += "<tr class=\"library\"><td>" + escaped(ours.name) + "</td>";
+        for (const Series& theirs : series) {
+            if (is_library(theirs)) continue;
+            const std::optional<double> at = overtakes_at(ours, theirs);
+            html += "<td>" +
+                    (!at        ? "more than " + formatted("%g", ours.points.back().x)
+                     : *at == 0 ? "always"
+                                : formatted("%.0f", *at)) +
+                    "</td>";
+        }
+        html += "</tr>\n";
+    }
+    return html + "</table>\n";
+}
+
 std::string section_of(const Report& report, const Task& task) {
     const bool is_measured = std::ranges::any_of(report.timings, [&](const Timings& build) {
         return std::ranges::count(build.rows, task.scene, &Timing::scene);
     });
     std::string chart;
     if (&task == &small_triangles)
-        chart = chart_of(report.times_by_size, "fragments a side", "nanoseconds a triangle",
+        chart = chart_of(report.times_by_size, "fragments of the triangle's rectangle", "nanoseconds a triangle",
                          "A triangle with its set-up against its size; compiled with the flags of the pictures.");
     else if (is_measured)
         chart = chart_of(report.timings, task.scene);
@@ -136,6 +164,7 @@ std::string section_of(const Report& report, const Task& task) {
     std::string html =
         "<h3>" + std::string(task.title) + "</h3>\n<p>" + task.sentence + "</p>\n<div class=\"task\"><div>\n";
     if (is_measured) html += table_of(report.timings, task.scene) + contest_of(report, task);
+    if (&task == &small_triangles) html += crossings_of(report.times_by_size);
     html += "</div>\n" + chart + "</div>\n";
     if (&task == &scenes) html += html_of(report.room);
     return html;

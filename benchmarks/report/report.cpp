@@ -204,13 +204,12 @@ PictureOfScene shown(const std::string& file, const std::string& caption, const 
     return {file, caption, encode_png(picture), png.size() < jpeg.size() ? png : jpeg};
 }
 
+// What a bias that is the same for all triangles costs.
 std::string in_words(const ShadowCount& count) {
-    const double percent =
-        100.0 * static_cast<double>(count.lost) / static_cast<double>(std::max<std::size_t>(1, count.lit));
-    return (count.lost == 0 ? "" : formatted(" %.1f%% of what is lit by the planes is dark.", percent)) +
-           (count.by_themselves == 0
-                ? " No triangle shadows itself."
-                : formatted(" %zu fragments are in the shadow of their own triangle.", count.by_themselves));
+    if (count.lost == 0) return " nothing is dark that is lit in the picture before.";
+    return formatted(
+        " steeper triangles shadow themselves and one another: %.1f%% of what is lit in the picture before is dark.",
+        100.0 * static_cast<double>(count.lost) / static_cast<double>(count.lit));
 }
 
 Report make_report(const Options& options, const Setting& setting) {
@@ -241,8 +240,10 @@ Report make_report(const Options& options, const Setting& setting) {
             std::string caption = view.caption;
             if (view.shadow && view.sampling == Sampling::bilinear) {
                 const ShadowCount count = count_shadows(*view.shadow, work, scene.region);
-                caption += in_words(count);
-                if (!view.shadow->constant_bias) result.shadowed_by_themselves += count.by_themselves;
+                if (view.shadow->constant_bias)
+                    caption += in_words(count);
+                else
+                    result.shadowed_by_themselves += count.by_themselves;
             }
             result.pictures.push_back(shown(view.file, caption, render(scene, view, options.width, options.height),
                                             is_first ? InPage::first : in_page(view.sampling)));

@@ -109,7 +109,7 @@ std::shared_ptr<const DepthMap> seen_from(const texgen::Projector& projector, co
 
 View from_projector(std::string file, const std::string& sentence, std::shared_ptr<const DepthMap> map) {
     return {.file = std::move(file),
-            .caption = sentence + " " + key_of(*map),
+            .caption = sentence + ": " + key_of(*map),
             .surfaces = {},
             .slide = {},
             .sampling = Sampling::depth_from_projector,
@@ -167,16 +167,12 @@ Scene shadows(const Setting& setting) {
         .light = light_of(setting.lens, walk_through_aim),
         .region = texgen::whole_texture(),
         .views = {view("shadow.png",
-                       "The slide falls on what r says is nearest to the projector, give or take what each "
-                       "triangle's own plane climbs within a texel of the map (receiver_plane); sides that face away "
-                       "are dark (facing).",
+                       "Lit where r is the least that the projector sees, give or take what each triangle's own plane "
+                       "climbs within a texel of the map: no triangle shadows itself, and sides that face away are "
+                       "dark.",
                        std::nullopt),
-                  view("shadow_constant.png",
-                       "With one bias for all, which is what the floor needs: steeper triangles shadow themselves "
-                       "and one another.",
-                       of_floor),
-                  from_projector("shadow_projector.png",
-                                 "What the projector sees, in its own window: the rest is in shadow.", map)}};
+                  view("shadow_constant.png", "With one bias for all, as large as the floor needs,", of_floor),
+                  from_projector("shadow_projector.png", "All that the projector sees, and so all that is lit", map)}};
 }
 
 // Small triangles in the far corner of a large window, where plane equations in float lose the most.
@@ -310,7 +306,7 @@ Scene keystone(const std::shared_ptr<const Picture>& slide, double aspect) {
 // A projector between two walls that stand open towards the camera: one before it, one behind it.
 Scene reverse(const std::shared_ptr<const Picture>& slide, double aspect) {
     const texgen::Aim aim{.position = {0, 1.8, 0}, .target = {-5, 2.2, 0}, .up = {0, 1, 0}};
-    const texgen::Projector projector = projector_of({.extent = 40}, *slide, aim, {3.5, 6.5});
+    const texgen::Projector projector = projector_of({.extent = 40}, *slide, aim, {2.5, 7});
     const auto wall = [&](float side) {
         return projected(projector, parallelogram({5.0f * side, -0.5f, 3.5f}, {-2.6f * side, 0, -7}, {0, 5.0f, 0}, 2),
                          in_place, plaster);
@@ -337,7 +333,7 @@ Scene reverse(const std::shared_ptr<const Picture>& slide, double aspect) {
                  .slide = slide,
                  .coordinates = Coordinates::ignoring_sign_of_q},
                 from_projector("reverse_projector.png",
-                               "What the projector sees: the wall before it, and nothing of the one at its back.",
+                               "The projector sees the wall before it, and nothing of the one at its back",
                                seen_from(projector, aim, *slide, surfaces))}};
 }
 
@@ -405,8 +401,7 @@ Scene facing(double aspect) {
                  "of "
                  "two.",
                  Sampling::anisotropy_as_colour),
-            from_projector("facing_projector.png",
-                           "What the projector sees, with its head down: the floor towards the camera.",
+            from_projector("facing_projector.png", "The projector, upside down, sees the floor towards the camera",
                            seen_from(projector, aim, *slide, surfaces))}};
 }
 
@@ -428,7 +423,7 @@ std::vector<Scene> make_scenes(const Setting& setting) {
     const LensChoice rays{.is_orthographic = true, .extent = 5.2};
     Scene under_rays = mesh_under_slide(setting, rays, parallel, "Parallel rays");
     under_rays.views.push_back(
-        from_projector("orthographic_projector.png", "What the projector sees: the far is as large as the near.",
+        from_projector("orthographic_projector.png", "The projector sees what is far as large as what is near",
                        seen_from(projector_of(rays, *setting.slide, walk_through_aim, walk_through_depth),
                                  walk_through_aim, *setting.slide, under_rays.views.front().surfaces)));
     return {mesh_under_slide(setting, setting.lens, first, "A mesh and a floor under a slide"),
