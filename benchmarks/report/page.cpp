@@ -127,27 +127,21 @@ std::string contest_of(const Report& report, const Task& task) {
 // From which size on each of the library's ways is the faster one.
 std::string crossings_of(const std::vector<Series>& series) {
     const auto is_library = [](const Series& s) { return s.name.starts_with("texgen"); };
-    std::string html =
-        "<p>From how many fragments on a triangle takes no longer than by the loop of "
-        "others:</p>\n<table>\n<tr><th>way</th>";
-    for (const Series& theirs : series)
-        if (!is_library(theirs)) html += "<th>" + escaped(theirs.name) + "</th>";
-    html += "</tr>\n";
-    for (const Series& ours : series) {
-        if (!is_library(ours)) continue;
-        html += "<tr class=\"library\"><td>" + escaped(ours.name) + "</td>";
-        for (const Series& theirs : series) {
-            if (is_library(theirs)) continue;
+    std::string html = "<ul>\n";
+    for (const Series& theirs : series) {
+        if (is_library(theirs)) continue;
+        std::string ways;
+        for (const Series& ours : series) {
+            if (!is_library(ours)) continue;
             const std::optional<double> at = overtakes_at(ours, theirs);
-            html += "<td>" +
-                    (!at        ? "more than " + formatted("%g", ours.points.back().x)
+            ways += (ways.empty() ? "" : "; ") + escaped(ours.name) + ": " +
+                    (!at        ? "not up to " + formatted("%g", ours.points.back().x)
                      : *at == 0 ? "always"
-                                : formatted("%.0f", *at)) +
-                    "</td>";
+                                : "from " + formatted("%.0f", *at) + " fragments on");
         }
-        html += "</tr>\n";
+        html += "<li>Not slower than " + escaped(theirs.name) + " is " + ways + ".</li>\n";
     }
-    return html + "</table>\n";
+    return html + "</ul>\n";
 }
 
 std::string section_of(const Report& report, const Task& task) {

@@ -175,9 +175,9 @@ InPage in_page(Sampling sampling) {
             return InPage::part;
         case Sampling::level_as_colour:
         case Sampling::anisotropy_as_colour:
-        case Sampling::depth_from_projector:
             return InPage::thinned;
         case Sampling::error_as_colour:
+        case Sampling::depth_from_projector:
         case Sampling::bilinear:
             break;
     }
@@ -258,8 +258,8 @@ Report make_report(const Options& options, const Setting& setting) {
         shown("room.png", "A projector lights what its slide falls on; nothing casts shadows.", report.room.picture,
               InPage::reduced),
         shown("room_work.png",
-              "The dearest work that a projector asks of each rectangle, for 1/512 texel of 4096: dark none, blue "
-              "affine, green quadratic, yellow a division, red a division and a test.",
+              "The dearest work that a projector asks of each rectangle, for 1/512 texel of 4096: " +
+                  report.room.key_of_work() + ".",
               report.room.work_picture, InPage::thinned)};
     progress.show("measuring triangles of all sizes");
     report.times_by_size = times_by_size();

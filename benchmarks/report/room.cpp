@@ -317,9 +317,15 @@ Picture shaded(const Rules& rule, const Room& room, const Seen& seen, const texg
 }
 
 // Each seen fragment in the colour of the dearest work that a projector asks of its rectangle.
-constexpr std::array<glm::vec3, 5> work_colours{glm::vec3(0.10f, 0.11f, 0.14f), glm::vec3(0.2f, 0.55f, 0.95f),
-                                                glm::vec3(0.25f, 0.75f, 0.45f), glm::vec3(0.95f, 0.8f, 0.25f),
-                                                glm::vec3(0.9f, 0.3f, 0.2f)};
+struct WorkColour {
+    glm::vec3 colour;
+    const char* meaning;
+};
+constexpr std::array<WorkColour, 5> work_colours{{{glm::vec3(0.10f, 0.11f, 0.14f), "dark none"},
+                                                  {glm::vec3(0.2f, 0.55f, 0.95f), "blue affine"},
+                                                  {glm::vec3(0.25f, 0.75f, 0.45f), "green quadratic"},
+                                                  {glm::vec3(0.95f, 0.8f, 0.25f), "yellow a division"},
+                                                  {glm::vec3(0.9f, 0.3f, 0.2f), "red a division and a test"}}};
 
 Picture coloured_by_work(const Room& room, const Seen& seen, const texgen::Scene& scene, int width, int height) {
     std::vector<texgen::Work> most(seen.nearest.size(), texgen::Work::nothing);
@@ -336,7 +342,7 @@ Picture coloured_by_work(const Room& room, const Seen& seen, const texgen::Scene
     Picture picture(width, height, glm::vec3(0));
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x)
-            picture.at(x, height - 1 - y) = work_colours[static_cast<std::size_t>(most[seen.pixel(x, y)])];
+            picture.at(x, height - 1 - y) = work_colours[static_cast<std::size_t>(most[seen.pixel(x, y)])].colour;
     return picture;
 }
 
@@ -375,6 +381,14 @@ Camera camera_at(int frame, double aspect) {
 
 bool RoomReport::is_same_picture() const {
     return std::ranges::all_of(rows, [](const RoomRow& row) { return row.same_picture; });
+}
+
+std::string RoomReport::key_of_work() const {
+    std::string key;
+    for (const WorkColour& work : work_colours)
+        if (std::ranges::find(work_picture.pixels, work.colour) != work_picture.pixels.end())
+            key += (key.empty() ? "" : ", ") + std::string(work.meaning);
+    return key;
 }
 
 RoomReport make_room(const Picture& slide, int width, int height) {

@@ -28,6 +28,7 @@ struct RoomReport {
     Picture picture, work_picture;
 
     bool is_same_picture() const;
+    std::string key_of_work() const;  // of the colours that the picture of the work has
     double speedup() const { return rows.front().milliseconds / rows.back().milliseconds; }
 };
 

@@ -196,13 +196,15 @@ Scene lost(const Setting& setting) {
         .region = texgen::whole_texture(),
         .corner = {3072, 3072},
         .views = {view("lost_kept.png",
-                       "By texgen; the mesh has " + std::to_string(setting.dense.triangles.size()) + " triangles.",
+                       "By texgen, a part of the picture pixel for pixel; the mesh has " +
+                           std::to_string(setting.dense.triangles.size()) + " triangles.",
                        Coordinates::library, Sampling::nearest),
                   view("lost.png",
                        "By plane equations in float: where a triangle has few fragments the slide falls apart into "
                        "noise.",
                        Coordinates::float_planes, Sampling::nearest),
-                  view("lost_kept_error.png", "The error of texgen: dark blue everywhere, about 1e-4 texel of 4096.",
+                  view("lost_kept_error.png",
+                       "The error of texgen: dark blue wherever the slide falls, about 1e-4 texel of 4096.",
                        Coordinates::library, Sampling::error_as_colour),
                   view("lost_error.png",
                        "The error of plane equations in float: blue up to 1e-4 texel of 4096, white at 1/30, red from "
@@ -237,7 +239,8 @@ Scene qcoord(const std::shared_ptr<const Picture>& slide, double aspect) {
             .region = texgen::whole_texture(),
             .views = {
                 {.file = "trapezoid.png",
-                 .caption = "Divided by q at each fragment: the slide looks like a board that leans back, and every "
+                 .caption = "By the q of quadrilateral(), divided at each fragment, the slide looks like a board that "
+                            "leans back, and every "
                             "straight line of it is straight.",
                  .surfaces = {projective},
                  .slide = slide},
