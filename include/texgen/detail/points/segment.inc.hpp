@@ -111,11 +111,11 @@ inline Corners segment_corners(const glm::dvec4& a, const glm::dvec4& b, glm::le
     return at;
 }
 
-inline Coverage depth_coverage_of(const Segment& segment, const LitTest& lit, double accepted) noexcept {
+inline Coverage depth_coverage(const Segment& segment, const LitTest& lit, double accepted) noexcept {
     if (!lit.has_depth()) return Coverage::inside;
     const glm::dvec4 a = widened(segment.a), b = widened(segment.b);
     if (!is_finite(a.z + a.w) || !is_finite(b.z + b.w)) return Coverage::partial;
-    return depth_coverage_of(segment_corners(a, b, 2, 2), lit, accepted);
+    return r_coverage(segment_corners(a, b, 2, 2), lit, accepted);
 }
 
 inline namespace TEXGEN_BUILD {
@@ -164,11 +164,11 @@ inline Work work(const Segment& segment, TextureRegion region, Tolerance toleran
 
     const detail::LitTest sides(region);
     const double accepted = detail::accepted(tolerance);
-    const auto [s, t] = detail::coverage_of(detail::segment_corners(a, b, 0, 1), sides, accepted);
-    const Coverage r = detail::depth_coverage_of(segment, sides, accepted);
-    if (s == Coverage::outside || t == Coverage::outside || r == Coverage::outside) return Work::nothing;
+    const Coverage of_st = detail::st_coverage(detail::segment_corners(a, b, 0, 1), sides, accepted);
+    const Coverage of_r = detail::depth_coverage(segment, sides, accepted);
+    if (of_st == Coverage::outside || of_r == Coverage::outside) return Work::nothing;
     if (a.w == b.w) return Work::affine;
-    const bool all_inside = s == Coverage::inside && t == Coverage::inside && r == Coverage::inside;
+    const bool all_inside = of_st == Coverage::inside && of_r == Coverage::inside;
     return all_inside ? Work::divide : Work::divide_and_test;
 }
 
@@ -201,7 +201,7 @@ void interpolate(const Segment& segment, std::span<const float> alpha, TextureRe
     const double accepted = detail::accepted(tolerance);
     const detail::SegmentKernels& kernels = detail::chosen<detail::SegmentKernels>();
     const detail::LitTest given(region);
-    const bool tests_r = detail::depth_coverage_of(segment, given, accepted) != Coverage::inside;
+    const bool tests_r = detail::depth_coverage(segment, given, accepted) != Coverage::inside;
     const detail::LitTest lit = tests_r ? given : given.without_depth();
     detail::for_each_group(out, alpha.size(), lit, [&](int first, int numerators, const detail::PointOutputs& outputs) {
         detail::SegmentJob job = detail::segment_job(segment, first, numerators);

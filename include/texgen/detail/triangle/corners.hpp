@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <cstddef>
-#include <limits>
 
 #include "../../primitives.hpp"
 #include "../arithmetic/rounding.hpp"
@@ -127,30 +126,37 @@ inline SideOfBound side_of(const Corners& at, const Double2& bound, double toler
     return {{largest[0] < -margin[0], largest[1] < -margin[1]}, {least[0] > margin[0], least[1] > margin[1]}};
 }
 
-// How much of all fragments at once is between the sides of s, and of t.
+// How much of all fragments at once is between two bounds of the one numerator, and of the other.
 struct SideCoverage {
-    Coverage s, t;
+    Coverage of[2];
 };
 
-inline SideCoverage coverage_of(const Corners& at, const LitTest& lit, double tolerance) noexcept {
-    const SideOfBound of_min = side_of(at, double2_of(lit.least(0), lit.least(1)), tolerance);
-    const SideOfBound of_max = side_of(at, double2_of(lit.greatest(0), lit.greatest(1)), tolerance);
+inline SideCoverage coverage_of(const Corners& at, const Double2& min, const Double2& max, double tolerance) noexcept {
+    SideOfBound of[2];
+    for (std::size_t i = 0; i < 2; ++i) of[i] = side_of(at, i == 0 ? min : max, tolerance);
+    const auto& [of_min, of_max] = of;
     const auto coverage = [&](std::size_t k) {
         if (of_min.all_below[k]) return Coverage::outside;
         if (of_max.all_above[k]) return Coverage::outside;
         return of_min.all_above[k] && of_max.all_below[k] && at.all_in_front() ? Coverage::inside : Coverage::partial;
     };
-    return {coverage(0), coverage(1)};
+    return {{coverage(0), coverage(1)}};
 }
 
-// The same of a depth, by corners whose numerators are r twice. An infinite limit is none.
-inline Coverage depth_coverage_of(const Corners& at, const LitTest& lit, double tolerance) noexcept {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    const double min = widened(lit.r_min()), max = widened(lit.r_max());
-    const SideOfBound of = side_of(at, double2_of(min, max), tolerance);
-    if (of.all_below[0] || of.all_above[1]) return Coverage::outside;
-    const bool is_inside = (of.all_above[0] || min == -infinity) && (of.all_below[1] || max == infinity);
-    return is_inside && at.all_in_front() ? Coverage::inside : Coverage::partial;
+// How much is in the sides of a region, where the numerators are s and t.
+inline Coverage st_coverage(const Corners& at, const LitTest& lit, double tolerance) noexcept {
+    const auto [of] = coverage_of(at, double2_of(lit.least(0), lit.least(1)),
+                                  double2_of(lit.greatest(0), lit.greatest(1)), tolerance);
+    if (of[0] == Coverage::outside || of[1] == Coverage::outside) return Coverage::outside;
+    return of[0] == Coverage::inside && of[1] == Coverage::inside ? Coverage::inside : Coverage::partial;
+}
+
+// Of a depth, where the numerators are r twice. An infinite limit is none: no quotient of a triangle's numbers comes near the
+// one that stands for it. A NaN stays one.
+inline Coverage r_coverage(const Corners& at, const LitTest& lit, double tolerance) noexcept {
+    const auto limit = [](float r) { return larger(-0x1p500, smaller(0x1p500, widened(r))); };
+    const double min = limit(lit.r_min()), max = limit(lit.r_max());
+    return coverage_of(at, double2_of(min, min), double2_of(max, max), tolerance).of[0];
 }
 
 }  // namespace TEXGEN_BUILD

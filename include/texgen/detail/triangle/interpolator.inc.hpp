@@ -35,10 +35,9 @@ public:
         return at.all_behind() || !at.cancel() ? at : corners_of(close_ramps(tile));
     }
 
-    // A coordinate whose plan nobody knows.
-    void interpolate(const Tile& tile) noexcept {
+    void interpolate(const Tile& tile, const Plan* plan) noexcept {
         const Corners at = corners_at(tile);
-        interpolate(tile, at, plan_without_survey(tile, at));
+        interpolate(tile, at, plan != nullptr ? *plan : plan_without_survey(tile, at));
     }
 
     void interpolate(const Tile& tile, const Corners& at, const Plan& plan) noexcept {
@@ -283,42 +282,39 @@ private:
     float scratch_[2][scratch_width];  // coordinates that only the mask needs, a row at a time
 };
 
-// Takes the light of fragments whose r, which nobody asked for, is outside the depth, in parts that a buffer holds. A part that
-// is dark already needs no r, nor one that is all inside.
+// One coordinate of a rectangle; without a plan nothing is known of it.
+inline void interpolate_alone(const TileKernels& kernels, const TriangleFunctions& triangle, const Tile& rect,
+                              glm::length_t coordinate, const std::span<float>& output, const Plan* plan) noexcept {
+    if (output.empty()) return;
+    std::optional<CloseRamps> close;
+    TileInterpolator interpolator(kernels, triangle, rect, close);
+    interpolator.add(coordinate, output);
+    interpolator.interpolate(rect, plan);
+}
+
+// Takes the light of a tile's fragments whose r, which nobody asked for, is beyond the depth. What is certainly on one side is
+// not computed, nor what is dark already; the rest is halved until the buffer holds it.
 inline void darken_beyond_depth(const TileKernels& kernels, const TriangleFunctions& triangle, const Tile& rect,
+                                const Tile& tile, const std::span<float>& buffer,
                                 const std::span<float>& lit) noexcept {
-    constexpr int size = 1024;
-    float r[size];
-    const DepthKernels& depth = chosen<DepthKernels>();
-    Tile part = rect;
-    for (std::int64_t x_rest = rect.width; x_rest > 0; x_rest -= part.width, part.x += part.width) {
-        part.width = x_rest < size ? static_cast<int>(x_rest) : size;
-        const int rows = size / part.width;
-        part.y = rect.y;
-        for (int y_rest = rect.height; y_rest > 0; y_rest -= part.height, part.y += part.height) {
-            part.height = y_rest < rows ? y_rest : rows;
-            const auto width = static_cast<std::size_t>(part.width);
-            const auto for_each_row = [&](const auto& function) {
-                for (int y = 0; y < part.height; ++y)
-                    function(lit.data() + offset_in(rect, part.x, part.y + y), r + static_cast<std::size_t>(y) * width);
-            };
-            bool any = false;
-            for_each_row([&](const float* row, const float*) { any = any || depth.any_lit(row, width); });
-            const Coverage coverage = any ? depth_coverage_of(triangle, part) : Coverage::inside;
-            if (coverage == Coverage::inside) continue;
-            if (coverage == Coverage::outside) {
-                fill_rows(lit, rect, part, 0.0f);
-                continue;
-            }
-            std::optional<CloseRamps> close;
-            TileInterpolator interpolator(kernels, triangle, part, close);
-            interpolator.add(2, std::span<float>(r, width * static_cast<std::size_t>(part.height)));
-            interpolator.interpolate(part);
-            for_each_row([&](float* row, const float* row_r) {
-                depth.darken(row, row_r, width, triangle.lit.r_min(), triangle.lit.r_max());
-            });
-        }
+    const Coverage coverage = depth_coverage(triangle, tile);
+    if (coverage == Coverage::inside) return;
+    if (coverage == Coverage::outside) return fill_rows(lit, rect, tile, 0.0f);
+    const auto width = static_cast<std::size_t>(tile.width);
+    const auto height = static_cast<std::size_t>(tile.height);
+    if (width * height > buffer.size()) {
+        for (const Tile& half : tile.halves()) darken_beyond_depth(kernels, triangle, rect, half, buffer, lit);
+        return;
     }
+    const DepthKernels& depth = chosen<DepthKernels>();
+    float* const first = lit.data() + offset_in(rect, tile.x, tile.y);
+    const auto pitch = static_cast<std::size_t>(rect.width);
+    bool any_lit = false;
+    for (std::size_t y = 0; y < height && !any_lit; ++y) any_lit = depth.any_lit(first + y * pitch, width);
+    if (!any_lit) return;
+    interpolate_alone(kernels, triangle, tile, 2, buffer.first(width * height), nullptr);
+    for (std::size_t y = 0; y < height; ++y)
+        depth.darken(first + y * pitch, buffer.data() + y * width, width, triangle.lit.r_min(), triangle.lit.r_max());
 }
 
 }  // namespace TEXGEN_BUILD
@@ -339,7 +335,8 @@ Work interpolate(const TriangleSetup& setup, FragmentRect rect, Texcoords out) n
     }
 
     const detail::Tile tile = detail::tile_of(rect);
-    detail::TileSurvey found = detail::survey(setup.functions(), tile);
+    const detail::TriangleFunctions& triangle = setup.functions();
+    detail::TileSurvey found = detail::survey(triangle, tile);
     const detail::Plan& plan = found.plan;
     if (plan.work == Work::nothing) {
         for (float& lit : out.lit) lit = 0.0f;
@@ -349,33 +346,27 @@ Work interpolate(const TriangleSetup& setup, FragmentRect rect, Texcoords out) n
     if (!any_output) return plan.work;
     const detail::TileKernels& kernels = detail::chosen<detail::TileKernels>();
 
-    const auto interpolate_one = [&](glm::length_t coordinate, const std::span<float>& output) {
-        if (output.empty()) return;
-        std::optional<detail::CloseRamps> close;
-        detail::TileInterpolator interpolator(kernels, setup.functions(), tile, close);
-        interpolator.add(coordinate, output);
-        if (coordinate == 2) return interpolator.interpolate(tile);
-        interpolator.interpolate(tile, interpolator.corners_at(tile), plan);
-    };
     const bool both = !out.s.empty() && !out.t.empty();
     if (both || !out.lit.empty()) {
-        detail::TileInterpolator interpolator(kernels, setup.functions(), tile, found.close);
+        detail::TileInterpolator interpolator(kernels, triangle, tile, found.close);
         interpolator.add(out.s, out.t, out.lit);
         if (both)
             interpolator.interpolate(tile, found.at, plan);
         else
             interpolator.interpolate_in_strips(tile, plan);
     } else {
-        interpolate_one(0, out.s);
-        interpolate_one(1, out.t);
+        detail::interpolate_alone(kernels, triangle, tile, 0, out.s, &plan);
+        detail::interpolate_alone(kernels, triangle, tile, 1, out.t, &plan);
     }
-    interpolate_one(2, out.r);
+    detail::interpolate_alone(kernels, triangle, tile, 2, out.r, nullptr);
     if (plan.depth == Coverage::inside || out.lit.empty()) return plan.work;
-    const detail::LitTest& lit = setup.functions().lit;
-    if (out.r.empty())
-        detail::darken_beyond_depth(kernels, setup.functions(), tile, out.lit);
-    else
-        detail::chosen<detail::DepthKernels>().darken(out.lit.data(), out.r.data(), count, lit.r_min(), lit.r_max());
+    if (out.r.empty()) {
+        float buffer[1024];
+        detail::darken_beyond_depth(kernels, triangle, tile, tile, buffer, out.lit);
+    } else {
+        detail::chosen<detail::DepthKernels>().darken(out.lit.data(), out.r.data(), count, triangle.lit.r_min(),
+                                                      triangle.lit.r_max());
+    }
     return plan.work;
 }
 

@@ -70,22 +70,22 @@ inline void choose_steps(Plan& plan, const Corners& at, double tolerance) noexce
 }
 
 // How much of a tile is between the limits of the region's depth.
-inline Coverage depth_coverage_of(const TriangleFunctions& triangle, const Tile& tile) noexcept {
+inline Coverage depth_coverage(const TriangleFunctions& triangle, const Tile& tile) noexcept {
     if (!triangle.lit.has_depth()) return Coverage::inside;
     Corners at = corners_of(triangle.planes, triangle.planes.planes(2, 2), triangle.q, tile);
     if (at.cancel()) at = corners_of(ClosePlanes(triangle.planes, tile).ramps(2, 2));
-    return depth_coverage_of(at, triangle.lit, triangle.tolerance);
+    return r_coverage(at, triangle.lit, triangle.tolerance);
 }
 
 inline Plan choose_plan(const TriangleFunctions& triangle, const Tile& tile, const Corners& at) noexcept {
     Plan plan{Work::nothing, 0, StepRule::undecided, {}, Coverage::inside};
     if (at.all_behind()) return plan;
-    const SideCoverage lit = coverage_of(at, triangle.lit, triangle.tolerance);
-    if (lit.s == Coverage::outside || lit.t == Coverage::outside) return plan;
-    plan.depth = depth_coverage_of(triangle, tile);
+    const Coverage sides = st_coverage(at, triangle.lit, triangle.tolerance);
+    if (sides == Coverage::outside) return plan;
+    plan.depth = depth_coverage(triangle, tile);
     if (plan.depth == Coverage::outside) return plan;
 
-    const bool all_inside = lit.s == Coverage::inside && lit.t == Coverage::inside && plan.depth == Coverage::inside;
+    const bool all_inside = sides == Coverage::inside && plan.depth == Coverage::inside;
     plan.work = all_inside ? Work::divide : Work::divide_and_test;
     if (at.well_in_front() && is_constant(at.q_ramp)) plan.work = Work::affine;
     if (triangle.tolerance == 0.0 || !pays_for_chunks(tile)) return plan;
