@@ -74,6 +74,8 @@ enum class Defect {
     not_of_this_set_up,
     precision_lost,
     everything_behind,
+    everything_below_depth,
+    everything_above_depth,
     region_never_hit,
     smaller_than_texel,
 };
@@ -164,6 +166,14 @@ inline constexpr std::array<DefectInWords, defect_count> defects_in_words{{
      "Compose in double, and generate from object or eye space: object_linear() or eye_linear()."},
     {Defect::everything_behind, "Every point is behind the projector.",
      "Check the aim, the side that the lens looks to, and the sign of the matrix."},
+    {Defect::everything_below_depth,
+     "No point reaches the region's depth: r is less than r_min, before the near plane, or beyond the far one where "
+     "depth is reversed.",
+     "Check z_near and z_far, the depth of the region, and how r is mapped: unit or ndc."},
+    {Defect::everything_above_depth,
+     "Every point is past the region's depth: r is more than r_max, beyond the far plane, or before the near one where "
+     "depth is reversed.",
+     "Check z_near and z_far, the depth of the region, and how r is mapped: unit or ndc."},
     {Defect::region_never_hit, "No point can be inside the region: the slide misses all.",
      "Check the aim, the field of view and the region."},
     {Defect::smaller_than_texel, "The picture is smaller than a texel there.",

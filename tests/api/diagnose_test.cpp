@@ -1332,6 +1332,43 @@ TEST_CASE("points on the side of the region are in it, and one point alone has n
               .contains(Defect::everything_behind));
 }
 
+TEST_CASE("points before and beyond the depth of the region are said, and one within it is enough") {
+    const texgen::PerspectiveLens lens{.fovy = texgen::degrees(60), .aspect = 1, .z_near = 1, .z_far = 20};
+    const texgen::Aim aim{.position = {0, 0, 0}, .target = {0, 0, -1}, .up = {0, 1, 0}};
+    for (const texgen::Conventions conventions : {texgen::opengl, texgen::direct3d}) {
+        for (const auto mapping : {texgen::DepthMapping::unit, texgen::DepthMapping::ndc}) {
+            const TextureRegion region = texgen::whole_texture().with_depth(conventions, mapping);
+            const auto at = [&](std::vector<glm::vec3> points, const TextureRegion& seen) {
+                return diagnose(ProjectionSetup<World>{.projector = make_projector(lens, aim, conventions),
+                                                       .points = texgen::world_space(points),
+                                                       .region = seen,
+                                                       .depth = mapping});
+            };
+            const auto beyond = at({{0, 0, -21}, {1, 0, -500}}, region);
+            REQUIRE_MESSAGE(beyond.size() == 1, text(beyond));
+            CHECK(beyond.contains(Defect::everything_above_depth));
+            const auto before = at({{0, 0, -0.9f}, {0.1f, 0, -0.5f}}, region);
+            REQUIRE_MESSAGE(before.size() == 1, text(before));
+            CHECK(before.contains(Defect::everything_below_depth));
+            CHECK(at({{0, 0, -0.9f}, {1, 0, -500}}, region).empty());
+            CHECK(at({{0, 0, -21}, {1, 0, -19}}, region).empty());
+            CHECK(at({{0, 0, -21}, {1, 0, -500}}, texgen::whole_texture()).empty());
+            CHECK(at({{0, 0, -21}, {1, 0, -500}}, texgen::whole_texture().with_depth(0.0, HUGE_VAL)).empty());
+            const auto behind = at({{0, 0, 21}, {1, 0, 500}}, region);
+            CHECK(behind.contains(Defect::everything_behind));
+            CHECK_FALSE(behind.contains(Defect::everything_above_depth));
+            CHECK_FALSE(behind.contains(Defect::everything_below_depth));
+        }
+    }
+    const auto of_region = [](const TextureRegion& region) {
+        return diagnose(ProjectionSetup<Object>{.region = region});
+    };
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    CHECK(of_region(texgen::whole_texture().with_depth(0.5, 0.25)).contains(Defect::region_never_hit));
+    CHECK(of_region(texgen::whole_texture().with_depth(nan, 1.0)).contains(Defect::not_finite));
+    CHECK(of_region(texgen::whole_texture().with_depth(0.0, HUGE_VAL)).empty());
+}
+
 TEST_CASE("far from the origin the rounding of float hides no depth range, where the matrix was rounded once") {
     Random random(612);
     int found = 0;

@@ -182,6 +182,7 @@ void diagnose_what_is_right(Input& input) {
     require_form(diagnosis);
     for (const texgen::Finding& finding : diagnosis)
         must(finding.defect == Defect::everything_behind || finding.defect == Defect::region_never_hit ||
+                 finding.defect == Defect::everything_below_depth || finding.defect == Defect::everything_above_depth ||
                  finding.defect == Defect::smaller_than_texel || finding.defect == Defect::precision_lost,
              "what the library made has no fault but what is true of it");
     must(diagnose(*setup.projector).empty(), "a projector that the library made has no fault");

@@ -9,7 +9,9 @@ struct Picture {
     glm::dvec2 texels_per_unit{};
 
     bool is_empty() const noexcept {
-        return (region.min)().x > (region.max)().x || (region.min)().y > (region.max)().y;
+        const std::optional<glm::dvec2> depth = region.depth();
+        return (region.min)().x > (region.max)().x || (region.min)().y > (region.max)().y ||
+               (depth && depth->x > depth->y);
     }
     bool is_measured() const noexcept { return texels_per_unit.x > 0.0 && texels_per_unit.y > 0.0; }
     glm::dvec2 extent() const noexcept { return (region.max)() - (region.min)(); }
@@ -50,6 +52,11 @@ public:
           right_(rows(examined.right)),
           lost_(rows(examined.lost)),
           picture_(picture) {
+        const glm::dvec2& min = (picture.region.min)();
+        const glm::dvec2& max = (picture.region.max)();
+        sides_ = {{{min.x, max.x}, {min.y, max.y}, picture.region.depth().value_or(glm::dvec2())}};
+        side_count_ = picture.region.depth() ? 6 : 4;
+        for (std::size_t side = 0; side < outside_.size(); ++side) outside_[side] = side < side_count_;
         if (has_texgen_) error_in_texels_ = least_error_in_texels(examined, picture, depth);
     }
 
@@ -60,18 +67,20 @@ public:
         }
         const Bounded s = value_at(texgen_[0], v);
         const Bounded t = value_at(texgen_[1], v);
-        const Bounded q = value_at(texgen_[2], v);
+        const Bounded r = value_at(texgen_[2], v);
+        const Bounded q = value_at(texgen_[3], v);
         ++count_;
         behind_ = behind_ && q.value <= -q.error;
-        for (std::size_t side = 0; side < 4; ++side) {
-            const Bounded& u = side < 2 ? s : t;
-            const double end = at(side % 2 == 0 ? (picture_.region.min)() : (picture_.region.max)(), side / 2);
+        for (std::size_t side = 0; side < side_count_; ++side) {
+            const Bounded& u = side < 2 ? s : side < 4 ? t : r;
+            const double end = at(sides_[side / 2], side % 2);
             const double distance = side % 2 == 0 ? u.value - end * q.value : end * q.value - u.value;
             const double error =
                 u.error + std::fabs(end) * q.error + gamma(3) * (std::fabs(u.value) + std::fabs(end * q.value));
             outside_[side] = outside_[side] && distance < -error;
         }
-        const glm::dvec2 st = glm::dvec2(s.value, t.value) / q.value;
+        const glm::dvec3 str = glm::dvec3(s.value, t.value, r.value) / q.value;
+        const glm::dvec2 st(str.x, str.y);
         // What floats have thrown behind the projector too.
         if (has_right_ && q.value != 0.0) compare(v, st);
         if (!(q.value > q.error)) {
@@ -88,8 +97,8 @@ public:
             most_[k] = larger(most_[k], st[k]);
         }
         // Where it is known what is right, compare() has measured it.
-        if (!has_right_ && is_lit(st)) {
-            const double lost_of_q = terms_at(lost_[2], v);
+        if (!has_right_ && is_lit(str)) {
+            const double lost_of_q = terms_at(lost_[3], v);
             for (glm::length_t k = 0; k < 2; ++k)
                 raise((terms_at(lost_[k == 0 ? 0 : 1], v) + std::fabs(st[k]) * lost_of_q) / q.value,
                       picture_.texels()[k]);
@@ -101,8 +110,10 @@ public:
         if (error_in_texels_ > accepted_error_in_texels) diagnosis.add(Defect::precision_lost, error_in_texels_);
         if (count_ == 0 || !has_texgen_) return;
         if (behind_) diagnosis.add(Defect::everything_behind);
-        for (const bool outside : outside_)
-            if (outside) diagnosis.add(Defect::region_never_hit);
+        if (!behind_ && outside_[4]) diagnosis.add(Defect::everything_below_depth);
+        if (!behind_ && outside_[5]) diagnosis.add(Defect::everything_above_depth);
+        for (std::size_t side = 0; side < 4; ++side)
+            if (outside_[side]) diagnosis.add(Defect::region_never_hit);
         const glm::dvec2 texels = picture_.texels();
         const double size = larger((most_.x - least_.x) * texels.x, (most_.y - least_.y) * texels.y);
         if (all_in_front_ && distinct_ && texels.x > 0.0 && texels.y > 0.0 && size < 1.0)
@@ -110,35 +121,41 @@ public:
     }
 
 private:
-    // Rows s, t and q; zero where there is no matrix.
-    static std::array<PointForm, 3> rows(const std::optional<glm::dmat4>& m) noexcept {
+    // Rows s, t, r and q; zero where there is no matrix.
+    static std::array<PointForm, 4> rows(const std::optional<glm::dmat4>& m) noexcept {
         if (!m) return {};
-        return {{form(*m, 0), form(*m, 1), form(*m, 3)}};
+        return {{form(*m, 0), form(*m, 1), form(*m, 2), form(*m, 3)}};
     }
 
     static double at(const glm::dvec2& v, std::size_t component) noexcept { return component == 0 ? v.x : v.y; }
 
-    bool is_lit(const glm::dvec2& st) const noexcept {
-        return st.x >= (picture_.region.min)().x && st.x <= (picture_.region.max)().x &&
-               st.y >= (picture_.region.min)().y && st.y <= (picture_.region.max)().y;
+    bool is_lit(const glm::dvec3& str) const noexcept {
+        for (std::size_t k = 0; k < side_count_ / 2; ++k) {
+            const double u = str[static_cast<glm::length_t>(k)];
+            if (!(u >= sides_[k].x && u <= sides_[k].y)) return false;
+        }
+        return true;
     }
 
     void raise(double error, double texels) noexcept { error_in_texels_ = larger(error * texels, error_in_texels_); }
 
     // With what the set-up composes in double.
     void compare(const glm::dvec3& v, const glm::dvec2& st) noexcept {
-        const double q = value_at(right_[2], v).value;
-        const glm::dvec2 right = glm::dvec2(value_at(right_[0], v).value, value_at(right_[1], v).value) / q;
+        const double q = value_at(right_[3], v).value;
+        const glm::dvec3 right =
+            glm::dvec3(value_at(right_[0], v).value, value_at(right_[1], v).value, value_at(right_[2], v).value) / q;
         if (!(q > 0.0) || !is_lit(right)) return;
         for (glm::length_t k = 0; k < 2; ++k) raise(std::fabs(st[k] - right[k]), picture_.texels()[k]);
     }
 
     bool has_texgen_, has_right_;
-    std::array<PointForm, 3> texgen_, right_, lost_;  // rows s, t and q
+    std::array<PointForm, 4> texgen_, right_, lost_;  // rows s, t, r and q
     Picture picture_;
+    std::array<glm::dvec2, 3> sides_;  // of s, t and r
+    std::size_t side_count_;           // 6 where there is a depth
     std::size_t count_ = 0, in_front_ = 0;
     bool all_finite_ = true, behind_ = true, all_in_front_ = true, distinct_ = false;
-    std::array<bool, 4> outside_{true, true, true, true};
+    std::array<bool, 6> outside_;  // of the sides
     glm::dvec3 first_{0.0};
     glm::dvec2 least_{0.0}, most_{0.0};
     double error_in_texels_ = 0.0;

@@ -38,9 +38,11 @@ inline bool are_numbers(const SetupMatrices& setup) noexcept {
         return setup.projector != nullptr ? is_finite(side.x) && is_finite(side.y) : !is_nan(side.x) && !is_nan(side.y);
     };
     const auto is_given_finite = [](const std::optional<double>& value) { return !value || is_finite(*value); };
-    return is_side((region.min)()) && is_side((region.max)()) && is_finite(setup.picture.texels_per_unit.x) &&
-           is_finite(setup.picture.texels_per_unit.y) && is_given_finite(lens.aspect) && is_given_finite(lens.z_near) &&
-           !(lens.z_far && is_nan(*lens.z_far)) && !(lens.fovy && !is_finite(lens.fovy->in_radians()));
+    const std::optional<glm::dvec2> depth = region.depth();
+    return is_side((region.min)()) && is_side((region.max)()) && !(depth && (is_nan(depth->x) || is_nan(depth->y))) &&
+           is_finite(setup.picture.texels_per_unit.x) && is_finite(setup.picture.texels_per_unit.y) &&
+           is_given_finite(lens.aspect) && is_given_finite(lens.z_near) && !(lens.z_far && is_nan(*lens.z_far)) &&
+           !(lens.fovy && !is_finite(lens.fovy->in_radians()));
 }
 
 // Returns whether it is transposed.
