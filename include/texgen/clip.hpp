@@ -2,7 +2,7 @@
 
 // Floor 6: what a scene needs before its polygons can be interpolated. A vertex behind the camera has no place in the
 // window, so polygons are cut at the near plane while they are homogeneous, and only then divided; likewise with what is
-// behind the projector or outside its slide. The slide's planes, for hardware that clips, stand here too.
+// behind the projector, outside its slide or beyond its depth. The slide's planes, for hardware that clips, stand here too.
 
 #include "detail/language.hpp"
 
@@ -67,8 +67,25 @@ inline std::size_t clip_to_near(std::span<const ClipVertex> polygon, std::span<C
 
 }  // namespace TEXGEN_COMPILER
 
-// Says the planes of the slide's region: q, s - min.x q, max.x q - s, t - min.y q, max.y q - t. A point of the space is lit
-// where all five are >= 0 (and q > 0): for gl_ClipDistance, or in eye space for glClipPlane.
+// Planes in their order, each (a, b, c, d) of a x + b y + c z + d >= 0: five, or seven of a region with a depth.
+class ClipPlanes {
+public:
+    std::size_t size() const noexcept { return size_; }
+    const glm::vec4* begin() const noexcept { return planes_.data(); }
+    const glm::vec4* end() const noexcept { return planes_.data() + size_; }
+    const glm::vec4& operator[](std::size_t i) const noexcept { return planes_[i]; }
+
+private:
+    template <class Space>
+    friend ClipPlanes clip_planes(const Transform<Texture, Space>&, TextureRegion) noexcept;
+
+    std::array<glm::vec4, detail::SlidePlanes::max_size> planes_{};
+    std::size_t size_ = 0;
+};
+
+// Says the planes of the slide's region: q, s - min.x q, max.x q - s, t - min.y q, max.y q - t, and with a depth
+// r - r_min q, r_max q - r. A point of the space is lit where all are >= 0 (and q > 0): for gl_ClipDistance, or in eye
+// space for glClipPlane. An infinite limit of depth is none: in its place q stands again.
 // Guarantee: each coefficient is the exact one of the matrix in double, rounded to double and then to float: within
 // (1/2 + 2^-29) float ulp, and of its sign. No allocation, noexcept.
 // Shape: coefficients (x, y, z, w) of points (x, y, z, 1) of the space that the matrix takes to the texture.
@@ -76,12 +93,13 @@ inline std::size_t clip_to_near(std::span<const ClipVertex> polygon, std::span<C
 // Source: Segal, Korobkin, van Widenfelt, Foran, Haeberli, Fast Shadows and Lighting Effects Using Texture Mapping
 // (SIGGRAPH 1992): what is not to be lit is clipped.
 template <class Space>
-std::array<glm::vec4, 5> clip_planes(const Transform<Texture, Space>& texgen, TextureRegion region) noexcept;
+ClipPlanes clip_planes(const Transform<Texture, Space>& texgen, TextureRegion region) noexcept;
 
 // How far outside a side of the region a vertex of clip_to_slide() may be: min q - u and u - max q are at most
-// slide_clip_error max(|min|, |max|) q for u = s and t, while no number is below the normal floats.
+// slide_clip_error max(|min|, |max|) q for u = s and t, and for r where the region has a depth, while no number is below the
+// normal floats.
 //
-// A vertex that comes out has at most five cuts behind it. A cut of vertices with u - min q >= -e q satisfies that too,
+// A vertex that comes out has at most seven cuts behind it. A cut of vertices with u - min q >= -e q satisfies that too,
 // as it is linear, and rounding u and q moves u - min q by 2^-24 (|u| + |min| q) <= 2^-23 max(|min|, |max|) q more.
 // The largest seen in four million triangles is 2^-22.
 inline constexpr double slide_clip_error = 0x1p-20;
@@ -89,20 +107,23 @@ inline constexpr double slide_clip_error = 0x1p-20;
 inline namespace TEXGEN_COMPILER {
 
 // Cuts off what of a convex polygon the slide does not fall on; the rest is in the order of the polygon, though its first
-// vertex may be another: q > 0, and s and t in the region's four sides. Returns the count of vertices written to `out`; 0 where nothing is inside
-// a side, or where what is not outside only touches it, with any number of corners. A polygon whose own corners are
+// vertex may be another: q > 0, s and t in the region's four sides, and r in its depth where it has one. Returns the count
+// of vertices written to `out`; 0 where nothing is inside a side, or where what is not outside only touches it, with any number of corners. A polygon whose own corners are
 // collinear, or become so by rounding, is cut as any other: TriangleSetup::of() refuses it.
 // Guarantee: every vertex that comes out has q > 0 and is inside the region but for slide_clip_error. Vertices inside keep
 // their bits; sides are decided exactly, so a vertex on a side stays. A new vertex is the exact intersection of its edge
 // (of a new edge's ends as they were rounded), each component of position and strq the nearest float. Shared edges stay
-// closed, to the bit: the edges are cut one after another at q = 0 and at the four sides, and what becomes of an edge at
-// each is a function of its two ends, in whatever order and whatever polygon they stand. No allocation, noexcept.
-// Shape: out.size() >= polygon.size() + 5 (asserted); out may begin where the polygon does, and overlaps it in no other way.
+// closed, to the bit: the edges are cut one after another at q = 0, at the four sides and at the limits of depth, and what
+// becomes of an edge at each is a function of its two ends, in whatever order and whatever polygon they stand. No
+// allocation, noexcept.
+// Shape: out.size() >= polygon.size() + 5, or 7 with a depth (asserted); out may begin where the polygon does, and overlaps it
+// in no other way.
 // At the projector itself (s = t = q = 0, the one point of the sides with q = 0) there is no coordinate: a polygon that
 // reaches it is cut at a millionth (2^-20) of the q of the edge's other end.
-// Bad input: a polygon with an s, t or q that is not finite is dropped, and all are where the region holds no point. r and
-// the position may hold anything. What is not convex (as rounding may leave a polygon with more than three corners) is
-// cut as it is, and dropped where `out` has no room for the vertices that this takes beyond 5.
+// Bad input: a polygon with an s, t or q that is not finite is dropped, with a depth also one with such an r, and all are
+// where the region holds no point. The position may hold anything, as may r without a depth. What is not convex (as rounding
+// may leave a polygon with more than three corners) is cut as it is, and dropped where `out` has no room for the vertices
+// that this takes beyond 5, or 7.
 // Source: Sutherland and Hodgman, Reentrant Polygon Clipping, CACM 17 (1974).
 inline std::size_t clip_to_slide(std::span<const ClipVertex> polygon, TextureRegion region,
                                  std::span<ClipVertex> out) noexcept;

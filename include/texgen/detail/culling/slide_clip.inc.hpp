@@ -185,14 +185,13 @@ std::size_t cut_edges(std::span<ClipVertex> storage, std::size_t count, const Si
 namespace TEXGEN_NAMESPACE {
 
 template <class Space>
-std::array<glm::vec4, 5> clip_planes(const Transform<Texture, Space>& texgen, TextureRegion region) noexcept {
-    const auto planes = detail::slide_planes(region);
-    std::array<glm::vec4, 5> result;
-    for (std::size_t k = 0; k < result.size(); ++k) {
-        const detail::SlidePlane& plane = planes[k];
+ClipPlanes clip_planes(const Transform<Texture, Space>& texgen, TextureRegion region) noexcept {
+    ClipPlanes result;
+    for (const detail::SlidePlane& plane : detail::slide_planes(region)) {
+        glm::vec4& coefficients = result.planes_[result.size_++];
         for (glm::length_t i = 0; i < 4; ++i) {
             const glm::dvec4& column = texgen.matrix()[i];
-            result[k][i] = static_cast<float>(plane.at(column[plane.coordinate], column.w));
+            coefficients[i] = static_cast<float>(plane.at(column[plane.coordinate], column.w));
         }
     }
     return result;
@@ -202,20 +201,21 @@ inline namespace TEXGEN_COMPILER {
 
 inline std::size_t clip_to_slide(std::span<const ClipVertex> polygon, TextureRegion region,
                                  std::span<ClipVertex> out) noexcept {
-    TEXGEN_ASSERT(out.size() >= polygon.size() + 5);
-    if (out.size() < polygon.size() + 5 || polygon.size() < 3) return 0;
+    const auto planes = detail::slide_planes(region);
+    const bool has_depth = planes.size() > planes.without_depth;
+    TEXGEN_ASSERT(out.size() >= polygon.size() + planes.size());
+    if (out.size() < polygon.size() + planes.size() || polygon.size() < 3) return 0;
     if (detail::is_empty(region)) return 0;
     for (std::size_t i = 0; i < polygon.size(); ++i) {
         const glm::vec4& strq = polygon[i].strq;
-        if (!detail::is_finite(glm::vec4(strq.x, strq.y, 0.0f, strq.w))) return 0;
+        if (!detail::is_finite(glm::vec4(strq.x, strq.y, has_depth ? strq.z : 0.0f, strq.w))) return 0;
         out[i] = polygon[i];
     }
 
     // q >= 0 comes first, so that what satisfies a side is a cone. Then q = 0 is left only where s = t = 0.
     std::size_t count = polygon.size();
-    const auto planes = detail::slide_planes(region);
-    for (std::size_t k = 0; k < planes.without_depth; ++k) {
-        const detail::SlideDistance side(planes[k]);
+    for (const detail::SlidePlane& plane : planes) {
+        const detail::SlideDistance side(plane);
         count = detail::cut_edges(
             out, count, [&](const ClipVertex& v) { return side.sign(v); },
             [&](const ClipVertex& inside, const ClipVertex& outside) { return cut_at(side, inside, outside); });

@@ -23,7 +23,10 @@ struct SlidePlane {
     // The bound at which the side is none: every point is inside. At its negative none is.
     double none() const noexcept { return -sign * std::numeric_limits<double>::infinity(); }
 
-    double at(double u, double q) const noexcept { return coordinate == 3 ? q : std::fma(-sign * bound, q, sign * u); }
+    double at(double u, double q) const noexcept {
+        const bool is_q = coordinate == 3 || (coordinate == 2 && bound == none());
+        return is_q ? q : std::fma(-sign * bound, q, sign * u);
+    }
 };
 
 // Whether no (s, t, r) is in a region; so is one with a NaN.
