@@ -73,7 +73,7 @@ inline namespace TEXGEN_COMPILER {
 // found costs a T_o and a coverage(); and the lit pairs are gone through once, at about a nanosecond each. The tree is put
 // into a new order once as many objects changed as there are, a few objects for each that changes: no update does all of
 // it, but one that changes or adds as many. Where there are more objects than ever, their memory moves. Memory: 250 bytes
-// an object, 850 a projector, 170 a lit pair, up to twice that where they came one by one.
+// an object, 1050 a projector, 170 a lit pair, up to twice that where they came one by one.
 // Bad input: where T_o, as it is computed, or a box is not finite, the pair is partial and kept, as coverage() has it: where
 // a product of finite matrices overflows, too. An empty box is never lit. Where exponents are so far apart that coverage()
 // might not say (elements beyond 2^+-200, or 2^190 apart), an object meets every projector, a projector every

@@ -22,7 +22,7 @@
 namespace TEXGEN_DETAIL {
 
 // How many times the smallest element that is not 0 the largest is; infinite where an element is beyond 2^+-200, so that
-// a product of three matrices neither overflows nor underflows. r is in no form, and may be small.
+// a product of three matrices neither overflows nor underflows. Without a depth r is in no form, and may be small.
 //
 // Each element of such a product, rounded, is a multiple of the product of the factors' last bits. So where the quotients of
 // M, and of S P and V together, are no larger than these, no element of T_o that is not 0 is below 2^-600 of the largest,
@@ -86,7 +86,7 @@ inline WorldBounds world_bounds(const glm::dmat4& m, const Box& box) noexcept {
     return low.x > high.x || low.y > high.y || low.z > high.z ? WorldBounds::none() : result;
 }
 
-// The five forms of a slide in the world (the sides as u - min q and max q - u, and q), with room for what any T_o that is
+// The forms of a slide in the world (q, and the sides as u - min q and max q - u), with room for what any T_o that is
 // composed in double may differ by. With T = S P V, computed in double, each element of T, of T_o = (S P)(V M) and of a
 // form errs by at most gamma(16) of the same product of magnitudes, and so does the form's value at M v: in all by less than
 // slack = gamma(64) (|S P| |V|)_form (size, size, size, 1). What rounding makes of a side (see RoundedSide) moves the form
@@ -98,12 +98,13 @@ public:
     // side.
     WorldForms(const glm::dmat4& texture_from_eye, const glm::dmat4& view, const TextureRegion& region) noexcept {
         const glm::dmat4 matrix = texture_from_eye * view;
-        if (!(range_of(texture_from_eye, true) * range_of(view) <= projector_range)) return;
+        const bool without_r = !region.depth();
+        if (!(range_of(texture_from_eye, without_r) * range_of(view) <= projector_range)) return;
         const auto planes = slide_planes(region);
         for (const SlidePlane& plane : planes)
             if (!LitForms::is_usable_side(plane)) return;
         const glm::dmat4 magnitude = absolute(texture_from_eye) * absolute(view);
-        for (std::size_t k = 0; k < forms_.size(); ++k) set(forms_[k], matrix, magnitude, planes[k]);
+        for (const SlidePlane& plane : planes) set(forms_[count_++], matrix, magnitude, plane);
     }
 
     // outside and inside for certain. A form over bounds is its value in the middle, give or take that of half the extents;
@@ -116,8 +117,9 @@ public:
             middle[j] = 0.5 * (bounds.max[j] + bounds.min[j]);
             half[j] = 0.5 * (bounds.max[j] - bounds.min[j]);
         }
-        bool is_inside = true;
-        for (const LinearForm& form : forms_) {
+        bool is_inside = count_ > 0;
+        for (std::size_t k = 0; k < count_; ++k) {
+            const LinearForm& form = forms_[k];
             const auto& a = form.a;
             const double value = a[0] * middle[0] + a[1] * middle[1] + a[2] * middle[2] + form.d;
             const double change = std::fabs(a[0]) * half[0] + std::fabs(a[1]) * half[1] + std::fabs(a[2]) * half[2];
@@ -144,6 +146,7 @@ private:
             sizes[j] = magnitude[j][plane.coordinate] + std::fabs(of_q) * magnitude[j][3];
             sum += sizes[j];
         }
+        form = nothing;
         if (!(sum > 0x1p-400 && sum < 0x1p400)) return;
         const double scale = reciprocal_power_of_two(sum);
         for (std::size_t j = 0; j < 3; ++j) form.a[j] = scale * coefficients[j];
@@ -156,7 +159,8 @@ private:
 
     // What is not set says nothing.
     static constexpr LinearForm nothing{{}, 0.0, 1.0, 1.0, {}};
-    std::array<LinearForm, 5> forms_{nothing, nothing, nothing, nothing, nothing};
+    std::array<LinearForm, SlidePlanes::max_size> forms_{};
+    std::size_t count_ = 0;
 };
 
 }  // namespace TEXGEN_DETAIL
