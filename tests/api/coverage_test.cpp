@@ -115,12 +115,16 @@ struct Rounded {
     }
 };
 
+// The coordinates that a region limits, rows of the matrix, and the limits of each: s, t, and r where it has a depth.
+int limited(const TextureRegion& region) { return region.depth() ? 3 : 2; }
+glm::dvec2 limits(const TextureRegion& region, int k) {
+    return k == 2 ? *region.depth() : glm::dvec2(region.min()[k], region.max()[k]);
+}
+
 // The truth: of what is outside, of the outer region; of what is inside, of the inner one. An infinite side is none.
 class Judge {
 public:
     Judge(const glm::dmat4& matrix, const TextureRegion& region) {
-        const Rounded sides[4] = {Rounded::of_min(region.min().x), Rounded::of_max(region.max().x),
-                                  Rounded::of_min(region.min().y), Rounded::of_max(region.max().y)};
         const auto row = [&](int k) {
             std::array<Dyadic, 4> c;
             for (int j = 0; j < 4; ++j) c[static_cast<std::size_t>(j)] = Dyadic(matrix[j][k]);
@@ -132,9 +136,10 @@ public:
             for (std::size_t j = 0; j < 4; ++j) one.c[j] = Dyadic(sign) * (coordinate[j] - Dyadic(side) * q[j]);
             return one;
         };
-        for (int k = 0; k < 4; ++k) {
+        for (int k = 0; k < 2 * limited(region); ++k) {
             const double sign = k % 2 == 0 ? 1.0 : -1.0;
-            const auto& [outer, inner] = sides[k];
+            const glm::dvec2 given = limits(region, k / 2);
+            const auto [outer, inner] = k % 2 == 0 ? Rounded::of_min(given.x) : Rounded::of_max(given.y);
             if (!std::isinf(outer)) forms_.push_back(form(row(k / 2), outer, sign));
             if (!std::isinf(inner)) inner_forms_.push_back(form(row(k / 2), inner, sign));
             no_float_is_inside_ = no_float_is_inside_ || inner == sign * infinite;
@@ -210,18 +215,19 @@ bool has_no_number(const Box& box) {
     return false;
 }
 
-// Whether the library promises exact decisions at the five planes.
+// Whether the library promises exact decisions at the planes.
 bool has_moderate_exponents(const glm::dmat4& matrix, const TextureRegion& region) {
     double largest = 0.0, least = infinite;
     for (int j = 0; j < 4; ++j) {
-        for (const int k : {0, 1, 3}) {
+        for (const int k : {0, 1, 2, 3}) {
+            if (k == 2 && !region.depth()) continue;
             const double size = std::fabs(matrix[j][k]);
             largest = std::max(largest, size);
             if (size > 0.0) least = std::min(least, size);
         }
     }
-    for (const double side : {region.min().x, region.max().x, region.min().y, region.max().y}) {
-        const double size = std::fabs(side);
+    for (int k = 0; k < 2 * limited(region); ++k) {
+        const double size = std::fabs(limits(region, k / 2)[k % 2]);
         if (size > 0.0 && size < infinite && !(size >= 0x1p-200 && size <= 0x1p200)) return false;
     }
     return largest == 0.0 || least / largest > 0x1p-598;
@@ -266,7 +272,25 @@ struct Slide {
 };
 
 std::string hex(const Slide& slide) {
-    return "matrix " + hex(slide.matrix) + ", region " + hex(slide.region.min()) + " to " + hex(slide.region.max());
+    return "matrix " + hex(slide.matrix) + ", region " + hex(slide.region.min()) + " to " + hex(slide.region.max()) +
+           (slide.region.depth() ? ", depth " + hex(*slide.region.depth()) : "");
+}
+
+// In one of two slides a depth: the whole one, a part, or to one side.
+TextureRegion with_some_depth(const TextureRegion& region, texgen::Conventions conventions,
+                              texgen::DepthMapping mapping, Random& random) {
+    switch (random.integer(0, 7)) {
+        case 0:
+            return region.with_depth();
+        case 1:
+            return region.with_depth(conventions, mapping);
+        case 2:
+            return region.with_depth(random.uniform(-1.0, 0.9), random.uniform(0.9, 1.1));
+        case 3:
+            return random.coin() ? region.with_depth(0.0, infinite) : region.with_depth(-infinite, 0.999);
+        default:
+            return region;
+    }
 }
 
 // A projector as a scene has it, about a place, and the whole texture or a tile of an atlas.
@@ -279,10 +303,23 @@ Slide ordinary_slide(Random& random, double distance_from_origin) {
                                                : atlas_tile({random.integer(0, 7) / 8.0, random.integer(0, 3) / 4.0},
                                                             {random.integer(8, 15) / 8.0, random.integer(4, 7) / 4.0});
     const auto slide_of = [&](const auto& lens) -> std::optional<Slide> {
-        const auto projector = texgen::make_projector(lens, aim, random.coin() ? texgen::opengl : texgen::direct3d);
+        const texgen::Conventions all[] = {texgen::opengl, texgen::direct3d, texgen::vulkan,
+                                           left_handed(texgen::direct3d), left_handed(texgen::opengl)};
+        const texgen::Conventions conventions = all[random.integer(0, 4)];
+        auto projector = texgen::make_projector(lens, aim, conventions);
         if (!projector) return {};
+        if (random.integer(0, 3) == 0) {  // reversed: z becomes w - z, or -z
+            glm::dmat4 reversed = projector->projection.matrix();
+            for (int j = 0; j < 4; ++j)
+                reversed[j].z =
+                    (conventions.depth == texgen::DepthRange::zero_to_one ? reversed[j].w : 0.0) - reversed[j].z;
+            projector->projection = texgen::ProjectorProjection(reversed);
+        }
         const TextureRegion of_slide = random.coin() ? region : whole_texture();
-        return Slide{texgen::texture_from_world(*projector, of_slide).matrix(), region, {}};
+        const auto mapping = random.coin() ? texgen::DepthMapping::unit : texgen::DepthMapping::ndc;
+        return Slide{texgen::texture_from_world(*projector, of_slide, mapping).matrix(),
+                     with_some_depth(region, conventions, mapping, random),
+                     {}};
     };
     std::optional<Slide> slide;
     switch (random.integer(0, 3)) {
@@ -317,7 +354,10 @@ Slide hostile_slide(Random& random) {
         if (random.integer(0, 3) == 0) max.x = min.x;
         if (random.integer(0, 3) == 0) min.x = -infinite;
         if (random.integer(0, 3) == 0) max.y = infinite;
-        return atlas_tile(min, max);
+        const TextureRegion region = atlas_tile(min, max);
+        if (random.coin()) return region;
+        const double near = side(), far = random.integer(0, 3) == 0 ? near : side();
+        return region.with_depth(random.integer(0, 3) == 0 ? -infinite : near, far);
     };
     switch (random.integer(0, 9)) {
         case 0:
@@ -331,6 +371,7 @@ Slide hostile_slide(Random& random) {
                 for (int k = 0; k < 4; ++k) slide.matrix[j][k] = random.integer(-2, 2);
             slide.region = atlas_tile({random.integer(-2, 1), random.integer(-2, 1)},
                                       {random.integer(-1, 2), random.integer(-1, 2)});
+            if (random.coin()) slide.region = slide.region.with_depth(random.integer(-2, 1), random.integer(-1, 2));
             break;
         }
         case 3: {
@@ -357,7 +398,8 @@ Slide hostile_slide(Random& random) {
             slide.matrix[random.integer(0, 1)][1] = random.coin() ? focal_length : -focal_length;
             slide.matrix[2][0] = slide.matrix[2][1] = random.coin() ? 0.5 : 0.0;
             slide.matrix[2][3] = random.coin() ? 1.0 : -1.0;
-            for (const int k : {0, 1, 3}) slide.matrix[3][k] = random.coin() ? 0.0 : random.integer(-3, 3);
+            slide.matrix[2][2] = random.coin() ? 1.0 : 0.5;
+            for (const int k : {0, 1, 2, 3}) slide.matrix[3][k] = random.coin() ? 0.0 : random.integer(-3, 3);
             break;
         }
         case 8:  // q hardly changes
@@ -377,9 +419,9 @@ void touch(Slide& slide, const glm::vec3& point, Random& random) {
         return sum;
     };
     const long double q = linear(3) + slide.matrix[3][3];
-    for (const int k : {0, 1}) {
+    for (int k = 0; k < limited(slide.region); ++k) {
         const bool is_min = random.coin();
-        const double given = (is_min ? slide.region.min() : slide.region.max())[k];
+        const double given = limits(slide.region, k)[is_min ? 0 : 1];
         const Rounded rounded = is_min ? Rounded::of_min(given) : Rounded::of_max(given);
         const int kind = random.integer(0, 2);
         const double side = kind == 0 ? given : kind == 1 ? rounded.outer : rounded.inner;
@@ -399,11 +441,15 @@ glm::dvec3 point_on(const Slide& slide, int forms, Random& random, const glm::dv
     };
     const glm::dvec4 q = row(3);
     const auto side = [&](int k) {
-        const double value = (random.coin() ? slide.region.min() : slide.region.max())[k];
+        const double value = limits(slide.region, k)[random.integer(0, 1)];
         return std::isinf(value) ? q : row(k) - value * q;
     };
-    const glm::dvec4 plane[3] = {forms == 1 && random.integer(0, 3) == 0 ? q : side(random.integer(0, 1)), side(0),
-                                 side(1)};
+    const int coordinates = limited(slide.region);
+    const int first = random.integer(0, coordinates - 1), step_on = random.integer(1, coordinates - 1);
+    const bool is_edge_of_depth = coordinates == 3 && forms == 2;
+    const glm::dvec4 plane[3] = {forms == 1 && random.integer(0, 3) == 0 ? q : side(first),
+                                 side(is_edge_of_depth ? first : 0),
+                                 side(is_edge_of_depth ? (first + step_on) % coordinates : 1)};
     glm::dvec3 p = about;
     const auto normal = [](const glm::dvec4& f) { return glm::dvec3(f.x, f.y, f.z); };
     const auto dot = [](const glm::dvec3& a, const glm::dvec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; };
@@ -504,12 +550,13 @@ Box hostile_box(const Slide& slide, Family family, Random& random) {
 
 // Whether the region has a point.
 bool is_a_region(const TextureRegion& region) {
-    return region.min().x <= region.max().x && region.min().y <= region.max().y;
+    return region.min().x <= region.max().x && region.min().y <= region.max().y &&
+           (!region.depth() || region.depth()->x <= region.depth()->y);
 }
 
 }  // namespace
 
-TEST_CASE("no box of a hostile family is outside or inside that is not, and the five planes are decided exactly") {
+TEST_CASE("no box of a hostile family is outside or inside that is not, and the planes are decided exactly") {
     Random random(41);
     const long total = hostile_box_count();
     std::array<Counts, family_count> counts{};
@@ -555,7 +602,7 @@ TEST_CASE("no box of a hostile family is outside or inside that is not, and the 
         CHECK(of(family).separated > total / 10000);
     for (const Family family :
          {Family::ordinary, Family::at_side, Family::at_edge, Family::integers, Family::unbounded})
-        CHECK(of(family).inside > total / 3000);
+        CHECK(of(family).inside > total / 5000);
 }
 
 TEST_CASE("a box that touches an edge of the pyramid at one point is not outside") {
@@ -637,7 +684,7 @@ namespace {
 
 using support::Rational;
 
-// How far a point is from what is lit (q >= 0 and the four sides), exactly: the nearest point is the projection onto the
+// How far a point is from what is lit (q >= 0 and the sides), exactly: the nearest point is the projection onto the
 // planes of some of the forms, so it is the nearest of those projections that fulfil all of them.
 class DistanceJudge {
 public:
@@ -788,8 +835,9 @@ TEST_CASE("no sphere is outside or inside that is not, and few of a scene are pa
             }
             if (i % 4 == 2) {  // touching the nearest side
                 double nearest = infinite;
-                for (const int k : {0, 1, 0, 1}) {
-                    const double side = (random.coin() ? slide.region.min() : slide.region.max())[k];
+                for (int i_side = 0; i_side < 2 * limited(slide.region); ++i_side) {
+                    const int k = i_side / 2;
+                    const double side = limits(slide.region, k)[random.integer(0, 1)];
                     glm::dvec4 f;
                     for (int j = 0; j < 4; ++j)
                         f[j] = std::isinf(side) ? slide.matrix[j][3] : slide.matrix[j][k] - side * slide.matrix[j][3];

@@ -124,9 +124,11 @@ struct CloseSum {
     double high, low, lost;
 
     void add(double term) noexcept {
+        if (term == 0.0) return;
         const DoubleDouble sum = two_sum(high, term);
-        const DoubleDouble rest = two_sum(low, sum.low);
         high = sum.high;
+        if (sum.low == 0.0) return;
+        const DoubleDouble rest = two_sum(low, sum.low);
         low = rest.high;
         lost += 2.0 * std::fabs(rest.low);
     }

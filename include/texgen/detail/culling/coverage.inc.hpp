@@ -14,7 +14,7 @@ inline bool is_inside_inner_side(const LitForms& forms, std::size_t k, const Box
     return forms.inner_sign_at(k, form, vertex, close) >= 0;
 }
 
-// What the five planes say of a box, exactly. For a NaN, and for forms of which nothing is known: partial.
+// What the planes say of a box, exactly. For a NaN, and for forms of which nothing is known: partial.
 inline Coverage exact_coverage(const LitForms& forms, const Box& box) noexcept {
     constexpr float infinity = std::numeric_limits<float>::infinity();
     bool is_empty = false;
@@ -53,7 +53,8 @@ inline Coverage exact_coverage(const LitForms& forms, const Box& box) noexcept {
     };
     if (sign_at_vertex(LitForms::q, true) <= 0) return Coverage::outside;
     bool is_inside = sign_at_vertex(LitForms::q, false) > 0;
-    for (std::size_t k = 0; k < side_count; ++k) {
+    for (std::size_t k = 0; k < forms.count(); ++k) {
+        if (k == LitForms::q) continue;
         if (sign_at_vertex(k, true) < 0) return Coverage::outside;
         is_inside = is_inside && is_inside_side(k);
     }
@@ -62,26 +63,31 @@ inline Coverage exact_coverage(const LitForms& forms, const Box& box) noexcept {
 
 inline namespace TEXGEN_BUILD {
 
-// Boxes of which floats do not say that they are outside or inside, gathered until they fill vectors.
+// Puts a box among others; whether it holds a point that is a number.
+inline bool put(const Box& box, BoxBlock& block, std::size_t i) noexcept {
+    // Without a branch for each.
+    bool has_points = true;
+    for (std::size_t j = 0; j < 3; ++j) {
+        const float min = box.min[static_cast<glm::length_t>(j)];
+        const float max = box.max[static_cast<glm::length_t>(j)];
+        has_points &= min <= max;
+        has_points &= min <= (std::numeric_limits<float>::max)();
+        has_points &= max >= std::numeric_limits<float>::lowest();
+        block.min[j][i] = widened(min);
+        block.max[j][i] = widened(max);
+    }
+    return has_points;
+}
+
+// Boxes of which floats do not say what they are, gathered until they fill vectors.
 class OpenBoxes {
 public:
     OpenBoxes(const BoxKernels& kernels, const LitForms& forms) noexcept
         : kernels_(kernels), forms_(forms), has_forms_(forms.are_usable() && !forms.light_nothing()) {}
 
-    // A box that is partial to the five planes, or in doubt.
+    // A box that is partial to the planes, or in doubt.
     void add(const Box& box, bool is_in_doubt, Coverage& out) noexcept {
-        // Without a branch for each.
-        bool has_points = has_forms_;
-        for (std::size_t j = 0; j < 3; ++j) {
-            const float min = box.min[static_cast<glm::length_t>(j)];
-            const float max = box.max[static_cast<glm::length_t>(j)];
-            has_points &= min <= max;
-            has_points &= min <= (std::numeric_limits<float>::max)();
-            has_points &= max >= std::numeric_limits<float>::lowest();
-            block_.min[j][count_] = widened(min);
-            block_.max[j][count_] = widened(max);
-        }
-        if (!has_points) {
+        if (!put(box, block_, count_) || !has_forms_) {
             out = exact_coverage(forms_, box);
             return;
         }
@@ -91,7 +97,7 @@ public:
         if (++count_ == box_block) decide();
     }
 
-    // The five planes in double, where there is doubt; and those that a further plane separates from the pyramid are
+    // The planes in double, where there is doubt; and those that a further plane separates from the pyramid are
     // outside.
     void decide() noexcept {
         if (count_ == 0) return;
@@ -106,8 +112,9 @@ public:
 
 private:
     void separate() noexcept {
+        if (!separating_) separating_.emplace(forms_);
         double least_of_largest[box_block];
-        kernels_.separate(forms_.separating(), forms_.separating_count(), block_, least_of_largest);
+        kernels_.separate(separating_->data(), separating_->size(), block_, least_of_largest);
         for (std::size_t i = 0; i < count_; ++i)
             if (*out_[i] == Coverage::partial && least_of_largest[i] < 0.0) *out_[i] = Coverage::outside;
     }
@@ -131,6 +138,7 @@ private:
     const BoxKernels& kernels_;
     const LitForms& forms_;
     std::optional<DoubleForms> double_forms_;
+    std::optional<SeparatingForms> separating_;
     BoxBlock block_{};
     const Box* box_[box_block];
     Coverage* out_[box_block];
@@ -139,62 +147,97 @@ private:
     bool is_in_doubt_ = false;
 };
 
-template <class CompiledWhereCalled = void>
-void cover(const LitForms& forms, const FloatForms& float_forms, std::span<const Box> boxes,
-           std::span<Coverage> out) noexcept {
-    constexpr std::size_t chunk = 16 * box_quantum;
-    // Six floats follow one another, but where the user aligns GLM's vectors.
-    constexpr bool is_dense = sizeof(Box) == 6 * sizeof(float);
-    constexpr std::size_t copied = is_dense ? box_quantum : chunk;
-    const BoxKernels& kernels = chosen<BoxKernels>();
-    OpenBoxes open_boxes(kernels, forms);
+// Kernels know no Coverage but its numbers.
+static_assert(Coverage{0} == Coverage::outside && Coverage{1} == Coverage::partial && Coverage{2} == Coverage::inside);
+
+// Classifies bodies of `Floats` floats each by a kernel, and calls decide(i, is_in_doubt) for those that are left open. Where
+// the floats of bodies do not follow one another, as where the user aligns GLM's vectors, copy(body, floats) makes them.
+template <std::size_t Floats, class Body, class Classify, class Copy, class Decide>
+void classify_many(std::span<const Body> bodies, std::span<Coverage> out, const Classify& classify, const Copy& copy,
+                   const Decide& decide) noexcept {
+    constexpr std::size_t chunk = 16 * body_quantum;
+    constexpr bool is_dense = sizeof(Body) == Floats * sizeof(float);
+    constexpr std::size_t copied = is_dense ? body_quantum : chunk;
     int classes[chunk];
     std::size_t open[chunk];
-    for (std::size_t begin = 0; begin < boxes.size();) {
+    for (std::size_t begin = 0; begin < bodies.size();) {
         // Whole quanta where they are, the rest from a copy.
-        const std::size_t left = boxes.size() - begin;
-        const std::size_t count = left >= chunk ? chunk : left >= box_quantum ? left / box_quantum * box_quantum : left;
-        if (is_dense && count >= box_quantum) {
-            kernels.classify(float_forms, &boxes[begin].min.x, count, classes);
+        const std::size_t left = bodies.size() - begin;
+        const std::size_t count = left >= chunk          ? chunk
+                                  : left >= body_quantum ? left / body_quantum * body_quantum
+                                                         : left;
+        if (is_dense && count >= body_quantum) {
+            classify(reinterpret_cast<const float*>(&bodies[begin]), count, classes);
         } else {
-            float copy[copied][6] = {};
-            for (std::size_t i = 0; i < count; ++i) {
-                const Box& box = boxes[begin + i];
-                for (glm::length_t j = 0; j < 3; ++j) {
-                    copy[i][j] = box.min[j];
-                    copy[i][3 + j] = box.max[j];
-                }
-            }
-            const std::size_t whole = (count + box_quantum - 1) / box_quantum * box_quantum;
-            kernels.classify(float_forms, copy[0], whole, classes);
+            float copies[copied][Floats] = {};
+            for (std::size_t i = 0; i < count; ++i) copy(bodies[begin + i], copies[i]);
+            classify(copies[0], (count + body_quantum - 1) / body_quantum * body_quantum, classes);
         }
-        // Without a branch: partial and doubtful are the odd ones. Kernels know no Coverage but its numbers.
-        static_assert(Coverage{0} == Coverage::outside && Coverage{1} == Coverage::partial &&
-                      Coverage{2} == Coverage::inside);
+        // Without a branch for each.
         std::size_t open_count = 0;
         for (std::size_t i = 0; i < count; ++i) {
-            out[begin + i] = static_cast<Coverage>(classes[i]);
-            open[open_count] = begin + i;
-            open_count += static_cast<std::size_t>(classes[i] & 1);
+            out[begin + i] = static_cast<Coverage>(classes[i] & 3);
+            open[open_count] = i;
+            open_count += static_cast<std::size_t>(classes[i] / open_body);
         }
-        for (std::size_t k = 0; k < open_count; ++k) {
-            Coverage& result = out[open[k]];
-            open_boxes.add(boxes[open[k]], result != Coverage::partial, result);
-        }
+        for (std::size_t k = 0; k < open_count; ++k) decide(begin + open[k], classes[open[k]] == body_in_doubt);
         begin += count;
     }
+}
+
+template <class CompiledWhereCalled = void>
+void cover(const LitForms& forms, const FloatForms& float_forms, std::span<const Box> boxes,
+           const std::span<Coverage>& out) noexcept {
+    const BoxKernels& kernels = chosen<BoxKernels>();
+    OpenBoxes open_boxes(kernels, forms);
+    classify_many<6>(
+        boxes, out,
+        [&](const float* floats, std::size_t count, int* classes) {
+            kernels.classify_boxes(float_forms, floats, count, classes);
+        },
+        [](const Box& box, float* floats) {
+            for (glm::length_t j = 0; j < 3; ++j) {
+                floats[j] = box.min[j];
+                floats[3 + j] = box.max[j];
+            }
+        },
+        [&](std::size_t i, bool is_in_doubt) { open_boxes.add(boxes[i], is_in_doubt, out[i]); });
     open_boxes.decide();
 }
 
-// One box: the planes are decided exactly at once, which says what the floats would.
+// One box that the float forms leave open.
 template <class CompiledWhereCalled = void>
-Coverage coverage_of(const LitForms& forms, const Box& box) noexcept {
-    Coverage result = exact_coverage(forms, box);
-    if (result != Coverage::partial) return result;
-    OpenBoxes open_boxes(chosen<BoxKernels>(), forms);
-    open_boxes.add(box, false, result);
-    open_boxes.decide();
-    return result;
+Coverage coverage_of_open(const LitForms& forms, const Box& box, bool is_in_doubt) noexcept {
+    const Coverage result = is_in_doubt ? exact_coverage(forms, box) : Coverage::partial;
+    if (result != Coverage::partial || !forms.are_usable()) return result;
+    constexpr double unbounded = 0x1p200;  // nor larger than what products hold
+    BoxBlock block{};
+    if (!put(box, block, 0)) return result;
+    Point middle{};
+    for (std::size_t j = 0; j < 3; ++j)
+        middle[j] = 0.5 * larger(block.min[j][0], -unbounded) + 0.5 * smaller(block.max[j][0], unbounded);
+    const std::uint32_t dark = forms.dark_at(middle);
+    // Almost always the middle is lit, or the vertex where the form is largest that is negative there.
+    for (std::uint32_t bits = dark; bits != 0; bits &= bits - 1) {
+        const auto k = static_cast<std::size_t>(std::countr_zero(bits));
+        Point vertex = middle;
+        for (std::size_t j = 0; j < 3; ++j)
+            if (forms[k].uses[j]) vertex[j] = (forms[k].a[j] > 0.0 ? block.max : block.min)[j][0];
+        if ((forms.dark_at(vertex) & ~(std::uint32_t{1} << k)) == 0) return result;
+    }
+    if (dark == 0) return result;
+    const SeparatingForms separating(forms, dark);
+    double least_of_largest[box_block];
+    chosen<BoxKernels>().separate(separating.data(), separating.size(), block, least_of_largest);
+    return least_of_largest[0] < 0.0 ? Coverage::outside : result;
+}
+
+// One box.
+template <class CompiledWhereCalled = void>
+Coverage coverage_of(const LitForms& forms, const FloatForms& float_forms, const Box& box) noexcept {
+    const int result = chosen<BoxKernels>().classify_box(float_forms, &box.min.x, &box.max.x);
+    if (result < open_body) return static_cast<Coverage>(result);
+    return coverage_of_open(forms, box, result == body_in_doubt);
 }
 
 }  // namespace TEXGEN_BUILD
@@ -203,7 +246,7 @@ Coverage coverage_of(const LitForms& forms, const Box& box) noexcept {
 // may be outside none of the five planes: there the plane through the edge that faces the centre separates them. With
 // the products of normals G it is w_f f + w_g g, w = -G^-1 (f, g) at the centre, up to a positive factor, where both
 // weights are positive; rounded weights serve as well.
-inline Coverage coverage_of(const LitForms& forms, const Sphere& sphere) noexcept {
+inline Coverage exact_coverage(const LitForms& forms, const Sphere& sphere) noexcept {
     const Point centre{widened(sphere.centre.x), widened(sphere.centre.y), widened(sphere.centre.z)};
     const double radius = widened(sphere.radius);
     const double size = std::fabs(centre[0]) + std::fabs(centre[1]) + std::fabs(centre[2]);
@@ -211,10 +254,10 @@ inline Coverage coverage_of(const LitForms& forms, const Sphere& sphere) noexcep
     if (radius < 0.0 || forms.light_nothing()) return Coverage::outside;
     if (!forms.are_usable() || !is_finite(size + radius)) return Coverage::partial;
     const auto dot = [](const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
-    double value[LitForms::count];
-    double error[LitForms::count];
+    double value[max_forms];
+    double error[max_forms];
     bool is_inside = true;
-    for (std::size_t k = 0; k < LitForms::count; ++k) {
+    for (std::size_t k = 0; k < forms.count(); ++k) {
         const LinearForm& form = forms[k];
         value[k] = dot(form.a, centre) + form.d;
         error[k] = form.error_a * size + form.error_d;
@@ -224,26 +267,56 @@ inline Coverage coverage_of(const LitForms& forms, const Sphere& sphere) noexcep
         is_inside = is_inside && value[k] - change - (error[k] + gamma(4) * change) > narrowing;
     }
     if (is_inside) return Coverage::inside;
-    for (std::size_t f = 0; f < 2; ++f) {
-        for (std::size_t g = 2; g < side_count; ++g) {
-            const double across = dot(forms[f].a, forms[g].a);
-            double of_f = across * value[g] - forms.slope(g) * forms.slope(g) * value[f];
-            double of_g = across * value[f] - forms.slope(f) * forms.slope(f) * value[g];
-            if (!(of_f > 0.0 && of_g > 0.0)) continue;
-            const double both = of_f + of_g;  // or their squares could be too small for a double
-            of_f /= both;
-            of_g /= both;
-            const double longest = of_f * forms.slope(f) + of_g * forms.slope(g);
-            const double squared = of_f * of_f * (forms.slope(f) * forms.slope(f)) + 2.0 * of_f * of_g * across +
-                                   of_g * of_g * (forms.slope(g) * forms.slope(g)) + gamma(32) * longest * longest;
-            const double change = std::sqrt(squared) * radius;
-            const double rounding = gamma(8) * (of_f * std::fabs(value[f]) + of_g * std::fabs(value[g]) + change);
-            if (of_f * value[f] + of_g * value[g] + change + (of_f * error[f] + of_g * error[g]) + rounding < 0.0)
-                return Coverage::outside;
-        }
-    }
+    const auto is_beside_edge = [&](std::size_t f, std::size_t g) {
+        if (value[f] >= 0.0 && value[g] >= 0.0) return false;
+        const double across = dot(forms[f].a, forms[g].a);
+        double of_f = across * value[g] - forms.slope(g) * forms.slope(g) * value[f];
+        double of_g = across * value[f] - forms.slope(f) * forms.slope(f) * value[g];
+        if (!(of_f > 0.0 && of_g > 0.0)) return false;
+        const double both = of_f + of_g;  // or their squares could be too small for a double
+        of_f /= both;
+        of_g /= both;
+        const double longest = of_f * forms.slope(f) + of_g * forms.slope(g);
+        const double squared = of_f * of_f * (forms.slope(f) * forms.slope(f)) + 2.0 * of_f * of_g * across +
+                               of_g * of_g * (forms.slope(g) * forms.slope(g)) + gamma(32) * longest * longest;
+        const double change = std::sqrt(squared) * radius;
+        const double rounding = gamma(8) * (of_f * std::fabs(value[f]) + of_g * std::fabs(value[g]) + change);
+        return of_f * value[f] + of_g * value[g] + change + (of_f * error[f] + of_g * error[g]) + rounding < 0.0;
+    };
+    for (std::size_t f = 0; f < 2; ++f)
+        for (std::size_t g = 2; g < LitForms::q; ++g)
+            if (is_beside_edge(f, g)) return Coverage::outside;
+    for (std::size_t f = 0; f < LitForms::q; ++f)
+        for (std::size_t g = LitForms::q + 1; g < forms.count(); ++g)
+            if (is_beside_edge(f, g)) return Coverage::outside;
     return Coverage::partial;
 }
+
+inline namespace TEXGEN_BUILD {
+
+template <class CompiledWhereCalled = void>
+Coverage coverage_of(const LitForms& forms, const FloatForms& float_forms, const Sphere& sphere) noexcept {
+    const int result = chosen<BoxKernels>().classify_sphere(float_forms, &sphere.centre.x, sphere.radius);
+    return result < open_body ? static_cast<Coverage>(result) : exact_coverage(forms, sphere);
+}
+
+template <class CompiledWhereCalled = void>
+void cover(const LitForms& forms, const FloatForms& float_forms, std::span<const Sphere> spheres,
+           const std::span<Coverage>& out) noexcept {
+    const BoxKernels& kernels = chosen<BoxKernels>();
+    classify_many<4>(
+        spheres, out,
+        [&](const float* floats, std::size_t count, int* classes) {
+            kernels.classify_spheres(float_forms, floats, count, classes);
+        },
+        [](const Sphere& sphere, float* floats) {
+            for (glm::length_t j = 0; j < 3; ++j) floats[j] = sphere.centre[j];
+            floats[3] = sphere.radius;
+        },
+        [&](std::size_t i, bool) { out[i] = exact_coverage(forms, spheres[i]); });
+}
+
+}  // namespace TEXGEN_BUILD
 
 }  // namespace TEXGEN_DETAIL
 
@@ -256,11 +329,11 @@ LitVolume<Space>::LitVolume(const Transform<Texture, Space>& texture_from_space,
 
 template <class Space>
 Coverage LitVolume<Space>::coverage(const Box& box) const noexcept {
-    return detail::coverage_of(forms_, box);
+    return detail::coverage_of(forms_, float_forms_, box);
 }
 template <class Space>
 Coverage LitVolume<Space>::coverage(const Sphere& sphere) const noexcept {
-    return detail::coverage_of(forms_, sphere);
+    return detail::coverage_of(forms_, float_forms_, sphere);
 }
 
 template <class Space>
@@ -271,19 +344,19 @@ void LitVolume<Space>::coverage(std::span<const Box> boxes, std::span<Coverage> 
 template <class Space>
 void LitVolume<Space>::coverage(std::span<const Sphere> spheres, std::span<Coverage> out) const noexcept {
     TEXGEN_ASSERT(spheres.size() == out.size());
-    for (std::size_t i = 0; i < spheres.size(); ++i) out[i] = coverage(spheres[i]);
+    detail::cover(forms_, float_forms_, spheres, out);
 }
 
-// One body needs no forms in float, nor do spheres.
+// One body needs no forms in float.
 template <class Space>
 Coverage coverage(const Transform<Texture, Space>& texture_from_space, const TextureRegion& region,
                   const Box& box) noexcept {
-    return detail::coverage_of(detail::LitForms(texture_from_space.matrix(), region), box);
+    return detail::coverage_of_open(detail::LitForms(texture_from_space.matrix(), region), box, true);
 }
 template <class Space>
 Coverage coverage(const Transform<Texture, Space>& texture_from_space, const TextureRegion& region,
                   const Sphere& sphere) noexcept {
-    return detail::coverage_of(detail::LitForms(texture_from_space.matrix(), region), sphere);
+    return detail::exact_coverage(detail::LitForms(texture_from_space.matrix(), region), sphere);
 }
 template <class Space>
 void coverage(const Transform<Texture, Space>& texture_from_space, const TextureRegion& region,

@@ -77,7 +77,12 @@ struct KernelTable<FootprintKernels, CompiledWhereCalled> {
 template <class CompiledWhereCalled>
 struct KernelTable<BoxKernels, CompiledWhereCalled> {
     static const BoxKernels& get() noexcept {
-        static constexpr BoxKernels table{.classify = classify<>, .bound = bound<>, .separate = separate<>};
+        static constexpr BoxKernels table{.classify_boxes = classify_boxes<>,
+                                          .classify_spheres = classify_spheres<>,
+                                          .classify_box = classify_box<>,
+                                          .classify_sphere = classify_sphere<>,
+                                          .bound = bound<>,
+                                          .separate = separate<>};
         return table;
     }
 };

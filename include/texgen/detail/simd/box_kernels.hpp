@@ -1,6 +1,6 @@
 #pragma once
 
-// What the kernels for boxes are given and what they return; see boxes.inc.hpp.
+// What the kernels for boxes and spheres are given and what they return; see boxes.inc.hpp.
 
 #include <array>
 #include <cstddef>
@@ -18,18 +18,20 @@ struct LinearForm {
     std::array<bool, 3> uses;
 };
 
-// The forms of a slide: its sides s_min, s_max, t_min, t_max, and q.
-inline constexpr std::size_t side_count = 4;
-inline constexpr std::size_t lit_form_count = 5;
+// The forms of a slide: its sides s_min, s_max, t_min, t_max, then q, and r_min, r_max where it has a depth.
+inline constexpr std::size_t form_of_q = 4;
+inline constexpr std::size_t forms_without_depth = 5;
+inline constexpr std::size_t max_forms = 7;
 
-// The same in float, with one bound for all: each errs by less than error_per_size * size + error at the points of a box,
-// where size is the sum of the largest |x|, |y| and |z| in it.
+// The same in float, twice the value each, a lane a form, with one bound for all: over a body each errs by less than
+// error_per_size * size + error, where the size of a box is the sum of |min + max| and max - min of its coordinates, that of
+// a sphere twice the sum of |x|, |y|, |z| and four times its radius. The lanes behind the last form are those of q.
+inline constexpr std::size_t form_lanes = 8;
 struct FloatForms {
-    struct Form {
-        float a[3];
-        float d;
-    };
-    Form form[lit_form_count];
+    float a[3][form_lanes], magnitude_of_a[3][form_lanes];
+    float twice_d[form_lanes];
+    float slope[form_lanes];  // |a|, or a little more
+    std::size_t count;
     float error_per_size, error;
 };
 
@@ -45,21 +47,24 @@ struct ExactForm {
     std::size_t term_count;
 };
 
-// The same five for boxes that floats leave in doubt, and the inner ones. A point is outside where
+// The same for boxes that floats leave in doubt, and the inner ones. A point is outside where
 // a form is below least_lit.
 struct DoubleForms {
     struct Form {
         ExactForm outer, inner;
         double least_lit;  // 0, and for q a number that is smaller than any other value
     };
-    std::array<Form, lit_form_count> form;
+    std::array<Form, max_forms> form;
+    std::size_t count;
 };
 
-// What the five forms say of a box: the number of a Coverage (0 outside, 1 partial, 2 inside), or doubt.
-inline constexpr int box_doubtful = 3;
+// What the forms say of a body: the number of a Coverage (0 outside, 1 partial, 2 inside); where that is not the last word 4
+// more: a further plane may separate what is partial, or there is doubt.
+inline constexpr int open_body = 4;
+inline constexpr int body_in_doubt = open_body + 3;
 
-// classify() takes a multiple of box_quantum.
-inline constexpr std::size_t box_quantum = 16;
+// The kernels of many bodies take a multiple of body_quantum.
+inline constexpr std::size_t body_quantum = 16;
 
 // Boxes, planar.
 inline constexpr std::size_t box_block = 8;
@@ -68,7 +73,7 @@ struct BoxBlock {
     double max[3][box_block];
 };
 
-// Bounds on the least over the five forms of the largest value over each box, and on the least of the inner ones: their
+// Bounds on the least over the forms of the largest value over each box, and on the least of the inner ones: their
 // signs are right, and where a lower one is negative beside an upper one that is not, nothing is known.
 struct BoxBounds {
     double lower[box_block], upper[box_block];
@@ -76,8 +81,12 @@ struct BoxBounds {
 };
 
 struct BoxKernels {
-    // What floats are certain of. A box is six floats, min first. NaN, infinities and empty boxes are doubtful.
-    void (*classify)(const FloatForms& forms, const float* boxes, std::size_t count, int* classes) noexcept;
+    // What floats are certain of. A box is six floats, min first; a sphere four, the radius last. NaN, infinities, empty
+    // boxes and negative radii are in doubt.
+    void (*classify_boxes)(const FloatForms& forms, const float* boxes, std::size_t count, int* classes) noexcept;
+    void (*classify_spheres)(const FloatForms& forms, const float* spheres, std::size_t count, int* classes) noexcept;
+    int (*classify_box)(const FloatForms& forms, const float* min, const float* max) noexcept;
+    int (*classify_sphere)(const FloatForms& forms, const float* centre, float radius) noexcept;
     // What doubles are certain of, and where they are not, pairs of doubles. For proper boxes, which may be infinite.
     void (*bound)(const DoubleForms& forms, const BoxBlock& boxes, BoxBounds& bounds) noexcept;
     // The least over the forms of the largest value over each box, never below the exact one.

@@ -202,6 +202,10 @@ TEXGEN_INLINE void load_boxes(const float* from, WideFloats (&min)[3], WideFloat
         max[j] = WideFloats::of([&](int i) { return from[6 * i + 3 + j]; });
     }
 }
+TEXGEN_INLINE void load_spheres(const float* from, WideFloats (&centre)[3], WideFloats& radius) noexcept {
+    for (int j = 0; j < 3; ++j) centre[j] = WideFloats::of([&](int i) { return from[4 * i + j]; });
+    radius = WideFloats::of([&](int i) { return from[4 * i + 3]; });
+}
 TEXGEN_INLINE void store_interleaved(float* to, const Floats& a, const Floats& b) noexcept {
     for (int i = 0; i < lanes; ++i) {
         to[2 * i] = a.lane[i];

@@ -99,6 +99,7 @@ TEXGEN_INLINE WideFloats to_numbers(const WideWords& words) noexcept {
 }
 TEXGEN_INLINE WideWords halved(const WideWords& words) noexcept { return words >> 1; }
 TEXGEN_INLINE WideFloats magnitude(const WideFloats& a) noexcept { return from_bits(magnitude_bits(a)); }
+TEXGEN_INLINE Floats magnitude(const Floats& a) noexcept { return __builtin_bit_cast(Floats, bits(a) & 0x7fffffff); }
 TEXGEN_INLINE WideWords is_negative(const WideFloats& a) noexcept { return a < 0.0f; }
 TEXGEN_INLINE WideFloats select(const WideWords& mask, const WideFloats& a, const WideFloats& b) noexcept {
     return from_bits((mask & signed_bits(a)) | (~mask & signed_bits(b)));
@@ -117,7 +118,10 @@ TEXGEN_INLINE int largest_lane(const WideWords& a) noexcept {
             maximum(a, rotated<Distance>(a, std::make_integer_sequence<int, wide_lanes>())));
 }
 
-TEXGEN_INLINE WideWords less(const WideFloats& a, const WideFloats& b) noexcept { return a < b; }
+template <class Vector>
+TEXGEN_INLINE auto less(const Vector& a, const Vector& b) noexcept {
+    return a < b;
+}
 TEXGEN_INLINE WideWords at_most(const WideFloats& a, const WideFloats& b) noexcept { return a <= b; }
 
 TEXGEN_INLINE Doubles magnitude(const Doubles& a) noexcept {
@@ -182,6 +186,19 @@ TEXGEN_INLINE void load_boxes(const float* from, WideFloats (&min)[3], WideFloat
         min[j] = every_second<0>(first[j], second[j], std::make_integer_sequence<int, wide_lanes>());
         max[j] = every_second<1>(first[j], second[j], std::make_integer_sequence<int, wide_lanes>());
     }
+}
+
+// Four floats a sphere, the radius last.
+TEXGEN_INLINE void load_spheres(const float* from, WideFloats (&centre)[3], WideFloats& radius) noexcept {
+    using Lanes = std::make_integer_sequence<int, wide_lanes>;
+    WideFloats four[4];
+    for (int i = 0; i < 4; ++i) four[i] = load<WideFloats>(from + i * wide_lanes);
+    const WideFloats xz[2] = {every_second<0>(four[0], four[1], Lanes()), every_second<0>(four[2], four[3], Lanes())};
+    const WideFloats yr[2] = {every_second<1>(four[0], four[1], Lanes()), every_second<1>(four[2], four[3], Lanes())};
+    centre[0] = every_second<0>(xz[0], xz[1], Lanes());
+    centre[1] = every_second<0>(yr[0], yr[1], Lanes());
+    centre[2] = every_second<1>(xz[0], xz[1], Lanes());
+    radius = every_second<1>(yr[0], yr[1], Lanes());
 }
 
 // Lane i of both vectors in turn.
@@ -252,5 +269,8 @@ TEXGEN_INLINE bool any(const LongWords& mask) noexcept {
     return (mask[0] | mask[1]) != 0;
 #endif
 }
+#if TEXGEN_LANE_BYTES < 64
+TEXGEN_INLINE bool any(const WideWords& mask) noexcept { return any(__builtin_bit_cast(LongWords, mask)); }
+#endif
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA
