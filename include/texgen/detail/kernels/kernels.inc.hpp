@@ -15,6 +15,7 @@
 #include "chunks.inc.hpp"
 
 #include "points.inc.hpp"
+#include "points_in_float.inc.hpp"
 #include "segments.inc.hpp"
 
 #include "boxes.inc.hpp"

@@ -150,33 +150,58 @@ TEXGEN_INLINE Again fill_block_again(const DividedOutput& output, const Terms& t
     return {doubtful, effort};
 }
 
-// The largest |x|, |y|, |z| of a block: of all three together for triples. A NaN is the largest.
+// The largest |x|, |y|, |z| in each lane. A NaN is the largest.
 struct PointExtent {
-    double x, y, z;
+    WideWords x{}, y{}, z{};
 
-    TEXGEN_INLINE PointExtent(const WideWords& x_bits, const WideWords& y_bits, const WideWords& z_bits) noexcept
-        : x(static_cast<double>(bit_cast<float>(largest_lane(x_bits)))),
-          y(static_cast<double>(bit_cast<float>(largest_lane(y_bits)))),
-          z(static_cast<double>(bit_cast<float>(largest_lane(z_bits)))) {}
-
-    TEXGEN_INLINE double magnitude_of(const PointForm& form) const noexcept {
-        return std::fabs(form.x) * x + std::fabs(form.y) * y + std::fabs(form.z) * z + std::fabs(form.w);
+    TEXGEN_INLINE void add(const WideFloats& of_x, const WideFloats& of_y, const WideFloats& of_z) noexcept {
+        x = maximum(magnitude_bits(of_x), x);
+        y = maximum(magnitude_bits(of_y), y);
+        z = maximum(magnitude_bits(of_z), z);
+    }
+    // At least the sum of a form's terms, but for a rounding each.
+    TEXGEN_INLINE WideFloats terms_of(const PointForm& form) const noexcept {
+        const auto factor = [](double coefficient) { return static_cast<float>(std::fabs(coefficient)); };
+        return from_bits(x) * factor(form.x) +
+               (from_bits(y) * factor(form.y) + (from_bits(z) * factor(form.z) + factor(form.w)));
     }
 };
 
-TEXGEN_INLINE PointExtent extent_of(const PointJob& job, std::size_t begin, std::size_t end) noexcept {
-    WideWords x{};
-    WideWords y{};
-    WideWords z{};
-    for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(wide_lanes)) {
-        const float* const from = job.x + 3 * i;
-        x = maximum(magnitude_bits(load<WideFloats>(job.interleaved_xyz ? from : job.x + i)), x);
-        y = maximum(magnitude_bits(load<WideFloats>(job.interleaved_xyz ? from + wide_lanes : job.y + i)), y);
-        z = maximum(magnitude_bits(load<WideFloats>(job.interleaved_xyz ? from + 2 * wide_lanes : job.z + i)), z);
+// A block of points in three arrays, of which those of triples are copies, and what bounds the errors of its forms in each
+// lane of doubles.
+struct PointBlock {
+    Doubles x_size, y_size, z_size;
+    const float* x;
+    const float* y;
+    const float* z;
+    float copy[3][exact_block];
+
+    TEXGEN_INLINE PointBlock(const PointJob& job, std::size_t begin, std::size_t end) noexcept {
+        PointExtent extent;
+        for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(wide_lanes)) {
+            WideFloats v[3];
+            TEXGEN_ISA::load_points(job, i, v[0], v[1], v[2]);
+            extent.add(v[0], v[1], v[2]);
+            if (job.interleaved_xyz)
+                for (std::size_t j = 0; j < 3; ++j) store(copy[j] + (i - begin), v[j]);
+        }
+        x = job.interleaved_xyz ? copy[0] : job.x + begin;
+        y = job.interleaved_xyz ? copy[1] : job.y + begin;
+        z = job.interleaved_xyz ? copy[2] : job.z + begin;
+        x_size = folded(extent.x);
+        y_size = folded(extent.y);
+        z_size = folded(extent.z);
     }
-    if (job.interleaved_xyz) x = y = z = maximum(maximum(x, y), z);
-    return {x, y, z};
-}
+
+    TEXGEN_INLINE Doubles error_of(const PointForm& form) const noexcept {
+        return (x_size * std::fabs(form.x) +
+                (y_size * std::fabs(form.y) + (z_size * std::fabs(form.z) + std::fabs(form.w)))) *
+               gamma(5);
+    }
+    TEXGEN_INLINE PointLanes load_points(std::size_t i) const noexcept {
+        return {{to_doubles(load<Floats>(x + i)), to_doubles(load<Floats>(y + i)), to_doubles(load<Floats>(z + i))}};
+    }
+};
 
 template <class Job>
 TEXGEN_INLINE PointLanes load_points(const Job& job, std::size_t i) noexcept {
@@ -192,13 +217,13 @@ TEXGEN_INLINE Doubles at(const PointForm& form, const PointLanes& point) noexcep
 // A block of points, with errors that hold for all of it. Returns what is in doubt (it is written all the same).
 template <bool Signed, std::size_t Numerators>
 TEXGEN_INLINE Doubt fill_points_block(const PointJob& job, std::size_t begin, std::size_t end) noexcept {
-    const PointExtent extent = extent_of(job, begin, end);
-    double numerator_error[2];
-    for (std::size_t k = 0; k < Numerators; ++k) numerator_error[k] = gamma(5) * extent.magnitude_of(job.numerator[k]);
-    const double q_error = gamma(5) * extent.magnitude_of(job.q);
+    const PointBlock block(job, begin, end);
+    Doubles numerator_error[2];
+    for (std::size_t k = 0; k < Numerators; ++k) numerator_error[k] = block.error_of(job.numerator[k]);
+    const Doubles q_error = block.error_of(job.q);
     Doubt doubt;
     for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(lanes)) {
-        const PointLanes point = load_points(job, i);
+        const PointLanes point = block.load_points(i - begin);
         Doubles numerator[2];
         for (std::size_t k = 0; k < Numerators; ++k) numerator[k] = at(job.numerator[k], point);
         Floats value[2];
@@ -267,103 +292,6 @@ TEXGEN_INLINE Undecided fill_points_exact_of(const PointJob& original, std::size
 template <class CompiledWhereCalled = void>
 Undecided fill_points_exact(const PointJob& job, std::size_t first) noexcept {
     return job.numerators == 2 ? fill_points_exact_of<2>(job, first) : fill_points_exact_of<1>(job, first);
-}
-
-// The forms of q and of the numerators in float, in the order in which they are computed.
-template <std::size_t Numerators>
-struct FormsInFloat {
-    float coefficient[1 + Numerators][4];
-
-    TEXGEN_INLINE explicit FormsInFloat(const PointJob& job) noexcept {
-        fill(coefficient[0], job.q);
-        for (std::size_t k = 0; k < Numerators; ++k) fill(coefficient[1 + k], job.numerator[k]);
-    }
-    TEXGEN_INLINE WideFloats at(std::size_t k, const WideFloats& x, const WideFloats& y,
-                                const WideFloats& z) const noexcept {
-        const float(&c)[4] = coefficient[k];
-        return x * c[0] + (y * c[1] + (z * c[2] + c[3]));
-    }
-
-private:
-    TEXGEN_INLINE static void fill(float (&to)[4], const PointForm& form) noexcept {
-        to[0] = static_cast<float>(form.x);
-        to[1] = static_cast<float>(form.y);
-        to[2] = static_cast<float>(form.z);
-        to[3] = static_cast<float>(form.w);
-    }
-};
-
-// The same in double, rounded once.
-template <std::size_t Numerators>
-struct FormsInDouble {
-    const PointJob& job;
-
-    TEXGEN_INLINE explicit FormsInDouble(const PointJob& points) noexcept : job(points) {}
-    TEXGEN_INLINE WideFloats at(std::size_t k, const WideFloats& x, const WideFloats& y,
-                                const WideFloats& z) const noexcept {
-        const PointForm& form = k == 0 ? job.q : job.numerator[k - 1];
-        const auto value = [&form](const Doubles& vx, const Doubles& vy, const Doubles& vz) {
-            return detail::TEXGEN_ISA::at(form, {{vx, vy, vz}});
-        };
-        return in_double(value, x, y, z);
-    }
-};
-
-// Divided in float, in blocks of float_block points. The largest |v_j| bound the terms of the forms, and with the largest
-// quotient and the least q, found on the way, the error of every point: see FloatDivision. Returns where the first block
-// begins that is not inside the tolerance (it is written all the same), or the count. A NaN makes the largest quotient
-// one, and fails.
-template <template <std::size_t> class Forms, std::size_t Numerators>
-TEXGEN_INLINE std::size_t fill_points_within_of(const PointJob& job, std::size_t first) noexcept {
-    constexpr bool in_float = std::is_same_v<Forms<1>, FormsInFloat<1>>;
-    constexpr FloatDivision division = in_float ? all_float : float_divided;
-    const Forms<Numerators> forms(job);
-    for (std::size_t begin = first; begin < job.count; begin += float_block) {
-        const std::size_t end = begin + float_block < job.count ? begin + float_block : job.count;
-        WideWords x_largest{};
-        WideWords y_largest{};
-        WideWords z_largest{};
-        WideWords largest[Numerators] = {};
-        WideWords q_least = signed_bits(WideFloats{} + 0x1p100f);
-        for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(wide_lanes)) {
-            WideFloats x, y, z;
-            load_points(job, i, x, y, z);
-            x_largest = maximum(magnitude_bits(x), x_largest);
-            y_largest = maximum(magnitude_bits(y), y_largest);
-            z_largest = maximum(magnitude_bits(z), z_largest);
-            const WideFloats q = forms.at(0, x, y, z);
-            q_least = minimum(signed_bits(q), q_least);
-            const WideFloats reciprocal = 1.0f / q;
-            WideFloats value[2];
-            for (std::size_t k = 0; k < Numerators; ++k) {
-                value[k] = forms.at(1 + k, x, y, z) * reciprocal;
-                largest[k] = maximum(magnitude_bits(value[k]), largest[k]);
-            }
-            store_points(job, i, Numerators, value, ~WideWords{});
-        }
-        const PointExtent extent(x_largest, y_largest, z_largest);
-        const double size = extent.x + extent.y + extent.z + 1.0;
-        // The bits of positive floats have their order; those of a negative one, and of -0, are below them all. A q that
-        // overflowed in float would go unnoticed, not being the least; its terms tell.
-        const int least_bits = ~largest_lane(~q_least);
-        const auto least = static_cast<double>(bit_cast<float>(least_bits));
-        bool certified = true;
-        for (std::size_t k = 0; k < Numerators; ++k) {
-            const auto bound = static_cast<double>(bit_cast<float>(largest_lane(largest[k])));
-            const double error =
-                division.error(extent.magnitude_of(job.numerator[k]), extent.magnitude_of(job.q), size, least, bound);
-            certified = certified && error <= job.tolerance;
-        }
-        if (!certified) return begin;
-    }
-    return job.count;
-}
-
-template <template <std::size_t> class Forms>
-std::size_t fill_points_within(const PointJob& original, std::size_t first) noexcept {
-    const PointJob job = original;
-    return job.numerators == 2 ? fill_points_within_of<Forms, 2>(job, first)
-                               : fill_points_within_of<Forms, 1>(job, first);
 }
 
 // The forms at points, in double, rounded once.

@@ -77,9 +77,10 @@ void darken_batch(Job job, const PointOutputs& out, const Batch& batch, const Ru
     }
 }
 
-// Runs a job for a batch. What has no place of its own goes through buffers.
+// Runs a job for a batch. What has no place of its own goes through buffers. The job is changed in place: copies of what has
+// just been written, in other sizes, wait for it.
 template <class Job, class Run>
-void run_batch(Job job, const PointOutputs& out, const Batch& batch, const Run& run) noexcept {
+void run_batch(Job& job, const PointOutputs& out, const Batch& batch, const Run& run) noexcept {
     if (job.numerators == 1 && out.lit != nullptr) return darken_batch(job, out, batch, run);
     const auto [first, count, whole] = batch;
     if (count == whole && out.are_complete(job.numerators)) {
@@ -94,6 +95,7 @@ void run_batch(Job job, const PointOutputs& out, const Batch& batch, const Run& 
     job.out[0] = buffer[0];
     job.out[1] = buffer[1];
     job.lit = out.lit != nullptr ? buffer[2] : nullptr;
+    job.interleaved_st = false;
     for (std::size_t begin = 0; begin < count; begin += copy_size) {
         job.count = whole - begin < copy_size ? whole - begin : copy_size;
         run(job);

@@ -46,7 +46,7 @@ inline PointJob point_job(const glm::dmat4& matrix, int row, int numerators, con
 inline namespace TEXGEN_BUILD {
 
 // Points begin to end of a job: in vectors; what those cannot decide point by point.
-inline void project_exact(const PointKernels& kernels, PointJob job, std::size_t begin, std::size_t end) noexcept {
+inline void project_exact(const PointKernels& kernels, PointJob& job, std::size_t begin, std::size_t end) noexcept {
     job.count = end;
     fill_blocks(kernels.fill_exact, job, begin, project_one);
 }
@@ -54,37 +54,37 @@ inline void project_exact(const PointKernels& kernels, PointJob job, std::size_t
 // Points begin to end by a kernel that stops at a block whose error is not certified to be inside the tolerance. Such a
 // block has company: `otherwise` gets more points after each failure, until the kernel is tried again.
 template <class Kernel, class Otherwise>
-void project_within(Kernel kernel, PointJob job, std::size_t begin, std::size_t end,
+void project_within(Kernel kernel, PointJob& job, std::size_t begin, std::size_t end,
                     const Otherwise& otherwise) noexcept {
-    job.count = end;
     std::size_t pause = float_block;
-    for (std::size_t i = kernel(job, begin); i < end; i = kernel(job, i)) {
+    for (std::size_t i = begin; i < end;) {
+        job.count = end;
+        i = kernel(job, i);
         pause = pause < (end - begin) / 8 ? 8 * pause : end - begin;
         const std::size_t resume = pause < end - i ? i + pause : end;
-        otherwise(job, i, resume);
+        if (i < end) otherwise(job, i, resume);
         i = resume;
     }
 }
 
 // The dial: all_float, else float_divided, else exact.
-inline void project_job(const PointKernels& kernels, const PointJob& points) noexcept {
-    const auto exactly = [&kernels](const PointJob& job, std::size_t begin, std::size_t end) {
+inline void project_job(const PointKernels& kernels, PointJob& points) noexcept {
+    const auto exactly = [&kernels](PointJob& job, std::size_t begin, std::size_t end) {
         project_exact(kernels, job, begin, end);
     };
     if (points.tolerance == 0.0) return exactly(points, 0, points.count);
-    const auto float_divided = [&](const PointJob& job, std::size_t begin, std::size_t end) {
+    const auto float_divided = [&](PointJob& job, std::size_t begin, std::size_t end) {
         project_within(kernels.fill_float_divided, job, begin, end, exactly);
     };
     project_within(kernels.fill_all_float, points, 0, points.count, float_divided);
 }
 
 template <class Space>
-void project_all(const Positions<Space>& positions, const PointJob& job, const PointOutputs& out) noexcept {
+void project_all(const Positions<Space>& positions, PointJob job, const PointOutputs& out) noexcept {
     const PointKernels& kernels = chosen<PointKernels>();
     for_each_batch(positions, [&](const PointInput& input, const Batch& batch) {
-        PointJob part = job;
-        static_cast<PointInput&>(part) = input;
-        run_batch(part, out, batch, [&](const PointJob& points) { project_job(kernels, points); });
+        static_cast<PointInput&>(job) = input;
+        run_batch(job, out, batch, [&](PointJob& points) { project_job(kernels, points); });
     });
 }
 

@@ -135,6 +135,9 @@ TEXGEN_INLINE WideWords magnitude_bits(const WideFloats& a) noexcept {
 TEXGEN_INLINE WideWords signed_bits(const WideFloats& a) noexcept {
     return WideWords::of([&](int i) { return bit_cast<int>(a.lane[i]); });
 }
+TEXGEN_INLINE Doubles folded(const WideWords& words) noexcept {
+    return Doubles::of([&](int i) { return static_cast<double>(bit_cast<float>(words.lane[i])); });
+}
 TEXGEN_INLINE WideFloats from_bits(const WideWords& words) noexcept {
     return WideFloats::of([&](int i) { return bit_cast<float>(words.lane[i]); });
 }

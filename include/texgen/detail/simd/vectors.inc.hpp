@@ -105,6 +105,16 @@ TEXGEN_INLINE WideFloats select(const WideWords& mask, const WideFloats& a, cons
     return from_bits((mask & signed_bits(a)) | (~mask & signed_bits(b)));
 }
 
+// The larger of lanes i and i + lanes, of the bits of magnitudes.
+template <int First, int... Lane>
+TEXGEN_INLINE Words half_of(const WideWords& words, std::integer_sequence<int, Lane...>) noexcept {
+    return __builtin_shufflevector(words, words, (First + Lane)...);
+}
+TEXGEN_INLINE Doubles folded(const WideWords& words) noexcept {
+    using Half = std::make_integer_sequence<int, lanes>;
+    return to_doubles(__builtin_bit_cast(Floats, maximum(half_of<0>(words, Half()), half_of<lanes>(words, Half()))));
+}
+
 template <int Distance, int... Lane>
 TEXGEN_INLINE WideWords rotated(const WideWords& a, std::integer_sequence<int, Lane...>) noexcept {
     return __builtin_shufflevector(a, a, ((Lane + Distance) % wide_lanes)...);
@@ -272,5 +282,10 @@ TEXGEN_INLINE bool any(const LongWords& mask) noexcept {
 #if TEXGEN_LANE_BYTES < 64
 TEXGEN_INLINE bool any(const WideWords& mask) noexcept { return any(__builtin_bit_cast(LongWords, mask)); }
 #endif
+
+TEXGEN_INLINE bool any(const WideWords& mask) noexcept {
+    using Half = std::make_integer_sequence<int, lanes>;
+    return any(half_of<0>(mask, Half()) | half_of<lanes>(mask, Half()));
+}
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA
