@@ -26,6 +26,7 @@
 #include "detail/culling/lit_test.hpp"
 #include "detail/points/forms.hpp"
 #include "detail/simd/lanes.hpp"
+#include "primitives.hpp"
 #include "transform.hpp"
 
 namespace TEXGEN_NAMESPACE {
@@ -63,6 +64,15 @@ public:
 
     std::size_t size() const noexcept { return count_; }
 
+    // The same points, with the caller's word that all of them lie in a box (asserted), as an engine has one of each mesh:
+    // project() then bounds its errors once instead of block by block. Values are right by the same promises; `exact`
+    // has the same bits. Without assertions a point that is not in the box, as a NaN, gets what nothing bounds, and spoils
+    // no other. A box with min > max or a NaN is no word.
+    Positions within(const Box& box) const noexcept;
+
+    // The box of that word; with min > max where there is none.
+    const Box& bounds() const noexcept { return bounds_; }
+
     // Whether the layout is one that needs no gathering: one array of vectors, or three arrays of floats, aligned.
     bool is_interleaved() const noexcept {
         return count_ != 0 && stride_bytes_ == 3 * sizeof(float) && y_ == x_ + 1 && z_ == x_ + 2 && is_aligned(x_);
@@ -94,6 +104,7 @@ private:
     const float* z_;
     std::size_t count_;
     std::size_t stride_bytes_;
+    Box bounds_{glm::vec3(1.0f), glm::vec3(-1.0f)};
 };
 
 // One point with w = 1 in a known space.

@@ -176,7 +176,14 @@ struct PointBlock {
     const float* z;
     float copy[3][exact_block];
 
-    TEXGEN_INLINE PointBlock(const PointJob& job, std::size_t begin, std::size_t end) noexcept {
+    TEXGEN_INLINE PointBlock(const PointJob& job, bool is_bounded, std::size_t begin, std::size_t end) noexcept
+        : x(job.x + begin), y(job.y + begin), z(job.z + begin) {
+        if (is_bounded && !job.interleaved_xyz) {
+            x_size = Doubles{} + job.bound[0];
+            y_size = Doubles{} + job.bound[1];
+            z_size = Doubles{} + job.bound[2];
+            return;
+        }
         PointExtent extent;
         for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(wide_lanes)) {
             WideFloats v[3];
@@ -185,9 +192,11 @@ struct PointBlock {
             if (job.interleaved_xyz)
                 for (std::size_t j = 0; j < 3; ++j) store(copy[j] + (i - begin), v[j]);
         }
-        x = job.interleaved_xyz ? copy[0] : job.x + begin;
-        y = job.interleaved_xyz ? copy[1] : job.y + begin;
-        z = job.interleaved_xyz ? copy[2] : job.z + begin;
+        if (job.interleaved_xyz) {
+            x = copy[0];
+            y = copy[1];
+            z = copy[2];
+        }
         x_size = folded(extent.x);
         y_size = folded(extent.y);
         z_size = folded(extent.z);
@@ -217,7 +226,7 @@ TEXGEN_INLINE Doubles at(const PointForm& form, const PointLanes& point) noexcep
 // A block of points, with errors that hold for all of it. Returns what is in doubt (it is written all the same).
 template <bool Signed, std::size_t Numerators>
 TEXGEN_INLINE Doubt fill_points_block(const PointJob& job, std::size_t begin, std::size_t end) noexcept {
-    const PointBlock block(job, begin, end);
+    const PointBlock block(job, !Signed && job.is_bounded, begin, end);
     Doubles numerator_error[2];
     for (std::size_t k = 0; k < Numerators; ++k) numerator_error[k] = block.error_of(job.numerator[k]);
     const Doubles q_error = block.error_of(job.q);

@@ -73,6 +73,20 @@ TEXGEN_INLINE std::size_t fill_points_within_of(const PointJob& job, std::size_t
     constexpr bool in_float = std::is_same_v<Forms<1>, FormsInFloat<1>>;
     constexpr FloatDivision division = in_float ? all_float : float_divided;
     const Forms<Numerators> forms(job);
+    const auto divide = [&](const WideFloats& x, const WideFloats& y, const WideFloats& z, const WideFloats& q,
+                            WideFloats(&value)[2]) {
+        const WideFloats reciprocal = 1.0f / q;
+        for (std::size_t k = 0; k < Numerators; ++k) value[k] = forms.at(1 + k, x, y, z) * reciprocal;
+    };
+    WideFloats x, y, z, value[2];
+    if (in_float && job.is_certified) {
+        for (std::size_t i = first; i < job.count; i += static_cast<std::size_t>(wide_lanes)) {
+            load_points(job, i, x, y, z);
+            divide(x, y, z, forms.at(0, x, y, z), value);
+            store_points(job, i, Numerators, value, ~WideWords{});
+        }
+        return job.count;
+    }
     std::size_t size_of_block = float_block;
     for (std::size_t begin = first, end; begin < job.count; begin = end) {
         end = size_of_block < job.count - begin ? begin + size_of_block : job.count;
@@ -83,17 +97,12 @@ TEXGEN_INLINE std::size_t fill_points_within_of(const PointJob& job, std::size_t
         // overflowed in float would go unnoticed, not being the least; its terms tell.
         WideWords least_q = signed_bits(WideFloats{} + 0x1p100f);
         for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(wide_lanes)) {
-            WideFloats x, y, z;
             load_points(job, i, x, y, z);
             extent.add(x, y, z);
             const WideFloats q = forms.at(0, x, y, z);
             least_q = minimum(signed_bits(q), least_q);
-            const WideFloats reciprocal = 1.0f / q;
-            WideFloats value[2];
-            for (std::size_t k = 0; k < Numerators; ++k) {
-                value[k] = forms.at(1 + k, x, y, z) * reciprocal;
-                largest[k] = maximum(magnitude_bits(value[k]), largest[k]);
-            }
+            divide(x, y, z, q, value);
+            for (std::size_t k = 0; k < Numerators; ++k) largest[k] = maximum(magnitude_bits(value[k]), largest[k]);
             store_points(job, i, Numerators, value, ~WideWords{});
         }
         for (std::size_t k = 0; k < Numerators; ++k)

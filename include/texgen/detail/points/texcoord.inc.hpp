@@ -43,6 +43,46 @@ inline PointJob point_job(const glm::dmat4& matrix, int row, int numerators, con
     return job;
 }
 
+// Whether a box is a word on points: a NaN is none.
+inline bool is_word(const Box& box) noexcept {
+    return box.min.x <= box.max.x && box.min.y <= box.max.y && box.min.z <= box.max.z;
+}
+
+inline bool is_inside(const Box& box, const glm::vec3& point) noexcept {
+    return box.min.x <= point.x && point.x <= box.max.x && box.min.y <= point.y && point.y <= box.max.y &&
+           box.min.z <= point.z && point.z <= box.max.z;
+}
+
+// What it makes of a job that all points lie in a box: nothing where some may be next to q = 0 or behind.
+inline void take_bounds(PointJob& job, const Box& box) noexcept {
+    if (!is_word(box)) return;
+    const glm::dvec3 min = widened(box.min), max = widened(box.max);
+    glm::dvec3 size;
+    for (int j = 0; j < 3; ++j) size[j] = larger(std::fabs(min[j]), std::fabs(max[j]));
+    struct Range {
+        double least, largest, terms;
+    };
+    const auto range_of = [&](const PointForm& form) {
+        const glm::dvec3 factor(form.x, form.y, form.z);
+        const glm::dvec3 middle = 0.5 * min + 0.5 * max, half = 0.5 * max - 0.5 * min;
+        const double centre = form.w + glm::dot(factor, middle);
+        const double reach = glm::dot(glm::abs(factor), half);
+        const double terms = terms_at(form, size);
+        return Range{centre - reach - gamma(8) * terms, centre + reach + gamma(8) * terms, terms};
+    };
+    const Range q = range_of(job.q);
+    if (!(q.terms < 0x1p1000 && q.least > 0x1p20 * gamma(5) * q.terms)) return;
+    job.is_bounded = true;
+    job.is_certified = true;
+    for (int j = 0; j < 3; ++j) job.bound[j] = size[j];
+    for (int k = 0; k < job.numerators; ++k) {
+        const Range s = range_of(job.numerator[k]);
+        const double quotient = larger_or_nan(std::fabs(s.least), std::fabs(s.largest)) / q.least * (1.0 + gamma(2));
+        const double error = all_float.error(s.terms, q.terms, size.x + size.y + size.z + 1.0, q.least, quotient);
+        job.is_certified = job.is_certified && error <= job.tolerance;
+    }
+}
+
 inline namespace TEXGEN_BUILD {
 
 // Points begin to end of a job: in vectors; what those cannot decide point by point.
@@ -73,6 +113,7 @@ inline void project_job(const PointKernels& kernels, PointJob& points) noexcept 
         project_exact(kernels, job, begin, end);
     };
     if (points.tolerance == 0.0) return exactly(points, 0, points.count);
+    if (points.is_certified) return static_cast<void>(kernels.fill_all_float(points, 0));
     const auto float_divided = [&](PointJob& job, std::size_t begin, std::size_t end) {
         project_within(kernels.fill_float_divided, job, begin, end, exactly);
     };
@@ -80,8 +121,9 @@ inline void project_job(const PointKernels& kernels, PointJob& points) noexcept 
 }
 
 template <class Space>
-void project_all(const Positions<Space>& positions, PointJob job, const PointOutputs& out) noexcept {
+void project_all(const Positions<Space>& positions, PointJob& job, const PointOutputs& out) noexcept {
     const PointKernels& kernels = chosen<PointKernels>();
+    take_bounds(job, positions.bounds());
     for_each_batch(positions, [&](const PointInput& input, const Batch& batch) {
         static_cast<PointInput&>(job) = input;
         run_batch(job, out, batch, [&](PointJob& points) { project_job(kernels, points); });
@@ -119,6 +161,15 @@ void generate_all(const glm::dmat4& matrix, const Positions<Space>& positions, f
 }  // namespace TEXGEN_DETAIL
 
 namespace TEXGEN_NAMESPACE {
+
+template <class Space>
+Positions<Space> Positions<Space>::within(const Box& box) const noexcept {
+    if (detail::is_word(box))
+        for (std::size_t i = 0; i < count_; ++i) TEXGEN_ASSERT(detail::is_inside(box, (*this)[i]));
+    Positions result = *this;
+    result.bounds_ = box;
+    return result;
+}
 
 template <class Space>
 glm::dvec4 generate_error_bound(const Transform<Texture, Space>& texture_from_space,
@@ -187,7 +238,8 @@ void project(const Transform<Texture, Space>& texture_from_space, Positions<Spac
     const detail::LitTest lit(region);
     detail::for_each_group(
         out, positions.size(), lit, [&](int row, int numerators, const detail::PointOutputs& outputs) {
-            detail::project_all(positions, detail::point_job(matrix, row, numerators, lit, tolerance), outputs);
+            detail::PointJob job = detail::point_job(matrix, row, numerators, lit, tolerance);
+            detail::project_all(positions, job, outputs);
         });
 }
 
@@ -197,8 +249,8 @@ void project(const Transform<Texture, Space>& texture_from_space, Positions<Spac
     TEXGEN_ASSERT(st.size() == positions.size());
     if (st.empty() || st.size() != positions.size()) return;
     const detail::LitTest unused(whole_texture());
-    detail::project_all(positions, detail::point_job(texture_from_space.matrix(), 0, 2, unused, tolerance),
-                        {{}, nullptr, &st[0].x});
+    detail::PointJob job = detail::point_job(texture_from_space.matrix(), 0, 2, unused, tolerance);
+    detail::project_all(positions, job, {{}, nullptr, &st[0].x});
 }
 
 template <class Space>

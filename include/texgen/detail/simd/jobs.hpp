@@ -109,6 +109,10 @@ struct PointJob : DividedOutput, PointInput {
     PointForm numerator[2];
     PointForm q;
     double tolerance;
+    // What the caller's word on all of them makes of their errors.
+    bool is_bounded;    // no |x|, |y| and |z| is more than `bound`, and all are well in front
+    bool is_certified;  // fill_all_float is inside the tolerance
+    double bound[3];
 };
 
 // numerator[k] / q along a segment: values at alpha = 0 and at alpha = 1.
