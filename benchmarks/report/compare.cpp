@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <string_view>
 #include <utility>
 
 #include <texgen/batch.hpp>
@@ -58,8 +59,9 @@ void texgen_sides_not_skipped(const texgen::Triangle& triangle, const texgen::Te
                               RectCoordinates& out) {
     constexpr double far_away = std::numeric_limits<float>::max();
     const FloatRegion bounds(region);
-    const auto setup =
-        texgen::TriangleSetup::of(triangle, texgen::atlas_tile({-far_away, -far_away}, {far_away, far_away}));
+    texgen::TextureRegion everywhere = texgen::atlas_tile({-far_away, -far_away}, {far_away, far_away});
+    if (const auto depth = region.depth()) everywhere = everywhere.with_depth(depth->x, depth->y);
+    const auto setup = texgen::TriangleSetup::of(triangle, everywhere);
     if (!setup) return out.lit.fill(0.0f);
     for (const texgen::FragmentRect& rect : rects) {
         const texgen::Texcoords of_rect = out.of(rect);
@@ -107,6 +109,9 @@ void eigen_planes(const texgen::Triangle& triangle, const texgen::TextureRegion&
 struct Method {
     const char* name;
     void (*run)(const texgen::Triangle&, const texgen::TextureRegion&, Rects, RectCoordinates&);
+
+    // The others know no depth.
+    bool is_library() const { return std::string_view(name).starts_with("texgen"); }
 };
 
 constexpr std::array<Method, 6> methods{{{"texgen, exact", texgen_exact},
@@ -118,7 +123,7 @@ constexpr std::array<Method, 6> methods{{{"texgen, exact", texgen_exact},
 
 struct Exact {
     double s, t, r;
-    bool in_front, lit, near_border, on_slide;
+    bool in_front, lit, lit_at_any_depth, near_border, on_slide;
 };
 
 bool is_within(double value, double min, double max) { return value >= min && value <= max; }
@@ -132,17 +137,22 @@ Exact exact_at(const texgen::Triangle& triangle, const texgen::TextureRegion& re
     const auto r = static_cast<double>(quotient[2]);
     const glm::dvec2& min = region.min();
     const glm::dvec2& max = region.max();
+    constexpr double any = std::numeric_limits<double>::max();
+    const glm::dvec2 depth = region.depth().value_or(glm::dvec2(-any, any));
     // lit is decided from the computed coordinates: within their error of the border both answers are right.
     const auto is_near = [](double value, double border) {
         constexpr double ulp = std::numeric_limits<float>::epsilon();
         return std::fabs(value - border) <= std::max(accepted_texels / texture_size, ulp * std::fabs(border));
     };
+    const bool is_inside = is_within(s, min.x, max.x) && is_within(t, min.y, max.y);
     return {.s = s,
             .t = t,
             .r = r,
             .in_front = true,
-            .lit = is_within(s, min.x, max.x) && is_within(t, min.y, max.y),
-            .near_border = is_near(s, min.x) || is_near(s, max.x) || is_near(t, min.y) || is_near(t, max.y),
+            .lit = is_inside && is_within(r, depth.x, depth.y),
+            .lit_at_any_depth = is_inside,
+            .near_border = is_near(s, min.x) || is_near(s, max.x) || is_near(t, min.y) || is_near(t, max.y) ||
+                           is_near(r, depth.x) || is_near(r, depth.y),
             .on_slide = is_within(s, 0, 1) && is_within(t, 0, 1)};
 }
 
@@ -153,9 +163,12 @@ bool is_one_signed(const texgen::Triangle& triangle) {
 // The errors of one method, fragment by fragment.
 class Collector {
 public:
+    explicit Collector(bool knows_depth) : knows_depth_(knows_depth) {}
+
     void add(const Exact& exact, float s, float t, bool lit, const Witness& at) {
-        if (lit != exact.lit && !exact.near_border) ++errors_.wrong_decisions;
-        if (!exact.on_slide) return;
+        const bool should_be_lit = knows_depth_ ? exact.lit : exact.lit_at_any_depth;
+        if (lit != should_be_lit && !exact.near_border) ++errors_.wrong_decisions;
+        if (!exact.on_slide || (knows_depth_ && !exact.lit)) return;
         const auto texels =
             static_cast<float>(texture_size * std::max(finite(std::fabs(s - exact.s)), finite(std::fabs(t - exact.t))));
         if (texels > errors_.max_texels) {
@@ -183,6 +196,7 @@ private:
         return errors[rank];
     }
 
+    bool knows_depth_;
     Errors errors_;
     std::vector<float> texels_, ulp_;
 };
@@ -221,7 +235,8 @@ void check_promise(Comparison& comparison, const texgen::Triangle& triangle, con
 }
 
 void measure_errors(Comparison& comparison, const Workload& work, const texgen::TextureRegion& region) {
-    std::array<Collector, methods.size()> collectors;
+    std::vector<Collector> collectors;
+    for (const Method& method : methods) collectors.emplace_back(method.is_library());
     std::array<Exact, Workload::rect_area> exact{};
     RectCoordinates coordinates{};
     for (const Workload::Job& job : work.jobs) {

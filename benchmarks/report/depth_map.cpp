@@ -71,7 +71,7 @@ Picture picture_of(const DepthMap& map) {
                           : glm::mix(light, middle, 2.0f * std::max(0.0f, r));
     };
     const auto differ = [&map](std::size_t a, std::size_t b) {
-        return std::floor(10.0f * map.r[a]) != std::floor(10.0f * map.r[b]);
+        return std::min(map.r[a], map.r[b]) <= 1.0f && std::floor(10.0f * map.r[a]) != std::floor(10.0f * map.r[b]);
     };
     Picture picture(map.width, map.height, backdrop);
     for (int y = 0; y < map.height; ++y) {

@@ -53,7 +53,8 @@ constexpr const char* explanation =
     "Errors are those of s and t against the definitions in long double, over the fragments that the slide falls on: "
     "in texels of a 4096 texture, and in units in the last place of float where the coordinate is a texel or more "
     "away from 0. p99.9 is the error that one fragment in a thousand exceeds. A wrong decision is a fragment that is "
-    "lit and should be dark, or the reverse. Times are medians of the interpolation alone, the set-up of the triangles "
+    "lit and should be dark, or the reverse; the loops of others know no depth of a region, and are judged without. "
+    "Times are medians of the interpolation alone, the set-up of the triangles "
     "included, in processor time; the loops take turns on the same list of triangles and rectangles. All are compiled "
     "with the flags named last; the library's kernels choose the machine's instruction set at run time.";
 

@@ -178,7 +178,7 @@ std::string encode_png(const Picture& picture) {
 }
 
 std::string encode_jpeg(const Picture& picture) {
-    constexpr int quality = 70;
+    constexpr int quality = 65;
     std::string jpeg;
     if (!stbi_write_jpg_to_func(append, &jpeg, picture.width, picture.height, 3, bytes_of(picture).data(), quality))
         throw Failure{"cannot encode a picture: out of memory"};

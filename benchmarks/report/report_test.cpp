@@ -318,7 +318,9 @@ TEST_CASE("a run writes the page and the pictures, and nothing else") {
                                                "shadow_projector.png",
                                                "teapot.png",
                                                "trapezoid.png",
-                                               "trapezoid_real.png"});
+                                               "trapezoid_real.png",
+                                               "volume.png",
+                                               "volume_projector.png"});
     const std::string page = contents("deep/down/index.html");
     CHECK(page.ends_with("</html>\n"));
     CHECK(page.size() < 1'000'000);

@@ -24,6 +24,7 @@ namespace {
 constexpr glm::vec3 plaster(0.86f, 0.85f, 0.82f);
 constexpr glm::vec3 porcelain(0.95f, 0.94f, 0.92f);
 constexpr glm::vec3 steel(0.55f, 0.60f, 0.75f);
+constexpr glm::vec3 glow(3.0f, 1.9f, 0.4f);
 
 // The projector of the GLSL walk-through.
 const texgen::Aim walk_through_aim{.position = {2, 5, 5}, .target = {-2, -4, 0}, .up = {0, 1, 0}};
@@ -118,6 +119,45 @@ View from_projector(std::string file, const std::string& sentence, std::shared_p
 
 const texgen::ModelMatrix in_place(glm::dmat4(1.0));
 
+// What gets no slide.
+Surface unlit(Mesh mesh, const texgen::ModelMatrix& model, glm::vec3 colour) {
+    std::vector<glm::vec4> strq(mesh.positions.size(), glm::vec4(-1, -1, 0, 1));
+    return {std::move(mesh), model, std::move(strq), colour};
+}
+
+// The projector's own body, around the centre of projection, where q is nearly 0.
+Surface body_of(const texgen::Aim& aim, double floor) {
+    const auto foot = static_cast<float>(floor - aim.position.y);
+    Mesh body = box({-0.3f, -0.3f, -0.25f}, {0.5f, 0.3f, 0.25f});
+    append(body, box({-0.5f, -0.15f, -0.15f}, {-0.3f, 0.15f, 0.15f}));
+    append(body, box({0.04f, foot, -0.06f}, {0.16f, -0.3f, 0.06f}));
+    const glm::dvec3 ahead = aim.target - aim.position;
+    const texgen::ModelMatrix model = placed(aim.position, glm::degrees(std::atan2(ahead.z, -ahead.x)), 1);
+    return unlit(std::move(body), model, steel);
+}
+
+// The edges of what a projector lights between its near plane and its far one.
+std::vector<Surface> edges_of(const texgen::Projector& projector) {
+    const glm::dmat4 world_from_clip = texgen::inverse(projector.matrix()).value().matrix();
+    const auto corner = [&](std::size_t i) {
+        const glm::dvec4 at = world_from_clip * glm::dvec4(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1, 1);
+        return glm::dvec3(at) / at.w;
+    };
+    std::vector<Surface> edges;
+    for (std::size_t from = 0; from < 8; ++from) {
+        for (const std::size_t bit : {1u, 2u, 4u}) {
+            if ((from & bit) != 0) continue;
+            const glm::dvec3 along = corner(from | bit) - corner(from), ahead = glm::normalize(along);
+            const glm::dvec3 aside = glm::normalize(glm::cross(ahead, glm::dvec3(0.31, 0.42, 0.85)));
+            const glm::dmat4 model(glm::dvec4(aside, 0), glm::dvec4(glm::cross(ahead, aside), 0), glm::dvec4(ahead, 0),
+                                   glm::dvec4(corner(from), 1));
+            const float half = 0.02f, length = static_cast<float>(glm::length(along));
+            edges.push_back(unlit(box({-half, -half, 0}, {half, half, length}), texgen::ModelMatrix(model), glow));
+        }
+    }
+    return edges;
+}
+
 // The mesh under the walk-through's slide, on a floor that its axis meets at the target. The floor reaches behind the
 // camera.
 std::vector<Surface> mesh_on_floor(const texgen::Projector& projector, const Mesh& mesh) {
@@ -173,6 +213,28 @@ Scene shadows(const Setting& setting) {
                        std::nullopt),
                   view("shadow_constant.png", "With one bias for all, as large as the floor needs,", of_floor),
                   from_projector("shadow_projector.png", "All that the projector sees, and so all that is lit", map)}};
+}
+
+// The near plane stands in the mesh, the far one on the floor.
+Scene volume(const Setting& setting) {
+    const texgen::Projector projector = projector_of(setting.lens, *setting.slide, walk_through_aim, {9.6, 12.2});
+    std::vector<Surface> surfaces = mesh_on_floor(projector, setting.mesh);
+    const auto map = seen_from(projector, walk_through_aim, *setting.slide, surfaces);
+    for (Surface& edge : edges_of(projector)) surfaces.push_back(std::move(edge));
+    return {
+        .name = "volume",
+        .title = "The volume that a projector lights",
+        .camera = camera({{5.5, 0.5, 7.5}, {-1.6, -3.0, 0.3}, 39}, setting.aspect),
+        .shading = Shading::slide_as_light,
+        .light = light_of(setting.lens, walk_through_aim),
+        .region = texgen::whole_texture().with_depth(texgen::opengl, texgen::DepthMapping::unit),
+        .views = {
+            {.file = "volume.png",
+             .caption = "The region has the depth of the projector: what is before the near plane or beyond the "
+                        "far one is dark.",
+             .surfaces = std::move(surfaces),
+             .slide = setting.slide},
+            from_projector("volume_projector.png", "The projector sees what its near plane leaves of the mesh", map)}};
 }
 
 // Small triangles in the far corner of a large window, where plane equations in float lose the most.
@@ -249,18 +311,6 @@ Scene qcoord(const std::shared_ptr<const Picture>& slide, double aspect) {
                             "own, and lines have a crease along the diagonal.",
                  .surfaces = {real},
                  .slide = slide}}};
-}
-
-// The projector's own body, which gets no slide: it lies around the centre of projection, where q is nearly 0.
-Surface body_of(const texgen::Aim& aim, double floor) {
-    const auto foot = static_cast<float>(floor - aim.position.y);
-    Mesh body = box({-0.3f, -0.3f, -0.25f}, {0.5f, 0.3f, 0.25f});
-    append(body, box({-0.5f, -0.15f, -0.15f}, {-0.3f, 0.15f, 0.15f}));
-    append(body, box({0.04f, foot, -0.06f}, {0.16f, -0.3f, 0.06f}));
-    const glm::dvec3 ahead = aim.target - aim.position;
-    const texgen::ModelMatrix model = placed(aim.position, glm::degrees(std::atan2(ahead.z, -ahead.x)), 1);
-    std::vector<glm::vec4> strq(body.positions.size(), glm::vec4(-1, -1, 0, 1));
-    return {std::move(body), model, std::move(strq), steel};
 }
 
 // A projector that stands beside its wall. What it throws there becomes a rectangle where the slide is warped the other way.
@@ -431,6 +481,7 @@ std::vector<Scene> make_scenes(const Setting& setting) {
                                  walk_through_aim, *setting.slide, under_rays.views.front().surfaces)));
     return {mesh_under_slide(setting, setting.lens, first, "A mesh and a floor under a slide"),
             shadows(setting),
+            volume(setting),
             lost(setting),
             qcoord(setting.slide, setting.aspect),
             keystone(setting.slide, setting.aspect),
