@@ -21,7 +21,11 @@ constexpr std::uintmax_t largest_input = std::uintmax_t{1} << 30;
 fs::path deepest_existing_folder(const fs::path& destination) {
     fs::path folder = destination;
     std::error_code error;
-    while (!fs::exists(folder, error) && folder.has_relative_path()) folder = folder.parent_path();
+    while (!fs::exists(folder, error) && folder.has_relative_path()) {
+        if (fs::is_symlink(folder, error))
+            throw Failure{"cannot write to " + destination.string() + ": " + folder.string() + " leads nowhere"};
+        folder = folder.parent_path();
+    }
     if (!fs::is_directory(folder, error))
         throw Failure{"cannot write to " + destination.string() + ": " + folder.string() + " is not a folder"};
     return folder;
@@ -78,6 +82,11 @@ Staging::Staging(const fs::path& destination) {
         name << ".texgen-report-" << std::hex << random();
         if (fs::create_directory(parent / name.str(), error)) {
             folder_ = parent / name.str();
+            // Whether folders can have the names that are missing is known when they are made.
+            std::error_code refusal;
+            fs::create_directories(folder_ / "trial" / destination_.lexically_relative(parent), refusal);
+            fs::remove_all(refusal ? folder_ : folder_ / "trial", error);
+            if (refusal) throw Failure{"cannot write to " + destination.string() + ": " + refusal.message()};
             return;
         }
     }

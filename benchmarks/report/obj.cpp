@@ -82,7 +82,8 @@ tinyobj::callback_t callbacks() {
 }
 
 ObjFile parse(const std::filesystem::path& file) {
-    const std::string text = read_file(file);
+    std::string text = read_file(file);
+    if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);  // a byte order mark
     check_vertices(text, file);
     ObjFile obj;
     std::istringstream stream(text);
@@ -114,16 +115,16 @@ void fit(std::vector<glm::dvec3>& positions, const std::filesystem::path& file) 
     for (glm::dvec3& position : positions) position = (position - foot) * scale;
 }
 
+glm::dvec3 area(const ObjFile& obj, const std::array<Corner, 3>& triangle) {
+    const auto at = [&](std::size_t i) { return obj.positions[static_cast<std::size_t>(triangle[i].position)]; };
+    return glm::cross(at(1) - at(0), at(2) - at(0));
+}
+
 // The sum of the normals of the faces at a position, each as long as its face is large.
 std::vector<glm::dvec3> smooth_normals(const ObjFile& obj) {
     std::vector<glm::dvec3> sums(obj.positions.size(), glm::dvec3(0.0));
-    for (const auto& triangle : obj.triangles) {
-        std::array<std::size_t, 3> index;
-        for (std::size_t i = 0; i < 3; ++i) index[i] = static_cast<std::size_t>(triangle[i].position);
-        const glm::dvec3& a = obj.positions[index[0]];
-        const glm::dvec3 area = glm::cross(obj.positions[index[1]] - a, obj.positions[index[2]] - a);
-        for (const std::size_t i : index) sums[i] += area;
-    }
+    for (const auto& triangle : obj.triangles)
+        for (const Corner& corner : triangle) sums[static_cast<std::size_t>(corner.position)] += area(obj, triangle);
     return sums;
 }
 
@@ -132,6 +133,8 @@ std::vector<glm::dvec3> smooth_normals(const ObjFile& obj) {
 Mesh load_obj(const std::filesystem::path& file) {
     ObjFile obj = parse(file);
     fit(obj.positions, file);
+    if (std::ranges::all_of(obj.triangles, [&](const auto& triangle) { return area(obj, triangle) == glm::dvec3(0); }))
+        throw unusable(file, "its faces have no area");
     const bool has_normals = std::ranges::all_of(obj.triangles, [](const auto& triangle) {
         return std::ranges::all_of(triangle, [](const Corner& corner) { return corner.normal != no_normal; });
     });

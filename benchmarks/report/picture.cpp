@@ -157,6 +157,9 @@ Picture load_picture(const std::filesystem::path& file) {
     const std::unique_ptr<unsigned char, void (*)(void*)> owner(decoded, stbi_image_free);
     if (decoded == nullptr) {
         const std::string reason = stbi_failure_reason();
+        if (reason == "too large")
+            throw Failure{"cannot use " + file.string() + ": larger than " + std::to_string(STBI_MAX_DIMENSIONS) +
+                          " pixels a side"};
         throw Failure{"cannot use " + file.string() + ": not a PNG or JPEG picture, or damaged" +
                       (reason.empty() ? "" : " (" + reason + ")")};
     }

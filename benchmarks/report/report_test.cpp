@@ -55,7 +55,7 @@ public:
     std::vector<std::string> files() const {
         std::vector<std::string> names;
         for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder_))
-            names.push_back(fs::relative(entry.path(), folder_).string());
+            names.push_back(entry.path().lexically_relative(folder_).string());
         std::ranges::sort(names);
         return names;
     }
@@ -131,6 +131,7 @@ TEST_CASE("a mesh that cannot be used is refused in one line") {
     check(triangle + "f 1 2 99999999999\n", "out of range");
     check(triangle + "f one two three\n", "out of range");
     check(triangle + "vn 0 0 1\nf 1//1 2//1 3//2\n", "out of range");
+    check(triangle + "f 1 1 1\nf 1 2 2\n", "no area");
     check("v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "line 1");
     check("v 0 0 0\nv inf 0 0\nv 0 1 0\nf 1 2 3\n", "line 2");
     check("v 0 0 0\nv 1 0 0\nv 0 1\nf 1 2 3\n", "line 3");
@@ -158,6 +159,7 @@ TEST_CASE("a slide that cannot be used is refused in one line") {
     check(good.substr(0, good.size() - 1));
     check(png_header("\0\0\0\0"s, "\0\0\0\1"s));
     check(png_header("\x7f\xff\xff\xff", "\x7f\xff\xff\xff"));
+    check(png_header("\0\0\x75\x30"s, "\0\0\x75\x30"s));
     check("\xff\xd8\xff"s);
     check("\xff\xd8\xff\xc4\x10\x02\x00"s + std::string(16, '\xff') + std::string(4080, '\0'));
 }
@@ -266,6 +268,12 @@ TEST_CASE("a folder that cannot be written is refused in one line, and an old re
     place.check_refusal("--size 16x16 --out file", "not a folder");
     place.check_refusal("--size 16x16 --out file/below", "not a folder");
     place.check_refusal("--size 16x16 --out /dev/null/below", "not a folder");
+    place.check_refusal("--size 16x16 --out /proc/below", "/proc/below");
+    place.check_refusal("--size 16x16 --out deep/" + std::string(300, 'd'), "ddd");
+    fs::create_symlink("nowhere", "dangling");
+    fs::create_symlink("circle", "circle");
+    place.check_refusal("--size 16x16 --out dangling", "dangling");
+    place.check_refusal("--size 16x16 --out circle/below", "circle");
     fs::create_directories("old/teapot.png");
     write("old/index.html", "yesterday");
     place.check_refusal("--size 16x16 --out old", "teapot.png");
@@ -349,6 +357,33 @@ TEST_CASE("a run takes a mesh and a slide of the user's") {
     CHECK(outcome.error == "");
     CHECK(contents("report/index.html").find("mesh.obj") != std::string::npos);
     CHECK(contents("report/index.html").find("reverse.png") != std::string::npos);
+}
+
+TEST_CASE("a mesh of Windows and a slide of one pixel are taken, and the other kinds of files are refused by name") {
+    const Workplace place;
+    write("mesh.obj", "\xef\xbb\xbfv 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\nf 1 2 3\r\n");
+    using namespace std::string_literals;
+    write("pixel.png", png_header("\0\0\0\1"s, "\0\0\0\1"s) + "\0\0\0\x0cIDAT"s +
+                           "\x78\x9c\x63\x68\x68\x68\0\0\3\x04\1\x81"s + "\x4b\xd3\xd2\x10"s + "\0\0\0\0IEND"s +
+                           "\xae\x42\x60\x82"s);
+    const Outcome outcome = place.run("--size 16x16 --mesh mesh.obj --slide pixel.png");
+    CHECK(outcome.status == 0);
+    CHECK(outcome.error == "");
+    place.check_refusal("--mesh /dev/zero", "not a regular file");
+    place.check_refusal("--slide /dev/zero", "not a regular file");
+    place.check_refusal("--slide .", "not a regular file");
+}
+
+TEST_CASE("whoever watches a terminal sees the progress, and a clear line after it") {
+    const Workplace place;
+    if (std::system("command -v script >/dev/null") != 0) return;
+    CHECK(std::system("script -qec \"'" TEXGEN_REPORT_PROGRAM "' --size 16x16\" /dev/null >watched") == 0);
+    const std::string watched = contents("watched");
+    CHECK(watched.find(": rendering ") != std::string::npos);
+    CHECK(watched.find(": measuring errors far from the origin") != std::string::npos);
+    const std::size_t last = watched.rfind("\r\033[K");
+    REQUIRE(last != std::string::npos);
+    CHECK(watched.find("written to", last) != std::string::npos);
 }
 
 TEST_CASE("a lens of the user's changes the picture") {
