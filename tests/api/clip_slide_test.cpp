@@ -54,34 +54,43 @@ std::vector<Bits> bits(const Polygon& polygon) {
 }
 
 std::string hex_of(const Polygon& polygon, const TextureRegion& region) {
-    std::string text = "region " + hex(region.min()) + " to " + hex(region.max()) + ":";
+    std::string text = "region " + hex(region.min()) + " to " + hex(region.max());
+    text += (region.depth() ? " depth " + hex(*region.depth()) : "") + ":";
     for (const ClipVertex& v : polygon) text += " " + hex(v.position) + " " + hex(v.strq) + ";";
     return text;
 }
 
 Polygon clipped(const Polygon& polygon, const TextureRegion& region) {
-    Polygon out(polygon.size() + 5);
+    Polygon out(polygon.size() + (region.depth() ? 7 : 5));
     out.resize(clip_to_slide(polygon, region, out));
     return out;
 }
 
-// (s, t, q), exactly.
+// (s, t, r, q), exactly; r is 0 where no depth asks for it.
 struct Point {
-    Rational s, t, q;
+    Rational s, t, r, q;
 };
 
-Point point_of(const ClipVertex& v) { return {exactly(v.strq.x), exactly(v.strq.y), exactly(v.strq.w)}; }
+Point point_of(const ClipVertex& v) {
+    return {exactly(v.strq.x), exactly(v.strq.y), std::isfinite(v.strq.z) ? exactly(v.strq.z) : Rational(0),
+            exactly(v.strq.w)};
+}
+
+// q and the sides of s, t, and r.
+std::size_t distance_count(const TextureRegion& region) { return region.depth() ? 7 : 5; }
 
 // The distances that clip_to_slide() cuts by, in its order.
 Rational distance(std::size_t side, const Point& p, const TextureRegion& region) {
     if (side == 0) return p.q;
-    const int k = side < 3 ? 0 : 1;
-    const Rational& u = k == 0 ? p.s : p.t;
-    return side % 2 == 1 ? Rational(u - exactly(region.min()[k]) * p.q) : Rational(exactly(region.max()[k]) * p.q - u);
+    const int k = side < 3 ? 0 : side < 5 ? 1 : 2;
+    const Rational& u = k == 0 ? p.s : k == 1 ? p.t : p.r;
+    const double bound =
+        side % 2 == 1 ? (k == 2 ? region.depth()->x : region.min()[k]) : (k == 2 ? region.depth()->y : region.max()[k]);
+    return side % 2 == 1 ? Rational(u - exactly(bound) * p.q) : Rational(exactly(bound) * p.q - u);
 }
 
 bool is_inside(const Point& p, const TextureRegion& region) {
-    for (std::size_t side = 0; side < 5; ++side)
+    for (std::size_t side = 0; side < distance_count(region); ++side)
         if (distance(side, p, region) < 0) return false;
     return p.q > 0;
 }
@@ -90,7 +99,7 @@ bool is_inside(const Point& p, const TextureRegion& region) {
 std::vector<Point> clipped_exactly(const Polygon& polygon, const TextureRegion& region) {
     std::vector<Point> points;
     for (const ClipVertex& v : polygon) points.push_back(point_of(v));
-    for (std::size_t side = 0; side < 5; ++side) {
+    for (std::size_t side = 0; side < distance_count(region); ++side) {
         std::vector<Point> kept;
         for (std::size_t i = 0; i < points.size(); ++i) {
             const Point &a = points[i], &b = points[(i + 1) % points.size()];
@@ -98,7 +107,8 @@ std::vector<Point> clipped_exactly(const Polygon& polygon, const TextureRegion& 
             if (da >= 0) kept.push_back(a);
             if ((da > 0 && db < 0) || (da < 0 && db > 0)) {
                 const Rational t = da / (da - db);
-                kept.push_back({a.s + t * (b.s - a.s), a.t + t * (b.t - a.t), a.q + t * (b.q - a.q)});
+                kept.push_back(
+                    {a.s + t * (b.s - a.s), a.t + t * (b.t - a.t), a.r + t * (b.r - a.r), a.q + t * (b.q - a.q)});
             }
         }
         points = kept;
@@ -122,7 +132,7 @@ Rational area_of(const Polygon& polygon) {
     return area_of(points);
 }
 
-TextureRegion some_region(Random& random) {
+TextureRegion some_sides(Random& random) {
     const double size = random.power_of_ten(-2.0, 3.0);
     switch (random.integer(0, 3)) {
         case 0:
@@ -133,6 +143,23 @@ TextureRegion some_region(Random& random) {
             const glm::dvec2 min(random.uniform(-size, size), random.uniform(-size, size));
             return atlas_tile(min, min + glm::dvec2(random.uniform(0.1, 1.0), random.uniform(0.1, 1.0)) * size);
         }
+    }
+}
+
+// Every second one has a depth.
+TextureRegion some_region(Random& random) {
+    const TextureRegion region = some_sides(random);
+    switch (random.integer(0, 5)) {
+        case 0:
+            return region.with_depth();
+        case 1:
+            return region.with_depth(-1.0, 1.0);
+        case 2: {
+            const double r_min = random.uniform(-1.0, 1.0);
+            return region.with_depth(r_min, r_min + random.uniform(0.1, 2.0));
+        }
+        default:
+            return region;
     }
 }
 
@@ -164,9 +191,15 @@ ClipVertex slide_vertex(Random& random, const TextureRegion& region, double spre
     if (special == 1) st.x = region.min().x;
     if (special == 2) st.x = st.y = 0.0;
     const double scale = q == 0.0 ? 1.0 : q;
-    ClipVertex v{{},
-                 {support::to_float(st.x * scale), support::to_float(st.y * scale), random.uniform_float(-1.0, 1.0),
-                  support::to_float(q)}};
+    double r = random.uniform(-1.0, 1.0);
+    if (const auto depth = region.depth()) {
+        const double middle_of_depth = 0.5 * (depth->x + depth->y);
+        r = scale *
+            (special == 4 ? depth->y : middle_of_depth + (depth->y - depth->x) * random.uniform(-spread, spread));
+    }
+    ClipVertex v{
+        {},
+        {support::to_float(st.x * scale), support::to_float(st.y * scale), support::to_float(r), support::to_float(q)}};
     if (special == 3) v.strq = {0.0f, 0.0f, v.strq.z, 0.0f};
     v.position = v.strq;
     return v;
@@ -180,12 +213,17 @@ Polygon slide_polygon(Random& random, const TextureRegion& region) {
     const glm::dvec2 radius = size * glm::dvec2(random.power_of_ten(-2.0, 0.7), random.power_of_ten(-2.0, 0.7));
     const double turn = random.uniform(0.0, 6.3), slope = random.uniform(-0.9, 0.9);
     const double depth = random.power_of_ten(-2.0, 2.0);
+    // r is linear in s, t and q.
+    const glm::dvec2 limits = region.depth().value_or(glm::dvec2(-1.0, 1.0));
+    const double deep = (limits.y - limits.x) * random.uniform(0.2, 2.0) * (random.coin() ? 1.0 : -1.0);
+    const double of_middle = random.uniform(limits.x, limits.y);
     Polygon polygon;
     for (int i = 0; i < corners; ++i) {
         const double angle = turn + 6.283185307179586 * i / corners;
         const double q = depth * (1.0 + slope * std::cos(angle));
         const glm::dvec2 st = (centre + radius * glm::dvec2(std::cos(angle), std::sin(angle))) * q;
-        const glm::vec4 strq(support::to_float(st.x), support::to_float(st.y), random.uniform_float(-1.0, 1.0),
+        const double r = of_middle * q + deep * ((st.x - centre.x * q) / size.x + (st.y - centre.y * q) / size.y);
+        const glm::vec4 strq(support::to_float(st.x), support::to_float(st.y), support::to_float(r),
                              support::to_float(q));
         polygon.push_back({strq, strq});
     }
@@ -197,9 +235,11 @@ void require_inside(const Polygon& out, const Polygon& polygon, const TextureReg
     for (const ClipVertex& v : out) {
         REQUIRE_MESSAGE(v.strq.w > 0.0f, hex_of(polygon, region));
         const Point p = point_of(v);
-        for (std::size_t side = 1; side < 5; ++side) {
+        for (std::size_t side = 1; side < distance_count(region); ++side) {
             const int k = side < 3 ? 0 : 1;
-            const double largest = std::max(std::fabs(region.min()[k]), std::fabs(region.max()[k]));
+            const glm::dvec2 sides =
+                side < 5 ? glm::dvec2(region.min()[k], region.max()[k]) : region.depth().value_or(glm::dvec2());
+            const double largest = std::max(std::fabs(sides.x), std::fabs(sides.y));
             const Rational slack = exactly(texgen::slide_clip_error) * exactly(largest) * p.q;
             REQUIRE_MESSAGE(distance(side, p, region) >= -slack, hex_of(polygon, region));
         }
@@ -217,6 +257,7 @@ TEST_CASE("the clip planes are the exact ones within their bound, and of their s
         for (int column = 0; column < 4; ++column) {
             for (int row = 0; row < 4; ++row) matrix[column][row] = random.uniform(-1.0, 1.0);
             // A row that lies on a side, or next to it.
+            if (region.depth() && random.integer(0, 3) == 0) matrix[column].z = region.depth()->x * matrix[column].w;
             if (random.integer(0, 3) == 0) {
                 matrix[column].x = region.min().x * matrix[column].w;
                 matrix[column].y = std::nextafter(region.max().y * matrix[column].w, 0.0);
@@ -225,8 +266,10 @@ TEST_CASE("the clip planes are the exact ones within their bound, and of their s
         }
         const auto planes = clip_planes(texgen::WorldTexgen(matrix), region);
         for (int column = 0; column < 4; ++column) {
-            const Point of_column{exactly(matrix[column].x), exactly(matrix[column].y), exactly(matrix[column].w)};
-            for (std::size_t side = 0; side < 5; ++side) {
+            const Point of_column{exactly(matrix[column].x), exactly(matrix[column].y), exactly(matrix[column].z),
+                                  exactly(matrix[column].w)};
+            REQUIRE(planes.size() == distance_count(region));
+            for (std::size_t side = 0; side < planes.size(); ++side) {
                 const Rational exact = distance(side, of_column, region);
                 const Rational off = magnitude(exactly(planes[side][column]) - exact);
                 const Rational bound = (Rational(1, 2) + support::power_of_two(-29)) *
@@ -297,7 +340,7 @@ TEST_CASE("a polygon inside the slide keeps every bit and its order, also where 
         }
         polygon[0].position.x = -0.0f;
         polygon[1].position.y = infinity;
-        polygon[2].strq.z = nan_float;
+        if (!region.depth()) polygon[2].strq.z = nan_float;
         REQUIRE_MESSAGE(bits(clipped(polygon, region)) == bits(polygon), hex_of(polygon, region));
     }
     CHECK(touching > 100);
@@ -305,12 +348,12 @@ TEST_CASE("a polygon inside the slide keeps every bit and its order, also where 
 
 TEST_CASE("a polygon beyond one side leaves nothing, even where a corner touches") {
     Random random(1104);
-    std::array<int, 5> beyond{};
+    std::array<int, 7> beyond{};
     int touching = 0;
     for (int i = 0; i < 20000; ++i) {
         const TextureRegion region = some_region(random);
         const Polygon polygon{slide_vertex(random, region), slide_vertex(random, region), slide_vertex(random, region)};
-        for (std::size_t side = 0; side < 5; ++side) {
+        for (std::size_t side = 0; side < distance_count(region); ++side) {
             std::array<int, 3> sign{};
             for (std::size_t k = 0; k < 3; ++k) {
                 const Rational d = distance(side, point_of(polygon[k]), region);
@@ -352,7 +395,7 @@ TEST_CASE("an edge on a side leaves nothing of what is beyond it, whatever corne
 
 TEST_CASE("what comes out is inside within the stated error, and what was inside comes out") {
     Random random(1105);
-    std::array<int, 9> counts{};
+    std::array<int, 11> counts{};
     int kept = 0, behind = 0, at_projector = 0;
     for (int i = 0; i < 30000; ++i) {
         const TextureRegion region = some_region(random);
@@ -360,7 +403,7 @@ TEST_CASE("what comes out is inside within the stated error, and what was inside
                                            : Polygon{slide_vertex(random, region), slide_vertex(random, region),
                                                      slide_vertex(random, region)};
         const Polygon out = clipped(polygon, region);
-        REQUIRE_MESSAGE(out.size() <= polygon.size() + 5, hex_of(polygon, region));
+        REQUIRE_MESSAGE(out.size() <= polygon.size() + (region.depth() ? 7 : 5), hex_of(polygon, region));
         if (polygon.size() == 3) ++counts[out.size()];
         require_inside(out, polygon, region);
         const std::vector<Bits> left = bits(out);
@@ -423,13 +466,14 @@ TEST_CASE("a vertex next to a side, or on it, stays exactly where it is inside")
 
 TEST_CASE("a vertex that one side makes is the exact intersection, each component the nearest float") {
     Random random(1106);
-    int made = 0, cancelling = 0;
+    int made = 0, made_by_depth = 0, cancelling = 0;
     for (int i = 0; i < 20000; ++i) {
         const TextureRegion region = some_region(random);
-        Polygon polygon{slide_vertex(random, region), slide_vertex(random, region), slide_vertex(random, region)};
+        Polygon polygon;
+        while (polygon.size() < 3) polygon.push_back(slide_vertex(random, region, 1.0));
         if (random.coin()) {
             // The intersection's t, q or position become differences of nearly equal terms.
-            const auto side = static_cast<std::size_t>(random.integer(1, 4));
+            const auto side = static_cast<std::size_t>(random.integer(1, static_cast<int>(distance_count(region)) - 1));
             const Rational da = distance(side, point_of(polygon[0]), region);
             const Rational db = distance(side, point_of(polygon[1]), region);
             if (da * db < 0) {
@@ -440,9 +484,9 @@ TEST_CASE("a vertex that one side makes is the exact intersection, each componen
             }
         }
         // One side has vertices outside, and all the others none.
-        std::size_t crossed = 5;
+        std::size_t crossed = 0;
         int sides = 0;
-        for (std::size_t side = 0; side < 5; ++side) {
+        for (std::size_t side = 0; side < distance_count(region); ++side) {
             const bool crosses = std::any_of(polygon.begin(), polygon.end(), [&](const ClipVertex& v) {
                 return distance(side, point_of(v), region) < 0;
             });
@@ -471,10 +515,12 @@ TEST_CASE("a vertex that one side makes is the exact intersection, each componen
             }
             if (projector_on_edge) continue;
             ++made;
+            made_by_depth += crossed > 4;
             REQUIRE_MESSAGE(found, hex_of(polygon, region));
         }
     }
     CHECK(made > 300);
+    CHECK(made_by_depth > 50);
     CHECK(cancelling > 1000);
 }
 
@@ -656,6 +702,31 @@ TEST_CASE("a region without a point leaves nothing; sides at infinity cut nothin
     CHECK(left > 500);
 }
 
+TEST_CASE("a depth without a point leaves nothing, one to infinity cuts nothing, and r must be a number then") {
+    const auto vertex = [](float s, float t, float r) { return ClipVertex{{s, t, r, 1}, {s, t, r, 1}}; };
+    const Polygon polygon{vertex(0.25f, 0.25f, -2.0f), vertex(0.75f, 0.25f, 0.5f), vertex(0.5f, 0.75f, 3.0f)};
+    const double infinite = HUGE_VAL, nan = std::numeric_limits<double>::quiet_NaN();
+    for (const TextureRegion& region : {whole_texture().with_depth(1.0, 0.0), whole_texture().with_depth(nan, 1.0),
+                                        whole_texture().with_depth(0.0, nan), whole_texture().with_depth(4.0, 5.0)})
+        CHECK(clipped(polygon, region).empty());
+    CHECK(bits(clipped(polygon, whole_texture().with_depth(-infinite, infinite))) == bits(polygon));
+    CHECK(clipped(polygon, whole_texture().with_depth(0.0, infinite)).size() == 4);
+    CHECK(clipped(polygon, whole_texture().with_depth()).size() == 5);
+    for (const float bad : {nan_float, infinity}) {
+        Polygon spoilt = polygon;
+        spoilt[1].strq.z = bad;
+        CHECK(bits(clipped(spoilt, whole_texture())) == bits(spoilt));
+        CHECK(clipped(spoilt, whole_texture().with_depth()).empty());
+    }
+    // In the place of an infinite limit stands q, so that all planes hold where a point is lit.
+    glm::dmat4 matrix(1.0);
+    matrix[2] = {0.25, 0.5, 2.0, 1.0};
+    const auto planes = clip_planes(texgen::WorldTexgen(matrix), whole_texture().with_depth(0.5, infinite));
+    REQUIRE(planes.size() == 7);
+    CHECK(planes[5] == glm::vec4(0.0f, 0.0f, 1.5f, -0.5f));
+    CHECK(planes[6] == planes[0]);
+}
+
 TEST_CASE("NaN and infinity: s, t, q drop the polygon, r and the position spoil themselves only, nothing crashes") {
     const Polygon good{{{0, 0, 0, 1}, {0.5f, 0.5f, 0, 1}}, {{1, 0, 0, 1}, {3, 0, 0, 1}}, {{0, 1, 0, 1}, {0, 3, 0, 1}}};
     const Polygon clean = clipped(good, whole_texture());
@@ -719,7 +790,7 @@ TEST_CASE("a polygon may be clipped to the slide where it lies, and in more room
         const TextureRegion region = some_region(random);
         const Polygon polygon = slide_polygon(random, region);
         Polygon storage = polygon;
-        storage.resize(polygon.size() + 5 + static_cast<std::size_t>(random.integer(0, 3)));
+        storage.resize(polygon.size() + (region.depth() ? 7 : 5) + static_cast<std::size_t>(random.integer(0, 3)));
         const std::span<ClipVertex> all(storage);
         storage.resize(clip_to_slide(all.first(polygon.size()), region, all));
         REQUIRE_MESSAGE(bits(storage) == bits(clipped(polygon, region)), hex_of(polygon, region));

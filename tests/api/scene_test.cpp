@@ -149,7 +149,28 @@ Projector some_projector(Random& random, double size, Hostile* hostile = nullptr
     return *projector;
 }
 
-TextureRegion some_region(Random& random, Hostile* hostile = nullptr) {
+// In half of the regions.
+TextureRegion with_some_depth(const TextureRegion& region, Random& random, bool hostile) {
+    switch (random.integer(0, hostile ? 11 : 9)) {
+        case 0:
+        case 1:
+            return region.with_depth();
+        case 2:
+            return region.with_depth(-1.0, 1.0);
+        case 3:
+            return region.with_depth(random.uniform(0.0, 0.9), random.uniform(0.95, 1.0));
+        case 4:
+            return random.coin() ? region.with_depth(0.0, HUGE_VAL) : region.with_depth(-HUGE_VAL, 0.99);
+        case 10:
+            return region.with_depth(1.0, 0.0);
+        case 11:
+            return region.with_depth(random.coin() ? std::nan("") : random.power_of_ten(-300.0, 300.0), 1.0);
+        default:
+            return region;
+    }
+}
+
+TextureRegion some_sides(Random& random, Hostile* hostile) {
     switch (hostile != nullptr ? random.integer(0, 9) : 9) {
         case 0:
             ++hostile->empty_region;
@@ -164,6 +185,10 @@ TextureRegion some_region(Random& random, Hostile* hostile = nullptr) {
         default:
             return texgen::whole_texture();
     }
+}
+
+TextureRegion some_region(Random& random, Hostile* hostile = nullptr) {
+    return with_some_depth(some_sides(random, hostile), random, hostile != nullptr);
 }
 
 ObjectTexgen texgen_of(const Engine& engine, std::size_t object, std::size_t projector) {
@@ -191,7 +216,8 @@ std::string hex_of(const Engine& engine, std::size_t object, std::size_t project
     return hex(engine.models[object].matrix()) + " box " + hex(engine.bounds[object].min) + " to " +
            hex(engine.bounds[object].max) + " projection " + hex(engine.projectors[projector].projection.matrix()) +
            " view " + hex(engine.projectors[projector].view.matrix()) + " region " +
-           hex(engine.regions[projector].min()) + " to " + hex(engine.regions[projector].max());
+           hex(engine.regions[projector].min()) + " to " + hex(engine.regions[projector].max()) +
+           (engine.regions[projector].depth() ? " depth " + hex(*engine.regions[projector].depth()) : "");
 }
 
 struct Tally {
@@ -354,14 +380,17 @@ TEST_CASE(
                 for (int k = 0; k < 3; ++k) model[j][k] = j == k ? 1.0 : 0.0;
             model[3] += glm::dvec4(offset, 0.0);
             const auto p = static_cast<std::size_t>(random.integer(0, 2));
-            const int side = random.integer(0, 3);
+            const std::optional<glm::dvec2> depth = engine.regions[p].depth();
+            const bool has_two_limits = depth && std::isfinite(depth->x) && std::isfinite(depth->y);
+            const int side = random.integer(0, has_two_limits ? 5 : 3);
             for (int step = 0; step < 4; ++step) {
                 const auto form = [&](const glm::dmat4& m) {
-                    const TextureRegion& region = engine.regions[p];
+                    const int k = side / 2;
+                    const glm::dvec2 sides =
+                        k == 2 ? *depth : glm::dvec2(engine.regions[p].min()[k], engine.regions[p].max()[k]);
                     glm::dvec4 row;
                     for (int j = 0; j < 4; ++j)
-                        row[j] = (side % 2 == 0 ? m[j][side / 2] - region.min()[side / 2] * m[j].w
-                                                : region.max()[side / 2] * m[j].w - m[j][side / 2]);
+                        row[j] = side % 2 == 0 ? m[j][k] - sides.x * m[j].w : sides.y * m[j].w - m[j][k];
                     return row;
                 };
                 const glm::dmat4 world = texture_from_world(engine.projectors[p], engine.regions[p]).matrix();
@@ -401,7 +430,9 @@ TEST_CASE(
                     if (at.q.sign() <= 0) continue;
                     const support::Quotient s = at.over_q(0), t = at.over_q(1);
                     const bool lit = compare(s, region.min().x) >= 0 && compare(s, region.max().x) <= 0 &&
-                                     compare(t, region.min().y) >= 0 && compare(t, region.max().y) <= 0;
+                                     compare(t, region.min().y) >= 0 && compare(t, region.max().y) <= 0 &&
+                                     (!region.depth() || (compare(at.over_q(2), region.depth()->x) >= 0 &&
+                                                          compare(at.over_q(2), region.depth()->y) <= 0));
                     lit_points += lit;
                     if (lit) REQUIRE_MESSAGE(is_paired, hex_of(engine, o, p));
                 }
@@ -632,7 +663,7 @@ TEST_CASE("whatever the numbers of matrices and regions are, the pairs are those
             };
             if (random.integer(0, 3) == 0) {
                 const glm::dvec2 min{-side(), -side()}, max{side(), side()};
-                engine.regions[p] = texgen::atlas_tile(min, max);
+                engine.regions[p] = with_some_depth(texgen::atlas_tile(min, max), random, true);
             }
         };
         for (std::size_t o = 0; o < engine.models.size(); ++o)
@@ -677,6 +708,35 @@ TEST_CASE("whatever the numbers of matrices and regions are, the pairs are those
     CHECK(tally.outside > 50000);
     CHECK(tally.partial > 50000);
     CHECK(tally.inside > 100);
+}
+
+TEST_CASE("what is before or beyond the depth of a projector is no pair of it, and costs no T_o") {
+    Engine engine;
+    const texgen::Aim aim{{0, 0, 0}, {0, 0, -1}, {0, 1, 0}};
+    for (int i = 0; i < 100; ++i) {
+        engine.models.push_back(ModelMatrix(glm::dmat4(1.0)));
+        const float z = -5.0f * static_cast<float>(i) - 2.0f;
+        engine.bounds.push_back({{-0.1f, -0.1f, z - 1.0f}, {0.1f, 0.1f, z}});
+    }
+    for (const texgen::Conventions conventions :
+         {texgen::opengl, texgen::direct3d, left_handed(texgen::direct3d), texgen::vulkan}) {
+        engine.projectors = {
+            *make_projector(texgen::PerspectiveLens{texgen::degrees(60), 1.0, 1.0, 20.0}, aim, conventions)};
+        engine.regions = {texgen::whole_texture()};
+        Scene scene;
+        const auto everywhere = scene.update(engine.view(), {});
+        CHECK(scene.pairs().size() == 100);
+        engine.regions = {texgen::whole_texture().with_depth()};
+        const std::uint32_t first = 0;
+        const auto within = scene.update(engine.view(), {.objects = {}, .projectors = {&first, 1}});
+        REQUIRE(scene.pairs().size() == 4);  // those that begin at 2, 7, 12 and 17
+        for (std::uint32_t k = 0; k < 4; ++k) {
+            CHECK(scene.pairs()[k].object == k);
+            CHECK(scene.pairs()[k].coverage == Coverage::inside);
+        }
+        CHECK(everywhere.texgens_computed == 100);
+        CHECK(within.texgens_computed <= 5);
+    }
 }
 
 TEST_CASE("one T_e a projector, made anew when the camera or the projector moved") {

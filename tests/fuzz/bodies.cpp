@@ -27,13 +27,14 @@ using texgen::Sphere;
 
 bool is_nan(const glm::vec3& v) { return std::isnan(v.x) || std::isnan(v.y) || std::isnan(v.z); }
 
-// Whether a point is lit: q > 0, and s and t between the sides, which may be infinite.
+// Whether a point is lit: q > 0, and s, t, and r where there is a depth, between the sides, which may be infinite.
 bool is_lit(const glm::dmat4& matrix, const texgen::TextureRegion& region, const glm::vec3& point) {
     const support::Homogeneous at = support::exactly_at(matrix, point);
     if (at.q.sign() <= 0) return false;
-    for (std::size_t k = 0; k < 2; ++k) {
+    for (std::size_t k = 0; k < (region.depth() ? 3 : 2); ++k) {
         const int i = static_cast<int>(k);
-        const double min = region.min()[i], max = region.max()[i];
+        const double min = k == 2 ? region.depth()->x : region.min()[i];
+        const double max = k == 2 ? region.depth()->y : region.max()[i];
         if (std::isnan(min) || std::isnan(max)) return false;
         if (compare(at.over_q(k), min) < 0 || compare(at.over_q(k), max) > 0) return false;
     }
@@ -123,6 +124,7 @@ bool can_say(const glm::dmat4& texgen, const texgen::TextureRegion& region) {
     const auto is_moderate = [](double x) { return x == 0.0 || (std::fabs(x) > 0x1p-150 && std::fabs(x) < 0x1p150); };
     for (int k = 0; k < 2; ++k)
         if (!is_moderate(region.min()[k]) || !is_moderate(region.max()[k])) return false;
+    if (region.depth() && (!is_moderate(region.depth()->x) || !is_moderate(region.depth()->y))) return false;
     for (int column = 0; column < 4; ++column)
         for (int row = 0; row < 4; ++row)
             if (!is_moderate(texgen[column][row])) return false;
@@ -191,7 +193,7 @@ void update_scenes(Input& input) {
         for (std::size_t i = input.size(2); i > 0; --i) {
             if (input.coin() || projectors.empty()) {
                 projectors.push_back(projector_of());
-                regions.push_back(input.region());
+                regions.push_back(input.region_with_depth());
             } else {
                 const std::size_t p = input.size(3) % projectors.size();
                 projectors[p] = projector_of();
@@ -221,7 +223,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         return 0;
     }
     const texgen::ObjectTexgen texgen(input.coin() ? glm::dmat4(input.matrix()) : input.wide_matrix());
-    const texgen::TextureRegion region = input.region();
+    const texgen::TextureRegion region = input.region_with_depth();
     if (input.coin())
         cover_boxes(input, texgen, region);
     else

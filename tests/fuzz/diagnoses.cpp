@@ -84,7 +84,7 @@ void diagnose_anything(Input& input) {
         setup.world_from_space.emplace(pose);
         is_bad = is_bad || !fuzz::all_finite(pose);
     }
-    if (input.coin()) setup.region = input.region();
+    if (input.coin()) setup.region = input.region_with_depth();
     if (input.coin()) setup.depth = texgen::DepthMapping::ndc;
     if (input.coin()) setup.conventions = input.conventions();
     if (input.coin()) setup.texels_per_unit = {input.wide_number(), input.wide_number()};
@@ -172,6 +172,7 @@ void diagnose_what_is_right(Input& input) {
         setup.world_from_space.emplace(pose);
     }
     const Transform<World, Space> world_from_space(pose);
+    if (input.coin()) setup.region = setup.region.with_depth(setup.projector->conventions, setup.depth);
     const auto texgen = texgen::detail::texture_from_projector_eye(*setup.projector, setup.region, setup.depth) *
                         (setup.projector->view * world_from_space);
     if (input.coin()) setup.texgen = input.coin() ? texgen : Transform<texgen::Texture, Space>(texgen.rounded());

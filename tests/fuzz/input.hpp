@@ -133,6 +133,19 @@ public:
             }
         }
     }
+    texgen::TextureRegion region_with_depth() {
+        const texgen::TextureRegion sides = region();
+        switch (integer(0, 2)) {
+            case 0:
+                return sides;
+            case 1:
+                return sides.with_depth();
+            default: {
+                const double r_min = wide_number();
+                return sides.with_depth(r_min, wide_number());
+            }
+        }
+    }
     texgen::Tolerance tolerance() {
         switch (integer(0, 2)) {
             case 0:

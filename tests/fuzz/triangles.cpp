@@ -183,17 +183,18 @@ void clip_near(Input& input) {
 
 void clip_slide(Input& input) {
     const std::vector<ClipVertex> polygon = polygon_of(input);
-    const texgen::TextureRegion region = input.region();
-    std::vector<ClipVertex> out(polygon.size() + 5 + input.size(4));
+    const texgen::TextureRegion region = input.region_with_depth();
+    std::vector<ClipVertex> out(polygon.size() + (region.depth() ? 7 : 5) + input.size(4));
     const std::size_t count = clip_to_slide(polygon, region, out);
     must(count <= out.size() && (count == 0 || count >= 3), "a polygon has three vertices, or there is none");
     for (std::size_t i = 0; i < count; ++i) {
         const glm::vec4& strq = out[i].strq;
         must(strq.w > 0.0f, "what comes out is in front of the projector");
         const auto q = static_cast<double>(strq.w);
-        for (int k = 0; k < 2; ++k) {
+        for (int k = 0; k < (region.depth() ? 3 : 2); ++k) {
             const double u = static_cast<double>(strq[k]);
-            const double min = region.min()[k], max = region.max()[k];
+            const double min = k == 2 ? region.depth()->x : region.min()[k];
+            const double max = k == 2 ? region.depth()->y : region.max()[k];
             const double room = texgen::slide_clip_error * std::fmax(std::fabs(min), std::fabs(max)) * q;
             // Products that leave the normal floats are promised nothing.
             if (!(room < 0x1p120) || !(q > 0x1p-100) || !(room > 0x1p-120)) continue;

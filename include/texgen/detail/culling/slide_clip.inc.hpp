@@ -212,8 +212,20 @@ inline std::size_t clip_to_slide(std::span<const ClipVertex> polygon, TextureReg
         out[i] = polygon[i];
     }
 
-    // q >= 0 comes first, so that what satisfies a side is a cone. Then q = 0 is left only where s = t = 0.
+    // What is beyond a limit of depth stays so, whatever the cuts at the sides round r to.
     std::size_t count = polygon.size();
+    for (std::size_t k = planes.without_depth; k < planes.size(); ++k) {
+        const detail::SlideDistance limit(planes[k]);
+        bool is_beyond = false, is_within = false;
+        for (std::size_t i = 0; i < count; ++i) {
+            const int sign = limit.sign(out[i]);
+            is_beyond = is_beyond || sign < 0;
+            is_within = is_within || sign > 0;
+        }
+        if (is_beyond && !is_within) return 0;
+    }
+
+    // q >= 0 comes first, so that what satisfies a side is a cone. Then q = 0 is left only where s = t = 0.
     for (const detail::SlidePlane& plane : planes) {
         const detail::SlideDistance side(plane);
         count = detail::cut_edges(
