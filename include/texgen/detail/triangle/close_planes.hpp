@@ -87,7 +87,8 @@ struct CloseRamps {
 // times the c_i: 2^-97 leaves room.
 class ClosePlanes {
 public:
-    ClosePlanes(const TrianglePlanes& planes, const Tile& tile) noexcept : planes_(planes), tile_(tile) {
+    ClosePlanes(const TrianglePlanes& planes, const Tile& tile) noexcept
+        : planes_(planes), tile_(tile), grain_(planes.grain_of_edges()) {
         const double x = static_cast<double>(tile.x) + 0.5;  // integers
         const double y = static_cast<double>(tile.y) + 0.5;  // integers
         for (std::size_t i = 0; i < 3; ++i) {
@@ -117,7 +118,7 @@ public:
             magnitude += magnitude_[i] * std::fabs(c.high);
         }
         ramp.error = 0x1p-97 * magnitude + 0x1p-1000;
-        ramp.grain = planes_.grain(coordinate);
+        ramp.grain = planes_.grain(grain_, coordinate);
         return ramp;
     }
 
@@ -128,6 +129,7 @@ public:
 private:
     const TrianglePlanes& planes_;
     Tile tile_;
+    double grain_;
     DoubleDouble to_x_[3], to_y_[3];  // from the first fragment to the corners
     DoubleDouble edge_[3][3];         // of the side opposite each corner: its function's value there, and by x and by y
     double magnitude_[3];

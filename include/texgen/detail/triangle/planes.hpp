@@ -180,23 +180,24 @@ public:
     double weight(std::size_t i) const noexcept { return weight_[i]; }
 
     // A power of two of which F is a multiple at every fragment: products and sums of floats are multiples of the products
-    // of their last bits. 0 where that is too small for a double.
-    double grain(glm::length_t coordinate) const noexcept {
-        double of_value = std::numeric_limits<double>::infinity();
-        double of_w = of_value;
+    // of their last bits. 0 where that is too small for a double. The first factor is the same for all coordinates.
+    double grain_of_edges() const noexcept {
+        double of_w = std::numeric_limits<double>::infinity();
         double of_x = 0.5;
         double of_y = 0.5;
         for (std::size_t i = 0; i < 3; ++i) {
             const glm::dvec2 at = corner(i);
-            of_value = smaller(of_value, last_bit(value(i, coordinate)));
             of_w = smaller(of_w, last_bit(widened(vertex(i).clip_w)));
             of_x = smaller(of_x, last_bit(at.x));
             of_y = smaller(of_y, last_bit(at.y));
         }
         const double of_weights = std::fabs(weight_[0]) / (widened(triangle_.b.clip_w) * widened(triangle_.c.clip_w));
-        return of_value < std::numeric_limits<double>::infinity()
-                   ? (of_weights * (of_w * of_w)) * (of_x * of_y) * of_value
-                   : 1.0;
+        return (of_weights * (of_w * of_w)) * (of_x * of_y);
+    }
+    double grain(double of_edges, glm::length_t coordinate) const noexcept {
+        double of_value = std::numeric_limits<double>::infinity();
+        for (std::size_t i = 0; i < 3; ++i) of_value = smaller(of_value, last_bit(value(i, coordinate)));
+        return of_value < std::numeric_limits<double>::infinity() ? of_edges * of_value : 1.0;
     }
 
     // The window, seen from the first vertex: the centre of a fragment, and the other vertices.
