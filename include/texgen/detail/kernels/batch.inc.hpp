@@ -2,6 +2,7 @@
 
 #include "batch_set_up.inc.hpp"
 
+#include "batch_closely.inc.hpp"
 #include "batch_fragments.inc.hpp"
 #include "batch_tiles.inc.hpp"
 

@@ -82,6 +82,13 @@ TEXGEN_INLINE Undecided divide_all_fragments(const FragmentsJob& job, std::size_
                 functions.load_from(of_lane, Numerators == 3);
                 in_doubt = divide_lanes(functions, x, y, job.tolerance, quotient, in_front);
             }
+            if (any(in_doubt)) {
+                const float* of_lane[lanes];
+                TEXGEN_UNROLL
+                for (std::size_t i = 0; i < size; ++i)
+                    of_lane[i] = job.vertices + 3 * BatchVertex::size * (ids[i] < job.triangles ? ids[i] : 0);
+                in_doubt = divide_lanes_closely(of_lane, x, y, in_doubt, quotient, in_front);
+            }
             const bool is_whole = n + size <= job.count;
             (is_whole ? out : in_scratch).put(is_whole ? n : 0, quotient, in_front);
             doubtful |= std::uint64_t{bits_of(in_doubt)} << (n - begin);

@@ -114,6 +114,22 @@ struct CloseQ {
     }
 };
 
+// The nearer of `below` and `above`, next to one another, by the sign of the remainder that a quotient leaves beyond their
+// middle (`middle` is twice that). Returns the lanes that this decides.
+TEXGEN_INLINE Words decide_between(const Floats& below, const Floats& above, const Doubles& middle,
+                                   const Doubles& remainder, const LongWords& is_open, const LongWords& is_tie,
+                                   Floats& value) noexcept {
+    // A step from the middle that is less than half of what the floats are away.
+    const Doubles unit = power_of_two_below(middle);
+    const Doubles step = where(is_open, with_sign_of(unit * 0x1p-26, remainder));
+    const Floats nearest = to_floats((middle + step) * 0.5);
+    const LongWords are_neighbours = at_most(to_doubles(above) - to_doubles(below), unit * 0x1p-24);
+    const Words decided =
+        narrow((is_open | is_tie) & are_neighbours) & ~equal(bits(below) & bits(above) & 0x7f800000, 0);
+    value = select(decided, nearest, below);
+    return decided;
+}
+
 // The quotients of a vector, 0 behind. Where value - error and value + error do not round to one float but to neighbours, the
 // sign of F - m Q decides. That is a multiple of the grain of its terms: what is certainly smaller is 0, and the tie is certain,
 // too. Returns the lanes that stay in doubt.
@@ -139,13 +155,7 @@ TEXGEN_INLINE Words divide_closely(const CloseRow& row, double grain, const Clos
     const Doubles bound = magnitude(middle) * half_q_error + row.error;
     const LongWords is_open = greater(magnitude(remainder), bound);
     const LongWords is_tie = greater(minimum(unit * middle_grain, Doubles{} + grain), bound * 4.0);
-    // A step from the middle that is less than half of what the floats are away.
-    const Doubles step = where(is_open, with_sign_of(unit * 0x1p-26, remainder));
-    const Floats nearest = to_floats((middle + step) * 0.5);
-    const LongWords are_neighbours = at_most(to_doubles(above) - to_doubles(below), unit * 0x1p-24);
-    const Words decided =
-        narrow((is_open | is_tie) & are_neighbours) & ~equal(bits(below) & bits(above) & 0x7f800000, 0);
-    value = select(decided, nearest, below);
+    const Words decided = decide_between(below, above, middle, remainder, is_open, is_tie, value);
     const Words doubt = ~(decided | equal(differ, 0));
     if (!any(doubt)) return doubt;
     const Words is_zero = narrow(greater(row.least - magnitude(sum), 0.0) & q.in_front) & doubt;

@@ -61,6 +61,7 @@ struct TilesJob : BatchJob {
 
 // Triangle ids[k] of `triangles` at fragment k of a rectangle; any other id is no triangle.
 struct FragmentsJob : BatchJob {
+    const float* vertices;
     const std::uint32_t* ids;
     std::uint32_t triangles;
     int x, y, width;

@@ -109,9 +109,11 @@ template <class Vector>
 TEXGEN_INLINE Words at_most(const Vector& a, const Vector& b) noexcept {
     return LongWords::of([&](int i) { return a.lane[i] <= b.lane[i] ? -1 : 0; });
 }
-TEXGEN_INLINE Doubles leading_27_bits(const Doubles& a) noexcept {
-    return Doubles::of(
-        [&](int i) { return bit_cast<double>(bit_cast<std::uint64_t>(a.lane[i]) & ~std::uint64_t{0x3ffffff}); });
+template <int Bits>
+TEXGEN_INLINE Doubles leading_bits(const Doubles& a) noexcept {
+    return Doubles::of([&](int i) {
+        return bit_cast<double>(bit_cast<std::uint64_t>(a.lane[i]) & (~std::uint64_t{0} << (53 - Bits)));
+    });
 }
 TEXGEN_INLINE Doubles where(const LongWords& mask, const Doubles& values) noexcept {
     return Doubles::of([&](int i) { return mask.lane[i] != 0 ? values.lane[i] : 0.0; });

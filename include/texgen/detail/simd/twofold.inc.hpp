@@ -149,7 +149,7 @@ struct TwofoldDivisor {
         low = q.low;
         lost = q.lost;
         reciprocal = where(in_front, 1.0 / q.high);
-        part[0] = leading_27_bits(q.high);
+        part[0] = leading_bits<27>(q.high);
         part[1] = q.high - part[0];
     }
 };
@@ -190,7 +190,7 @@ TEXGEN_INLINE Floats nearest_quotients(const Twofold& s, const TwofoldDivisor& q
         remainder = leading_rest + (s.low - low_product);
         lost = lost + (magnitude(s.low) + magnitude(low_product)) * 0x1p-52;
     } else {
-        const Doubles q_low = leading_27_bits(q.low);
+        const Doubles q_low = leading_bits<27>(q.low);
         const Doubles last_product = middle * (q.low - q_low);
         Doubles left[2];
         Doubles sum = two_sum(leading_rest, s.low, left[0]);

@@ -57,8 +57,9 @@ using LongWords [[gnu::vector_size(TEXGEN_LANE_BYTES)]] = long long;
 TEXGEN_INLINE LongWords greater(const Doubles& a, double b) noexcept { return a > b; }
 TEXGEN_INLINE LongWords greater(const Doubles& a, const Doubles& b) noexcept { return a > b; }
 TEXGEN_INLINE LongWords at_most(const Doubles& a, const Doubles& b) noexcept { return a <= b; }
-TEXGEN_INLINE Doubles leading_27_bits(const Doubles& a) noexcept {
-    return __builtin_bit_cast(Doubles, __builtin_bit_cast(LongWords, a) & ~0x3ffffffLL);
+template <int Bits>
+TEXGEN_INLINE Doubles leading_bits(const Doubles& a) noexcept {
+    return __builtin_bit_cast(Doubles, __builtin_bit_cast(LongWords, a) & -(1LL << (53 - Bits)));
 }
 TEXGEN_INLINE Doubles where(const LongWords& mask, const Doubles& values) noexcept {
     return __builtin_bit_cast(Doubles, mask & __builtin_bit_cast(LongWords, values));

@@ -187,6 +187,7 @@ void interpolate(const TriangleBatch& batch, std::span<const std::uint32_t> ids,
     if (ids.size() != count || !detail::take_computed(out, count)) return;
     detail::FragmentsJob job{};
     detail::describe(job, batch, out, count);
+    job.vertices = batch.size() == 0 ? nullptr : &batch.triangle(0).a.window.x;
     job.ids = ids.data();
     job.triangles = static_cast<std::uint32_t>(batch.size());
     job.x = rect.x;
