@@ -8,7 +8,12 @@ namespace TEXGEN_DETAIL::TEXGEN_ISA {
 struct VertexLanes {
     Floats value[8];
 
-    TEXGEN_INLINE void load_from(const float* const (&triangle)[lanes], std::size_t i) noexcept {
+    TEXGEN_INLINE void load_from(const float* const (&triangle)[lanes], std::size_t i, bool is_one) noexcept {
+        if (is_one) {
+            TEXGEN_UNROLL
+            for (std::size_t k = 0; k < 8; ++k) value[k] = Floats{} + triangle[0][i * BatchVertex::size + k];
+            return;
+        }
         TEXGEN_UNROLL
         for (std::size_t first = 0; first < 8; first += static_cast<std::size_t>(lanes)) {
             Floats column[lanes];
@@ -52,14 +57,15 @@ struct CloseLanes {
     Doubles inexact;                          // 0 where all G_i are a double, exactly
     LongWords is_known;                       // that, within 2^-98 of its size
 
-    TEXGEN_INLINE CloseLanes(const float* const (&triangle)[lanes], const Doubles& x, const Doubles& y) noexcept {
+    TEXGEN_INLINE CloseLanes(const float* const (&triangle)[lanes], const Doubles& x, const Doubles& y,
+                             bool is_one) noexcept {
         Doubles w[3];
         FactorInParts to_x[3], to_y[3];
         Doubles lost{}, below{};
         TEXGEN_UNROLL
         for (std::size_t i = 0; i < 3; ++i) {
             VertexLanes vertex;
-            vertex.load_from(triangle, i);
+            vertex.load_from(triangle, i, is_one);
             w[i] = to_doubles(vertex.value[2]);
             TEXGEN_UNROLL
             for (std::size_t k = 0; k < 4; ++k) given[i][k] = vertex.value[BatchVertex::strq + k];
@@ -141,10 +147,10 @@ struct CloseLanes {
 // The lanes in doubt (what is not 0) of a vector of fragments at (x, y), again. Returns those that stay so.
 template <std::size_t Numerators>
 TEXGEN_APART Words divide_lanes_closely(const float* const (&triangle)[lanes], const Doubles& x, const Doubles& y,
-                                        const Words& doubtful, Floats (&quotient)[Numerators],
+                                        bool is_one, const Words& doubtful, Floats (&quotient)[Numerators],
                                         Words& in_front) noexcept {
     const Words in_doubt = ~equal(doubtful, 0);
-    const CloseLanes close(triangle, x, y);
+    const CloseLanes close(triangle, x, y, is_one);
     const Twofold q = close.function(3);
     const LongWords front = greater(q.high, q.lost * 256.0);
     const Doubles reciprocal = where(front, 1.0 / q.high);

@@ -71,7 +71,8 @@ TEXGEN_INLINE Undecided divide_all_fragments(const FragmentsJob& job, std::size_
             Floats quotient[Numerators];
             Words in_front;
             Words in_doubt;
-            if (!any(load<Words>(ids) ^ (Words{} + static_cast<int>(ids[0])))) {
+            const bool is_one = !any(load<Words>(ids) ^ (Words{} + static_cast<int>(ids[0])));
+            if (is_one) {
                 const OneTriangle functions{planes_of(ids[0])->value};
                 in_doubt = divide_lanes(functions, x, y, job.tolerance, quotient, in_front);
             } else {
@@ -87,7 +88,7 @@ TEXGEN_INLINE Undecided divide_all_fragments(const FragmentsJob& job, std::size_
                 TEXGEN_UNROLL
                 for (std::size_t i = 0; i < size; ++i)
                     of_lane[i] = job.vertices + 3 * BatchVertex::size * (ids[i] < job.triangles ? ids[i] : 0);
-                in_doubt = divide_lanes_closely(of_lane, x, y, in_doubt, quotient, in_front);
+                in_doubt = divide_lanes_closely(of_lane, x, y, is_one, in_doubt, quotient, in_front);
             }
             const bool is_whole = n + size <= job.count;
             (is_whole ? out : in_scratch).put(is_whole ? n : 0, quotient, in_front);
