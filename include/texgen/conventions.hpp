@@ -65,6 +65,7 @@ public:
     [[nodiscard]] GLM_CONSTEXPR TextureRegion with_depth(double r_min = 0.0, double r_max = 1.0) const noexcept {
         TextureRegion region(min_, max_);
         region.depth_ = glm::dvec2(r_min, r_max);
+        region.has_depth_ = true;
         return region;
     }
     // The whole depth of a projector, reversed or not, with r as the mapping has it: [0, 1], or the range of NDC.
@@ -74,12 +75,14 @@ public:
     }
 
     // The limits of r, as they were given; empty: r does not matter.
-    GLM_CONSTEXPR std::optional<glm::dvec2> depth() const noexcept { return depth_; }
+    GLM_CONSTEXPR std::optional<glm::dvec2> depth() const noexcept {
+        if (!has_depth_) return std::nullopt;
+        return depth_;
+    }
 
     friend constexpr bool operator==(const TextureRegion& a, const TextureRegion& b) noexcept {
         return a.min_.x == b.min_.x && a.min_.y == b.min_.y && a.max_.x == b.max_.x && a.max_.y == b.max_.y &&
-               a.depth_.has_value() == b.depth_.has_value() &&
-               (!a.depth_ || (a.depth_->x == b.depth_->x && a.depth_->y == b.depth_->y));
+               a.has_depth_ == b.has_depth_ && a.depth_.x == b.depth_.x && a.depth_.y == b.depth_.y;
     }
 
     friend GLM_CONSTEXPR TextureRegion whole_texture() noexcept;
@@ -87,11 +90,12 @@ public:
     friend GLM_CONSTEXPR TextureRegion atlas_tile(glm::dvec2 min, glm::dvec2 max) noexcept;
 
 private:
-    GLM_CONSTEXPR TextureRegion(glm::dvec2 min, glm::dvec2 max) noexcept : min_(min), max_(max) {}
+    GLM_CONSTEXPR TextureRegion(glm::dvec2 min, glm::dvec2 max) noexcept : min_(min), max_(max), depth_(0.0, 0.0) {}
 
     glm::dvec2 min_;
     glm::dvec2 max_;
-    std::optional<glm::dvec2> depth_;
+    glm::dvec2 depth_;
+    bool has_depth_ = false;
 };
 
 // [0, 1] x [0, 1]: all of a texture that is addressed by fractions.

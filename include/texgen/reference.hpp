@@ -9,9 +9,11 @@
 
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <span>
 
 #include <Eigen/Core>
+#include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 
 #include "conventions.hpp"
@@ -172,7 +174,8 @@ inline constexpr double interpolation_error = 0x1p-50;
 // Guarantee: as interpolation_error says, where every difference of a window coordinate and a pixel centre is exact in
 // double: coordinates that are 0 or at least 2^-13, below 2^17. No allocation, noexcept.
 // Shape: outputs are row-major, width * height; an empty span is not computed. In front of the projector (q > 0) s, t, r
-// are the quotients, and lit is 1 where the s and t that are (or would be) written lie in the closed region, else 0.
+// are the quotients, and lit is 1 where the s and t, and with a depth the r, that are (or would be) written lie in the
+// closed region, else 0.
 // Behind (q <= 0) all four are 0. Outside the triangle the values are those of its plane.
 // Bad input: preconditions, asserted: as strq(), and the sizes agree. NaN and infinity in a coordinate stay in that
 // coordinate; in q they make every fragment dark.
@@ -183,6 +186,7 @@ inline void interpolate(const Triangle& triangle, TextureRegion region, Fragment
     for ([[maybe_unused]] const std::span<float> span : {out.s, out.t, out.r, out.lit})
         TEXGEN_ASSERT(span.empty() || span.size() == width * height);
 
+    const std::optional<glm::dvec2> depth = region.depth();
     const detail::Corners<double> corners(triangle);
     for (std::size_t row = 0; row < height; ++row) {
         const double y = rect.y + static_cast<double>(row) + 0.5;  // integers
@@ -194,12 +198,13 @@ inline void interpolate(const Triangle& triangle, TextureRegion region, Fragment
             const auto divided = [&](int i) { return in_front ? static_cast<float>(strq[i] / strq[3]) : 0.0f; };
             const auto s = detail::exactly<double>(divided(0));
             const auto t = detail::exactly<double>(divided(1));
+            const auto r = detail::exactly<double>(divided(2));
             const bool lit = in_front && s >= (region.min)().x && s <= (region.max)().x && t >= (region.min)().y &&
-                             t <= (region.max)().y;
+                             t <= (region.max)().y && (!depth || (r >= depth->x && r <= depth->y));
             const std::size_t fragment = row * width + column;
             if (!out.s.empty()) out.s[fragment] = static_cast<float>(s);
             if (!out.t.empty()) out.t[fragment] = static_cast<float>(t);
-            if (!out.r.empty()) out.r[fragment] = divided(2);
+            if (!out.r.empty()) out.r[fragment] = static_cast<float>(r);
             if (!out.lit.empty()) out.lit[fragment] = lit ? 1.0f : 0.0f;
         }
     }

@@ -47,12 +47,9 @@ class LitTest {
 public:
     explicit LitTest(const TextureRegion& region) noexcept
         : min_{float_at_least((region.min)().x), float_at_least((region.min)().y)},
-          max_{-float_at_least(-(region.max)().x), -float_at_least(-(region.max)().y)} {
-        const std::optional<glm::dvec2> depth = region.depth();
-        has_depth_ = depth.has_value();
-        if (!depth) return;
-        r_min_ = float_at_least(depth->x);
-        r_max_ = -float_at_least(-depth->y);
+          max_{-float_at_least(-(region.max)().x), -float_at_least(-(region.max)().y)},
+          has_depth_(region.depth().has_value()) {
+        if (has_depth_) take(*region.depth());
     }
 
     // Of s and t. Where there is a depth, r has to be in [r_min, r_max] as well.
@@ -65,11 +62,7 @@ public:
     bool has_depth() const noexcept { return has_depth_; }
     float r_min() const noexcept { return r_min_; }
     float r_max() const noexcept { return r_max_; }
-    LitTest without_depth() const noexcept {
-        LitTest sides = *this;
-        sides.has_depth_ = false;
-        return sides;
-    }
+    void drop_depth() noexcept { has_depth_ = false; }
 
     // The sides of s and t as the kernels take them.
     void copy_to(float (&min)[2], float (&max)[2]) const noexcept {
@@ -80,6 +73,11 @@ public:
     }
 
 private:
+    void take(const glm::dvec2& depth) noexcept {
+        r_min_ = float_at_least(depth.x);
+        r_max_ = -float_at_least(-depth.y);
+    }
+
     float min_[2];
     float max_[2];
     bool has_depth_;

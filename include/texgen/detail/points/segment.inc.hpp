@@ -200,9 +200,8 @@ void interpolate(const Segment& segment, std::span<const float> alpha, TextureRe
     for ([[maybe_unused]] const float a : alpha) TEXGEN_ASSERT(!(a < 0.0f) && !(a > 1.0f));
     const double accepted = detail::accepted(tolerance);
     const detail::SegmentKernels& kernels = detail::chosen<detail::SegmentKernels>();
-    const detail::LitTest given(region);
-    const bool tests_r = detail::depth_coverage(segment, given, accepted) != Coverage::inside;
-    const detail::LitTest lit = tests_r ? given : given.without_depth();
+    detail::LitTest lit(region);
+    if (lit.has_depth() && detail::depth_coverage(segment, lit, accepted) == Coverage::inside) lit.drop_depth();
     detail::for_each_group(out, alpha.size(), lit, [&](int first, int numerators, const detail::PointOutputs& outputs) {
         detail::SegmentJob job = detail::segment_job(segment, first, numerators);
         lit.copy_to(job.min, job.max);
