@@ -132,8 +132,9 @@ struct SideCoverage {
 };
 
 inline SideCoverage coverage_of(const Corners& at, const Double2& min, const Double2& max, double tolerance) noexcept {
-    const SideOfBound of_min = side_of(at, min, tolerance);
-    const SideOfBound of_max = side_of(at, max, tolerance);
+    SideOfBound of[2];
+    for (std::size_t i = 0; i < 2; ++i) of[i] = side_of(at, i == 0 ? min : max, tolerance);
+    const SideOfBound &of_min = of[0], &of_max = of[1];
     const auto coverage = [&](std::size_t k) {
         if (of_min.all_below[k]) return Coverage::outside;
         if (of_max.all_above[k]) return Coverage::outside;
