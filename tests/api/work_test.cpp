@@ -40,7 +40,10 @@ using texgen::Work;
 
 constexpr double nan_double = std::numeric_limits<double>::quiet_NaN();
 
-std::string hex(const TextureRegion& region) { return "region " + hex(region.min()) + " to " + hex(region.max()); }
+std::string hex(const TextureRegion& region) {
+    const std::string sides = "region " + hex(region.min()) + " to " + hex(region.max());
+    return region.depth() ? sides + ", depth " + hex(*region.depth()) : sides;
+}
 
 // w = 1 and q = 1, and s = r = first + i step at fragment i of every row, t likewise at every row: without an error where
 // first + 1024 step is a float.

@@ -295,6 +295,10 @@ inline bool is_of_a_scene(const PointBatch& batch) {
     return is_of_a_scene(batch.texgen.matrix()) &&
            std::all_of(batch.points.begin(), batch.points.end(), [](const glm::vec3& p) { return is_of_a_scene(p); });
 }
+inline texgen::TextureRegion wide_open() { return texgen::atlas_tile({-1e30, -1e30}, {1e30, 1e30}); }
+// Whose depth begins at the r of ordinary coordinates, so that r alone can tell.
+inline texgen::TextureRegion wide_open_from_half() { return wide_open().with_depth(0.5, 1.0); }
+
 template <std::size_t Count, bool IsExact>
 Calls project_calls(const Numbers& n) {
     const auto batch = batch_of<Count>(n);
@@ -303,6 +307,16 @@ Calls project_calls(const Numbers& n) {
         texgen::project(batch->texgen, texgen::world_space(batch->points), texgen::whole_texture(),
                         {.s = batch->out[0], .t = batch->out[1], .r = batch->out[2], .lit = batch->out[3]},
                         IsExact ? texgen::exact : tolerance);
+    });
+}
+// The mask alone, with a depth.
+template <std::size_t Count>
+Calls project_mask_calls(const Numbers& n) {
+    const auto batch = batch_of<Count>(n);
+    if (!is_of_a_scene(*batch)) return {};
+    return calls_of([batch] {
+        texgen::project(batch->texgen, texgen::world_space(batch->points), wide_open_from_half(),
+                        {.s = {}, .t = {}, .r = {}, .lit = batch->out[3]});
     });
 }
 template <std::size_t Count>
@@ -376,7 +390,7 @@ inline Numbers draw_segment(Random& random) {
 inline constexpr Hostile hostile_segment{draw_segment,
                                          "drawn: halves between floats, alphas next to the root of q, or any numbers"};
 
-template <std::size_t Count, bool IsExact>
+template <std::size_t Count, bool IsExact, bool HasDepth = false>
 Calls segment_calls(const Numbers& n) {
     struct Job {
         texgen::Segment segment;
@@ -394,7 +408,7 @@ Calls segment_calls(const Numbers& n) {
     if (!is_of_a_scene(job->segment.a) || !is_of_a_scene(job->segment.b)) return {};
     for (std::vector<float>& out : job->out) out.resize(Count);
     return calls_of([job] {
-        texgen::interpolate(job->segment, job->alpha, texgen::whole_texture(),
+        texgen::interpolate(job->segment, job->alpha, HasDepth ? wide_open_from_half() : texgen::whole_texture(),
                             {.s = job->out[0], .t = job->out[1], .r = job->out[2], .lit = job->out[3]},
                             IsExact ? texgen::exact : tolerance);
     });
@@ -523,8 +537,6 @@ std::shared_ptr<TileCall> tile_call(const Numbers& n, texgen::TextureRegion regi
     for (std::vector<float>& out : call->out) out.resize(Width * Height);
     return call;
 }
-inline texgen::TextureRegion wide_open() { return texgen::atlas_tile({-1e30, -1e30}, {1e30, 1e30}); }
-
 template <int Width, int Height, bool IsExact>
 Calls triangle_calls(const Numbers& n) {
     const auto call = tile_call<Width, Height, IsExact>(n, texgen::whole_texture());
@@ -535,9 +547,9 @@ Calls triangle_calls(const Numbers& n) {
     });
 }
 // One output alone: r, or the mask.
-template <int Width, int Height, bool IsMask>
+template <int Width, int Height, bool IsMask, bool HasDepth = false>
 Calls one_output_calls(const Numbers& n) {
-    const auto call = tile_call<Width, Height, true>(n, wide_open());
+    const auto call = tile_call<Width, Height, true>(n, HasDepth ? wide_open_from_half() : wide_open());
     if (!call) return {};
     return calls_of([call] {
         const std::span<float> out(call->out[0]);
@@ -596,6 +608,11 @@ inline Calls setup_calls(const Numbers& n) {
 }
 inline Calls triangle_work_calls(const Numbers& n) {
     const auto call = tile_call<64, 4, false>(n, texgen::whole_texture());
+    if (!call) return {};
+    return calls_of([call] { keep(call->setup.work(call->rect)); });
+}
+inline Calls volume_work_calls(const Numbers& n) {
+    const auto call = tile_call<64, 4, false>(n, wide_open_from_half());
     if (!call) return {};
     return calls_of([call] { keep(call->setup.work(call->rect)); });
 }
@@ -1277,6 +1294,8 @@ inline const std::array workloads{
              detail::project_calls<1024, false>, detail::always},
     Workload{"project, exact, 1 point", 24, detail::ordinary_points, detail::hostile_points,
              detail::project_calls<1, true>, detail::always},
+    Workload{"project, exact, lit alone with a depth, 1024 points", 24, detail::ordinary_points, detail::hostile_points,
+             detail::project_mask_calls<1024>, detail::always},
     Workload{"project to pairs, 1024 points", 24, detail::ordinary_points, detail::hostile_points,
              detail::project_pairs_calls<1024>, detail::always},
     Workload{"generate, 1024 points", 24, detail::ordinary_points, detail::hostile_points, detail::generate_calls<1024>,
@@ -1296,6 +1315,8 @@ inline const std::array workloads{
              detail::segment_calls<1024, true>, detail::always},
     Workload{"interpolate a segment, tolerance, 1024", 16, detail::ordinary_segment, detail::hostile_segment,
              detail::segment_calls<1024, false>, detail::always},
+    Workload{"interpolate a segment, exact, with a depth, 1024", 16, detail::ordinary_segment, detail::hostile_segment,
+             detail::segment_calls<1024, true, true>, detail::always},
     Workload{"interpolate a segment, exact, 1", 16, detail::ordinary_segment, detail::hostile_segment,
              detail::segment_calls<1, true>, detail::always},
     Workload{"work of a segment", 16, detail::ordinary_segment, detail::hostile_segment, detail::segment_work_calls,
@@ -1324,6 +1345,10 @@ inline const std::array workloads{
              detail::one_output_calls<64, 4, false>, detail::triangle_limit<64, 4>},
     Workload{"interpolate a triangle, exact, lit alone, 64 x 4", 23, detail::ordinary_triangle,
              detail::hostile_triangle, detail::one_output_calls<64, 4, true>, detail::triangle_limit<64, 4>},
+    Workload{"interpolate a triangle, exact, lit alone with a depth, 64 x 4", 23, detail::ordinary_triangle,
+             detail::hostile_triangle, detail::one_output_calls<64, 4, true, true>, detail::triangle_limit<64, 4>},
+    Workload{"TriangleSetup::work with a depth, 64 x 4", 23, detail::ordinary_triangle, detail::hostile_triangle,
+             detail::volume_work_calls, detail::always},
     Workload{"interpolate a batch, exact, 8 x 8", 23, detail::ordinary_triangle, detail::hostile_triangle,
              detail::batch_calls<true>, detail::triangle_limit<8, 8>},
     Workload{"interpolate a batch, tolerance, 8 x 8", 23, detail::ordinary_triangle, detail::hostile_triangle,

@@ -151,11 +151,12 @@ inline Coverage st_coverage(const Corners& at, const LitTest& lit, double tolera
     return of[0] == Coverage::inside && of[1] == Coverage::inside ? Coverage::inside : Coverage::partial;
 }
 
-// Of a depth, where the numerators are r twice. An infinite limit is none: no quotient of a triangle's numbers comes near the
-// one that stands for it. A NaN stays one.
+// Of a depth, where the numerators are r twice. For an infinite limit stands what is rounded to infinity; but where it is none a
+// number that no quotient of a triangle's comes near. A NaN stays one.
 inline Coverage r_coverage(const Corners& at, const LitTest& lit, double tolerance) noexcept {
-    const auto limit = [](float r) { return larger(-0x1p500, smaller(0x1p500, widened(r))); };
-    const double min = limit(lit.r_min()), max = limit(lit.r_max());
+    constexpr double none = 0x1p500, infinite = 0x1p128;
+    const double min = larger(-none, smaller(infinite, widened(lit.r_min())));
+    const double max = larger(-infinite, smaller(none, widened(lit.r_max())));
     return coverage_of(at, double2_of(min, min), double2_of(max, max), tolerance).of[0];
 }
 

@@ -69,11 +69,11 @@ inline void choose_steps(Plan& plan, const Corners& at, double tolerance) noexce
     }
 }
 
-// How much of a tile is between the limits of the region's depth.
+// How much of a tile is between the limits of the region's depth: by the planes as they are, as no more than their leading
+// digits are asked.
 inline Coverage depth_coverage(const TriangleFunctions& triangle, const Tile& tile) noexcept {
     if (!triangle.lit.has_depth()) return Coverage::inside;
-    Corners at = corners_of(triangle.planes, triangle.planes.planes(2, 2), triangle.q, tile);
-    if (at.cancel()) at = corners_of(ClosePlanes(triangle.planes, tile).ramps(2, 2));
+    const Corners at = corners_of(triangle.planes, triangle.planes.planes(2, 2), triangle.q, tile);
     return r_coverage(at, triangle.lit, triangle.tolerance);
 }
 
