@@ -108,7 +108,7 @@ TEST_CASE("every fragment is the nearest float of the exact rational, in every f
     for (const HardFamily& family : support::hard_families) {
         CAPTURE(std::string(family.name));
         Random random(++seed);
-        constexpr int members = 180;
+        constexpr int members = 200;
         int hard = 0;
         Seen seen;
         for (int i = 0; i < members; ++i) {
