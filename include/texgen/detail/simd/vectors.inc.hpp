@@ -280,10 +280,6 @@ TEXGEN_INLINE bool any(const LongWords& mask) noexcept {
     return (mask[0] | mask[1]) != 0;
 #endif
 }
-#if TEXGEN_LANE_BYTES < 64
-TEXGEN_INLINE bool any(const WideWords& mask) noexcept { return any(__builtin_bit_cast(LongWords, mask)); }
-#endif
-
 TEXGEN_INLINE bool any(const WideWords& mask) noexcept {
     using Half = std::make_integer_sequence<int, lanes>;
     return any(half_of<0>(mask, Half()) | half_of<lanes>(mask, Half()));
