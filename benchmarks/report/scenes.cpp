@@ -224,7 +224,7 @@ Scene volume(const Setting& setting) {
     return {
         .name = "volume",
         .title = "The volume that a projector lights",
-        .camera = camera({{5.5, 0.5, 7.5}, {-1.6, -3.0, 0.3}, 39}, setting.aspect),
+        .camera = camera({{5.5, 0.5, 7.5}, {-1.7, -3.0, 0.5}, 34}, setting.aspect),
         .shading = Shading::slide_as_light,
         .light = light_of(setting.lens, walk_through_aim),
         .region = texgen::whole_texture().with_depth(texgen::opengl, texgen::DepthMapping::unit),
