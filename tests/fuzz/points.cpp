@@ -132,7 +132,7 @@ void require_within(const Outputs& out, std::size_t i, const support::Homogeneou
 void project_points(Input& input) {
     const glm::dmat4 matrix = input.coin() ? glm::dmat4(input.matrix()) : input.wide_matrix();
     const ObjectTexgen texgen(matrix);
-    const texgen::TextureRegion region = input.region();
+    const texgen::TextureRegion region = input.region_with_depth();
     const Tolerance tolerance = input.tolerance();
     const std::size_t count = count_of(input);
     const unsigned asked = input.raw<std::uint8_t>() & 15u;
@@ -250,7 +250,7 @@ void generate_points(Input& input) {
 
 void interpolate_segment(Input& input) {
     const texgen::Segment segment{input.vector4(), input.vector4()};
-    const texgen::TextureRegion region = input.region();
+    const texgen::TextureRegion region = input.region_with_depth();
     const Tolerance tolerance = input.tolerance();
     const std::size_t count = count_of(input);
     const unsigned asked = input.raw<std::uint8_t>() & 15u;

@@ -45,7 +45,7 @@ bool has_exact_differences(const texgen::Triangle& triangle) {
 
 void interpolate_triangle(Input& input) {
     const texgen::Triangle triangle{input.vertex(), input.vertex(), input.vertex()};
-    const texgen::TextureRegion region = input.region();
+    const texgen::TextureRegion region = input.region_with_depth();
     const Tolerance tolerance = input.tolerance();
     const auto setup = TriangleSetup::of(triangle, region, tolerance);
     const bool usable = is_usable(triangle.a) && is_usable(triangle.b) && is_usable(triangle.c);
