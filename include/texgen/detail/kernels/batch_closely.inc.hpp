@@ -27,7 +27,7 @@ struct VertexLanes {
     }
 };
 
-// A factor whose products with others are exact in parts, if it has no more than 47 bits: the leading 26, and the rest.
+// The leading 26 bits of a factor, and the rest: of two such products all but that of the rests are exact.
 struct FactorInParts {
     Doubles high, low;
 
@@ -89,19 +89,14 @@ struct CloseLanes {
             size[i] = magnitude(left) + magnitude(right);
             edge[i].high = two_sum(left, right * -1.0, edge[i].low);
             if (is_short) continue;
-            Doubles error[2];
-            const Doubles left_middle = to_x[j].high * to_y[k].low + to_x[j].low * to_y[k].high;
-            const Doubles right_middle = to_y[j].high * to_x[k].low + to_y[j].low * to_x[k].high;
-            const Doubles middle = two_sum(left_middle, right_middle * -1.0, error[0]);
-            const Doubles sum = two_sum(edge[i].high, middle, error[1]);
+            Doubles error[4];
+            const Doubles left_middle = two_sum(to_x[j].high * to_y[k].low, to_x[j].low * to_y[k].high, error[0]);
+            const Doubles right_middle = two_sum(to_y[j].high * to_x[k].low, to_y[j].low * to_x[k].high, error[1]);
+            const Doubles middle = two_sum(left_middle, right_middle * -1.0, error[2]);
+            const Doubles sum = two_sum(edge[i].high, middle, error[3]);
             const Doubles last = to_x[j].low * to_y[k].low - to_y[j].low * to_x[k].low;
-            edge[i].high = two_sum(sum, ((edge[i].low + error[0]) + error[1]) + last, edge[i].low);
-        }
-        if (!is_short) {
-            TEXGEN_UNROLL
-            for (std::size_t i = 0; i < 3; ++i)
-                lost = lost + (magnitude(to_x[i].low - leading_bits<21>(to_x[i].low)) +
-                               magnitude(to_y[i].low - leading_bits<21>(to_y[i].low)));
+            const Doubles rest = ((edge[i].low + error[3]) + (error[2] + (error[0] - error[1]))) + last;
+            edge[i].high = two_sum(sum, rest, edge[i].low);
         }
         const Doubles area = edge[0].high + edge[1].high + edge[2].high;
         is_known = at_most(lost, Doubles{}) & greater(magnitude(area), (size[0] + size[1] + size[2]) * 0x1p-49);

@@ -30,6 +30,15 @@ struct CloseRamp {
         return result;
     }
 
+    // Of double coefficients: takes the multiples of the grain next to them, if their errors leave no others.
+    bool take_multiples() noexcept {
+        if (!(4.0 * error < grain)) return false;
+        const double rounder = 0x1.8p52 * grain;  // they are below 2^46 grains, as the error has 20 u of them
+        for (DoubleDouble& coefficient : term) coefficient.high = (coefficient.high + rounder) - rounder;
+        error = 0.0;
+        return true;
+    }
+
     // |base| + |i dx| + |j dy| where that is largest.
     double size_over(const Tile& tile) const noexcept {
         return std::fabs(term[0].high) + tile.width * std::fabs(term[1].high) + tile.height * std::fabs(term[2].high);

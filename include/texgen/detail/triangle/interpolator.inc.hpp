@@ -78,8 +78,22 @@ private:
 
     // They are made when a tile first needs them, for all of the rectangle.
     CloseRamps close_ramps(const Tile& tile) noexcept {
-        if (!close_) close_ = ClosePlanes(triangle_.planes, rect_).ramps(coordinate_[0], coordinate_[count_ - 1]);
+        if (!close_) close_ = made_close();
         return close_->moved_to(tile);
+    }
+
+    // The planes as they are will do where the grains make them exact.
+    CloseRamps made_close() const noexcept {
+        const TrianglePlanes& planes = triangle_.planes;
+        const glm::length_t coordinate[3] = {coordinate_[0], coordinate_[count_ - 1], 3};
+        CloseRamps plain = plain_ramps(rect_);
+        const double grain_of_edges = planes.grain_of_edges();
+        bool are_exact = true;
+        for (std::size_t k = 0; k < 3 && are_exact; ++k) {
+            plain.function[k].grain = planes.grain(grain_of_edges, coordinate[k]);
+            are_exact = plain.function[k].take_multiples();
+        }
+        return are_exact ? plain : ClosePlanes(planes, rect_).ramps(coordinate[0], coordinate[1]);
     }
 
     // A tile behind is cleared; one that is in doubt is halved, until it is so small that it is divided closely.
@@ -151,7 +165,7 @@ private:
         const int y = static_cast<int>(tile.y - whole_.y);
         const TileJob::Unit unit{x, x + tile.width, y, y + tile.height};
         if (!closely_) {
-            closely_.emplace(make_job(whole_, at), (close_ ? close_ramps(whole_) : plain_ramps()).split());
+            closely_.emplace(make_job(whole_, at), (close_ ? close_ramps(whole_) : plain_ramps(whole_)).split());
             closely_->first.is_contiguous = false;
         }
         const auto& [job, functions] = *closely_;
@@ -164,8 +178,8 @@ private:
     }
 
     // The planes as they are.
-    CloseRamps plain_ramps() const noexcept {
-        const Corners at = corners_of(triangle_.planes, planes_, triangle_.q, whole_);
+    CloseRamps plain_ramps(const Tile& tile) const noexcept {
+        const Corners at = corners_of(triangle_.planes, planes_, triangle_.q, tile);
         const auto plain = [](double base, double dx, double dy, double error) {
             return CloseRamp{{{base, 0.0}, {dx, 0.0}, {dy, 0.0}}, error, 0.0};
         };
@@ -173,7 +187,7 @@ private:
             const auto& [base, dx, dy] = at.numerator_ramp;
             return plain(base[k], dx[k], dy[k], at.numerator_error[k]);
         };
-        return {whole_, {numerator(0), numerator(1), plain(at.q_ramp.base, at.q_ramp.dx, at.q_ramp.dy, at.q_error)}};
+        return {tile, {numerator(0), numerator(1), plain(at.q_ramp.base, at.q_ramp.dx, at.q_ramp.dy, at.q_error)}};
     }
 
     // Fragments of a unit, one by one: a bit for each.
