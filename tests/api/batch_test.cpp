@@ -122,13 +122,28 @@ Shot draw(Random& random) {
 }
 
 texgen::TextureRegion draw_region(Random& random) {
-    switch (random.integer(0, 3)) {
+    const texgen::TextureRegion region = [&] {
+        switch (random.integer(0, 3)) {
+            case 0:
+                return support::everywhere();
+            case 1:
+                return texgen::atlas_tile({0.25, 0.125}, {0.5, 0.75});
+            default:
+                return texgen::whole_texture();
+        }
+    }();
+    switch (random.integer(0, 5)) {
         case 0:
-            return support::everywhere();
+            return region.with_depth();
         case 1:
-            return texgen::atlas_tile({0.25, 0.125}, {0.5, 0.75});
+            return region.with_depth(random.uniform(-1.0, 1.0), random.uniform(0.0, 4.0));
+        case 2: {
+            constexpr double infinity = std::numeric_limits<double>::infinity();
+            const double limit = random.uniform(-1.0, 2.0);
+            return random.coin() ? region.with_depth(limit, infinity) : region.with_depth(-infinity, limit);
+        }
         default:
-            return texgen::whole_texture();
+            return region;
     }
 }
 

@@ -103,7 +103,7 @@ TEXGEN_INLINE Undecided divide_all_fragments(const FragmentsJob& job, std::size_
 template <class = void>
 Undecided divide_batch_fragments(const FragmentsJob& original, std::size_t first) noexcept {
     const FragmentsJob job = original;
-    return job.out[2] != nullptr ? divide_all_fragments<3>(job, first) : divide_all_fragments<2>(job, first);
+    return job.needs_r() ? divide_all_fragments<3>(job, first) : divide_all_fragments<2>(job, first);
 }
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA

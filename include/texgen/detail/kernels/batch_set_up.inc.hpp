@@ -203,20 +203,28 @@ struct FragmentOutputs {
     float* out[3];
     float* lit;
     float min[2], max[2];
+    bool has_depth;
+    float r_min, r_max;
 
     TEXGEN_INLINE explicit FragmentOutputs(const BatchJob& job) noexcept
         : out{job.out[0], job.out[1], job.out[2]},
           lit(job.lit),
           min{job.min[0], job.min[1]},
-          max{job.max[0], job.max[1]} {}
+          max{job.max[0], job.max[1]},
+          has_depth(job.has_depth),
+          r_min(job.r_min),
+          r_max(job.r_max) {}
 
     template <std::size_t Numerators, class Vector, class Mask>
     TEXGEN_INLINE void put(std::size_t n, const Vector (&value)[Numerators], const Mask& in_front) const noexcept {
         TEXGEN_UNROLL
         for (std::size_t k = 0; k < Numerators; ++k)
             if (out[k] != nullptr) store(out[k] + n, value[k]);
-        if (lit != nullptr)
-            store(lit + n, one_where(in_front & inside(value[0], min[0], max[0]) & inside(value[1], min[1], max[1])));
+        if (lit == nullptr) return;
+        Mask is_lit = in_front & inside(value[0], min[0], max[0]) & inside(value[1], min[1], max[1]);
+        if constexpr (Numerators == 3)
+            if (has_depth) is_lit &= inside(value[2], r_min, r_max);
+        store(lit + n, one_where(is_lit));
     }
 };
 

@@ -113,6 +113,13 @@ TEXGEN_INLINE void prepare(const BatchJob& job, const BatchLanes& planes, std::s
             is_dark |= are_beyond(f, q, size_q, static_cast<double>(job.min[k]), -1.0, job.tolerance);
             is_dark |= are_beyond(f, q, size_q, static_cast<double>(job.max[k]), 1.0, job.tolerance);
         }
+        if (k == 2 && job.has_depth) {
+            // Infinite limits as r_coverage() has them.
+            const double r_min = larger(-0x1p500, smaller(0x1p128, static_cast<double>(job.r_min)));
+            const double r_max = larger(-0x1p128, smaller(0x1p500, static_cast<double>(job.r_max)));
+            is_dark |= are_beyond(f, q, size_q, r_min, -1.0, job.tolerance);
+            is_dark |= are_beyond(f, q, size_q, r_max, 1.0, job.tolerance);
+        }
         if (!has_tolerance) continue;
         const Doubles u = (f.at[0] + (f.dx * half_x + f.dy * half_y)) * per_q;
         const Doubles slope_x = where(has_columns, (f.dx - u * q.dx) * per_q);
@@ -356,7 +363,7 @@ TEXGEN_INLINE Undecided divide_all_tiles(const TilesJob& job, std::size_t first,
 template <class = void>
 Undecided divide_batch_tiles(const TilesJob& original, std::size_t first, std::size_t done) noexcept {
     const TilesJob job = original;
-    return job.out[2] != nullptr ? divide_all_tiles<3>(job, first, done) : divide_all_tiles<2>(job, first, done);
+    return job.needs_r() ? divide_all_tiles<3>(job, first, done) : divide_all_tiles<2>(job, first, done);
 }
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA

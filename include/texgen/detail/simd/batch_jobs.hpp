@@ -43,7 +43,7 @@ inline constexpr double batch_plane_error = 1.0001 * gamma(20);
 // Tiles of more fragments are left to a TriangleSetup, which costs little beside them and resumes where one is in doubt.
 inline constexpr std::size_t largest_batch_tile = 512;
 
-// An output is null, or an array of `count` floats; r is not computed where it has none.
+// An output is null, or an array of `count` floats; r is computed where it has one, and where the mask is to have a depth.
 struct BatchJob {
     const BatchPlanes* planes;
     double tolerance;
@@ -51,6 +51,10 @@ struct BatchJob {
     float* lit;
     std::size_t count;
     float min[2], max[2];  // the region
+    bool has_depth;
+    float r_min, r_max;
+
+    bool needs_r() const noexcept { return out[2] != nullptr || (has_depth && lit != nullptr); }
 };
 
 // A tile of each triangle: x, y, width, height. Their values follow one another.

@@ -80,6 +80,9 @@ inline void describe(BatchJob& job, const TriangleBatch& batch, const Texcoords&
     job.lit = array(out.lit);
     job.count = count;
     batch.lit().copy_to(job.min, job.max);
+    job.has_depth = batch.lit().has_depth();
+    job.r_min = batch.lit().r_min();
+    job.r_max = batch.lit().r_max();
 }
 
 // Leaves the outputs that are computed; false if there are none.
