@@ -56,6 +56,10 @@ inline double last_bit(double value) noexcept {
     return bit_cast<double>(bits & 0x7ff0000000000000) * (0x1p-52 * from_last);
 }
 
+inline double leading_29_bits(double value) noexcept {
+    return bit_cast<double>(bit_cast<std::uint64_t>(value) & ~std::uint64_t{0xffffff});
+}
+
 // The relative error of n roundings in sequence is at most gamma(n) = n u / (1 - n u). Here u is twice the unit roundoff:
 // a factor of 2 is room. Source: Higham, Accuracy and Stability of Numerical Algorithms, lemma 3.1.
 constexpr double gamma(int n) noexcept {

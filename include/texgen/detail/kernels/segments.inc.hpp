@@ -2,98 +2,161 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// The sums of a segment's values, for fill_block_again().
-struct SegmentTerms {
-    struct At {
-        Doubles alpha;
-    };
-    struct Mixture {
-        double a, b;
-        bool is_finite;
-
-        TEXGEN_INLINE Twofold at(const At& at, bool precisely) const noexcept {
-            return twofold_mixed(a, b, at.alpha, precisely);
-        }
-        TEXGEN_INLINE Doubles nearly_at(const At& at) const noexcept { return (1.0 - at.alpha) * a + at.alpha * b; }
-        TEXGEN_INLINE Doubles error_at(const At& at) const noexcept {
-            return (magnitude((1.0 - at.alpha) * a) + magnitude(at.alpha * b)) * gamma(4);
-        }
-    };
-
-    const SegmentJob& job;
-    Mixture q;
-    Mixture numerator[2];
-
-    TEXGEN_INLINE double tolerance() const noexcept { return job.tolerance; }
-    TEXGEN_INLINE explicit SegmentTerms(const SegmentJob& segment) noexcept
-        : job(segment), q(mixture(segment.q_a, segment.q_b)) {
-        for (std::size_t k = 0; k < 2; ++k) numerator[k] = mixture(segment.a[k], segment.b[k]);
-    }
-    TEXGEN_INLINE At load(std::size_t i) const noexcept {
-        return {to_doubles(detail::TEXGEN_ISA::load<Floats>(job.alpha + i))};
-    }
-    TEXGEN_INLINE LongWords are_dark(const At& at) const noexcept {
-        const Doubles zero = at.alpha * (q.is_finite ? 0.0 : std::numeric_limits<double>::quiet_NaN());
-        return ~at_most(zero, zero);
-    }
-
-private:
-    TEXGEN_INLINE static Mixture mixture(double a, double b) noexcept { return {a, b, 0.0 * (a + b) == 0.0}; }
+// A number as an unevaluated sum of two doubles, exactly; high is the nearest double.
+struct ExactSum {
+    Doubles high, low;
 };
 
-template <class CompiledWhereCalled = void>
-TEXGEN_APART Again fill_segment_again(const SegmentJob& job, std::size_t begin, std::size_t end,
-                                      const Effort& effort) noexcept {
-    return fill_block_again(job, SegmentTerms(job), begin, end, effort);
+// Exactly from least_exact_alpha on, and at 0. The first term is a multiple of the second's ulp, so that the quick sum is exact
+// too, but where the ends are far apart.
+template <bool IsShort>
+TEXGEN_INLINE ExactSum exactly_at(const Mixture& mixture, const Doubles& alpha) noexcept {
+    ExactSum sum;
+    const Doubles part = alpha * mixture.step;
+    sum.high = part + mixture.base;
+    sum.low = part - (sum.high - mixture.base);
+    if (IsShort || mixture.kind == Mixture::is_short) return sum;
+    if (mixture.kind == Mixture::is_not_finite) return {(1.0 - alpha) * mixture.base + part, Doubles{}};
+    if (mixture.kind == Mixture::is_far) sum.high = two_sum(Doubles{} + mixture.base, part, sum.low);
+    sum.high = quick_two_sum(sum.high, sum.low + alpha * mixture.rest, sum.low);
+    return sum;
 }
 
-// (1 - a) A + a B in double, in blocks as for points. 1 - a, the products and the sum are rounded once each. Where the
-// whole segment is in front one bound serves all values; only an alpha that is NaN is in doubt about its side.
-template <bool InFront, std::size_t Numerators>
+// The floats nearest to s / q in the lanes that are near the middle of two floats, of the quotient in double elsewhere. There
+// the sign of s - middle q decides, a small number: exact, but for the rounding of middle q.low where q.low is not 0. What
+// that decides is `known`.
+template <bool IsCareful>
+TEXGEN_INLINE Floats nearest_quotients(const ExactSum& s, const ExactSum& q, const Doubles& quotient,
+                                       const LongWords& are_near, LongWords& known) noexcept {
+    Doubles middle = select(are_near, middle_near(quotient), quotient);
+    if constexpr (IsCareful) {
+        const Doubles error = quotient * 0x1p-50;
+        const Doubles low = to_doubles(to_floats(quotient - error)), high = to_doubles(to_floats(quotient + error));
+        middle = select(greater(magnitude(quotient), 0x1p-125), middle, low * 0.5 + high * 0.5);
+    }
+    const Doubles q_part = leading_bits<27>(q.high);
+    Doubles remainder = ((s.high - middle * q_part) - middle * (q.high - q_part)) + s.low;
+    if constexpr (IsCareful) {
+        const Doubles last_product = middle * q.low;
+        remainder = remainder - last_product;
+        known &= ~are_near | at_most(magnitude(last_product), magnitude(remainder) * 0x1p51);
+    }
+    const Doubles away = with_sign_of(magnitude(middle) * 0x1p-51, remainder);
+    return to_floats(middle + where(are_near & are_nonzero(remainder), away));
+}
+
+// A block, on both sides of the projector. A bit for each value that stays in doubt.
+template <std::size_t Numerators, bool IsPlain>
+TEXGEN_APART std::uint64_t fill_segment_closely(const SegmentJob& original, std::size_t begin,
+                                                std::size_t end) noexcept {
+    const SegmentJob job = original;
+    std::uint64_t doubtful = 0;
+    for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(lanes)) {
+        const Doubles alpha = to_doubles(load<Floats>(job.alpha + i));
+        const ExactSum q = exactly_at<IsPlain>(job.q, alpha);
+        const LongWords in_front = greater(q.high, 0.0);
+        const Doubles reciprocal = 1.0 / q.high;
+        ExactSum s[2];
+        Doubles quotient[2];
+        LongWords are_near[2], near{}, are_rare{};
+        TEXGEN_UNROLL
+        for (std::size_t k = 0; k < Numerators; ++k) {
+            s[k] = exactly_at<IsPlain>(job.numerator[k], alpha);
+            quotient[k] = where(in_front, s[k].high * reciprocal);
+            are_near[k] = are_near_middles(quotient[k], 7);
+            if (!IsPlain && job.may_be_subnormal) {
+                const LongWords are_small = are_nonzero(quotient[k]) & ~greater(magnitude(quotient[k]), 0x1p-125);
+                are_near[k] |= are_small;
+                are_rare |= are_small;
+            }
+            near |= are_near[k];
+        }
+        Floats value[2];
+        const std::uint64_t near_bits = lane_bits(near);
+        if (near_bits == 0) {
+            TEXGEN_UNROLL
+            for (std::size_t k = 0; k < Numerators; ++k) value[k] = to_floats(quotient[k]);
+            store_points(job, i, Numerators, value, narrow(in_front));
+            continue;
+        }
+        LongWords known = ~LongWords{};
+        if (!IsPlain && job.least_exact_alpha > 0.0)
+            known = ~(are_nonzero(alpha) & ~greater(alpha, job.least_exact_alpha));
+        if ((near_bits & lane_bits(are_rare | are_nonzero(q.low) | ~known)) == 0) {
+            TEXGEN_UNROLL
+            for (std::size_t k = 0; k < Numerators; ++k)
+                value[k] = nearest_quotients<false>(s[k], q, quotient[k], are_near[k], near);
+            store_points(job, i, Numerators, value, narrow(in_front));
+            continue;
+        }
+        TEXGEN_UNROLL
+        for (std::size_t k = 0; k < Numerators; ++k)
+            value[k] = nearest_quotients<true>(s[k], q, quotient[k], are_near[k], known);
+        store_points(job, i, Numerators, value, narrow(in_front));
+        doubtful |= (near_bits & ~lane_bits(known)) << (i - begin);
+    }
+    return doubtful;
+}
+
+TEXGEN_INLINE std::size_t end_of_block(const SegmentJob& job, std::size_t begin) noexcept {
+    const std::size_t next = (begin / exact_block + 1) * exact_block;
+    return next < job.count ? next : job.count;
+}
+
+// base + alpha (step + rest) in double, two vectors by one division, all of it in front. Returns where the first block begins
+// that has a quotient near the middle of two floats, or an alpha that is no number or too small (it is written all the same),
+// or the count.
+template <std::size_t Numerators>
+TEXGEN_INLINE std::size_t fill_segment_quickly(const SegmentJob& job, std::size_t begin) noexcept {
+    const double q_step = job.q.step + job.q.rest;
+    double step[2];
+    TEXGEN_UNROLL
+    for (std::size_t k = 0; k < Numerators; ++k) step[k] = job.numerator[k].step + job.numerator[k].rest;
+    while (begin < job.count) {
+        const std::size_t end = end_of_block(job, begin);
+        LongWords doubt{};
+        Doubles sum{};
+        for (std::size_t i = begin; i < end; i += 2 * static_cast<std::size_t>(lanes)) {
+            Doubles alpha[2], q[2];
+            TEXGEN_UNROLL
+            for (std::size_t j = 0; j < 2; ++j) {
+                alpha[j] = to_doubles(load<Floats>(job.alpha + i + j * static_cast<std::size_t>(lanes)));
+                q[j] = alpha[j] * q_step + job.q.base;
+                if (job.least_quick_alpha > 0.0)
+                    doubt |= greater(alpha[j], 0.0) & greater(Doubles{} + job.least_quick_alpha, alpha[j]);
+            }
+            const Doubles of_both = 1.0 / (q[0] * q[1]);
+            sum = sum + of_both;
+            TEXGEN_UNROLL
+            for (std::size_t j = 0; j < 2; ++j) {
+                const Doubles reciprocal = of_both * q[1 - j];
+                Floats value[2];
+                TEXGEN_UNROLL
+                for (std::size_t k = 0; k < Numerators; ++k) {
+                    const Doubles quotient = (alpha[j] * step[k] + job.numerator[k].base) * reciprocal;
+                    doubt |= are_near_middles(quotient, job.ulps[k]);
+                    value[k] = to_floats(quotient);
+                }
+                store_points(job, i + j * static_cast<std::size_t>(lanes), Numerators, value, ~Words{});
+            }
+        }
+        if (any(doubt | ~at_most(sum, sum))) return begin;
+        begin = end;
+    }
+    return job.count;
+}
+
+// Quickly, and what that leaves in doubt closely, with some of the blocks that follow.
+template <std::size_t Numerators>
 TEXGEN_INLINE Undecided fill_segment_exact_of(const SegmentJob& original, std::size_t first) noexcept {
     const SegmentJob job = original;
-    double numerator_error[2];
-    for (std::size_t k = 0; k < Numerators; ++k)
-        numerator_error[k] = gamma(4) * larger(std::fabs(job.a[k]), std::fabs(job.b[k]));
-    const double q_error = gamma(4) * larger(std::fabs(job.q_a), std::fabs(job.q_b));
-    Effort effort;
     for (std::size_t begin = first; begin < job.count;) {
-        const std::size_t block = begin / exact_block;
-        const std::size_t next = (block + 1) * exact_block;
-        const std::size_t end = next < job.count ? next : job.count;
-        if (block % 8 == 0 && effort.rung == Rung::each_lane) effort = {};
-        bool is_certain = false;
-        if (effort.rung == Rung::in_front) {
-            Doubt doubt;
-            for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(lanes)) {
-                const Doubles alpha = to_doubles(load<Floats>(job.alpha + i));
-                const Doubles rest = 1.0 - alpha;
-                const Doubles q = rest * job.q_a + alpha * job.q_b;
-                Doubles numerator[2];
-                for (std::size_t k = 0; k < Numerators; ++k) numerator[k] = rest * job.a[k] + alpha * job.b[k];
-                Floats value[2];
-                if constexpr (InFront) {
-                    doubt.side |= ~greater(q, 0.0);
-                    const Doubles reciprocal = 1.0 / q;
-                    for (std::size_t k = 0; k < Numerators; ++k) {
-                        const Doubles quotient = numerator[k] * reciprocal;
-                        value[k] = to_floats(quotient - job.quotient_error[k]);
-                        doubt.rounding |= bits(value[k]) ^ bits(to_floats(quotient + job.quotient_error[k]));
-                    }
-                    store_points(job, i, Numerators, value, ~Words{});
-                } else {
-                    const LongWords in_front =
-                        divide_certainly<true>(Numerators, numerator, numerator_error, q, q_error, 0.0, value, doubt);
-                    store_points(job, i, Numerators, value, narrow(in_front));
-                }
-            }
-            is_certain = !doubt.any_lane();
-        }
-        if (!is_certain) {
-            const Again again = fill_segment_again(original, begin, end, effort);
-            if (again.doubtful != 0) return {begin, again.doubtful};
-            effort = again.effort;
-        }
+        if (job.is_quick && begin % (8 * exact_block) == 0) begin = fill_segment_quickly<Numerators>(job, begin);
+        if (begin >= job.count) break;
+        const std::size_t end = end_of_block(job, begin);
+        const std::uint64_t doubtful = job.is_plain ? fill_segment_closely<Numerators, true>(original, begin, end)
+                                                    : fill_segment_closely<Numerators, false>(original, begin, end);
+        if (doubtful != 0) return {begin, doubtful};
         begin = end;
     }
     return {job.count, 0};
@@ -101,9 +164,7 @@ TEXGEN_INLINE Undecided fill_segment_exact_of(const SegmentJob& original, std::s
 
 template <class CompiledWhereCalled = void>
 Undecided fill_segment_exact(const SegmentJob& job, std::size_t first) noexcept {
-    if (job.numerators == 2)
-        return job.in_front ? fill_segment_exact_of<true, 2>(job, first) : fill_segment_exact_of<false, 2>(job, first);
-    return job.in_front ? fill_segment_exact_of<true, 1>(job, first) : fill_segment_exact_of<false, 1>(job, first);
+    return job.numerators == 2 ? fill_segment_exact_of<2>(job, first) : fill_segment_exact_of<1>(job, first);
 }
 
 // In float about one end, two vectors by one division, so that an alpha that is no number spoils its neighbour: its block

@@ -46,12 +46,6 @@ struct SegmentBounds {
             quotient[k] = 1.001 * larger(std::fabs(job.a[k]) / job.q_a, std::fabs(job.b[k]) / job.q_b);
         }
     }
-
-    // As in certain_quotient(), with errors of `relative` in the numerator and in q, and `final` in the division.
-    double error(int k, double relative, double final) const noexcept {
-        return 1.001 * relative * (numerator[k] + quotient[k] * q_largest) / q_least + final * quotient[k];
-    }
-    bool is_well_in_front() const noexcept { return q_least > 0x1p-20 * q_largest && q_largest < 0x1p1000; }
 };
 
 // About the end where q is less, with i the alpha from there, u is exactly
@@ -118,36 +112,82 @@ inline Coverage depth_coverage(const Segment& segment, const LitTest& lit, doubl
     return r_coverage(segment_corners(a, b, 2, 2), lit, accepted);
 }
 
+inline Mixture mixture_of(double a, double b) noexcept {
+    const DoubleDouble step = two_sum(b, -a);
+    if (!is_finite(step.high)) return {a, b, 0.0, Mixture::is_not_finite};
+    if (step.low != 0.0)
+        return std::fabs(a) < std::fabs(b) ? Mixture{a, b, -a, Mixture::is_far} : Mixture{a, -a, b, Mixture::is_far};
+    const double leading = leading_29_bits(step.high);
+    return {a + 0.0, leading, step.high - leading, leading == step.high ? Mixture::is_short : Mixture::is_long};
+}
+
+// What the kernels in double know of one mixture beside q.
+struct MixtureBounds {
+    double ulps = 1.0;               // as a sum in double, where its ends have one sign
+    double least_exact_alpha = 0.0;  // see SegmentJob
+
+    MixtureBounds(const Mixture& mixture, double a, double b) noexcept {
+        if (mixture.kind == Mixture::is_short) return;  // rounded once; else in the step, the product and the sum
+        const double ratio = larger(std::fabs(a), std::fabs(b)) / smaller(std::fabs(a), std::fabs(b));
+        ulps = a * b > 0.0 && is_finite(ratio) ? 1.0 + 2.0 * ratio : std::numeric_limits<double>::infinity();
+        least_exact_alpha = 0x1p-54 * ratio;
+    }
+};
+
+inline void prepare_exact(SegmentJob& job) noexcept {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    const double q_largest = larger(job.q_a, job.q_b);
+    job.q = is_finite(job.q_a + job.q_b) ? mixture_of(job.q_a, job.q_b) : Mixture{nan, nan, 0.0, Mixture::is_short};
+    const MixtureBounds of_q(job.q, job.q_a, job.q_b);
+    job.least_exact_alpha = of_q.least_exact_alpha;
+    job.may_be_subnormal = false;
+    job.is_plain = job.q.kind == Mixture::is_short;
+    job.is_quick = job.q_a > 0.0 && job.q_b > 0.0;
+    job.least_quick_alpha = 0.0;
+    for (int k = 0; k < job.numerators; ++k) {
+        const double a = std::fabs(job.a[k]), b = std::fabs(job.b[k]);
+        job.numerator[k] = mixture_of(job.a[k], job.b[k]);
+        job.is_plain = job.is_plain && job.numerator[k].kind == Mixture::is_short;
+        const MixtureBounds bounds(job.numerator[k], job.a[k], job.b[k]);
+        job.least_exact_alpha = larger(job.least_exact_alpha, bounds.least_exact_alpha);
+        // The shared division of two vectors adds four roundings.
+        const double ulps = bounds.ulps + of_q.ulps + 4.0;
+        job.is_quick = job.is_quick && ulps < 0x1p14;
+        for (job.ulps[k] = 7; job.is_quick && static_cast<double>(job.ulps[k]) < ulps;) job.ulps[k] += job.ulps[k] + 1;
+        // Both ends are multiples of 2^-24 of the lesser one, so a mixture is 0 or at least 2^-50 of lesser^2 / larger.
+        const double least_normal = 0x1p-126 * q_largest;
+        const double lesser = smaller(a, b);
+        if (b == 0.0 ? a == 0.0 || 0x1p-24 * a >= least_normal
+                     : 0x1p-52 * lesser * lesser >= least_normal * larger(a, b))
+            continue;
+        job.may_be_subnormal = true;
+        job.is_plain = false;
+        job.is_quick = job.is_quick && a == 0.0;
+        job.least_quick_alpha = larger(job.least_quick_alpha, 2.0 * least_normal / b);
+    }
+}
+
 inline namespace TEXGEN_BUILD {
 
 // The nearest floats from `first` on: in vectors; what those cannot decide value by value.
-inline void interpolate_exact(const SegmentKernels& kernels, const SegmentJob& job, std::size_t first) noexcept {
+inline void interpolate_exact(const SegmentKernels& kernels, SegmentJob& job, std::size_t first) noexcept {
+    prepare_exact(job);
     fill_blocks(kernels.fill_exact, job, first, interpolate_one);
 }
 
 // In float where that stays inside the tolerance for the whole segment, else the nearest float.
 inline void interpolate_job(const SegmentKernels& kernels, SegmentJob job, double tolerance) noexcept {
-    job.tolerance = tolerance;
-    if (job.q_a > 0.0 && job.q_b > 0.0) {
-        const SegmentBounds bounds(job);
-        bool float_fits = tolerance > 0.0;
-        for (int k = 0; k < job.numerators; ++k) float_fits = float_fits && segment_float_error(job, k) <= tolerance;
-        job.in_front = bounds.is_well_in_front();
-        for (int k = 0; k < job.numerators; ++k)
-            job.quotient_error[k] = bounds.error(k, gamma(4), 4.0 * unit_roundoff_double);
-        if (float_fits) {
-            prepare_float(job);
-            const std::size_t count = job.count;
-            for (std::size_t i = kernels.fill_all_float(job, 0); i < count; i = kernels.fill_all_float(job, i)) {
-                job.count = count - i < float_block ? count : i + float_block;
-                interpolate_exact(kernels, job, i);
-                i = job.count;
-                job.count = count;
-            }
-            return;
-        }
+    bool float_fits = tolerance > 0.0 && job.q_a > 0.0 && job.q_b > 0.0;
+    for (int k = 0; k < job.numerators; ++k) float_fits = float_fits && segment_float_error(job, k) <= tolerance;
+    if (!float_fits) return interpolate_exact(kernels, job, 0);
+    prepare_float(job);
+    const std::size_t count = job.count;
+    for (std::size_t i = kernels.fill_all_float(job, 0); i < count; i = kernels.fill_all_float(job, i)) {
+        job.count = count - i < float_block ? count : i + float_block;
+        interpolate_exact(kernels, job, i);
+        i = job.count;
+        job.count = count;
     }
-    interpolate_exact(kernels, job, 0);
 }
 
 }  // namespace TEXGEN_BUILD

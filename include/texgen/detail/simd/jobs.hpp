@@ -115,14 +115,34 @@ struct PointJob : DividedOutput, PointInput {
     double bound[3];
 };
 
+// (1 - alpha) a + alpha b of floats as base + alpha (step + rest): both products with a float are exact.
+struct Mixture {
+    enum Kind : std::int32_t {
+        is_short,  // without a rest: the sum is rounded once
+        is_long,   // the rest is below the last bit of the step
+        is_far,    // the ends are so far apart that their difference is more than a double: step and rest are the ends
+        is_not_finite  // base and step are the ends
+    };
+
+    double base, step, rest;
+    Kind kind;
+};
+
 // numerator[k] / q along a segment: values at alpha = 0 and at alpha = 1.
 struct SegmentJob : DividedOutput {
     const float* alpha;
     double a[2], b[2];
     double q_a, q_b;
-    double tolerance;
-    bool in_front;  // all of it, well enough that quotient_error bounds the error in double of every value
-    double quotient_error[2];
+    // For fill_exact.
+    Mixture numerator[2];
+    Mixture q;
+    double least_exact_alpha;  // from here on, and at 0, the sums in two doubles are exact
+    double least_quick_alpha;  // from here on, and at 0, what is_quick says holds
+    std::int32_t ulps[2];
+    bool
+        is_quick;  // all is in front, quotients in double are off by so many ulps (1 less than a power of two), floats normal
+    bool is_plain;          // no mixture has a rest, and no float may be subnormal
+    bool may_be_subnormal;  // a quotient rounded to float, other than 0
     // For fill_all_float: about the end where q is less, base + slope i / (1 + bend i), i the alpha from there.
     bool about_b;
     float bend, base[2], slope[2];

@@ -109,6 +109,9 @@ template <class Vector>
 TEXGEN_INLINE Words at_most(const Vector& a, const Vector& b) noexcept {
     return LongWords::of([&](int i) { return a.lane[i] <= b.lane[i] ? -1 : 0; });
 }
+TEXGEN_INLINE LongWords are_nonzero(const Doubles& a) noexcept {
+    return LongWords::of([&](int i) { return a.lane[i] != 0.0 ? -1 : 0; });
+}
 template <int Bits>
 TEXGEN_INLINE Doubles leading_bits(const Doubles& a) noexcept {
     return Doubles::of([&](int i) {
@@ -117,6 +120,19 @@ TEXGEN_INLINE Doubles leading_bits(const Doubles& a) noexcept {
 }
 TEXGEN_INLINE Doubles where(const LongWords& mask, const Doubles& values) noexcept {
     return Doubles::of([&](int i) { return mask.lane[i] != 0 ? values.lane[i] : 0.0; });
+}
+TEXGEN_INLINE Doubles select(const LongWords& mask, const Doubles& a, const Doubles& b) noexcept {
+    return Doubles::of([&](int i) { return mask.lane[i] != 0 ? a.lane[i] : b.lane[i]; });
+}
+TEXGEN_INLINE LongWords are_near_middles(const Doubles& a, std::int64_t ulps) noexcept {
+    const auto offset = static_cast<std::uint64_t>(ulps - 0x10000000);
+    const auto mask = static_cast<std::uint64_t>(0x1ffffffe - 2 * ulps);
+    return LongWords::of([&](int i) { return ((bit_cast<std::uint64_t>(a.lane[i]) + offset) & mask) == 0 ? -1 : 0; });
+}
+TEXGEN_INLINE Doubles middle_near(const Doubles& a) noexcept {
+    return Doubles::of([&](int i) {
+        return bit_cast<double>((bit_cast<std::uint64_t>(a.lane[i]) & ~std::uint64_t{0x1fffffff}) | 0x10000000);
+    });
 }
 TEXGEN_INLINE Words narrow(const LongWords& mask) noexcept { return mask; }
 TEXGEN_INLINE int lane(const Words& a, int i) noexcept { return a.lane[i]; }
@@ -232,6 +248,12 @@ template <class Vector>
 TEXGEN_INLINE void transpose(Vector (&rows)[lanes]) noexcept {
     for (int i = 0; i < lanes; ++i)
         for (int k = 0; k < i; ++k) std::swap(rows[i].lane[k], rows[k].lane[i]);
+}
+
+TEXGEN_INLINE std::uint64_t lane_bits(const LongWords& mask) noexcept {
+    std::uint64_t result = 0;
+    for (int i = 0; i < lanes; ++i) result |= std::uint64_t{mask.lane[i] != 0} << i;
+    return result;
 }
 
 TEXGEN_INLINE bool any(const Words& mask) noexcept {

@@ -33,10 +33,6 @@ TEXGEN_INLINE Twofold twofold_of(const Doubles& sum, const Doubles& rest, const 
     return result;
 }
 
-TEXGEN_INLINE double leading_29_bits(double value) noexcept {
-    return bit_cast<double>(bit_cast<std::uint64_t>(value) & ~std::uint64_t{0xffffff});
-}
-
 struct PointLanes {
     Doubles v[3];
 };
@@ -121,20 +117,6 @@ struct TwofoldForm {
         return result;
     }
 };
-
-// (1 - alpha) a + alpha b of floats: their products are exact.
-TEXGEN_INLINE Twofold twofold_mixed(double a, double b, const Doubles& alpha, bool precisely) noexcept {
-    Doubles error[2];
-    Doubles left;
-    Doubles sum = two_sum(Doubles{} + a, alpha * -a, error[0]);
-    sum = two_sum(sum, alpha * b, error[1]);
-    if (!precisely) return twofold_of(sum, error[0] + error[1], magnitude(error[0]) + magnitude(error[1]));
-    const Doubles rest = two_sum(error[0], error[1], left);
-    Twofold result;
-    result.high = two_sum(sum, rest, result.low);
-    result.lost = magnitude(left) * 1.001;
-    return result;
-}
 
 // The denominators of a vector of quotients, and on which side of 0 they are.
 struct TwofoldDivisor {

@@ -57,12 +57,24 @@ using LongWords [[gnu::vector_size(TEXGEN_LANE_BYTES)]] = long long;
 TEXGEN_INLINE LongWords greater(const Doubles& a, double b) noexcept { return a > b; }
 TEXGEN_INLINE LongWords greater(const Doubles& a, const Doubles& b) noexcept { return a > b; }
 TEXGEN_INLINE LongWords at_most(const Doubles& a, const Doubles& b) noexcept { return a <= b; }
+TEXGEN_INLINE LongWords are_nonzero(const Doubles& a) noexcept { return a != 0.0; }
 template <int Bits>
 TEXGEN_INLINE Doubles leading_bits(const Doubles& a) noexcept {
     return __builtin_bit_cast(Doubles, __builtin_bit_cast(LongWords, a) & -(1LL << (53 - Bits)));
 }
 TEXGEN_INLINE Doubles where(const LongWords& mask, const Doubles& values) noexcept {
     return __builtin_bit_cast(Doubles, mask & __builtin_bit_cast(LongWords, values));
+}
+TEXGEN_INLINE Doubles select(const LongWords& mask, const Doubles& a, const Doubles& b) noexcept {
+    return mask ? a : b;
+}
+// Where a number lies within so many of its ulps, 1 less than a power of two, of the middle of two normal floats (or one
+// more beyond it), and that middle.
+TEXGEN_INLINE LongWords are_near_middles(const Doubles& a, long long ulps) noexcept {
+    return ((__builtin_bit_cast(LongWords, a) + (ulps - 0x10000000)) & (0x1ffffffe - 2 * ulps)) == 0;
+}
+TEXGEN_INLINE Doubles middle_near(const Doubles& a) noexcept {
+    return __builtin_bit_cast(Doubles, (__builtin_bit_cast(LongWords, a) & ~0x1fffffffLL) | 0x10000000);
 }
 TEXGEN_INLINE Words narrow(const LongWords& mask) noexcept { return __builtin_convertvector(mask, Words); }
 TEXGEN_INLINE int lane(const Words& a, int i) noexcept { return a[i]; }
@@ -269,6 +281,16 @@ TEXGEN_INLINE bool any(const Words& mask) noexcept {
     int all = mask[0];
     for (int i = 1; i < lanes; ++i) all |= mask[i];
     return all != 0;
+#endif
+}
+// Bit i for lane i.
+TEXGEN_INLINE std::uint64_t lane_bits(const LongWords& mask) noexcept {
+#if TEXGEN_LANE_BYTES == 64
+    return static_cast<std::uint8_t>(__builtin_ia32_cvtq2mask512(mask));
+#elif TEXGEN_LANE_BYTES == 32
+    return static_cast<std::uint64_t>(__builtin_ia32_movmskpd256(__builtin_bit_cast(Doubles, mask)));
+#else
+    return static_cast<std::uint64_t>((mask[0] & 1) | (mask[1] & 2));
 #endif
 }
 TEXGEN_INLINE bool any(const LongWords& mask) noexcept {
