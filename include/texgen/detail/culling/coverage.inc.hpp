@@ -14,8 +14,10 @@ inline bool is_inside_inner_side(const LitForms& forms, std::size_t k, const Box
     return forms.inner_sign_at(k, form, vertex, close) >= 0;
 }
 
-// What the planes say of a box, exactly. For a NaN, and for forms of which nothing is known: partial.
-inline Coverage exact_coverage(const LitForms& forms, const Box& box) noexcept {
+// What the planes say of a box, exactly: of those that are in doubt. For a NaN, and for forms of which nothing is known:
+// partial.
+inline Coverage exact_coverage(const LitForms& forms, const Box& box,
+                               const FormsInDoubt& doubt = {~0u, ~0u, false, false}) noexcept {
     constexpr float infinity = std::numeric_limits<float>::infinity();
     bool is_empty = false;
     for (glm::length_t j = 0; j < 3; ++j) {
@@ -32,8 +34,9 @@ inline Coverage exact_coverage(const LitForms& forms, const Box& box) noexcept {
     const glm::dvec3 max = widened(box.max);
     const auto take_vertex = [&](std::size_t k, bool largest, Point& vertex) {
         for (std::size_t j = 0; j < 3; ++j) {
-            if (!forms[k].uses[j]) continue;
-            vertex[j] = ((forms[k].a[j] > 0.0) == largest ? max : min)[static_cast<glm::length_t>(j)];
+            const double a = forms.a(k, j);
+            if (a == 0.0) continue;
+            vertex[j] = ((a > 0.0) == largest ? max : min)[static_cast<glm::length_t>(j)];
             if (!is_finite(vertex[j])) return false;
         }
         return true;
@@ -51,12 +54,12 @@ inline Coverage exact_coverage(const LitForms& forms, const Box& box) noexcept {
         return (take_vertex(k, false, vertex) && forms.is_inside_at(k, vertex, size)) ||
                is_inside_inner_side(forms, k, box, close);
     };
-    if (sign_at_vertex(LitForms::q, true) <= 0) return Coverage::outside;
-    bool is_inside = sign_at_vertex(LitForms::q, false) > 0;
-    for (std::size_t k = 0; k < forms.count(); ++k) {
-        if (k == LitForms::q) continue;
-        if (sign_at_vertex(k, true) < 0) return Coverage::outside;
-        is_inside = is_inside && is_inside_side(k);
+    bool is_inside = !doubt.is_any_negative;
+    for (std::size_t k = forms.count(); k-- > 0;) {
+        if ((doubt.largest >> k & 1u) != 0 && sign_at_vertex(k, true) < (k == LitForms::q ? 1 : 0))
+            return Coverage::outside;
+        if (!is_inside || (doubt.least >> k & 1u) == 0) continue;
+        is_inside = k == LitForms::q ? sign_at_vertex(k, false) > 0 : is_inside_side(k);
     }
     return is_inside ? Coverage::inside : Coverage::partial;
 }
@@ -83,7 +86,7 @@ inline bool put(const Box& box, BoxBlock& block, std::size_t i) noexcept {
 class OpenBoxes {
 public:
     OpenBoxes(const BoxKernels& kernels, const LitForms& forms) noexcept
-        : kernels_(kernels), forms_(forms), has_forms_(forms.are_usable() && !forms.light_nothing()) {}
+        : kernels_(kernels), forms_(forms), has_forms_(forms.can_say()) {}
 
     // A box that is partial to the planes, or in doubt.
     void add(const Box& box, bool is_in_doubt, Coverage& out) noexcept {
@@ -205,39 +208,41 @@ void cover(const LitForms& forms, const FloatForms& float_forms, std::span<const
     open_boxes.decide();
 }
 
-// One box that the float forms leave open.
-template <class CompiledWhereCalled = void>
-Coverage coverage_of_open(const LitForms& forms, const Box& box, bool is_in_doubt) noexcept {
-    const Coverage result = is_in_doubt ? exact_coverage(forms, box) : Coverage::partial;
-    if (result != Coverage::partial || !forms.are_usable()) return result;
+// Whether a further plane separates one box, which is partial to the forms, from what they leave.
+inline bool is_separated(const BoxKernels& kernels, const LitForms& forms, const BoxBlock& block) noexcept {
     constexpr double unbounded = 0x1p200;  // nor larger than what products hold
-    BoxBlock block{};
-    if (!put(box, block, 0)) return result;
     Point middle{};
     for (std::size_t j = 0; j < 3; ++j)
         middle[j] = 0.5 * larger(block.min[j][0], -unbounded) + 0.5 * smaller(block.max[j][0], unbounded);
-    const std::uint32_t dark = forms.dark_at(middle);
     // Almost always the middle is lit, or the vertex where the form is largest that is negative there.
+    const std::uint32_t dark = forms.dark_at(middle);
+    if (dark == 0) return false;
     for (std::uint32_t bits = dark; bits != 0; bits &= bits - 1) {
         const auto k = static_cast<std::size_t>(std::countr_zero(bits));
         Point vertex = middle;
         for (std::size_t j = 0; j < 3; ++j)
-            if (forms[k].uses[j]) vertex[j] = (forms[k].a[j] > 0.0 ? block.max : block.min)[j][0];
-        if ((forms.dark_at(vertex) & ~(std::uint32_t{1} << k)) == 0) return result;
+            if (forms.a(k, j) != 0.0) vertex[j] = (forms.a(k, j) > 0.0 ? block.max : block.min)[j][0];
+        if ((forms.dark_at(vertex) & ~(std::uint32_t{1} << k)) == 0) return false;
     }
-    if (dark == 0) return result;
     const SeparatingForms separating(forms, dark);
     double least_of_largest[box_block];
-    chosen<BoxKernels>().separate(separating.data(), separating.size(), block, least_of_largest);
-    return least_of_largest[0] < 0.0 ? Coverage::outside : result;
+    kernels.separate(separating.data(), separating.size(), block, least_of_largest);
+    return least_of_largest[0] < 0.0;
 }
 
 // One box.
-template <class CompiledWhereCalled = void>
-Coverage coverage_of(const LitForms& forms, const FloatForms& float_forms, const Box& box) noexcept {
-    const int result = chosen<BoxKernels>().classify_box(float_forms, &box.min.x, &box.max.x);
-    if (result < open_body) return static_cast<Coverage>(result);
-    return coverage_of_open(forms, box, result == body_in_doubt);
+inline Coverage coverage_of(const BoxKernels& kernels, const LitForms& forms, const Box& box) noexcept {
+    FormsInDoubt doubt{~0u, ~0u, false, false};
+    const int answer = forms.can_say() ? kernels.classify_box(forms.lanes(), box, doubt) : body_in_doubt;
+    if (answer < open_body) return static_cast<Coverage>(answer);
+    if (answer == body_in_doubt && doubt.is_finite && !doubt.is_any_negative)
+        kernels.sharpen(forms.matrix(), forms.weights(), box, doubt);
+    const Coverage result = answer == body_in_doubt ? exact_coverage(forms, box, doubt) : Coverage::partial;
+    if (result != Coverage::partial) return result;
+    BoxBlock block;
+    for (std::size_t i = 0; i < box_block; ++i)
+        if (!put(box, block, i)) return result;
+    return forms.can_say() && is_separated(kernels, forms, block) ? Coverage::outside : result;
 }
 
 }  // namespace TEXGEN_BUILD
@@ -256,12 +261,14 @@ inline Coverage exact_coverage(const LitForms& forms, const Sphere& sphere) noex
     const auto dot = [](const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
     double value[max_forms];
     double error[max_forms];
+    double slope[max_forms];
     bool is_inside = true;
     for (std::size_t k = 0; k < forms.count(); ++k) {
-        const LinearForm& form = forms[k];
+        const LinearForm form = forms[k];
         value[k] = dot(form.a, centre) + form.d;
         error[k] = form.error_a * size + form.error_d;
-        const double change = forms.slope(k) * radius;
+        slope[k] = forms.slope(k);
+        const double change = slope[k] * radius;
         if (value[k] + change + (error[k] + gamma(4) * change) < 0.0) return Coverage::outside;
         const double narrowing = 1.1 * forms.narrowing(k, size + 2.0 * radius);
         is_inside = is_inside && value[k] - change - (error[k] + gamma(4) * change) > narrowing;
@@ -270,15 +277,15 @@ inline Coverage exact_coverage(const LitForms& forms, const Sphere& sphere) noex
     const auto is_beside_edge = [&](std::size_t f, std::size_t g) {
         if (value[f] >= 0.0 && value[g] >= 0.0) return false;
         const double across = dot(forms[f].a, forms[g].a);
-        double of_f = across * value[g] - forms.slope(g) * forms.slope(g) * value[f];
-        double of_g = across * value[f] - forms.slope(f) * forms.slope(f) * value[g];
+        double of_f = across * value[g] - slope[g] * slope[g] * value[f];
+        double of_g = across * value[f] - slope[f] * slope[f] * value[g];
         if (!(of_f > 0.0 && of_g > 0.0)) return false;
         const double both = of_f + of_g;  // or their squares could be too small for a double
         of_f /= both;
         of_g /= both;
-        const double longest = of_f * forms.slope(f) + of_g * forms.slope(g);
-        const double squared = of_f * of_f * (forms.slope(f) * forms.slope(f)) + 2.0 * of_f * of_g * across +
-                               of_g * of_g * (forms.slope(g) * forms.slope(g)) + gamma(32) * longest * longest;
+        const double longest = of_f * slope[f] + of_g * slope[g];
+        const double squared = of_f * of_f * (slope[f] * slope[f]) + 2.0 * of_f * of_g * across +
+                               of_g * of_g * (slope[g] * slope[g]) + gamma(32) * longest * longest;
         const double change = std::sqrt(squared) * radius;
         const double rounding = gamma(8) * (of_f * std::fabs(value[f]) + of_g * std::fabs(value[g]) + change);
         return of_f * value[f] + of_g * value[g] + change + (of_f * error[f] + of_g * error[g]) + rounding < 0.0;
@@ -294,9 +301,50 @@ inline Coverage exact_coverage(const LitForms& forms, const Sphere& sphere) noex
 
 inline namespace TEXGEN_BUILD {
 
-template <class CompiledWhereCalled = void>
-Coverage coverage_of(const LitForms& forms, const FloatForms& float_forms, const Sphere& sphere) noexcept {
-    const int result = chosen<BoxKernels>().classify_sphere(float_forms, &sphere.centre.x, sphere.radius);
+// Spheres of which floats do not say what they are, gathered until they fill vectors.
+class OpenSpheres {
+public:
+    OpenSpheres(const BoxKernels& kernels, const LitForms& forms) noexcept : kernels_(kernels), forms_(forms) {}
+
+    void add(const Sphere& sphere, Coverage& out) noexcept {
+        const bool is_sphere = is_finite(sphere.centre.x) && is_finite(sphere.centre.y) && is_finite(sphere.centre.z) &&
+                               sphere.radius >= 0.0f && is_finite(sphere.radius);
+        if (!is_sphere || !forms_.can_say()) {
+            out = exact_coverage(forms_, sphere);
+            return;
+        }
+        for (std::size_t j = 0; j < 3; ++j)
+            block_.centre[j][count_] = widened(sphere.centre[static_cast<glm::length_t>(j)]);
+        block_.radius[count_] = widened(sphere.radius);
+        sphere_[count_] = &sphere;
+        out_[count_] = &out;
+        if (++count_ == box_block) decide();
+    }
+
+    void decide() noexcept {
+        if (count_ == 0) return;
+        if (!sphere_forms_) sphere_forms_ = forms_.for_spheres();
+        int classes[box_block];
+        kernels_.bound_spheres(*sphere_forms_, block_, classes);
+        for (std::size_t i = 0; i < count_; ++i)
+            *out_[i] =
+                classes[i] == body_in_doubt ? exact_coverage(forms_, *sphere_[i]) : static_cast<Coverage>(classes[i]);
+        count_ = 0;
+    }
+
+private:
+    const BoxKernels& kernels_;
+    const LitForms& forms_;
+    std::optional<SphereForms> sphere_forms_;
+    SphereBlock block_{};
+    const Sphere* sphere_[box_block];
+    Coverage* out_[box_block];
+    std::size_t count_ = 0;
+};
+
+inline Coverage coverage_of(const BoxKernels& kernels, const LitForms& forms, const FloatForms& float_forms,
+                            const Sphere& sphere) noexcept {
+    const int result = kernels.classify_sphere(float_forms, &sphere.centre.x, sphere.radius);
     return result < open_body ? static_cast<Coverage>(result) : exact_coverage(forms, sphere);
 }
 
@@ -304,6 +352,7 @@ template <class CompiledWhereCalled = void>
 void cover(const LitForms& forms, const FloatForms& float_forms, std::span<const Sphere> spheres,
            const std::span<Coverage>& out) noexcept {
     const BoxKernels& kernels = chosen<BoxKernels>();
+    OpenSpheres open_spheres(kernels, forms);
     classify_many<4>(
         spheres, out,
         [&](const float* floats, std::size_t count, int* classes) {
@@ -313,7 +362,8 @@ void cover(const LitForms& forms, const FloatForms& float_forms, std::span<const
             for (glm::length_t j = 0; j < 3; ++j) floats[j] = sphere.centre[j];
             floats[3] = sphere.radius;
         },
-        [&](std::size_t i, bool) { out[i] = exact_coverage(forms, spheres[i]); });
+        [&](std::size_t i, bool) { open_spheres.add(spheres[i], out[i]); });
+    open_spheres.decide();
 }
 
 }  // namespace TEXGEN_BUILD
@@ -325,15 +375,16 @@ inline namespace TEXGEN_BUILD {
 
 template <class Space>
 LitVolume<Space>::LitVolume(const Transform<Texture, Space>& texture_from_space, const TextureRegion& region) noexcept
-    : forms_(texture_from_space.matrix(), region), float_forms_(forms_.in_float()) {}
+    : forms_(texture_from_space.matrix(), region, detail::chosen<detail::BoxKernels>()),
+      float_forms_(forms_.in_float(detail::chosen<detail::BoxKernels>())) {}
 
 template <class Space>
 Coverage LitVolume<Space>::coverage(const Box& box) const noexcept {
-    return detail::coverage_of(forms_, float_forms_, box);
+    return detail::coverage_of(detail::chosen<detail::BoxKernels>(), forms_, box);
 }
 template <class Space>
 Coverage LitVolume<Space>::coverage(const Sphere& sphere) const noexcept {
-    return detail::coverage_of(forms_, float_forms_, sphere);
+    return detail::coverage_of(detail::chosen<detail::BoxKernels>(), forms_, float_forms_, sphere);
 }
 
 template <class Space>
@@ -351,12 +402,14 @@ void LitVolume<Space>::coverage(std::span<const Sphere> spheres, std::span<Cover
 template <class Space>
 Coverage coverage(const Transform<Texture, Space>& texture_from_space, const TextureRegion& region,
                   const Box& box) noexcept {
-    return detail::coverage_of_open(detail::LitForms(texture_from_space.matrix(), region), box, true);
+    const detail::BoxKernels& kernels = detail::chosen<detail::BoxKernels>();
+    return detail::coverage_of(kernels, detail::LitForms(texture_from_space.matrix(), region, kernels), box);
 }
 template <class Space>
 Coverage coverage(const Transform<Texture, Space>& texture_from_space, const TextureRegion& region,
                   const Sphere& sphere) noexcept {
-    return detail::exact_coverage(detail::LitForms(texture_from_space.matrix(), region), sphere);
+    const detail::BoxKernels& kernels = detail::chosen<detail::BoxKernels>();
+    return detail::exact_coverage(detail::LitForms(texture_from_space.matrix(), region, kernels), sphere);
 }
 template <class Space>
 void coverage(const Transform<Texture, Space>& texture_from_space, const TextureRegion& region,

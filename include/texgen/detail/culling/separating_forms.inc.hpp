@@ -38,7 +38,7 @@ private:
         Point error{};
         double error_of_d = 0.0;
         for (std::size_t i = 0; i < N; ++i) {
-            const LinearForm& one = lit_[form[i]];
+            const LinearForm one = lit_[form[i]];
             for (std::size_t j = 0; j < 3; ++j) {
                 if (j == but_axis) continue;
                 sum.uses[j] = sum.uses[j] || one.uses[j];
@@ -68,8 +68,8 @@ inline void SeparatingForms::add_edge_forms(std::size_t first, std::size_t secon
         for (std::size_t g = second; g < second + 2; ++g) {
             if (!is_dark(f) && !is_dark(g)) continue;
             for (std::size_t axis = 0; axis < 3; ++axis) {
-                const double of_f = lit_[g].a[axis];
-                const double of_g = lit_[f].a[axis];
+                const double of_f = lit_.a(g, axis);
+                const double of_g = lit_.a(f, axis);
                 if (!(of_f < 0.0 ? of_g > 0.0 : of_f > 0.0 && of_g < 0.0)) continue;
                 add<2>({f, g}, {std::fabs(of_f), std::fabs(of_g)}, axis);
             }
@@ -82,7 +82,7 @@ inline void SeparatingForms::add_edge_forms(std::size_t first, std::size_t secon
 inline void SeparatingForms::add_vertex_forms(std::size_t f, std::size_t g, std::size_t h) noexcept {
     if (!is_dark(f) && !is_dark(g) && !is_dark(h)) return;
     const auto across = [this](std::size_t k, std::size_t l, std::size_t m, std::size_t n) {
-        return lit_[k].a[m] * lit_[l].a[n] - lit_[k].a[n] * lit_[l].a[m];
+        return lit_.a(k, m) * lit_.a(l, n) - lit_.a(k, n) * lit_.a(l, m);
     };
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const std::size_t m = (axis + 1) % 3;
@@ -100,9 +100,9 @@ inline void SeparatingForms::add_vertex_forms(std::size_t f, std::size_t g, std:
 // at the corners of the region, it has it in all of the pyramid.
 inline void SeparatingForms::add_axis_forms() noexcept {
     using Row = LitForms::Row;
-    const Row& row_s = lit_.row(0);
-    const Row& row_t = lit_.row(1);
-    const Row& row_q = lit_.row(3);
+    const Row row_s = lit_.row(0);
+    const Row row_t = lit_.row(1);
+    const Row row_q = lit_.row(3);
     const auto minor_of = [](const Row& k, const Row& l, std::size_t m, std::size_t n) {
         const double first = k[m] * l[n];
         const double second = k[n] * l[m];

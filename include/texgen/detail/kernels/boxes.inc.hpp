@@ -2,6 +2,203 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
+TEXGEN_INLINE Doubles select(const LongWords& mask, const Doubles& a, const Doubles& b) noexcept {
+    return where(mask, a) + where(~mask, b);
+}
+
+// q is split so that its products with a float are exact. What they leave of the sum is far below it, or nothing.
+template <class CompiledWhereCalled = void>
+void weigh_forms(const glm::dmat4& matrix, const FormWeights& weights, FormLanes& forms) noexcept {
+    TEXGEN_UNROLL
+    for (std::size_t i = 0; i < form_lanes; i += static_cast<std::size_t>(lanes)) {
+        const Doubles of[3] = {load<Doubles>(weights.of[0] + i), load<Doubles>(weights.of[1] + i),
+                               load<Doubles>(weights.of[2] + i)};
+        const auto of_q = load<Doubles>(weights.of_q + i);
+        Doubles form[4];
+        TEXGEN_UNROLL
+        for (std::size_t j = 0; j < 4; ++j) {
+            const glm::dvec4& column = matrix[static_cast<glm::length_t>(j)];
+            const double high = bit_cast<double>(bit_cast<std::uint64_t>(column.w) & ~std::uint64_t{0x7ffffff});
+            const double low = column.w - high;
+            const Doubles row = of[0] * column.x + (of[1] * column.y + of[2] * column.z);
+            Doubles rest;
+            const Doubles sum = two_sum(row, of_q * high, rest);
+            form[j] = sum + (rest + of_q * low);
+        }
+        const Doubles largest = maximum(maximum(magnitude(form[0]), magnitude(form[1])), magnitude(form[2]));
+        const Doubles size = select(greater(largest, 0.0), largest, maximum(magnitude(form[3]), Doubles{} + 0x1p-900));
+        const Doubles scale = 1.0 / power_of_two_below(size);
+        for (std::size_t j = 0; j < 3; ++j) store(forms.a[j] + i, form[j] * scale);
+        store(forms.d + i, form[3] * scale);
+        store(forms.narrowing + i, load<Doubles>(weights.width + i) * scale);
+    }
+}
+
+// Scaled by powers of two so that one bound serves all: 7 u (max|a_j| size + |d|) with u = 2^-24, see classes(), and 0.1 u for
+// the bound's own roundings; 8.1 leaves room for one more. The change over a sphere, whose slope may be sqrt(3) max|a_j|,
+// errs by at most 3 u of it, less than 8.1 u of four radii.
+// |a_j| and |d| are so small that nothing overflows before the size does. What holds with room for the inner sides holds for
+// both, so one bound has that room, too.
+// A form is worth as much as it changes within the scene. How large that is, the distances of the sides from the origin
+// tell: a form that hardly changes there (q, nearly orthographic, or a far plane) is not scaled up to them. Nor is a limit of
+// depth whose rounding moves it far.
+template <class CompiledWhereCalled = void>
+void round_forms(const FormLanes& forms, std::size_t count, FloatForms& result) noexcept {
+    Doubles gradient[form_lanes / static_cast<std::size_t>(lanes)];
+    double distance[form_lanes];
+    for (std::size_t i = 0; i < form_lanes; i += static_cast<std::size_t>(lanes)) {
+        Doubles& sum = gradient[i / static_cast<std::size_t>(lanes)];
+        sum = magnitude(load<Doubles>(forms.a[0] + i)) + magnitude(load<Doubles>(forms.a[1] + i)) +
+              magnitude(load<Doubles>(forms.a[2] + i));
+        store(distance + i, where(greater(sum, 0.0), magnitude(load<Doubles>(forms.d + i)) / sum));
+    }
+    const double extent = larger(larger(distance[0], distance[1]), larger(distance[2], distance[3]));
+    const double per_extent = extent > 0.0 ? 1.0 / extent : 0.0;
+    const double of_narrowing = 0x1p22 * (forms.largest_q + forms.last_q * per_extent);
+    constexpr double is_depth[form_lanes] = {0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0};
+    Doubles largest_a{}, largest_d{}, largest_narrowing{};
+    for (std::size_t i = 0; i < form_lanes; i += static_cast<std::size_t>(lanes)) {
+        const auto d = load<Doubles>(forms.d + i);
+        const auto narrowing = load<Doubles>(forms.narrowing + i);
+        const Doubles size = maximum(load<Doubles>(is_depth + i) * narrowing * of_narrowing,
+                                     maximum(gradient[i / static_cast<std::size_t>(lanes)], magnitude(d) * per_extent));
+        const Doubles scale =
+            where(greater(size, 0x1p-900) & ~greater(size, 0x1p900), 0.125 / power_of_two_below(size));
+        Doubles squared{};
+        for (std::size_t j = 0; j < 3; ++j) {
+            const Doubles a = load<Doubles>(forms.a[j] + i) * scale;
+            squared = squared + a * a;
+            largest_a = maximum(magnitude(a), largest_a);
+            store(result.a[j] + i, to_floats(a));
+            store(result.magnitude_of_a[j] + i, to_floats(magnitude(a)));
+        }
+        store(result.slope + i, to_floats(squared));
+        store(result.twice_d + i, to_floats(d * scale * 2.0));
+        largest_d = maximum(magnitude(d * scale), largest_d);
+        largest_narrowing = maximum(narrowing * scale, largest_narrowing);
+    }
+    for (float& slope : result.slope) slope = std::sqrt(slope);
+    const auto largest_of = [](const Doubles& values) {
+        double largest = values[0];
+        for (int i = 1; i < lanes; ++i) largest = larger_or_nan(largest, values[i]);
+        return largest;
+    };
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const double bound_d = largest_of(largest_d);
+    const double most_narrowed = largest_of(largest_narrowing);
+    const double error_a = 8.1 * unit_roundoff_float * largest_of(largest_a) + 1.1 * most_narrowed * forms.largest_q;
+    const double error_d = 8.1 * unit_roundoff_float * (bound_d < 0x1p100 ? bound_d : infinity) +  // nothing is certain
+                           1.1 * most_narrowed * forms.last_q;
+    result.count = count;
+    result.error_per_size = static_cast<float>(error_a + 0x1p-100);
+    result.error = static_cast<float>(2.0 * error_d + 0x1p-100);
+}
+
+// One box in double, a lane a form: twice the value in its middle, and how much it changes to either end. A sum or difference
+// of two corners is rounded, as are a coefficient, a product, three sums of them and the sum of the two: 8 u.
+template <class CompiledWhereCalled = void>
+int classify_box(const FormLanes& forms, const Box& box, FormsInDoubt& doubt) noexcept {
+    double sum[3], extent[3], size[3];
+    bool is_proper = true;
+    for (std::size_t j = 0; j < 3; ++j) {
+        const double min = widened(box.min[static_cast<glm::length_t>(j)]);
+        const double max = widened(box.max[static_cast<glm::length_t>(j)]);
+        sum[j] = min + max;
+        extent[j] = max - min;
+        size[j] = std::fabs(sum[j]) + extent[j];
+        is_proper &= extent[j] >= 0.0;
+        is_proper &= size[j] < 0x1p200;
+    }
+    doubt = {~0u, ~0u, false, is_proper};
+    if (!is_proper) return body_in_doubt;
+
+    constexpr std::size_t count = form_lanes / static_cast<std::size_t>(lanes);
+    Doubles value[count], change[count], error[count];
+    LongWords outside{}, open_largest{}, negative{}, open_least{}, dark{};
+    TEXGEN_UNROLL
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t first = i * static_cast<std::size_t>(lanes);
+        const Doubles a[3] = {load<Doubles>(forms.a[0] + first), load<Doubles>(forms.a[1] + first),
+                              load<Doubles>(forms.a[2] + first)};
+        const Doubles twice_d = load<Doubles>(forms.d + first) * 2.0;
+        value[i] = (a[0] * sum[0] + a[1] * sum[1]) + (a[2] * sum[2] + twice_d);
+        change[i] = magnitude(a[0]) * extent[0] + (magnitude(a[1]) * extent[1] + magnitude(a[2]) * extent[2]);
+        error[i] =
+            (magnitude(a[0]) * size[0] + magnitude(a[1]) * size[1]) + (magnitude(a[2]) * size[2] + magnitude(twice_d));
+        error[i] = minimum(error[i], Doubles{} + 0x1p900) * gamma(8);
+        outside = outside | greater(0.0 - error[i], value[i] + change[i]);
+    }
+    if (any(outside)) return 0;
+    const double narrowed = 1.1 * (forms.largest_q * (size[0] + size[1] + size[2]) + 2.0 * forms.last_q);
+    int largest_in_doubt[form_lanes], least_in_doubt[form_lanes];
+    TEXGEN_UNROLL
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t first = i * static_cast<std::size_t>(lanes);
+        const Doubles least = value[i] - change[i];
+        const LongWords largest_is_open = ~greater(value[i] + change[i], error[i]);
+        const LongWords is_negative = greater(0.0 - error[i], least);
+        const LongWords is_inside = greater(least - error[i], load<Doubles>(forms.narrowing + first) * narrowed);
+        const LongWords least_is_open = ~(is_inside | is_negative);
+        open_largest = open_largest | largest_is_open;
+        negative = negative | is_negative;
+        open_least = open_least | least_is_open;
+        dark = dark | ~greater(value[i], error[i]);
+        store(largest_in_doubt + first, narrow(largest_is_open));
+        store(least_in_doubt + first, narrow(least_is_open));
+    }
+    doubt.is_any_negative = any(negative);
+    if (!any(open_largest)) {
+        if (doubt.is_any_negative) return any(dark) ? open_body + 1 : 1;
+        if (!any(open_least)) return 2;
+    }
+    doubt.largest = doubt.least = 0;
+    for (std::size_t k = 0; k < max_forms; ++k) {
+        doubt.largest |= (static_cast<std::uint32_t>(largest_in_doubt[k]) & 1u) << k;
+        doubt.least |= (static_cast<std::uint32_t>(least_in_doubt[k]) & 1u) << k;
+    }
+    return body_in_doubt;
+}
+
+// The least values of the inner sides over a finite box, where nothing is rounded: halves of coefficients are 0, and so is what
+// sums leave.
+template <class CompiledWhereCalled = void>
+void sharpen(const glm::dmat4& matrix, const FormWeights& weights, const Box& box, FormsInDoubt& doubt) noexcept {
+    double min[3], max[3];
+    for (std::size_t j = 0; j < 3; ++j) {
+        min[j] = widened(box.min[static_cast<glm::length_t>(j)]);
+        max[j] = widened(box.max[static_cast<glm::length_t>(j)]);
+    }
+    for (std::size_t i = 0; i < form_lanes; i += static_cast<std::size_t>(lanes)) {
+        const Doubles of[3] = {load<Doubles>(weights.of[0] + i), load<Doubles>(weights.of[1] + i),
+                               load<Doubles>(weights.of[2] + i)};
+        const auto of_q = load<Doubles>(weights.inner_of_q + i);
+        Doubles value{}, lost{}, rest;
+        TEXGEN_UNROLL
+        for (std::size_t j = 0; j < 4; ++j) {
+            const glm::dvec4& column = matrix[static_cast<glm::length_t>(3 - j)];
+            const double half = bit_cast<double>(bit_cast<std::uint64_t>(column.w) & ~std::uint64_t{0x7ffffff});
+            const Doubles row = of[0] * column.x + (of[1] * column.y + of[2] * column.z);
+            const Doubles form = two_sum(row, of_q * half, rest);
+            lost = lost + magnitude(rest) + magnitude(form - leading_27_bits(form)) + std::fabs(column.w - half);
+            if (j == 0) {
+                value = form;
+                continue;
+            }
+            value = two_sum(value, minimum(form * min[3 - j], form * max[3 - j]), rest);
+            lost = lost + magnitude(rest);
+        }
+        int is_exact[lanes], is_negative[lanes];
+        store(is_exact, narrow(at_most(lost, Doubles{})));
+        store(is_negative, narrow(greater(0.0 - value, 0.0)));
+        for (std::size_t lane = 0; lane < static_cast<std::size_t>(lanes); ++lane) {
+            const std::uint32_t bit = std::uint32_t{1} << (i + lane);
+            if (i + lane == form_of_q || is_exact[lane] == 0 || (doubt.least & bit) == 0) continue;
+            doubt.least &= ~bit;
+            doubt.is_any_negative = doubt.is_any_negative || is_negative[lane] != 0;
+        }
+    }
+}
+
 // Many bodies, a lane each. Where the largest value of a form is negative, the body is outside; where the least of all are
 // positive, inside; where all are positive in the middle, no further plane makes it outside. An infinity makes the error
 // one or a NaN, and nothing is certain.
@@ -105,20 +302,6 @@ TEXGEN_INLINE int class_of(const FloatForms& forms, const float (&twice_middle)[
 }
 
 template <class CompiledWhereCalled = void>
-int classify_box(const FloatForms& forms, const float* min, const float* max) noexcept {
-    const float sum[3] = {min[0] + max[0], min[1] + max[1], min[2] + max[2]};
-    const float extent[3] = {max[0] - min[0], max[1] - min[1], max[2] - min[2]};
-    const auto change = [&](std::size_t k) {
-        return load<FormFloats>(forms.magnitude_of_a[0] + k) * extent[0] +
-               (load<FormFloats>(forms.magnitude_of_a[1] + k) * extent[1] +
-                load<FormFloats>(forms.magnitude_of_a[2] + k) * extent[2]);
-    };
-    const float size =
-        (std::fabs(sum[0]) + extent[0]) + (std::fabs(sum[1]) + extent[1]) + (std::fabs(sum[2]) + extent[2]);
-    return class_of(forms, sum, change, size, min[0] <= max[0] && min[1] <= max[1] && min[2] <= max[2]);
-}
-
-template <class CompiledWhereCalled = void>
 int classify_sphere(const FloatForms& forms, const float* centre, float radius) noexcept {
     const float twice[3] = {2.0f * centre[0], 2.0f * centre[1], 2.0f * centre[2]};
     const auto change = [&](std::size_t k) { return load<FormFloats>(forms.slope + k) * (2.0f * radius); };
@@ -204,6 +387,81 @@ void bound(const DoubleForms& forms, const BoxBlock& boxes, BoxBounds& bounds) n
         store(bounds.inner_upper + i, upper);
         if (any(narrow(~greater(0.0 - upper, 0.0))))
             bound_least<false>(forms, boxes, i, bounds.inner_lower, bounds.inner_upper);
+    }
+}
+
+// As exact_coverage() of a sphere, where every rounding here and there together could not change what it says: its bounds are
+// twice what is rounded, so half of one more or less decides. A root is a square here.
+template <class CompiledWhereCalled = void>
+void bound_spheres(const SphereForms& forms, const SphereBlock& spheres, int* classes) noexcept {
+    for (std::size_t i = 0; i < box_block; i += static_cast<std::size_t>(lanes)) {
+        const Doubles centre[3] = {load<Doubles>(spheres.centre[0] + i), load<Doubles>(spheres.centre[1] + i),
+                                   load<Doubles>(spheres.centre[2] + i)};
+        const auto radius = load<Doubles>(spheres.radius + i);
+        const Doubles size = magnitude(centre[0]) + magnitude(centre[1]) + magnitude(centre[2]);
+        const Doubles of_q = ((size + radius * 2.0) * forms.largest_q + forms.last_q) * 1.1;
+        Doubles value[max_forms], error[max_forms];
+        LongWords outside{}, perhaps_outside{}, dark{}, not_inside{}, perhaps_inside = ~outside;
+        for (std::size_t k = 0; k < forms.count; ++k) {
+            const LinearForm& form = forms.form[k];
+            value[k] = centre[0] * form.a[0] + (centre[1] * form.a[1] + (centre[2] * form.a[2] + form.d));
+            error[k] = size * form.error_a + form.error_d;
+            const Doubles change = radius * forms.slope[k];
+            const Doubles rounding = error[k] + change * gamma(4);
+            const Doubles least = value[k] - change - of_q * forms.narrowing[k];
+            outside = outside | greater(rounding * -1.5, value[k] + change);
+            perhaps_outside = perhaps_outside | greater(rounding * -0.5, value[k] + change);
+            not_inside = not_inside | ~greater(least, rounding * 1.5);
+            perhaps_inside = perhaps_inside & greater(least, rounding * 0.5);
+            dark = dark | greater(0.0 - value[k], 0.0);
+        }
+        const auto try_edge = [&](std::size_t f, std::size_t g) {
+            const LongWords asked = (greater(0.0 - value[f], 0.0) | greater(0.0 - value[g], 0.0)) & ~outside;
+            if (!any(asked)) return;
+            const auto& a = forms.form[f].a;
+            const auto& b = forms.form[g].a;
+            const double across = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+            const double squared_f = forms.slope[f] * forms.slope[f];
+            const double squared_g = forms.slope[g] * forms.slope[g];
+            Doubles of_f = value[g] * across - value[f] * squared_g;
+            Doubles of_g = value[f] * across - value[g] * squared_f;
+            const LongWords faces = greater(of_f, 0.0) & greater(of_g, 0.0) & asked;
+            if (!any(faces)) return;
+            const Doubles both = 1.0 / (of_f + of_g);
+            of_f = of_f * both;
+            of_g = of_g * both;
+            const Doubles longest = of_f * forms.slope[f] + of_g * forms.slope[g];
+            const Doubles squared = (of_f * of_f * squared_f + of_f * of_g * (2.0 * across) + of_g * of_g * squared_g +
+                                     longest * longest * gamma(32)) *
+                                    (radius * radius);
+            const Doubles sum = of_f * value[f] + of_g * value[g];
+            const Doubles rounding = (of_f * error[f] + of_g * error[g]) +
+                                     (of_f * magnitude(value[f]) + of_g * magnitude(value[g])) * gamma(8);
+            const Doubles reach = sum + rounding * 1.5;
+            const Doubles perhaps = sum + rounding * 0.5;
+            outside =
+                outside | (faces & greater(0.0 - reach, 0.0) & greater(reach * reach, squared * (1.0 + gamma(40))));
+            perhaps_outside =
+                perhaps_outside | (faces & greater(0.0 - perhaps, 0.0) & greater(perhaps * perhaps, squared));
+        };
+        if (any(dark & ~outside)) {
+            for (std::size_t f = 0; f < 2; ++f)
+                for (std::size_t g = 2; g < form_of_q; ++g) try_edge(f, g);
+            for (std::size_t f = 0; f < form_of_q; ++f)
+                for (std::size_t g = form_of_q + 1; g < forms.count; ++g) try_edge(f, g);
+        }
+        const LongWords inside = ~not_inside;
+        const LongWords in_doubt = (perhaps_outside & ~outside) | (perhaps_inside & not_inside & ~outside);
+        const Words is_outside = narrow(outside), is_inside = narrow(inside & ~outside), doubts = narrow(in_doubt);
+        int each[3][lanes];
+        store(each[0], is_outside);
+        store(each[1], is_inside);
+        store(each[2], doubts);
+        for (std::size_t lane = 0; lane < static_cast<std::size_t>(lanes); ++lane)
+            classes[i + lane] = each[2][lane] != 0   ? body_in_doubt
+                                : each[0][lane] != 0 ? 0
+                                : each[1][lane] != 0 ? 2
+                                                     : 1;
     }
 }
 

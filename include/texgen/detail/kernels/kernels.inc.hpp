@@ -78,11 +78,15 @@ struct KernelTable<FootprintKernels, CompiledWhereCalled> {
 template <class CompiledWhereCalled>
 struct KernelTable<BoxKernels, CompiledWhereCalled> {
     static const BoxKernels& get() noexcept {
-        static constexpr BoxKernels table{.classify_boxes = classify_boxes<>,
-                                          .classify_spheres = classify_spheres<>,
+        static constexpr BoxKernels table{.weigh = weigh_forms<>,
+                                          .round = round_forms<>,
                                           .classify_box = classify_box<>,
+                                          .sharpen = sharpen<>,
+                                          .classify_boxes = classify_boxes<>,
+                                          .classify_spheres = classify_spheres<>,
                                           .classify_sphere = classify_sphere<>,
                                           .bound = bound<>,
+                                          .bound_spheres = bound_spheres<>,
                                           .separate = separate<>};
         return table;
     }

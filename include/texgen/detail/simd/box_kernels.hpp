@@ -4,7 +4,11 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
+#include <glm/mat4x4.hpp>
+
+#include "../../primitives.hpp"
 #include "../language.hpp"
 
 namespace TEXGEN_DETAIL {
@@ -23,10 +27,32 @@ inline constexpr std::size_t form_of_q = 4;
 inline constexpr std::size_t forms_without_depth = 5;
 inline constexpr std::size_t max_forms = 7;
 
+// A lane a form; those behind the last form are q's. Form k is of[0] T_s + of[1] T_t + of[2] T_r + of_q T_q, where one of the
+// three weights at most is not 0, but 1 or -1, and of_q is a float; its inner side has another of_q, which may be infinite, and
+// is `width` away.
+inline constexpr std::size_t form_lanes = 8;
+struct FormWeights {
+    double of[3][form_lanes], of_q[form_lanes], inner_of_q[form_lanes], width[form_lanes];
+};
+
+// a . (x, y, z) + d, each coefficient rounded so that its sign is right and it is 0 only if it is 0, times a power of two that
+// brings the largest a of a form near to 1. Its inner side is less by narrowing * T_q, and T_q at points of a size, the sum of
+// their magnitudes, is at most largest_q * size + last_q.
+struct FormLanes {
+    double a[3][form_lanes], d[form_lanes], narrowing[form_lanes];
+    double largest_q, last_q;
+};
+
+// A bit for each form of which a double does not say the sign: where it is largest over a box, and where it is least.
+struct FormsInDoubt {
+    std::uint32_t largest, least;
+    bool is_any_negative;  // of the least, for certain
+    bool is_finite;        // the box, which has points
+};
+
 // The same in float, twice the value each, a lane a form, with one bound for all: over a body each errs by less than
 // error_per_size * size + error, where the size of a box is the sum of |min + max| and max - min of its coordinates, that of
 // a sphere twice the sum of |x|, |y|, |z| and four times its radius. The lanes behind the last form are those of q.
-inline constexpr std::size_t form_lanes = 8;
 struct FloatForms {
     float a[3][form_lanes], magnitude_of_a[3][form_lanes];
     float twice_d[form_lanes];
@@ -73,6 +99,19 @@ struct BoxBlock {
     double max[3][box_block];
 };
 
+// Spheres, planar; and the forms with all that they need of them.
+struct SphereBlock {
+    double centre[3][box_block];
+    double radius[box_block];
+};
+struct SphereForms {
+    std::array<LinearForm, max_forms> form;
+    std::array<double, max_forms> slope;  // |a|, or up to 2^-49 of it more
+    std::array<double, max_forms> narrowing;
+    double largest_q, last_q;
+    std::size_t count;
+};
+
 // Bounds on the least over the forms of the largest value over each box, and on the least of the inner ones: their
 // signs are right, and where a lower one is negative beside an upper one that is not, nothing is known.
 struct BoxBounds {
@@ -81,14 +120,22 @@ struct BoxBounds {
 };
 
 struct BoxKernels {
+    // Makes the forms, in double and in float.
+    void (*weigh)(const glm::dmat4& matrix, const FormWeights& weights, FormLanes& forms) noexcept;
+    void (*round)(const FormLanes& forms, std::size_t count, FloatForms& result) noexcept;
+    // What doubles are certain of, of one box. NaN, infinities and empty boxes are in doubt.
+    int (*classify_box)(const FormLanes& forms, const Box& box, FormsInDoubt& doubt) noexcept;
+    // Takes from the doubt of the least what is exact in double: as numbers with few digits are, where a box touches.
+    void (*sharpen)(const glm::dmat4& matrix, const FormWeights& weights, const Box& box, FormsInDoubt& doubt) noexcept;
     // What floats are certain of. A box is six floats, min first; a sphere four, the radius last. NaN, infinities, empty
     // boxes and negative radii are in doubt.
     void (*classify_boxes)(const FloatForms& forms, const float* boxes, std::size_t count, int* classes) noexcept;
     void (*classify_spheres)(const FloatForms& forms, const float* spheres, std::size_t count, int* classes) noexcept;
-    int (*classify_box)(const FloatForms& forms, const float* min, const float* max) noexcept;
     int (*classify_sphere)(const FloatForms& forms, const float* centre, float radius) noexcept;
     // What doubles are certain of, and where they are not, pairs of doubles. For proper boxes, which may be infinite.
     void (*bound)(const DoubleForms& forms, const BoxBlock& boxes, BoxBounds& bounds) noexcept;
+    // What exact_coverage() says of spheres, but where it is next to another answer: that is doubt.
+    void (*bound_spheres)(const SphereForms& forms, const SphereBlock& spheres, int* classes) noexcept;
     // The least over the forms of the largest value over each box, never below the exact one.
     void (*separate)(const LinearForm* forms, std::size_t count, const BoxBlock& boxes,
                      double* least_of_largest) noexcept;
