@@ -26,6 +26,7 @@
 #include "detail/arithmetic/widen.hpp"
 #include "detail/diagnosis/composition.hpp"
 #include "detail/diagnosis/matrix_signs.hpp"
+#include "detail/diagnosis/seen_lens.hpp"
 #include "linear.hpp"
 #include "projector.hpp"
 #include "scale_bias.hpp"
@@ -240,12 +241,16 @@ using Setup = ProjectionSetup<Space>;
 // conventions, lens, pose of regular matrices and distance from the origin, but for what is true of it: that it lights
 // none of the points, shows all of them less than a texel, or loses half a texel (of a picture of 4096, where the
 // texture's size is not given). A lens that mirrors says so in its facts, a model may mirror. No allocation, noexcept.
-// Below a microsecond for what was composed in double, microseconds where it was composed in float or has a mistake to be
+// About a microsecond for what was composed in double, microseconds where it was composed in float or has a mistake to be
 // named: at most 8 times what one with one defect costs. No mistake is named of numbers beyond 2^150 or below 2^-150.
 // What it sees: of a projector alone, its matrices' own marks (transposed, exchanged, of rank below 3, mirrored, reversed
-// depth in the wrong range); with facts of the lens also its depth range, aspect and angle. Of a texgen matrix alone,
-// those of its rows r and q. With the projector, and the model or the camera, which of their products it is, of up to
-// two mistakes. Depth that is not reversed needs the distance of a plane: any row z is that of some lens in both ranges.
+// depth in the wrong range); with facts of the lens also its depth range, aspect and angle. With the projector, and the
+// model or the camera, which of their products a texgen matrix is, of up to two mistakes; and if it is none of them the lens
+// that it was made with, P' = S^-1 T X^-1 V^-1, against the projector's. Of a texgen matrix alone, the marks of its rows r
+// and q; with facts of the lens the lens in it, the scale-bias and the depth range; and without them what numbers say that
+// people write: whole degrees, or planes of two digits, which a mistake explains and nothing valid does. In float those are
+// too few for a range, and for an angle unless the picture stands on its head in the world.
+// Depth that is not reversed needs the distance of a plane: any row z is that of some lens in both ranges.
 // Bad input: what is not finite is reported, and the rest is examined without it.
 // Source: Everitt, Projective Texture Mapping, (3) and (4), and what is made of them.
 template <class Space>
@@ -278,4 +283,5 @@ Diagnosis diagnose(const std::array<glm::vec4, 4>& planes, const ProjectionSetup
 #include "detail/diagnosis/projector.inc.hpp"
 #include "detail/diagnosis/refusals.inc.hpp"
 #include "detail/diagnosis/see_through.inc.hpp"
+#include "detail/diagnosis/seen_alone.inc.hpp"
 #include "detail/diagnosis/set_up.inc.hpp"

@@ -138,6 +138,7 @@ inline std::optional<Composition> composition_of(const glm::dmat4& texgen, const
     const std::array<Glance, 2> glances{Glance(given[0], false), Glance(given[1], true)};
     const Product projection = lens_factor(factors.projection);
     const Product view = pose_factor(factors.view);
+    const bool is_near = in_float.has_value();
     // Each is made where it is used first.
     std::array<std::optional<Product>, scale_bias_mistakes.size()> scale_biases;
     std::array<std::optional<Product>, 4> poses;
@@ -153,6 +154,8 @@ inline std::optional<Composition> composition_of(const glm::dmat4& texgen, const
             // Far from the origin a wrong order may be as near in float as the factors in theirs: that is the likelier.
             for (const bool in_order : {true, false}) {
                 for (std::size_t i = 0; i < scale_bias_mistakes.size(); ++i) {
+                    // Next to the right product rounding moves depth to the other range: is_of_other_range() knows.
+                    if (is_near && scale_bias_mistakes[i].other_depth) continue;
                     for (const bool transposed : {false, true}) {
                         Composition composition = scale_bias_mistakes[i];
                         composition.pose = pose;

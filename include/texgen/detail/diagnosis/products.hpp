@@ -174,8 +174,8 @@ inline Product right_composition(const Factors& factors) noexcept {
 }
 
 // Whether rows s, t and q are right, and row r = a z + b w is that of a lens or a scale-bias for the other range: by far
-// nearer to it than to the right one, and, where rounding could have moved the right one there, as near as the other rows
-// are to theirs.
+// nearer to it than to the right one. Where rounding could have moved it from there, the rounding of the other rows says how
+// far it does.
 inline bool is_of_other_range(const glm::dmat4& texgen, const glm::dmat4& scale_bias, const Product& right) noexcept {
     if (is_zero_row(texgen, 2)) return false;
     glm::dmat4 other_rows = texgen;
@@ -196,8 +196,10 @@ inline bool is_of_other_range(const glm::dmat4& texgen, const glm::dmat4& scale_
     };
     const double to_right = distance(2, 1.0, 0.0);
     const double rounding = larger(larger(distance(0, 1.0, 0.0), distance(1, 1.0, 0.0)),
-                                   larger(distance(3, 1.0, 0.0), unit_roundoff_float));
-    const double accepted = to_right > composed_in_float.of_magnitude ? composed_in_float.of_magnitude : 4.0 * rounding;
+                                   larger(distance(3, 1.0, 0.0), is_in_float(texgen) ? unit_roundoff_float : 0x1p-44));
+    const bool is_near = to_right <= composed_in_float.of_magnitude;
+    if (is_near && to_right <= 8.0 * rounding) return false;
+    const double accepted = is_near ? 4.0 * rounding : composed_in_float.of_magnitude;
     // z, (z + w) / 2, 2 z - w and (z + 3 w) / 4, of r = scale z + bias w.
     const double scale = scale_bias[2][2], bias = scale_bias[3][2];
     for (const glm::dvec2& row :

@@ -15,6 +15,20 @@ inline bool is_usable(const glm::dmat4& m, Diagnosis& diagnosis) noexcept {
     return true;
 }
 
+// Of a lens of which nothing is known its round numbers may speak.
+inline void examine_numbers(const glm::dmat4& p, bool is_upright, Conventions conventions, const LensFacts& facts,
+                            Diagnosis& diagnosis) noexcept {
+    const SeenLens seen(p, rounding_of(p));
+    if (!seen.is_lens()) return;
+    const double focal_length = seen.focal_length().y;
+    if (!facts.fovy && is_upright && seen.is_centred_on(glm::dvec2(0.0)) &&
+        !is_of_round_angle({focal_length, seen.error_of_focal_length()}) &&
+        is_of_degrees_as_radians(seen, focal_length, conventions.ndc_y == NdcY::up ? 1.0 : -1.0))
+        diagnosis.add(Defect::angle_unit_mistaken);
+    if (!facts.z_near && !facts.z_far && is_round_in_other_range(seen, *depth_ends(DepthMapping::ndc, conventions)))
+        diagnosis.add(Defect::depth_range_mismatch);
+}
+
 inline void examine_lens(const glm::dmat4& p, bool view_reflects, Conventions conventions, const LensFacts& facts,
                          const Picture& picture, Diagnosis& diagnosis) noexcept {
     const double unit = is_perspective(p) ? std::fabs(p[2].w) : p[3].w;
@@ -39,6 +53,8 @@ inline void examine_lens(const glm::dmat4& p, bool view_reflects, Conventions co
             diagnosis.add(Defect::upside_down);
         }
     }
+
+    examine_numbers(p, width > 0.0 && height > 0.0, conventions, facts, diagnosis);
 
     const glm::dvec2 size = picture.extent() * picture.texels_per_unit;
     const double meant = facts.aspect ? *facts.aspect : picture.is_measured() ? size.x / size.y : 1.0;

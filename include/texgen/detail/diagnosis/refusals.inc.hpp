@@ -34,10 +34,9 @@ inline void examine(const PerspectiveLens& lens, Diagnosis& diagnosis) noexcept 
     const double angle = lens.fovy.in_radians();
     require_finite({angle, lens.aspect}, diagnosis);
     constexpr double half_turn = 3.14159265358979323846;
-    require(0.5 * angle > 0.0 && 0.5 * angle<0.5 * half_turn, {angle}, std::fabs(angle)> 2.0 * half_turn
-                ? Defect::angle_unit_mistaken
-                : Defect::angle_out_of_range,
-            diagnosis);
+    const bool opens = 0.5 * angle > 0.0 && 0.5 * angle < 0.5 * half_turn;
+    const bool has_turns = std::fabs(angle) > 2.0 * half_turn;
+    require(opens, {angle}, has_turns ? Defect::angle_unit_mistaken : Defect::angle_out_of_range, diagnosis);
     require(lens.aspect > 0.0, {lens.aspect}, Defect::aspect_not_positive, diagnosis);
     examine_planes(lens.z_near, lens.z_far, diagnosis);
 }

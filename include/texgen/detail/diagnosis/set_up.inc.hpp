@@ -23,6 +23,11 @@ inline void examine(const Composition& composition, bool in_eye_space, Diagnosis
     if (composition.scale_bias == ScaleBiasUse::doubled) diagnosis.add(Defect::scale_bias_doubled);
     if (composition.scale_bias == ScaleBiasUse::without_w) diagnosis.add(Defect::bias_without_w);
     if (composition.other_depth) diagnosis.add(Defect::depth_range_mismatch);
+    // With the other sign as well both axes are as they were, and it is the depth that is turned round.
+    if (composition.s_mirrored && composition.t_mirrored && composition.multiple < 0.0) {
+        diagnosis.add(Defect::mixed_handedness);
+        return;
+    }
     if (composition.t_mirrored) diagnosis.add(Defect::upside_down);
     if (composition.s_mirrored) diagnosis.add(Defect::mirrored);
     if (composition.multiple < 0.0) diagnosis.add(Defect::everything_behind);
@@ -43,26 +48,6 @@ inline bool are_numbers(const SetupMatrices& setup) noexcept {
            is_finite(setup.picture.texels_per_unit.x) && is_finite(setup.picture.texels_per_unit.y) &&
            is_given_finite(lens.aspect) && is_given_finite(lens.z_near) && !(lens.z_far && is_nan(*lens.z_far)) &&
            !(lens.fovy && !is_finite(lens.fovy->in_radians()));
-}
-
-// Returns whether it is transposed.
-inline bool examine_alone(const glm::dmat4& texgen, const SetupMatrices& setup, Diagnosis& diagnosis) noexcept {
-    constexpr double margin = 0x1p-10;
-    const DepthRows rows = depth_rows(texgen);
-    if (!rows.are_parallel) {
-        const bool is_transposed = depth_rows(glm::transpose(texgen)).are_parallel;
-        diagnosis.add(is_transposed ? Defect::transposed : Defect::wrong_order);
-        return is_transposed;
-    }
-    // As in mistakes_depth(): no range has infinity there.
-    if (rows.limit > margin && rows.limit < 1.0 - margin) diagnosis.add(Defect::depth_range_mismatch);
-    const std::optional<Conventions> conventions =
-        setup.projector != nullptr ? std::optional(setup.projector->conventions) : setup.conventions;
-    const bool is_placed = setup.in_world_space || setup.pose != nullptr;
-    if (conventions && is_placed && !setup.lens.mirrored && !diagnosis.contains(Defect::mixed_handedness) &&
-        is_mirrored(texgen, setup.pose != nullptr ? *setup.pose : glm::dmat4(1.0), *conventions))
-        diagnosis.add(Defect::mirrored);
-    return false;
 }
 
 // Half the bound on the rounding of an element to float, relative to it.

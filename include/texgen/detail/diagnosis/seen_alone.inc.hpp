@@ -1,0 +1,140 @@
+// What diagnose.hpp says of a texgen matrix whose projector is not given. Rows s, t and q of a perspective have the lens in
+// them, whatever its view: lengths and angles do not change under rotations.
+
+namespace TEXGEN_DETAIL {
+
+// Whether near or far, where they are known, land on an end of the other range, or infinity lands where they say it does
+// there: that holds in any units.
+inline bool is_of_other_range(const SeenLens& lens, const DepthEnds& ends, const LensFacts& facts,
+                              bool is_placed) noexcept {
+    for (const auto& distance : {facts.z_near, facts.z_far}) {
+        if (!is_placed || !distance || !(*distance > 0.0)) continue;
+        const Estimate r = lens.r_at(*distance);
+        for (const double other : ends.other_lows)
+            if (r.error < 0x1p-5 && std::fabs(r.value - other) <= 0x1p-12 + 4.0 * r.error) return true;
+    }
+    if (!facts.z_near || !facts.z_far || !(*facts.z_far > *facts.z_near)) return false;
+    // Planes that were taken from a projector in float are no nearer.
+    const double accepted = 4.0 * larger(lens.rounding(), 0x1p-22);
+    const double beyond = *facts.z_near / (*facts.z_far - *facts.z_near);
+    if (!(beyond > 16.0 * accepted)) return false;
+    for (const double other : ends.other_lows)
+        for (const double in_range : {1.0 + beyond, -beyond})
+            if (std::fabs(lens.limit() - (other + (1.0 - other) * in_range)) <= accepted) return true;
+    return false;
+}
+
+// The matrix in the world, as far as it is known: without the pose.
+inline glm::dmat4 in_the_world(const glm::dmat4& texgen, const glm::dmat4* pose) noexcept {
+    if (pose == nullptr) return texgen;
+    const CertifiedInverse inverse(*pose);
+    return inverse.regular() ? texgen * inverse.matrix() : texgen;
+}
+
+// S as it should be, and whether the axis of the lens goes to the corner that no bias leaves there.
+struct SeenScaleBias {
+    glm::dvec2 scale, bias;
+    double up_along_t;  // 1 where t grows upwards, -1 downwards, 0 where that is not known
+
+    bool is_missed_by(const SeenLens& lens) const noexcept {
+        return lens.is_centred_on(glm::dvec2(0.0)) && !lens.is_centred_on(bias);
+    }
+};
+inline std::optional<Conventions> known_conventions(const SetupMatrices& setup) noexcept {
+    return setup.projector != nullptr ? std::optional(setup.projector->conventions) : setup.conventions;
+}
+inline SeenScaleBias seen_scale_bias(const SetupMatrices& setup) noexcept {
+    const std::optional<Conventions> conventions = known_conventions(setup);
+    const glm::dmat4 s = texgen::scale_bias(conventions.value_or(opengl), setup.picture.region, setup.depth).matrix();
+    const double up_along_t = !conventions ? 0.0 : conventions->origin == TextureOrigin::bottom_left ? 1.0 : -1.0;
+    return {{std::fabs(s[0].x), std::fabs(s[1].y)}, {s[3].x, s[3].y}, up_along_t};
+}
+
+// Says what the lens that is seen shows. What is known of the lens decides; where nothing is, only numbers that are round
+// with a mistake, and are not without it, speak for one: they are what people write.
+inline void examine_seen_lens(const SeenLens& lens, const SetupMatrices& setup, const LensFacts& facts,
+                              Diagnosis& diagnosis) noexcept {
+    const SeenScaleBias s = seen_scale_bias(setup);
+    const double error = lens.error_of_focal_length();
+    const glm::dvec2 as_clip = lens.focal_length(), in_ndc = as_clip / s.scale;
+    const auto is_meant = [&](double focal_length) {
+        if (!facts.fovy) return is_of_round_angle({focal_length, error});
+        const double half = 0.5 * facts.fovy->in_radians();
+        return std::fabs(focal_length * std::sin(half) - std::cos(half)) <=
+               larger(4.0 * error, 0x1p-16) * std::cos(half);
+    };
+    const std::optional<DepthEnds> ends = depth_ends(setup.depth, known_conventions(setup));
+    if (s.is_missed_by(lens)) {
+        // With w biased as well, and halved, only its size is another.
+        const bool halves_w = std::fabs(lens.per_distance() - 0.5) <= 4.0 * lens.rounding();
+        if (is_meant(as_clip.y) && !halves_w) {
+            diagnosis.add(Defect::scale_bias_missing);
+            return;
+        }
+        if (is_meant(as_clip.y) || is_meant(as_clip.y / 0.5) || is_meant(in_ndc.y)) {
+            diagnosis.add(Defect::bias_without_w);
+            return;
+        }
+    } else if (facts.fovy) {
+        // A view by half a turn would turn the picture as well as a tangent below 0.
+        if (!is_meant(in_ndc.y) && (mistakes_unit(in_ndc.y, *facts.fovy) || mistakes_unit(-in_ndc.y, *facts.fovy)))
+            diagnosis.add(Defect::angle_unit_mistaken);
+    } else if (lens.is_centred_on(s.bias) && !is_meant(in_ndc.y) &&
+               is_of_degrees_as_radians(lens, in_ndc.y, s.up_along_t)) {
+        diagnosis.add(Defect::angle_unit_mistaken);
+    }
+    if (facts.aspect && std::fabs(*facts.aspect - 1.0) > 0x1p-10 &&
+        std::fabs(in_ndc.y / in_ndc.x * *facts.aspect - 1.0) <= 0x1p-12)
+        diagnosis.add(Defect::aspect_inverted);
+    const bool knows_planes = facts.z_near || facts.z_far;
+    const bool is_placed = setup.in_world_space || setup.pose != nullptr;
+    if (ends &&
+        (knows_planes ? is_of_other_range(lens, *ends, facts, is_placed) : is_round_in_other_range(lens, *ends)))
+        diagnosis.add(Defect::depth_range_mismatch);
+}
+
+// Of a matrix whose rows r and q are none of a lens: whether they are when 1/2 is taken from every element, as it is added to
+// a glm::mat4.
+inline bool has_bias_in_every_column(const glm::dmat4& texgen, const glm::dmat4* pose) noexcept {
+    glm::dmat4 without = texgen;
+    for (glm::length_t column = 0; column < 4; ++column) without[column] -= 0.5;
+    const SeenLens lens(in_the_world(without, pose), rounding_of(texgen));
+    return lens.is_lens() && lens.is_centred_on(glm::dvec2(0.0));
+}
+
+// Returns whether it is transposed.
+inline bool examine_alone(const glm::dmat4& texgen, const SetupMatrices& setup, Diagnosis& diagnosis) noexcept {
+    constexpr double margin = 0x1p-10;
+    const DepthRows rows = depth_rows(texgen);
+    if (!rows.are_parallel) {
+        const bool is_transposed = depth_rows(glm::transpose(texgen)).are_parallel;
+        diagnosis.add(is_transposed                                  ? Defect::transposed
+                      : has_bias_in_every_column(texgen, setup.pose) ? Defect::bias_without_w
+                                                                     : Defect::wrong_order);
+        return is_transposed;
+    }
+    const std::optional<Conventions> conventions = known_conventions(setup);
+    const SeenLens lens(in_the_world(texgen, setup.pose), rounding_of(texgen));
+    const bool shows_lens = lens.is_lens();
+    // As in mistakes_depth(): no range has infinity there.
+    if (rows.limit > margin && rows.limit < 1.0 - margin) {
+        const bool lacks_w = shows_lens && seen_scale_bias(setup).is_missed_by(lens);
+        diagnosis.add(lacks_w ? Defect::bias_without_w : Defect::depth_range_mismatch);
+    } else if (shows_lens) {
+        const glm::dmat4* p = setup.projector != nullptr ? &setup.projector->projection.matrix() : nullptr;
+        examine_seen_lens(lens, setup,
+                          p != nullptr && is_lens(*p) ? meant_by(*p, *conventions, setup.lens) : setup.lens, diagnosis);
+    } else if (has_bias_in_every_column(texgen, setup.pose)) {
+        diagnosis.add(Defect::bias_without_w);
+    }
+    const bool is_placed = setup.in_world_space || setup.pose != nullptr;
+    const bool has_scale_bias =
+        !diagnosis.contains(Defect::scale_bias_missing) && !diagnosis.contains(Defect::bias_without_w);
+    if (conventions && is_placed && has_scale_bias && !setup.lens.mirrored &&
+        !diagnosis.contains(Defect::mixed_handedness) &&
+        is_mirrored(texgen, setup.pose != nullptr ? *setup.pose : glm::dmat4(1.0), *conventions))
+        diagnosis.add(Defect::mirrored);
+    return false;
+}
+
+}  // namespace TEXGEN_DETAIL

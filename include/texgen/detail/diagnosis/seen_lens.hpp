@@ -1,0 +1,180 @@
+#pragma once
+
+// The lens that is seen in a texgen matrix or a projection, whatever its view, and what round numbers say of it: those that
+// people write stand out of all others.
+
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "../../conventions.hpp"
+#include "../arithmetic/inverse.hpp"
+#include "../arithmetic/rounding.hpp"
+#include "../language.hpp"
+#include "matrix_signs.hpp"
+
+namespace TEXGEN_DETAIL {
+
+// A number that people choose, and how far it is from being known: relative to itself.
+struct Estimate {
+    double value, error;
+};
+
+// How unlikely it is that the number is by chance as near to a round one, of few digits, as it is: in bits; 0 where it is
+// none. Of 1, 2 and 5, of one digit, and of two there are 3, 9 and 90 in a decade.
+inline double roundness(const Estimate& number, int most_digits = 2) noexcept {
+    const auto bits = [&](double in_a_decade) { return -std::log2(in_a_decade * 8.0 / 2.3 * number.error); };
+    if (!(number.value > 0x1p-100 && number.value < 0x1p100)) return 0.0;
+    const double decade = std::pow(10.0, std::floor(std::log10(number.value * (1.0 + number.error))));
+    double digits = 1.0;
+    for (int count = 1; count <= most_digits; ++count, digits *= 10.0) {
+        const double scaled = number.value / decade * digits;
+        const double round = std::round(scaled);
+        if (std::fabs(scaled - round) > 4.0 * number.error * scaled) continue;
+        const bool is_first = count == 1 && (round == 1.0 || round == 2.0 || round == 5.0 || round == 10.0);
+        return larger(0.0, bits(is_first ? 3.0 : 9.0 * digits));
+    }
+    return 0.0;
+}
+
+// The lens that is seen in a texgen matrix, of a space that is the world but for a scale.
+class SeenLens {
+public:
+    SeenLens(const glm::dmat4& texgen, double rounding) noexcept
+        : q_(axis(texgen, 3)), rows_(depth_rows(texgen)), rounding_(rounding) {
+        per_distance_ = glm::length(q_);
+        for (glm::length_t row = 0; row < 2; ++row) {
+            const glm::dvec3 axis_of_row = axis(texgen, row);
+            centre_[row] = glm::dot(axis_of_row, q_) / (per_distance_ * per_distance_);
+            across_[static_cast<std::size_t>(row)] = axis_of_row - centre_[row] * q_;
+            focal_length_[row] = glm::length(across(row)) / per_distance_;
+        }
+        offset_ = texgen[3].z - rows_.limit * texgen[3].w;
+        offset_error_ = rounding * (std::fabs(texgen[3].z) + std::fabs(rows_.limit * texgen[3].w));
+    }
+
+    // Whether it is a perspective that neither skews nor was skewed.
+    bool is_lens() const noexcept {
+        const double cosine = glm::dot(across(0), across(1)) / (glm::length(across(0)) * glm::length(across(1)));
+        return is_finite(cosine) && per_distance_ > 0.0 && rows_.are_parallel &&
+               std::fabs(cosine) <= 4.0 * rounding_ * (2.0 + 1.0 / focal_length_.x + 1.0 / focal_length_.y);
+    }
+
+    // Whether the lens's axis goes to that s and t.
+    bool is_centred_on(const glm::dvec2& st) const noexcept {
+        const glm::dvec2 accepted = 4.0 * rounding_ * (glm::abs(st) + focal_length_ + 1.0);
+        return std::fabs(centre_.x - st.x) <= accepted.x && std::fabs(centre_.y - st.y) <= accepted.y;
+    }
+
+    // q's length at distance 1, and r's limit at infinity.
+    double per_distance() const noexcept { return per_distance_; }
+    double limit() const noexcept { return rows_.limit; }
+    double rounding() const noexcept { return rounding_; }
+
+    // In units of s and t.
+    const glm::dvec2& focal_length() const noexcept { return focal_length_; }
+    double error_of_focal_length() const noexcept { return 2.0 * rounding_ * (1.0 + 1.0 / focal_length_.y); }
+
+    // The distance at which r has that value, and r at that distance.
+    Estimate distance_of(double r) const noexcept {
+        const double difference = r - rows_.limit;
+        const double error = offset_error_ / std::fabs(offset_) + rounding_ * (1.0 + 1.0 / std::fabs(difference));
+        return {offset_ / (difference * per_distance_), error};
+    }
+    Estimate r_at(double distance) const noexcept {
+        if (!is_finite(distance)) return {rows_.limit, rounding_};
+        const double q = per_distance_ * distance;
+        return {rows_.limit + offset_ / q, rounding_ + offset_error_ / q};
+    }
+
+    // Whether up, as t grows, hangs down while the picture's side is level, over y or over z.
+    bool hangs_down(double up_along_t) const noexcept {
+        const glm::dvec3 side = across(0) / glm::length(across(0)), up = up_along_t * across(1);
+        const double accepted = 8.0 * rounding_ * (1.0 + 1.0 / focal_length_.x);
+        return (std::fabs(side.y) <= accepted && up.y < 0.0) || (std::fabs(side.z) <= accepted && up.z < 0.0);
+    }
+
+private:
+    static glm::dvec3 axis(const glm::dmat4& m, glm::length_t row) noexcept {
+        return {m[0][row], m[1][row], m[2][row]};
+    }
+    const glm::dvec3& across(glm::length_t row) const noexcept { return across_[static_cast<std::size_t>(row)]; }
+
+    glm::dvec3 q_;
+    DepthRows rows_;
+    double rounding_, per_distance_;
+    std::array<glm::dvec3, 2> across_{};  // rows s and t without their part along q
+    glm::dvec2 centre_{0.0}, focal_length_{0.0};
+    double offset_, offset_error_;  // r = limit q + offset
+};
+
+// Whether the angle of that focal length is a whole number of degrees, of five where that is not known well enough.
+inline bool is_of_round_angle(const Estimate& focal_length) noexcept {
+    const double step = focal_length.error < 0x1p-30 ? 1.0 : 5.0;
+    const double number = std::round(radians(2.0 * std::atan2(1.0, focal_length.value)).in_degrees() / step);
+    const double half = 0.5 * degrees(step * number).in_radians();
+    const double expected = std::cos(half) / std::sin(half);
+    return number > 0.0 && std::fabs(focal_length.value - expected) <= focal_length.error * expected;
+}
+
+// The number of whole degrees that make that focal length, but for its sign, if they are taken for radians; 0 where none do.
+inline double degrees_as_radians(const Estimate& focal_length) noexcept {
+    constexpr double turn = 2.0 * 3.14159265358979323846;
+    const double step = focal_length.error < 0x1p-30 ? 1.0 : 5.0;
+    const double angle = 2.0 * std::atan2(1.0, focal_length.value);
+    const double accepted = focal_length.error * std::sin(angle) + 0x1p-44;
+    for (double turns = 0.0; turns < 180.0; turns += turn) {
+        for (const double number : {turns + angle, turns + turn - angle}) {
+            // The nearest whole number, of numbers that are small.
+            const double round = step * ((number / step + 0x1.8p52) - 0x1.8p52);
+            if (std::fabs(number - round) <= accepted && round > 0.0 && round < 180.0) return round;
+        }
+    }
+    return 0.0;
+}
+
+// Where near and far may land, of a mapping and conventions: first and last as they should, or by the other range.
+struct DepthEnds {
+    double low;
+    std::array<double, 2> other_lows;
+};
+inline std::optional<DepthEnds> depth_ends(DepthMapping depth, const std::optional<Conventions>& conventions) noexcept {
+    if (depth == DepthMapping::unit) return DepthEnds{0.0, {0.5, -1.0}};
+    if (!conventions) return std::nullopt;
+    const bool is_zero_to_one = conventions->depth == DepthRange::zero_to_one;
+    return is_zero_to_one ? DepthEnds{0.0, {0.5, -1.0}} : DepthEnds{-1.0, {0.0, 0.0}};
+}
+
+// What a matrix of its kind may be off by, relative to its elements.
+inline double rounding_of(const glm::dmat4& texgen) noexcept { return is_in_float(texgen) ? 0x1p-22 : 0x1p-44; }
+
+// Whether near and far are round numbers if the range is the other one, and near is none as it is: what floats are not exact
+// enough to say.
+inline bool is_round_in_other_range(const SeenLens& lens, const DepthEnds& ends) noexcept {
+    constexpr double enough_bits = 24.0;
+    const Estimate z_near = lens.distance_of(ends.low);
+    if (!(z_near.error < 0x1p-30) || !(roundness(lens.distance_of(1.0)) > 0.0) || roundness(z_near, 5) > 0.0)
+        return false;
+    for (const double other : ends.other_lows)
+        if (roundness(lens.distance_of(other)) >= enough_bits) return true;
+    return false;
+}
+
+// Whether the angle is that of whole degrees which were taken for radians. Where floats do not say it beyond doubt, the picture
+// stands on its head, as a tangent below 0 makes it.
+inline bool is_of_degrees_as_radians(const SeenLens& lens, double focal_length, double up_along_t) noexcept {
+    const double error = lens.error_of_focal_length();
+    const bool hangs_down = lens.hangs_down(up_along_t);
+    if (!(error < 0x1p-30) && !hangs_down) return false;
+    const double number = degrees_as_radians({focal_length, error});
+    if (!(number > 0.0)) return false;
+    return std::tan(0.5 * number) < 0.0 ? !lens.hangs_down(-up_along_t) : error < 0x1p-30 && !hangs_down;
+}
+
+}  // namespace TEXGEN_DETAIL
