@@ -1,5 +1,6 @@
 // The diagnosis over raw bytes: findings stand in order, each once, with their sentences; what is not finite is said, and
-// a point that is no number hides nothing of the others; a set-up that the library made has no fault but what is true of it.
+// a point that is no number hides nothing of the others; a set-up that the library made has no fault but what is true of it; a
+// lens and an aim are said to be refused where no projector is made of them.
 
 #include <array>
 #include <cmath>
@@ -189,6 +190,29 @@ void diagnose_what_is_right(Input& input) {
     must(diagnose(*setup.projector).empty(), "a projector that the library made has no fault");
 }
 
+template <class Lens>
+void diagnose_lens(const Lens& lens, const texgen::Aim& aim, texgen::Conventions conventions) {
+    const Diagnosis diagnosis = diagnose(lens, aim, conventions);
+    require_form(diagnosis);
+    must(diagnosis.empty() == make_projector(lens, aim, conventions).has_value(),
+         "what is refused is said, and no more");
+}
+
+void diagnose_lenses(Input& input) {
+    const texgen::Aim aim{input.wide_vector3(), input.wide_vector3(), input.wide_vector3()};
+    const texgen::Conventions conventions = input.conventions();
+    double n[9];
+    for (double& number : n) number = input.coin() ? input.wide_number() : 0.25 * input.integer(-4, 12);
+    diagnose_lens(texgen::PerspectiveLens{input.coin() ? texgen::degrees(n[0]) : texgen::radians(n[0]), n[1], n[2],
+                                          n[3], input.coin()},
+                  aim, conventions);
+    diagnose_lens(texgen::FrustumLens{n[0], n[1], n[2], n[3], n[4], n[5]}, aim, conventions);
+    diagnose_lens(texgen::OrthographicLens{n[0], n[1], n[2], n[3], n[4], n[5]}, aim, conventions);
+    diagnose_lens(texgen::PinholeLens{n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7],
+                                      input.coin() ? texgen::PixelCentre::half : texgen::PixelCentre::integer, n[8]},
+                  aim, conventions);
+}
+
 template <class Space>
 void diagnose_in(Input& input) {
     if (input.coin())
@@ -201,15 +225,18 @@ void diagnose_in(Input& input) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     Input input(data, size);
-    switch (input.integer(0, 2)) {
+    switch (input.integer(0, 3)) {
         case 0:
             diagnose_in<Object>(input);
             break;
         case 1:
             diagnose_in<World>(input);
             break;
-        default:
+        case 2:
             diagnose_in<Eye>(input);
+            break;
+        default:
+            diagnose_lenses(input);
             break;
     }
     return 0;

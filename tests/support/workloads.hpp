@@ -1150,6 +1150,10 @@ Calls lens_calls(const Numbers& n) {
         if constexpr (Kind == 9) keep(texgen::view_from_opencv({aim.position, aim.target, aim.up}, a));
         if constexpr (Kind == 10) keep(texgen::contain(perspective, a.x + a.y));
         if constexpr (Kind == 11) keep(texgen::cover(frustum, sides.y));
+        if constexpr (Kind == 12) keep(texgen::diagnose(perspective, aim, texgen::opengl));
+        if constexpr (Kind == 13) keep(texgen::diagnose(frustum, aim, texgen::opengl));
+        if constexpr (Kind == 14) keep(texgen::diagnose(orthographic, aim, texgen::opengl));
+        if constexpr (Kind == 15) keep(texgen::diagnose(pinhole, aim, texgen::opengl));
     });
 }
 
@@ -1477,6 +1481,14 @@ inline const std::array workloads{
              detail::eye_plane_calls<false>, detail::always},
     Workload{"TexGenUnit::eye_plane_error_bound", 27, detail::ordinary_vertex, detail::hostile_vertex,
              detail::eye_plane_calls<true>, detail::always},
+    Workload{"diagnose a lens, perspective", 0, detail::ordinary_look, detail::hostile_look, detail::lens_calls<12>,
+             detail::always},
+    Workload{"diagnose a lens, frustum", 0, detail::ordinary_look, detail::hostile_look, detail::lens_calls<13>,
+             detail::always},
+    Workload{"diagnose a lens, orthographic", 0, detail::ordinary_look, detail::hostile_look, detail::lens_calls<14>,
+             detail::always},
+    Workload{"diagnose a lens, pinhole", 0, detail::ordinary_look, detail::hostile_look, detail::lens_calls<15>,
+             detail::always},
     Workload{"diagnose a projector", 0, detail::valid_setup, detail::hostile_setup,
              detail::diagnose_calls<detail::Diagnosed::projector>, detail::always},
     Workload{"diagnose a set-up", 0, detail::setup_with_one_defect, detail::hostile_setup,

@@ -158,6 +158,9 @@ void print_scene(const texgen::Projector& projector) {
         print("T_o", scene.texgen(pair));
     }
     const ObjectTexgen texgen = object_linear(projector, models[20]);
+    const Aim upright{{0.0, 4.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 1.0, 0.0}};
+    for (const Finding& finding : diagnose(PerspectiveLens{degrees(30), 1.0, 0.1, 10.0}, upright, opengl))
+        print("finding", static_cast<double>(finding.defect));
     for (const Finding& finding : diagnose(projector)) print("finding", static_cast<double>(finding.defect));
     for (const Finding& finding : diagnose(planes(texgen))) print("finding", static_cast<double>(finding.defect));
     std::array<glm::vec3, 5> points{};
