@@ -483,6 +483,16 @@ TEST_CASE("what users' own code gets right is not found fault with, whatever els
         Meant m = random.coin() ? human(Mistake::none, random) : any_meant(Mistake::none, random);
         if (random.coin()) m.fovy = random.uniform(0.5, 170.0);
         if (random.coin()) m.z_near = random.power_of_ten(-2.0, 0.0);
+        if (random.integer(0, 7) == 0 && !m.is_zero_to_one() && m.depth == DepthMapping::unit) {
+            // The quarter of a lens, of numbers that are as round as its corner.
+            m = human(Mistake::none, random);
+            m.conventions.depth = DepthRange::negative_one_to_one;
+            m.depth = DepthMapping::unit;
+            m.kind = LensKind::frustum;
+            m.left = m.bottom = 0.0;
+            m.right = m.z_near * std::ldexp(1.0, random.integer(-2, 1));
+            m.top = m.z_near * std::ldexp(1.0, random.integer(-2, 1));
+        }
         const In in = put_in_space(m, random);
         const std::optional<Projector> projector = right_projector(m);
         if (!projector) continue;

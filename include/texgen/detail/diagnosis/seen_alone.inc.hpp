@@ -64,7 +64,10 @@ inline void examine_seen_lens(const SeenLens& lens, const SetupMatrices& setup, 
                larger(4.0 * error, 0x1p-16) * std::cos(half);
     };
     const std::optional<DepthEnds> ends = depth_ends(setup.depth, known_conventions(setup));
-    if (s.is_missed_by(lens)) {
+    // The quarter of a lens has its axis in the corner too, and a near plane that is round as it is.
+    const bool is_quarter = !facts.fovy && ends && roundness(lens.distance_of(ends->low)) > 0.0 &&
+                            !(roundness(lens.distance_of(-1.0)) > 0.0);
+    if (s.is_missed_by(lens) && !is_quarter) {
         // With w biased as well, and halved, only its size is another.
         const bool halves_w = std::fabs(lens.per_distance() - 0.5) <= 4.0 * lens.rounding();
         if (is_meant(as_clip.y) && !halves_w) {
