@@ -155,6 +155,7 @@ int main(int count, char** arguments) {
     bench::add_segment();
     bench::add_rows();
     bench::add_visibility();
+    bench::add_depth();
     bench::add_coverage();
     bench::add_scenes();
     bench::add_footprints();

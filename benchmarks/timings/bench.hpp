@@ -25,6 +25,7 @@ void add_project();
 void add_segment();
 void add_rows();
 void add_visibility();
+void add_depth();
 void add_coverage();
 void add_scenes();
 void add_footprints();

@@ -306,29 +306,32 @@ inline void interpolate_alone(const TileKernels& kernels, const TriangleFunction
     interpolator.interpolate(rect, plan);
 }
 
-// Takes the light of a tile's fragments whose r, which nobody asked for, is beyond the depth. What is certainly on one side is
-// not computed, nor what is dark already; the rest is halved until the buffer holds it.
+// Takes the light of a tile's fragments whose r, which nobody asked for, is beyond the depth, which cuts it. It is halved until
+// the buffer holds it; what is certainly on one side is not computed, nor what is dark already.
 inline void darken_beyond_depth(const TileKernels& kernels, const TriangleFunctions& triangle, const Tile& rect,
                                 const Tile& tile, const std::span<float>& buffer,
                                 const std::span<float>& lit) noexcept {
-    const Coverage coverage = depth_coverage(triangle, tile);
-    if (coverage == Coverage::inside) return;
-    if (coverage == Coverage::outside) return fill_rows(lit, rect, tile, 0.0f);
-    const auto width = static_cast<std::size_t>(tile.width);
-    const auto height = static_cast<std::size_t>(tile.height);
-    if (width * height > buffer.size()) {
-        for (const Tile& half : tile.halves()) darken_beyond_depth(kernels, triangle, rect, half, buffer, lit);
+    const std::size_t count = static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
+    if (count > buffer.size()) {
+        for (const Tile& half : tile.halves()) {
+            const Coverage coverage = depth_coverage(triangle, half);
+            if (coverage == Coverage::outside) fill_rows(lit, rect, half, 0.0f);
+            if (coverage == Coverage::partial) darken_beyond_depth(kernels, triangle, rect, half, buffer, lit);
+        }
         return;
     }
+    // Rows that follow one another are one.
+    const std::size_t rows = tile.width == rect.width ? 1 : static_cast<std::size_t>(tile.height);
+    const std::size_t length = count / rows;
+    const auto pitch = static_cast<std::size_t>(rect.width);
     const DepthKernels& depth = chosen<DepthKernels>();
     float* const first = lit.data() + offset_in(rect, tile.x, tile.y);
-    const auto pitch = static_cast<std::size_t>(rect.width);
     bool any_lit = false;
-    for (std::size_t y = 0; y < height && !any_lit; ++y) any_lit = depth.any_lit(first + y * pitch, width);
+    for (std::size_t y = 0; y < rows && !any_lit; ++y) any_lit = depth.any_lit(first + y * pitch, length);
     if (!any_lit) return;
-    interpolate_alone(kernels, triangle, tile, 2, buffer.first(width * height), nullptr);
-    for (std::size_t y = 0; y < height; ++y)
-        depth.darken(first + y * pitch, buffer.data() + y * width, width, triangle.lit.r_min(), triangle.lit.r_max());
+    interpolate_alone(kernels, triangle, tile, 2, buffer.first(count), nullptr);
+    for (std::size_t y = 0; y < rows; ++y)
+        depth.darken(first + y * pitch, buffer.data() + y * length, length, triangle.lit.r_min(), triangle.lit.r_max());
 }
 
 }  // namespace TEXGEN_BUILD
