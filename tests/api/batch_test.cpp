@@ -121,6 +121,23 @@ Shot draw(Random& random) {
     return shot;
 }
 
+// u = 1/2 + 2^-24 (a x + b y) at w = q is half-way between two floats at every fragment of the tile, or next to it: a corner may
+// be off the pixels' by less than a double sees in u.
+Shot ties_everywhere(Random& random) {
+    const int dx = 2 * random.integer(0, 3) + 1, dy = 2 * random.integer(0, 3);
+    const float w = std::ldexp(random.coin() ? 1.0f : 1.5f, random.integer(-3, 3));
+    const int far = random.integer(20, 1000);
+    const auto corner = [&](int x, int y) {
+        const double s = 0.5 + std::ldexp(dx * x + dy * y, -24), t = 0.5 + std::ldexp(dy * x + dx * y, -24);
+        return texgen::WindowVertex{glm::vec2(x, y), w, {support::to_float(s), support::to_float(t), 0.25f, 1.0f}};
+    };
+    Triangle triangle{corner(0, 0), corner(far, 0), corner(0, far)};
+    if (random.coin()) triangle.a.window.x = std::ldexp(random.coin() ? 1.0f : -1.0f, random.integer(-60, -20));
+    if (random.coin()) triangle.b.window.y = std::ldexp(random.coin() ? 1.0f : -1.0f, random.integer(-60, -20));
+    if (random.coin()) std::swap(triangle.b, triangle.c);
+    return {triangle, {random.integer(0, 3), random.integer(0, 3), 8, 8}};
+}
+
 texgen::TextureRegion draw_region(Random& random) {
     const texgen::TextureRegion region = [&] {
         switch (random.integer(0, 3)) {
@@ -338,6 +355,37 @@ TEST_CASE(
                 const std::string wrong = what_is_wrong(at, support::everywhere(), {tolerance}, out, n);
                 REQUIRE_MESSAGE(wrong.empty(), wrong, " ", support::hex(triangle), " tolerance ", tolerance, " at ", n);
             }
+        }
+    }
+}
+
+TEST_CASE("what doubles leave in doubt of a visibility buffer is decided as for each triangle alone") {
+    Random random(7);
+    for (int round = 0; round < 500; ++round) {
+        std::vector<Shot> shots;
+        std::vector<Triangle> triangles;
+        for (int i = 0; i < 8; ++i) {
+            shots.push_back(random.integer(0, 2) != 0 ? ties_everywhere(random) : draw(random));
+            triangles.push_back(shots.back().triangle);
+        }
+        TriangleBatch batch(support::everywhere());
+        batch.assign(triangles);
+        const int longest = random.coin() ? 1 : 12;
+        std::vector<std::uint32_t> ids(64);
+        for (std::size_t i = 0; i < ids.size();) {
+            const auto id = static_cast<std::uint32_t>(random.integer(0, 7));
+            for (int run = random.integer(1, longest); run > 0 && i < ids.size(); --run) ids[i++] = id;
+        }
+        const Shot& shot = shots[static_cast<std::size_t>(random.integer(0, 7))];
+        const FragmentRect rect{shot.rect.x, shot.rect.y, 8, 8};
+        Outputs out(64);
+        interpolate(batch, ids, rect, out.spans());
+        for (std::uint32_t id = 0; id < 8; ++id) {
+            const Expected expected(triangles[id], support::everywhere(), rect, 15, texgen::exact);
+            for (std::size_t i = 0; i < ids.size(); ++i)
+                for (std::size_t k = 0; k < 4 && ids[i] == id; ++k)
+                    if (!support::same_bits(out[k][i], expected.work == Work::nothing ? 0.0f : expected.out[k][i]))
+                        FAIL_CHECK(support::hex(triangles[id]), " at ", support::text(rect), " number ", i);
         }
     }
 }
