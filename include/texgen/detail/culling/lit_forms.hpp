@@ -232,7 +232,7 @@ private:
         weights_.of[coordinate_of(k)][k] = outer.of_row;
         weights_.of_q[k] = outer.of_q;
         inner_weight_[k] = weight(rounded.inner);
-        weights_.inner_of_q[k] = -rounded.inner;
+        weights_.inner_of_q[k] = outer.of_row != 0.0 ? -rounded.inner : infinity;
         weights_.width[k] = min == -infinity ? 0.0 : std::fabs(rounded.inner - rounded.outer);
         side_[k] = sign * rounded.outer;
         return true;

@@ -95,9 +95,11 @@ void round_forms(const FormLanes& forms, std::size_t count, FloatForms& result) 
 }
 
 // One box in double, a lane a form: twice the value in its middle, and how much it changes to either end. A sum or difference
-// of two corners is rounded, as are a coefficient, a product, three sums of them and the sum of the two: 8 u.
+// of two corners is rounded, as are a coefficient, a product, three sums of them and the sum of the two: 8 u. Of a form that
+// uses a coordinate which is infinite nothing is certain here.
 template <class CompiledWhereCalled = void>
 int classify_box(const FormLanes& forms, const Box& box, FormsInDoubt& doubt) noexcept {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
     double sum[3], extent[3], size[3];
     bool is_proper = true;
     for (std::size_t j = 0; j < 3; ++j) {
@@ -107,10 +109,21 @@ int classify_box(const FormLanes& forms, const Box& box, FormsInDoubt& doubt) no
         extent[j] = max - min;
         size[j] = std::fabs(sum[j]) + extent[j];
         is_proper &= extent[j] >= 0.0;
-        is_proper &= size[j] < 0x1p200;
+        is_proper &= size[j] < infinity;
     }
     doubt = {~0u, ~0u, false, is_proper};
-    if (!is_proper) return body_in_doubt;
+    double narrowed = 2.2 * forms.last_q;
+    bool is_unbounded[3] = {};
+    if (!is_proper) {
+        for (std::size_t j = 0; j < 3; ++j) {
+            if (!(extent[j] >= 0.0)) return body_in_doubt;
+            is_unbounded[j] = !(size[j] < infinity);
+            if (!is_unbounded[j]) continue;
+            sum[j] = extent[j] = size[j] = 0.0;
+            if (forms.a[j][form_of_q] != 0.0) narrowed = infinity;
+        }
+    }
+    narrowed += 1.1 * forms.largest_q * (size[0] + size[1] + size[2]);
 
     constexpr std::size_t count = form_lanes / static_cast<std::size_t>(lanes);
     Doubles value[count], change[count], error[count];
@@ -126,10 +139,11 @@ int classify_box(const FormLanes& forms, const Box& box, FormsInDoubt& doubt) no
         error[i] =
             (magnitude(a[0]) * size[0] + magnitude(a[1]) * size[1]) + (magnitude(a[2]) * size[2] + magnitude(twice_d));
         error[i] = minimum(error[i], Doubles{} + 0x1p900) * gamma(8);
+        for (std::size_t j = 0; j < 3; ++j)
+            if (is_unbounded[j]) error[i] = select(greater(magnitude(a[j]), 0.0), Doubles{} + infinity, error[i]);
         outside = outside | greater(0.0 - error[i], value[i] + change[i]);
     }
     if (any(outside)) return 0;
-    const double narrowed = 1.1 * (forms.largest_q * (size[0] + size[1] + size[2]) + 2.0 * forms.last_q);
     int largest_in_doubt[form_lanes], least_in_doubt[form_lanes];
     TEXGEN_UNROLL
     for (std::size_t i = 0; i < count; ++i) {

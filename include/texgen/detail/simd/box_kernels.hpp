@@ -47,7 +47,7 @@ struct FormLanes {
 struct FormsInDoubt {
     std::uint32_t largest, least;
     bool is_any_negative;  // of the least, for certain
-    bool is_finite;        // the box, which has points
+    bool is_finite;        // the box, which then has points
 };
 
 // The same in float, twice the value each, a lane a form, with one bound for all: over a body each errs by less than
