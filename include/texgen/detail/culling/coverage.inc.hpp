@@ -233,10 +233,11 @@ inline bool is_separated(const BoxKernels& kernels, const LitForms& forms, const
 // One box.
 inline Coverage coverage_of(const BoxKernels& kernels, const LitForms& forms, const Box& box) noexcept {
     FormsInDoubt doubt{~0u, ~0u, false, false};
-    const int answer = forms.can_say() ? kernels.classify_box(forms.lanes(), box, doubt) : body_in_doubt;
+    const int answer =
+        forms.can_say() ? kernels.classify_box(forms.lanes(), &box.min.x, &box.max.x, doubt) : body_in_doubt;
     if (answer < open_body) return static_cast<Coverage>(answer);
     if (answer == body_in_doubt && doubt.is_finite && !doubt.is_any_negative)
-        kernels.sharpen(forms.matrix(), forms.weights(), box, doubt);
+        kernels.sharpen(forms.matrix(), forms.weights(), &box.min.x, &box.max.x, doubt);
     const Coverage result = answer == body_in_doubt ? exact_coverage(forms, box, doubt) : Coverage::partial;
     if (result != Coverage::partial) return result;
     BoxBlock block;

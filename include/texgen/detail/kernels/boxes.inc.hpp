@@ -98,13 +98,13 @@ void round_forms(const FormLanes& forms, std::size_t count, FloatForms& result) 
 // of two corners is rounded, as are a coefficient, a product, three sums of them and the sum of the two: 8 u. Of a form that
 // uses a coordinate which is infinite nothing is certain here.
 template <class CompiledWhereCalled = void>
-int classify_box(const FormLanes& forms, const Box& box, FormsInDoubt& doubt) noexcept {
+int classify_box(const FormLanes& forms, const float* box_min, const float* box_max, FormsInDoubt& doubt) noexcept {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     double sum[3], extent[3], size[3];
     bool is_proper = true;
     for (std::size_t j = 0; j < 3; ++j) {
-        const double min = widened(box.min[static_cast<glm::length_t>(j)]);
-        const double max = widened(box.max[static_cast<glm::length_t>(j)]);
+        const double min = widened(box_min[j]);
+        const double max = widened(box_max[j]);
         sum[j] = min + max;
         extent[j] = max - min;
         size[j] = std::fabs(sum[j]) + extent[j];
@@ -176,11 +176,12 @@ int classify_box(const FormLanes& forms, const Box& box, FormsInDoubt& doubt) no
 // The least values of the inner sides over a finite box, where nothing is rounded: halves of coefficients are 0, and so is what
 // sums leave.
 template <class CompiledWhereCalled = void>
-void sharpen(const glm::dmat4& matrix, const FormWeights& weights, const Box& box, FormsInDoubt& doubt) noexcept {
+void sharpen(const glm::dmat4& matrix, const FormWeights& weights, const float* box_min, const float* box_max,
+             FormsInDoubt& doubt) noexcept {
     double min[3], max[3];
     for (std::size_t j = 0; j < 3; ++j) {
-        min[j] = widened(box.min[static_cast<glm::length_t>(j)]);
-        max[j] = widened(box.max[static_cast<glm::length_t>(j)]);
+        min[j] = widened(box_min[j]);
+        max[j] = widened(box_max[j]);
     }
     for (std::size_t i = 0; i < form_lanes; i += static_cast<std::size_t>(lanes)) {
         const Doubles of[3] = {load<Doubles>(weights.of[0] + i), load<Doubles>(weights.of[1] + i),

@@ -8,7 +8,6 @@
 
 #include <glm/mat4x4.hpp>
 
-#include "../../primitives.hpp"
 #include "../language.hpp"
 
 namespace TEXGEN_DETAIL {
@@ -124,9 +123,10 @@ struct BoxKernels {
     void (*weigh)(const glm::dmat4& matrix, const FormWeights& weights, FormLanes& forms) noexcept;
     void (*round)(const FormLanes& forms, std::size_t count, FloatForms& result) noexcept;
     // What doubles are certain of, of one box. NaN, infinities and empty boxes are in doubt.
-    int (*classify_box)(const FormLanes& forms, const Box& box, FormsInDoubt& doubt) noexcept;
+    int (*classify_box)(const FormLanes& forms, const float* min, const float* max, FormsInDoubt& doubt) noexcept;
     // Takes from the doubt of the least what is exact in double: as numbers with few digits are, where a box touches.
-    void (*sharpen)(const glm::dmat4& matrix, const FormWeights& weights, const Box& box, FormsInDoubt& doubt) noexcept;
+    void (*sharpen)(const glm::dmat4& matrix, const FormWeights& weights, const float* min, const float* max,
+                    FormsInDoubt& doubt) noexcept;
     // What floats are certain of. A box is six floats, min first; a sphere four, the radius last. NaN, infinities, empty
     // boxes and negative radii are in doubt.
     void (*classify_boxes)(const FloatForms& forms, const float* boxes, std::size_t count, int* classes) noexcept;
