@@ -194,7 +194,7 @@ void sharpen(const glm::dmat4& matrix, const FormWeights& weights, const float* 
             const double half = bit_cast<double>(bit_cast<std::uint64_t>(column.w) & ~std::uint64_t{0x7ffffff});
             const Doubles row = of[0] * column.x + (of[1] * column.y + of[2] * column.z);
             const Doubles form = two_sum(row, of_q * half, rest);
-            lost = lost + magnitude(rest) + magnitude(form - leading_27_bits(form)) + std::fabs(column.w - half);
+            lost = lost + magnitude(rest) + magnitude(form - leading_bits<27>(form)) + std::fabs(column.w - half);
             if (j == 0) {
                 value = form;
                 continue;
