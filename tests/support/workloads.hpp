@@ -840,7 +840,8 @@ inline bool are_of_a_scene(const Numbers& n) {
     return std::all_of(n.begin(), body_end, [](double x) { return is_between(x, 0x1p-20, 0x1p20); }) &&
            std::all_of(body_end, n.end(), [](double x) { return is_between(x, 0x1p-60, 0x1p20); });
 }
-template <class Body, std::size_t Count>
+inline texgen::TextureRegion whole_volume() { return texgen::whole_texture().with_depth(); }
+template <class Body, std::size_t Count, texgen::TextureRegion (&Region)() = texgen::whole_texture>
 Calls coverage_calls(const Numbers& n) {
     if (!are_of_a_scene(n)) return {};
     Reader reader(n);
@@ -855,7 +856,7 @@ Calls coverage_calls(const Numbers& n) {
         }
     }
     for (std::size_t i = body_pattern; i < Count; ++i) all.push_back(all[i - body_pattern]);
-    const texgen::LitVolume<texgen::World> volume(texgen::WorldTexgen(reader.dmat4()), texgen::whole_texture());
+    const texgen::LitVolume<texgen::World> volume(texgen::WorldTexgen(reader.dmat4()), Region());
     std::vector<texgen::Coverage> out(Count);
     return calls_of([=]() mutable {
         if constexpr (Count == 1)
@@ -865,7 +866,7 @@ Calls coverage_calls(const Numbers& n) {
     });
 }
 // Asked once: the volume is made for it.
-template <class Body>
+template <class Body, texgen::TextureRegion (&Region)() = texgen::whole_texture>
 Calls one_question_calls(const Numbers& n) {
     if (!are_of_a_scene(n)) return {};
     Reader reader(n);
@@ -873,9 +874,9 @@ Calls one_question_calls(const Numbers& n) {
     Numbers matrix(n.end() - 16, n.end());
     return calls_of([a, b, texgen = texgen::WorldTexgen(Reader(matrix).dmat4())] {
         if constexpr (std::is_same_v<Body, texgen::Box>)
-            keep(texgen::coverage(texgen, texgen::whole_texture(), texgen::Box{a, b}));
+            keep(texgen::coverage(texgen, Region(), texgen::Box{a, b}));
         else
-            keep(texgen::coverage(texgen, texgen::whole_texture(), texgen::Sphere{a, b.x}));
+            keep(texgen::coverage(texgen, Region(), texgen::Sphere{a, b.x}));
     });
 }
 inline Numbers ordinary_volume(Random& random) {
@@ -887,11 +888,13 @@ inline Numbers draw_volume(Random& random) {
     return n;
 }
 inline constexpr Hostile hostile_volume{draw_volume, "drawn: an aligned projector or any matrix"};
-inline Calls volume_calls(const Numbers& n) {
+template <bool HasDepth>
+Calls volume_calls(const Numbers& n) {
     Reader reader(n);
     const texgen::WorldTexgen texgen(reader.dmat4());
     const glm::dvec4 sides = reader.dvec4();
-    const texgen::TextureRegion region = texgen::atlas_tile({sides.x, sides.y}, {sides.z, sides.w});
+    texgen::TextureRegion region = texgen::atlas_tile({sides.x, sides.y}, {sides.z, sides.w});
+    if (HasDepth) region = region.with_depth(sides.x, sides.w);
     return calls_of([texgen, region] { keep(texgen::LitVolume<texgen::World>(texgen, region)); });
 }
 inline Calls planes_calls(const Numbers& n) {
@@ -917,7 +920,7 @@ inline Numbers ordinary_polygon(Random& random) {
     return n;
 }
 // Of a camera and of slides as they are, as is_of_a_scene() has them.
-template <bool ToNear>
+template <bool ToNear, texgen::TextureRegion (&Region)() = texgen::whole_texture>
 Calls clip_calls(const Numbers& n) {
     Reader reader(n);
     std::array<texgen::ClipVertex, 3> polygon{};
@@ -930,7 +933,7 @@ Calls clip_calls(const Numbers& n) {
         if constexpr (ToNear)
             keep(texgen::clip_to_near(polygon, out, texgen::DepthRange::negative_one_to_one));
         else
-            keep(texgen::clip_to_slide(polygon, texgen::whole_texture(), out));
+            keep(texgen::clip_to_slide(polygon, Region(), out));
     });
 }
 inline Calls to_window_calls(const Numbers& n) {
@@ -1392,7 +1395,20 @@ inline const std::array workloads{
              detail::quadrilateral_calls<false>, detail::always},
     Workload{"keystone", 0, detail::ordinary_quadrilateral, detail::hostile_quadrilateral,
              detail::quadrilateral_calls<true>, detail::always},
-    Workload{"LitVolume", 0, detail::ordinary_volume, detail::hostile_volume, detail::volume_calls, detail::always},
+    Workload{"LitVolume", 0, detail::ordinary_volume, detail::hostile_volume, detail::volume_calls<false>,
+             detail::always},
+    Workload{"LitVolume with a depth", 0, detail::ordinary_volume, detail::hostile_volume, detail::volume_calls<true>,
+             detail::always},
+    Workload{"coverage of a box, with a depth", 24, detail::ordinary_boxes, detail::hostile_boxes,
+             detail::coverage_calls<texgen::Box, 1, detail::whole_volume>, detail::of_touching},
+    Workload{"coverage of 256 boxes, with a depth", 24, detail::ordinary_boxes, detail::hostile_boxes,
+             detail::coverage_calls<texgen::Box, detail::bodies, detail::whole_volume>, detail::of_touching},
+    Workload{"coverage of 256 spheres, with a depth", 16, detail::ordinary_spheres, detail::hostile_spheres,
+             detail::coverage_calls<texgen::Sphere, detail::bodies, detail::whole_volume>, detail::of_touching},
+    Workload{"coverage of a box, asked once, with a depth", 24, detail::ordinary_boxes, detail::hostile_boxes,
+             detail::one_question_calls<texgen::Box, detail::whole_volume>, detail::of_touching},
+    Workload{"clip_to_slide with a depth", 24, detail::ordinary_polygon, detail::hostile_numbers<24>,
+             detail::clip_calls<false, detail::whole_volume>, detail::always},
     Workload{"coverage of a box", 24, detail::ordinary_boxes, detail::hostile_boxes,
              detail::coverage_calls<texgen::Box, 1>, detail::of_touching},
     Workload{"coverage of 256 boxes", 24, detail::ordinary_boxes, detail::hostile_boxes,
