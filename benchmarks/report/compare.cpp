@@ -391,7 +391,7 @@ std::vector<Series> times_by_size() {
         std::vector<Run> runs = runs_of(work, region);
         runs.push_back(batch_of(work, side, texgen::exact));
         runs.push_back(batch_of(work, side, accepted));
-        const std::vector<double> seconds = medians_of(runs, 0.15);
+        const std::vector<double> seconds = medians_of(runs, 0.1);
         for (std::size_t i = 0; i < runs.size(); ++i)
             series[i].points.emplace_back(side * side, 1e9 * seconds[i] / count);
     }

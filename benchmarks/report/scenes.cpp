@@ -315,10 +315,10 @@ Scene qcoord(const std::shared_ptr<const Picture>& slide, double aspect) {
 
 // A projector that stands beside its wall. What it throws there becomes a rectangle where the slide is warped the other way.
 Scene keystone(const std::shared_ptr<const Picture>& slide, double aspect) {
-    const texgen::Aim aim{.position = {-1.9, 1.7, 2.5}, .target = {0.5, 2.0, 0}, .up = {0, 1, 0}};
+    const texgen::Aim aim{.position = {-1.9, 2.0, 2.5}, .target = {0.5, 2.0, 0}, .up = {0, 1, 0}};
     const texgen::Projector projector = projector_of({.extent = 37}, *slide, aim, {1, 20});
     const texgen::WorldTexgen as_it_is = texgen::texture_from_world(projector);
-    const double half_height = 0.92 * relative_height(*slide), half_width = half_height * slide->width / slide->height;
+    const double half_height = 0.9 * relative_height(*slide), half_width = half_height * slide->width / slide->height;
     std::array<glm::dvec2, 4> corners{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
     for (glm::dvec2& corner : corners) {
         const glm::dvec4 on_wall(aim.target + glm::dvec3(half_width * corner.x, half_height * corner.y, 0), 1);
