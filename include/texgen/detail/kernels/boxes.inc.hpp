@@ -2,10 +2,6 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-TEXGEN_INLINE Doubles select(const LongWords& mask, const Doubles& a, const Doubles& b) noexcept {
-    return where(mask, a) + where(~mask, b);
-}
-
 // q is split so that its products with a float are exact. What they leave of the sum is far below it, or nothing.
 template <class CompiledWhereCalled = void>
 void weigh_forms(const glm::dmat4& matrix, const FormWeights& weights, FormLanes& forms) noexcept {

@@ -104,7 +104,7 @@ inline std::optional<FootprintExtremes> extremes_over(const FootprintFunctions& 
                                q.dy * q_scale,
                                gamma(24) * size * scale,
                                gamma(24) * q_size * q_scale};
-    const Range range = range_of_q(field, polygon);
+    const RangeOfQ range = range_of_q(field, polygon);
     if (range.largest <= -field.q_error) return std::nullopt;
     if (!is_usable(texels)) return FootprintExtremes{nan, nan, nan, nan, nan};
 

@@ -76,12 +76,12 @@ struct FootprintField {
     }
 };
 
-struct Range {
+struct RangeOfQ {
     double least, largest;
 };
 
-inline Range range_of_q(const FootprintField& field, const WindowPolygon& polygon) noexcept {
-    Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+inline RangeOfQ range_of_q(const FootprintField& field, const WindowPolygon& polygon) noexcept {
+    RangeOfQ range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
     for (std::size_t i = 0; i < polygon.count(); ++i) {
         const double q = field.q_at(polygon[i]);
         range = {smaller(q, range.least), larger(q, range.largest)};
