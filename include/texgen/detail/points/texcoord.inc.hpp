@@ -53,33 +53,37 @@ inline bool is_inside(const Box& box, const glm::vec3& point) noexcept {
            box.min.z <= point.z && point.z <= box.max.z;
 }
 
-// What it makes of a job that all points lie in a box: nothing where some may be next to q = 0 or behind.
+// What it makes of a job that all points lie in a box: nothing where one may be next to q = 0 or behind.
 inline void take_bounds(PointJob& job, const Box& box) noexcept {
     if (!is_word(box)) return;
     const glm::dvec3 min = widened(box.min), max = widened(box.max);
-    glm::dvec3 size;
-    for (int j = 0; j < 3; ++j) size[j] = larger(std::fabs(min[j]), std::fabs(max[j]));
+    const glm::dvec3 size(larger(-min.x, max.x), larger(-min.y, max.y), larger(-min.z, max.z));
+    // A form's values at the points of the box, and the sum of its terms.
     struct Range {
         double least, largest, terms;
     };
     const auto range_of = [&](const PointForm& form) {
-        const glm::dvec3 factor(form.x, form.y, form.z);
-        const glm::dvec3 middle = 0.5 * min + 0.5 * max, half = 0.5 * max - 0.5 * min;
-        const double centre = form.w + glm::dot(factor, middle);
-        const double reach = glm::dot(glm::abs(factor), half);
-        const double terms = terms_at(form, size);
-        return Range{centre - reach - gamma(8) * terms, centre + reach + gamma(8) * terms, terms};
+        const double x[2] = {form.x * min.x, form.x * max.x};
+        const double y[2] = {form.y * min.y, form.y * max.y};
+        const double z[2] = {form.z * min.z, form.z * max.z};
+        const double terms = terms_at(form, size), error = gamma(5) * terms;
+        return Range{form.w + smaller(x[0], x[1]) + smaller(y[0], y[1]) + smaller(z[0], z[1]) - error,
+                     form.w + larger(x[0], x[1]) + larger(y[0], y[1]) + larger(z[0], z[1]) + error, terms};
+    };
+    const auto is_float = [](const PointForm& form) {
+        return std::fabs(form.x) + std::fabs(form.y) + std::fabs(form.z) + std::fabs(form.w) < 0x1p127;
     };
     const Range q = range_of(job.q);
     if (!(q.terms < 0x1p1000 && q.least > 0x1p20 * gamma(5) * q.terms)) return;
     job.is_bounded = true;
-    job.is_certified = true;
+    job.is_certified = is_float(job.q);
     for (int j = 0; j < 3; ++j) job.bound[j] = size[j];
     for (int k = 0; k < job.numerators; ++k) {
-        const Range s = range_of(job.numerator[k]);
-        const double quotient = larger_or_nan(std::fabs(s.least), std::fabs(s.largest)) / q.least * (1.0 + gamma(2));
+        const PointForm& form = job.numerator[k];
+        const Range s = range_of(form);
+        const double quotient = larger(-s.least, s.largest) / q.least * (1.0 + gamma(2));
         const double error = all_float.error(s.terms, q.terms, size.x + size.y + size.z + 1.0, q.least, quotient);
-        job.is_certified = job.is_certified && error <= job.tolerance;
+        job.is_certified = job.is_certified && is_float(form) && error <= job.tolerance;
     }
 }
 
@@ -236,11 +240,11 @@ void project(const Transform<Texture, Space>& texture_from_space, Positions<Spac
              Texcoords out, Tolerance tolerance) noexcept {
     const glm::dmat4& matrix = texture_from_space.matrix();
     const detail::LitTest lit(region);
-    detail::for_each_group(
-        out, positions.size(), lit, [&](int row, int numerators, const detail::PointOutputs& outputs) {
-            detail::PointJob job = detail::point_job(matrix, row, numerators, lit, tolerance);
-            detail::project_all(positions, job, outputs);
-        });
+    detail::for_each_group(out, positions.size(), lit,
+                           [&](int row, int numerators, const detail::PointOutputs& outputs) {
+                               detail::PointJob job = detail::point_job(matrix, row, numerators, lit, tolerance);
+                               detail::project_all(positions, job, outputs);
+                           });
 }
 
 template <class Space>
