@@ -124,8 +124,8 @@ TEXGEN_INLINE Again fill_block_again(const DividedOutput& output, const Terms& t
         }
         LongWords in_front, is_known;
         for (;;) {
-            const TwofoldDivisor q(terms.q.at(at, effort.precisely));
-            in_front = q.in_front;
+            TwofoldDivisor q(terms.q.at(at, effort.precisely));
+            in_front = q.in_front &= ~are_dark;
             is_known = q.is_known | are_dark;
             for (std::size_t k = 0; k < numerators; ++k) {
                 const auto& numerator = terms.numerator[k];
@@ -261,16 +261,35 @@ struct PointTerms {
     }
 };
 
+TEXGEN_INLINE std::size_t end_of_block(const PointJob& job, std::size_t begin) noexcept {
+    const std::size_t next = (begin / exact_block + 1) * exact_block;
+    return next < job.count ? next : job.count;
+}
+
+// Does blocks from `begin` on again, as long as they need what the first one did, and the first of eight sees whether it does.
+// Returns where the next begins, or that with values which stay in doubt.
 template <class CompiledWhereCalled = void>
-TEXGEN_APART Again fill_points_again(const PointJob& original, std::size_t begin, std::size_t end,
-                                     const Effort& effort) noexcept {
+TEXGEN_APART Undecided fill_points_again(const PointJob& original, std::size_t begin, Effort& effort) noexcept {
+    std::size_t end = end_of_block(original, begin);
     if (effort.rung <= Rung::either_side) {
         const PointJob job = original;
         const Doubt doubt = job.numerators == 2 ? fill_points_block<true, 2>(job, begin, end)
                                                 : fill_points_block<true, 1>(job, begin, end);
-        if (!doubt.any_lane()) return {0, {any(doubt.behind) ? Rung::either_side : Rung::in_front}};
+        if (!doubt.any_lane()) {
+            effort = {any(doubt.behind) ? Rung::either_side : Rung::in_front};
+            return {end, 0};
+        }
     }
-    return fill_block_again(original, PointTerms(original), begin, end, effort);
+    const PointTerms terms(original);
+    for (;;) {
+        const Again again = fill_block_again(original, terms, begin, end, effort);
+        if (again.doubtful != 0) return {begin, again.doubtful};
+        effort = again.effort;
+        begin = end;
+        const bool is_first_of_eight = begin / exact_block % 8 == 0;
+        if (begin == original.count || (is_first_of_eight && effort.rung == Rung::each_lane)) return {begin, 0};
+        end = end_of_block(original, begin);
+    }
 }
 
 // Most blocks are all in front and in no doubt; those that follow one that is not are taken for what it was, seven of them.
@@ -281,19 +300,15 @@ TEXGEN_INLINE Undecided fill_points_exact_of(const PointJob& original, std::size
     const PointJob job = original;
     Effort effort;
     for (std::size_t begin = first; begin < job.count;) {
-        const std::size_t block = begin / exact_block;
-        const std::size_t next = (block + 1) * exact_block;
-        const std::size_t end = next < job.count ? next : job.count;
-        if (block % 8 == 0 && effort.rung == Rung::each_lane) effort = {};
-        bool is_certain = false;
-        if (effort.rung == Rung::in_front)
-            is_certain = !fill_points_block<false, Numerators>(job, begin, end).any_lane();
-        if (!is_certain) {
-            const Again again = fill_points_again(original, begin, end, effort);
-            if (again.doubtful != 0) return {begin, again.doubtful};
-            effort = again.effort;
+        if (begin / exact_block % 8 == 0 && effort.rung == Rung::each_lane) effort = {};
+        const std::size_t end = end_of_block(job, begin);
+        if (effort.rung == Rung::in_front && !fill_points_block<false, Numerators>(job, begin, end).any_lane()) {
+            begin = end;
+            continue;
         }
-        begin = end;
+        const Undecided left = fill_points_again(original, begin, effort);
+        if (left.values != 0) return left;
+        begin = left.begin;
     }
     return {job.count, 0};
 }

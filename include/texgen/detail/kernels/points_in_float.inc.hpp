@@ -87,7 +87,7 @@ TEXGEN_INLINE std::size_t fill_points_within_of(const PointJob& job, std::size_t
         }
         return job.count;
     }
-    std::size_t size_of_block = float_block;
+    std::size_t size_of_block = in_float ? float_block : exact_block;
     for (std::size_t begin = first, end; begin < job.count; begin = end) {
         end = size_of_block < job.count - begin ? begin + size_of_block : job.count;
         size_of_block = 4 * float_block;

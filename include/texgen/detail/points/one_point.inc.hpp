@@ -60,53 +60,54 @@ inline CloseSums closely_at(const FormPair& forms, const glm::dvec3& v) noexcept
     return {sum, left};
 }
 
-// The floats nearest to two numerators over q at a point of floats, every decision exact. False where q is not positive, or
-// is no number.
-inline bool divide_exactly(const FormPair& numerators, const PointForm& q_form, const glm::dvec3& v,
-                           float (&value)[2]) noexcept {
-    const auto exact_q = [&] { return exactly_at(q_form, v); };
-    const Bounded q = value_at(q_form, v);
-    if (certain_sign(q, exact_q) <= 0) return false;
-    for (std::size_t k = 0; k < 2; ++k) {
-        const PointForm form = numerators.form(k);
-        value[k] = certain_quotient(
-            value_at(form, v), q, [&] { return exactly_at(form, v); }, exact_q);
-    }
-    return true;
+// Both by exact sums where their bounds leave it open: whether q is positive (what is no number is not), and the float
+// nearest to a numerator over it.
+inline bool is_in_front_exactly(const PointForm& q_form, const glm::dvec3& v) noexcept {
+    return certain_sign(value_at(q_form, v), [&] { return exactly_at(q_form, v); }) > 0;
+}
+inline float divide_exactly(const PointForm& form, const PointForm& q_form, const glm::dvec3& v) noexcept {
+    return certain_quotient(
+        value_at(form, v), value_at(q_form, v), [&] { return exactly_at(form, v); },
+        [&] { return exactly_at(q_form, v); });
 }
 
-// The same, in two doubles where they suffice.
+// The floats nearest to two numerators over q at a point of floats, every decision exact, in two doubles where they suffice.
+// False where q is not positive, or is no number.
 inline bool divide_closely(const FormPair& numerators, const PointForm& q_form, const glm::dvec3& v,
                            float (&value)[2]) noexcept {
-    const auto exactly = [&] { return divide_exactly(numerators, q_form, v, value); };
+    constexpr double enough = 0x1p-51;
     const CloseSums q = closely_at({q_form, q_form}, v);
-    if (!q.is_within(0x1p-51, 0)) return exactly();
-    if (!(q.high[0] > 0.0)) return false;
+    const bool is_q_close = q.is_within(enough, 0);
+    if (!(is_q_close ? q.high[0] > 0.0 : is_in_front_exactly(q_form, v))) return false;
     const CloseSums s = closely_at(numerators, v);
-    if (!(s.is_within(0x1p-51, 0) && s.is_within(0x1p-51, 1))) return exactly();
+    bool is_decided[2];
+    bool is_tied[2];
     float other[2];
     double middle[2];
-    bool is_alone[2];
     for (std::size_t k = 0; k < 2; ++k) {
         const double quotient = s.high[k] / q.high[0] + 0.0;  // no -0
         const double error = 0x1p-48 * std::fabs(quotient);
         value[k] = static_cast<float>(quotient - error);
         other[k] = static_cast<float>(quotient + error);
-        is_alone[k] = value[k] == other[k];
-        middle[k] = is_alone[k] ? 0.0 : middle_of(value[k], other[k]);
+        is_decided[k] = is_q_close && s.is_within(enough, k);
+        is_tied[k] = is_decided[k] && value[k] != other[k];
+        middle[k] = is_tied[k] ? middle_of(value[k], other[k]) : 0.0;
     }
-    if (is_alone[0] && is_alone[1]) return true;
-    // As nearest_to(). Next to a tie s.high - middle q.high is exact, part by part.
-    const Double2 factor = double2_of(middle[0], middle[1]);
-    const Double2 q_high = leading_27_bits(q.high), q_low = leading_27_bits(q.low);
-    const Double2 left[3] = {s.low, -(factor * q_low), -(factor * (q.low - q_low))};
-    CloseSums rest((s.high - factor * q_high) - factor * (q.high - q_high), left);
-    rest.lost = rest.lost + (s.lost + magnitude(factor) * q.lost);
-    for (std::size_t k = 0; k < 2; ++k) {
-        if (is_alone[k] || rest.high[k] < -rest.lost[k]) continue;
-        if (!rest.is_within(0.5, k)) return exactly();
-        value[k] = rest.high[k] > 0.0 ? other[k] : static_cast<float>(middle[k]);
+    if (is_tied[0] || is_tied[1]) {
+        // As nearest_to(). Next to a tie s.high - middle q.high is exact, part by part.
+        const Double2 factor = double2_of(middle[0], middle[1]);
+        const Double2 q_high = leading_27_bits(q.high), q_low = leading_27_bits(q.low);
+        const Double2 left[3] = {s.low, -(factor * q_low), -(factor * (q.low - q_low))};
+        CloseSums rest((s.high - factor * q_high) - factor * (q.high - q_high), left);
+        rest.lost = rest.lost + (s.lost + magnitude(factor) * q.lost);
+        for (std::size_t k = 0; k < 2; ++k) {
+            if (!is_tied[k]) continue;
+            is_decided[k] = rest.is_within(0.5, k);
+            if (rest.high[k] >= 0.0) value[k] = rest.high[k] > 0.0 ? other[k] : static_cast<float>(middle[k]);
+        }
     }
+    for (std::size_t k = 0; k < 2; ++k)
+        if (!is_decided[k]) value[k] = divide_exactly(numerators.form(k), q_form, v);
     return true;
 }
 

@@ -41,17 +41,15 @@ struct PointLanes {
 struct TwofoldForm {
     PointForm form;
     double high[3], low[3];
-    bool is_short;  // no low part is needed
     bool is_finite;
 
     TwofoldForm() = default;
     TEXGEN_INLINE explicit TwofoldForm(const PointForm& given) noexcept
-        : form(given), high{}, low{}, is_short(true), is_finite(0.0 * (form.x + form.y + form.z + form.w) == 0.0) {
+        : form(given), high{}, low{}, is_finite(0.0 * (form.x + form.y + form.z + form.w) == 0.0) {
         const double coefficient[3] = {form.x, form.y, form.z};
         for (int j = 0; j < 3; ++j) {
             high[j] = leading_29_bits(coefficient[j]);
             low[j] = coefficient[j] - high[j];
-            is_short = is_short && low[j] == 0.0;
         }
     }
 
@@ -64,56 +62,45 @@ struct TwofoldForm {
                gamma(5);
     }
 
+    // Of points that are numbers: y and z without a coefficient are not looked at.
     TEXGEN_INLINE Twofold at(const PointLanes& at, bool precisely) const noexcept {
-        const Doubles(&v)[3] = at.v;
-        Doubles x = v[0] * high[0], y = v[1] * high[1], z = v[2] * high[2];
-        Doubles x_rest{}, y_rest{}, z_rest{};
-        if (!is_short) {
-            x_rest = v[0] * low[0];
-            y_rest = v[1] * low[1];
-            z_rest = v[2] * low[2];
-            if (!precisely) {
-                x = quick_two_sum(x, x_rest, x_rest);
-                y = quick_two_sum(y, y_rest, y_rest);
-                z = quick_two_sum(z, z_rest, z_rest);
+        Doubles sum = Doubles{} + form.w;
+        Doubles rest{}, lost{}, third{};  // what the sum leaves, and what that leaves
+        const auto keep = [&](const Doubles& term) {
+            Doubles left = term;
+            if (precisely) {
+                rest = two_sum(rest, term, left);
+                third = third + left;
+            } else {
+                rest = rest + term;
             }
+            lost = lost + magnitude(left);
+        };
+        TEXGEN_UNROLL
+        for (int j = 0; j < 3; ++j) {
+            if (j != 0 && high[j] == 0.0 && low[j] == 0.0) continue;
+            Doubles product = at.v[j] * high[j];
+            Doubles product_rest = at.v[j] * low[j];
+            if (!precisely) product = quick_two_sum(product, product_rest, product_rest);
+            Doubles error;
+            sum = two_sum(sum, product, error);
+            if (j == 0 && precisely)
+                rest = error;
+            else
+                keep(error);
+            if (low[j] != 0.0) keep(product_rest);
         }
-        Doubles error[3];
-        Doubles sum = two_sum(x, Doubles{} + form.w, error[0]);
-        sum = two_sum(sum, y, error[1]);
-        sum = two_sum(sum, z, error[2]);
-        if (!precisely) {
-            Doubles rest = (error[0] + error[1]) + error[2];
-            Doubles size = (magnitude(error[0]) + magnitude(error[1])) + magnitude(error[2]);
-            if (!is_short) {
-                rest = rest + ((x_rest + y_rest) + z_rest);
-                size = size + ((magnitude(x_rest) + magnitude(y_rest)) + magnitude(z_rest));
-            }
-            return twofold_of(sum, rest, size);
-        }
-        // What the sum leaves, and what that leaves.
-        Doubles left[5]{};
-        Doubles rest = error[0];
-        if (!is_short) {
-            rest = two_sum(x_rest, y_rest, left[0]);
-            rest = two_sum(rest, z_rest, left[1]);
-            rest = two_sum(rest, error[0], left[2]);
-        }
-        rest = two_sum(rest, error[1], left[3]);
-        rest = two_sum(rest, error[2], left[4]);
+        if (!precisely) return twofold_of(sum, rest, lost);
         Twofold result;
         result.high = two_sum(sum, rest, result.low);
-        result.lost = magnitude(left[3]) + magnitude(left[4]);
-        if (!is_short) result.lost = result.lost + (magnitude(left[0]) + magnitude(left[1]) + magnitude(left[2]));
-        // Beside a sum that cancels that is much, and is kept.
-        if (any(~at_most(result.lost, magnitude(result.high) * 0x1p-60))) {
-            const Doubles third = left[0] + left[1] + left[2] + left[3] + left[4];
-            Doubles lost;
-            const Doubles second = two_sum(result.low, third, lost);
+        // Beside a sum that cancels what is lost is much, and is kept.
+        if (any(~at_most(lost, magnitude(result.high) * 0x1p-60))) {
+            Doubles error;
+            const Doubles second = two_sum(result.low, third, error);
             result.high = two_sum(result.high, second, result.low);
-            result.lost = result.lost * 0x1p-50 + magnitude(lost);
+            lost = lost * 0x1p-50 + magnitude(error);
         }
-        result.lost = result.lost * 1.001;
+        result.lost = lost * 1.001;
         return result;
     }
 };
