@@ -174,6 +174,17 @@ inline std::vector<Stretch> doubtful_stretches(std::size_t count, Random& random
     add("ties", {1.0f, 1.0f, 1.0f, 1.0f}, {2.0f, 2.0f, 2.0f, 1.0f}, tied);
     add("ties, and a factor", glm::vec4(0.3f), 0.3f * glm::vec4(2.0f, 2.0f, 2.0f, 1.0f), tied);
     add("ties of quotients", {3.0f, 5.0f, 3.0f, 3.0f}, {6.0f, 10.0f, 6.0f, 3.0f}, tied);
+    add("large ties, beside ends that are not of a size", {64.0f, 0.0123f, 64.0f, 1.0f}, {128.0f, 100.3f, 128.0f, 1.0f},
+        tied);
+    add("large ties, beside ends that are far apart", {64.0f, 0x1.23456p-9f, 64.0f, 1.0f},
+        {128.0f, -0x1.abcdep+25f, 128.0f, 1.0f}, tied);
+    add("large ties, beside coordinates that begin at 0", {64.0f, 0.0f, 0.0f, 1.0f}, {128.0f, 0.7f, -1.0f, 1.0f}, tied);
+    add("ties where q crosses 0", {-3.0f, 5.0f, 1.0f, 1.0f}, {-5.0f, 3.0f, 7.0f, -1.0f},
+        [&] { return 0.5f - static_cast<float>(random.integer(-4, 8)) * 0x1p-14f; });
+    add("q of ends that are not of a size", {1.0f, 2.0f, 3.0f, 0x1.234p-7f}, {3.0f, 1.0f, 2.0f, 0x1.5678p+3f}, tied);
+    add("all of ends that are not of a size", {0x1.23456p-9f, 0x1.9876p-7f, -0x1.357p-8f, 0x1.abcdep-9f},
+        {0x1.fedcbap+3f, 0x1.2468ap+4f, 0x1.fffffep+3f, 0x1.8ap+2f},
+        [&] { return static_cast<float>(random.integer(0, 64)) * 0x1p-6f; });
     add("q crosses 0 at the middle", {1.0f, 2.0f, 3.0f, 1.0f}, {-3.0f, 1.0f, 2.0f, -1.0f},
         [&] { return neighbour(0.5f, random.integer(-4, 4)); });
     add("next to the root of q", {1.0f, 2.0f, 3.0f, 0.7f}, {-3.0f, 1.0f, 2.0f, -1.3f},

@@ -7,7 +7,7 @@ struct ExactSum {
     Doubles high, low;
 };
 
-// Exactly from least_exact_alpha on, and at 0. The first term is a multiple of the second's ulp, so that the quick sum is exact
+// Exactly, but for what inexact_below says. The first term is a multiple of the second's ulp, so that the quick sum is exact
 // too, but where the ends are far apart.
 template <bool IsShort>
 TEXGEN_INLINE ExactSum exactly_at(const Mixture& mixture, const Doubles& alpha) noexcept {
@@ -20,6 +20,10 @@ TEXGEN_INLINE ExactSum exactly_at(const Mixture& mixture, const Doubles& alpha) 
     if (mixture.kind == Mixture::is_far) sum.high = two_sum(Doubles{} + mixture.base, part, sum.low);
     sum.high = quick_two_sum(sum.high, sum.low + alpha * mixture.rest, sum.low);
     return sum;
+}
+
+TEXGEN_INLINE LongWords are_subnormal(const SegmentJob& job, const Doubles& alpha) noexcept {
+    return greater(alpha, job.subnormal_alpha[0]) & ~greater(alpha, job.subnormal_alpha[1]);
 }
 
 // The floats nearest to s / q in the lanes that are near the middle of two floats, of the quotient in double elsewhere. There
@@ -46,54 +50,48 @@ TEXGEN_INLINE Floats nearest_quotients(const ExactSum& s, const ExactSum& q, con
 }
 
 // A block, on both sides of the projector. A bit for each value that stays in doubt.
-template <std::size_t Numerators, bool IsPlain>
+template <std::size_t Numerators, bool AreShort>
 TEXGEN_APART std::uint64_t fill_segment_closely(const SegmentJob& original, std::size_t begin,
                                                 std::size_t end) noexcept {
     const SegmentJob job = original;
     std::uint64_t doubtful = 0;
     for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(lanes)) {
         const Doubles alpha = to_doubles(load<Floats>(job.alpha + i));
-        const ExactSum q = exactly_at<IsPlain>(job.q, alpha);
+        const ExactSum q = exactly_at<AreShort>(job.q, alpha);
         const LongWords in_front = greater(q.high, 0.0);
         const Doubles reciprocal = 1.0 / q.high;
         ExactSum s[2];
         Doubles quotient[2];
-        LongWords are_near[2], near{}, are_rare{};
+        LongWords are_near[2], near{};
         TEXGEN_UNROLL
         for (std::size_t k = 0; k < Numerators; ++k) {
-            s[k] = exactly_at<IsPlain>(job.numerator[k], alpha);
+            s[k] = exactly_at<AreShort>(job.numerator[k], alpha);
             quotient[k] = where(in_front, s[k].high * reciprocal);
             are_near[k] = are_near_middles(quotient[k], 7);
-            if (!IsPlain && job.may_be_subnormal) {
-                const LongWords are_small = are_nonzero(quotient[k]) & ~greater(magnitude(quotient[k]), 0x1p-125);
-                are_near[k] |= are_small;
-                are_rare |= are_small;
-            }
             near |= are_near[k];
         }
+        std::uint64_t near_bits = lane_bits(near);
+        LongWords are_small{}, known = ~LongWords{};
+        if (job.subnormal_alpha[1] > 0.0) {
+            are_small = are_subnormal(job, alpha);
+            near_bits |= lane_bits(are_small);
+        }
+        if (!AreShort && job.inexact_below > 0.0) known = ~(greater(alpha, 0.0) & ~greater(alpha, job.inexact_below));
         Floats value[2];
-        const std::uint64_t near_bits = lane_bits(near);
         if (near_bits == 0) {
             TEXGEN_UNROLL
             for (std::size_t k = 0; k < Numerators; ++k) value[k] = to_floats(quotient[k]);
-            store_points(job, i, Numerators, value, narrow(in_front));
-            continue;
-        }
-        LongWords known = ~LongWords{};
-        if (!IsPlain && job.least_exact_alpha > 0.0)
-            known = ~(are_nonzero(alpha) & ~greater(alpha, job.least_exact_alpha));
-        if ((near_bits & lane_bits(are_rare | are_nonzero(q.low) | ~known)) == 0) {
+        } else if ((near_bits & lane_bits(are_nonzero(q.low) | are_small | ~known)) == 0) {
             TEXGEN_UNROLL
             for (std::size_t k = 0; k < Numerators; ++k)
-                value[k] = nearest_quotients<false>(s[k], q, quotient[k], are_near[k], near);
-            store_points(job, i, Numerators, value, narrow(in_front));
-            continue;
+                value[k] = nearest_quotients<false>(s[k], q, quotient[k], are_near[k], known);
+        } else {
+            TEXGEN_UNROLL
+            for (std::size_t k = 0; k < Numerators; ++k)
+                value[k] = nearest_quotients<true>(s[k], q, quotient[k], are_near[k] | are_small, known);
+            doubtful |= (near_bits & ~lane_bits(known)) << (i - begin);
         }
-        TEXGEN_UNROLL
-        for (std::size_t k = 0; k < Numerators; ++k)
-            value[k] = nearest_quotients<true>(s[k], q, quotient[k], are_near[k], known);
         store_points(job, i, Numerators, value, narrow(in_front));
-        doubtful |= (near_bits & ~lane_bits(known)) << (i - begin);
     }
     return doubtful;
 }
@@ -122,8 +120,7 @@ TEXGEN_INLINE std::size_t fill_segment_quickly(const SegmentJob& job, std::size_
             for (std::size_t j = 0; j < 2; ++j) {
                 alpha[j] = to_doubles(load<Floats>(job.alpha + i + j * static_cast<std::size_t>(lanes)));
                 q[j] = alpha[j] * q_step + job.q.base;
-                if (job.least_quick_alpha > 0.0)
-                    doubt |= greater(alpha[j], 0.0) & greater(Doubles{} + job.least_quick_alpha, alpha[j]);
+                if (job.subnormal_alpha[1] > 0.0) doubt |= are_subnormal(job, alpha[j]);
             }
             const Doubles of_both = 1.0 / (q[0] * q[1]);
             sum = sum + of_both;
@@ -154,8 +151,8 @@ TEXGEN_INLINE Undecided fill_segment_exact_of(const SegmentJob& original, std::s
         if (job.is_quick && begin % (8 * exact_block) == 0) begin = fill_segment_quickly<Numerators>(job, begin);
         if (begin >= job.count) break;
         const std::size_t end = end_of_block(job, begin);
-        const std::uint64_t doubtful = job.is_plain ? fill_segment_closely<Numerators, true>(original, begin, end)
-                                                    : fill_segment_closely<Numerators, false>(original, begin, end);
+        const std::uint64_t doubtful = job.are_short ? fill_segment_closely<Numerators, true>(original, begin, end)
+                                                     : fill_segment_closely<Numerators, false>(original, begin, end);
         if (doubtful != 0) return {begin, doubtful};
         begin = end;
     }

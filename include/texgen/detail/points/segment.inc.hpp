@@ -34,19 +34,10 @@ inline void interpolate_one(const SegmentJob& job, std::size_t i) noexcept {
     if (job.lit != nullptr) job.lit[i] = in_front && is_inside(value[0], value[1], job.min, job.max) ? 1.0f : 0.0f;
 }
 
-// What is known of a segment whose ends are in front: q is least, and |F/Q| largest, at an end.
-struct SegmentBounds {
-    double q_least, q_largest;
-    double numerator[2], quotient[2];
-
-    explicit SegmentBounds(const SegmentJob& job) noexcept
-        : q_least(smaller(job.q_a, job.q_b)), q_largest(larger(job.q_a, job.q_b)), numerator{}, quotient{} {
-        for (int k = 0; k < job.numerators; ++k) {
-            numerator[k] = larger(std::fabs(job.a[k]), std::fabs(job.b[k]));
-            quotient[k] = 1.001 * larger(std::fabs(job.a[k]) / job.q_a, std::fabs(job.b[k]) / job.q_b);
-        }
-    }
-};
+// The largest |F/Q| of a segment whose ends are in front, where it is at an end.
+inline double largest_quotient(const SegmentJob& job, int k) noexcept {
+    return 1.001 * larger(std::fabs(job.a[k]) / job.q_a, std::fabs(job.b[k]) / job.q_b);
+}
 
 // About the end where q is less, with i the alpha from there, u is exactly
 //   u0 + d i / (1 + b i),  b = (Q1 - Q0) / Q0 >= 0,  d = (u1 - u0) Q1 / Q0,
@@ -121,49 +112,56 @@ inline Mixture mixture_of(double a, double b) noexcept {
     return {a + 0.0, leading, step.high - leading, leading == step.high ? Mixture::is_short : Mixture::is_long};
 }
 
-// What the kernels in double know of one mixture beside q.
+// What rounding makes of a mixture. Of a short one the sum is rounded in double, and of others the step and the product too,
+// which may be as large as the larger end. The terms of one in two doubles are multiples of alpha's last bit times that of the
+// lesser end, 2^-48 of their product at least: where alpha is not too small, what the first sum leaves and the rest need no more
+// than 53 bits above that.
 struct MixtureBounds {
-    double ulps = 1.0;               // as a sum in double, where its ends have one sign
-    double least_exact_alpha = 0.0;  // see SegmentJob
+    double ulps = 1.0;           // of the sum in double, if it has one sign
+    double inexact_below = 0.0;  // see SegmentJob
 
     MixtureBounds(const Mixture& mixture, double a, double b) noexcept {
-        if (mixture.kind == Mixture::is_short) return;  // rounded once; else in the step, the product and the sum
+        if (mixture.kind == Mixture::is_short) return;
         const double ratio = larger(std::fabs(a), std::fabs(b)) / smaller(std::fabs(a), std::fabs(b));
         ulps = a * b > 0.0 && is_finite(ratio) ? 1.0 + 2.0 * ratio : std::numeric_limits<double>::infinity();
-        least_exact_alpha = 0x1p-54 * ratio;
+        inexact_below = 0x1p-54 * ratio;
     }
 };
 
+// What the kernels in double need.
 inline void prepare_exact(SegmentJob& job) noexcept {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-    const double q_largest = larger(job.q_a, job.q_b);
     job.q = is_finite(job.q_a + job.q_b) ? mixture_of(job.q_a, job.q_b) : Mixture{nan, nan, 0.0, Mixture::is_short};
     const MixtureBounds of_q(job.q, job.q_a, job.q_b);
-    job.least_exact_alpha = of_q.least_exact_alpha;
-    job.may_be_subnormal = false;
-    job.is_plain = job.q.kind == Mixture::is_short;
+    const double least_normal = 0x1p-126 * larger(job.q_a, job.q_b);  // a numerator whose quotient is one
+    job.inexact_below = of_q.inexact_below;
+    job.subnormal_alpha[0] = job.subnormal_alpha[1] = 0.0;
+    job.are_short = job.q.kind == Mixture::is_short;
     job.is_quick = job.q_a > 0.0 && job.q_b > 0.0;
-    job.least_quick_alpha = 0.0;
     for (int k = 0; k < job.numerators; ++k) {
-        const double a = std::fabs(job.a[k]), b = std::fabs(job.b[k]);
-        job.numerator[k] = mixture_of(job.a[k], job.b[k]);
-        job.is_plain = job.is_plain && job.numerator[k].kind == Mixture::is_short;
-        const MixtureBounds bounds(job.numerator[k], job.a[k], job.b[k]);
-        job.least_exact_alpha = larger(job.least_exact_alpha, bounds.least_exact_alpha);
-        // The shared division of two vectors adds four roundings.
+        const double a = job.a[k];
+        const double b = job.b[k];
+        job.numerator[k] = mixture_of(a, b);
+        job.are_short = job.are_short && job.numerator[k].kind == Mixture::is_short;
+        const MixtureBounds bounds(job.numerator[k], a, b);
+        job.inexact_below = larger(job.inexact_below, bounds.inexact_below);
+        // A division that two vectors share rounds four times.
         const double ulps = bounds.ulps + of_q.ulps + 4.0;
         job.is_quick = job.is_quick && ulps < 0x1p14;
-        for (job.ulps[k] = 7; job.is_quick && static_cast<double>(job.ulps[k]) < ulps;) job.ulps[k] += job.ulps[k] + 1;
-        // Both ends are multiples of 2^-24 of the lesser one, so a mixture is 0 or at least 2^-50 of lesser^2 / larger.
-        const double least_normal = 0x1p-126 * q_largest;
-        const double lesser = smaller(a, b);
-        if (b == 0.0 ? a == 0.0 || 0x1p-24 * a >= least_normal
-                     : 0x1p-52 * lesser * lesser >= least_normal * larger(a, b))
-            continue;
-        job.may_be_subnormal = true;
-        job.is_plain = false;
-        job.is_quick = job.is_quick && a == 0.0;
-        job.least_quick_alpha = larger(job.least_quick_alpha, 2.0 * least_normal / b);
+        job.ulps[k] = 7;
+        while (job.is_quick && job.ulps[k] <= static_cast<std::int32_t>(ulps)) job.ulps[k] = 2 * job.ulps[k] + 1;
+        // Where no end is 0 a mixture is 0 or more than 2^-51 of lesser^2 / larger: alpha is then no less than a half of their
+        // ratio, or the mixture more than half of a.
+        const double lesser = smaller(std::fabs(a), std::fabs(b));
+        const double larger_one = larger(std::fabs(a), std::fabs(b));
+        if (a == 0.0) {
+            if (b != 0.0) job.subnormal_alpha[1] = larger(job.subnormal_alpha[1], 2.0 * least_normal / std::fabs(b));
+        } else if (!(b == 0.0 ? 0x1p-24 * larger_one >= least_normal
+                              : 0x1p-52 * lesser * lesser >= least_normal * larger_one)) {
+            job.subnormal_alpha[0] = -1.0;
+            job.subnormal_alpha[1] = 2.0;
+            job.is_quick = false;
+        }
     }
 }
 
@@ -219,9 +217,8 @@ inline glm::dvec2 error_bound(const Segment& segment, Tolerance tolerance) noexc
     if (!detail::is_finite(sum)) return {infinity, infinity};
     if (job.q_a <= 0.0 && job.q_b <= 0.0) return {0.0, 0.0};
     if (job.q_a <= 0.0 || job.q_b <= 0.0) return {infinity, infinity};
-    const detail::SegmentBounds bounds(job);
     const auto bound = [&](int k) {
-        const double of_nearest = detail::half_ulp(bounds.quotient[k]);
+        const double of_nearest = detail::half_ulp(detail::largest_quotient(job, k));
         const double of_float = detail::segment_float_error(job, k);
         // Where both are next to one another, a file with other flags may have decided otherwise.
         const bool may_be_float = of_float * (1.0 - 0x1p-40) <= detail::accepted(tolerance);

@@ -118,9 +118,9 @@ struct PointJob : DividedOutput, PointInput {
 // (1 - alpha) a + alpha b of floats as base + alpha (step + rest): both products with a float are exact.
 struct Mixture {
     enum Kind : std::int32_t {
-        is_short,  // without a rest: the sum is rounded once
-        is_long,   // the rest is below the last bit of the step
-        is_far,    // the ends are so far apart that their difference is more than a double: step and rest are the ends
+        is_short,      // there is no rest, so the sum in double is rounded once
+        is_long,       // the rest is what 29 bits leave of b - a
+        is_far,        // b - a is no double: step and rest are the ends
         is_not_finite  // base and step are the ends
     };
 
@@ -136,13 +136,12 @@ struct SegmentJob : DividedOutput {
     // For fill_exact.
     Mixture numerator[2];
     Mixture q;
-    double least_exact_alpha;  // from here on, and at 0, the sums in two doubles are exact
-    double least_quick_alpha;  // from here on, and at 0, what is_quick says holds
+    double inexact_below;       // the sums in two doubles are exact for other alphas, and for 0
+    double subnormal_alpha[2];  // between these, which are not among them, a float may be subnormal
+    bool are_short;             // all mixtures
+    // For every other alpha all is in front, and quotients in double are within so many ulps, 1 less than a power of two.
+    bool is_quick;
     std::int32_t ulps[2];
-    bool
-        is_quick;  // all is in front, quotients in double are off by so many ulps (1 less than a power of two), floats normal
-    bool is_plain;          // no mixture has a rest, and no float may be subnormal
-    bool may_be_subnormal;  // a quotient rounded to float, other than 0
     // For fill_all_float: about the end where q is less, base + slope i / (1 + bend i), i the alpha from there.
     bool about_b;
     float bend, base[2], slope[2];
