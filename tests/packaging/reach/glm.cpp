@@ -81,7 +81,9 @@ void print_projector(const texgen::Projector& projector) {
     std::array<glm::vec2, points.size()> st;
     project(texgen, positions, st);
     std::array<float, points.size()> s, t, r, lit;
-    project(texgen, positions, whole_texture(), {s, t, r, lit});
+    const TextureRegion volume = whole_texture().with_depth(projector.conventions, DepthMapping::unit);
+    print("depth", *volume.depth());
+    project(texgen, positions, volume, {s, t, r, lit});
     for (std::size_t i = 0; i < points.size(); ++i) {
         print("strq", strq[i]);
         print("st", st[i]);

@@ -40,6 +40,9 @@ glm::vec3 point(int i) {
 Box box(int i) { return {point(i), point(i) + 0.5f}; }
 Sphere sphere(int i) { return {point(i), 0.25f}; }
 
+// Whose depth cuts what follows.
+TextureRegion volume() { return whole_texture().with_depth(0.25, 0.31); }
+
 constexpr Triangle triangle{{{0.0f, 0.0f}, 1.0f, {0.1f, 0.2f, 0.3f, 1.0f}},
                             {{40.0f, 0.0f}, 3.0f, {2.9f, 0.5f, 0.75f, 2.0f}},
                             {{0.0f, 30.0f}, 2.0f, {0.5f, 1.5f, 0.25f, 1.5f}}};
@@ -64,11 +67,11 @@ constexpr Triangle triangle{{{0.0f, 0.0f}, 1.0f, {0.1f, 0.2f, 0.3f, 1.0f}},
     }                                   \
     project(EyeTexgen(matrix()), eye_space(x, y, z), whole_texture(), {SPANS(__VA_ARGS__)}, tolerance)
 
-#define PROJECT_STRIDED(...)                                                                               \
-    float vertices[count][4];                                                                              \
-    for (int i = 0; i < count; ++i)                                                                        \
-        for (glm::length_t k = 0; k < 3; ++k) vertices[i][k] = point(i)[k];                                \
-    project(ObjectTexgen(matrix()), object_space(vertices[0], count, sizeof vertices[0]), whole_texture(), \
+#define PROJECT_STRIDED(...)                                                                        \
+    float vertices[count][4];                                                                       \
+    for (int i = 0; i < count; ++i)                                                                 \
+        for (glm::length_t k = 0; k < 3; ++k) vertices[i][k] = point(i)[k];                         \
+    project(ObjectTexgen(matrix()), object_space(vertices[0], count, sizeof vertices[0]), volume(), \
             {SPANS(__VA_ARGS__)}, tolerance)
 
 #define GENERATE(...)                                     \
@@ -76,8 +79,8 @@ constexpr Triangle triangle{{{0.0f, 0.0f}, 1.0f, {0.1f, 0.2f, 0.3f, 1.0f}},
     for (int i = 0; i < count; ++i) points[i] = point(i); \
     generate(WorldTexgen(matrix()), world_space(points), HomogeneousTexcoords{SPANS(__VA_ARGS__)})
 
-#define INTERPOLATE(...)                                                        \
-    const auto setup = TriangleSetup::of(triangle, whole_texture(), tolerance); \
+#define INTERPOLATE(...)                                                 \
+    const auto setup = TriangleSetup::of(triangle, volume(), tolerance); \
     if (setup) interpolate(*setup, {3, 4, count, 1}, {SPANS(__VA_ARGS__)})
 
 #define INTERPOLATE_BATCH(...)                       \
@@ -101,7 +104,7 @@ constexpr Triangle triangle{{{0.0f, 0.0f}, 1.0f, {0.1f, 0.2f, 0.3f, 1.0f}},
 #define INTERPOLATE_SEGMENT(...)                                                             \
     float alpha[count];                                                                      \
     for (int i = 0; i < count; ++i) alpha[i] = (static_cast<float>(i) + 0.3f) / (count + 1); \
-    interpolate({triangle.a.strq, triangle.b.strq}, alpha, whole_texture(), {SPANS(__VA_ARGS__)}, tolerance)
+    interpolate({triangle.a.strq, triangle.b.strq}, alpha, volume(), {SPANS(__VA_ARGS__)}, tolerance)
 
 #define DERIVATIVES(...)                                                        \
     const auto setup = TriangleSetup::of(triangle, whole_texture(), tolerance); \
