@@ -173,9 +173,9 @@ inline Product right_composition(const Factors& factors) noexcept {
     return scale_bias_factor(factors, {}) * lens_factor(factors.projection) * pose_product(factors);
 }
 
-// Whether rows s, t and q are right, and row r = a z + b w is that of a lens or a scale-bias for the other range: by far
-// nearer to it than to the right one. Where rounding could have moved it from there, the rounding of the other rows says how
-// far it does.
+// Whether rows s, t and q are right, and row r = a z + b w is that of a lens or a scale-bias for the other range. Where the
+// right one is within the rounding of a product in float, the rounding of the other rows says how large it is: row r must be
+// well beyond it, and the other range's within it.
 inline bool is_of_other_range(const glm::dmat4& texgen, const glm::dmat4& scale_bias, const Product& right) noexcept {
     if (is_zero_row(texgen, 2)) return false;
     glm::dmat4 other_rows = texgen;
@@ -205,7 +205,7 @@ inline bool is_of_other_range(const glm::dmat4& texgen, const glm::dmat4& scale_
     for (const glm::dvec2& row :
          {glm::dvec2(1.0, 0.0), glm::dvec2(0.5, 0.5), glm::dvec2(2.0, -1.0), glm::dvec2(0.25, 0.75)}) {
         const double to_other = distance(2, row.x / scale, row.y - row.x * bias / scale);
-        if (to_other <= accepted && 8.0 * to_other < to_right) return true;
+        if (to_other <= accepted) return true;
     }
     return false;
 }

@@ -50,6 +50,14 @@ inline SeenScaleBias seen_scale_bias(const SetupMatrices& setup) noexcept {
     return {{std::fabs(s[0].x), std::fabs(s[1].y)}, {s[3].x, s[3].y}, up_along_t};
 }
 
+// Whether a lens whose axis goes to the picture's corner is the quarter of another: r has its bias if that makes near round.
+inline bool is_quarter_of_lens(const SeenLens& lens, const SetupMatrices& setup) noexcept {
+    constexpr double enough_bits = 8.0;
+    const std::optional<Conventions> conventions = known_conventions(setup);
+    return conventions && conventions->depth == DepthRange::negative_one_to_one && setup.depth == DepthMapping::unit &&
+           roundness(lens.distance_of(0.0)) > enough_bits;
+}
+
 // Says what the lens that is seen shows. What is known of the lens decides; where nothing is, only numbers that are round
 // with a mistake, and are not without it, speak for one: they are what people write.
 inline void examine_seen_lens(const SeenLens& lens, const SetupMatrices& setup, const LensFacts& facts,
@@ -64,12 +72,9 @@ inline void examine_seen_lens(const SeenLens& lens, const SetupMatrices& setup, 
                larger(4.0 * error, 0x1p-16) * std::cos(half);
     };
     const std::optional<DepthEnds> ends = depth_ends(setup.depth, known_conventions(setup));
-    // The quarter of a lens has its axis in the corner too, and a near plane that is round as it is.
-    const bool is_quarter = !facts.fovy && ends && roundness(lens.distance_of(ends->low)) > 0.0 &&
-                            !(roundness(lens.distance_of(-1.0)) > 0.0);
-    if (s.is_missed_by(lens) && !is_quarter) {
-        // With w biased as well, and halved, only its size is another.
-        const bool halves_w = std::fabs(lens.per_distance() - 0.5) <= 4.0 * lens.rounding();
+    // With w biased as well, and halved, only its size is another.
+    const bool halves_w = std::fabs(lens.per_distance() - 0.5) <= 4.0 * lens.rounding();
+    if (s.is_missed_by(lens) && (facts.fovy || halves_w || !is_quarter_of_lens(lens, setup))) {
         if (is_meant(as_clip.y) && !halves_w) {
             diagnosis.add(Defect::scale_bias_missing);
             return;
