@@ -1,19 +1,13 @@
 #include "scenes.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <span>
 #include <utility>
 
-#include <glm/ext/matrix_clip_space.hpp>
-#include <glm/ext/matrix_transform.hpp>
-#include <glm/geometric.hpp>
-#include <glm/trigonometric.hpp>
 #include <texgen/footprint.hpp>
 #include <texgen/linear.hpp>
 #include <texgen/projector.hpp>
 #include <texgen/surface.hpp>
-#include <texgen/texcoord.hpp>
 
 #include "html.hpp"
 
@@ -23,80 +17,10 @@ namespace {
 
 constexpr glm::vec3 plaster(0.86f, 0.85f, 0.82f);
 constexpr glm::vec3 porcelain(0.95f, 0.94f, 0.92f);
-constexpr glm::vec3 steel(0.55f, 0.60f, 0.75f);
-constexpr glm::vec3 glow(3.0f, 1.9f, 0.4f);
 
 // The projector of the GLSL walk-through.
 const texgen::Aim walk_through_aim{.position = {2, 5, 5}, .target = {-2, -4, 0}, .up = {0, 1, 0}};
-
-// How high the slide is when its longer side is 1.
-double relative_height(const Picture& slide) {
-    return static_cast<double>(slide.height) / std::max(slide.width, slide.height);
-}
-
-struct Depth {
-    double z_near, z_far;
-};
-constexpr Depth any_depth{0.2, 1000}, walk_through_depth{8, 16};
-
-// The angle or the width is that of the slide's longer side.
-texgen::Projector projector_of(const LensChoice& lens, const Picture& slide, const texgen::Aim& aim,
-                               const Depth& depth = any_depth) {
-    const double aspect = static_cast<double>(slide.width) / slide.height;
-    if (lens.is_orthographic) {
-        const double top = 0.5 * lens.extent * relative_height(slide);
-        return texgen::make_projector(texgen::OrthographicLens{.left = -top * aspect,
-                                                               .right = top * aspect,
-                                                               .bottom = -top,
-                                                               .top = top,
-                                                               .z_near = depth.z_near,
-                                                               .z_far = depth.z_far},
-                                      aim, texgen::opengl)
-            .value();
-    }
-    const double half_height = relative_height(slide) * std::tan(0.5 * glm::radians(lens.extent));
-    return texgen::make_projector(texgen::PerspectiveLens{.fovy = texgen::radians(2.0 * std::atan(half_height)),
-                                                          .aspect = aspect,
-                                                          .z_near = depth.z_near,
-                                                          .z_far = depth.z_far},
-                                  aim, texgen::opengl)
-        .value();
-}
-
-// From where its light comes: from a point, or from afar.
-glm::vec4 light_of(const LensChoice& lens, const texgen::Aim& aim) {
-    return lens.is_orthographic ? glm::vec4(aim.position - aim.target, 0) : glm::vec4(aim.position, 1);
-}
-
-struct Eye {
-    glm::dvec3 position, target;
-    double fovy;  // of the shorter side of the picture, in degrees
-};
-
-Camera camera(const Eye& eye, double aspect) {
-    double half_height = std::tan(0.5 * glm::radians(eye.fovy));
-    if (aspect < 1.0) half_height /= aspect;
-    const double z_near = 0.1;
-    const double top = z_near * half_height;
-    const glm::dmat4 projection = glm::frustum(-top * aspect, top * aspect, -top, top, z_near, 200.0);
-    return {projection * glm::lookAt(eye.position, eye.target, glm::dvec3(0, 1, 0)), eye.position};
-}
-
-texgen::ModelMatrix placed(glm::dvec3 position, double turn_degrees, double scale) {
-    glm::dmat4 matrix = glm::translate(glm::dmat4(1.0), position);
-    matrix = glm::rotate(matrix, glm::radians(turn_degrees), glm::dvec3(0, 1, 0));
-    return texgen::ModelMatrix(glm::scale(matrix, glm::dvec3(scale)));
-}
-
-Surface projected(const texgen::ObjectTexgen& texgen, Mesh mesh, const texgen::ModelMatrix& model, glm::vec3 colour) {
-    std::vector<glm::vec4> strq(mesh.positions.size());
-    texgen::generate(texgen, texgen::object_space(mesh.positions), std::span(strq));
-    return {std::move(mesh), model, std::move(strq), colour};
-}
-
-Surface projected(const texgen::Projector& projector, Mesh mesh, const texgen::ModelMatrix& model, glm::vec3 colour) {
-    return projected(texgen::object_linear(projector, model), std::move(mesh), model, colour);
-}
+constexpr Depth walk_through_depth{8, 16};
 
 // What a projector sees of the surfaces that its slide falls on.
 std::shared_ptr<const DepthMap> seen_from(const texgen::Projector& projector, const texgen::Aim& aim,
@@ -115,47 +39,6 @@ View from_projector(std::string file, const std::string& sentence, std::shared_p
             .slide = {},
             .sampling = Sampling::depth_from_projector,
             .shadow = Shadow{std::move(map), {}}};
-}
-
-const texgen::ModelMatrix in_place(glm::dmat4(1.0));
-
-// What gets no slide.
-Surface unlit(Mesh mesh, const texgen::ModelMatrix& model, glm::vec3 colour) {
-    std::vector<glm::vec4> strq(mesh.positions.size(), glm::vec4(-1, -1, 0, 1));
-    return {std::move(mesh), model, std::move(strq), colour};
-}
-
-// The projector's own body, around the centre of projection, where q is nearly 0.
-Surface body_of(const texgen::Aim& aim, double floor) {
-    const auto foot = static_cast<float>(floor - aim.position.y);
-    Mesh body = box({-0.3f, -0.3f, -0.25f}, {0.5f, 0.3f, 0.25f});
-    append(body, box({-0.5f, -0.15f, -0.15f}, {-0.3f, 0.15f, 0.15f}));
-    append(body, box({0.04f, foot, -0.06f}, {0.16f, -0.3f, 0.06f}));
-    const glm::dvec3 ahead = aim.target - aim.position;
-    const texgen::ModelMatrix model = placed(aim.position, glm::degrees(std::atan2(ahead.z, -ahead.x)), 1);
-    return unlit(std::move(body), model, steel);
-}
-
-// The edges of what a projector lights between its near plane and its far one.
-std::vector<Surface> edges_of(const texgen::Projector& projector) {
-    const glm::dmat4 world_from_clip = texgen::inverse(projector.matrix()).value().matrix();
-    const auto corner = [&](std::size_t i) {
-        const glm::dvec4 at = world_from_clip * glm::dvec4(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1, 1);
-        return glm::dvec3(at) / at.w;
-    };
-    std::vector<Surface> edges;
-    for (std::size_t from = 0; from < 8; ++from) {
-        for (const std::size_t bit : {1u, 2u, 4u}) {
-            if ((from & bit) != 0) continue;
-            const glm::dvec3 along = corner(from | bit) - corner(from), ahead = glm::normalize(along);
-            const glm::dvec3 aside = glm::normalize(glm::cross(ahead, glm::dvec3(0.31, 0.42, 0.85)));
-            const glm::dmat4 model(glm::dvec4(aside, 0), glm::dvec4(glm::cross(ahead, aside), 0), glm::dvec4(ahead, 0),
-                                   glm::dvec4(corner(from), 1));
-            const float half = 0.02f, length = static_cast<float>(glm::length(along));
-            edges.push_back(unlit(box({-half, -half, 0}, {half, half, length}), texgen::ModelMatrix(model), glow));
-        }
-    }
-    return edges;
 }
 
 // The mesh under the walk-through's slide, on a floor that its axis meets at the target. The floor reaches behind the

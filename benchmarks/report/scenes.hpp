@@ -14,6 +14,7 @@
 #include "mesh.hpp"
 #include "picture.hpp"
 #include "rasterizer.hpp"
+#include "stage.hpp"
 
 namespace report {
 
@@ -63,12 +64,6 @@ struct Scene {
     texgen::TextureRegion region;
     glm::ivec2 corner{0, 0};  // where the picture begins in its window
     std::vector<View> views;
-};
-
-// Of the projector: the angle in degrees, or with parallel rays the width, of the slide's longer side.
-struct LensChoice {
-    bool is_orthographic = false;
-    double extent = 30;
 };
 
 // `mesh` stands where the teapot stands, `dense` where small triangles are shown. The camera has the given aspect.
