@@ -48,13 +48,43 @@ private:
     Scene scene_;
 };
 
-void ours(const Project& work, std::size_t i, texgen::Tolerance tolerance) {
+void project(const Project& work, std::size_t i, const texgen::Positions<texgen::World>& positions,
+             texgen::Tolerance tolerance) {
     const Points& points = work.points();
     if (points.is_planar())
-        texgen::project(points.transform(i), points.positions(), texgen::whole_texture(),
+        texgen::project(points.transform(i), positions, texgen::whole_texture(),
                         {.s = {work.s(), work.size()}, .t = {work.t(), work.size()}, .r = {}, .lit = {}}, tolerance);
     else
-        texgen::project(points.transform(i), points.positions(), std::span(work.pairs(), work.size()), tolerance);
+        texgen::project(points.transform(i), positions, std::span(work.pairs(), work.size()), tolerance);
+}
+
+void ours(const Project& work, std::size_t i, texgen::Tolerance tolerance) {
+    project(work, i, work.points().positions(), tolerance);
+}
+
+// With the box that the points are drawn from.
+void ours_within(const Project& work, std::size_t i, texgen::Tolerance tolerance) {
+    project(work, i, work.points().positions().within({glm::vec3(0.0f), glm::vec3(1.0f)}), tolerance);
+}
+
+// One at a time, of which the compiler makes no batch.
+void ours_one_by_one(const Project& work, std::size_t i) {
+    const auto transform = work.points().transform(i);
+    const glm::vec3* triples = work.points().triples();
+    for (std::size_t k = 0; k < work.size(); ++k) {
+        work.pairs()[k] = texgen::project(transform, texgen::world_space(triples[k])).value_or(glm::vec2(0.0f));
+        benchmark::ClobberMemory();
+    }
+}
+
+void glm_one_by_one(const Project& work, std::size_t i) {
+    const glm::mat4 matrix = work.points().matrix(i);
+    const glm::vec3* triples = work.points().triples();
+    for (std::size_t k = 0; k < work.size(); ++k) {
+        const glm::vec4 strq = matrix * glm::vec4(triples[k], 1.0f);
+        work.pairs()[k] = glm::vec2(strq) / strq.w;
+        benchmark::ClobberMemory();
+    }
 }
 
 void glm_planar(const Project& work, std::size_t i) {
@@ -133,6 +163,15 @@ void add_scene(std::size_t count, Layout layout) {
         add(stop.name, stop.tolerance.value,
             [tolerance = stop.tolerance](const Project& project, std::size_t i) { ours(project, i, tolerance); });
     const bool is_planar = layout == Layout::planar;
+    for (const Stop& stop : {dial[0], dial[2]})
+        add(std::string(stop.name) + ", within a box", stop.tolerance.value,
+            [tolerance = stop.tolerance](const Project& project, std::size_t i) {
+                ours_within(project, i, tolerance);
+            });
+    if (!is_planar && count == l1_count) {
+        add("texgen, exact, one by one", 0.0, ours_one_by_one);
+        add("GLM, mat4 * vec4, one by one", promises_nothing, glm_one_by_one);
+    }
     add("GLM, mat4 * vec4", promises_nothing, is_planar ? glm_planar : glm_interleaved);
     add(is_planar ? "Eigen, array blocks" : "Eigen, hnormalized", promises_nothing,
         is_planar ? eigen_planar : eigen_interleaved);

@@ -168,6 +168,33 @@ void project_points(Input& input) {
         for (std::size_t i = 0; i < count; ++i)
             must(same(pairs[1 + i].x, out.s()[i]) && same(pairs[1 + i].y, out.t()[i]), "pairs are s and t");
 
+    // The same with a word on where the points lie: the bits of `exact` stay, and other values keep the tolerance. What is
+    // no number lies in no box.
+    std::vector<glm::vec3> finite;
+    for (const glm::vec3& point : points)
+        if (fuzz::all_finite(point)) finite.push_back(point);
+    if (!finite.empty()) {
+        texgen::Box box{finite[0], finite[0]};
+        for (const glm::vec3& point : finite) {
+            for (int k = 0; k < 3; ++k) {
+                box.min[k] = std::min(box.min[k], point[k]);
+                box.max[k] = std::max(box.max[k], point[k]);
+            }
+        }
+        Layout finite_layout;
+        const auto positions = finite_layout.positions(input, finite);
+        Outputs with(finite.size(), asked), without(finite.size(), asked);
+        project(texgen, positions.within(box), region, with.spans(), tolerance);
+        project(texgen, positions, region, without.spans(), tolerance);
+        must(with.pads_are_intact(), "project within a box writes its outputs only");
+        const std::size_t i = judged[0] % finite.size();
+        if (!(tolerance.value > 0.0) && has_promised_bits(matrix))
+            for (std::size_t k = 0; k < 4; ++k)
+                if (with.asked(k)) must(same(with[k][i], without[k][i]), "a box changes no bit of the nearest float");
+        if (is_judged(matrix, finite[i]))
+            must_be_right(what_is_wrong(support::exactly_at(matrix, finite[i]), region, tolerance, with, i));
+    }
+
     // One point has the same bits.
     for (const std::size_t i : {judged[0] % count, judged[1] % count}) {
         if (!has_promised_bits(matrix)) continue;

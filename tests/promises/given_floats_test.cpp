@@ -273,6 +273,17 @@ std::array<glm::vec2, 2> projected(const Numbers& n) {
     return out;
 }
 
+// The box is the point: a number next to it does not hold it.
+template <class Rounding>
+std::array<glm::vec2, 1> projected_within(const Numbers& n) {
+    std::array<glm::vec2, 1> out{};
+    const glm::vec3 given = point<ByMemory>(n, 16);
+    const texgen::Box box{point<Rounding>(n, 16), point<Rounding>(n, 16)};
+    texgen::project(texgen::ObjectTexgen(matrix<Rounding>(n)), texgen::object_space(std::span(&given, 1)).within(box),
+                    out);
+    return out;
+}
+
 template <class Rounding>
 std::array<std::optional<glm::vec2>, 2> projected_alone(const Numbers& n) {
     const texgen::ObjectTexgen texture_from_object(matrix<Rounding>(n));
@@ -348,6 +359,7 @@ TEST_CASE("floats that are rounded in place give the results of those floats") {
         REQUIRE(by_setup<InPlace>(numbers) == by_batch<InPlace>(numbers));
         REQUIRE(along_segment<InPlace>(numbers) == along_segment<ByMemory>(numbers));
         REQUIRE(projected<InPlace>(numbers) == projected<ByMemory>(numbers));
+        REQUIRE(projected_within<InPlace>(numbers) == projected_within<ByMemory>(numbers));
         REQUIRE(projected_alone<InPlace>(numbers) == projected_alone<ByMemory>(numbers));
         REQUIRE(divided<InPlace>(numbers) == divided<ByMemory>(numbers));
         REQUIRE(from_eigen<InPlace>(numbers) == from_eigen<ByMemory>(numbers));

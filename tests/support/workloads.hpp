@@ -328,6 +328,24 @@ Calls project_pairs_calls(const Numbers& n) {
         keep(st[0]);
     });
 }
+template <bool IsExact>
+Calls project_within_calls(const Numbers& n) {
+    const auto batch = batch_of<1024>(n);
+    if (!is_of_a_scene(*batch)) return {};
+    texgen::Box box{batch->points[0], batch->points[0]};
+    for (const glm::vec3& point : batch->points) {
+        for (int k = 0; k < 3; ++k) {
+            if (std::isnan(point[k])) return {};
+            box.min[k] = std::min(box.min[k], point[k]);
+            box.max[k] = std::max(box.max[k], point[k]);
+        }
+    }
+    return calls_of([batch, positions = texgen::world_space(batch->points).within(box)] {
+        texgen::project(batch->texgen, positions, texgen::whole_texture(),
+                        {.s = batch->out[0], .t = batch->out[1], .r = batch->out[2], .lit = batch->out[3]},
+                        IsExact ? texgen::exact : tolerance);
+    });
+}
 inline Calls project_point_calls(const Numbers& n) {
     const auto batch = batch_of<1>(n);
     if (!is_of_a_scene(*batch)) return {};
@@ -1311,6 +1329,10 @@ inline const std::array workloads{
              detail::always},
     Workload{"generate to four arrays, 1024 points", 24, detail::ordinary_points, detail::hostile_points,
              detail::generate_planar_calls<1024>, detail::always},
+    Workload{"project within a box, exact, 1024 points", 24, detail::ordinary_points, detail::hostile_points,
+             detail::project_within_calls<true>, detail::always},
+    Workload{"project within a box, tolerance, 1024 points", 24, detail::ordinary_points, detail::hostile_points,
+             detail::project_within_calls<false>, detail::always},
     Workload{"project a point", 24, detail::ordinary_points, detail::hostile_points, detail::project_point_calls,
              detail::always},
     Workload{"project_error_bound, 1024 points", 24, detail::ordinary_points, detail::hostile_points,

@@ -83,7 +83,7 @@ void print_projector(const texgen::Projector& projector) {
     std::array<float, points.size()> s, t, r, lit;
     const TextureRegion volume = whole_texture().with_depth(projector.conventions, DepthMapping::unit);
     print("depth", *volume.depth());
-    project(texgen, positions, volume, {s, t, r, lit});
+    project(texgen, positions.within({glm::vec3(-20.0f), glm::vec3(20.0f)}), volume, {s, t, r, lit});
     for (std::size_t i = 0; i < points.size(); ++i) {
         print("strq", strq[i]);
         print("st", st[i]);

@@ -67,6 +67,12 @@ constexpr Triangle triangle{{{0.0f, 0.0f}, 1.0f, {0.1f, 0.2f, 0.3f, 1.0f}},
     }                                   \
     project(EyeTexgen(matrix()), eye_space(x, y, z), whole_texture(), {SPANS(__VA_ARGS__)}, tolerance)
 
+#define PROJECT_WITHIN(...)                               \
+    glm::vec3 points[count];                              \
+    for (int i = 0; i < count; ++i) points[i] = point(i); \
+    const Box all{glm::vec3(-200.0f), glm::vec3(200.0f)}; \
+    project(WorldTexgen(matrix()), world_space(points).within(all), whole_texture(), {SPANS(__VA_ARGS__)}, tolerance)
+
 #define PROJECT_STRIDED(...)                                                                        \
     float vertices[count][4];                                                                       \
     for (int i = 0; i < count; ++i)                                                                 \
@@ -266,6 +272,7 @@ void run(const char* name, unsigned mask, void (*program)(Tolerance), Tolerance 
 FOUR_OUTPUTS(PROJECT, true)
 FOUR_OUTPUTS(PROJECT_PLANAR, true)
 FOUR_OUTPUTS(PROJECT_STRIDED, true)
+FOUR_OUTPUTS(PROJECT_WITHIN, true)
 FOUR_OUTPUTS(GENERATE, true)
 FOUR_OUTPUTS(INTERPOLATE, true)
 FOUR_OUTPUTS(INTERPOLATE_BATCH, true)
@@ -332,6 +339,7 @@ int main() {
     PROJECT_masks(masks);
     PROJECT_PLANAR_masks(masks);
     PROJECT_STRIDED_masks(masks);
+    PROJECT_WITHIN_masks(masks);
     GENERATE_masks(masks);
     INTERPOLATE_masks(masks);
     INTERPOLATE_BATCH_masks(masks);
