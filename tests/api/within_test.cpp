@@ -85,7 +85,8 @@ bool same(const Outputs& a, const Outputs& b) {
 // points.
 Cloud seen(Random& random, std::size_t count) {
     const glm::dvec3 target = 2.0 * random.direction();
-    const glm::dvec3 position = target + random.power_of_ten(-0.3, 1.5) * random.direction();
+    const double distance = random.power_of_ten(-0.3, 1.5);
+    const glm::dvec3 position = target + distance * random.direction();
     const auto aim = texgen::Aim{position, target, random.direction()};
     const double half = random.power_of_ten(-1.0, 1.0);
     const texgen::PerspectiveLens open{texgen::degrees(random.uniform(10.0, 120.0)), 1.0, 0.01, 100.0};
