@@ -3,16 +3,6 @@
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
 template <class CompiledWhereCalled = void>
-bool any_lit(const float* lit, std::size_t count) noexcept {
-    constexpr auto size = static_cast<std::size_t>(wide_lanes);
-    WideWords largest{};
-    for (; count >= size; count -= size, lit += size) largest = maximum(magnitude_bits(load<WideFloats>(lit)), largest);
-    bool any = largest_lane(largest) != 0;
-    for (; count > 0; --count, ++lit) any = any || *lit > 0.0f;
-    return any;
-}
-
-template <class CompiledWhereCalled = void>
 void darken(float* lit, const float* r, std::size_t count, float min, float max) noexcept {
     constexpr auto size = static_cast<std::size_t>(wide_lanes);
     for (; count >= size; count -= size, lit += size, r += size)

@@ -62,7 +62,7 @@ struct KernelTable<SegmentKernels, CompiledWhereCalled> {
 template <class CompiledWhereCalled>
 struct KernelTable<DepthKernels, CompiledWhereCalled> {
     static const DepthKernels& get() noexcept {
-        static constexpr DepthKernels table{.any_lit = any_lit<>, .darken = darken<>};
+        static constexpr DepthKernels table{.darken = darken<>};
         return table;
     }
 };

@@ -62,17 +62,18 @@ template <class Job, class Run>
 void darken_batch(Job job, const PointOutputs& out, const Batch& batch, const Run& run) noexcept {
     constexpr std::size_t size = 4 * copy_size;
     const auto [first, count, whole] = batch;
-    const DepthKernels& depth = chosen<DepthKernels>();
     float buffer[size];
     for (std::size_t begin = 0; begin < count; begin += size, job.advance(job.count)) {
         job.count = whole - begin < size ? whole - begin : size;
         const std::size_t part = count - begin < job.count ? count - begin : job.count;
         float* const lit = out.lit + first + begin;
         float* const r = out.coordinate[0] != nullptr ? out.coordinate[0] + first + begin : nullptr;
-        if (r == nullptr && !depth.any_lit(lit, part)) continue;
+        bool is_needed = r != nullptr;
+        for (std::size_t i = 0; i < part && !is_needed; ++i) is_needed = lit[i] > 0.0f;
+        if (!is_needed) continue;
         job.out[0] = r != nullptr && part == job.count ? r : buffer;
         run(job);
-        depth.darken(lit, job.out[0], part, out.r_min, out.r_max);
+        chosen<DepthKernels>().darken(lit, job.out[0], part, out.r_min, out.r_max);
         if (r != nullptr && job.out[0] == buffer) std::memcpy(r, buffer, part * sizeof(float));
     }
 }

@@ -218,7 +218,6 @@ struct SegmentKernels {
 
 // What the depth of a region takes from a mask.
 struct DepthKernels {
-    bool (*any_lit)(const float* lit, std::size_t count) noexcept;
     // lit becomes 0 where r is not in [min, max].
     void (*darken)(float* lit, const float* r, std::size_t count, float min, float max) noexcept;
 };

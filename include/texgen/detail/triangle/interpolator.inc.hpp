@@ -307,31 +307,29 @@ inline void interpolate_alone(const TileKernels& kernels, const TriangleFunction
 }
 
 // Takes the light of a tile's fragments whose r, which nobody asked for, is beyond the depth, which cuts it. It is halved until
-// the buffer holds it; what is certainly on one side is not computed, nor what is dark already.
+// the buffer holds it; of a half where nothing is lit, or all is in the depth, r is not computed.
 inline void darken_beyond_depth(const TileKernels& kernels, const TriangleFunctions& triangle, const Tile& rect,
                                 const Tile& tile, const std::span<float>& buffer,
                                 const std::span<float>& lit) noexcept {
     const std::size_t count = static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
     if (count > buffer.size()) {
         for (const Tile& half : tile.halves()) {
-            const Coverage coverage = depth_coverage(triangle, half);
-            if (coverage == Coverage::outside) fill_rows(lit, rect, half, 0.0f);
-            if (coverage == Coverage::partial) darken_beyond_depth(kernels, triangle, rect, half, buffer, lit);
+            const Plan plan = survey(triangle, half).plan;
+            if (plan.work == Work::nothing)
+                fill_rows(lit, rect, half, 0.0f);
+            else if (plan.depth != Coverage::inside)
+                darken_beyond_depth(kernels, triangle, rect, half, buffer, lit);
         }
         return;
     }
+    interpolate_alone(kernels, triangle, tile, 2, buffer.first(count), nullptr);
     // Rows that follow one another are one.
     const std::size_t rows = tile.width == rect.width ? 1 : static_cast<std::size_t>(tile.height);
     const std::size_t length = count / rows;
-    const auto pitch = static_cast<std::size_t>(rect.width);
-    const DepthKernels& depth = chosen<DepthKernels>();
     float* const first = lit.data() + offset_in(rect, tile.x, tile.y);
-    bool any_lit = false;
-    for (std::size_t y = 0; y < rows && !any_lit; ++y) any_lit = depth.any_lit(first + y * pitch, length);
-    if (!any_lit) return;
-    interpolate_alone(kernels, triangle, tile, 2, buffer.first(count), nullptr);
     for (std::size_t y = 0; y < rows; ++y)
-        depth.darken(first + y * pitch, buffer.data() + y * length, length, triangle.lit.r_min(), triangle.lit.r_max());
+        chosen<DepthKernels>().darken(first + y * static_cast<std::size_t>(rect.width), buffer.data() + y * length,
+                                      length, triangle.lit.r_min(), triangle.lit.r_max());
 }
 
 }  // namespace TEXGEN_BUILD
