@@ -21,6 +21,7 @@
 #include "footprint.hpp"
 #include "interpolate.hpp"
 #include "primitives.hpp"
+#include "surface.hpp"
 #include "texcoord.hpp"
 
 namespace TEXGEN_NAMESPACE {
@@ -44,6 +45,11 @@ public:
     template <class CompiledWhereCalled = detail::ThisBuild>
     void assign(std::span<const Triangle> triangles) noexcept;
 
+    // The same, but what faces away from the projector is dark, as the back of a solid body is.
+    // Guarantee: as above; dark are those of which facing() says so, exactly, besides what is refused. noexcept.
+    template <class CompiledWhereCalled = detail::ThisBuild>
+    void assign_facing(std::span<const Triangle> triangles, TextureOrigin origin) noexcept;
+
     std::size_t size() const noexcept { return size_; }
     const TextureRegion& region() const noexcept { return region_; }
     Tolerance tolerance() const noexcept { return tolerance_; }
@@ -54,6 +60,10 @@ public:
     const detail::LitTest& lit() const noexcept { return lit_; }
 
 private:
+    void take(std::span<const Triangle> triangles) noexcept;
+    template <class CompiledWhereCalled>
+    void set_up() noexcept;
+
     TextureRegion region_;
     Tolerance tolerance_;
     detail::LitTest lit_;

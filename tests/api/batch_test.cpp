@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "judges/exact.hpp"
@@ -22,6 +23,7 @@
 #include "support/outputs.hpp"
 #include "support/random.hpp"
 #include "texgen/batch.hpp"
+#include "texgen/surface.hpp"
 
 namespace {
 
@@ -389,6 +391,42 @@ TEST_CASE("what doubles leave in doubt of a visibility buffer is decided as for 
                         FAIL_CHECK(support::hex(triangles[id]), " at ", support::text(rect), " number ", i);
         }
     }
+}
+
+TEST_CASE("what faces away is dark where that is asked for, and nothing else is changed") {
+    Random random(8);
+    const auto mirrored = [](Triangle triangle) {
+        std::swap(triangle.b.strq, triangle.c.strq);
+        return triangle;
+    };
+    int away = 0;
+    for (int round = 0; round < 200; ++round) {
+        Drawn drawn(random, random.integer(1, 20));
+        for (Triangle& triangle : drawn.triangles)
+            if (random.coin()) triangle = mirrored(triangle);
+        const texgen::TextureOrigin origin =
+            random.coin() ? texgen::TextureOrigin::bottom_left : texgen::TextureOrigin::top_left;
+        TriangleBatch all(texgen::whole_texture()), facing(texgen::whole_texture());
+        all.assign(drawn.triangles);
+        facing.assign_facing(drawn.triangles, origin);
+        Outputs of_all(drawn.fragments), out(drawn.fragments);
+        interpolate(all, drawn.rects, of_all.spans());
+        interpolate(facing, drawn.rects, out.spans());
+        std::size_t n = 0;
+        for (std::size_t i = 0; i < drawn.rects.size(); ++i) {
+            const auto& [a, b, c] = drawn.triangles[i];
+            const bool is_dark = texgen::facing(a.strq, b.strq, c.strq, origin) == texgen::Facing::away;
+            away += is_dark ? 1 : 0;
+            for (const std::size_t end = n + count_of(drawn.rects[i]); n < end; ++n)
+                for (std::size_t k = 0; k < 4; ++k) CHECK(support::same_bits(out[k][n], is_dark ? 0.0f : of_all[k][n]));
+            const std::uint32_t id = static_cast<std::uint32_t>(i);
+            const FragmentRect one{drawn.rects[i].x, drawn.rects[i].y, 1, 1};
+            Outputs of_id(1);
+            interpolate(facing, {&id, 1}, one, of_id.spans());
+            for (std::size_t k = 0; k < 4 && is_dark; ++k) CHECK(support::same_bits(of_id[k][0], 0.0f));
+        }
+    }
+    CHECK(away > 300);
 }
 
 TEST_CASE("few friendly tiles need a set-up of their own") {

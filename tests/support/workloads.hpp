@@ -606,6 +606,16 @@ Calls batch_calls(const Numbers& n) {
         keep(all->out[0].data());
     });
 }
+// Eight of them made ready, those that face away dark.
+inline Calls batch_facing_calls(const Numbers& n) {
+    const texgen::Triangle triangle = triangle_of(n);
+    if (!is_of_a_scene(triangle)) return {};
+    auto batch = std::make_shared<texgen::TriangleBatch>(wide_open());
+    return calls_of([batch, triangles = std::vector<texgen::Triangle>(8, triangle)] {
+        batch->assign_facing(triangles, texgen::TextureOrigin::bottom_left);
+        keep(batch->planes());
+    });
+}
 // The fragments of one of eight triangles that are the same, in runs of `Run`.
 template <std::size_t Run>
 Calls visibility_calls(const Numbers& n) {
@@ -1382,6 +1392,8 @@ inline const std::array workloads{
              detail::batch_calls<true>, detail::triangle_limit<8, 8>},
     Workload{"interpolate a batch, tolerance, 8 x 8", 23, detail::ordinary_triangle, detail::hostile_triangle,
              detail::batch_calls<false>, detail::triangle_limit<8, 8>},
+    Workload{"TriangleBatch::assign_facing", 23, detail::ordinary_triangle, detail::hostile_triangle,
+             detail::batch_facing_calls, detail::always},
     Workload{"interpolate ids, exact, in runs", 23, detail::ordinary_triangle, detail::hostile_triangle,
              detail::visibility_calls<8>, detail::triangle_limit<64, 4>},
     Workload{"interpolate ids, exact, mixed", 23, detail::ordinary_triangle, detail::hostile_triangle,

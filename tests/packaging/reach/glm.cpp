@@ -139,6 +139,9 @@ void print_projector(const texgen::Projector& projector) {
     const FootprintSetup footprints(*setup, {256.0, 256.0});
     print("footprints within", footprints.error_bound({10, 20, 20, 3}));
     if (const auto extremes = footprints.extremes()) print("largest level", extremes->largest_level);
+    batch.assign_facing({&triangle, 1}, TextureOrigin::top_left);
+    interpolate(batch, ids, rect, {fragment_s, fragment_t, {}, {}});
+    for (const float value : fragment_s) print("fragment s of what faces", static_cast<double>(value));
 }
 
 // A scene of boxes and what is wrong with a projector.

@@ -125,8 +125,7 @@ namespace TEXGEN_NAMESPACE {
 
 inline namespace TEXGEN_COMPILER {
 
-template <class CompiledWhereCalled>
-void TriangleBatch::assign(std::span<const Triangle> triangles) noexcept {
+inline void TriangleBatch::take(std::span<const Triangle> triangles) noexcept {
     using detail::batch_block;
     static_assert(sizeof(Triangle) == 3 * sizeof(detail::BatchVertex::Layout));
     TEXGEN_ASSERT(triangles.size() < no_triangle);
@@ -137,12 +136,33 @@ void TriangleBatch::assign(std::span<const Triangle> triangles) noexcept {
         planes_.resize(whole);
     }
     std::copy(triangles.begin(), triangles.end(), triangles_.begin());
+}
+
+template <class CompiledWhereCalled>
+void TriangleBatch::set_up() noexcept {
+    using detail::batch_block;
     const detail::BatchKernels& kernels = detail::chosen<detail::BatchKernels>();
     for (std::size_t first = 0; first < size_; first += batch_block) {
         unsigned unknown = kernels.set_up(&triangles_[first].a.window.x, &planes_[first]);
         for (std::size_t i = first; unknown != 0; unknown >>= 1, ++i)
             if ((unknown & 1u) != 0) planes_[i] = detail::batch_planes(triangles_[i]);
     }
+}
+
+template <class CompiledWhereCalled>
+void TriangleBatch::assign(std::span<const Triangle> triangles) noexcept {
+    take(triangles);
+    set_up<CompiledWhereCalled>();
+}
+
+template <class CompiledWhereCalled>
+void TriangleBatch::assign_facing(std::span<const Triangle> triangles, TextureOrigin origin) noexcept {
+    take(triangles);
+    for (std::size_t i = 0; i < size_; ++i) {
+        auto& [a, b, c] = triangles_[i];
+        if (facing(a.strq, b.strq, c.strq, origin) == Facing::away) a.clip_w = 0.0f;  // which is refused
+    }
+    set_up<CompiledWhereCalled>();
 }
 
 }  // namespace TEXGEN_COMPILER
