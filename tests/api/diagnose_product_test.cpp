@@ -510,6 +510,23 @@ TEST_CASE("what users' own code gets right is not found fault with, whatever els
     }
 }
 
+TEST_CASE(
+    "an angle that degrees make as radians is one where the picture stands upright, or floats leave it in doubt") {
+    Random random(630);
+    for (int i = 0; i < 1000; ++i) {
+        Meant m = human(Mistake::none, random);
+        const double number = random.coin() ? 30.0 : 60.0;
+        m.fovy = glm::degrees(2.0 * std::atan(std::fabs(std::tan(0.5 * number))));
+        const In in = random.coin() ? In::object : In::world;
+        if (in == In::world) m.pose = glm::dmat4(1.0);
+        const glm::dmat4 upright = made<double>(m, Mistake::none, random);
+        require_valid(m, upright, diagnosis_of(m, in, std::nullopt, Told::nothing, true, upright));
+        m.aim.up = random.direction();
+        const glm::dmat4 askew = made<float>(m, Mistake::none, random);
+        require_valid(m, askew, diagnosis_of(m, in, std::nullopt, Told::nothing, true, askew));
+    }
+}
+
 TEST_CASE("cameras, narrowed lenses, cropped pictures, mirrors and flashlights are not found fault with") {
     Random random(624);
     const int count = valid_setups() / 4;
