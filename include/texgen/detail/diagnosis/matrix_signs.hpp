@@ -27,7 +27,7 @@ inline bool is_zero_row(const glm::dmat4& m, glm::length_t row) noexcept {
 }
 
 // Whether a number has more bits than the round numbers of a scene that is aligned with the axes.
-inline bool is_long(double value) noexcept { return (bit_cast<std::uint64_t>(value) & 0x1fffffffff) != 0; }
+inline bool has_many_bits(double value) noexcept { return (bit_cast<std::uint64_t>(value) & 0x1fffffffff) != 0; }
 
 // Whether the matrix was rounded to float on its way: every element is a float, and one of the axes is no round number.
 inline bool is_in_float(const glm::dmat4& m) noexcept {
@@ -36,7 +36,7 @@ inline bool is_in_float(const glm::dmat4& m) noexcept {
         for (glm::length_t row = 0; row < 4; ++row) {
             // The last 29 of the 52 bits behind the point.
             if ((bit_cast<std::uint64_t>(m[column][row]) & 0x1fffffff) != 0) return false;
-            is_rounded = is_rounded || (column < 3 && is_long(m[column][row]));
+            is_rounded = is_rounded || (column < 3 && has_many_bits(m[column][row]));
         }
     }
     return is_rounded;
@@ -52,9 +52,9 @@ inline glm::dmat4 rounded_magnitudes(const glm::dmat4& m) noexcept {
         for (glm::length_t column = 0; column < 4; ++column) {
             if (column == 3 && !(any_long && all_long)) continue;
             const double element = m[column][row];
-            if (is_long(element)) result[column][row] = std::fabs(element);
-            any_long = any_long || is_long(element);
-            all_long = all_long && (element == 0.0 || is_long(element));
+            if (has_many_bits(element)) result[column][row] = std::fabs(element);
+            any_long = any_long || has_many_bits(element);
+            all_long = all_long && (element == 0.0 || has_many_bits(element));
         }
     }
     return result;
