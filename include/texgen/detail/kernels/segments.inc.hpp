@@ -7,8 +7,8 @@ struct ExactSum {
     Doubles high, low;
 };
 
-// Exactly, but for what inexact_below says. The first term is a multiple of the second's ulp, so that the quick sum is exact
-// too, but where the ends are far apart.
+// Exactly, but where an alpha is among inexact_alpha. The first term is a multiple of the second's ulp, so that the quick sum
+// is exact too, but where the ends are far apart.
 template <bool IsShort>
 TEXGEN_INLINE ExactSum exactly_at(const Mixture& mixture, const Doubles& alpha) noexcept {
     ExactSum sum;
@@ -22,37 +22,64 @@ TEXGEN_INLINE ExactSum exactly_at(const Mixture& mixture, const Doubles& alpha) 
     return sum;
 }
 
-TEXGEN_INLINE LongWords are_subnormal(const SegmentJob& job, const Doubles& alpha) noexcept {
-    return greater(alpha, job.subnormal_alpha[0]) & ~greater(alpha, job.subnormal_alpha[1]);
+// What that is off by at most.
+TEXGEN_INLINE Doubles lost_at(const Mixture& mixture, const Doubles& alpha) noexcept {
+    if (mixture.kind == Mixture::is_short || mixture.kind == Mixture::is_not_finite) return Doubles{};
+    Doubles low, lost;
+    two_sum(Doubles{} + mixture.base, alpha * mixture.step, low);
+    two_sum(low, alpha * mixture.rest, lost);
+    return magnitude(lost);
 }
 
-// The floats nearest to s / q in the lanes that are near the middle of two floats, of the quotient in double elsewhere. There
-// the sign of s - middle q decides, a small number: exact, but for the rounding of middle q.low where q.low is not 0. What
-// that decides is `known`.
-template <bool IsCareful>
-TEXGEN_INLINE Floats nearest_quotients(const ExactSum& s, const ExactSum& q, const Doubles& quotient,
-                                       const LongWords& are_near, LongWords& known) noexcept {
-    Doubles middle = select(are_near, middle_near(quotient), quotient);
-    if constexpr (IsCareful) {
-        const Doubles error = quotient * 0x1p-50;
-        const Doubles low = to_doubles(to_floats(quotient - error)), high = to_doubles(to_floats(quotient + error));
-        middle = select(greater(magnitude(quotient), 0x1p-125), middle, low * 0.5 + high * 0.5);
-    }
+TEXGEN_INLINE LongWords are_among(const double (&range)[2], const Doubles& alpha) noexcept {
+    return greater(alpha, range[0]) & ~greater(alpha, range[1]);
+}
+TEXGEN_INLINE bool any_among(const double (&range)[2], const SegmentJob& job, std::size_t first) noexcept {
+    LongWords are{};
+    for (std::size_t i = first; i < job.count && range[1] > 0.0; i += static_cast<std::size_t>(lanes))
+        are |= are_among(range, to_doubles(load<Floats>(job.alpha + i)));
+    return any(are);
+}
+
+// s - middle q but for middle q.low, where both products are about the same.
+TEXGEN_INLINE Doubles small_difference(const ExactSum& s, const ExactSum& q, const Doubles& middle) noexcept {
     const Doubles q_part = leading_bits<27>(q.high);
-    Doubles remainder = ((s.high - middle * q_part) - middle * (q.high - q_part)) + s.low;
-    if constexpr (IsCareful) {
-        const Doubles last_product = middle * q.low;
-        remainder = remainder - last_product;
-        known &= ~are_near | at_most(magnitude(last_product), magnitude(remainder) * 0x1p51);
-    }
+    return ((s.high - middle * q_part) - middle * (q.high - q_part)) + s.low;
+}
+
+// The float next to the middle of two in the direction of a remainder, the even one where that is 0; elsewhere the nearest.
+TEXGEN_INLINE Floats rounded_from(const Doubles& middle, const Doubles& remainder, const LongWords& are_near) noexcept {
     const Doubles away = with_sign_of(magnitude(middle) * 0x1p-51, remainder);
     return to_floats(middle + where(are_near & are_nonzero(remainder), away));
 }
 
+// The floats nearest to s / q in the lanes that are near the middle of two floats, of the quotient in double elsewhere. There
+// the sign of s - middle q decides, which is exact where q.low is 0 and the sums are.
+TEXGEN_INLINE Floats nearest_quotients(const ExactSum& s, const ExactSum& q, const Doubles& quotient,
+                                       const LongWords& are_near) noexcept {
+    const Doubles middle = select(are_near, middle_near(quotient), quotient);
+    return rounded_from(middle, small_difference(s, q, middle), are_near);
+}
+
+// The same where a float may be subnormal, q.low is not 0, or sums are off. `known` loses the lanes where it decides nothing.
+TEXGEN_INLINE Floats nearest_quotients(const ExactSum& s, const ExactSum& q, const Doubles& quotient,
+                                       const LongWords& are_near, const Doubles& s_lost, const Doubles& q_lost,
+                                       LongWords& known) noexcept {
+    const Doubles error = quotient * 0x1p-50;
+    const Doubles low = to_doubles(to_floats(quotient - error)), high = to_doubles(to_floats(quotient + error));
+    const Doubles middle = select(greater(magnitude(quotient), 0x1p-125),
+                                  select(are_near, middle_near(quotient), quotient), low * 0.5 + high * 0.5);
+    const Doubles last_product = middle * q.low;
+    const Doubles remainder = small_difference(s, q, middle) - last_product;
+    const Doubles lost = s_lost + magnitude(middle) * q_lost + magnitude(last_product) * 0x1p-51;
+    known &= ~are_near | at_most(lost * 2.0, magnitude(remainder));
+    return rounded_from(middle, remainder, are_near);
+}
+
 // A block, on both sides of the projector. A bit for each value that stays in doubt.
 template <std::size_t Numerators, bool AreShort>
-TEXGEN_APART std::uint64_t fill_segment_closely(const SegmentJob& original, std::size_t begin,
-                                                std::size_t end) noexcept {
+TEXGEN_APART std::uint64_t fill_segment_closely(const SegmentJob& original, std::size_t begin, std::size_t end,
+                                                bool has_small) noexcept {
     const SegmentJob job = original;
     std::uint64_t doubtful = 0;
     for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(lanes)) {
@@ -72,23 +99,24 @@ TEXGEN_APART std::uint64_t fill_segment_closely(const SegmentJob& original, std:
         }
         std::uint64_t near_bits = lane_bits(near);
         LongWords are_small{}, known = ~LongWords{};
-        if (job.subnormal_alpha[1] > 0.0) {
-            are_small = are_subnormal(job, alpha);
+        if (has_small) {
+            are_small = are_among(job.subnormal_alpha, alpha);
             near_bits |= lane_bits(are_small);
         }
-        if (!AreShort && job.inexact_below > 0.0) known = ~(greater(alpha, 0.0) & ~greater(alpha, job.inexact_below));
         Floats value[2];
         if (near_bits == 0) {
             TEXGEN_UNROLL
             for (std::size_t k = 0; k < Numerators; ++k) value[k] = to_floats(quotient[k]);
-        } else if ((near_bits & lane_bits(are_nonzero(q.low) | are_small | ~known)) == 0) {
+        } else if (!has_small && (near_bits & lane_bits(are_nonzero(q.low))) == 0) {
             TEXGEN_UNROLL
             for (std::size_t k = 0; k < Numerators; ++k)
-                value[k] = nearest_quotients<false>(s[k], q, quotient[k], are_near[k], known);
+                value[k] = nearest_quotients(s[k], q, quotient[k], are_near[k]);
         } else {
+            const Doubles q_lost = lost_at(job.q, alpha);
             TEXGEN_UNROLL
             for (std::size_t k = 0; k < Numerators; ++k)
-                value[k] = nearest_quotients<true>(s[k], q, quotient[k], are_near[k] | are_small, known);
+                value[k] = nearest_quotients(s[k], q, quotient[k], are_near[k] | are_small,
+                                             lost_at(job.numerator[k], alpha), q_lost, known);
             doubtful |= (near_bits & ~lane_bits(known)) << (i - begin);
         }
         store_points(job, i, Numerators, value, narrow(in_front));
@@ -105,7 +133,7 @@ TEXGEN_INLINE std::size_t end_of_block(const SegmentJob& job, std::size_t begin)
 // that has a quotient near the middle of two floats, or an alpha that is no number or too small (it is written all the same),
 // or the count.
 template <std::size_t Numerators>
-TEXGEN_INLINE std::size_t fill_segment_quickly(const SegmentJob& job, std::size_t begin) noexcept {
+TEXGEN_INLINE std::size_t fill_segment_quickly(const SegmentJob& job, std::size_t begin, bool has_small) noexcept {
     const double q_step = job.q.step + job.q.rest;
     double step[2];
     TEXGEN_UNROLL
@@ -120,7 +148,7 @@ TEXGEN_INLINE std::size_t fill_segment_quickly(const SegmentJob& job, std::size_
             for (std::size_t j = 0; j < 2; ++j) {
                 alpha[j] = to_doubles(load<Floats>(job.alpha + i + j * static_cast<std::size_t>(lanes)));
                 q[j] = alpha[j] * q_step + job.q.base;
-                if (job.subnormal_alpha[1] > 0.0) doubt |= are_subnormal(job, alpha[j]);
+                if (has_small) doubt |= are_among(job.subnormal_alpha, alpha[j]);
             }
             const Doubles of_both = 1.0 / (q[0] * q[1]);
             sum = sum + of_both;
@@ -147,12 +175,15 @@ TEXGEN_INLINE std::size_t fill_segment_quickly(const SegmentJob& job, std::size_
 template <std::size_t Numerators>
 TEXGEN_INLINE Undecided fill_segment_exact_of(const SegmentJob& original, std::size_t first) noexcept {
     const SegmentJob job = original;
+    const bool has_small = any_among(job.subnormal_alpha, job, first) || any_among(job.inexact_alpha, job, first);
     for (std::size_t begin = first; begin < job.count;) {
-        if (job.is_quick && begin % (8 * exact_block) == 0) begin = fill_segment_quickly<Numerators>(job, begin);
+        if (job.is_quick && begin % (8 * exact_block) == 0)
+            begin = fill_segment_quickly<Numerators>(job, begin, has_small);
         if (begin >= job.count) break;
         const std::size_t end = end_of_block(job, begin);
-        const std::uint64_t doubtful = job.are_short ? fill_segment_closely<Numerators, true>(original, begin, end)
-                                                     : fill_segment_closely<Numerators, false>(original, begin, end);
+        const std::uint64_t doubtful = job.are_short
+                                           ? fill_segment_closely<Numerators, true>(original, begin, end, has_small)
+                                           : fill_segment_closely<Numerators, false>(original, begin, end, has_small);
         if (doubtful != 0) return {begin, doubtful};
         begin = end;
     }

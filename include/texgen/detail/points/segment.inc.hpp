@@ -134,7 +134,8 @@ inline void prepare_exact(SegmentJob& job) noexcept {
     job.q = is_finite(job.q_a + job.q_b) ? mixture_of(job.q_a, job.q_b) : Mixture{nan, nan, 0.0, Mixture::is_short};
     const MixtureBounds of_q(job.q, job.q_a, job.q_b);
     const double least_normal = 0x1p-126 * larger(job.q_a, job.q_b);  // a numerator whose quotient is one
-    job.inexact_below = of_q.inexact_below;
+    job.inexact_alpha[0] = 0.0;
+    job.inexact_alpha[1] = of_q.inexact_below;
     job.subnormal_alpha[0] = job.subnormal_alpha[1] = 0.0;
     job.are_short = job.q.kind == Mixture::is_short;
     job.is_quick = job.q_a > 0.0 && job.q_b > 0.0;
@@ -144,7 +145,7 @@ inline void prepare_exact(SegmentJob& job) noexcept {
         job.numerator[k] = mixture_of(a, b);
         job.are_short = job.are_short && job.numerator[k].kind == Mixture::is_short;
         const MixtureBounds bounds(job.numerator[k], a, b);
-        job.inexact_below = larger(job.inexact_below, bounds.inexact_below);
+        job.inexact_alpha[1] = larger(job.inexact_alpha[1], bounds.inexact_below);
         // A division that two vectors share rounds four times.
         const double ulps = bounds.ulps + of_q.ulps + 4.0;
         job.is_quick = job.is_quick && ulps < 0x1p14;

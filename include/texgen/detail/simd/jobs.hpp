@@ -136,9 +136,9 @@ struct SegmentJob : DividedOutput {
     // For fill_exact.
     Mixture numerator[2];
     Mixture q;
-    double inexact_below;       // the sums in two doubles are exact for other alphas, and for 0
-    double subnormal_alpha[2];  // between these, which are not among them, a float may be subnormal
-    bool are_short;             // all mixtures
+    // Ranges of alpha, without their first numbers: where a sum in two doubles may not be exact, and a float be subnormal.
+    double inexact_alpha[2], subnormal_alpha[2];
+    bool are_short;  // all mixtures
     // For every other alpha all is in front, and quotients in double are within so many ulps, 1 less than a power of two.
     bool is_quick;
     std::int32_t ulps[2];
