@@ -236,8 +236,9 @@ inline Coverage coverage_of(const BoxKernels& kernels, const LitForms& forms, co
     const int answer =
         forms.can_say() ? kernels.classify_box(forms.lanes(), &box.min.x, &box.max.x, doubt) : body_in_doubt;
     if (answer < open_body) return static_cast<Coverage>(answer);
-    if (answer == body_in_doubt && doubt.is_finite && !doubt.is_any_negative)
-        kernels.sharpen(forms.matrix(), forms.weights(), &box.min.x, &box.max.x, doubt);
+    if (answer == body_in_doubt && doubt.is_finite &&
+        kernels.sharpen(forms.matrix(), forms.weights(), &box.min.x, &box.max.x, doubt))
+        return Coverage::outside;
     const Coverage result = answer == body_in_doubt ? exact_coverage(forms, box, doubt) : Coverage::partial;
     if (result != Coverage::partial) return result;
     BoxBlock block;
@@ -263,11 +264,16 @@ inline Coverage exact_coverage(const LitForms& forms, const Sphere& sphere) noex
     double value[max_forms];
     double error[max_forms];
     double slope[max_forms];
-    bool is_inside = true;
+    // Most are far outside, which takes no root.
     for (std::size_t k = 0; k < forms.count(); ++k) {
         const LinearForm form = forms[k];
         value[k] = dot(form.a, centre) + form.d;
         error[k] = form.error_a * size + form.error_d;
+        const double most = 1.001 * (std::fabs(form.a[0]) + std::fabs(form.a[1]) + std::fabs(form.a[2])) * radius;
+        if (value[k] + most + error[k] < 0.0) return Coverage::outside;
+    }
+    bool is_inside = true;
+    for (std::size_t k = 0; k < forms.count(); ++k) {
         slope[k] = forms.slope(k);
         const double change = slope[k] * radius;
         if (value[k] + change + (error[k] + gamma(4) * change) < 0.0) return Coverage::outside;
@@ -343,12 +349,6 @@ private:
     std::size_t count_ = 0;
 };
 
-inline Coverage coverage_of(const BoxKernels& kernels, const LitForms& forms, const FloatForms& float_forms,
-                            const Sphere& sphere) noexcept {
-    const int result = kernels.classify_sphere(float_forms, &sphere.centre.x, sphere.radius);
-    return result < open_body ? static_cast<Coverage>(result) : exact_coverage(forms, sphere);
-}
-
 template <class CompiledWhereCalled = void>
 void cover(const LitForms& forms, const FloatForms& float_forms, std::span<const Sphere> spheres,
            const std::span<Coverage>& out) noexcept {
@@ -385,7 +385,7 @@ Coverage LitVolume<Space>::coverage(const Box& box) const noexcept {
 }
 template <class Space>
 Coverage LitVolume<Space>::coverage(const Sphere& sphere) const noexcept {
-    return detail::coverage_of(detail::chosen<detail::BoxKernels>(), forms_, float_forms_, sphere);
+    return detail::exact_coverage(forms_, sphere);
 }
 
 template <class Space>

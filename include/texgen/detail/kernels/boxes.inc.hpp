@@ -169,12 +169,45 @@ int classify_box(const FormLanes& forms, const float* box_min, const float* box_
     return body_in_doubt;
 }
 
-// The least values of the inner sides over a finite box, where nothing is rounded: halves of coefficients are 0, and so is what
-// sums leave.
+// Forms where they are largest over a finite box, or least: as sums of exact products with halves of the coefficients, and of
+// what those leave. That is below 2^-26 of the terms, and its own roundings below 2^-76; where it is 0, as it is for numbers
+// with few digits, the value is exact. Elsewhere its sign is known where it is larger than that.
+struct CloseForms {
+    Doubles value;
+    LongWords is_known;
+
+    TEXGEN_INLINE CloseForms(const glm::dmat4& matrix, const Doubles (&of)[3], const Doubles& of_q,
+                             const double (&at_positive)[4], const double (&at_negative)[4]) noexcept {
+        Doubles high{}, low{}, lost{}, size{};
+        TEXGEN_UNROLL
+        for (std::size_t j = 0; j < 4; ++j) {
+            const glm::dvec4& column = matrix[static_cast<glm::length_t>(j)];
+            const double half = bit_cast<double>(bit_cast<std::uint64_t>(column.w) & ~std::uint64_t{0x7ffffff});
+            const Doubles row = of[0] * column.x + (of[1] * column.y + of[2] * column.z);
+            Doubles rest;
+            const Doubles sum = two_sum(row, of_q * half, rest);
+            rest = rest + of_q * (column.w - half);
+            const Doubles x = select(greater(sum + rest, 0.0), Doubles{} + at_positive[j], Doubles{} + at_negative[j]);
+            const Doubles first = leading_bits<27>(sum);
+            for (const Doubles& part : {first, sum - first}) {
+                Doubles left;
+                high = two_sum(high, part * x, left);
+                low = low + left;
+                lost = lost + magnitude(left);
+            }
+            low = low + rest * x;
+            lost = lost + magnitude(rest * x);
+            size = size + (magnitude(row) + magnitude(of_q * column.w)) * magnitude(x);
+        }
+        value = high + low;
+        is_known = at_most(lost, Doubles{}) | greater(magnitude(value), size * 0x1p-76);
+    }
+};
+
 template <class CompiledWhereCalled = void>
-void sharpen(const glm::dmat4& matrix, const FormWeights& weights, const float* box_min, const float* box_max,
+bool sharpen(const glm::dmat4& matrix, const FormWeights& weights, const float* box_min, const float* box_max,
              FormsInDoubt& doubt) noexcept {
-    double min[3], max[3];
+    double min[4] = {0.0, 0.0, 0.0, 1.0}, max[4] = {0.0, 0.0, 0.0, 1.0};
     for (std::size_t j = 0; j < 3; ++j) {
         min[j] = widened(box_min[j]);
         max[j] = widened(box_max[j]);
@@ -182,32 +215,28 @@ void sharpen(const glm::dmat4& matrix, const FormWeights& weights, const float* 
     for (std::size_t i = 0; i < form_lanes; i += static_cast<std::size_t>(lanes)) {
         const Doubles of[3] = {load<Doubles>(weights.of[0] + i), load<Doubles>(weights.of[1] + i),
                                load<Doubles>(weights.of[2] + i)};
-        const auto of_q = load<Doubles>(weights.inner_of_q + i);
-        Doubles value{}, lost{}, rest;
-        TEXGEN_UNROLL
-        for (std::size_t j = 0; j < 4; ++j) {
-            const glm::dvec4& column = matrix[static_cast<glm::length_t>(3 - j)];
-            const double half = bit_cast<double>(bit_cast<std::uint64_t>(column.w) & ~std::uint64_t{0x7ffffff});
-            const Doubles row = of[0] * column.x + (of[1] * column.y + of[2] * column.z);
-            const Doubles form = two_sum(row, of_q * half, rest);
-            lost = lost + magnitude(rest) + magnitude(form - leading_bits<27>(form)) + std::fabs(column.w - half);
-            if (j == 0) {
-                value = form;
-                continue;
+        int is_known[lanes];
+        double value[lanes];
+        const auto settle = [&](const CloseForms& close, std::uint32_t& in_doubt) {
+            store(is_known, narrow(close.is_known));
+            store(value, close.value);
+            bool any_is_negative = false;
+            for (std::size_t lane = 0; lane < static_cast<std::size_t>(lanes); ++lane) {
+                const std::uint32_t bit = std::uint32_t{1} << (i + lane);
+                if ((in_doubt & bit) == 0 || is_known[lane] == 0) continue;
+                in_doubt &= ~bit;
+                any_is_negative |= value[lane] < 0.0 || (i + lane == form_of_q && value[lane] == 0.0);
             }
-            value = two_sum(value, minimum(form * min[3 - j], form * max[3 - j]), rest);
-            lost = lost + magnitude(rest);
-        }
-        int is_exact[lanes], is_negative[lanes];
-        store(is_exact, narrow(at_most(lost, Doubles{})));
-        store(is_negative, narrow(greater(0.0 - value, 0.0)));
-        for (std::size_t lane = 0; lane < static_cast<std::size_t>(lanes); ++lane) {
-            const std::uint32_t bit = std::uint32_t{1} << (i + lane);
-            if (i + lane == form_of_q || is_exact[lane] == 0 || (doubt.least & bit) == 0) continue;
-            doubt.least &= ~bit;
-            doubt.is_any_negative = doubt.is_any_negative || is_negative[lane] != 0;
-        }
+            return any_is_negative;
+        };
+        const std::uint32_t here = ((std::uint32_t{1} << lanes) - 1) << i;
+        if ((doubt.largest & here) != 0 &&
+            settle({matrix, of, load<Doubles>(weights.of_q + i), max, min}, doubt.largest))
+            return true;
+        if (!doubt.is_any_negative && (doubt.least & here) != 0)
+            doubt.is_any_negative = settle({matrix, of, load<Doubles>(weights.inner_of_q + i), min, max}, doubt.least);
     }
+    return false;
 }
 
 // Many bodies, a lane each. Where the largest value of a form is negative, the body is outside; where the least of all are
@@ -278,46 +307,6 @@ void classify_spheres(const FloatForms& original, const float* spheres, std::siz
         const auto change = [&](std::size_t k) { return diameter * forms.slope[k]; };
         store(out + i, classes(forms, twice, change, size + diameter, at_most(WideFloats{}, radius)));
     }
-}
-
-// One body, a lane a form.
-using FormFloats = std::conditional_t<(wide_lanes > static_cast<int>(form_lanes)), Floats, WideFloats>;
-
-template <class Change>
-TEXGEN_INLINE int class_of(const FloatForms& forms, const float (&twice_middle)[3], const Change& change, float size,
-                           bool is_proper) noexcept {
-    const float error = size * forms.error_per_size + forms.error;
-    const FormFloats zero{};
-    auto outside = less(zero, zero);
-    auto inside = ~outside, not_outside = inside, partial = outside, reached = inside;
-    TEXGEN_UNROLL
-    for (std::size_t k = 0; k < form_lanes; k += sizeof(FormFloats) / sizeof(float)) {
-        const FormFloats value =
-            load<FormFloats>(forms.a[0] + k) * twice_middle[0] +
-            (load<FormFloats>(forms.a[1] + k) * twice_middle[1] +
-             (load<FormFloats>(forms.a[2] + k) * twice_middle[2] + load<FormFloats>(forms.twice_d + k)));
-        const FormFloats change_k = change(k);
-        const FormFloats largest = value + change_k;
-        const FormFloats least = value - change_k;
-        outside = outside | less(largest + error, zero);
-        not_outside = not_outside & less(error - largest, zero);
-        inside = inside & less(error - least, zero);
-        partial = partial | less(least + error, zero);
-        reached = reached & less(error - value, zero);
-    }
-    if (!is_proper) return body_in_doubt;
-    if (any(outside)) return 0;
-    if (!any(~inside)) return 2;
-    if (any(~not_outside) || !any(partial)) return body_in_doubt;
-    return any(~reached) ? open_body + 1 : 1;
-}
-
-template <class CompiledWhereCalled = void>
-int classify_sphere(const FloatForms& forms, const float* centre, float radius) noexcept {
-    const float twice[3] = {2.0f * centre[0], 2.0f * centre[1], 2.0f * centre[2]};
-    const auto change = [&](std::size_t k) { return load<FormFloats>(forms.slope + k) * (2.0f * radius); };
-    const float size = std::fabs(twice[0]) + std::fabs(twice[1]) + std::fabs(twice[2]) + 4.0f * radius;
-    return class_of(forms, twice, change, size, radius >= 0.0f);
 }
 
 // Bounds on a form, whose signs are right, where it is largest or least. In double a coefficient, a product and three sums

@@ -84,7 +84,6 @@ struct KernelTable<BoxKernels, CompiledWhereCalled> {
                                           .sharpen = sharpen<>,
                                           .classify_boxes = classify_boxes<>,
                                           .classify_spheres = classify_spheres<>,
-                                          .classify_sphere = classify_sphere<>,
                                           .bound = bound<>,
                                           .bound_spheres = bound_spheres<>,
                                           .separate = separate<>};

@@ -124,14 +124,14 @@ struct BoxKernels {
     void (*round)(const FormLanes& forms, std::size_t count, FloatForms& result) noexcept;
     // What doubles are certain of, of one box. NaN, infinities and empty boxes are in doubt.
     int (*classify_box)(const FormLanes& forms, const float* min, const float* max, FormsInDoubt& doubt) noexcept;
-    // Takes from the doubt of the least what is exact in double: as numbers with few digits are, where a box touches.
-    void (*sharpen)(const glm::dmat4& matrix, const FormWeights& weights, const float* min, const float* max,
+    // Settles of the doubt about a finite box what two doubles can, and where it touches with few digits. Returns whether the
+    // box is outside.
+    bool (*sharpen)(const glm::dmat4& matrix, const FormWeights& weights, const float* min, const float* max,
                     FormsInDoubt& doubt) noexcept;
     // What floats are certain of. A box is six floats, min first; a sphere four, the radius last. NaN, infinities, empty
     // boxes and negative radii are in doubt.
     void (*classify_boxes)(const FloatForms& forms, const float* boxes, std::size_t count, int* classes) noexcept;
     void (*classify_spheres)(const FloatForms& forms, const float* spheres, std::size_t count, int* classes) noexcept;
-    int (*classify_sphere)(const FloatForms& forms, const float* centre, float radius) noexcept;
     // What doubles are certain of, and where they are not, pairs of doubles. For proper boxes, which may be infinite.
     void (*bound)(const DoubleForms& forms, const BoxBlock& boxes, BoxBounds& bounds) noexcept;
     // What exact_coverage() says of spheres, but where it is next to another answer: that is doubt.

@@ -112,7 +112,6 @@ TEXGEN_INLINE WideFloats to_numbers(const WideWords& words) noexcept {
 }
 TEXGEN_INLINE WideWords halved(const WideWords& words) noexcept { return words >> 1; }
 TEXGEN_INLINE WideFloats magnitude(const WideFloats& a) noexcept { return from_bits(magnitude_bits(a)); }
-TEXGEN_INLINE Floats magnitude(const Floats& a) noexcept { return __builtin_bit_cast(Floats, bits(a) & 0x7fffffff); }
 TEXGEN_INLINE WideWords is_negative(const WideFloats& a) noexcept { return a < 0.0f; }
 TEXGEN_INLINE WideFloats select(const WideWords& mask, const WideFloats& a, const WideFloats& b) noexcept {
     return from_bits((mask & signed_bits(a)) | (~mask & signed_bits(b)));
