@@ -68,8 +68,8 @@ if(DEFINED variant_${way})
     string(REPLACE "@variant@" "${variant_${way}}" project "${project}")
 endif()
 
-# The commit must be of this repository's history. Where there is no history to look into, in a copy of the files or a shallow
-# clone, they are committed, and stand in for it.
+# The commit is of this repository's history. Where that is not to be seen, in a copy of the files, a shallow clone or one whose
+# history was written anew, the files are committed, and stand in for it.
 if(WAY STREQUAL "`FetchContent`")
     string(REGEX MATCH " GIT_TAG [0-9a-f]+ " commit "${project}")
     string(REGEX REPLACE "[^0-9a-f]" "" commit "${commit}")
@@ -79,11 +79,9 @@ if(WAY STREQUAL "`FetchContent`")
     endif()
     execute_process(COMMAND ${path_of_git} -C ${SOURCE} rev-parse --show-prefix --is-shallow-repository
         OUTPUT_VARIABLE history ERROR_QUIET)
-    if(history STREQUAL "\nfalse\n")
-        execute_process(COMMAND ${path_of_git} -C ${SOURCE} merge-base --is-ancestor ${commit} HEAD RESULT_VARIABLE missing)
-        if(missing)
-            message(FATAL_ERROR "README.md has the commit ${commit}, which is not in this repository's history")
-        endif()
+    execute_process(COMMAND ${path_of_git} -C ${SOURCE} merge-base --is-ancestor ${commit} HEAD
+        RESULT_VARIABLE missing ERROR_QUIET)
+    if(history STREQUAL "\nfalse\n" AND NOT missing)
         execute_process(COMMAND ${path_of_git} clone --quiet --no-checkout ${SOURCE} ${DIRECTORY}/texgen
             COMMAND_ERROR_IS_FATAL ANY)
     else()
