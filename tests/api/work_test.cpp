@@ -168,7 +168,7 @@ TEST_CASE("nothing is done only where nothing is lit, and no test is left out wh
 
 TEST_CASE("where nothing is lit by a margin nothing is done; where all is lit by a margin nothing is tested") {
     std::uint64_t seed = 3100;
-    int behind = 0, outside = 0, inside = 0;
+    int behind = 0, outside = 0, inside = 0, cut = 0;
     for (const support::Family family :
          {support::Family::friendly, support::Family::parallel, support::Family::crossing}) {
         Random random(++seed);
@@ -206,6 +206,16 @@ TEST_CASE("where nothing is lit by a margin nothing is done; where all is lit by
                   around.with_depth(-HUGE_VAL, r_max), around.with_depth(-HUGE_VAL, HUGE_VAL)})
                 REQUIRE_MESSAGE(setup_of(shot.triangle, volume).work(shot.rect) <= Work::divide, hex(shot));
             ++inside;
+            // What cuts the depth cannot go untested.
+            const double middle = 0.5 * least[2] + 0.5 * largest[2];
+            if (largest[2] - least[2] > 4.0 * margin) {
+                for (const TextureRegion& volume :
+                     {around.with_depth(middle, HUGE_VAL), around.with_depth(r_min, middle)}) {
+                    const Work work = setup_of(shot.triangle, volume).work(shot.rect);
+                    REQUIRE_MESSAGE((work == Work::divide_and_test || work == Work::affine), hex(shot));
+                    cut += work == Work::divide_and_test;
+                }
+            }
             const double far = 1e3 * margin + 1.0;
             for (const TextureRegion& beside :
                  {atlas_tile({least[0] - far, -far}, {least[0] - margin, far}),
@@ -227,6 +237,7 @@ TEST_CASE("where nothing is lit by a margin nothing is done; where all is lit by
     CHECK(behind > 200);
     CHECK(inside > 2000);
     CHECK(outside > 14000);
+    CHECK(cut > 100);
 }
 
 TEST_CASE(
