@@ -75,4 +75,6 @@ void coverage(const Transform<Texture, Space>& texture_from_space, const Texture
 
 }  // namespace TEXGEN_NAMESPACE
 
+#include "detail/culling/spheres.inc.hpp"
+
 #include "detail/culling/coverage.inc.hpp"

@@ -21,6 +21,7 @@
 #include "boxes.inc.hpp"
 #include "depth.inc.hpp"
 #include "footprint.inc.hpp"
+#include "forms.inc.hpp"
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
