@@ -521,6 +521,9 @@ TEST_CASE(
         if (in == In::world) m.pose = glm::dmat4(1.0);
         const glm::dmat4 upright = made<double>(m, Mistake::none, random);
         require_valid(m, upright, diagnosis_of(m, in, std::nullopt, Told::nothing, true, upright));
+        // Which way t grows is not told: it may hang down as a picture whose origin is at its top.
+        const glm::dmat4 in_float = made<float>(m, Mistake::none, random);
+        require_valid(m, in_float, diagnosis_of(m, in, std::nullopt, Told::nothing, false, in_float));
         m.aim.up = random.direction();
         const glm::dmat4 askew = made<float>(m, Mistake::none, random);
         require_valid(m, askew, diagnosis_of(m, in, std::nullopt, Told::nothing, true, askew));
