@@ -174,6 +174,9 @@ inline std::vector<Stretch> doubtful_stretches(std::size_t count, Random& random
     add("ties", {1.0f, 1.0f, 1.0f, 1.0f}, {2.0f, 2.0f, 2.0f, 1.0f}, tied);
     add("ties, and a factor", glm::vec4(0.3f), 0.3f * glm::vec4(2.0f, 2.0f, 2.0f, 1.0f), tied);
     add("ties of quotients", {3.0f, 5.0f, 3.0f, 3.0f}, {6.0f, 10.0f, 6.0f, 3.0f}, tied);
+    for (const float q : {49.0f, 107.0f})
+        add("ties of quotients that a rounded reciprocal misses", {q, 64.0f * q, -q, q},
+            {2.0f * q, 128.0f * q, -2.0f * q, q}, tied);
     add("large ties, beside ends that are not of a size", {64.0f, 0.0123f, 64.0f, 1.0f}, {128.0f, 100.3f, 128.0f, 1.0f},
         tied);
     add("large ties, beside ends that are far apart", {64.0f, 0x1.23456p-9f, 64.0f, 1.0f},
