@@ -10,8 +10,8 @@
 
 #include "detail/matrices/required.hpp"
 
-// 0.3.0: 10000 major + 100 minor + patch.
-#define TEXGEN_VERSION 300
+// 0.4.0: 10000 major + 100 minor + patch.
+#define TEXGEN_VERSION 400
 
 namespace TEXGEN_NAMESPACE {
 
