@@ -260,7 +260,9 @@ Report make_report(const Options& options, const Setting& setting) {
         shown("room_work.png",
               "The dearest work that a projector asks of each rectangle, for 1/512 texel of 4096: " +
                   report.room.key_of_work() + ".",
-              report.room.work_picture, InPage::thinned)};
+              report.room.work_picture, InPage::thinned),
+        shown("room_reach.png", "The same light, ended at the far planes of the projectors by with_depth().",
+              report.room.reach_picture, InPage::reduced)};
     progress.show("measuring triangles of all sizes");
     report.times_by_size = times_by_size();
     progress.show("measuring errors far from the origin");

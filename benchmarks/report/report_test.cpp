@@ -320,6 +320,7 @@ TEST_CASE("a run writes the page and the pictures, and nothing else") {
                                                "reverse_projector.png",
                                                "reverse_uncured.png",
                                                "room.png",
+                                               "room_reach.png",
                                                "room_work.png",
                                                "shadow.png",
                                                "shadow_constant.png",

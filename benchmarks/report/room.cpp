@@ -33,6 +33,12 @@ constexpr float cell = 1.5f, half_side = 0.5f * cell * floor_cells;
 constexpr std::size_t object_count = 2000, projector_count = 64;
 constexpr std::size_t moved_count = object_count / 100;
 constexpr int frame_count = 6;
+constexpr texgen::TextureRegion slide_region = texgen::whole_texture();
+constexpr texgen::TextureRegion volume_region = slide_region.with_depth();
+constexpr double reach =
+    9.0;  // the far plane of the projectors, beyond which they light nothing where their depth counts
+
+bool is_across(std::size_t projector) { return projector % 8 == 3; }
 
 // Numbers in [0, 1) that are the same everywhere.
 class Numbers {
@@ -61,8 +67,10 @@ struct Room {
     std::vector<glm::vec3> tints;       // of the projectors
     std::vector<glm::dvec3> positions;  // of the projectors
     std::vector<std::uint32_t> crates;  // the objects that may move
+    std::vector<texgen::TextureRegion> regions_in_reach;
 
     texgen::SceneView view() const { return {models, bounds, projectors}; }
+    texgen::SceneView view_in_reach() const { return {models, bounds, projectors, regions_in_reach}; }
 
     void add(Mesh mesh, const glm::dmat4& model, glm::vec3 colour) {
         texgen::Box box{glm::vec3(HUGE_VALF), glm::vec3(-HUGE_VALF)};
@@ -74,9 +82,11 @@ struct Room {
     }
 };
 
-texgen::Projector spot(glm::dvec3 position, double turn) {
-    const glm::dvec3 target(position.x + 1.6 * std::cos(turn), 0.0, position.z + 1.6 * std::sin(turn));
-    const texgen::PerspectiveLens lens{.fovy = texgen::degrees(32), .aspect = 1, .z_near = 0.1, .z_far = 100};
+// Down to the floor, or across the room.
+texgen::Projector spot(glm::dvec3 position, double turn, bool across) {
+    const glm::dvec3 down(1.6 * std::cos(turn), -position.y, 1.6 * std::sin(turn));
+    const glm::dvec3 target = position + (across ? glm::dvec3(std::cos(turn), -0.2, std::sin(turn)) : down);
+    const texgen::PerspectiveLens lens{.fovy = texgen::degrees(32), .aspect = 1, .z_near = 0.1, .z_far = reach};
     return texgen::make_projector(lens, {position, target, {0, 1, 0}}, texgen::opengl).value();
 }
 
@@ -111,8 +121,9 @@ Room make_objects() {
         const glm::dvec3 position(-13.0 + 26.0 / 7.0 * static_cast<double>(i % 8), 5.5,
                                   -13.0 + 26.0 / 7.0 * static_cast<double>(i / 8));
         room.positions.push_back(position);
-        room.projectors.push_back(spot(position, number(0, 6.28)));
+        room.projectors.push_back(spot(position, number(0, 6.28), is_across(i)));
         room.tints.push_back(glm::vec3(number(0.5, 1), number(0.5, 1), number(0.5, 1)));
+        room.regions_in_reach.push_back(volume_region);
     }
     return room;
 }
@@ -181,6 +192,7 @@ struct Rules {
     const char* name;
     bool scene, triangles, rects;
     texgen::Tolerance tolerance = texgen::exact;
+    texgen::TextureRegion region = slide_region;
 };
 constexpr std::array rules{Rules{"none", false, false, false},
                            Rules{"rectangles", false, false, true},
@@ -189,6 +201,9 @@ constexpr std::array rules{Rules{"none", false, false, false},
                            Rules{"pairs, triangles", true, true, false},
                            Rules{"pairs, triangles, rectangles", true, true, true},
                            Rules{"pairs, rectangles", true, false, true}};
+
+// Another picture: what is beyond the reach of a projector is dark.
+constexpr Rules in_reach{"pairs, rectangles, depth", true, false, true, texgen::exact, volume_region};
 
 struct Counts {
     std::size_t pairs = 0, triangles = 0, rects = 0, fragments = 0;
@@ -207,8 +222,6 @@ texgen::FragmentRect around(std::span<const texgen::FragmentRect> rects) {
     return all;
 }
 
-const texgen::TextureRegion slide_region = texgen::whole_texture();
-
 // The coordinates that one projector gives an object. Without the rule of the rectangles each fragment is evaluated and
 // compared. use(triangle, rect, work, coordinates) gets what may be lit.
 template <class Use>
@@ -221,11 +234,11 @@ void light(const Rules& rule, const Workload& work, const texgen::ObjectTexgen& 
         texgen::Triangle triangle = work.triangles[job.triangle].window;
         for (texgen::WindowVertex* vertex : {&triangle.a, &triangle.b, &triangle.c})
             vertex->strq = glm::vec4(texgen.matrix() * glm::dvec4(vertex->strq));
-        const auto setup = texgen::TriangleSetup::of(triangle, rule.rects ? slide_region : everywhere, rule.tolerance);
+        const auto setup = texgen::TriangleSetup::of(triangle, rule.rects ? rule.region : everywhere, rule.tolerance);
         ++counts.triangles;
         if (!setup) continue;
         if (rule.triangles) {
-            const auto tested = rule.rects ? setup : texgen::TriangleSetup::of(triangle, slide_region);
+            const auto tested = rule.rects ? setup : texgen::TriangleSetup::of(triangle, rule.region);
             if (tested->work(around(work.rects_of(job))) == texgen::Work::nothing) continue;
         }
         for (std::size_t r = job.first_rect; r < job.first_rect + job.rect_count; ++r) {
@@ -402,17 +415,21 @@ RoomReport make_room(const Picture& slide, int width, int height) {
                       .update_microseconds = 0,
                       .first_update_microseconds = 0,
                       .rows = {},
+                      .in_reach = {},
                       .picture = {},
-                      .work_picture = {}};
-    texgen::Scene scene;
+                      .work_picture = {},
+                      .reach_picture = {}};
+    texgen::Scene scene, scene_in_reach;
     double start = seconds();
     scene.update(room.view(), {});
     report.first_update_microseconds = 1e6 * (seconds() - start);
+    scene_in_reach.update(room.view_in_reach(), {});
 
     Numbers number;
     std::array<std::vector<double>, rules.size()> times;
     std::array<Counts, rules.size()> counts;
-    std::vector<double> updates;
+    std::vector<double> updates, times_in_reach;
+    Counts counts_in_reach;
     for (int frame = 0; frame < frame_count; ++frame) {
         std::vector<std::uint32_t> moved;
         for (std::size_t i = 0; i < moved_count; ++i) {
@@ -422,38 +439,51 @@ RoomReport make_room(const Picture& slide, int width, int height) {
             room.models[o] = texgen::ModelMatrix(glm::rotate(room.models[o].matrix(), 0.1, glm::dvec3(0, 1, 0)));
         }
         const auto turned = static_cast<std::uint32_t>(frame);
-        room.projectors[turned] = spot(room.positions[turned], number(0, 6.28));
-        start = seconds();
-        scene.update(room.view(), {moved, std::span(&turned, 1)});
-        const double update = seconds() - start;
+        room.projectors[turned] = spot(room.positions[turned], number(0, 6.28), is_across(turned));
+        const auto update_of = [&](texgen::Scene& changed, const texgen::SceneView& view) {
+            start = seconds();
+            changed.update(view, {moved, std::span(&turned, 1)});
+            return seconds() - start;
+        };
+        const double update = update_of(scene, room.view());
         updates.push_back(1e6 * update);
+        const double update_in_reach = update_of(scene_in_reach, room.view_in_reach());
 
         const Camera camera = camera_at(frame, static_cast<double>(width) / height);
         const Seen seen = look(room, camera, width, height);
         float sum = 0;
+        const auto time = [&](const Rules& rule, const texgen::Scene& of, Counts& count) {
+            start = seconds();
+            count = light_all(rule, room, seen, of,
+                              [&](std::uint32_t, std::uint32_t, std::size_t, std::size_t, texgen::Work,
+                                  const RectCoordinates& coordinates) { sum += coordinates.s[0]; });
+            return 1e3 * (seconds() - start);
+        };
         for (std::size_t turn = 0; turn < rules.size(); ++turn) {
             const std::size_t k = (turn + static_cast<std::size_t>(frame)) % rules.size();
-            start = seconds();
-            counts[k] = light_all(rules[k], room, seen, scene,
-                                  [&](std::uint32_t, std::uint32_t, std::size_t, std::size_t, texgen::Work,
-                                      const RectCoordinates& coordinates) { sum += coordinates.s[0]; });
-            times[k].push_back(1e3 * (seconds() - start + (rules[k].scene ? update : 0.0)));
+            times[k].push_back(time(rules[k], scene, counts[k]) + (rules[k].scene ? 1e3 * update : 0.0));
         }
+        times_in_reach.push_back(time(in_reach, scene_in_reach, counts_in_reach) + 1e3 * update_in_reach);
         static volatile float sink = 0;
         sink = sink + sum;
         if (frame + 1 < frame_count) continue;
 
         report.picture = shaded(rules.front(), room, seen, scene, camera, slide, width, height);
+        const auto row = [&](const Rules& rule, std::vector<double>& milliseconds, const Counts& count, bool is_same) {
+            return RoomRow{.rules = rule.name,
+                           .milliseconds = median(milliseconds),
+                           .pairs = count.pairs,
+                           .triangles = count.triangles,
+                           .rects = count.rects,
+                           .fragments = count.fragments,
+                           .same_picture = is_same};
+        };
         for (std::size_t k = 0; k < rules.size(); ++k) {
             const Picture again = shaded(rules[k], room, seen, scene, camera, slide, width, height);
-            report.rows.push_back({.rules = rules[k].name,
-                                   .milliseconds = median(times[k]),
-                                   .pairs = counts[k].pairs,
-                                   .triangles = counts[k].triangles,
-                                   .rects = counts[k].rects,
-                                   .fragments = counts[k].fragments,
-                                   .same_picture = again.pixels == report.picture.pixels});
+            report.rows.push_back(row(rules[k], times[k], counts[k], again.pixels == report.picture.pixels));
         }
+        report.reach_picture = shaded(in_reach, room, seen, scene_in_reach, camera, slide, width, height);
+        report.in_reach = row(in_reach, times_in_reach, counts_in_reach, false);
         report.work_picture = coloured_by_work(room, seen, scene, width, height);
         count_lit(report, room, seen, scene);
     }
@@ -472,7 +502,13 @@ std::string summary_of(const RoomReport& room) {
                "The scene's update takes %.0f microseconds a frame (%.0f the first time) and is part of the times with "
                "pairs; of the pairs that it keeps in view, %.1f%% have no lit fragment. The last row of the table is "
                "%.1f times as fast as the first.",
-               room.update_microseconds, room.first_update_microseconds, 100 * room.dark_pair_share, room.speedup());
+               room.update_microseconds, room.first_update_microseconds, 100 * room.dark_pair_share, room.speedup()) +
+           formatted(
+               " Where the light ends at the far planes, %.0f from the projectors, %zu pairs in view are left of %zu, "
+               "and "
+               "a frame takes %.3g ms instead of %.3g.",
+               reach, room.in_reach.pairs, room.rows.back().pairs, room.in_reach.milliseconds,
+               room.rows.back().milliseconds);
 }
 
 }  // namespace

@@ -25,7 +25,8 @@ struct RoomReport {
     double dark_pair_share;  // of the pairs that are kept and in view, those without a lit fragment
     double update_microseconds, first_update_microseconds;  // of the scene, as part of a frame
     std::vector<RoomRow> rows;                              // none of the rules first, those that pay last
-    Picture picture, work_picture;
+    RoomRow in_reach;                                       // as the last, where the light ends at the far planes
+    Picture picture, work_picture, reach_picture;
 
     bool is_same_picture() const;
     std::string key_of_work() const;  // of the colours that the picture of the work has
