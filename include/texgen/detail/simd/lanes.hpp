@@ -20,6 +20,7 @@
 #include <utility>
 
 #include "../arithmetic/rounding.hpp"
+#include "../arithmetic/widen.hpp"
 #include "../language.hpp"
 #include "box_kernels.hpp"
 #include "jobs.hpp"
