@@ -15,6 +15,28 @@ inline float* array_of(const std::span<float>& output, std::size_t count) noexce
     return is_computed(output, count) ? output.data() : nullptr;
 }
 
+// Calls function(span) for each output of Texcoords or Footprints.
+template <class Outputs, class Function>
+void for_each_output(Outputs& out, const Function& function) noexcept {
+    if constexpr (requires { out.s; })
+        for (std::span<float>* output : {&out.s, &out.t, &out.r, &out.lit}) function(*output);
+    else
+        for (std::span<float>* output :
+             {&out.dsdx, &out.dtdx, &out.dsdy, &out.dtdy, &out.level, &out.anisotropy, &out.major_s, &out.major_t})
+            function(*output);
+}
+
+// Leaves the outputs that are computed; false if there are none.
+template <class Outputs>
+bool take_computed(Outputs& out, std::size_t count) noexcept {
+    bool any = false;
+    for_each_output(out, [&](std::span<float>& output) {
+        if (!is_computed(output, count)) output = {};
+        any = any || !output.empty();
+    });
+    return any;
+}
+
 // Where one or two coordinates of all points go. A coordinate that only the mask needs has no array; `st` takes two in
 // turn.
 struct PointOutputs {

@@ -31,17 +31,6 @@ inline BatchPlanes batch_planes(const Triangle& triangle) noexcept {
     return result;
 }
 
-template <class Function>
-void for_each_output(Texcoords& out, const Function& function) noexcept {
-    for (std::span<float>* output : {&out.s, &out.t, &out.r, &out.lit}) function(*output);
-}
-template <class Function>
-void for_each_output(Footprints& out, const Function& function) noexcept {
-    for (std::span<float>* output :
-         {&out.dsdx, &out.dtdx, &out.dsdy, &out.dtdy, &out.level, &out.anisotropy, &out.major_s, &out.major_t})
-        function(*output);
-}
-
 // The outputs of `count` values from `first` on.
 template <class Outputs>
 Outputs part_of(const Outputs& all, std::size_t first, std::size_t count) noexcept {
@@ -73,27 +62,15 @@ void interpolate_apart(const TriangleBatch& batch, std::size_t triangle, const F
 inline void describe(BatchJob& job, const TriangleBatch& batch, const Texcoords& out, std::size_t count) noexcept {
     job.planes = batch.planes();
     job.tolerance = accepted(batch.tolerance());
-    const auto array = [](const std::span<float>& output) { return output.empty() ? nullptr : output.data(); };
-    job.out[0] = array(out.s);
-    job.out[1] = array(out.t);
-    job.out[2] = array(out.r);
-    job.lit = array(out.lit);
+    job.out[0] = array_of(out.s, count);
+    job.out[1] = array_of(out.t, count);
+    job.out[2] = array_of(out.r, count);
+    job.lit = array_of(out.lit, count);
     job.count = count;
     batch.lit().copy_to(job.min, job.max);
     job.has_depth = batch.lit().has_depth();
     job.r_min = batch.lit().r_min();
     job.r_max = batch.lit().r_max();
-}
-
-// Leaves the outputs that are computed; false if there are none.
-template <class Outputs>
-bool take_computed(Outputs& out, std::size_t count) noexcept {
-    bool any = false;
-    for_each_output(out, [&](std::span<float>& output) {
-        if (!is_computed(output, count)) output = {};
-        any = any || !output.empty();
-    });
-    return any;
 }
 
 // Calls run(triangle, row part, first fragment) for the runs of one id in a row among `count` fragments from `first` on, of

@@ -154,10 +154,7 @@ template <class CompiledWhereCalled>
 bool footprint(const FootprintSetup& setup, FragmentRect rect, Footprints out) noexcept {
     TEXGEN_ASSERT(rect.width >= 0 && rect.height >= 0);
     if (rect.width <= 0 || rect.height <= 0) return false;
-    const std::size_t count = detail::count_of(rect);
-    for (std::span<float>* output :
-         {&out.dsdx, &out.dtdx, &out.dsdy, &out.dtdy, &out.level, &out.anisotropy, &out.major_s, &out.major_t})
-        if (!detail::is_computed(*output, count)) *output = {};
+    detail::take_computed(out, detail::count_of(rect));
     const detail::Tile tile = detail::tile_of(rect);
     const detail::FootprintFunctions& functions = setup.functions();
     const detail::TileSurvey found = detail::survey(functions.triangle, tile);

@@ -343,12 +343,7 @@ Work interpolate(const TriangleSetup& setup, FragmentRect rect, Texcoords out) n
     TEXGEN_ASSERT(rect.width >= 0 && rect.height >= 0);
     if (rect.width <= 0 || rect.height <= 0) return Work::nothing;
     const std::size_t count = detail::count_of(rect);
-    bool any_output = false;
-    for (std::span<float>* output : {&out.s, &out.t, &out.r, &out.lit}) {
-        if (!detail::is_computed(*output, count)) *output = {};
-        any_output = any_output || !output->empty();
-    }
-
+    const bool any_output = detail::take_computed(out, count);
     const detail::Tile tile = detail::tile_of(rect);
     const detail::TriangleFunctions& triangle = setup.functions();
     detail::TileSurvey found = detail::survey(triangle, tile);
