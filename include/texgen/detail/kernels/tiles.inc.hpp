@@ -15,8 +15,6 @@ struct TileRow : RowOutputs<Numerators> {
     }
 };
 
-// ---- Division in double ----------------------------------------------------------------------------------------
-
 // One vector of quotients from `index` on. With Exact, marks in `doubtful` where value - error and value + error do
 // not round to one float; else numerators and q are rounded to float and divided there.
 template <bool Exact, std::size_t Numerators>
@@ -71,8 +69,6 @@ template <class CompiledWhereCalled = void>
 void fill_tile_float_divided(const TileJob& job) noexcept {
     divide_units<false, 2>(job, job.unit_at(0, 0));
 }
-
-// ---- Division to twice the precision of double --------------------------------------------------------------------
 
 // A function of a row's index.
 struct CloseRow {

@@ -1,0 +1,84 @@
+#pragma once
+
+// Which objects of Eigen cross its border, and the points that their floats are.
+
+#include <concepts>
+#include <cstddef>
+#include <type_traits>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "../texcoord.hpp"
+#include "assert.hpp"
+#include "language.hpp"
+
+namespace TEXGEN_DETAIL {
+
+template <class T>
+concept FloatOrDouble = std::same_as<T, float> || std::same_as<T, double>;
+
+template <class T>
+concept EigenDense = requires(const T& t) {
+    []<class Derived>(const Eigen::DenseBase<Derived>&) {}(t);
+};
+
+template <class T>
+concept EigenTransform = requires(const T& t) {
+    []<class Scalar, int Mode, int Options>(const Eigen::Transform<Scalar, 3, Mode, Options>&) {}(t);
+};
+
+template <class T>
+concept EigenMatrix4 =
+    EigenDense<T> && FloatOrDouble<typename T::Scalar> && T::RowsAtCompileTime == 4 && T::ColsAtCompileTime == 4;
+
+template <class T>
+inline constexpr bool owns_elements =
+    std::is_base_of_v<Eigen::PlainObjectBase<std::remove_cvref_t<T>>, std::remove_cvref_t<T>>;
+
+// Floats in memory that outlive the call: a view of them, or an lvalue that owns them. T as of a forwarding reference.
+template <class T>
+concept EigenFloats = EigenDense<std::remove_cvref_t<T>> && std::same_as < typename std::remove_cvref_t<T>::Scalar,
+float > &&(std::remove_cvref_t<T>::Flags& Eigen::DirectAccessBit) != 0 &&
+    (std::is_lvalue_reference_v<T> || !owns_elements<T>);
+
+// Points are columns of three rows, or rows of three columns; nine numbers do not say which.
+template <class T>
+concept EigenPoints = EigenFloats<T> &&(std::remove_cvref_t<T>::RowsAtCompileTime == 3) !=
+                      (std::remove_cvref_t<T>::ColsAtCompileTime == 3);
+
+template <class T>
+concept EigenCoordinates = EigenFloats<T> && bool(std::remove_cvref_t<T>::IsVectorAtCompileTime);
+
+// Floats that follow one another, in the order of row-major fragments.
+template <class T>
+concept EigenSpan = EigenFloats<T> &&
+    ((bool(std::remove_cvref_t<T>::IsVectorAtCompileTime) && std::remove_cvref_t<T>::InnerStrideAtCompileTime == 1) ||
+     (bool(std::remove_cvref_t<T>::IsRowMajor) && owns_elements<T>));
+
+template <class Space, class Points>
+Positions<Space> positions_of(const Points& points) noexcept {
+    constexpr bool in_columns = Points::RowsAtCompileTime == 3;
+    const Eigen::Index count = in_columns ? points.cols() : points.rows();
+    const Eigen::Index next_point = in_columns ? points.colStride() : points.rowStride();
+    const Eigen::Index next_coordinate = in_columns ? points.rowStride() : points.colStride();
+    const bool forwards = next_point >= 0;
+    TEXGEN_ASSERT(forwards);
+    if (count == 0 || !forwards) return {nullptr, nullptr, nullptr, 0, sizeof(float)};
+    const float* const x = points.data();
+    return {x, x + next_coordinate, x + 2 * next_coordinate, static_cast<std::size_t>(count),
+            static_cast<std::size_t>(next_point) * sizeof(float)};
+}
+
+template <class Space, class X, class Y, class Z>
+Positions<Space> positions_of(const X& x, const Y& y, const Z& z) noexcept {
+    const Eigen::Index next = x.innerStride();
+    const bool alike =
+        x.size() == y.size() && x.size() == z.size() && next == y.innerStride() && next == z.innerStride() && next >= 0;
+    TEXGEN_ASSERT(alike);
+    if (x.size() == 0 || !alike) return {nullptr, nullptr, nullptr, 0, sizeof(float)};
+    return {x.data(), y.data(), z.data(), static_cast<std::size_t>(x.size()),
+            static_cast<std::size_t>(next) * sizeof(float)};
+}
+
+}  // namespace TEXGEN_DETAIL
