@@ -357,7 +357,7 @@ TEST_CASE("the planes of a slide are q, the sides of s and t, and those of r whe
     const std::vector<SlidePlane> expected{{3, 1.0, 0.0},    {0, 1.0, 0.25},   {0, -1.0, 0.75},    {1, 1.0, 0.5},
                                            {1, -1.0, 0.625}, {2, 1.0, -0.125}, {2, -1.0, infinity}};
     const auto check = [&](const TextureRegion& region, std::size_t count) {
-        const auto planes = texgen::detail::slide_planes(region);
+        const auto planes = texgen::detail::SlidePlanes(region);
         REQUIRE(planes.size() == count);
         std::size_t k = 0;
         for (const SlidePlane& plane : planes) {
@@ -371,7 +371,7 @@ TEST_CASE("the planes of a slide are q, the sides of s and t, and those of r whe
     };
     check(tile, 5);
     check(tile.with_depth(-0.125, infinity), 7);
-    CHECK(texgen::detail::slide_planes(tile.with_depth(-0.125, infinity))[6].none() == infinity);
+    CHECK(texgen::detail::SlidePlanes(tile.with_depth(-0.125, infinity))[6].none() == infinity);
 }
 
 TEST_CASE("a region is empty where its depth is, or one of its numbers is none") {

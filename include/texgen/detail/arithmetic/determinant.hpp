@@ -38,7 +38,7 @@ public:
     int sign() const noexcept {
         const auto [sum, size] = nearly();
         const double value = magnitude(sum) > gamma(4) * size ? sum : this->value(size);
-        return value > 0.0 ? 1 : value < 0.0 ? -1 : 0;
+        return sign_of(value);
     }
 
     // Within 2^-51 of itself.

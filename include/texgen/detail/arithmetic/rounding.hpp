@@ -41,6 +41,8 @@ inline double magnitude(double a) noexcept { return std::fabs(a); }
 // The larger of two, and a NaN if either is one: for what must never be taken for small.
 constexpr double larger_or_nan(double a, double b) noexcept { return a > b || !(a == a) ? a : b; }
 
+constexpr int sign_of(double a) noexcept { return a > 0.0 ? 1 : a < 0.0 ? -1 : 0; }
+
 // A power of two within a factor 2 of 1 / value, for a value that is normal and below 2^1022.
 inline double reciprocal_power_of_two(double value) noexcept {
     const std::uint64_t biased_exponent = bit_cast<std::uint64_t>(value) >> 52 & 0x7ff;
@@ -56,6 +58,10 @@ inline double last_bit(double value) noexcept {
     return bit_cast<double>(bits & 0x7ff0000000000000) * (0x1p-52 * from_last);
 }
 
+// A product of 26 leading bits, or of the 27 that follow them, with a float is exact; so is one of 29 bits.
+inline double leading_26_bits(double value) noexcept {
+    return bit_cast<double>(bit_cast<std::uint64_t>(value) & ~std::uint64_t{0x7ffffff});
+}
 inline double leading_29_bits(double value) noexcept {
     return bit_cast<double>(bit_cast<std::uint64_t>(value) & ~std::uint64_t{0xffffff});
 }

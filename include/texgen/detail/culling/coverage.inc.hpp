@@ -16,8 +16,7 @@ inline bool is_inside_inner_side(const LitForms& forms, std::size_t k, const Box
 
 // What the planes say of a box, exactly: of those that are in doubt. For a NaN, and for forms of which nothing is known:
 // partial.
-inline Coverage exact_coverage(const LitForms& forms, const Box& box,
-                               const FormsInDoubt& doubt = {~0u, ~0u, false, false}) noexcept {
+inline Coverage exact_coverage(const LitForms& forms, const Box& box, const FormsInDoubt& doubt = {}) noexcept {
     constexpr float infinity = std::numeric_limits<float>::infinity();
     bool is_empty = false;
     for (glm::length_t j = 0; j < 3; ++j) {
@@ -85,12 +84,11 @@ inline bool put(const Box& box, BoxBlock& block, std::size_t i) noexcept {
 // Boxes of which floats do not say what they are, gathered until they fill vectors.
 class OpenBoxes {
 public:
-    OpenBoxes(const BoxKernels& kernels, const LitForms& forms) noexcept
-        : kernels_(kernels), forms_(forms), has_forms_(forms.can_say()) {}
+    OpenBoxes(const BoxKernels& kernels, const LitForms& forms) noexcept : kernels_(kernels), forms_(forms) {}
 
     // A box that is partial to the planes, or in doubt.
     void add(const Box& box, bool is_in_doubt, Coverage& out) noexcept {
-        if (!put(box, block_, count_) || !has_forms_) {
+        if (!put(box, block_, count_) || !forms_.can_say()) {
             out = exact_coverage(forms_, box);
             return;
         }
@@ -146,7 +144,6 @@ private:
     const Box* box_[box_block];
     Coverage* out_[box_block];
     std::size_t count_ = 0;
-    bool has_forms_;
     bool is_in_doubt_ = false;
 };
 
@@ -194,7 +191,7 @@ inline bool is_separated(const BoxKernels& kernels, const LitForms& forms, const
 
 // One box.
 inline Coverage coverage_of(const BoxKernels& kernels, const LitForms& forms, const Box& box) noexcept {
-    FormsInDoubt doubt{~0u, ~0u, false, false};
+    FormsInDoubt doubt;
     const int answer =
         forms.can_say() ? kernels.classify_box(forms.lanes(), &box.min.x, &box.max.x, doubt) : body_in_doubt;
     if (answer < open_body) return static_cast<Coverage>(answer);

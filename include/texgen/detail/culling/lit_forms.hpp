@@ -63,10 +63,10 @@ public:
     // Five forms, or seven with a depth.
     std::size_t count() const noexcept { return count_; }
 
-    // Whether exact sums with this side of a region stay in the range of double.
-    static bool is_usable_side(const SlidePlane& side) noexcept {
-        const double size = std::fabs(side.bound);
-        return side.bound == side.none() || size == 0.0 || (size >= 0x1p-200 && size <= 0x1p200);
+    // Whether exact sums with this side of a region, `none` for none, stay in the range of double.
+    static bool is_usable_side(double bound, double none) noexcept {
+        const double size = std::fabs(bound);
+        return bound == none || size == 0.0 || (size >= 0x1p-200 && size <= 0x1p200);
     }
 
     // Whether every point is dark: the region is empty or q is 0 everywhere.
@@ -96,10 +96,10 @@ public:
         return (1.0 + gamma(8)) * std::sqrt(a(k, 0) * a(k, 0) + a(k, 1) * a(k, 1) + a(k, 2) * a(k, 2));
     }
 
-    // How large T_q is at points of this size, or more; and how much less form k may be for its inner side there:
-    // (side - inner side) T_q.
-    double size_of_q(double size) const noexcept { return lanes_.largest_q * size + lanes_.last_q; }
-    double narrowing(std::size_t k, double size) const noexcept { return lanes_.narrowing[k] * size_of_q(size); }
+    // How much less form k may be for its inner side at points of this size, or more: (side - inner side) T_q.
+    double narrowing(std::size_t k, double size) const noexcept {
+        return lanes_.narrowing[k] * (lanes_.largest_q * size + lanes_.last_q);
+    }
 
     // -1, 0, 1: the sign of form k at a finite point, exactly.
     int sign_at(std::size_t k, const Point& point, CloseRows& close) const noexcept {
@@ -221,8 +221,7 @@ private:
                (count_ == forms_without_depth || take(q + 1, *region.depth()));
     }
     bool take_side(std::size_t k, double sign, double min) noexcept {
-        const double size = std::fabs(min);
-        if (min != -infinity && size != 0.0 && !(size >= 0x1p-200 && size <= 0x1p200)) return false;
+        if (!is_usable_side(min, -infinity)) return false;
         const RoundedSide rounded = RoundedSide::of_min(min);
         const auto weight = [sign](double bound) {
             const bool is_finite = std::fabs(bound) < infinity;
@@ -263,16 +262,11 @@ private:
         Row form;
         for (std::size_t j = 0; j < 4; ++j) {
             const glm::dvec4& column = matrix_[static_cast<glm::length_t>(j)];
-            const double half = first_half(column.w);
+            const double half = leading_26_bits(column.w);
             const DoubleDouble sum = two_sum(weight.of_row * column[i], weight.of_q * half);
             form[j] = sum.high + (sum.low + weight.of_q * (column.w - half));
         }
         return form;
-    }
-
-    // The first 26 digits of a double; 27 are left. Times 24 digits, of a float or of a weight, which is one, either is a double.
-    static double first_half(double value) noexcept {
-        return bit_cast<double>(bit_cast<std::uint64_t>(value) & 0xfffffffff8000000);
     }
 
     void take_exact_form(std::size_t k, const Weight& weight, ExactForm& form) const noexcept {
@@ -284,12 +278,12 @@ private:
             };
             if (form.rounded[j] == 0.0) continue;
             const glm::dvec4& column = matrix_[static_cast<glm::length_t>(j)];
-            const double half = first_half(column.w);
+            const double half = leading_26_bits(column.w);
             const double of_row = weight.of_row * column[static_cast<glm::length_t>(coordinate_of(k))];
             const DoubleDouble most = two_sum(of_row, weight.of_q * half);
             const DoubleDouble all = two_sum(most.high, weight.of_q * (column.w - half));
             for (const double part : {all.high, all.low, most.low}) {
-                const double first = first_half(part);
+                const double first = leading_26_bits(part);
                 add(first);
                 add(part - first);
             }
@@ -299,7 +293,7 @@ private:
 
     // Adds a product with a number of 24 digits.
     static void add_product(CloseSum& sum, double value, double of_few_digits) noexcept {
-        const double half = first_half(value);
+        const double half = leading_26_bits(value);
         sum.add(half * of_few_digits);
         sum.add((value - half) * of_few_digits);
     }
@@ -334,7 +328,7 @@ private:
         }
         const double value = sum.high + sum.low;
         if (std::fabs(value) <= sum.lost && sum.lost > 0.0) return exactly_at(k, weight, point).sign();
-        return value > 0.0 ? 1 : value < 0.0 ? -1 : 0;
+        return sign_of(value);
     }
 
     using Exact = Expansion<24>;

@@ -7,7 +7,7 @@ class SlideDistance {
 public:
     explicit SlideDistance(const SlidePlane& plane) noexcept
         : coordinate_(plane.coordinate), sign_(plane.sign), per_q_(-plane.sign * usable(plane.bound)) {
-        const bool has_29_digits = (bit_cast<std::uint64_t>(per_q_) & 0xffffff) == 0;  // times a float: a double
+        const bool has_29_digits = leading_29_bits(per_q_) == per_q_;  // times a float: a double
         product_error_ = has_29_digits ? 0.0 : gamma(1);
     }
 
@@ -43,7 +43,7 @@ public:
         double value = own(vertex) + product;
         if (!(std::fabs(value) >= product_error_ * std::fabs(product)))
             value += two_product(per_q_, widened(vertex.strq.w)).low;
-        return value > 0.0 ? 1 : value < 0.0 ? -1 : 0;
+        return sign_of(value);
     }
 
 private:
@@ -87,7 +87,7 @@ public:
         return nearest_to(quotient, error, [&](double middle) {
             const Bounded sum = beyond(middle, i, o);
             if (sum.error > 0.0 && std::fabs(sum.value) <= sum.error) return exactly_beyond(middle, i, o).sign();
-            return sum.value > 0.0 ? 1 : sum.value < 0.0 ? -1 : 0;
+            return sign_of(sum.value);
         });
     }
 
@@ -187,7 +187,7 @@ namespace TEXGEN_NAMESPACE {
 template <class Space>
 ClipPlanes clip_planes(const Transform<Texture, Space>& texgen, TextureRegion region) noexcept {
     ClipPlanes result;
-    for (const detail::SlidePlane& plane : detail::slide_planes(region)) {
+    for (const detail::SlidePlane& plane : detail::SlidePlanes(region)) {
         glm::vec4& coefficients = result.planes_[result.size_++];
         for (glm::length_t i = 0; i < 4; ++i) {
             const glm::dvec4& column = texgen.matrix()[i];
@@ -201,7 +201,7 @@ inline namespace TEXGEN_COMPILER {
 
 inline std::size_t clip_to_slide(std::span<const ClipVertex> polygon, TextureRegion region,
                                  std::span<ClipVertex> out) noexcept {
-    const auto planes = detail::slide_planes(region);
+    const detail::SlidePlanes planes(region);
     const bool has_depth = planes.size() > planes.without_depth;
     TEXGEN_ASSERT(out.size() >= polygon.size() + planes.size());
     if (out.size() < polygon.size() + planes.size() || polygon.size() < 3) return 0;

@@ -67,6 +67,4 @@ private:
     std::size_t size_ = 0;
 };
 
-inline SlidePlanes slide_planes(const TextureRegion& region) noexcept { return SlidePlanes(region); }
-
 }  // namespace TEXGEN_DETAIL

@@ -100,9 +100,9 @@ public:
         const glm::dmat4 matrix = texture_from_eye * view;
         const bool without_r = !region.depth();
         if (!(range_of(texture_from_eye, without_r) * range_of(view) <= projector_range)) return;
-        const auto planes = slide_planes(region);
+        const SlidePlanes planes(region);
         for (const SlidePlane& plane : planes)
-            if (!LitForms::is_usable_side(plane)) return;
+            if (!LitForms::is_usable_side(plane.bound, plane.none())) return;
         const glm::dmat4 magnitude = absolute(texture_from_eye) * absolute(view);
         for (const SlidePlane& plane : planes) set(forms_[count_++], matrix, magnitude, plane);
     }

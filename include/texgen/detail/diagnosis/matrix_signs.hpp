@@ -42,6 +42,9 @@ inline bool is_in_float(const glm::dmat4& m) noexcept {
     return is_rounded;
 }
 
+// What a matrix of its kind may be off by, relative to its elements.
+inline double rounding_of(const glm::dmat4& m) noexcept { return is_in_float(m) ? 0x1p-22 : 0x1p-44; }
+
 // What its rounding is relative to, where no more is known: the magnitudes of the elements that are no round numbers. Of a
 // constant that is known only where no axis of the row is round: else it may have many bits, and be exact.
 inline glm::dmat4 rounded_magnitudes(const glm::dmat4& m) noexcept {
@@ -81,8 +84,7 @@ inline Minor minor(const glm::dmat4& m, const std::array<glm::length_t, 3>& rows
     const double terms =
         magnitude(a, {std::fabs(b.y * c.z) + std::fabs(b.z * c.y), std::fabs(b.z * c.x) + std::fabs(b.x * c.z),
                       std::fabs(b.x * c.y) + std::fabs(b.y * c.x)});
-    const double rounding = is_in_float(m) ? 0x1p-22 : 0x1p-44;
-    return {value, std::fabs(value) > rounding * change + 0x1p-48 * terms};
+    return {value, std::fabs(value) > rounding_of(m) * change + 0x1p-48 * terms};
 }
 
 inline constexpr std::array<glm::length_t, 3> axes{0, 1, 2};

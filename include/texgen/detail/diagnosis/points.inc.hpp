@@ -61,7 +61,7 @@ public:
     }
 
     void add(const glm::dvec3& v) noexcept {
-        if (!is_finite(v.x) || !is_finite(v.y) || !is_finite(v.z)) {
+        if (!is_finite(v)) {
             all_finite_ = false;
             return;
         }

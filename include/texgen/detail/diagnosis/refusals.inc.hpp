@@ -57,7 +57,7 @@ inline void examine(const PinholeLens& lens, Diagnosis& diagnosis) noexcept {
 inline void examine(const Aim& aim, Diagnosis& diagnosis) noexcept {
     const auto is_number = [&](const glm::dvec3& v) {
         require_finite({v.x, v.y, v.z}, diagnosis);
-        return is_finite(v.x) && is_finite(v.y) && is_finite(v.z);
+        return is_finite(v);
     };
     const bool has_position = is_number(aim.position), has_target = is_number(aim.target), has_up = is_number(aim.up);
     // As look_at() decides.

@@ -14,6 +14,8 @@ struct SetupMatrices {
     DepthMapping depth = DepthMapping::unit;
     std::optional<Conventions> conventions = std::nullopt;
     LensFacts lens = {};
+
+    bool is_placed() const noexcept { return in_world_space || pose != nullptr; }
 };
 
 // S^-1 T, or what that does to magnitudes.

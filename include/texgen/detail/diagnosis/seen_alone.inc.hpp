@@ -95,9 +95,8 @@ inline void examine_seen_lens(const SeenLens& lens, const SetupMatrices& setup, 
         std::fabs(in_ndc.y / in_ndc.x * *facts.aspect - 1.0) <= 0x1p-12)
         diagnosis.add(Defect::aspect_inverted);
     const bool knows_planes = facts.z_near || facts.z_far;
-    const bool is_placed = setup.in_world_space || setup.pose != nullptr;
-    if (ends &&
-        (knows_planes ? is_of_other_range(lens, *ends, facts, is_placed) : is_round_in_other_range(lens, *ends)))
+    if (ends && (knows_planes ? is_of_other_range(lens, *ends, facts, setup.is_placed())
+                              : is_round_in_other_range(lens, *ends)))
         diagnosis.add(Defect::depth_range_mismatch);
 }
 
@@ -135,10 +134,9 @@ inline bool examine_alone(const glm::dmat4& texgen, const SetupMatrices& setup, 
     } else if (has_bias_in_every_column(texgen, setup.pose)) {
         diagnosis.add(Defect::bias_without_w);
     }
-    const bool is_placed = setup.in_world_space || setup.pose != nullptr;
     const bool has_scale_bias =
         !diagnosis.contains(Defect::scale_bias_missing) && !diagnosis.contains(Defect::bias_without_w);
-    if (conventions && is_placed && has_scale_bias && !setup.lens.mirrored &&
+    if (conventions && setup.is_placed() && has_scale_bias && !setup.lens.mirrored &&
         !diagnosis.contains(Defect::mixed_handedness) &&
         is_mirrored(texgen, setup.pose != nullptr ? *setup.pose : glm::dmat4(1.0), *conventions))
         diagnosis.add(Defect::mirrored);

@@ -151,9 +151,6 @@ inline std::optional<DepthEnds> depth_ends(DepthMapping depth, const std::option
     return is_zero_to_one ? DepthEnds{0.0, {0.5, -1.0}} : DepthEnds{-1.0, {0.0, 0.0}};
 }
 
-// What a matrix of its kind may be off by, relative to its elements.
-inline double rounding_of(const glm::dmat4& texgen) noexcept { return is_in_float(texgen) ? 0x1p-22 : 0x1p-44; }
-
 // Whether near and far are round numbers if the range is the other one, and near is none as it is: what floats are not exact
 // enough to say.
 inline bool is_round_in_other_range(const SeenLens& lens, const DepthEnds& ends) noexcept {

@@ -83,7 +83,7 @@ inline Examined examine(const SetupMatrices& setup, Diagnosis& diagnosis) noexce
     std::optional<Factors> factors;
     if (setup.projector != nullptr) {
         examine(*setup.projector, setup.lens, setup.picture, diagnosis);
-        if (setup.pose != nullptr || setup.in_world_space) {
+        if (setup.is_placed()) {
             const Projector& projector = *setup.projector;
             factors = Factors{texgen::scale_bias(projector.conventions, setup.picture.region, setup.depth).matrix(),
                               projector.projection.matrix(), projector.view.matrix(), std::nullopt};

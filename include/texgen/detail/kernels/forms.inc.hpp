@@ -14,7 +14,7 @@ void weigh_forms(const glm::dmat4& matrix, const FormWeights& weights, FormLanes
         TEXGEN_UNROLL
         for (std::size_t j = 0; j < 4; ++j) {
             const glm::dvec4& column = matrix[static_cast<glm::length_t>(j)];
-            const double high = bit_cast<double>(bit_cast<std::uint64_t>(column.w) & ~std::uint64_t{0x7ffffff});
+            const double high = leading_26_bits(column.w);
             const double low = column.w - high;
             const Doubles row = of[0] * column.x + (of[1] * column.y + of[2] * column.z);
             Doubles rest;
@@ -107,7 +107,7 @@ int classify_box(const FormLanes& forms, const float* box_min, const float* box_
         is_proper &= extent[j] >= 0.0;
         is_proper &= size[j] < infinity;
     }
-    doubt = {~0u, ~0u, false, is_proper};
+    doubt = {.is_finite = is_proper};
     double narrowed = 2.2 * forms.last_q;
     bool is_unbounded[3] = {};
     if (!is_proper) {
@@ -182,7 +182,7 @@ struct CloseForms {
         TEXGEN_UNROLL
         for (std::size_t j = 0; j < 4; ++j) {
             const glm::dvec4& column = matrix[static_cast<glm::length_t>(j)];
-            const double half = bit_cast<double>(bit_cast<std::uint64_t>(column.w) & ~std::uint64_t{0x7ffffff});
+            const double half = leading_26_bits(column.w);
             const Doubles row = of[0] * column.x + (of[1] * column.y + of[2] * column.z);
             Doubles rest;
             const Doubles sum = two_sum(row, of_q * half, rest);

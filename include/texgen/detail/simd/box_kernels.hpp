@@ -44,9 +44,9 @@ struct FormLanes {
 
 // A bit for each form of which a double does not say the sign: where it is largest over a box, and where it is least.
 struct FormsInDoubt {
-    std::uint32_t largest, least;
-    bool is_any_negative;  // of the least, for certain
-    bool is_finite;        // the box, which then has points
+    std::uint32_t largest = ~0u, least = ~0u;
+    bool is_any_negative = false;  // of the least, for certain
+    bool is_finite = false;        // the box, which then has points
 };
 
 // The same in float, twice the value each, a lane a form, with one bound for all: over a body each errs by less than
