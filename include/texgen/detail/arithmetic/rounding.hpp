@@ -142,11 +142,6 @@ struct CloseSum {
         low = rest.high;
         lost += 2.0 * std::fabs(rest.low);
     }
-    void add_product(double a, double b) noexcept {
-        const DoubleDouble product = two_product(a, b);
-        add(product.high);
-        add(product.low);
-    }
 };
 
 // a b - c d within 1.5 double ulp. Source: Kahan; Jeannerod, Louvet, Muller, Math. Comp. 82 (2013).

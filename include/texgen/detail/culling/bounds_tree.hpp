@@ -20,7 +20,6 @@ namespace TEXGEN_DETAIL {
 
 class BoundsTree {
 public:
-    std::size_t size() const noexcept { return bounds_.size(); }
     const WorldBounds& operator[](std::size_t object) const noexcept { return bounds_[object]; }
 
     // Takes the bounds of the objects that changed, from bounds_of(object); all objects are below `count` or have none.
