@@ -108,8 +108,9 @@ inline namespace TEXGEN_COMPILER {
 
 // Cuts off what of a convex polygon the slide does not fall on; the rest is in the order of the polygon, though its first
 // vertex may be another: q > 0, s and t in the region's four sides, and r in its depth where it has one. Returns the count
-// of vertices written to `out`; 0 where nothing is inside a side, or where what is not outside only touches it, with any number of corners. A polygon whose own corners are
-// collinear, or become so by rounding, is cut as any other: TriangleSetup::of() refuses it.
+// of vertices written to `out`; 0 where nothing is inside a side, or where what is not outside only touches it, with any
+// number of corners. A polygon whose own corners are collinear, or become so by rounding, is cut as any other:
+// TriangleSetup::of() refuses it.
 // Guarantee: every vertex that comes out has q > 0 and is inside the region but for slide_clip_error. Vertices inside keep
 // their bits; sides are decided exactly, so a vertex on a side stays. A new vertex is the exact intersection of its edge
 // (of a new edge's ends as they were rounded), each component of position and strq the nearest float. Shared edges stay

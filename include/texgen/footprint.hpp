@@ -137,8 +137,8 @@ inline double headlights(const Triangle& triangle) noexcept;
 
 inline namespace TEXGEN_BUILD {
 
-// Writes the footprints of a rectangle's fragments in front of the projector. Returns whether the slide may light any of its fragments; where it lights none, nothing is
-// written, as interpolate() does not for Work::nothing.
+// Writes the footprints of a rectangle's fragments in front of the projector. Returns whether the slide may light any of
+// its fragments; where it lights none, nothing is written, as interpolate() does not for Work::nothing.
 // Guarantee: in front of the projector the derivatives are within setup.error_bound(rect): with `exact` next to half an ulp,
 // with a tolerance within max(tolerance, that), in units of s and t a pixel. level is within 2^-16 max(1, |level| / 32) of
 // that of derivatives within the bound, anisotropy and major within 2^-16 of theirs (major relative to its length; where

@@ -47,8 +47,8 @@ struct Viewport {
 // Where the region's border crosses an affine or quadratic rectangle, the mask is compared from the coordinates.
 enum class Work { nothing, affine, quadratic, divide, divide_and_test };
 
-// How much of a box or a sphere the slide lights. A point is lit where q > 0 and (s, t) is in the closed region, as real numbers or as the
-// floats that they are rounded to, which project() looks at.
+// How much of a box or a sphere the slide lights. A point is lit where q > 0 and (s, t) is in the closed region, as real
+// numbers or as the floats that they are rounded to, which project() looks at.
 //   outside  no point of the closed body is lit, in either way
 //   partial  neither of the others, or not provably one of them
 //   inside   all points are lit, in both ways

@@ -5,8 +5,9 @@
 //   T_s v - min.x T_q v >= 0,  max.x T_q v - T_s v >= 0,  the same for t,  and  T_q v > 0,
 //
 // which are the four sides of a pyramid (of a prism, where T_q is constant) and the plane of its apex; and T_r likewise, where
-// the region has a depth: the near and the far plane. What is asked of these forms is asked of their exact values, with the matrix as it is given. The sides are those beyond which nothing is
-// lit, its rounding to float included; where all is lit, the inner sides say (see RoundedSide).
+// the region has a depth: the near and the far plane. What is asked of these forms is asked of their exact values, with the
+// matrix as it is given. The sides are those beyond which nothing is lit, its rounding to float included; where all is lit,
+// the inner sides say (see RoundedSide).
 
 #include <array>
 #include <cmath>

@@ -58,7 +58,8 @@ struct WorldBounds {
     friend bool operator==(const WorldBounds&, const WorldBounds&) = default;
 };
 
-// Unbounded where a number is not finite, M is not affine or its exponents are far apart. Four terms a component, each rounded at most five times.
+// Unbounded where a number is not finite, M is not affine or its exponents are far apart. Four terms a component, each
+// rounded at most five times.
 inline WorldBounds world_bounds(const glm::dmat4& m, const Box& box) noexcept {
     WorldBounds result = WorldBounds::none();
     const glm::dvec3 low = widened(box.min);

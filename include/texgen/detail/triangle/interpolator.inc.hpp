@@ -226,7 +226,8 @@ private:
         kernels_.fill_float_divided(make_job(tile, at, reciprocal_power_of_two(at.largest_q)));
     }
 
-    // The error of F/Q with F and Q rounded to float, then the reciprocal and the product. With 2^-21 <= Q <= 2 a float of F that is subnormal, or flushed to zero, adds less than 2^-104.
+    // The error of F/Q with F and Q rounded to float, then the reciprocal and the product. With 2^-21 <= Q <= 2 a float of
+    // F that is subnormal, or flushed to zero, adds less than 2^-104.
     Double2 float_divided_error(const Corners& at) const noexcept {
         const Double2 largest = at.largest_quotient();
         return largest * float_divided.roundings + 0x1p-104 + at.quotient_error(largest);
