@@ -11,7 +11,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <span>
 
 #include <glm/vec4.hpp>
@@ -22,6 +21,7 @@
 #include "detail/arithmetic/widen.hpp"
 #include "detail/assert.hpp"
 #include "detail/culling/slide_planes.hpp"
+#include "detail/on_demand.hpp"
 #include "primitives.hpp"
 #include "transform.hpp"
 

@@ -10,13 +10,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <span>
 
 #include "conventions.hpp"
 #include "detail/arithmetic/widen.hpp"
 #include "detail/assert.hpp"
 #include "detail/culling/lit_forms.hpp"
+#include "detail/on_demand.hpp"
 #include "detail/simd/lanes.hpp"
 #include "primitives.hpp"
 #include "transform.hpp"

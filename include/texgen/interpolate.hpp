@@ -27,6 +27,7 @@
 #include "detail/arithmetic/nearest.hpp"
 #include "detail/assert.hpp"
 #include "detail/culling/lit_test.hpp"
+#include "detail/on_demand.hpp"
 #include "detail/simd/lanes.hpp"
 #include "detail/triangle/close_planes.hpp"
 #include "detail/triangle/corners.hpp"

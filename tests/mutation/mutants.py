@@ -65,7 +65,7 @@ MUTANTS = [
          ("the corners' q are upside down", "return least_area_ / area_[i];", "return area_[i] / least_area_;",
           "surface_test"),
          ("one winding is refused", "winding_ = area_[0] < 0.0 ? -1.0 : 1.0;", "winding_ = 1.0;", "surface_test"),
-         ("a quadrilateral may cross itself", "return result.least_area_ > 0.0 ?", "return true ?", "surface_test"),
+         ("a quadrilateral may cross itself", "return least_area_ > 0.0;", "return true;", "surface_test"),
          ("a corner's q is the nearest alone", "{0, 1, -1, 2, -2}", "{0}", "surface_test")),
     *_of("detail/matrices/scale_bias.inc.hpp",
          ("scale and bias are swapped", "matrix[0][0] = remap.s.scale();\n    matrix[3][0] = remap.s.bias();",

@@ -82,6 +82,7 @@ inline bool put(const Box& box, BoxBlock& block, std::size_t i) noexcept {
 }
 
 // Boxes of which floats do not say what they are, gathered until they fill vectors.
+template <class CompiledWhereCalled = void>
 class OpenBoxes {
 public:
     OpenBoxes(const BoxKernels& kernels, const LitForms& forms) noexcept : kernels_(kernels), forms_(forms) {}
@@ -113,7 +114,7 @@ public:
 
 private:
     void separate() noexcept {
-        if (!separating_) separating_.emplace(forms_);
+        if (!separating_) separating_.make(forms_);
         double least_of_largest[box_block];
         kernels_.separate(separating_->data(), separating_->size(), block_, least_of_largest);
         for (std::size_t i = 0; i < count_; ++i)
@@ -121,7 +122,7 @@ private:
     }
 
     void decide_doubt() noexcept {
-        if (!double_forms_) double_forms_ = forms_.in_double();
+        if (!double_forms_) double_forms_.make(forms_.in_double());
         BoxBounds bounds;
         kernels_.bound(*double_forms_, block_, bounds);
         for (std::size_t i = 0; i < count_; ++i) {
@@ -138,8 +139,8 @@ private:
 
     const BoxKernels& kernels_;
     const LitForms& forms_;
-    std::optional<DoubleForms> double_forms_;
-    std::optional<SeparatingForms> separating_;
+    OnDemand<DoubleForms> double_forms_;
+    OnDemand<SeparatingForms> separating_;
     BoxBlock block_{};
     const Box* box_[box_block];
     Coverage* out_[box_block];
@@ -151,7 +152,7 @@ template <class CompiledWhereCalled = void>
 void cover(const LitForms& forms, const FloatForms& float_forms, std::span<const Box> boxes,
            const std::span<Coverage>& out) noexcept {
     const BoxKernels& kernels = chosen<BoxKernels>();
-    OpenBoxes open_boxes(kernels, forms);
+    OpenBoxes<> open_boxes(kernels, forms);
     classify_many<6>(
         boxes, out,
         [&](const float* floats, std::size_t count, int* classes) {
@@ -168,6 +169,7 @@ void cover(const LitForms& forms, const FloatForms& float_forms, std::span<const
 }
 
 // Whether a further plane separates one box, which is partial to the forms, from what they leave.
+template <class CompiledWhereCalled = void>
 inline bool is_separated(const BoxKernels& kernels, const LitForms& forms, const BoxBlock& block) noexcept {
     constexpr double unbounded = 0x1p200;  // nor larger than what products hold
     Point middle{};
@@ -190,6 +192,7 @@ inline bool is_separated(const BoxKernels& kernels, const LitForms& forms, const
 }
 
 // One box.
+template <class CompiledWhereCalled = void>
 inline Coverage coverage_of(const BoxKernels& kernels, const LitForms& forms, const Box& box) noexcept {
     FormsInDoubt doubt;
     const int answer =

@@ -126,7 +126,7 @@ inline ClipVertex cut_at(const SlideDistance& side, const ClipVertex& inside, co
     const double difference_error = of_inside.error + of_outside.error + gamma(2) * std::fabs(difference);
     const bool is_apart = difference > 2.0 * difference_error;
     const double per_difference = is_apart ? 1.001 / (difference - difference_error) : 0x1p900;
-    std::optional<CloseCrossing> close;
+    OnDemand<CloseCrossing> close;
     const auto component = [&](float given_inside, float given_outside) {
         if (given_inside == given_outside) return given_inside;
         const double i = widened(given_inside);
@@ -139,7 +139,7 @@ inline ClipVertex cut_at(const SlideDistance& side, const ClipVertex& inside, co
         const double error = per_difference * (of_outside.error * std::fabs(i) + of_inside.error * std::fabs(o) +
                                                difference_error * std::fabs(quotient) + gamma(6) * size);
         if (rounds_alone(quotient, error)) return static_cast<float>(quotient);
-        if (!close) close.emplace(side, inside, outside);
+        if (!close) close.make(side, inside, outside);
         return close->nearest(i, o, quotient, error);
     };
     ClipVertex result{};

@@ -100,6 +100,7 @@ inline Coverage exact_coverage(const LitForms& forms, const Sphere& sphere) noex
 inline namespace TEXGEN_BUILD {
 
 // Spheres of which floats do not say what they are, gathered until they fill vectors.
+template <class CompiledWhereCalled = void>
 class OpenSpheres {
 public:
     OpenSpheres(const BoxKernels& kernels, const LitForms& forms) noexcept : kernels_(kernels), forms_(forms) {}
@@ -121,7 +122,7 @@ public:
 
     void decide() noexcept {
         if (count_ == 0) return;
-        if (!sphere_forms_) sphere_forms_ = forms_.for_spheres();
+        if (!sphere_forms_) sphere_forms_.make(forms_.for_spheres());
         int classes[box_block];
         kernels_.bound_spheres(*sphere_forms_, block_, classes);
         for (std::size_t i = 0; i < count_; ++i)
@@ -133,7 +134,7 @@ public:
 private:
     const BoxKernels& kernels_;
     const LitForms& forms_;
-    std::optional<SphereForms> sphere_forms_;
+    OnDemand<SphereForms> sphere_forms_;
     SphereBlock block_{};
     const Sphere* sphere_[box_block];
     Coverage* out_[box_block];
@@ -144,7 +145,7 @@ template <class CompiledWhereCalled = void>
 void cover(const LitForms& forms, const FloatForms& float_forms, std::span<const Sphere> spheres,
            const std::span<Coverage>& out) noexcept {
     const BoxKernels& kernels = chosen<BoxKernels>();
-    OpenSpheres open_spheres(kernels, forms);
+    OpenSpheres<> open_spheres(kernels, forms);
     classify_many<4>(
         spheres, out,
         [&](const float* floats, std::size_t count, int* classes) {

@@ -5,6 +5,7 @@ inline namespace TEXGEN_BUILD {
 
 // Footprints into the caller's arrays: in vectors where the tile is well in front, else in its halves, and at last one
 // by one.
+template <class CompiledWhereCalled = void>
 class TileFootprinter {
 public:
     TileFootprinter(const FootprintKernels& kernels, const FootprintFunctions& functions, const TexelsPerUnit& texels,
@@ -159,7 +160,7 @@ bool footprint(const FootprintSetup& setup, FragmentRect rect, Footprints out) n
     const detail::FootprintFunctions& functions = setup.functions();
     const detail::TileSurvey found = detail::survey(functions.triangle, tile);
     if (found.plan.work == Work::nothing) return false;
-    detail::TileFootprinter(detail::chosen<detail::FootprintKernels>(), functions, setup.texels(), tile, out)
+    detail::TileFootprinter<>(detail::chosen<detail::FootprintKernels>(), functions, setup.texels(), tile, out)
         .fill_all(tile, found.at);
     return true;
 }

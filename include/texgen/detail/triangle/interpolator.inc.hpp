@@ -3,14 +3,20 @@
 namespace TEXGEN_DETAIL {
 inline namespace TEXGEN_BUILD {
 
+struct CloseJob {
+    TileJob job;
+    CloseFunctions functions;
+};
+
 // Interpolates up to two coordinates, and the mask, of a triangle into the caller's arrays.
+template <class CompiledWhereCalled = void>
 class TileInterpolator {
 public:
     static constexpr int scratch_width = 512;
 
     // `close` is what is known of the functions that add() says, or nothing yet.
     TileInterpolator(const TileKernels& kernels, const TriangleFunctions& triangle, const Tile& rect,
-                     std::optional<CloseRamps>& close) noexcept
+                     OnDemand<CloseRamps>& close) noexcept
         : kernels_(kernels), triangle_(triangle), rect_(rect), close_(close) {}
 
     // s and t, of which one that only the mask needs has no output.
@@ -42,7 +48,7 @@ public:
 
     void interpolate(const Tile& tile, const Corners& at, const Plan& plan) noexcept {
         whole_ = tile;
-        closely_.reset();
+        closely_.drop();
         fill(tile, at, plan);
     }
 
@@ -78,7 +84,7 @@ private:
 
     // They are made when a tile first needs them, for all of the rectangle.
     CloseRamps close_ramps(const Tile& tile) noexcept {
-        if (!close_) close_ = made_close();
+        if (!close_) close_.make(made_close());
         return close_->moved_to(tile);
     }
 
@@ -165,13 +171,13 @@ private:
         const int y = static_cast<int>(tile.y - whole_.y);
         const TileJob::Unit unit{x, x + tile.width, y, y + tile.height};
         if (!closely_) {
-            closely_.emplace(make_job(whole_, at), (close_ ? close_ramps(whole_) : plain_ramps(whole_)).split());
-            closely_->first.is_contiguous = false;
+            closely_.make(CloseJob{make_job(whole_, at), (close_ ? close_ramps(whole_) : plain_ramps(whole_)).split()});
+            closely_->job.is_contiguous = false;
         }
         const auto& [job, functions] = *closely_;
         std::uint64_t doubtful = kernels_.fill_closely(job, functions, unit);
         if (doubtful != 0 && !close_) {
-            closely_->second = close_ramps(whole_).split();
+            closely_->functions = close_ramps(whole_).split();
             doubtful = kernels_.fill_closely(job, functions, unit);
         }
         fill_some(whole_, unit, doubtful);
@@ -289,26 +295,28 @@ private:
     std::size_t count_ = 0;
     glm::length_t coordinate_[2] = {};
     PlaneOf<Double2> planes_;
-    std::optional<CloseRamps>& close_;
+    OnDemand<CloseRamps>& close_;
     Tile whole_;  // what is being interpolated
-    std::optional<std::pair<TileJob, CloseFunctions>> closely_;
+    OnDemand<CloseJob> closely_;
     std::span<float> output_[2];
     std::span<float> lit_;
     float scratch_[2][scratch_width];  // coordinates that only the mask needs, a row at a time
 };
 
 // One coordinate of a rectangle; without a plan nothing is known of it.
+template <class CompiledWhereCalled = void>
 inline void interpolate_alone(const TileKernels& kernels, const TriangleFunctions& triangle, const Tile& rect,
                               glm::length_t coordinate, const std::span<float>& output, const Plan* plan) noexcept {
     if (output.empty()) return;
-    std::optional<CloseRamps> close;
-    TileInterpolator interpolator(kernels, triangle, rect, close);
+    OnDemand<CloseRamps> close;
+    TileInterpolator<> interpolator(kernels, triangle, rect, close);
     interpolator.add(coordinate, output);
     interpolator.interpolate(rect, plan);
 }
 
 // Takes the light of a tile's fragments whose r, which nobody asked for, is beyond the depth, which cuts it. It is halved until
 // the buffer holds it; of a half where nothing is lit, or all is in the depth, r is not computed.
+template <class CompiledWhereCalled = void>
 inline void darken_beyond_depth(const TileKernels& kernels, const TriangleFunctions& triangle, const Tile& rect,
                                 const Tile& tile, const std::span<float>& buffer,
                                 const std::span<float>& lit) noexcept {
@@ -359,7 +367,7 @@ Work interpolate(const TriangleSetup& setup, FragmentRect rect, Texcoords out) n
 
     const bool both = !out.s.empty() && !out.t.empty();
     if (both || !out.lit.empty()) {
-        detail::TileInterpolator interpolator(kernels, triangle, tile, found.close);
+        detail::TileInterpolator<> interpolator(kernels, triangle, tile, found.close);
         interpolator.add(out.s, out.t, out.lit);
         if (both)
             interpolator.interpolate(tile, found.at, plan);

@@ -12,15 +12,21 @@ inline FloatDeterminant slide_determinant(const glm::dvec4& a, const glm::dvec4&
 // T_0 - T_1 + T_2 - T_3 = 0: q_i is 1 / area_i, up to a factor.
 class ConvexQuadrilateral {
 public:
-    static std::optional<ConvexQuadrilateral> of(const std::array<glm::dvec2, 4>& corners) noexcept {
+    explicit ConvexQuadrilateral(const std::array<glm::dvec2, 4>& corners) noexcept : corner_(corners) {
         const auto is_in_range = [](double x) {
             return x == 0.0 || (magnitude(x) >= 0x1p-400 && magnitude(x) <= 0x1p400);
         };
         for (const glm::dvec2& corner : corners)
-            if (!is_in_range(corner.x) || !is_in_range(corner.y)) return std::nullopt;
-        ConvexQuadrilateral result(corners);
-        return result.least_area_ > 0.0 ? std::optional(result) : std::nullopt;
+            if (!is_in_range(corner.x) || !is_in_range(corner.y)) return;
+        for (std::size_t i = 0; i < 4; ++i)
+            area_[i] = twice_area(corners[(i + 1) % 4], corners[(i + 2) % 4], corners[(i + 3) % 4]);
+        winding_ = area_[0] < 0.0 ? -1.0 : 1.0;
+        for (double& area : area_) area *= winding_;
+        least_area_ = smaller(smaller(area_[0], area_[1]), smaller(area_[2], area_[3]));
     }
+
+    // If not, as where corners are out of range, nothing else is asked.
+    bool is_convex() const noexcept { return least_area_ > 0.0; }
 
     double q(std::size_t i) const noexcept { return least_area_ / area_[i]; }
 
@@ -32,14 +38,6 @@ public:
     }
 
 private:
-    explicit ConvexQuadrilateral(const std::array<glm::dvec2, 4>& corners) noexcept : corner_(corners) {
-        for (std::size_t i = 0; i < 4; ++i)
-            area_[i] = twice_area(corners[(i + 1) % 4], corners[(i + 2) % 4], corners[(i + 3) % 4]);
-        winding_ = area_[0] < 0.0 ? -1.0 : 1.0;
-        for (double& area : area_) area *= winding_;
-        least_area_ = smaller(smaller(area_[0], area_[1]), smaller(area_[2], area_[3]));
-    }
-
     std::array<glm::dvec2, 4> corner_;
     std::array<double, 4> area_{};  // twice the area of the triangle of the other corners
     double winding_ = 1.0, least_area_ = 0.0;
@@ -92,12 +90,12 @@ inline std::optional<glm::dvec3> receiver_plane(glm::vec4 a, glm::vec4 b, glm::v
 
 inline std::optional<std::array<glm::vec4, 4>> quadrilateral(const std::array<glm::dvec2, 4>& corners,
                                                              const TextureRegion& region) noexcept {
-    const auto shape = detail::ConvexQuadrilateral::of(corners);
-    if (!shape) return std::nullopt;
+    const detail::ConvexQuadrilateral shape(corners);
+    if (!shape.is_convex()) return std::nullopt;
     const glm::vec2 least{(region.min)()}, greatest{(region.max)()};
     std::array<glm::vec4, 4> strq{};
     for (std::size_t i = 0; i < 4; ++i) {
-        const auto q = static_cast<float>(shape->q(i));
+        const auto q = static_cast<float>(shape.q(i));
         if (!(q >= 0x1p-126f)) return std::nullopt;
         strq[i] = detail::strq_of_corner(i == 1 || i == 2 ? greatest.x : least.x, i >= 2 ? greatest.y : least.y, q);
     }
@@ -106,10 +104,10 @@ inline std::optional<std::array<glm::vec4, 4>> quadrilateral(const std::array<gl
 
 inline std::optional<WindowTexgen> keystone(const std::array<glm::dvec2, 4>& corners,
                                             const TextureRegion& region) noexcept {
-    const auto shape = detail::ConvexQuadrilateral::of(corners);
-    if (!shape) return std::nullopt;
-    const glm::dvec3 from_bottom = shape->from_side(0), from_right = shape->from_side(1),
-                     from_top = shape->from_side(2), from_left = shape->from_side(3);
+    const detail::ConvexQuadrilateral shape(corners);
+    if (!shape.is_convex()) return std::nullopt;
+    const glm::dvec3 from_bottom = shape.from_side(0), from_right = shape.from_side(1), from_top = shape.from_side(2),
+                     from_left = shape.from_side(3);
     const glm::dvec2 &least = (region.min)(), &greatest = (region.max)();
     const glm::dvec3 s = least.x * from_right + greatest.x * from_left,
                      t = least.y * from_top + greatest.y * from_bottom, q = from_right + from_left;

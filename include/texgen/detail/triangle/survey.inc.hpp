@@ -16,7 +16,7 @@ struct Plan {
 struct TileSurvey {
     Corners at;
     Plan plan;
-    std::optional<CloseRamps> close;  // where the planes cancel
+    OnDemand<CloseRamps> close;  // where the planes cancel
 };
 
 // Short where q varies much, so that the ends of a chunk are not far from its middle. A chunk costs about as much as 32
@@ -101,7 +101,7 @@ inline TileSurvey survey(const TriangleFunctions& triangle, const Tile& tile) no
     for (;;) {
         found.plan = choose_plan(triangle, tile, found.at);
         if (found.close || found.plan.work == Work::nothing || !found.at.cancel()) return found;
-        found.close = ClosePlanes(triangle.planes, tile).ramps(0, 1);
+        found.close.make(ClosePlanes(triangle.planes, tile).ramps(0, 1));
         found.at = corners_of(*found.close);
     }
 }

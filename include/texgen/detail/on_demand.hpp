@@ -1,0 +1,36 @@
+#pragma once
+
+// A value that is made where it is first needed, if ever. Every type of a std::optional takes a file as long to compile as all
+// else that one of these headers has; so that is for results only.
+
+#include <new>
+
+#include "language.hpp"
+
+namespace TEXGEN_DETAIL {
+
+// Of a type that needs no destructor; what is not made yet is not initialized.
+template <class Value>
+class OnDemand {
+public:
+    OnDemand() noexcept {}
+
+    explicit operator bool() const noexcept { return is_made_; }
+    Value& operator*() noexcept { return value_; }
+    Value* operator->() noexcept { return &value_; }
+
+    template <class... Arguments>
+    void make(const Arguments&... arguments) noexcept {
+        ::new (static_cast<void*>(&value_)) Value(arguments...);
+        is_made_ = true;
+    }
+    void drop() noexcept { is_made_ = false; }
+
+private:
+    union {
+        Value value_;
+    };
+    bool is_made_ = false;
+};
+
+}  // namespace TEXGEN_DETAIL
