@@ -34,10 +34,17 @@ TEXGEN_INLINE Doubles lost_at(const Mixture& mixture, const Doubles& alpha) noex
 TEXGEN_INLINE LongWords are_among(const double (&range)[2], const Doubles& alpha) noexcept {
     return greater(alpha, range[0]) & ~greater(alpha, range[1]);
 }
-TEXGEN_INLINE bool any_among(const double (&range)[2], const SegmentJob& job, std::size_t first) noexcept {
-    LongWords are{};
-    for (std::size_t i = first; i < job.count && range[1] > 0.0; i += static_cast<std::size_t>(lanes))
-        are |= are_among(range, to_doubles(load<Floats>(job.alpha + i)));
+// Whether one of these alphas is in one of the job's ranges. As a float the end of a range has the same floats below it.
+TEXGEN_INLINE bool has_small_alpha(const SegmentJob& job, std::size_t begin, std::size_t end) noexcept {
+    if (job.subnormal_alpha[0] < 0.0) return true;
+    const auto last =
+        static_cast<float>(smaller(larger(job.subnormal_alpha[1], job.inexact_alpha[1]), 2.0));
+    if (!(last > 0.0f)) return false;
+    WideWords are{};
+    for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(wide_lanes)) {
+        const auto alpha = load<WideFloats>(job.alpha + i);
+        are |= less(WideFloats{}, alpha) & at_most(alpha, WideFloats{} + last);
+    }
     return any(are);
 }
 
@@ -76,13 +83,17 @@ TEXGEN_INLINE Floats nearest_quotients(const ExactSum& s, const ExactSum& q, con
     return rounded_from(middle, remainder, are_near);
 }
 
-// A block, on both sides of the projector. A bit for each value that stays in doubt.
+// Blocks, on both sides of the projector, up to the first with values that stay in doubt.
 template <std::size_t Numerators, bool AreShort>
-TEXGEN_APART std::uint64_t fill_segment_closely(const SegmentJob& original, std::size_t begin, std::size_t end,
-                                                bool has_small) noexcept {
+TEXGEN_APART Undecided fill_segment_closely(const SegmentJob& original, std::size_t begin, std::size_t end,
+                                            bool has_small) noexcept {
     const SegmentJob job = original;
     std::uint64_t doubtful = 0;
     for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(lanes)) {
+        if (i % exact_block == 0) {
+            if (doubtful != 0) break;
+            begin = i;
+        }
         const Doubles alpha = to_doubles(load<Floats>(job.alpha + i));
         const ExactSum q = exactly_at<AreShort>(job.q, alpha);
         const LongWords in_front = greater(q.high, 0.0);
@@ -121,25 +132,27 @@ TEXGEN_APART std::uint64_t fill_segment_closely(const SegmentJob& original, std:
         }
         store_points(job, i, Numerators, value, narrow(in_front));
     }
-    return doubtful;
+    return doubtful != 0 ? Undecided{begin, doubtful} : Undecided{end, 0};
 }
 
-TEXGEN_INLINE std::size_t end_of_block(const SegmentJob& job, std::size_t begin) noexcept {
-    const std::size_t next = (begin / exact_block + 1) * exact_block;
+TEXGEN_INLINE std::size_t end_of_blocks(const SegmentJob& job, std::size_t begin, std::size_t blocks) noexcept {
+    const std::size_t size = blocks * exact_block;
+    const std::size_t next = (begin / size + 1) * size;
     return next < job.count ? next : job.count;
 }
 
 // base + alpha (step + rest) in double, two vectors by one division, all of it in front. Returns where the first block begins
 // that has a quotient near the middle of two floats, or an alpha that is no number or too small (it is written all the same),
-// or the count.
+// or the last.
 template <std::size_t Numerators>
-TEXGEN_INLINE std::size_t fill_segment_quickly(const SegmentJob& job, std::size_t begin, bool has_small) noexcept {
+TEXGEN_INLINE std::size_t fill_segment_quickly(const SegmentJob& job, std::size_t begin, std::size_t last,
+                                               bool has_small) noexcept {
     const double q_step = job.q.step + job.q.rest;
     double step[2];
     TEXGEN_UNROLL
     for (std::size_t k = 0; k < Numerators; ++k) step[k] = job.numerator[k].step + job.numerator[k].rest;
-    while (begin < job.count) {
-        const std::size_t end = end_of_block(job, begin);
+    while (begin < last) {
+        const std::size_t end = end_of_blocks(job, begin, 1);
         LongWords doubt{};
         Doubles sum{};
         for (std::size_t i = begin; i < end; i += 2 * static_cast<std::size_t>(lanes)) {
@@ -168,23 +181,22 @@ TEXGEN_INLINE std::size_t fill_segment_quickly(const SegmentJob& job, std::size_
         if (any(doubt | ~at_most(sum, sum))) return begin;
         begin = end;
     }
-    return job.count;
+    return last;
 }
 
-// Quickly, and what that leaves in doubt closely, with some of the blocks that follow.
+// Quickly, and what that leaves in doubt closely, with the rest of eight blocks.
 template <std::size_t Numerators>
 TEXGEN_INLINE Undecided fill_segment_exact_of(const SegmentJob& original, std::size_t first) noexcept {
     const SegmentJob job = original;
-    const bool has_small = any_among(job.subnormal_alpha, job, first) || any_among(job.inexact_alpha, job, first);
     for (std::size_t begin = first; begin < job.count;) {
-        if (job.is_quick && begin % (8 * exact_block) == 0)
-            begin = fill_segment_quickly<Numerators>(job, begin, has_small);
-        if (begin >= job.count) break;
-        const std::size_t end = end_of_block(job, begin);
-        const std::uint64_t doubtful = job.are_short
-                                           ? fill_segment_closely<Numerators, true>(original, begin, end, has_small)
-                                           : fill_segment_closely<Numerators, false>(original, begin, end, has_small);
-        if (doubtful != 0) return {begin, doubtful};
+        const bool is_first_of_eight = begin / exact_block % 8 == 0;
+        const std::size_t end = end_of_blocks(job, begin, 8);
+        const bool has_small = has_small_alpha(job, begin, end);
+        if (job.is_quick && is_first_of_eight) begin = fill_segment_quickly<Numerators>(job, begin, end, has_small);
+        if (begin == end) continue;
+        const Undecided left = job.are_short ? fill_segment_closely<Numerators, true>(original, begin, end, has_small)
+                                             : fill_segment_closely<Numerators, false>(original, begin, end, has_small);
+        if (left.values != 0) return left;
         begin = end;
     }
     return {job.count, 0};
