@@ -37,8 +37,7 @@ TEXGEN_INLINE LongWords are_among(const double (&range)[2], const Doubles& alpha
 // Whether one of these alphas is in one of the job's ranges. As a float the end of a range has the same floats below it.
 TEXGEN_INLINE bool has_small_alpha(const SegmentJob& job, std::size_t begin, std::size_t end) noexcept {
     if (job.subnormal_alpha[0] < 0.0) return true;
-    const auto last =
-        static_cast<float>(smaller(larger(job.subnormal_alpha[1], job.inexact_alpha[1]), 2.0));
+    const auto last = static_cast<float>(smaller(larger(job.subnormal_alpha[1], job.inexact_alpha[1]), 2.0));
     if (!(last > 0.0f)) return false;
     WideWords are{};
     for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(wide_lanes)) {

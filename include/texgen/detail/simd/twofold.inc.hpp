@@ -41,15 +41,23 @@ struct PointLanes {
 struct TwofoldForm {
     PointForm form;
     double high[3], low[3];
+    bool is_used[3], has_low[3];
     bool is_finite;
 
     TwofoldForm() = default;
     TEXGEN_INLINE explicit TwofoldForm(const PointForm& given) noexcept
-        : form(given), high{}, low{}, is_finite(0.0 * (form.x + form.y + form.z + form.w) == 0.0) {
+        : form(given),
+          high{},
+          low{},
+          is_used{},
+          has_low{},
+          is_finite(0.0 * (form.x + form.y + form.z + form.w) == 0.0) {
         const double coefficient[3] = {form.x, form.y, form.z};
         for (int j = 0; j < 3; ++j) {
             high[j] = leading_29_bits(coefficient[j]);
             low[j] = coefficient[j] - high[j];
+            is_used[j] = coefficient[j] != 0.0;
+            has_low[j] = low[j] != 0.0;
         }
     }
 
@@ -62,10 +70,11 @@ struct TwofoldForm {
                gamma(5);
     }
 
-    // Of points that are numbers: y and z without a coefficient are not looked at.
+    // Of points that are numbers: a coordinate without a coefficient is not looked at.
     TEXGEN_INLINE Twofold at(const PointLanes& at, bool precisely) const noexcept {
         Doubles sum = Doubles{} + form.w;
         Doubles rest{}, lost{}, third{};  // what the sum leaves, and what that leaves
+        bool is_first = precisely;
         const auto keep = [&](const Doubles& term) {
             Doubles left = term;
             if (precisely) {
@@ -78,17 +87,18 @@ struct TwofoldForm {
         };
         TEXGEN_UNROLL
         for (int j = 0; j < 3; ++j) {
-            if (j != 0 && high[j] == 0.0 && low[j] == 0.0) continue;
+            if (!is_used[j]) continue;
             Doubles product = at.v[j] * high[j];
             Doubles product_rest = at.v[j] * low[j];
             if (!precisely) product = quick_two_sum(product, product_rest, product_rest);
             Doubles error;
             sum = two_sum(sum, product, error);
-            if (j == 0 && precisely)
+            if (is_first)
                 rest = error;
             else
                 keep(error);
-            if (low[j] != 0.0) keep(product_rest);
+            is_first = false;
+            if (has_low[j]) keep(product_rest);
         }
         if (!precisely) return twofold_of(sum, rest, lost);
         Twofold result;
@@ -168,7 +178,7 @@ TEXGEN_INLINE Floats nearest_quotients(const Twofold& s, const TwofoldDivisor& q
         lost = lost + (magnitude(left[0]) + magnitude(left[1]) + magnitude(last_product)) * 0x1p-51;
     }
     is_known &= ~q.in_front | (is_precise & (is_alone | at_most(lost * 2.0, magnitude(remainder))));
-    return to_floats(middle + (where(greater(remainder, 0.0), error) - where(greater(-1.0 * remainder, 0.0), error)));
+    return to_floats(middle + where(are_nonzero(remainder), with_sign_of(error, remainder)));
 }
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA
