@@ -151,12 +151,8 @@ void interpolate(const TriangleBatch& batch, std::span<const FragmentRect> rects
     static_assert(sizeof(FragmentRect) == sizeof(int[4]));
     TEXGEN_ASSERT(rects.size() == batch.size());
     if (rects.size() != batch.size() || rects.empty()) return;
-    const auto area = [](const FragmentRect& rect) {
-        TEXGEN_ASSERT(rect.width >= 0 && rect.height >= 0);
-        return rect.width > 0 && rect.height > 0 ? detail::count_of(rect) : 0;
-    };
     std::size_t count = 0;
-    for (const FragmentRect& rect : rects) count += area(rect);
+    for (const FragmentRect& rect : rects) count += detail::count_of(rect);
     if (!detail::take_computed(out, count)) return;
     detail::TilesJob job{};
     detail::describe(job, batch, out, count);
@@ -166,9 +162,9 @@ void interpolate(const TriangleBatch& batch, std::span<const FragmentRect> rects
     std::size_t known = 0;
     std::size_t done = 0;
     for (detail::Undecided doubt = kernels.divide_tiles(job, 0, 0); doubt.begin < rects.size();) {
-        for (; known < doubt.begin; ++known) done += area(rects[known]);
+        for (; known < doubt.begin; ++known) done += detail::count_of(rects[known]);
         for (; known < (std::min)(doubt.begin + detail::batch_block, rects.size()); ++known, doubt.values >>= 1) {
-            const std::size_t values = area(rects[known]);
+            const std::size_t values = detail::count_of(rects[known]);
             if ((doubt.values & 1u) != 0)
                 detail::interpolate_apart(batch, known, rects[known], detail::part_of(out, done, values));
             done += values;
@@ -180,9 +176,8 @@ void interpolate(const TriangleBatch& batch, std::span<const FragmentRect> rects
 template <class CompiledWhereCalled>
 void interpolate(const TriangleBatch& batch, std::span<const std::uint32_t> ids, FragmentRect rect,
                  Texcoords out) noexcept {
-    TEXGEN_ASSERT(rect.width >= 0 && rect.height >= 0);
-    if (rect.width <= 0 || rect.height <= 0) return;
     const std::size_t count = detail::count_of(rect);
+    if (count == 0) return;
     TEXGEN_ASSERT(ids.size() == count);
     if (ids.size() != count || !detail::take_computed(out, count)) return;
     detail::FragmentsJob job{};
@@ -210,9 +205,8 @@ void interpolate(const TriangleBatch& batch, std::span<const std::uint32_t> ids,
 template <class CompiledWhereCalled>
 void footprint(const TriangleBatch& batch, std::span<const std::uint32_t> ids, FragmentRect rect, TexelsPerUnit texels,
                Footprints out) noexcept {
-    TEXGEN_ASSERT(rect.width >= 0 && rect.height >= 0);
-    if (rect.width <= 0 || rect.height <= 0) return;
     const std::size_t count = detail::count_of(rect);
+    if (count == 0) return;
     TEXGEN_ASSERT(ids.size() == count);
     if (ids.size() != count || !detail::take_computed(out, count)) return;
     std::uint32_t known = no_triangle;

@@ -153,9 +153,9 @@ inline namespace TEXGEN_BUILD {
 
 template <class CompiledWhereCalled>
 bool footprint(const FootprintSetup& setup, FragmentRect rect, Footprints out) noexcept {
-    TEXGEN_ASSERT(rect.width >= 0 && rect.height >= 0);
-    if (rect.width <= 0 || rect.height <= 0) return false;
-    detail::take_computed(out, detail::count_of(rect));
+    const std::size_t count = detail::count_of(rect);
+    if (count == 0) return false;
+    detail::take_computed(out, count);
     const detail::Tile tile = detail::tile_of(rect);
     const detail::FootprintFunctions& functions = setup.functions();
     const detail::TileSurvey found = detail::survey(functions.triangle, tile);

@@ -349,9 +349,8 @@ inline namespace TEXGEN_BUILD {
 
 template <class CompiledWhereCalled>
 Work interpolate(const TriangleSetup& setup, FragmentRect rect, Texcoords out) noexcept {
-    TEXGEN_ASSERT(rect.width >= 0 && rect.height >= 0);
-    if (rect.width <= 0 || rect.height <= 0) return Work::nothing;
     const std::size_t count = detail::count_of(rect);
+    if (count == 0) return Work::nothing;
     const bool any_output = detail::take_computed(out, count);
     const detail::Tile tile = detail::tile_of(rect);
     const detail::TriangleFunctions& triangle = setup.functions();

@@ -22,6 +22,7 @@
 #include "../arithmetic/nearest.hpp"
 #include "../arithmetic/rounding.hpp"
 #include "../arithmetic/widen.hpp"
+#include "../assert.hpp"
 #include "../simd/lanes.hpp"
 
 namespace TEXGEN_DETAIL {
@@ -50,8 +51,10 @@ struct Tile {
 
 inline Tile tile_of(const FragmentRect& rect) noexcept { return {rect.x, rect.y, rect.width, rect.height}; }
 
-// How many fragments a rectangle has: where std::size_t cannot say it, more than any array holds.
+// How many fragments a rectangle has, whose sides are not negative: where std::size_t cannot say it, more than any array holds.
 inline std::size_t count_of(const FragmentRect& rect) noexcept {
+    TEXGEN_ASSERT(rect.width >= 0 && rect.height >= 0);
+    if (rect.width <= 0 || rect.height <= 0) return 0;
     constexpr std::size_t most = (std::numeric_limits<std::size_t>::max)();
     const auto width = static_cast<std::size_t>(rect.width);
     const auto height = static_cast<std::size_t>(rect.height);
