@@ -111,7 +111,6 @@ void footprint(const TriangleBatch& batch, std::span<const std::uint32_t> ids, F
                Footprints out) noexcept;
 
 }  // namespace TEXGEN_BUILD
-
 }  // namespace TEXGEN_NAMESPACE
 
 #include "detail/triangle/batch.inc.hpp"

@@ -130,7 +130,6 @@ inline std::size_t clip_to_slide(std::span<const ClipVertex> polygon, TextureReg
                                  std::span<ClipVertex> out) noexcept;
 
 }  // namespace TEXGEN_COMPILER
-
 }  // namespace TEXGEN_NAMESPACE
 
 #include "detail/culling/near_clip.inc.hpp"

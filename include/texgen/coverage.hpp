@@ -22,7 +22,6 @@
 #include "transform.hpp"
 
 namespace TEXGEN_NAMESPACE {
-
 inline namespace TEXGEN_BUILD {
 
 // The points that a slide lights, prepared once for many questions, of which the functions below ask one.
@@ -73,7 +72,6 @@ void coverage(const Transform<Texture, Space>& texture_from_space, const Texture
               std::span<const Sphere> spheres, std::span<Coverage> out) noexcept;
 
 }  // namespace TEXGEN_BUILD
-
 }  // namespace TEXGEN_NAMESPACE
 
 #include "detail/culling/spheres.inc.hpp"

@@ -152,7 +152,6 @@ template <class CompiledWhereCalled = void>
 bool footprint(const FootprintSetup& setup, FragmentRect rect, Footprints out) noexcept;
 
 }  // namespace TEXGEN_BUILD
-
 }  // namespace TEXGEN_NAMESPACE
 
 #include "detail/triangle/footprint.inc.hpp"

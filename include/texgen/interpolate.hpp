@@ -37,7 +37,6 @@
 #include "texcoord.hpp"
 
 namespace TEXGEN_NAMESPACE {
-
 inline namespace TEXGEN_COMPILER {
 
 // A triangle made ready for interpolation over any number of rectangles of fragments.
@@ -97,7 +96,6 @@ template <class CompiledWhereCalled = void>
 Work interpolate(const TriangleSetup& setup, FragmentRect rect, Texcoords out) noexcept;
 
 }  // namespace TEXGEN_BUILD
-
 }  // namespace TEXGEN_NAMESPACE
 
 #include "detail/triangle/survey.inc.hpp"

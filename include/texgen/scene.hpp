@@ -135,7 +135,6 @@ private:
 };
 
 }  // namespace TEXGEN_COMPILER
-
 }  // namespace TEXGEN_NAMESPACE
 
 #include "detail/culling/scene.inc.hpp"

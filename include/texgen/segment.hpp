@@ -24,7 +24,6 @@
 #include "texcoord.hpp"
 
 namespace TEXGEN_NAMESPACE {
-
 inline namespace TEXGEN_BUILD {
 
 // Writes s/q, t/q and r/q along a segment, C_u = ((1-a) A_u + a B_u) / ((1-a) A_q + a B_q) for u = s, t, r.
@@ -55,7 +54,6 @@ inline Work work(const Segment& segment, TextureRegion region, Tolerance toleran
 inline glm::dvec2 error_bound(const Segment& segment, Tolerance tolerance = exact) noexcept;
 
 }  // namespace TEXGEN_COMPILER
-
 }  // namespace TEXGEN_NAMESPACE
 
 #include "detail/points/segment.inc.hpp"

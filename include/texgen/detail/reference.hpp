@@ -84,6 +84,5 @@ struct Corners {
 };
 
 }  // namespace detail
-
 }  // namespace TEXGEN_COMPILER
 }  // namespace TEXGEN_NAMESPACE::reference

@@ -210,7 +210,6 @@ inline Coverage coverage_of(const BoxKernels& kernels, const LitForms& forms, co
 }
 
 }  // namespace TEXGEN_BUILD
-
 }  // namespace TEXGEN_DETAIL
 
 namespace TEXGEN_NAMESPACE {

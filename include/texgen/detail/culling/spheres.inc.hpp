@@ -160,5 +160,4 @@ void cover(const LitForms& forms, const FloatForms& float_forms, std::span<const
 }
 
 }  // namespace TEXGEN_BUILD
-
 }  // namespace TEXGEN_DETAIL

@@ -95,11 +95,9 @@ void for_each_run(std::span<const std::uint32_t> ids, const FragmentRect& rect, 
 }
 
 }  // namespace TEXGEN_BUILD
-
 }  // namespace TEXGEN_DETAIL
 
 namespace TEXGEN_NAMESPACE {
-
 inline namespace TEXGEN_COMPILER {
 
 inline void TriangleBatch::take(std::span<const Triangle> triangles) noexcept {
@@ -227,5 +225,4 @@ void footprint(const TriangleBatch& batch, std::span<const std::uint32_t> ids, F
 }
 
 }  // namespace TEXGEN_BUILD
-
 }  // namespace TEXGEN_NAMESPACE
