@@ -60,8 +60,9 @@ TEXGEN_INLINE bool are_within(const FloatDivision& division, const PointForm& nu
         (s_terms * form_error + underflow + quotient * q_error) / q * 1.0015f + quotient * roundings;
     const auto accepted = static_cast<float>(tolerance > 0x1p-100 ? 0.9999 * tolerance : 0.0);
     constexpr float largest_terms = 0x1p126f;
-    return !any(~(less(WideFloats{} + 0x1p-59f, q) & less(s_terms, WideFloats{} + largest_terms) &
-                  less(q_terms, WideFloats{} + largest_terms) & less(error, WideFloats{} + accepted)));
+    const WideWords is_within = less(WideFloats{} + 0x1p-59f, q) & less(s_terms, WideFloats{} + largest_terms) &
+                                less(q_terms, WideFloats{} + largest_terms) & less(error, WideFloats{} + accepted);
+    return !any(~is_within);
 }
 
 // Divided in float, in blocks of float_block points and then more. The largest |v_j| bound the terms of the forms, and with the
