@@ -169,7 +169,6 @@ void cover(const LitForms& forms, const FloatForms& float_forms, std::span<const
 }
 
 // Whether a further plane separates one box, which is partial to the forms, from what they leave.
-template <class CompiledWhereCalled = void>
 inline bool is_separated(const BoxKernels& kernels, const LitForms& forms, const BoxBlock& block) noexcept {
     constexpr double unbounded = 0x1p200;  // nor larger than what products hold
     Point middle{};
@@ -192,7 +191,6 @@ inline bool is_separated(const BoxKernels& kernels, const LitForms& forms, const
 }
 
 // One box.
-template <class CompiledWhereCalled = void>
 inline Coverage coverage_of(const BoxKernels& kernels, const LitForms& forms, const Box& box) noexcept {
     FormsInDoubt doubt;
     const int answer =

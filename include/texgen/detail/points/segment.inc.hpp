@@ -169,14 +169,12 @@ inline void prepare_exact(SegmentJob& job) noexcept {
 inline namespace TEXGEN_BUILD {
 
 // The nearest floats from `first` on: in vectors; what those cannot decide value by value.
-template <class CompiledWhereCalled = void>
 inline void interpolate_exact(const SegmentKernels& kernels, SegmentJob& job, std::size_t first) noexcept {
     prepare_exact(job);
     fill_blocks(kernels.fill_exact, job, first, interpolate_one);
 }
 
 // In float where that stays inside the tolerance for the whole segment, else the nearest float.
-template <class CompiledWhereCalled = void>
 inline void interpolate_job(const SegmentKernels& kernels, SegmentJob job, double tolerance) noexcept {
     bool float_fits = tolerance > 0.0 && job.q_a > 0.0 && job.q_b > 0.0;
     for (int k = 0; k < job.numerators; ++k) float_fits = float_fits && segment_float_error(job, k) <= tolerance;

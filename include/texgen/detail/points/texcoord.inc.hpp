@@ -90,7 +90,6 @@ inline void take_bounds(PointJob& job, const Box& box) noexcept {
 inline namespace TEXGEN_BUILD {
 
 // Points begin to end of a job: in vectors; what those cannot decide point by point.
-template <class CompiledWhereCalled = void>
 inline void project_exact(const PointKernels& kernels, PointJob& job, std::size_t begin, std::size_t end) noexcept {
     job.count = end;
     fill_blocks(kernels.fill_exact, job, begin, project_one);
@@ -113,7 +112,6 @@ void project_within(Kernel kernel, PointJob& job, std::size_t begin, std::size_t
 }
 
 // The dial: all_float, else float_divided, else exact.
-template <class CompiledWhereCalled = void>
 inline void project_job(const PointKernels& kernels, PointJob& points) noexcept {
     const auto exactly = [&kernels](PointJob& job, std::size_t begin, std::size_t end) {
         project_exact(kernels, job, begin, end);
