@@ -70,6 +70,8 @@ inline Double2 smaller(const Double2& a, const Double2& b) noexcept {
 inline Double2 larger(const Double2& a, const Double2& b) noexcept {
     return {{larger(a[0], b[0]), larger(a[1], b[1])}};
 }
+inline bool any_less(const Double2& a, const Double2& b) noexcept { return a[0] < b[0] || a[1] < b[1]; }
+inline bool all_less(const Double2& a, const Double2& b) noexcept { return a[0] < b[0] && a[1] < b[1]; }
 
 }  // namespace TEXGEN_DETAIL
 
@@ -130,6 +132,14 @@ TEXGEN_INLINE Double2 double2_of(double first, double second) noexcept { return 
 TEXGEN_INLINE Double2 smaller(const Double2& a, const Double2& b) noexcept { return a < b ? a : b; }
 TEXGEN_INLINE Double2 larger(const Double2& a, const Double2& b) noexcept { return a > b ? a : b; }
 using Bits2 [[gnu::vector_size(16)]] = long long;
+TEXGEN_INLINE bool any_less(const Double2& a, const Double2& b) noexcept {
+    const Bits2 less = a < b;
+    return (less[0] | less[1]) != 0;
+}
+TEXGEN_INLINE bool all_less(const Double2& a, const Double2& b) noexcept {
+    const Bits2 less = a < b;
+    return (less[0] & less[1]) != 0;
+}
 TEXGEN_INLINE Double2 magnitude(const Double2& a) noexcept {
     return __builtin_bit_cast(Double2, __builtin_bit_cast(Bits2, a) & 0x7fffffffffffffffLL);
 }

@@ -105,15 +105,22 @@ inline Corners corners_of(const CloseRamps& close) noexcept {
     return corners;
 }
 
-// Where the fragments in front lie as to one side of the region: G = F - bound Q is positive above it and negative below.
+// The least and the largest G = F - bound Q at the corners, which is positive above a side of the region and negative below
+// it, and how far from 0 they must be.
 struct SideOfBound {
-    bool all_below[2], all_above[2];
+    Double2 least, largest, margin;
+
+    bool any_below() const noexcept { return any_less(largest, -margin); }
+    bool any_above() const noexcept { return any_less(margin, least); }
+    bool all_below() const noexcept { return all_less(largest, -margin); }
+    bool all_above() const noexcept { return all_less(margin, least); }
 };
 
 // The float that is written may be on the other side of the bound than the exact value, by an ulp, by the tolerance
 // (twice that leaves room), or as a 0 that was subnormal: so the answer must hold with that much slack.
 inline SideOfBound side_of(const Corners& at, const Double2& bound, double tolerance) noexcept {
     Double2 g[4];
+    TEXGEN_UNROLL
     for (std::size_t i = 0; i < 4; ++i) g[i] = at.numerator[i] - bound * at.q[i];
     const double slightly_less = 1.0 - gamma(4);
     const Double2 least = smaller(smaller(g[0], g[1]), smaller(g[2], g[3])) * slightly_less;
@@ -123,32 +130,22 @@ inline SideOfBound side_of(const Corners& at, const Double2& bound, double toler
     const double q = larger(std::fabs(at.least_q), std::fabs(at.largest_q));
     const Double2 margin =
         (at.numerator_error + (size + slack) * at.q_error + slack * q + size * (gamma(4) * q)) * 1.0001;
-    return {{largest[0] < -margin[0], largest[1] < -margin[1]}, {least[0] > margin[0], least[1] > margin[1]}};
+    return {least, largest, margin};
 }
 
-// How much of all fragments at once is between two bounds of the one numerator, and of the other.
-struct SideCoverage {
-    Coverage of[2];
-};
-
-inline SideCoverage coverage_of(const Corners& at, const Double2& min, const Double2& max, double tolerance) noexcept {
-    SideOfBound of[2];
-    for (std::size_t i = 0; i < 2; ++i) of[i] = side_of(at, i == 0 ? min : max, tolerance);
-    const SideOfBound &of_min = of[0], &of_max = of[1];
-    const auto coverage = [&](std::size_t k) {
-        if (of_min.all_below[k]) return Coverage::outside;
-        if (of_max.all_above[k]) return Coverage::outside;
-        return of_min.all_above[k] && of_max.all_below[k] && at.all_in_front() ? Coverage::inside : Coverage::partial;
-    };
-    return {{coverage(0), coverage(1)}};
+// How much of all fragments in front is between two bounds of the one numerator and two of the other.
+inline Coverage coverage_of(const Corners& at, const Double2& min, const Double2& max, double tolerance) noexcept {
+    const SideOfBound of_min = side_of(at, min, tolerance);
+    if (of_min.any_below()) return Coverage::outside;
+    const SideOfBound of_max = side_of(at, max, tolerance);
+    if (of_max.any_above()) return Coverage::outside;
+    return of_min.all_above() && of_max.all_below() && at.all_in_front() ? Coverage::inside : Coverage::partial;
 }
 
 // How much is in the sides of a region, where the numerators are s and t.
 inline Coverage st_coverage(const Corners& at, const LitTest& lit, double tolerance) noexcept {
-    const auto [of] = coverage_of(at, double2_of(lit.least(0), lit.least(1)),
-                                  double2_of(lit.greatest(0), lit.greatest(1)), tolerance);
-    if (of[0] == Coverage::outside || of[1] == Coverage::outside) return Coverage::outside;
-    return of[0] == Coverage::inside && of[1] == Coverage::inside ? Coverage::inside : Coverage::partial;
+    return coverage_of(at, double2_of(lit.least(0), lit.least(1)), double2_of(lit.greatest(0), lit.greatest(1)),
+                       tolerance);
 }
 
 // Of a depth, where the numerators are r twice. For an infinite limit stands what is rounded to infinity; but where it is none a
@@ -157,7 +154,7 @@ inline Coverage r_coverage(const Corners& at, const LitTest& lit, double toleran
     constexpr double none = 0x1p500, infinite = 0x1p128;
     const double min = larger(-none, smaller(infinite, widened(lit.r_min())));
     const double max = larger(-infinite, smaller(none, widened(lit.r_max())));
-    return coverage_of(at, double2_of(min, min), double2_of(max, max), tolerance).of[0];
+    return coverage_of(at, double2_of(min, min), double2_of(max, max), tolerance);
 }
 
 }  // namespace TEXGEN_BUILD
