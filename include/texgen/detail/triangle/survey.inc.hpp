@@ -71,8 +71,7 @@ inline void choose_steps(Plan& plan, const Corners& at, double tolerance) noexce
 
 // How much of a tile is between the limits of the region's depth: by the planes as they are, as no more than their leading
 // digits are asked.
-inline Coverage depth_coverage(const TriangleFunctions& triangle, const Tile& tile) noexcept {
-    if (!triangle.lit.has_depth()) return Coverage::inside;
+TEXGEN_APART inline Coverage depth_coverage(const TriangleFunctions& triangle, const Tile& tile) noexcept {
     const Corners at = corners_of(triangle.planes, triangle.planes.planes(2, 2), triangle.q, tile);
     return r_coverage(at, triangle.lit, triangle.tolerance);
 }
@@ -82,7 +81,7 @@ inline Plan choose_plan(const TriangleFunctions& triangle, const Tile& tile, con
     if (at.all_behind()) return plan;
     const Coverage sides = st_coverage(at, triangle.lit, triangle.tolerance);
     if (sides == Coverage::outside) return plan;
-    plan.depth = depth_coverage(triangle, tile);
+    if (triangle.lit.has_depth()) plan.depth = depth_coverage(triangle, tile);
     if (plan.depth == Coverage::outside) return plan;
 
     const bool all_inside = sides == Coverage::inside && plan.depth == Coverage::inside;
