@@ -49,7 +49,11 @@ struct Tile {
     }
 };
 
-inline Tile tile_of(const FragmentRect& rect) noexcept { return {rect.x, rect.y, rect.width, rect.height}; }
+// A rectangle comes in two registers: GCC would spill those to load x and y at once, and the load wait for both stores.
+inline Tile tile_of(const FragmentRect& rect) noexcept {
+    const volatile int y = rect.y;
+    return {rect.x, y, rect.width, rect.height};
+}
 
 // How many fragments a rectangle has, whose sides are not negative: where std::size_t cannot say it, more than any array holds.
 inline std::size_t count_of(const FragmentRect& rect) noexcept {
