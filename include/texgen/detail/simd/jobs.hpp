@@ -23,16 +23,16 @@ using Ramp = RampOf<double>;
 struct TileJob {
     int numerators;
     int width, height;
-    int chunk;       // the most fragments of a row that share a middle
-    StepRule steps;  // of all chunks
+    int chunk = 0;                         // the most fragments of a row that share a middle
+    StepRule steps = StepRule::undecided;  // of all chunks
     Ramp numerator[2];
     Ramp q;
     bool q_is_constant;
-    double quotient_error[2];   // for fill_exact
-    double numerator_error[2];  // for fill_polynomial, as what follows
-    double q_error;
-    double least_q;  // below it no certificate holds
-    double tolerance;
+    double quotient_error[2] = {};   // for fill_exact
+    double numerator_error[2] = {};  // for fill_polynomial, as what follows
+    double q_error = 0.0;
+    double least_q = 0.0;  // below it no certificate holds
+    double tolerance = 0.0;
     float* out[2];
     bool is_scratch[2];
     float* lit;

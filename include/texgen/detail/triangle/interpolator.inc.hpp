@@ -21,7 +21,7 @@ public:
 
     // s and t, of which one that only the mask needs has no output.
     void add(const std::span<float>& s, const std::span<float>& t, const std::span<float>& lit) noexcept {
-        planes_ = triangle_.st;
+        planes_ = &triangle_.st;
         count_ = 2;
         coordinate_[1] = 1;
         output_[0] = s;
@@ -30,14 +30,15 @@ public:
     }
     // One coordinate, 0 to 2 for s, t, r.
     void add(glm::length_t coordinate, const std::span<float>& output) noexcept {
-        planes_ = triangle_.planes.planes(coordinate, coordinate);
+        alone_ = triangle_.planes.planes(coordinate, coordinate);
+        planes_ = &alone_;
         count_ = 1;
         coordinate_[0] = coordinate;
         output_[0] = output;
     }
 
     Corners corners_at(const Tile& tile) noexcept {
-        const Corners at = corners_of(triangle_.planes, planes_, triangle_.q, tile);
+        const Corners at = corners_of(triangle_.planes, *planes_, triangle_.q, tile);
         return at.all_behind() || !at.cancel() ? at : corners_of(close_ramps(tile));
     }
 
@@ -185,7 +186,7 @@ private:
 
     // The planes as they are.
     CloseRamps plain_ramps(const Tile& tile) const noexcept {
-        const Corners at = corners_of(triangle_.planes, planes_, triangle_.q, tile);
+        const Corners at = corners_of(triangle_.planes, *planes_, triangle_.q, tile);
         const auto plain = [](double base, double dx, double dy, double error) {
             return CloseRamp{{{base, 0.0}, {dx, 0.0}, {dy, 0.0}}, error, 0.0};
         };
@@ -258,7 +259,7 @@ private:
 
     // What every kernel needs. A factor that the numerators and q share is free.
     TileJob make_job(const Tile& tile, const Corners& at, double factor = 1.0) noexcept {
-        TileJob job{};
+        TileJob job;  // not {}: all zeros would cost what a row does
         job.numerators = static_cast<int>(count_);
         job.width = tile.width;
         job.height = tile.height;
@@ -277,8 +278,7 @@ private:
             job.out[k] = output.empty() ? scratch_[k] : output.data() + offset(tile.x, tile.y);
             job.is_contiguous = job.is_contiguous && !job.is_scratch[k];
         }
-        if (lit_.empty()) return job;
-        job.lit = lit_.data() + offset(tile.x, tile.y);
+        job.lit = lit_.empty() ? nullptr : lit_.data() + offset(tile.x, tile.y);
         triangle_.lit.copy_to(job.min, job.max);
         return job;
     }
@@ -294,7 +294,8 @@ private:
     Tile rect_;  // whose fragments the outputs have
     std::size_t count_ = 0;
     glm::length_t coordinate_[2] = {};
-    PlaneOf<Double2> planes_;
+    const PlaneOf<Double2>* planes_;
+    PlaneOf<Double2> alone_;
     OnDemand<CloseRamps>& close_;
     Tile whole_;  // what is being interpolated
     OnDemand<CloseJob> closely_;
@@ -351,7 +352,7 @@ template <class CompiledWhereCalled>
 Work interpolate(const TriangleSetup& setup, FragmentRect rect, Texcoords out) noexcept {
     const std::size_t count = detail::count_of(rect);
     if (count == 0) return Work::nothing;
-    const bool any_output = detail::take_computed(out, count);
+    detail::take_computed(out, count);
     const detail::Tile tile = detail::tile_of(rect);
     const detail::TriangleFunctions& triangle = setup.functions();
     detail::TileSurvey found = detail::survey(triangle, tile);
@@ -361,7 +362,6 @@ Work interpolate(const TriangleSetup& setup, FragmentRect rect, Texcoords out) n
         return plan.work;
     }
 
-    if (!any_output) return plan.work;
     const detail::TileKernels& kernels = detail::chosen<detail::TileKernels>();
 
     const bool both = !out.s.empty() && !out.t.empty();
