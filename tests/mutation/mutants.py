@@ -507,7 +507,7 @@ MUTANTS = [
     *_of("detail/kernels/stores.inc.hpp",
          ("the partial store is one too long", "i < size && x < end; ++i, ++x", "i < size && x <= end; ++i, ++x",
           "interpolate_test tolerance_test"),
-         ("a vector is written beyond the outputs", "(size) <= row.writable)", "(size) <= row.writable + 1)",
+         ("a vector is written beyond the outputs", "x + size <= row.writable)", "x + size <= row.writable + 1)",
           "interpolate_test tolerance_test")),
     *_of("detail/kernels/chunks.inc.hpp",
          ("the chunk's certificate is not asked", "if (!(extent[i] <= 0.75 && least_q[i] > 0.0 && fits(0.0))) return StepRule::none;",

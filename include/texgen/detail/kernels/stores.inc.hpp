@@ -52,12 +52,11 @@ TEXGEN_INLINE void store_all(const RowOutputs<Numerators>& row, std::int64_t x, 
         if (row.lit != nullptr) store(row.lit + x, lit_of(row, value, in_front));
 }
 
-// A whole vector where it may be written, else up to `end`.
+// Up to `end` of a vector that may not be written whole.
 template <std::size_t Numerators, class Vector, class Mask>
-TEXGEN_INLINE void store_from(const RowOutputs<Numerators>& row, std::int64_t x, std::int64_t end,
+TEXGEN_INLINE void store_part(const RowOutputs<Numerators>& row, std::int64_t x, std::int64_t end,
                               const Vector (&value)[Numerators], const Mask& in_front) noexcept {
     constexpr std::size_t size = sizeof(Vector) / sizeof(float);
-    if (x + static_cast<std::int64_t>(size) <= row.writable) return store_all(row, x, value, in_front);
     float buffer[Numerators + 1][size]{};
     RowOutputs<Numerators> buffered = row;
     for (std::size_t k = 0; k < Numerators; ++k) buffered.out[k] = buffer[k];
@@ -67,6 +66,15 @@ TEXGEN_INLINE void store_from(const RowOutputs<Numerators>& row, std::int64_t x,
         for (std::size_t k = 0; k < Numerators; ++k) row.out[k][x] = buffer[k][i];
         if (row.lit != nullptr) row.lit[x] = buffer[Numerators][i];
     }
+}
+
+// A whole vector where it may be written, else up to `end`.
+template <std::size_t Numerators, class Vector, class Mask>
+TEXGEN_INLINE void store_from(const RowOutputs<Numerators>& row, std::int64_t x, std::int64_t end,
+                              const Vector (&value)[Numerators], const Mask& in_front) noexcept {
+    constexpr auto size = static_cast<std::int64_t>(sizeof(Vector) / sizeof(float));
+    if (x + size <= row.writable) return store_all(row, x, value, in_front);
+    store_part(row, x, end, value, in_front);
 }
 
 // The first `count` lanes.

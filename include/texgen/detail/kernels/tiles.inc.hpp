@@ -9,8 +9,10 @@ struct TileRow : RowOutputs<Numerators> {
     double base[Numerators];
     double q;
 
-    TEXGEN_INLINE TileRow(const TileJob& job, int y) noexcept
-        : RowOutputs<Numerators>(job, y), q(job.q.base + y * job.q.dy) {
+    TEXGEN_INLINE TileRow(const TileJob& job, int y) noexcept : RowOutputs<Numerators>(job, y) {}
+
+    TEXGEN_INLINE void move_to(const TileJob& job, int y) noexcept {
+        q = job.q.base + y * job.q.dy;
         for (std::size_t k = 0; k < Numerators; ++k) base[k] = job.numerator[k].base + y * job.numerator[k].dy;
     }
 };
@@ -41,8 +43,9 @@ TEXGEN_INLINE TileJob::Unit divide_units(const TileJob& job, TileJob::Unit unit)
     Doubles reciprocal = Doubles{} + 1.0 / job.q.base;
     for (; !job.is_done(unit); unit = job.unit_after(unit)) {
         Words doubtful{};
-        for (int y = unit.y_begin; y < unit.y_end; ++y) {
-            const TileRow<Numerators> row(job, y);
+        TileRow<Numerators> row(job, unit.y_begin);
+        for (int y = unit.y_begin; y < unit.y_end; ++y, row.advance()) {
+            row.move_to(job, y);
             Doubles index = indices<Doubles>() + static_cast<double>(unit.x_begin);
             Floats quotient[Numerators];
             std::int64_t x = unit.x_begin;  // what follows the last vector may be no int
@@ -53,7 +56,7 @@ TEXGEN_INLINE TileJob::Unit divide_units(const TileJob& job, TileJob::Unit unit)
             }
             if (x >= unit.x_end) continue;
             divide_vector<Exact>(job, row, index, reciprocal, quotient, doubtful);
-            store_from(row, x, unit.x_end, quotient, ~Words{});
+            store_part(row, x, unit.x_end, quotient, ~Words{});
         }
         if (Exact && any(doubtful)) break;
     }
