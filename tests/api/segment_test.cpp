@@ -533,3 +533,17 @@ TEST_CASE("a segment needs nothing only where nothing is lit, and no test only w
     CHECK(texgen::work({{0.5f, 0.5f, 0.0f, -1.0f}, {0.5f, 0.5f, 0.0f, 0.0f}}, texgen::whole_texture()) ==
           texgen::Work::nothing);
 }
+
+TEST_CASE("half-way between two subnormal floats, along a segment, is rounded to even") {
+    std::vector<float> alpha, expected;
+    for (int k = 0; k < 64; ++k) {
+        alpha.push_back(static_cast<float>(std::ldexp(2 * k + 1, -30)));
+        expected.push_back(static_cast<float>(std::ldexp(k % 2 == 0 ? k : k + 1, -149)));
+    }
+    std::vector<float> s(alpha.size()), t(alpha.size());
+    const float b = static_cast<float>(std::ldexp(49.0, -120));
+    interpolate({{0.0f, 0.0f, 0.0f, 49.0f}, {b, b, 0.0f, 49.0f}}, alpha, texgen::whole_texture(),
+                {.s = s, .t = t, .r = {}, .lit = {}});
+    CHECK(s == expected);
+    CHECK(t == expected);
+}

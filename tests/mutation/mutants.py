@@ -540,6 +540,7 @@ MUTANTS = [
           "if (any(doubt)) return begin;", "segment_test doubt_test"),
          ("quotients that share a division are in no doubt", "doubt |= are_near_middles(quotient, job.ulps[k]);",
           "doubt |= LongWords{};", "doubt_test segment_test near_ties_test"),
+         ("small alphas along a segment are not looked for", "if (!(last > 0.0f)) return false;", "return false;", "segment_test"),
          ("what a short sum leaves is lost", "sum.low = part - (sum.high - mixture.base);", "sum.low = Doubles{};", "doubt_test near_ties_test"),
          ("ends that are far apart are added quickly", "if (mixture.kind == Mixture::is_far)", "if (false)", "doubt_test near_ties_test"),
          ("the rest of a mixture is forgotten", "sum.low + alpha * mixture.rest, sum.low);", "sum.low, sum.low);", "doubt_test segment_test"),
