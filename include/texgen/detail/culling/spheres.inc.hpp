@@ -106,14 +106,14 @@ public:
     OpenSpheres(const BoxKernels& kernels, const LitForms& forms) noexcept : kernels_(kernels), forms_(forms) {}
 
     void add(const Sphere& sphere, Coverage& out) noexcept {
-        const bool is_sphere = is_finite(sphere.centre.x) && is_finite(sphere.centre.y) && is_finite(sphere.centre.z) &&
-                               sphere.radius >= 0.0f && is_finite(sphere.radius);
+        const glm::dvec3 centre = widened(sphere.centre);
+        const bool is_sphere = is_finite(centre.x) && is_finite(centre.y) && is_finite(centre.z) &&
+                               sphere.radius >= 0.0f && is_finite(widened(sphere.radius));
         if (!is_sphere || !forms_.can_say()) {
             out = exact_coverage(forms_, sphere);
             return;
         }
-        for (std::size_t j = 0; j < 3; ++j)
-            block_.centre[j][count_] = widened(sphere.centre[static_cast<glm::length_t>(j)]);
+        for (std::size_t j = 0; j < 3; ++j) block_.centre[j][count_] = centre[static_cast<glm::length_t>(j)];
         block_.radius[count_] = widened(sphere.radius);
         sphere_[count_] = &sphere;
         out_[count_] = &out;

@@ -99,15 +99,15 @@ TEXGEN_APART Undecided fill_segment_closely(const SegmentJob& original, std::siz
         const Doubles reciprocal = 1.0 / q.high;
         ExactSum s[2];
         Doubles quotient[2];
-        LongWords are_near[2], near{};
+        LongWords are_near[2], any_near{};
         TEXGEN_UNROLL
         for (std::size_t k = 0; k < Numerators; ++k) {
             s[k] = exactly_at<AreShort>(job.numerator[k], alpha);
             quotient[k] = where(in_front, s[k].high * reciprocal);
             are_near[k] = are_near_middles(quotient[k], 7);
-            near |= are_near[k];
+            any_near |= are_near[k];
         }
-        std::uint64_t near_bits = lane_bits(near);
+        std::uint64_t near_bits = lane_bits(any_near);
         LongWords are_small{}, known = ~LongWords{};
         if (has_small) {
             are_small = are_among(job.subnormal_alpha, alpha);

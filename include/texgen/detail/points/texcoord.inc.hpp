@@ -77,7 +77,7 @@ inline void take_bounds(PointJob& job, const Box& box) noexcept {
     if (!(q.terms < 0x1p1000 && q.least > 0x1p20 * gamma(5) * q.terms)) return;
     job.is_bounded = true;
     job.is_certified = is_float(job.q);
-    for (int j = 0; j < 3; ++j) job.bound[j] = size[j];
+    for (glm::length_t j = 0; j < 3; ++j) job.bound[j] = size[j];
     for (int k = 0; k < job.numerators; ++k) {
         const PointForm& form = job.numerator[k];
         const Range s = range_of(form);
