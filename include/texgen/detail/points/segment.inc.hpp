@@ -133,7 +133,8 @@ inline void prepare_exact(SegmentJob& job) noexcept {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     job.q = is_finite(job.q_a + job.q_b) ? mixture_of(job.q_a, job.q_b) : Mixture{nan, nan, 0.0, Mixture::is_short};
     const MixtureBounds of_q(job.q, job.q_a, job.q_b);
-    const double least_normal = 0x1p-126 * larger(job.q_a, job.q_b);  // a numerator whose quotient is one
+    // A numerator whose quotient is one; where q is not finite all quotients are 0.
+    const double least_normal = is_finite(job.q_a + job.q_b) ? 0x1p-126 * larger(job.q_a, job.q_b) : 0.0;
     job.inexact_alpha[0] = 0.0;
     job.inexact_alpha[1] = of_q.inexact_below;
     job.subnormal_alpha[0] = job.subnormal_alpha[1] = 0.0;
