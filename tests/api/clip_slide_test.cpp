@@ -14,16 +14,19 @@
 #include <glm/vec3.hpp>
 
 #include "judges/oracle.hpp"
-#include "support/hex.hpp"
+#include "support/polygons.hpp"
 #include "support/random.hpp"
 #include "texgen/clip.hpp"
 #include "texgen/linear.hpp"
 
 namespace {
 
+using support::Bits;
+using support::bits;
 using support::exactly;
 using support::hex;
 using support::magnitude;
+using support::Polygon;
 using support::Random;
 using support::Rational;
 using texgen::atlas_tile;
@@ -35,29 +38,9 @@ using texgen::whole_texture;
 constexpr float nan_float = std::numeric_limits<float>::quiet_NaN();
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
-using Polygon = std::vector<ClipVertex>;
-using Bits = std::array<std::uint32_t, 8>;
-
-Bits bits(const ClipVertex& v) {
-    Bits result{};
-    for (std::size_t i = 0; i < 4; ++i) {
-        result[i] = std::bit_cast<std::uint32_t>(v.position[static_cast<int>(i)]);
-        result[i + 4] = std::bit_cast<std::uint32_t>(v.strq[static_cast<int>(i)]);
-    }
-    return result;
-}
-
-std::vector<Bits> bits(const Polygon& polygon) {
-    std::vector<Bits> result;
-    for (const ClipVertex& v : polygon) result.push_back(bits(v));
-    return result;
-}
-
 std::string hex_of(const Polygon& polygon, const TextureRegion& region) {
-    std::string text = "region " + hex(region.min()) + " to " + hex(region.max());
-    text += (region.depth() ? " depth " + hex(*region.depth()) : "") + ":";
-    for (const ClipVertex& v : polygon) text += " " + hex(v.position) + " " + hex(v.strq) + ";";
-    return text;
+    return "region " + hex(region.min()) + " to " + hex(region.max()) +
+           (region.depth() ? " depth " + hex(*region.depth()) : "") + ": " + support::hex_of(polygon);
 }
 
 Polygon clipped(const Polygon& polygon, const TextureRegion& region) {

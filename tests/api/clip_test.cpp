@@ -14,13 +14,17 @@
 #include <vector>
 
 #include "judges/oracle.hpp"
-#include "support/hex.hpp"
+#include "support/polygons.hpp"
 #include "support/random.hpp"
 
 namespace {
 
+using support::Bits;
+using support::bits;
 using support::exactly;
 using support::hex;
+using support::hex_of;
+using support::Polygon;
 using support::Random;
 using support::Rational;
 using texgen::clip_to_near;
@@ -43,33 +47,10 @@ Rational distance(const glm::vec4& p, NearPlane plane) {
     return plane.range == DepthRange::zero_to_one ? exactly(p.z) : Rational(exactly(p.z) + exactly(p.w));
 }
 
-std::vector<ClipVertex> clipped(const std::vector<ClipVertex>& polygon, NearPlane plane) {
-    std::vector<ClipVertex> out(polygon.size() + 1);
+Polygon clipped(const Polygon& polygon, NearPlane plane) {
+    Polygon out(polygon.size() + 1);
     out.resize(clip_to_near(polygon, out, plane.range, plane.reversed));
     return out;
-}
-
-using Bits = std::array<std::uint32_t, 8>;
-
-Bits bits(const ClipVertex& v) {
-    Bits result{};
-    for (std::size_t i = 0; i < 4; ++i) {
-        result[i] = std::bit_cast<std::uint32_t>(v.position[static_cast<int>(i)]);
-        result[i + 4] = std::bit_cast<std::uint32_t>(v.strq[static_cast<int>(i)]);
-    }
-    return result;
-}
-
-std::vector<Bits> bits(const std::vector<ClipVertex>& polygon) {
-    std::vector<Bits> result;
-    for (const ClipVertex& v : polygon) result.push_back(bits(v));
-    return result;
-}
-
-std::string hex_of(const std::vector<ClipVertex>& polygon) {
-    std::string text;
-    for (const ClipVertex& v : polygon) text += hex(v.position) + " " + hex(v.strq) + "; ";
-    return text;
 }
 
 // A camera with near 0.1 and far 1000: clip coordinates of a point in front of it or behind it, or (rarely) exactly at
@@ -90,7 +71,7 @@ ClipVertex camera_vertex(Random& random, NearPlane plane, double toward_front = 
 }
 
 // Now and then: the coordinates of the first edge's intersection become differences of nearly equal terms.
-bool cancel_on_first_edge(std::vector<ClipVertex>& triangle, NearPlane plane, Random& random) {
+bool cancel_on_first_edge(Polygon& triangle, NearPlane plane, Random& random) {
     ClipVertex& a = triangle[0];
     ClipVertex& b = triangle[1];
     const Rational da = distance(a.position, plane), db = distance(b.position, plane);
@@ -106,7 +87,7 @@ TEST_CASE("a polygon in front of the near plane keeps every bit, and its order")
     Random random(31);
     for (const NearPlane plane : near_planes) {
         for (int i = 0; i < 500; ++i) {
-            std::vector<ClipVertex> polygon;
+            Polygon polygon;
             while (polygon.size() < static_cast<std::size_t>(random.integer(3, 8))) {
                 const ClipVertex v = camera_vertex(random, plane, 1.0);
                 if (distance(v.position, plane) >= 0 && v.position.w > 0.0f) polygon.push_back(v);
@@ -123,7 +104,7 @@ TEST_CASE("a polygon behind the near plane leaves nothing, even where it touches
     for (const NearPlane plane : near_planes) {
         int touching = 0;
         for (int i = 0; i < 500; ++i) {
-            std::vector<ClipVertex> polygon;
+            Polygon polygon;
             while (polygon.size() < 3) {
                 const ClipVertex v = camera_vertex(random, plane, 0.3);
                 if (distance(v.position, plane) <= 0) polygon.push_back(v);
@@ -151,7 +132,7 @@ TEST_CASE("an edge on the near plane leaves nothing of what is behind it, whatev
                     v.position = {support::to_float(along) * w, 0.0f, z + behind, w};
                     return v;
                 };
-                std::vector<ClipVertex> polygon;
+                Polygon polygon;
                 for (int k = 0; k < corners; ++k) polygon.push_back(at(k, 0.0));
                 polygon.push_back(at(4.0, 1.0));
                 polygon.push_back(at(0.0, 1.0));
@@ -180,14 +161,13 @@ TEST_CASE("what comes out is in front of the near plane, has w > 0, and lies on 
         int new_vertices = 0;
         int cancelling = 0;
         for (int i = 0; i < 3000; ++i) {
-            std::vector<ClipVertex> triangle{camera_vertex(random, plane), camera_vertex(random, plane),
-                                             camera_vertex(random, plane)};
+            Polygon triangle{camera_vertex(random, plane), camera_vertex(random, plane), camera_vertex(random, plane)};
             cancelling += cancel_on_first_edge(triangle, plane, random);
             const auto inside = std::count_if(triangle.begin(), triangle.end(), [plane](const ClipVertex& v) {
                 return distance(v.position, plane) >= 0;
             });
             ++inside_counts[static_cast<std::size_t>(inside)];
-            const std::vector<ClipVertex> out = clipped(triangle, plane);
+            const Polygon out = clipped(triangle, plane);
             const std::string input = hex_of(triangle);
             REQUIRE_MESSAGE(out.size() <= 4, input);
             if (inside == 3) REQUIRE_MESSAGE(out.size() >= 3, input);
@@ -238,8 +218,8 @@ TEST_CASE("neighbours that share an edge get the same bits on it, whichever way 
         for (int i = 0; i < 2000; ++i) {
             const ClipVertex a = camera_vertex(random, plane), b = camera_vertex(random, plane);
             if ((distance(a.position, plane) < 0) == (distance(b.position, plane) < 0)) continue;
-            const std::vector<ClipVertex> left{a, b, camera_vertex(random, plane)};
-            const std::vector<ClipVertex> right{b, a, camera_vertex(random, plane)};
+            const Polygon left{a, b, camera_vertex(random, plane)};
+            const Polygon right{b, a, camera_vertex(random, plane)};
             // The vertices on the edge a-b are those that both have, and both must have as many.
             const std::vector<Bits> one = bits(clipped(left, plane)), other = bits(clipped(right, plane));
             const auto shared = std::count_if(one.begin(), one.end(), [&other](const Bits& v) {
@@ -259,10 +239,10 @@ TEST_CASE("the triangles of a fan stay a fan: clipping the pieces is clipping th
     const ClipVertex a{{-1, -1, 0.5f, 1}, {0, 0, 0, 1}}, b{{1, -1, 0.5f, 1}, {1, 0, 0, 1}};
     const ClipVertex c{{1, 1, -2, 1}, {1, 1, 0, 1}}, d{{-1, 1, -2, 1}, {0, 1, 0, 1}};
     const NearPlane plane = near_planes[0];
-    const std::vector<ClipVertex> whole = clipped({a, b, c, d}, plane);
+    const Polygon whole = clipped({a, b, c, d}, plane);
     REQUIRE(whole.size() == 4);
-    CHECK(bits(whole) == bits(std::vector<ClipVertex>{
-                             {{-1, 0.2f, -1, 1}, {0, 0.6f, 0, 1}}, a, b, {{1, 0.2f, -1, 1}, {1, 0.6f, 0, 1}}}));
+    CHECK(bits(whole) ==
+          bits(Polygon{{{-1, 0.2f, -1, 1}, {0, 0.6f, 0, 1}}, a, b, {{1, 0.2f, -1, 1}, {1, 0.6f, 0, 1}}}));
     const std::vector<Bits> first = bits(clipped({a, b, c}, plane)), second = bits(clipped({c, d, a}, plane));
     const Bits diagonal = bits(ClipVertex{{0.2f, 0.2f, -1, 1}, {0.6f, 0.6f, 0, 1}});
     CHECK(std::find(first.begin(), first.end(), diagonal) != first.end());
@@ -273,9 +253,9 @@ TEST_CASE("a vertex at the eye itself does not come out, with a near plane that 
     // z >= 0 everywhere: the near plane of this camera leaves w <= 0 in front of it.
     const ClipVertex in_front{{0.5f, 0.25f, 1.0f, 2.0f}, {1, 2, 3, 4}}, at_eye{{1.0f, 0.0f, 1.0f, 0.0f}, {5, 6, 7, 8}};
     const ClipVertex behind{{1.0f, 1.0f, 0.5f, -3.0f}, {0, 0, 0, 1}}, also_in_front{{-1, 0, 1, 1}, {0, 0, 1, 1}};
-    std::vector<ClipVertex> out(4);
+    Polygon out(4);
     for (const ClipVertex& hidden : {at_eye, behind}) {
-        const std::vector<ClipVertex> polygon{in_front, also_in_front, hidden};
+        const Polygon polygon{in_front, also_in_front, hidden};
         const std::size_t count = clip_to_near(polygon, out, DepthRange::zero_to_one);
         REQUIRE(count == 4);
         for (const ClipVertex& v : out) {
@@ -286,13 +266,13 @@ TEST_CASE("a vertex at the eye itself does not come out, with a near plane that 
         CHECK(std::any_of(out.begin(), out.end(), [](const ClipVertex& v) { return v.position.w == 0x1p-19f; }));
         CHECK(std::any_of(out.begin(), out.end(), [](const ClipVertex& v) { return v.position.w == 0x1p-20f; }));
     }
-    const std::vector<ClipVertex> hidden{at_eye, behind, behind};
+    const Polygon hidden{at_eye, behind, behind};
     CHECK(clip_to_near(hidden, out, DepthRange::zero_to_one) == 0);
     // The near plane and the eye cut different corners: that takes one vertex more than the contract's room.
     const ClipVertex below{{0, 3, -1.0f, 2.0f}, {0, 0, 0, 1}};
-    const std::vector<ClipVertex> both{in_front, at_eye, below};
+    const Polygon both{in_front, at_eye, below};
     CHECK(clip_to_near(both, out, DepthRange::zero_to_one) == 0);
-    std::vector<ClipVertex> roomy(5);
+    Polygon roomy(5);
     const std::size_t count = clip_to_near(both, roomy, DepthRange::zero_to_one);
     REQUIRE(count == 5);
     for (const ClipVertex& v : roomy) CHECK((v.position.w > 0.0f && v.position.z >= 0.0f));
@@ -306,8 +286,8 @@ TEST_CASE("an oblique near plane keeps its promises over random homogeneous tria
             const auto any = [&random] {
                 return ClipVertex{random.vector4(random.power_of_ten(-20.0, 20.0)), random.vector4(1.0)};
             };
-            const std::vector<ClipVertex> triangle{any(), any(), any()};
-            std::vector<ClipVertex> out(5);
+            const Polygon triangle{any(), any(), any()};
+            Polygon out(5);
             out.resize(clip_to_near(triangle, out, plane.range, plane.reversed));
             cut_twice += out.size() == 5;
             kept += !out.empty();
@@ -325,7 +305,7 @@ TEST_CASE("an orthographic camera has w = 1, and its cuts keep it") {
     Random random(36);
     for (const NearPlane plane : near_planes) {
         for (int i = 0; i < 500; ++i) {
-            std::vector<ClipVertex> triangle;
+            Polygon triangle;
             for (int k = 0; k < 3; ++k) triangle.push_back({{random.vector3(3.0), 1.0f}, random.vector4(2.0)});
             for (const ClipVertex& v : clipped(triangle, plane))
                 REQUIRE_MESSAGE(v.position.w == 1.0f, hex_of(triangle));
@@ -338,14 +318,14 @@ TEST_CASE("NaN and infinity: a position drops its polygon, a coordinate spoils i
     for (const float bad : {nan_float, infinity, -infinity}) {
         for (int k = 0; k < 4; ++k) {
             for (std::size_t i = 0; i < 3; ++i) {
-                std::vector<ClipVertex> polygon{a, b, c};
+                Polygon polygon{a, b, c};
                 polygon[i].position[k] = bad;
                 CHECK(clipped(polygon, near_planes[0]).empty());
             }
-            std::vector<ClipVertex> polygon{a, b, c};
-            const std::vector<ClipVertex> clean = clipped(polygon, near_planes[0]);
+            Polygon polygon{a, b, c};
+            const Polygon clean = clipped(polygon, near_planes[0]);
             polygon[2].strq[k] = bad;
-            const std::vector<ClipVertex> spoiled = clipped(polygon, near_planes[0]);
+            const Polygon spoiled = clipped(polygon, near_planes[0]);
             REQUIRE(spoiled.size() == clean.size());
             for (std::size_t i = 0; i < clean.size(); ++i) {
                 CHECK(spoiled[i].position == clean[i].position);
@@ -359,7 +339,7 @@ TEST_CASE("NaN and infinity: a position drops its polygon, a coordinate spoils i
     }
     Random random(37);
     for (int i = 0; i < 20000; ++i) {
-        std::vector<ClipVertex> polygon(static_cast<std::size_t>(random.integer(0, 6)));
+        Polygon polygon(static_cast<std::size_t>(random.integer(0, 6)));
         for (ClipVertex& v : polygon) {
             for (int k = 0; k < 4; ++k) {
                 v.position[k] = random.any_float();
@@ -387,10 +367,10 @@ TEST_CASE("fewer than three vertices have no area, and a polygon that zigzags th
 TEST_CASE("a polygon may be clipped where it lies") {
     Random random(38);
     for (int i = 0; i < 200; ++i) {
-        std::vector<ClipVertex> polygon;
+        Polygon polygon;
         for (int k = 0; k < 3; ++k) polygon.push_back(camera_vertex(random, near_planes[0]));
-        const std::vector<ClipVertex> apart = clipped(polygon, near_planes[0]);
-        std::vector<ClipVertex> storage = polygon;
+        const Polygon apart = clipped(polygon, near_planes[0]);
+        Polygon storage = polygon;
         storage.resize(4);
         const std::span<ClipVertex> all(storage);
         storage.resize(clip_to_near(all.first(3), all, near_planes[0].range));

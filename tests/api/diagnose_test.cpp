@@ -8,14 +8,13 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdlib>
 #include <limits>
-#include <new>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "support/allocations.hpp"
 #include "support/hex.hpp"
 #include "support/random.hpp"
 #include "texgen/linear.hpp"
@@ -23,20 +22,7 @@
 
 namespace {
 
-std::size_t allocations = 0;
-
-}  // namespace
-
-[[gnu::noinline]] void* operator new(std::size_t size) {
-    ++allocations;
-    if (void* memory = std::malloc(size)) return memory;
-    std::abort();
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-
-namespace {
-
+using support::allocations;
 using support::hex;
 using support::Random;
 using texgen::Conventions;

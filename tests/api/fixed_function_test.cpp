@@ -12,26 +12,27 @@
 #include <vector>
 
 #include "judges/rational_matrix.hpp"
+#include "support/fixed_function.hpp"
 #include "support/hex.hpp"
 #include "support/random.hpp"
 #include "texgen/linear.hpp"
 
 namespace {
 
+using support::Coordinate;
+using support::coordinates;
 using support::hex;
+using support::modes;
+using support::NormalScaling;
 using support::Random;
-using support::rounded;
-using texgen::Coordinate;
-using texgen::FixedFunctionVertex;
-using texgen::TexGenMode;
-using texgen::TexGenUnit;
-using NormalScaling = TexGenUnit::NormalScaling;
 using support::Rational;
+using support::rounded;
+using support::scalings;
+using support::slide_projector;
+using support::TexGenMode;
+using support::TexGenUnit;
+using texgen::FixedFunctionVertex;
 
-constexpr std::array coordinates{Coordinate::s, Coordinate::t, Coordinate::r, Coordinate::q};
-constexpr std::array modes{TexGenMode::object_linear, TexGenMode::eye_linear, TexGenMode::sphere_map,
-                           TexGenMode::reflection_map, TexGenMode::normal_map};
-constexpr std::array scalings{NormalScaling::none, NormalScaling::rescale, NormalScaling::normalize};
 constexpr float nan_float = std::numeric_limits<float>::quiet_NaN();
 constexpr float infinity = std::numeric_limits<float>::infinity();
 const glm::mat4 identity(1.0f);
@@ -158,14 +159,6 @@ EyeVectors eye_vectors(const FixedFunctionVertex& vertex, const glm::mat4& model
     const LongVector half{result.reflection[0], result.reflection[1], result.reflection[2] + 1.0L, 0.0L};
     result.m = 2.0L * length3(half);
     return result;
-}
-
-texgen::Projector slide_projector() {
-    return texgen::make_projector(
-               texgen::PerspectiveLens{.fovy = texgen::degrees(30.0), .aspect = 1.0, .z_near = 0.2, .z_far = 1000.0},
-               texgen::Aim{.position = {2.0, 5.0, 5.0}, .target = {-2.0, -4.0, 0.0}, .up = {0.0, 1.0, 0.0}},
-               texgen::opengl)
-        .value();
 }
 
 // ---- State ----

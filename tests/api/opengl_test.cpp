@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "support/fixed_function.hpp"
 #include "support/hex.hpp"
 #include "support/opengl.hpp"
 #include "support/opengl_fragments.hpp"
@@ -28,19 +29,19 @@ namespace gl = support::gl;
 using gl::fragment_tolerance;
 using gl::largest_terms;
 using gl::twice_area;
+using support::Coordinate;
+using support::coordinates;
 using support::hex;
+using support::modes;
+using support::NormalScaling;
 using support::Random;
 using support::rounded;
-using texgen::Coordinate;
+using support::scalings;
+using support::slide_projector;
+using support::TexGenMode;
+using support::TexGenUnit;
 using texgen::FixedFunctionVertex;
-using texgen::TexGenMode;
-using texgen::TexGenUnit;
-using NormalScaling = TexGenUnit::NormalScaling;
 
-constexpr std::array coordinates{Coordinate::s, Coordinate::t, Coordinate::r, Coordinate::q};
-constexpr std::array modes{TexGenMode::object_linear, TexGenMode::eye_linear, TexGenMode::sphere_map,
-                           TexGenMode::reflection_map, TexGenMode::normal_map};
-constexpr std::array scalings{NormalScaling::none, NormalScaling::rescale, NormalScaling::normalize};
 const glm::mat4 identity(1.0f);
 
 const gl::Context& opengl() { return gl::Context::or_skip(); }
@@ -155,14 +156,6 @@ glm::mat4 random_modelview(Random& random, Kind kind, double distance) {
             break;
     }
     return rounded(m);
-}
-
-texgen::Projector slide_projector() {
-    return texgen::make_projector(
-               texgen::PerspectiveLens{.fovy = texgen::degrees(30.0), .aspect = 1.0, .z_near = 0.2, .z_far = 1000.0},
-               texgen::Aim{.position = {2.0, 5.0, 5.0}, .target = {-2.0, -4.0, 0.0}, .up = {0.0, 1.0, 0.0}},
-               texgen::opengl)
-        .value();
 }
 
 // ---- State ----
@@ -458,9 +451,8 @@ glm::vec4 clip_position(const texgen::WindowVertex& vertex) {
             (vertex.window.y / half_height - 1.0f) * vertex.clip_w, 0.0f, vertex.clip_w};
 }
 
-std::vector<glm::vec4> draw_with_texcoords(const gl::Context& g, const texgen::Triangle& triangle) {
-    g.reset();
-    g.show_texcoord();
+// The triangle by itself, as whoever calls has set OpenGL up.
+std::vector<glm::vec4> draw(const gl::Context& g, const texgen::Triangle& triangle) {
     g.clear(glm::vec4(nothing));
     g.Begin(gl::triangles);
     for (const texgen::WindowVertex* vertex : {&triangle.a, &triangle.b, &triangle.c}) {
@@ -471,6 +463,12 @@ std::vector<glm::vec4> draw_with_texcoords(const gl::Context& g, const texgen::T
     g.End();
     REQUIRE(g.GetError() == gl::no_error);
     return g.pixels();
+}
+
+std::vector<glm::vec4> draw_with_texcoords(const gl::Context& g, const texgen::Triangle& triangle) {
+    g.reset();
+    g.show_texcoord();
+    return draw(g, triangle);
 }
 
 std::string hex(const texgen::Triangle& triangle) {
@@ -711,16 +709,7 @@ void bind_slide(const gl::Context& g) {
 std::vector<glm::vec4> draw_with_program(const gl::Context& g, const texgen::Triangle& triangle, unsigned program) {
     g.reset();
     g.UseProgram(program);
-    g.clear(glm::vec4(nothing));
-    g.Begin(gl::triangles);
-    for (const texgen::WindowVertex* vertex : {&triangle.a, &triangle.b, &triangle.c}) {
-        g.TexCoord4fv(&vertex->strq[0]);
-        const glm::vec4 position = clip_position(*vertex);
-        g.Vertex4fv(&position[0]);
-    }
-    g.End();
-    REQUIRE(g.GetError() == gl::no_error);
-    return g.pixels();
+    return draw(g, triangle);
 }
 
 texgen::Triangle random_slide_triangle(Random& random, int round) {

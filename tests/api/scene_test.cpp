@@ -14,15 +14,14 @@ int broken_preconditions = 0;
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <limits>
-#include <new>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "judges/exact.hpp"
+#include "support/allocations.hpp"
 #include "support/hex.hpp"
 #include "support/random.hpp"
 #include "texgen/linear.hpp"
@@ -31,20 +30,7 @@ int broken_preconditions = 0;
 
 namespace {
 
-std::size_t allocations = 0;
-
-}  // namespace
-
-[[gnu::noinline]] void* operator new(std::size_t size) {
-    ++allocations;
-    if (void* memory = std::malloc(size)) return memory;
-    std::abort();
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-
-namespace {
-
+using support::allocations;
 using support::hex;
 using support::Random;
 using texgen::Box;
