@@ -50,12 +50,11 @@ void clear(Outputs& out) noexcept {
 
 inline namespace TEXGEN_BUILD {
 
-// A rectangle of one triangle, by its own set-up.
+// A rectangle of one triangle with fragments, by its own set-up.
 template <class CompiledWhereCalled = void>
-void interpolate_apart(const TriangleBatch& batch, std::size_t triangle, const FragmentRect& rect,
-                       Texcoords out) noexcept {
+void interpolate_apart(const TriangleBatch& batch, std::size_t triangle, const Tile& tile, Texcoords out) noexcept {
     const auto setup = TriangleSetup::of(batch.triangle(triangle), batch.region(), batch.tolerance());
-    if (!setup || interpolate(*setup, rect, out) == Work::nothing) clear(out);
+    if (!setup || interpolate_tile(*setup, tile, out) == Work::nothing) clear(out);
 }
 
 // What every kernel is given of a batch.
@@ -85,9 +84,8 @@ void for_each_run(std::span<const std::uint32_t> ids, const FragmentRect& rect, 
         const std::size_t end_of_row = (std::min)((row + 1) * width, first + count);
         if (is_wanted(begin)) {
             while (end < end_of_row && ids[end] == ids[begin] && is_wanted(end)) ++end;
-            const FragmentRect part{static_cast<int>(rect.x + static_cast<std::int64_t>(begin % width)),
-                                    static_cast<int>(rect.y + static_cast<std::int64_t>(row)),
-                                    static_cast<int>(end - begin), 1};
+            const Tile part{rect.x + static_cast<std::int64_t>(begin % width), rect.y + static_cast<std::int64_t>(row),
+                            static_cast<int>(end - begin), 1};
             run(ids[begin], part, begin);
         }
         begin = end;
@@ -163,8 +161,9 @@ void interpolate(const TriangleBatch& batch, std::span<const FragmentRect> rects
         for (; known < doubt.begin; ++known) done += detail::count_of(rects[known]);
         for (; known < (std::min)(doubt.begin + detail::batch_block, rects.size()); ++known, doubt.values >>= 1) {
             const std::size_t values = detail::count_of(rects[known]);
-            if ((doubt.values & 1u) != 0)
-                detail::interpolate_apart(batch, known, rects[known], detail::part_of(out, done, values));
+            if ((doubt.values & 1u) != 0 && values != 0)
+                detail::interpolate_apart(batch, known, detail::tile_of(rects[known]),
+                                          detail::part_of(out, done, values));
             done += values;
         }
         doubt = kernels.divide_tiles(job, known, done);
@@ -192,7 +191,7 @@ void interpolate(const TriangleBatch& batch, std::span<const std::uint32_t> ids,
         detail::for_each_run(
             ids, rect, doubt.begin, left,
             [&](std::size_t fragment) { return (doubt.values >> (fragment - doubt.begin) & 1u) != 0; },
-            [&](std::uint32_t id, const FragmentRect& part, std::size_t first) {
+            [&](std::uint32_t id, const detail::Tile& part, std::size_t first) {
                 detail::interpolate_apart(batch, id, part,
                                           detail::part_of(out, first, static_cast<std::size_t>(part.width)));
             });
@@ -211,7 +210,7 @@ void footprint(const TriangleBatch& batch, std::span<const std::uint32_t> ids, F
     std::optional<FootprintSetup> setup;
     detail::for_each_run(
         ids, rect, 0, count, [](std::size_t) { return true; },
-        [&](std::uint32_t id, const FragmentRect& part, std::size_t first) {
+        [&](std::uint32_t id, const detail::Tile& part, std::size_t first) {
             Footprints here = detail::part_of(out, first, static_cast<std::size_t>(part.width));
             if (id != known) {
                 setup.reset();
@@ -220,7 +219,7 @@ void footprint(const TriangleBatch& batch, std::span<const std::uint32_t> ids, F
                         setup.emplace(*triangle, texels);
                 known = id;
             }
-            if (!setup || !footprint(*setup, part, here)) detail::clear(here);
+            if (!setup || !detail::footprint_tile(*setup, part, here)) detail::clear(here);
         });
 }
 

@@ -145,6 +145,16 @@ private:
     Footprints out_;
 };
 
+// The footprints of a rectangle, for outputs that are computed.
+template <class CompiledWhereCalled = void>
+inline bool footprint_tile(const FootprintSetup& setup, const Tile& tile, const Footprints& out) noexcept {
+    const FootprintFunctions& functions = setup.functions();
+    const TileSurvey found = survey(functions.triangle, tile);
+    if (found.plan.work == Work::nothing) return false;
+    TileFootprinter<>(chosen<FootprintKernels>(), functions, setup.texels(), tile, out).fill_all(tile, found.at);
+    return true;
+}
+
 }  // namespace TEXGEN_BUILD
 }  // namespace TEXGEN_DETAIL
 
@@ -156,13 +166,7 @@ bool footprint(const FootprintSetup& setup, FragmentRect rect, Footprints out) n
     const std::size_t count = detail::count_of(rect);
     if (count == 0) return false;
     detail::take_computed(out, count);
-    const detail::Tile tile = detail::tile_of(rect);
-    const detail::FootprintFunctions& functions = setup.functions();
-    const detail::TileSurvey found = detail::survey(functions.triangle, tile);
-    if (found.plan.work == Work::nothing) return false;
-    detail::TileFootprinter<>(detail::chosen<detail::FootprintKernels>(), functions, setup.texels(), tile, out)
-        .fill_all(tile, found.at);
-    return true;
+    return detail::footprint_tile(setup, detail::tile_of(rect), out);
 }
 
 }  // namespace TEXGEN_BUILD

@@ -342,6 +342,43 @@ inline void darken_beyond_depth(const TileKernels& kernels, const TriangleFuncti
                                       length, triangle.lit.r_min(), triangle.lit.r_max());
 }
 
+// The fragments of a rectangle, for outputs that are computed.
+template <class CompiledWhereCalled = void>
+inline Work interpolate_tile(const TriangleSetup& setup, const Tile& tile, const Texcoords& out) noexcept {
+    const TriangleFunctions& triangle = setup.functions();
+    TileSurvey found = survey(triangle, tile);
+    const Plan& plan = found.plan;
+    if (plan.work == Work::nothing) {
+        for (float& lit : out.lit) lit = 0.0f;
+        return plan.work;
+    }
+
+    const TileKernels& kernels = chosen<TileKernels>();
+
+    const bool both = !out.s.empty() && !out.t.empty();
+    if (both || !out.lit.empty()) {
+        TileInterpolator<> interpolator(kernels, triangle, tile, found.close);
+        interpolator.add(out.s, out.t, out.lit);
+        if (both)
+            interpolator.interpolate(tile, found.at, plan);
+        else
+            interpolator.interpolate_in_strips(tile, plan);
+    } else {
+        interpolate_alone(kernels, triangle, tile, 0, out.s, &plan);
+        interpolate_alone(kernels, triangle, tile, 1, out.t, &plan);
+    }
+    interpolate_alone(kernels, triangle, tile, 2, out.r, nullptr);
+    if (plan.depth == Coverage::inside || out.lit.empty()) return plan.work;
+    if (out.r.empty()) {
+        float buffer[1024];
+        darken_beyond_depth(kernels, triangle, tile, tile, buffer, out.lit);
+    } else {
+        chosen<DepthKernels>().darken(out.lit.data(), out.r.data(), out.lit.size(), triangle.lit.r_min(),
+                                      triangle.lit.r_max());
+    }
+    return plan.work;
+}
+
 }  // namespace TEXGEN_BUILD
 }  // namespace TEXGEN_DETAIL
 
@@ -353,39 +390,7 @@ Work interpolate(const TriangleSetup& setup, FragmentRect rect, Texcoords out) n
     const std::size_t count = detail::count_of(rect);
     if (count == 0) return Work::nothing;
     detail::take_computed(out, count);
-    const detail::Tile tile = detail::tile_of(rect);
-    const detail::TriangleFunctions& triangle = setup.functions();
-    detail::TileSurvey found = detail::survey(triangle, tile);
-    const detail::Plan& plan = found.plan;
-    if (plan.work == Work::nothing) {
-        for (float& lit : out.lit) lit = 0.0f;
-        return plan.work;
-    }
-
-    const detail::TileKernels& kernels = detail::chosen<detail::TileKernels>();
-
-    const bool both = !out.s.empty() && !out.t.empty();
-    if (both || !out.lit.empty()) {
-        detail::TileInterpolator<> interpolator(kernels, triangle, tile, found.close);
-        interpolator.add(out.s, out.t, out.lit);
-        if (both)
-            interpolator.interpolate(tile, found.at, plan);
-        else
-            interpolator.interpolate_in_strips(tile, plan);
-    } else {
-        detail::interpolate_alone(kernels, triangle, tile, 0, out.s, &plan);
-        detail::interpolate_alone(kernels, triangle, tile, 1, out.t, &plan);
-    }
-    detail::interpolate_alone(kernels, triangle, tile, 2, out.r, nullptr);
-    if (plan.depth == Coverage::inside || out.lit.empty()) return plan.work;
-    if (out.r.empty()) {
-        float buffer[1024];
-        detail::darken_beyond_depth(kernels, triangle, tile, tile, buffer, out.lit);
-    } else {
-        detail::chosen<detail::DepthKernels>().darken(out.lit.data(), out.r.data(), count, triangle.lit.r_min(),
-                                                      triangle.lit.r_max());
-    }
-    return plan.work;
+    return detail::interpolate_tile(setup, detail::tile_of(rect), out);
 }
 
 }  // namespace TEXGEN_BUILD
