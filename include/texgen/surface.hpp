@@ -68,7 +68,7 @@ inline std::optional<std::array<glm::vec4, 4>> quadrilateral(const std::array<gl
 
 // The same homography as a matrix: a slide that is to fill a quadrilateral of a window, or of a wall that was measured.
 // Guarantee: as quadrilateral(), with the same q; each element is the difference of two terms, or their sum, and within 2^-48
-// of the terms' magnitudes. No allocation, noexcept.
+// of the terms' magnitudes, unless a term is below 2^-1000 for the whole texture. No allocation, noexcept.
 // Shape: (x, y, z, 1) to (s, t, 0, q), whatever z is. q > 0 on the side of the horizon where the quadrilateral is.
 // Bad input: empty as quadrilateral(), though q may be of any size, and where an element is not finite.
 inline std::optional<WindowTexgen> keystone(const std::array<glm::dvec2, 4>& corners,

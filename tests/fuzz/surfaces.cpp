@@ -67,6 +67,9 @@ void quadrilaterals(Input& input) {
     must(exact || (!strq && !matrix), "what is not strictly convex is refused");
     for (std::size_t k = 0; k < 4 && strq; ++k)
         must(support::ulp_error((*strq)[k].w, (*exact)[k]) <= 2.51, "a q is the homography's");
+    if (const auto whole = texgen::keystone(corners))
+        must(support::keystone_error(*whole, corners, texgen::whole_texture()) <= 0x1p-48,
+             "a matrix is the homography's");
     if (const auto whole = texgen::quadrilateral(corners)) {
         for (std::size_t k = 0; k < 4; ++k) {
             const glm::vec4& corner = (*whole)[k];

@@ -854,13 +854,25 @@ Share mirrored_share(const Numbers& n) {
     return worst;
 }
 
+support::Quadrilateral quadrilateral_of(const Numbers& n) {
+    return {glm::dvec2(n[0], n[1]), glm::dvec2(n[2], n[3]), glm::dvec2(n[4], n[5]), glm::dvec2(n[6], n[7])};
+}
+
+// The error of an element, and the refusal of what is not strictly convex.
+Share keystone_share(const Numbers& n) {
+    if (!is_in_range(n, 0x1p-400, 0x1p400)) return says_nothing;
+    const support::Quadrilateral corners = quadrilateral_of(n);
+    const auto matrix = texgen::keystone(corners);
+    if (!support::exact_q(corners)) return matrix ? broken : says_nothing;
+    if (!matrix) return says_nothing;
+    return support::keystone_error(*matrix, corners, texgen::whole_texture()) / 0x1p-48;
+}
+
 // The worst ulp of a q, where a half is allowed, and the refusal of what is not strictly convex.
 Share quadrilateral_share(const Numbers& n) {
     if (!is_in_range(n, 0x1p-400, 0x1p400)) return says_nothing;
-    const support::Quadrilateral corners{glm::dvec2(n[0], n[1]), glm::dvec2(n[2], n[3]), glm::dvec2(n[4], n[5]),
-                                         glm::dvec2(n[6], n[7])};
+    const support::Quadrilateral corners = quadrilateral_of(n);
     const auto exact = support::exact_q(corners);
-    if (texgen::keystone(corners).has_value() && !exact) return broken;
     const auto strq = texgen::quadrilateral(corners);
     if (!exact) return strq ? broken : says_nothing;
     if (!strq) return says_nothing;
@@ -921,6 +933,7 @@ const std::array promises{
     Promise{"receiver_plane: 2^-49 of itself", 12, begin_surface, receiver_plane_share},
     Promise{"quadrilateral: the homography's q, a decision", 0, support::detail::draw_quadrilateral,
             quadrilateral_share},
+    Promise{"keystone: 2^-48 of its terms, a decision", 0, support::detail::draw_quadrilateral, keystone_share},
 };
 
 // ---- The search ------------------------------------------------------------------------------------------------

@@ -544,19 +544,26 @@ double of_windows(double distance, std::uint64_t seed) {
     return worst;
 }
 
-// The q of quadrilaterals, in float ulps.
 constexpr std::array<const char*, support::shapes.size()> shapes{
-    "ordinary", "whole numbers", "next to a triangle", "to 1e7 from the origin", "units to 1e100", "thin to 1e-18"};
+    "ordinary",      "whole numbers", "next to a triangle", "to 1e7 from the origin", "units to 1e100",
+    "thin to 1e-18", "graded"};
 
-double of_quadrilaterals(support::Shape shape, std::uint64_t seed) {
+struct WorstQuadrilaterals {
+    double q = 0.0, matrix = 0.0;  // float ulps; 2^-52 of an element's terms
+};
+
+WorstQuadrilaterals of_quadrilaterals(support::Shape shape, std::uint64_t seed) {
     Random random(seed);
-    double worst = 0.0;
+    WorstQuadrilaterals worst;
     for (int i = 0; i < 500; ++i) {
         const support::Quadrilateral corners = support::corners_of(shape, random);
+        if (const auto matrix = texgen::keystone(corners); matrix && i % 4 == 0)
+            worst.matrix =
+                std::max(worst.matrix, 0x1p52 * support::keystone_error(*matrix, corners, texgen::whole_texture()));
         const auto strq = texgen::quadrilateral(corners);
         if (!strq) continue;
         const auto exact = support::exact_q(corners).value();
-        for (std::size_t k = 0; k < 4; ++k) worst = std::max(worst, support::ulp_error((*strq)[k].w, exact[k]));
+        for (std::size_t k = 0; k < 4; ++k) worst.q = std::max(worst.q, support::ulp_error((*strq)[k].w, exact[k]));
     }
     return worst;
 }
@@ -619,8 +626,12 @@ TEST_CASE("no ceiling is raised") {
         hold("receiver_plane, 2^-52 of itself", corner_families[i], false, worst.plane);
     }
     seed = 9060;
-    for (std::size_t i = 0; i < shapes.size(); ++i)
-        hold("quadrilateral, ulp of q", shapes[i], false, of_quadrilaterals(support::shapes[i], ++seed));
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+        const WorstQuadrilaterals worst = of_quadrilaterals(support::shapes[i], ++seed);
+        hold("quadrilateral, ulp of q", shapes[i], false, worst.q);
+        hold("keystone, 2^-52 of its terms", shapes[i], false, worst.matrix);
+    }
+    seed = 9066;
     hold("pinhole, ulp", "the axis anywhere", false, of_pinholes(false, ++seed));
     hold("pinhole, ulp", "the axis near the middle", false, of_pinholes(true, ++seed));
     for (const char* const distance : {"1", "1e3", "1e5", "1e7"})

@@ -3,6 +3,7 @@
 // Triangles as the projector sees them, quadrilaterals, and what is exactly true of both. The hard ones are edge on, next to it,
 // or next to a triangle, up to a bit.
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -137,9 +138,10 @@ inline texgen::Facing facing_of_sign(int sign, texgen::TextureOrigin origin) {
 // The corners of a quadrilateral.
 using Quadrilateral = std::array<glm::dvec2, 4>;
 
-enum class Shape { ordinary, whole_numbers, next_to_a_triangle, far_away, any_unit, thin };
+enum class Shape { ordinary, whole_numbers, next_to_a_triangle, far_away, any_unit, thin, graded };
 inline constexpr std::array shapes{Shape::ordinary, Shape::whole_numbers, Shape::next_to_a_triangle,
-                                   Shape::far_away, Shape::any_unit,      Shape::thin};
+                                   Shape::far_away, Shape::any_unit,      Shape::thin,
+                                   Shape::graded};
 
 inline Quadrilateral corners_of(Shape shape, Random& random) {
     Quadrilateral corners{{{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}};
@@ -166,6 +168,17 @@ inline Quadrilateral corners_of(Shape shape, Random& random) {
         case Shape::any_unit: {
             const glm::dvec2 unit(random.power_of_ten(-100.0, 100.0), random.power_of_ten(-100.0, 100.0));
             for (glm::dvec2& corner : corners) corner *= unit;
+            break;
+        }
+        case Shape::graded: {
+            // Each number has a size of its own, up to the largest and the least that are taken.
+            const int most = std::array{3, 30, 100, 400}[random.bits() % 4];
+            for (glm::dvec2& corner : corners)
+                for (int i = 0; i < 2; ++i)
+                    corner[i] = random.integer(0, 4) == 0
+                                    ? 0.0
+                                    : std::ldexp(corner[i] < 0.3 ? corner[i] - 1.2 : corner[i] + 0.4,
+                                                 random.integer(1 - most, most - 1));
             break;
         }
         case Shape::thin: {
@@ -198,6 +211,48 @@ inline std::optional<std::array<Rational, 4>> exact_q(const Quadrilateral& corne
     }
     for (Rational& a : area) a = least / magnitude(a);
     return area;
+}
+
+// The whole texture, or a tile of an atlas.
+inline texgen::TextureRegion region_of(bool is_whole, Random& random) {
+    if (is_whole) return texgen::whole_texture();
+    const glm::dvec2 least(random.uniform(-1.0, 0.9), random.uniform(-1.0, 0.9));
+    return texgen::atlas_tile(least, {random.uniform(1.0, 3.0), random.uniform(1.0, 3.0)});
+}
+
+// How far the elements of a keystone are from those of the exact homography, the largest of them: as a share of the magnitudes
+// of their two terms, or of 2^-1000.
+inline double keystone_error(const texgen::WindowTexgen& keystone, const Quadrilateral& corners,
+                             const texgen::TextureRegion& region) {
+    const std::array<Rational, 4> q = exact_q(corners).value();
+    // What is 0 on the side from corner k on, and q on the opposite one.
+    const auto from_side = [&](std::size_t k) {
+        const glm::dvec2 &from = corners[k], &to = corners[(k + 1) % 4], &opposite = corners[(k + 2) % 4];
+        const Rational unit = q[(k + 2) % 4] / exact_area(from, to, opposite);
+        return std::array<Rational, 3>{unit * (exactly(from.y) - exactly(to.y)),
+                                       unit * (exactly(to.x) - exactly(from.x)),
+                                       unit * (exactly(from.x) * exactly(to.y) - exactly(to.x) * exactly(from.y))};
+    };
+    const auto bottom = from_side(0), right = from_side(1), top = from_side(2), left = from_side(3);
+    const glm::dmat4& m = keystone.matrix();
+    double worst = 0.0;
+    for (int column = 0; column < 4; ++column) {
+        // z does nothing, and there is no r.
+        const auto c = static_cast<std::size_t>(column == 3 ? 2 : column);
+        std::array<std::array<Rational, 2>, 4> terms{};
+        if (column != 2)
+            terms = {{{exactly((region.min)().x) * right[c], exactly((region.max)().x) * left[c]},
+                      {exactly((region.min)().y) * top[c], exactly((region.max)().y) * bottom[c]},
+                      {0, 0},
+                      {right[c], left[c]}}};
+        for (int row = 0; row < 4; ++row) {
+            const auto& [one, other] = terms[static_cast<std::size_t>(row)];
+            const Rational size = magnitude(one) + magnitude(other), exact = one + other;
+            const Rational error = magnitude(Rational(exactly(m[column][row]) - exact));
+            worst = std::max(worst, nearest<double>(Rational(error / std::max(size, power_of_two(-1000)))));
+        }
+    }
+    return worst;
 }
 
 }  // namespace support

@@ -30,11 +30,13 @@ public:
 
     double q(std::size_t i) const noexcept { return least_area_ / area_[i]; }
 
-    // The linear function that is 0 on a side and q on the opposite one: x, y and a constant.
+    // The linear function that is 0 on a side and q on the opposite one: x, y and a constant. q may be as small as 2^-1700, and
+    // the rest as large as 2^900: no product leaves the doubles before all of it does.
     glm::dvec3 from_side(std::size_t i) const noexcept {
         const glm::dvec2 &from = corner_[i], &to = corner_[(i + 1) % 4];
-        const double unit = winding_ * (least_area_ / area_[(i + 2) % 4]) / area_[(i + 3) % 4];
-        return unit * glm::dvec3(from.y - to.y, to.x - from.x, difference_of_products(from.x, to.y, to.x, from.y));
+        const glm::dvec3 line(from.y - to.y, to.x - from.x, difference_of_products(from.x, to.y, to.x, from.y));
+        const double area = area_[(i + 2) % 4];
+        return winding_ / area_[(i + 3) % 4] * line * (least_area_ / smaller(area, 1.0)) / larger(area, 1.0);
     }
 
 private:
