@@ -6,6 +6,7 @@ inline namespace TEXGEN_BUILD {
 struct CloseJob {
     TileJob job;
     CloseFunctions functions;
+    bool is_close;  // else of the planes as they are
 };
 
 // Interpolates up to two coordinates, and the mask, of a triangle into the caller's arrays.
@@ -172,13 +173,17 @@ private:
         const int y = static_cast<int>(tile.y - whole_.y);
         const TileJob::Unit unit{x, x + tile.width, y, y + tile.height};
         if (!closely_) {
-            closely_.make(CloseJob{make_job(whole_, at), (close_ ? close_ramps(whole_) : plain_ramps(whole_)).split()});
+            const bool is_close = static_cast<bool>(close_);
+            closely_.make(CloseJob{make_job(whole_, at), (is_close ? close_ramps(whole_) : plain_ramps(whole_)).split(),
+                                   is_close});
             closely_->job.is_contiguous = false;
         }
-        const auto& [job, functions] = *closely_;
+        const TileJob& job = closely_->job;
+        const CloseFunctions& functions = closely_->functions;
         std::uint64_t doubtful = kernels_.fill_closely(job, functions, unit);
-        if (doubtful != 0 && !close_) {
+        if (doubtful != 0 && !closely_->is_close) {
             closely_->functions = close_ramps(whole_).split();
+            closely_->is_close = true;
             doubtful = kernels_.fill_closely(job, functions, unit);
         }
         fill_some(whole_, unit, doubtful);
