@@ -449,6 +449,7 @@ TEST_CASE("of a matrix alone the numbers that people write name what is wrong wi
             Meant m = human(mistake, random);
             m.depth = DepthMapping::unit;
             if (!leaves_a_trace(m, mistake, Told::nothing)) m.fovy = 30.0;
+            if (mistake == Mistake::no_bias || mistake == Mistake::bias_without_w) m.fovy = random.integer(20, 120);
             // Where far is much farther, near is round in float with a bias of r and without one.
             if (!is_of_range(mistake)) m.z_far = std::min(m.z_far, 200.0 * m.z_near);
             const In in = random.coin() ? In::object : In::world;
@@ -460,6 +461,50 @@ TEST_CASE("of a matrix alone the numbers that people write name what is wrong wi
             found += !diagnosis.empty() && diagnosis[0].defect == defect_of(mistake);
         }
         CHECK_MESSAGE(found >= (is_of_range(mistake) ? 950 : 1000), found, " of ", static_cast<int>(mistake));
+    }
+}
+
+TEST_CASE("a lens of the other range is a lens from another distance, and named by the one that was meant") {
+    Meant m, other;
+    m.aim = {{1.0, 5.0, 2.0}, {0.0, 0.0, 0.0}, {0.0, 1.0, 0.0}};
+    other.z_near = 10.0 / 199.9;
+    const glm::dmat4 bias = Code<double>::bias(m), view = Code<double>::view(m);
+    const double fovy = glm::radians(m.fovy);
+    const glm::dmat4 mistaken = bias * Code<double>::lens(m, fovy, true) * view;
+    const glm::dmat4 right = bias * Code<double>::lens(other, fovy, false) * view;
+    for (int i = 0; i < 4; ++i)
+        for (int row = 0; row < 4; ++row) CHECK(std::fabs(mistaken[i][row] - right[i][row]) < 1e-14);
+    for (const glm::dmat4& texgen : {mistaken, glm::dmat4(support::rounded(mistaken))}) {
+        const Diagnosis diagnosis = diagnosis_of(m, In::world, std::nullopt, Told::lens, false, texgen);
+        REQUIRE(diagnosis.size() == 1);
+        CHECK(diagnosis[0].defect == Defect::depth_range_mismatch);
+        CHECK(diagnosis_of(other, In::world, std::nullopt, Told::lens, false, texgen).empty());
+    }
+}
+
+TEST_CASE("degrees as radians are named where the picture is level over y and over z, and up is along one of them") {
+    Meant m;
+    m.aspect = 4.0 / 3.0;
+    for (const glm::dvec3& up : {glm::dvec3(0.0, 1.0, 0.0), glm::dvec3(0.0, 0.0, 1.0)}) {
+        for (const glm::dvec3& position :
+             {glm::dvec3(0.0, 5.0, 5.0), glm::dvec3(0.0, -5.0, 5.0), glm::dvec3(0.0, 5.0, -5.0),
+              glm::dvec3(0.0, -5.0, -5.0), glm::dvec3(0.0, 2.0, 9.0), glm::dvec3(5.0, 0.0, 0.0)}) {
+            m.aim = {position, {0.0, 0.0, 0.0}, up};
+            for (const double number : {30.0, 45.0, 60.0, 75.0, 90.0}) {
+                const auto diagnosis_of_angle = [&](double fovy, bool has_conventions) {
+                    const glm::dmat4 clip = Code<double>::lens(m, fovy, false) * Code<double>::view(m);
+                    return diagnosis_of(m, In::world, std::nullopt, Told::nothing, has_conventions,
+                                        Code<double>::bias(m) * clip);
+                };
+                for (const bool has_conventions : {false, true}) {
+                    CAPTURE(number);
+                    CHECK(diagnosis_of_angle(glm::radians(number), has_conventions).empty());
+                    const Diagnosis diagnosis = diagnosis_of_angle(number, has_conventions);
+                    REQUIRE(!diagnosis.empty());
+                    CHECK(diagnosis[0].defect == Defect::angle_unit_mistaken);
+                }
+            }
+        }
     }
 }
 

@@ -93,11 +93,19 @@ public:
         return {rows_.limit + offset_ / q, rounding_ + offset_error_ / q};
     }
 
-    // Whether up, as t grows, hangs down while the picture's side is level, over y or over z.
+    // Whether the picture's side is level, over y or over z, and up, as t grows, hangs down: if it is level over both, and up
+    // along one of them, that may be the world's.
     bool hangs_down(double up_along_t) const noexcept {
-        const glm::dvec3 side = across(0) / glm::length(across(0)), up = up_along_t * across(1);
+        const glm::dvec3 side = across(0) / glm::length(across(0)),
+                         up = up_along_t / glm::length(across(1)) * across(1);
         const double accepted = 8.0 * rounding_ * (1.0 + 1.0 / focal_length_.x);
-        return (std::fabs(side.y) <= accepted && up.y < 0.0) || (std::fabs(side.z) <= accepted && up.z < 0.0);
+        double lowest = 0.0, highest = 0.0;
+        for (const glm::length_t axis : {1, 2}) {
+            if (std::fabs(side[axis]) > accepted) continue;
+            lowest = smaller(lowest, up[axis]);
+            highest = larger(highest, up[axis]);
+        }
+        return lowest < -accepted && highest <= accepted;
     }
 
 private:
@@ -114,13 +122,11 @@ private:
     double offset_, offset_error_;  // r = limit q + offset
 };
 
-// Whether the angle of that focal length is a whole number of degrees, of five where that is not known well enough.
+// Whether the angle of that focal length is a whole number of degrees.
 inline bool is_of_round_angle(const Estimate& focal_length) noexcept {
-    const double step = focal_length.error < 0x1p-30 ? 1.0 : 5.0;
-    const double number = std::round(radians(2.0 * std::atan2(1.0, focal_length.value)).in_degrees() / step);
-    const double half = 0.5 * degrees(step * number).in_radians();
-    const double expected = std::cos(half) / std::sin(half);
-    return number > 0.0 && std::fabs(focal_length.value - expected) <= focal_length.error * expected;
+    const double half =
+        0.5 * degrees(std::round(radians(2.0 * std::atan2(1.0, focal_length.value)).in_degrees())).in_radians();
+    return std::fabs(focal_length.value * std::sin(half) - std::cos(half)) <= focal_length.error * std::cos(half);
 }
 
 // The number of whole degrees that make that focal length, but for its sign, if they are taken for radians; 0 where none do.
