@@ -121,7 +121,7 @@ inline bool all_less(const Double2& a, const Double2& b) noexcept { return a[0] 
 #ifdef __clang__
 #define TEXGEN_EIGHT_DOUBLES(values) __builtin_convertvector(values, Doubles)
 #else
-#define TEXGEN_EIGHT_DOUBLES(values) __builtin_ia32_cvtps2pd512_mask(values, Doubles{}, char{-1}, 4)
+#define TEXGEN_EIGHT_DOUBLES(values) __builtin_ia32_cvtps2pd512_mask(values, Doubles{}, static_cast<char>(-1), 4)
 #endif
 
 namespace TEXGEN_DETAIL {
