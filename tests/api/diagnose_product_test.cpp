@@ -464,6 +464,21 @@ TEST_CASE("of a matrix alone the numbers that people write name what is wrong wi
     }
 }
 
+namespace {
+
+// Set-ups that are as they should be; as many as TEXGEN_VALID_SETUPS says.
+int valid_setups() {
+    const char* number = std::getenv("TEXGEN_VALID_SETUPS");
+    return number != nullptr ? std::atoi(number) : 200000;
+}
+
+void require_valid(const Meant& m, const glm::dmat4& texgen, const Diagnosis& diagnosis) {
+    for (const texgen::Finding& finding : diagnosis)
+        if (finding.defect != Defect::precision_lost) FAIL(text(m, texgen, diagnosis));
+}
+
+}  // namespace
+
 TEST_CASE("a lens of the other range is a lens from another distance, and named by the one that was meant") {
     Meant m, other;
     m.aim = {{1.0, 5.0, 2.0}, {0.0, 0.0, 0.0}, {0.0, 1.0, 0.0}};
@@ -479,6 +494,26 @@ TEST_CASE("a lens of the other range is a lens from another distance, and named 
         REQUIRE(diagnosis.size() == 1);
         CHECK(diagnosis[0].defect == Defect::depth_range_mismatch);
         CHECK(diagnosis_of(other, In::world, std::nullopt, Told::lens, false, texgen).empty());
+    }
+}
+
+TEST_CASE("planes that are no round numbers only in the units of an object are not found fault with") {
+    Meant m;
+    m.aim = {{1.0, 5.0, 2.0}, {0.0, 0.0, 0.0}, {0.0, 1.0, 0.0}};
+    for (const DepthRange range : {DepthRange::negative_one_to_one, DepthRange::zero_to_one}) {
+        m.conventions.depth = range;
+        for (int scale = 1; scale < 10; ++scale) {
+            for (int i = 0; i < 3; ++i) m.pose[i][i] = scale;
+            for (int ratio = 2; ratio < 100; ++ratio) {
+                for (int first = 1; first < 10; ++first) {
+                    m.z_near = 0.1 * first;
+                    m.z_far = ratio * m.z_near;
+                    const glm::dmat4 clip = Code<double>::lens(m) * Code<double>::view(m);
+                    const glm::dmat4 texgen = Code<double>::bias(m) * clip * m.pose;
+                    require_valid(m, texgen, diagnosis_of(m, In::object, std::nullopt, Told::nothing, true, texgen));
+                }
+            }
+        }
     }
 }
 
@@ -507,21 +542,6 @@ TEST_CASE("degrees as radians are named where the picture is level over y and ov
         }
     }
 }
-
-namespace {
-
-// Set-ups that are as they should be; as many as TEXGEN_VALID_SETUPS says.
-int valid_setups() {
-    const char* number = std::getenv("TEXGEN_VALID_SETUPS");
-    return number != nullptr ? std::atoi(number) : 200000;
-}
-
-void require_valid(const Meant& m, const glm::dmat4& texgen, const Diagnosis& diagnosis) {
-    for (const texgen::Finding& finding : diagnosis)
-        if (finding.defect != Defect::precision_lost) FAIL(text(m, texgen, diagnosis));
-}
-
-}  // namespace
 
 TEST_CASE("what users' own code gets right is not found fault with, whatever else is told") {
     Random random(623);

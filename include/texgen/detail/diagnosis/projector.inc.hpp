@@ -25,7 +25,8 @@ inline void examine_numbers(const glm::dmat4& p, bool is_upright, Conventions co
         !is_of_round_angle({focal_length, seen.error_of_focal_length()}) &&
         is_of_degrees_as_radians(seen, focal_length, conventions.ndc_y == NdcY::up ? 1.0 : -1.0))
         diagnosis.add(Defect::angle_unit_mistaken);
-    if (!facts.z_near && !facts.z_far && is_round_in_other_range(seen, *depth_ends(DepthMapping::ndc, conventions)))
+    if (!facts.z_near && !facts.z_far &&
+        is_round_in_other_range(seen, *depth_ends(DepthMapping::ndc, conventions), true))
         diagnosis.add(Defect::depth_range_mismatch);
 }
 

@@ -96,16 +96,14 @@ inline void examine_seen_lens(const SeenLens& lens, const SetupMatrices& setup, 
         diagnosis.add(Defect::aspect_inverted);
     const bool knows_planes = facts.z_near || facts.z_far;
     if (ends && (knows_planes ? is_of_other_range(lens, *ends, facts, setup.is_placed())
-                              : is_round_in_other_range(lens, *ends)))
+                              : is_round_in_other_range(lens, *ends, setup.is_placed() || setup.in_eye_space)))
         diagnosis.add(Defect::depth_range_mismatch);
 }
 
 // Of a matrix whose rows r and q are none of a lens: whether they are when 1/2 is taken from every element, as it is added to
 // a glm::mat4.
 inline bool has_bias_in_every_column(const glm::dmat4& texgen, const glm::dmat4* pose) noexcept {
-    glm::dmat4 without = texgen;
-    for (glm::length_t column = 0; column < 4; ++column) without[column] -= 0.5;
-    const SeenLens lens(in_the_world(without, pose), rounding_of(texgen));
+    const SeenLens lens(in_the_world(texgen - 0.5, pose), rounding_of(texgen));
     return lens.is_lens() && lens.is_centred_on(glm::dvec2(0.0));
 }
 

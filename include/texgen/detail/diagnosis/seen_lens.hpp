@@ -158,12 +158,13 @@ inline std::optional<DepthEnds> depth_ends(DepthMapping depth, const std::option
 }
 
 // Whether near and far are round numbers if the range is the other one, and near is none as it is: what floats are not exact
-// enough to say.
-inline bool is_round_in_other_range(const SeenLens& lens, const DepthEnds& ends) noexcept {
+// enough to say. Of an object that is scaled, who knows by how much, a third, a seventh or a ninth is as round.
+inline bool is_round_in_other_range(const SeenLens& lens, const DepthEnds& ends, bool knows_unit) noexcept {
     constexpr double enough_bits = 24.0;
     const Estimate z_near = lens.distance_of(ends.low);
-    if (!(z_near.error < 0x1p-30) || !(roundness(lens.distance_of(1.0)) > 0.0) || roundness(z_near, 5) > 0.0)
-        return false;
+    if (!(z_near.error < 0x1p-30) || !(roundness(lens.distance_of(1.0)) > 0.0)) return false;
+    for (const double unit : {1.0, 3.0, 7.0, 9.0})
+        if ((unit == 1.0 || !knows_unit) && roundness({unit * z_near.value, z_near.error}, 5) > 0.0) return false;
     for (const double other : ends.other_lows)
         if (roundness(lens.distance_of(other)) >= enough_bits) return true;
     return false;
