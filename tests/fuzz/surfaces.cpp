@@ -67,7 +67,8 @@ void quadrilaterals(Input& input) {
     must(exact || (!strq && !matrix), "what is not strictly convex is refused");
     for (std::size_t k = 0; k < 4 && strq; ++k)
         must(support::ulp_error((*strq)[k].w, (*exact)[k]) <= 2.51, "a q is the homography's");
-    if (const auto whole = texgen::keystone(corners))
+    // Seldom: fractions of numbers that differ by 2^800 take long.
+    if (const auto whole = texgen::keystone(corners); whole && input.integer(0, 3) == 0)
         must(support::keystone_error(*whole, corners, texgen::whole_texture()) <= 0x1p-48,
              "a matrix is the homography's");
     if (const auto whole = texgen::quadrilateral(corners)) {
