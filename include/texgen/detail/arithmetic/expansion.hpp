@@ -35,9 +35,9 @@ public:
     }
 
     void add_product(double a, double b) noexcept {
+        if (a == 0.0 || b == 0.0) return;
         const DoubleDouble product = two_product(a, b);
-        add(product.low);
-        add(product.high);
+        for (const double term : {product.low, product.high}) add(term);
     }
 
     template <std::size_t OtherCapacity>
@@ -59,7 +59,7 @@ public:
     int sign() const noexcept { return count_ == 0 ? 0 : terms_[count_ - 1] > 0.0 ? 1 : -1; }
 
 private:
-    std::array<double, Capacity> terms_{};
+    std::array<double, Capacity> terms_;  // not initialized: that would cost what a sum does
     std::size_t count_ = 0;
 };
 

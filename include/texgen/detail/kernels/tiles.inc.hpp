@@ -76,19 +76,29 @@ void fill_tile_float_divided(const TileJob& job) noexcept {
 // A function of a row's index.
 struct CloseRow {
     Doubles high, high_dx, low, low_dx, error;
-    double least;  // a value below it is 0
+    double grain;
+    std::uint64_t residue, residue_dx;
 
-    TEXGEN_INLINE explicit CloseRow(const CloseFunction& function) noexcept
-        : high{},
-          high_dx(Doubles{} + function.high.dx),
-          low{},
-          low_dx(Doubles{} + function.low.dx),
-          error(Doubles{} + 1.01 * function.error),
-          least(function.grain > 4.0 * function.error ? 0.5 * function.grain : 0.0) {}
+    TEXGEN_INLINE void take(const CloseFunction& function) noexcept {
+        high_dx = Doubles{} + function.high.dx;
+        low_dx = Doubles{} + function.low.dx;
+        error = Doubles{} + 1.01 * function.error;
+        grain = function.grain;
+        residue_dx = function.residue.dx;
+    }
 
     TEXGEN_INLINE void move_to(const CloseFunction& function, int y) noexcept {
         high = Doubles{} + (function.high.base + y * function.high.dy);
         low = Doubles{} + (function.low.base + y * function.low.dy);
+        residue = function.residue.base + static_cast<std::uint64_t>(y) * function.residue.dy;
+    }
+
+    TEXGEN_INLINE Residues residues_at(std::int64_t x) const noexcept {
+        return (indices<Residues>() + static_cast<std::uint64_t>(x)) * residue_dx + residue;
+    }
+    // Where the residues are the values, which are nearly these.
+    TEXGEN_INLINE LongWords are_known(const Doubles& values) const noexcept {
+        return greater(Doubles{} + 0x1p62 * grain, magnitude(values) + error);
     }
 };
 
@@ -98,12 +108,13 @@ struct CloseQ {
     Doubles upper, lower, low, reciprocal, relative_error;
     LongWords in_front, doubt;
 
-    TEXGEN_INLINE CloseQ(const CloseRow& row, double unit, const Doubles& index) noexcept {
+    TEXGEN_INLINE CloseQ(const CloseRow& row, double unit, const Doubles& index, std::int64_t x) noexcept {
         const Doubles high = index * row.high_dx + row.high;
         const Doubles rest = index * row.low_dx + row.low;
         const Doubles q = high + rest;
         in_front = greater(q, row.error * 256.0);
-        doubt = ~(in_front | greater(q * -1.0, row.error) | greater(row.least - magnitude(q), 0.0));
+        doubt = ~(in_front | greater(q * -1.0, row.error));
+        if (any(doubt)) doubt &= ~row.are_known(q) | are_positive(row.residues_at(x));
         reciprocal = where(in_front, 1.0 / q);
         relative_error = reciprocal * row.error + 0x1p-50;
         upper = (high + unit) - unit;
@@ -129,61 +140,88 @@ TEXGEN_INLINE Words decide_between(const Floats& below, const Floats& above, con
     return decided;
 }
 
+// What F - m Q is of a vector, or nearly: m the middle of the floats below and above a quotient.
+struct CloseRemainder {
+    Floats below, above;
+    Doubles middle, unit, value, error;  // middle is twice m, and unit the power of two below it
+};
+
+// Where F - m Q is in doubt its residue says what it is: the finer one of its terms' grains times an integer. Returns the
+// lanes of `doubt` that this does not decide; F nearly is `sum`.
+TEXGEN_INLINE Words decide_by_residues(const CloseRow& row, const CloseRow& q, const CloseRemainder& remainder,
+                                       const Doubles& sum, std::int64_t x, const Words& doubt, Floats& value) noexcept {
+    const Doubles finer = minimum(remainder.unit * (0x1p-25 * q.grain), Doubles{} + row.grain);
+    const Doubles per_finer = 1.0 / finer;
+    const Doubles of_f = per_finer * row.grain;
+    const Doubles of_q = remainder.middle * (0.5 * q.grain) * per_finer;
+    const LongWords is_known = greater(finer * 0x1p62, magnitude(remainder.value) + remainder.error) &
+                               greater(0x1p62 - maximum(of_f, magnitude(of_q)), 0.0);
+    const Residues of_row = row.residues_at(x);
+    const Residues residues =
+        of_row * to_residues(where(is_known, of_f)) - q.residues_at(x) * to_residues(where(is_known, of_q));
+    Floats nearest;
+    const Words decided = doubt & decide_between(remainder.below, remainder.above, remainder.middle, signs_of(residues),
+                                                 is_known & ~are_zero(residues), is_known, nearest);
+    const Words vanishes = doubt & narrow(row.are_known(sum) & are_zero(of_row));
+    value = select(vanishes, Floats{}, select(decided, nearest, value));
+    return doubt & ~(decided | vanishes);
+}
+
 // The quotients of a vector, 0 behind. Where value - error and value + error do not round to one float but to neighbours, the
 // sign of F - m Q decides. That is a multiple of the grain of its terms: what is certainly smaller is 0, and the tie is certain,
 // too. Returns the lanes that stay in doubt.
-TEXGEN_INLINE Words divide_closely(const CloseRow& row, double grain, const CloseQ& q, const Doubles& half_q_error,
-                                   double middle_grain, const Doubles& index, Floats& value) noexcept {
+TEXGEN_INLINE Words divide_closely(const CloseRow& row, const CloseRow& q_row, const CloseQ& q,
+                                   const Doubles& half_q_error, const Doubles& index, std::int64_t x,
+                                   Floats& value) noexcept {
     const Doubles high = index * row.high_dx + row.high;
     const Doubles low = index * row.low_dx + row.low;
     const Doubles sum = high + low;
     const Doubles quotient = where(q.in_front, sum * q.reciprocal);  // no -0 behind
     const Doubles error = magnitude(quotient) * q.relative_error + q.reciprocal * row.error;
-    const Floats below = to_floats(quotient - error);
-    const Floats above = to_floats(quotient + error);
-    value = below;
-    const Words differ = bits(below) ^ bits(above);
+    CloseRemainder remainder;
+    remainder.below = to_floats(quotient - error);
+    remainder.above = to_floats(quotient + error);
+    value = remainder.below;
+    const Words differ = bits(remainder.below) ^ bits(remainder.above);
     if (!any(differ)) return Words{};
-    const Doubles middle = to_doubles(below) + to_doubles(above);  // twice it
+    const Doubles middle = to_doubles(remainder.below) + to_doubles(remainder.above);
     const Doubles product = middle * q.upper;
     const Doubles rest = high - product;
     const Doubles taken = rest - high;
     const Doubles lost = (high - (rest - taken)) - (product + taken);
-    const Doubles remainder = (rest - middle * q.lower) + (lost + (low - middle * q.low));
-    const Doubles unit = power_of_two_below(middle);
-    const Doubles bound = magnitude(middle) * half_q_error + row.error;
-    const LongWords is_open = greater(magnitude(remainder), bound);
-    const LongWords is_tie = greater(minimum(unit * middle_grain, Doubles{} + grain), bound * 4.0);
-    const Words decided = decide_between(below, above, middle, remainder, is_open, is_tie, value);
+    remainder.middle = middle;
+    remainder.unit = power_of_two_below(middle);
+    remainder.value = (rest - middle * q.lower) + (lost + (low - middle * q.low));
+    remainder.error = magnitude(middle) * half_q_error + row.error;
+    const LongWords is_open = greater(magnitude(remainder.value), remainder.error);
+    const LongWords is_tie =
+        greater(minimum(remainder.unit * (0x1p-25 * q_row.grain), Doubles{} + row.grain), remainder.error * 4.0);
+    const Words decided =
+        decide_between(remainder.below, remainder.above, middle, remainder.value, is_open, is_tie, value);
     const Words doubt = ~(decided | equal(differ, 0));
-    if (!any(doubt)) return doubt;
-    const Words is_zero = narrow(greater(row.least - magnitude(sum), 0.0) & q.in_front) & doubt;
-    value = select(is_zero, Floats{}, value);
-    return doubt & ~is_zero;
+    return any(doubt) ? decide_by_residues(row, q_row, remainder, sum, x, doubt, value) : doubt;
 }
 
 // One numerator stands in both places.
 template <class CompiledWhereCalled = void>
 std::uint64_t fill_tile_closely(const TileJob& job, const CloseFunctions& functions, TileJob::Unit unit) noexcept {
-    const CloseFunctions close = functions;
-    CloseRow q_row(close.q);
-    CloseRow numerator[2] = {CloseRow(close.numerator[0]), CloseRow(close.numerator[1])};
+    const CloseFunction* const function[] = {&functions.numerator[0], &functions.numerator[1], &functions.q};
+    CloseRow rows[3];
+    for (std::size_t k = 0; k < 3; ++k) rows[k].take(*function[k]);
+    const CloseRow& q_row = rows[2];
     RowOutputs<2> row(job, unit.y_begin);
     const Doubles half_q_error = q_row.error * 0.5;
-    const double middle_grain = 0x1p-25 * close.q.grain;
     std::uint64_t doubtful = 0;
     int shift = 0;
     for (int y = unit.y_begin; y < unit.y_end; ++y, row.advance()) {
-        q_row.move_to(close.q, y);
-        for (std::size_t k = 0; k < 2; ++k) numerator[k].move_to(close.numerator[k], y);
+        for (std::size_t k = 0; k < 3; ++k) rows[k].move_to(*function[k], y);
         for (std::int64_t x = unit.x_begin; x < unit.x_end; x += lanes) {
             const Doubles index = indices<Doubles>() + static_cast<double>(x);
-            const CloseQ q(q_row, close.q_unit, index);
+            const CloseQ q(q_row, functions.q_unit, index, x);
             Floats value[2];
             Words doubt = narrow(q.doubt);
             for (std::size_t k = 0; k < 2; ++k)
-                doubt |= divide_closely(numerator[k], close.numerator[k].grain, q, half_q_error, middle_grain, index,
-                                        value[k]);
+                doubt |= divide_closely(rows[k], q_row, q, half_q_error, index, x, value[k]);
             store_from(row, x, unit.x_end, value, narrow(q.in_front));
             const int count = unit.x_end - x < lanes ? static_cast<int>(unit.x_end - x) : lanes;
             if (any(doubt))

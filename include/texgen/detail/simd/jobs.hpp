@@ -58,12 +58,14 @@ struct TileJob {
     bool is_done(const Unit& unit) const noexcept { return unit.y_begin >= height; }
 };
 
-// The same functions of a tile to twice the precision: each is high + low, within `error` of the exact one, and a multiple of
-// `grain`. The coefficients of high are multiples of a unit in which no value of the tile needs more than 52 bits, so that
-// its arithmetic is exact; those of low are what is left below the unit.
+// The same functions of a tile to twice the precision: each is high + low, within `error` of the exact one. The coefficients of
+// high are multiples of a unit in which no value of the tile needs more than 52 bits, so that its arithmetic is exact; those of
+// low are what is left below the unit. The exact value is an integer times `grain` (0 where that is not known), and the residue is
+// that integer modulo 2^64: what is certainly less than 2^62 grains is known exactly by it.
 struct CloseFunction {
     Ramp high, low;
     double error, grain;
+    RampOf<std::uint64_t> residue;
 };
 struct CloseFunctions {
     CloseFunction numerator[2];

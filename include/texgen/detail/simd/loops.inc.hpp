@@ -134,6 +134,21 @@ TEXGEN_INLINE Doubles middle_near(const Doubles& a) noexcept {
         return bit_cast<double>((bit_cast<std::uint64_t>(a.lane[i]) & ~std::uint64_t{0x1fffffff}) | 0x10000000);
     });
 }
+
+using Residues = Lanes<std::uint64_t>;
+TEXGEN_INLINE Residues to_residues(const Doubles& integers) noexcept {
+    return Residues::of([&](int i) { return static_cast<std::uint64_t>(static_cast<std::int64_t>(integers.lane[i])); });
+}
+TEXGEN_INLINE Doubles signs_of(const Residues& a) noexcept {
+    return Doubles::of([&](int i) { return bit_cast<double>(a.lane[i]); });
+}
+TEXGEN_INLINE LongWords are_zero(const Residues& a) noexcept {
+    return LongWords::of([&](int i) { return a.lane[i] == 0 ? -1 : 0; });
+}
+TEXGEN_INLINE LongWords are_positive(const Residues& a) noexcept {
+    return LongWords::of([&](int i) { return a.lane[i] - 1 < 0x7fffffffffffffff ? -1 : 0; });
+}
+
 TEXGEN_INLINE Words narrow(const LongWords& mask) noexcept { return mask; }
 TEXGEN_INLINE int lane(const Words& a, int i) noexcept { return a.lane[i]; }
 TEXGEN_INLINE Words equal(const Words& a, int b) noexcept {

@@ -76,6 +76,17 @@ TEXGEN_INLINE LongWords are_near_middles(const Doubles& a, long long ulps) noexc
 TEXGEN_INLINE Doubles middle_near(const Doubles& a) noexcept {
     return __builtin_bit_cast(Doubles, (__builtin_bit_cast(LongWords, a) & ~0x1fffffffLL) | 0x10000000);
 }
+
+// Integers modulo 2^64, and a number that is one of less than 2^63.
+using Residues [[gnu::vector_size(TEXGEN_LANE_BYTES)]] = std::uint64_t;
+TEXGEN_INLINE Residues to_residues(const Doubles& integers) noexcept {
+    return __builtin_bit_cast(Residues, __builtin_convertvector(integers, LongWords));
+}
+// Numbers with the signs of integers.
+TEXGEN_INLINE Doubles signs_of(const Residues& a) noexcept { return __builtin_bit_cast(Doubles, a); }
+TEXGEN_INLINE LongWords are_zero(const Residues& a) noexcept { return a == 0; }
+TEXGEN_INLINE LongWords are_positive(const Residues& a) noexcept { return __builtin_bit_cast(LongWords, a) > 0; }
+
 TEXGEN_INLINE Words narrow(const LongWords& mask) noexcept { return __builtin_convertvector(mask, Words); }
 TEXGEN_INLINE int lane(const Words& a, int i) noexcept { return a[i]; }
 TEXGEN_INLINE Words equal(const Words& a, int b) noexcept { return a == b; }

@@ -9,7 +9,9 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
+#include "../arithmetic/determinant.hpp"
 #include "../arithmetic/expansion.hpp"
 #include "../arithmetic/rounding.hpp"
 #include "../simd/lanes.hpp"
@@ -17,11 +19,10 @@
 
 namespace TEXGEN_DETAIL {
 
-// base + i dx + j dy: these three terms. Within `error` of the exact value at every fragment of the tile that it was made for;
-// that value is a multiple of `grain`, a power of two (or 0, where that is not known).
+// base + i dx + j dy: these three terms. Within `error` of the exact value at every fragment of the tile that it was made for.
 struct CloseRamp {
     DoubleDouble term[3];
-    double error, grain;
+    double error;
 
     CloseRamp moved(double x, double y) const noexcept {
         CloseRamp result = *this;
@@ -31,7 +32,7 @@ struct CloseRamp {
     }
 
     // Of double coefficients: takes the multiples of the grain next to them, if their errors leave no others.
-    bool take_multiples() noexcept {
+    bool take_multiples(double grain) noexcept {
         if (!(4.0 * error < grain)) return false;
         const double rounder = 0x1.8p52 * grain;  // they are below 2^46 grains, as the error has 20 u of them
         for (DoubleDouble& coefficient : term) coefficient.high = (coefficient.high + rounder) - rounder;
@@ -46,7 +47,7 @@ struct CloseRamp {
 
     // As high and low parts, see CloseFunction. The coefficients of low are at most half a unit: they, two products and two
     // sums are rounded in double, 6 u of half of width + height + 1 units: less than 2^-50 of those.
-    CloseFunction split(const Tile& tile) const noexcept {
+    TEXGEN_APART CloseFunction split(const Tile& tile) const noexcept {
         const double unit = unit_for(tile);
         const double rounder = 0x1.8p52 * unit;
         double high[3];
@@ -58,7 +59,8 @@ struct CloseRamp {
         return {{high[0], high[1], high[2]},
                 {low[0], low[1], low[2]},
                 error + 0x1p-50 * (1.0 + tile.width + tile.height) * unit,
-                grain};
+                0.0,
+                {}};
     }
     double unit_for(const Tile& tile) const noexcept {
         const double size = size_over(tile);
@@ -73,7 +75,7 @@ struct CloseRamps {
     Tile tile;
     CloseRamp function[3];
 
-    CloseRamps moved_to(const Tile& part) const noexcept {
+    TEXGEN_APART CloseRamps moved_to(const Tile& part) const noexcept {
         const auto x = static_cast<double>(part.x - tile.x);  // integers
         const auto y = static_cast<double>(part.y - tile.y);  // integers
         CloseRamps result = *this;
@@ -96,8 +98,7 @@ struct CloseRamps {
 // times the c_i: 2^-97 leaves room.
 class ClosePlanes {
 public:
-    ClosePlanes(const TrianglePlanes& planes, const Tile& tile) noexcept
-        : planes_(planes), tile_(tile), grain_(planes.grain_of_edges()) {
+    ClosePlanes(const TrianglePlanes& planes, const Tile& tile) noexcept : planes_(planes), tile_(tile) {
         const double x = static_cast<double>(tile.x) + 0.5;  // integers
         const double y = static_cast<double>(tile.y) + 0.5;  // integers
         for (std::size_t i = 0; i < 3; ++i) {
@@ -118,7 +119,7 @@ public:
         }
     }
 
-    CloseRamp ramp(glm::length_t coordinate) const noexcept {
+    TEXGEN_APART CloseRamp ramp(glm::length_t coordinate) const noexcept {
         CloseRamp ramp{};
         double magnitude = 0.0;
         for (std::size_t i = 0; i < 3; ++i) {
@@ -127,7 +128,6 @@ public:
             magnitude += magnitude_[i] * std::fabs(c.high);
         }
         ramp.error = 0x1p-97 * magnitude + 0x1p-1000;
-        ramp.grain = planes_.grain(grain_, coordinate);
         return ramp;
     }
 
@@ -138,19 +138,135 @@ public:
 private:
     const TrianglePlanes& planes_;
     Tile tile_;
-    double grain_;
     DoubleDouble to_x_[3], to_y_[3];  // from the first fragment to the corners
     DoubleDouble edge_[3][3];         // of the side opposite each corner: its function's value there, and by x and by y
     double magnitude_[3];
 };
 
+// A power of two of which three numbers are multiples.
+TEXGEN_APART inline double common_unit(double a, double b, double c) noexcept {
+    return smaller(smallest_last_bit(a, b, c), 0x1p500);
+}
+
+// A whole number modulo 2^64: halves of it fit a signed integer.
+TEXGEN_APART inline std::uint64_t residue_of(double number) noexcept {
+    if (std::fabs(number) < 0x1p63) return static_cast<std::uint64_t>(static_cast<std::int64_t>(number));
+    return 2 * static_cast<std::uint64_t>(static_cast<std::int64_t>(0.5 * std::fmod(number, 0x1p64)));
+}
+
+// Whether a coefficient of a function is u times q, which is constant: exactly.
+TEXGEN_APART inline bool is_multiple(const CloseFunction& f, std::size_t j, double u, const CloseFunction& q) noexcept {
+    double Ramp::*const part = j == 0 ? &Ramp::base : j == 1 ? &Ramp::dx : &Ramp::dy;
+    const std::uint64_t residue = j == 0 ? f.residue.base : j == 1 ? f.residue.dx : f.residue.dy;
+    const DoubleDouble product = two_product(u, q.high.base);
+    const double rest = u * q.low.base;
+    const double difference = ((f.high.*part - product.high) - product.low) + (f.low.*part - rest);
+    const double error = f.error + std::fabs(u) * q.error +
+                         0x1p-50 * (std::fabs(product.low) + std::fabs(f.low.*part) + std::fabs(rest));
+    const double unit = (u != 0.0 ? last_bit(u) : 1.0) * q.grain;
+    const double finer = smaller(unit, f.grain);
+    if (!(std::fabs(difference) + error < 0x1p62 * finer)) return false;
+    const double per_finer = reciprocal_power_of_two(finer);
+    return residue * residue_of(f.grain * per_finer) == q.residue.base * residue_of(u * q.grain * per_finer);
+}
+
+// Where q is constant the quotients are linear; of one that doubles hold exactly rounding to float decides every tie.
+inline bool take_exact_quotients(const CloseFunctions& functions, TileJob& job) noexcept {
+    const CloseFunction& q = functions.q;
+    if (!is_multiple(q, 1, 0.0, q) || !is_multiple(q, 2, 0.0, q)) return false;
+    const double reciprocal = 1.0 / (q.high.base + q.low.base);
+    bool is_any_exact = false;
+    for (std::size_t k = 0; k < 2; ++k) {
+        const CloseFunction& f = functions.numerator[k];
+        Ramp& ramp = job.numerator[k];
+        ramp = {(f.high.base + f.low.base) * reciprocal, (f.high.dx + f.low.dx) * reciprocal,
+                (f.high.dy + f.low.dy) * reciprocal};
+        const double size = std::fabs(ramp.base) + job.width * std::fabs(ramp.dx) + job.height * std::fabs(ramp.dy);
+        // Of 45 bits, so that the kernel's products and sums are exact.
+        const double rounder = 0x1.8p8 / reciprocal_power_of_two(size);
+        const Ramp exact{(ramp.base + rounder) - rounder, (ramp.dx + rounder) - rounder, (ramp.dy + rounder) - rounder};
+        const bool is_exact =
+            is_multiple(f, 0, exact.base, q) && is_multiple(f, 1, exact.dx, q) && is_multiple(f, 2, exact.dy, q);
+        if (is_exact) ramp = exact;
+        job.quotient_error[k] = is_exact ? 0.0 : job.quotient_error[k] + gamma(5) * size;
+        is_any_exact |= is_exact;
+    }
+    job.q = {1.0, 0.0, 0.0};
+    job.q_is_constant = true;
+    return is_any_exact;
+}
+
+// The linear functions of a triangle as integers modulo 2^64, times powers of two of which they are multiples at every fragment:
+// products and sums of floats are multiples of the products of their last bits. So the lowest digits are known of what two
+// doubles have the leading ones of.
+class PlaneResidues {
+public:
+    PlaneResidues(const TrianglePlanes& planes, const Tile& tile) noexcept : planes_(planes), tile_(tile) {
+        const glm::dvec2 a = planes.corner(0), b = planes.corner(1), c = planes.corner(2);
+        const glm::dvec2 unit(smaller(0.5, common_unit(a.x, b.x, c.x)), smaller(0.5, common_unit(a.y, b.y, c.y)));
+        const double of_weights = common_unit(planes.weight(0), planes.weight(1), planes.weight(2));
+        const double per_x = reciprocal_power_of_two(unit.x), per_y = reciprocal_power_of_two(unit.y);
+        const double per_weight = reciprocal_power_of_two(of_weights);
+        const std::uint64_t one_x = residue_of(per_x), one_y = residue_of(per_y);
+        const std::uint64_t first_x = residue_of((static_cast<double>(tile.x) + 0.5) * per_x);  // integers
+        const std::uint64_t first_y = residue_of((static_cast<double>(tile.y) + 0.5) * per_y);  // integers
+        std::uint64_t x[3], y[3];
+        for (std::size_t i = 0; i < 3; ++i) {
+            x[i] = residue_of(planes.corner(i).x * per_x) - first_x;
+            y[i] = residue_of(planes.corner(i).y * per_y) - first_y;
+        }
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::size_t j = (i + 1) % 3;
+            const std::size_t k = (i + 2) % 3;
+            const std::uint64_t weight = residue_of(planes.weight(i) * per_weight);
+            edge_[i] = {weight * (x[j] * y[k] - y[j] * x[k]), weight * ((y[j] - y[k]) * one_x),
+                        weight * ((x[k] - x[j]) * one_y)};
+        }
+        grain_ = of_weights * (unit.x * unit.y);
+    }
+
+    // 0 where that is too small for a double.
+    double grain(glm::length_t coordinate) const noexcept { return grain_ * last_bit_of(coordinate); }
+
+    // Of a part of the tile.
+    TEXGEN_APART void add_to(CloseFunction& function, glm::length_t coordinate, const Tile& part) const noexcept {
+        const double unit = last_bit_of(coordinate);
+        const double per_unit = reciprocal_power_of_two(unit);
+        RampOf<std::uint64_t> sum{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::uint64_t value = residue_of(planes_.value(i, coordinate) * per_unit);
+            sum = {sum.base + value * edge_[i].base, sum.dx + value * edge_[i].dx, sum.dy + value * edge_[i].dy};
+        }
+        sum.base += static_cast<std::uint64_t>(part.x - tile_.x) * sum.dx;
+        sum.base += static_cast<std::uint64_t>(part.y - tile_.y) * sum.dy;
+        function.grain = grain_ * unit;
+        function.residue = sum;
+    }
+
+private:
+    double last_bit_of(glm::length_t coordinate) const noexcept {
+        return common_unit(planes_.value(0, coordinate), planes_.value(1, coordinate), planes_.value(2, coordinate));
+    }
+
+    const TrianglePlanes& planes_;
+    Tile tile_;
+    double grain_;
+    RampOf<std::uint64_t> edge_[3];  // of the sides' functions, with the weights
+};
+
 // F at one fragment.
 inline Bounded closely_at(const TrianglePlanes& planes, glm::length_t coordinate, std::int64_t x,
                           std::int64_t y) noexcept {
-    const CloseRamp ramp = ClosePlanes(planes, {x, y, 1, 1}).ramp(coordinate);
+    const Tile fragment{x, y, 1, 1};
+    const CloseRamp ramp = ClosePlanes(planes, fragment).ramp(coordinate);
     const double value = ramp.term[0].high + ramp.term[0].low;
-    if (4.0 * ramp.error < ramp.grain && std::fabs(value) < 0.5 * ramp.grain) return {0.0, 0.0};
-    return {value, ramp.error + 0x1p-52 * std::fabs(value)};
+    const double error = ramp.error + 0x1p-52 * std::fabs(value);
+    if (std::fabs(value) > 0x1p24 * error) return {value, error};
+    CloseFunction exact;
+    PlaneResidues(planes, fragment).add_to(exact, coordinate, fragment);
+    if (!(std::fabs(value) + error < 0x1p62 * exact.grain)) return {value, error};
+    const double known = static_cast<double>(static_cast<std::int64_t>(exact.residue.base)) * exact.grain;  // integers
+    return {known, 0x1p-52 * std::fabs(known)};
 }
 
 }  // namespace TEXGEN_DETAIL

@@ -55,9 +55,10 @@ inline std::optional<Footprint> footprint_at(const FootprintFunctions& functions
     const TrianglePlanes& planes = functions.triangle.planes;
     Bounded bounded = planes.at(functions.triangle.q, x, y);
     if (!(std::fabs(bounded.value) > 0x1p24 * bounded.error)) bounded = closely_at(planes, 3, x, y);
-    const auto exact_q = [&] { return planes.exactly_at(3, x, y); };
-    if (certain_sign(bounded, exact_q) <= 0) return std::nullopt;
-    const double q = bounded.value > 0x1p24 * bounded.error ? bounded.value : planes.accurately_at(3, x, y);
+    double q = bounded.value;
+    if (!(std::fabs(q) > 0x1p24 * bounded.error || bounded.error == 0.0))
+        q = ExactFragment(planes, x, y).function(3).estimate() * planes.factor();
+    if (!(q > 0.0)) return std::nullopt;
     const glm::dvec2 p = planes.from_a({x, y, 1, 1});
     const double reciprocal = 1.0 / q;
     const auto divided = [&](double numerator) { return numerator * reciprocal * reciprocal; };

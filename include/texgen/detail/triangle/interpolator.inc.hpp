@@ -85,23 +85,35 @@ private:
     }
 
     // They are made when a tile first needs them, for all of the rectangle.
-    CloseRamps close_ramps(const Tile& tile) noexcept {
+    TEXGEN_APART CloseRamps close_ramps(const Tile& tile) noexcept {
         if (!close_) close_.make(made_close());
         return close_->moved_to(tile);
     }
 
     // The planes as they are will do where the grains make them exact.
-    CloseRamps made_close() const noexcept {
-        const TrianglePlanes& planes = triangle_.planes;
-        const glm::length_t coordinate[3] = {coordinate_[0], coordinate_[count_ - 1], 3};
+    TEXGEN_APART CloseRamps made_close() noexcept {
         CloseRamps plain = plain_ramps(rect_);
-        const double grain_of_edges = planes.grain_of_edges();
+        const PlaneResidues& residues = plane_residues();
         bool are_exact = true;
-        for (std::size_t k = 0; k < 3 && are_exact; ++k) {
-            plain.function[k].grain = planes.grain(grain_of_edges, coordinate[k]);
-            are_exact = plain.function[k].take_multiples();
-        }
-        return are_exact ? plain : ClosePlanes(planes, rect_).ramps(coordinate[0], coordinate[1]);
+        for (std::size_t k = 0; k < 3 && are_exact; ++k)
+            are_exact = plain.function[k].take_multiples(residues.grain(coordinate_of(k)));
+        return are_exact ? plain : ClosePlanes(triangle_.planes, rect_).ramps(coordinate_of(0), coordinate_of(1));
+    }
+
+    // Of the numerators and q.
+    glm::length_t coordinate_of(std::size_t k) const noexcept { return k == 2 ? 3 : coordinate_[count_ == 1 ? 0 : k]; }
+
+    const PlaneResidues& plane_residues() noexcept {
+        if (!residues_) residues_.make(triangle_.planes, rect_);
+        return *residues_;
+    }
+
+    TEXGEN_APART CloseFunctions close_functions(const Tile& tile) noexcept {
+        CloseFunctions functions = close_ramps(tile).split();
+        const PlaneResidues& residues = plane_residues();
+        for (std::size_t k = 0; k < 2; ++k) residues.add_to(functions.numerator[k], coordinate_of(k), tile);
+        residues.add_to(functions.q, 3, tile);
+        return functions;
     }
 
     // A tile behind is cleared; one that is in doubt is halved, until it is so small that it is divided closely.
@@ -121,11 +133,8 @@ private:
         for (std::size_t k = 0; k < 2; ++k) job.quotient_error[k] = error[k];
         TileJob::Unit unit = kernels_.fill_exact(job, job.unit_at(0, 0));
         if (job.is_done(unit)) return;
-        const CloseFunctions functions = close_ramps(tile).split();
-        if (take_exact_quotients(functions, job)) {
-            kernels_.fill_exact(job, unit);
-            return;
-        }
+        const CloseFunctions functions = close_functions(tile);
+        if (take_exact_quotients(functions, job)) unit = kernels_.fill_exact(job, unit);
         // Doubt has company: twice as many units after each failure that follows another.
         for (int many = 1; !job.is_done(unit);) {
             for (int i = 0; i < many && !job.is_done(unit); ++i, unit = job.unit_after(unit))
@@ -136,36 +145,6 @@ private:
         }
     }
 
-    // Where q is constant the quotients are linear; if doubles hold them exactly, every tie is decided by rounding to float.
-    static bool take_exact_quotients(const CloseFunctions& functions, TileJob& job) noexcept {
-        const auto is_zero = [](const Ramp& ramp) { return ramp.base == 0.0 && ramp.dx == 0.0 && ramp.dy == 0.0; };
-        const auto is_exact = [&](const CloseFunction& f) { return is_zero(f.low) && 4.0 * f.error < f.grain; };
-        const double q = functions.q.high.base;
-        if (!is_exact(functions.q) || functions.q.high.dx != 0.0 || functions.q.high.dy != 0.0) return false;
-        Ramp quotient[2];
-        for (std::size_t k = 0; k < 2; ++k) {
-            const Ramp& f = functions.numerator[k].high;
-            quotient[k] = {f.base / q, f.dx / q, f.dy / q};
-            const auto is_quotient = [q](double u, double numerator) {
-                const DoubleDouble product = two_product(u, q);
-                return product.high == numerator && product.low == 0.0;
-            };
-            const auto& [base, dx, dy] = quotient[k];
-            const double size = std::fabs(base) + job.width * std::fabs(dx) + job.height * std::fabs(dy);
-            const double bit = smaller(smaller(last_bit(base), last_bit(dx)), last_bit(dy));
-            if (!is_exact(functions.numerator[k]) || !(size < 0x1p52 * bit) || !is_quotient(base, f.base) ||
-                !is_quotient(dx, f.dx) || !is_quotient(dy, f.dy))
-                return false;
-        }
-        for (std::size_t k = 0; k < 2; ++k) {
-            job.numerator[k] = quotient[k];
-            job.quotient_error[k] = 0.0;
-        }
-        job.q = {1.0, 0.0, 0.0};
-        job.q_is_constant = true;
-        return true;
-    }
-
     // A small tile, by one job for all that there are: with the planes as they are, and closely only if that leaves doubt. What
     // a last vector writes beyond the tile is to its right, where the halves come later.
     void fill_closely(const Tile& tile, const Corners& at) noexcept {
@@ -174,15 +153,15 @@ private:
         const TileJob::Unit unit{x, x + tile.width, y, y + tile.height};
         if (!closely_) {
             const bool is_close = static_cast<bool>(close_);
-            closely_.make(CloseJob{make_job(whole_, at), (is_close ? close_ramps(whole_) : plain_ramps(whole_)).split(),
-                                   is_close});
+            closely_.make(CloseJob{make_job(whole_, at),
+                                   is_close ? close_functions(whole_) : plain_ramps(whole_).split(), is_close});
             closely_->job.is_contiguous = false;
         }
         const TileJob& job = closely_->job;
         const CloseFunctions& functions = closely_->functions;
         std::uint64_t doubtful = kernels_.fill_closely(job, functions, unit);
         if (doubtful != 0 && !closely_->is_close) {
-            closely_->functions = close_ramps(whole_).split();
+            closely_->functions = close_functions(whole_);
             closely_->is_close = true;
             doubtful = kernels_.fill_closely(job, functions, unit);
         }
@@ -190,10 +169,10 @@ private:
     }
 
     // The planes as they are.
-    CloseRamps plain_ramps(const Tile& tile) const noexcept {
+    TEXGEN_APART CloseRamps plain_ramps(const Tile& tile) const noexcept {
         const Corners at = corners_of(triangle_.planes, *planes_, triangle_.q, tile);
         const auto plain = [](double base, double dx, double dy, double error) {
-            return CloseRamp{{{base, 0.0}, {dx, 0.0}, {dy, 0.0}}, error, 0.0};
+            return CloseRamp{{{base, 0.0}, {dx, 0.0}, {dy, 0.0}}, error};
         };
         const auto numerator = [&](std::size_t k) {
             const auto& [base, dx, dy] = at.numerator_ramp;
@@ -247,12 +226,12 @@ private:
 
     // One fragment, every decision exact.
     void fill_one(std::int64_t x, std::int64_t y) noexcept {
-        const TrianglePlanes& planes = triangle_.planes;
-        const TrianglePlanes::Exact q = planes.exactly_at(3, x, y);
+        const ExactFragment exact(triangle_.planes, x, y);
+        const ExactFragment::Sum q = exact.function(3);
         const bool in_front = q.sign() > 0;
         float value[2] = {0.0f, 0.0f};
         for (std::size_t k = 0; k < count_; ++k) {
-            if (in_front) value[k] = nearest_quotient(planes.exactly_at(coordinate_[k], x, y), q);
+            if (in_front) value[k] = exact.nearest_quotient(coordinate_[k], q);
             if (!output_[k].empty()) output_[k][offset(x, y)] = value[k];
         }
         if (!lit_.empty()) lit_[offset(x, y)] = in_front ? triangle_.lit(value[0], value[1]) : 0.0f;
@@ -304,6 +283,7 @@ private:
     OnDemand<CloseRamps>& close_;
     Tile whole_;  // what is being interpolated
     OnDemand<CloseJob> closely_;
+    OnDemand<PlaneResidues> residues_;
     std::span<float> output_[2];
     std::span<float> lit_;
     float scratch_[2][scratch_width];  // coordinates that only the mask needs, a row at a time

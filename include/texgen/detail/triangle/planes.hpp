@@ -186,27 +186,6 @@ public:
     double value(std::size_t i, glm::length_t coordinate) const noexcept { return widened(vertex(i).strq[coordinate]); }
     double weight(std::size_t i) const noexcept { return weight_[i]; }
 
-    // A power of two of which F is a multiple at every fragment: products and sums of floats are multiples of the products
-    // of their last bits. 0 where that is too small for a double. The first factor is the same for all coordinates.
-    double grain_of_edges() const noexcept {
-        double of_w = std::numeric_limits<double>::infinity();
-        double of_x = 0.5;
-        double of_y = 0.5;
-        for (std::size_t i = 0; i < 3; ++i) {
-            const glm::dvec2 at = corner(i);
-            of_w = smaller(of_w, last_bit(widened(vertex(i).clip_w)));
-            of_x = smaller(of_x, last_bit(at.x));
-            of_y = smaller(of_y, last_bit(at.y));
-        }
-        const double of_weights = std::fabs(weight_[0]) / (widened(triangle_.b.clip_w) * widened(triangle_.c.clip_w));
-        return (of_weights * (of_w * of_w)) * (of_x * of_y);
-    }
-    double grain(double of_edges, glm::length_t coordinate) const noexcept {
-        double of_value = std::numeric_limits<double>::infinity();
-        for (std::size_t i = 0; i < 3; ++i) of_value = smaller(of_value, last_bit(value(i, coordinate)));
-        return of_value < std::numeric_limits<double>::infinity() ? of_edges * of_value : 1.0;
-    }
-
     // The window, seen from the first vertex: the centre of a fragment, and the other vertices.
     glm::dvec2 from_a(const Tile& tile) const noexcept {
         return {(static_cast<double>(tile.x) + 0.5) - a_.x, (static_cast<double>(tile.y) + 0.5) - a_.y};  // integers
@@ -238,23 +217,11 @@ public:
         return {ramp(plane, fragment).base, error(plane, fragment)};
     }
 
-    // F at one fragment, exactly.
-    using Exact = Expansion<144>;
-    Exact exactly_at(glm::length_t coordinate, std::int64_t x, std::int64_t y) const noexcept {
-        const glm::dvec2 p(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5);  // integers
-        const auto& [a, b, c] = triangle_;
-        Exact sum;
-        add_corner(sum, p, a.strq[coordinate], b, c);
-        add_corner(sum, p, b.strq[coordinate], c, a);
-        add_corner(sum, p, c.strq[coordinate], a, b);
-        return sum;
+    // w_j w_k of corner i, without the common factor, and that factor.
+    double unscaled_weight(std::size_t i) const noexcept {
+        return orientation_ * (widened(vertex((i + 1) % 3).clip_w) * widened(vertex((i + 2) % 3).clip_w));
     }
-
-    // The same within a few ulp of itself, and with the factor of the planes.
-    double accurately_at(glm::length_t coordinate, std::int64_t x, std::int64_t y) const noexcept {
-        const double weight = orientation_ * (widened(triangle_.b.clip_w) * widened(triangle_.c.clip_w));
-        return exactly_at(coordinate, x, y).estimate() * (weight_[0] / weight);
-    }
+    double factor() const noexcept { return weight_[0] / unscaled_weight(0); }
 
 private:
     // The plane through values at the corners.
@@ -315,24 +282,65 @@ private:
         return all_exact ? difference_of_products(to_b_.x, to_c_.y, to_b_.y, to_c_.x) : exact_area().estimate();
     }
 
-    // Adds f w_j w_k E, E the edge function of vertices j and k at p.
-    void add_corner(Exact& sum, const glm::dvec2& p, float f, const WindowVertex& j, const WindowVertex& k) const {
-        const glm::dvec2 first = window(j);
-        const glm::dvec2 second = window(k);
-        Expansion<12> edge;
-        const double factor[][2] = {{first.x, second.y}, {-first.y, second.x}, {p.x, first.y},
-                                    {-p.x, second.y},    {p.y, second.x},      {-p.y, first.x}};
-        for (const auto& [left, right] : factor) edge.add_product(left, right);
-        Expansion<24> weighted;
-        weighted.add_scaled(edge, orientation_ * (widened(j.clip_w) * widened(k.clip_w)));
-        sum.add_scaled(weighted, widened(f));
-    }
-
     Triangle triangle_;
     glm::dvec2 a_, to_b_, to_c_;
     int orientation_;
     double area_;       // twice the signed area
     double weight_[3];  // w_j w_k times a common factor, with the sign of the orientation
+};
+
+// The functions at one fragment, exactly: F = sum G_i f_i with G_i = E_i w_j w_k, but for the planes' common factor.
+class ExactFragment {
+public:
+    TEXGEN_APART ExactFragment(const TrianglePlanes& planes, std::int64_t x, std::int64_t y) noexcept
+        : planes_(planes) {
+        DoubleDouble to_x[3], to_y[3];
+        for (std::size_t i = 0; i < 3; ++i) {
+            to_x[i] = two_sum(planes.corner(i).x, -(static_cast<double>(x) + 0.5));  // integers
+            to_y[i] = two_sum(planes.corner(i).y, -(static_cast<double>(y) + 0.5));  // integers
+        }
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::size_t j = (i + 1) % 3;
+            const std::size_t k = (i + 2) % 3;
+            const double weight = planes.unscaled_weight(i);
+            const DoubleDouble factor[][2] = {{to_x[j], to_y[k]}, {-to_y[j], to_x[k]}};
+            for (const auto& [left, right] : factor) {
+                for (const double a : {left.high, left.low}) {
+                    for (const double b : {right.high, right.low}) {
+                        if (a == 0.0 || b == 0.0) continue;
+                        const DoubleDouble term = two_product(a, b);
+                        for (const double part : {term.high, term.low}) weighted_[i].add_product(part, weight);
+                    }
+                }
+            }
+        }
+    }
+
+    // F - u Q of one coordinate, 0 to 3 for s, t, r, q; or F.
+    using Sum = Expansion<384>;
+    TEXGEN_APART Sum difference(glm::length_t coordinate, double u) const noexcept {
+        Sum sum;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const double product = u * planes_.value(i, 3);  // exact for a middle of two floats
+            const DoubleDouble value = two_sum(planes_.value(i, coordinate), -product);
+            for (const double part : {value.high, value.low}) sum.add_scaled(weighted_[i], part);
+        }
+        return sum;
+    }
+    Sum function(glm::length_t coordinate) const noexcept { return difference(coordinate, 0.0); }
+
+    // The float nearest to F / Q, in front.
+    float nearest_quotient(glm::length_t coordinate, const Sum& q) const noexcept {
+        const Sum numerator = function(coordinate);
+        if (numerator.sign() == 0) return 0.0f;
+        const double quotient = numerator.estimate() / q.estimate();
+        return nearest_to(quotient, 0x1p-48 * std::fabs(quotient),
+                          [&](double middle) { return difference(coordinate, middle).sign(); });
+    }
+
+private:
+    const TrianglePlanes& planes_;
+    Expansion<32> weighted_[3];
 };
 
 }  // namespace TEXGEN_DETAIL
