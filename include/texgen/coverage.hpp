@@ -28,7 +28,7 @@ inline namespace TEXGEN_BUILD {
 // Guarantee: `outside` and `inside` are never false: they hold for the exact values of the matrix, the region and the body
 // as they are given, and for `lit` of project() with `exact`, whose s, t and r are rounded: within a float of a side, or of a
 // limit of depth, a body is `partial`. (What a tolerance moves across a side is not looked for here.) A box is `partial`
-// only where it is so, or touches a plane through an edge or through the apex of the projector's pyramid within 2^-48 of
+// only where it is so, or touches a plane through an edge or through the apex of the projector's pyramid within 2^-47 of
 // the sizes involved; the pyramid's own planes, with its sides at the floats next to the region's, are decided exactly, as
 // are the near and the far plane of a depth. A sphere is `partial` too where no plane but one through a vertex of the
 // volume leaves it out. A batch answers as the single question does. No allocation, noexcept; what is prepared is never
@@ -55,6 +55,7 @@ public:
 private:
     detail::LitForms forms_;
     detail::FloatForms float_forms_;
+    detail::SeparatingForms separating_;
 };
 
 // Says how much of a box or a sphere the slide lights, or of each of many: as a LitVolume that is asked once.

@@ -65,33 +65,34 @@ inline Coverage exact_coverage(const LitForms& forms, const Box& box, const Form
 
 inline namespace TEXGEN_BUILD {
 
-// Puts a box among others; whether it holds a point that is a number.
-inline bool put(const Box& box, BoxBlock& block, std::size_t i) noexcept {
+// Whether a box holds a point that is a number.
+inline bool has_points(const Box& box) noexcept {
     // Without a branch for each.
-    bool has_points = true;
-    for (std::size_t j = 0; j < 3; ++j) {
-        const float min = box.min[static_cast<glm::length_t>(j)];
-        const float max = box.max[static_cast<glm::length_t>(j)];
-        has_points &= min <= max;
-        has_points &= min <= (std::numeric_limits<float>::max)();
-        has_points &= max >= std::numeric_limits<float>::lowest();
-        block.min[j][i] = widened(min);
-        block.max[j][i] = widened(max);
+    bool result = true;
+    for (glm::length_t j = 0; j < 3; ++j) {
+        result &= box.min[j] <= box.max[j];
+        result &= box.min[j] <= (std::numeric_limits<float>::max)();
+        result &= box.max[j] >= std::numeric_limits<float>::lowest();
     }
-    return has_points;
+    return result;
 }
 
 // Boxes of which floats do not say what they are, gathered until they fill vectors.
 template <class CompiledWhereCalled = void>
 class OpenBoxes {
 public:
-    OpenBoxes(const BoxKernels& kernels, const LitForms& forms) noexcept : kernels_(kernels), forms_(forms) {}
+    OpenBoxes(const BoxBatchKernels& kernels, const LitForms& forms, const SeparatingForms& separating) noexcept
+        : kernels_(kernels), forms_(forms), separating_(separating) {}
 
     // A box that is partial to the planes, or in doubt.
     void add(const Box& box, bool is_in_doubt, Coverage& out) noexcept {
-        if (!put(box, block_, count_) || !forms_.can_say()) {
+        if (!has_points(box) || !forms_.can_say()) {
             out = exact_coverage(forms_, box);
             return;
+        }
+        for (std::size_t j = 0; j < 3; ++j) {
+            block_.min[j][count_] = widened(box.min[static_cast<glm::length_t>(j)]);
+            block_.max[j][count_] = widened(box.max[static_cast<glm::length_t>(j)]);
         }
         box_[count_] = &box;
         out_[count_] = &out;
@@ -114,9 +115,8 @@ public:
 
 private:
     void separate() noexcept {
-        if (!separating_) separating_.make(forms_);
         double least_of_largest[box_block];
-        kernels_.separate(separating_->data(), separating_->size(), block_, least_of_largest);
+        kernels_.separate(separating_, block_, least_of_largest);
         for (std::size_t i = 0; i < count_; ++i)
             if (*out_[i] == Coverage::partial && least_of_largest[i] < 0.0) *out_[i] = Coverage::outside;
     }
@@ -137,10 +137,10 @@ private:
         }
     }
 
-    const BoxKernels& kernels_;
+    const BoxBatchKernels& kernels_;
     const LitForms& forms_;
+    const SeparatingForms& separating_;
     OnDemand<DoubleForms> double_forms_;
-    OnDemand<SeparatingForms> separating_;
     BoxBlock block_{};
     const Box* box_[box_block];
     Coverage* out_[box_block];
@@ -149,15 +149,12 @@ private:
 };
 
 template <class CompiledWhereCalled = void>
-void cover(const LitForms& forms, const FloatForms& float_forms, std::span<const Box> boxes,
-           const std::span<Coverage>& out) noexcept {
-    const BoxKernels& kernels = chosen<BoxKernels>();
-    OpenBoxes<> open_boxes(kernels, forms);
+void cover(const LitForms& forms, const FloatForms& float_forms, const SeparatingForms& separating,
+           std::span<const Box> boxes, const std::span<Coverage>& out) noexcept {
+    const BoxBatchKernels& kernels = chosen<BoxBatchKernels>();
+    OpenBoxes<> open_boxes(kernels, forms, separating);
     classify_many<6>(
-        boxes, out,
-        [&](const float* floats, std::size_t count, int* classes) {
-            kernels.classify_boxes(float_forms, floats, count, classes);
-        },
+        boxes, out, kernels.classify, float_forms,
         [](const Box& box, float* floats) {
             for (glm::length_t j = 0; j < 3; ++j) {
                 floats[j] = box.min[j];
@@ -168,43 +165,21 @@ void cover(const LitForms& forms, const FloatForms& float_forms, std::span<const
     open_boxes.decide();
 }
 
-// Whether a further plane separates one box, which is partial to the forms, from what they leave.
-inline bool is_separated(const BoxKernels& kernels, const LitForms& forms, const BoxBlock& block) noexcept {
-    constexpr double unbounded = 0x1p200;  // nor larger than what products hold
-    Point middle{};
-    for (std::size_t j = 0; j < 3; ++j)
-        middle[j] = 0.5 * larger(block.min[j][0], -unbounded) + 0.5 * smaller(block.max[j][0], unbounded);
-    // Almost always the middle is lit, or the vertex where the form is largest that is negative there.
-    const std::uint32_t dark = forms.dark_at(middle);
-    if (dark == 0) return false;
-    for (std::uint32_t bits = dark; bits != 0; bits &= bits - 1) {
-        const auto k = static_cast<std::size_t>(std::countr_zero(bits));
-        Point vertex = middle;
-        for (std::size_t j = 0; j < 3; ++j)
-            if (forms.a(k, j) != 0.0) vertex[j] = (forms.a(k, j) > 0.0 ? block.max : block.min)[j][0];
-        if ((forms.dark_at(vertex) & ~(std::uint32_t{1} << k)) == 0) return false;
-    }
-    const SeparatingForms separating(forms, dark);
-    double least_of_largest[box_block];
-    kernels.separate(separating.data(), separating.size(), block, least_of_largest);
-    return least_of_largest[0] < 0.0;
-}
-
-// One box.
-inline Coverage coverage_of(const BoxKernels& kernels, const LitForms& forms, const Box& box) noexcept {
+// One box; separating() is asked where a further plane may make it outside.
+template <class Separating>
+Coverage coverage_of(const BoxKernels& kernels, const LitForms& forms, const Box& box,
+                     const Separating& separating) noexcept {
     FormsInDoubt doubt;
-    const int answer =
-        forms.can_say() ? kernels.classify_box(forms.lanes(), &box.min.x, &box.max.x, doubt) : body_in_doubt;
+    const int answer = forms.can_say() ? kernels.classify(forms.lanes(), &box.min.x, &box.max.x, doubt) : body_in_doubt;
     if (answer < open_body) return static_cast<Coverage>(answer);
     if (answer == body_in_doubt && doubt.is_finite &&
         kernels.sharpen(forms.matrix(), forms.weights(), &box.min.x, &box.max.x, doubt))
         return Coverage::outside;
     const Coverage result = answer == body_in_doubt ? exact_coverage(forms, box, doubt) : Coverage::partial;
     if (result != Coverage::partial) return result;
-    BoxBlock block;
-    for (std::size_t i = 0; i < box_block; ++i)
-        if (!put(box, block, i)) return result;
-    return forms.can_say() && is_separated(kernels, forms, block) ? Coverage::outside : result;
+    return forms.can_say() && has_points(box) && kernels.is_separated(separating(), &box.min.x, &box.max.x)
+               ? Coverage::outside
+               : result;
 }
 
 }  // namespace TEXGEN_BUILD
@@ -215,12 +190,14 @@ inline namespace TEXGEN_BUILD {
 
 template <class Space>
 LitVolume<Space>::LitVolume(const Transform<Texture, Space>& texture_from_space, const TextureRegion& region) noexcept
-    : forms_(texture_from_space.matrix(), region, detail::chosen<detail::BoxKernels>()),
-      float_forms_(forms_.in_float(detail::chosen<detail::BoxKernels>())) {}
+    : forms_(texture_from_space.matrix(), region, detail::chosen<detail::FormKernels>()),
+      float_forms_(forms_.in_float(detail::chosen<detail::FloatFormKernels>())),
+      separating_(forms_.separating(detail::chosen<detail::SeparatingFormKernels>())) {}
 
 template <class Space>
 Coverage LitVolume<Space>::coverage(const Box& box) const noexcept {
-    return detail::coverage_of(detail::chosen<detail::BoxKernels>(), forms_, box);
+    return detail::coverage_of(detail::chosen<detail::BoxKernels>(), forms_, box,
+                               [this]() -> const detail::SeparatingForms& { return separating_; });
 }
 template <class Space>
 Coverage LitVolume<Space>::coverage(const Sphere& sphere) const noexcept {
@@ -230,7 +207,7 @@ Coverage LitVolume<Space>::coverage(const Sphere& sphere) const noexcept {
 template <class Space>
 void LitVolume<Space>::coverage(std::span<const Box> boxes, std::span<Coverage> out) const noexcept {
     TEXGEN_ASSERT(boxes.size() == out.size());
-    detail::cover(forms_, float_forms_, boxes, out);
+    detail::cover(forms_, float_forms_, separating_, boxes, out);
 }
 template <class Space>
 void LitVolume<Space>::coverage(std::span<const Sphere> spheres, std::span<Coverage> out) const noexcept {
@@ -242,14 +219,15 @@ void LitVolume<Space>::coverage(std::span<const Sphere> spheres, std::span<Cover
 template <class Space>
 Coverage coverage(const Transform<Texture, Space>& texture_from_space, const TextureRegion& region,
                   const Box& box) noexcept {
-    const detail::BoxKernels& kernels = detail::chosen<detail::BoxKernels>();
-    return detail::coverage_of(kernels, detail::LitForms(texture_from_space.matrix(), region, kernels), box);
+    const detail::LitForms forms(texture_from_space.matrix(), region, detail::chosen<detail::FormKernels>());
+    return detail::coverage_of(detail::chosen<detail::BoxKernels>(), forms, box,
+                               [&] { return forms.separating(detail::chosen<detail::SeparatingFormKernels>()); });
 }
 template <class Space>
 Coverage coverage(const Transform<Texture, Space>& texture_from_space, const TextureRegion& region,
                   const Sphere& sphere) noexcept {
-    const detail::BoxKernels& kernels = detail::chosen<detail::BoxKernels>();
-    return detail::exact_coverage(detail::LitForms(texture_from_space.matrix(), region, kernels), sphere);
+    const detail::LitForms forms(texture_from_space.matrix(), region, detail::chosen<detail::FormKernels>());
+    return detail::exact_coverage(forms, sphere);
 }
 template <class Space>
 void coverage(const Transform<Texture, Space>& texture_from_space, const TextureRegion& region,
@@ -259,7 +237,9 @@ void coverage(const Transform<Texture, Space>& texture_from_space, const Texture
 template <class Space>
 void coverage(const Transform<Texture, Space>& texture_from_space, const TextureRegion& region,
               std::span<const Sphere> spheres, std::span<Coverage> out) noexcept {
-    LitVolume<Space>(texture_from_space, region).coverage(spheres, out);
+    TEXGEN_ASSERT(spheres.size() == out.size());
+    const detail::LitForms forms(texture_from_space.matrix(), region, detail::chosen<detail::FormKernels>());
+    detail::cover(forms, forms.in_float(detail::chosen<detail::FloatFormKernels>()), spheres, out);
 }
 
 }  // namespace TEXGEN_BUILD

@@ -39,26 +39,20 @@ struct CloseRows {
     std::array<CloseSum, 4> row;
 };
 
-// What the coefficients carry already, and 8 u of each term for its own rounding, for the sums and for the bound's.
-inline void set_errors(LinearForm& form, const Point& error_of_a, double error_of_d) noexcept {
-    form.error_a = 0.0;
-    for (std::size_t j = 0; j < 3; ++j)
-        form.error_a = larger(form.error_a, 1.001 * (error_of_a[j] + gamma(8) * std::fabs(form.a[j])));
-    form.error_d = 1.001 * (error_of_d + gamma(8) * std::fabs(form.d)) + 0x1p-1000;
-    form.error_a += 0x1p-1000;
-}
-
 class LitForms {
 public:
     static constexpr std::size_t q = form_of_q;
 
-    LitForms(const glm::dmat4& matrix, const TextureRegion& region, const BoxKernels& kernels) noexcept
+    LitForms(const glm::dmat4& matrix, const TextureRegion& region, const FormKernels& kernels) noexcept
         : count_(region.depth() ? max_forms : forms_without_depth) {
         const bool is_matrix_finite = is_finite(matrix);
         is_usable_ = is_matrix_finite && take_matrix(matrix) && take_sides(region);
         lights_nothing_ =
             is_matrix_finite && (is_empty(region) || (is_usable_ && lanes_.largest_q == 0.0 && lanes_.last_q == 0.0));
-        if (can_say()) kernels.weigh(matrix_, weights_, lanes_);
+        if (!can_say()) return;
+        kernels.weigh(matrix_, weights_, lanes_);
+        for (std::size_t k = 0; k < count_; ++k)
+            slope_[k] = (1.0 + gamma(8)) * std::sqrt(a(k, 0) * a(k, 0) + a(k, 1) * a(k, 1) + a(k, 2) * a(k, 2));
     }
 
     // Five forms, or seven with a depth.
@@ -86,16 +80,11 @@ public:
     const glm::dmat4& matrix() const noexcept { return matrix_; }
     const FormWeights& weights() const noexcept { return weights_; }
     LinearForm operator[](std::size_t k) const noexcept {
-        LinearForm form{{a(k, 0), a(k, 1), a(k, 2)}, lanes_.d[k], 0.0, 0.0, {}};
-        for (std::size_t j = 0; j < 3; ++j) form.uses[j] = form.a[j] != 0.0;
-        set_errors(form, {}, 0.0);
-        return form;
+        return {{a(k, 0), a(k, 1), a(k, 2)}, lanes_.d[k], lanes_.error_a[k], lanes_.error_d[k]};
     }
 
     // |a| of form k, or up to 2^-49 of it more.
-    double slope(std::size_t k) const noexcept {
-        return (1.0 + gamma(8)) * std::sqrt(a(k, 0) * a(k, 0) + a(k, 1) * a(k, 1) + a(k, 2) * a(k, 2));
-    }
+    double slope(std::size_t k) const noexcept { return slope_[k]; }
 
     // How much less form k may be for its inner side at points of this size, or more: (side - inner side) T_q.
     double narrowing(std::size_t k, double size) const noexcept {
@@ -125,9 +114,15 @@ public:
     }
 
     // In float, for many bodies.
-    FloatForms in_float(const BoxKernels& kernels) const noexcept {
+    FloatForms in_float(const FloatFormKernels& kernels) const noexcept {
         FloatForms result;
         kernels.round(lanes_, count_, result);
+        return result;
+    }
+
+    SeparatingForms separating(const SeparatingFormKernels& kernels) const noexcept {
+        SeparatingForms result;
+        kernels.make(lanes_, matrix_, side_.data(), count_ == max_forms, result);
         return result;
     }
 
@@ -135,9 +130,9 @@ public:
         SphereForms result;
         for (std::size_t k = 0; k < count_; ++k) {
             result.form[k] = (*this)[k];
-            result.slope[k] = slope(k);
             result.narrowing[k] = lanes_.narrowing[k];
         }
+        result.slope = slope_;
         result.largest_q = lanes_.largest_q;
         result.last_q = lanes_.last_q;
         result.count = count_;
@@ -156,22 +151,11 @@ public:
         return result;
     }
 
-    // T_s, T_t, T_r and T_q, and the outer sides of s and t: min, max.
+    // T_s, T_t, T_r and T_q.
     using Row = std::array<double, 4>;
     Row row(std::size_t coordinate) const noexcept {
         const auto i = static_cast<glm::length_t>(coordinate);
         return {matrix_[0][i], matrix_[1][i], matrix_[2][i], matrix_[3][i]};
-    }
-    double side(std::size_t k) const noexcept { return side_[k]; }
-
-    // A bit for each form that is not certain to be above 0 at a finite point.
-    std::uint32_t dark_at(const Point& point) const noexcept {
-        std::uint32_t dark = 0;
-        for (std::size_t k = 0; k < count_; ++k) {
-            const Bounded value = value_at(k, point);
-            dark |= static_cast<std::uint32_t>(!(value.value > value.error)) << k;
-        }
-        return dark;
     }
 
 private:
@@ -355,10 +339,9 @@ private:
     FormWeights weights_;
     std::array<Weight, max_forms> inner_weight_;
     FormLanes lanes_{};
+    std::array<double, max_forms> slope_{};
     bool is_usable_;
     bool lights_nothing_;
 };
 
 }  // namespace TEXGEN_DETAIL
-
-#include "separating_forms.inc.hpp"

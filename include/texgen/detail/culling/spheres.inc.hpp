@@ -7,9 +7,9 @@ static_assert(Coverage{0} == Coverage::outside && Coverage{1} == Coverage::parti
 
 // Classifies bodies of `Floats` floats each by a kernel, and calls decide(i, is_in_doubt) for those that are left open. Where
 // the floats of bodies do not follow one another, as where the user aligns GLM's vectors, copy(body, floats) makes them.
-template <std::size_t Floats, class Body, class Classify, class Copy, class Decide>
-void classify_many(std::span<const Body> bodies, std::span<Coverage> out, const Classify& classify, const Copy& copy,
-                   const Decide& decide) noexcept {
+template <std::size_t Floats, class Body, class Copy, class Decide>
+void classify_many(std::span<const Body> bodies, std::span<Coverage> out, Classify classify, const FloatForms& forms,
+                   const Copy& copy, const Decide& decide) noexcept {
     constexpr std::size_t chunk = 16 * body_quantum;
     constexpr bool is_dense = sizeof(Body) == Floats * sizeof(float);
     constexpr std::size_t copied = is_dense ? body_quantum : chunk;
@@ -22,18 +22,18 @@ void classify_many(std::span<const Body> bodies, std::span<Coverage> out, const 
                                   : left >= body_quantum ? left / body_quantum * body_quantum
                                                          : left;
         if (is_dense && count >= body_quantum) {
-            classify(reinterpret_cast<const float*>(&bodies[begin]), count, classes);
+            classify(forms, reinterpret_cast<const float*>(&bodies[begin]), count, classes);
         } else {
             float copies[copied][Floats] = {};
             for (std::size_t i = 0; i < count; ++i) copy(bodies[begin + i], copies[i]);
-            classify(copies[0], (count + body_quantum - 1) / body_quantum * body_quantum, classes);
+            classify(forms, copies[0], (count + body_quantum - 1) / body_quantum * body_quantum, classes);
         }
         // Without a branch for each.
         std::size_t open_count = 0;
         for (std::size_t i = 0; i < count; ++i) {
             out[begin + i] = static_cast<Coverage>(classes[i] & 3);
             open[open_count] = i;
-            open_count += static_cast<std::size_t>(classes[i] / open_body);
+            open_count += static_cast<std::size_t>(classes[i] >= open_body);
         }
         for (std::size_t k = 0; k < open_count; ++k) decide(begin + open[k], classes[open[k]] == body_in_doubt);
         begin += count;
@@ -54,19 +54,12 @@ inline Coverage exact_coverage(const LitForms& forms, const Sphere& sphere) noex
     const auto dot = [](const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
     double value[max_forms];
     double error[max_forms];
-    double slope[max_forms];
-    // Most are far outside, which takes no root.
+    bool is_inside = true;
     for (std::size_t k = 0; k < forms.count(); ++k) {
         const LinearForm form = forms[k];
         value[k] = dot(form.a, centre) + form.d;
         error[k] = form.error_a * size + form.error_d;
-        const double most = 1.001 * (std::fabs(form.a[0]) + std::fabs(form.a[1]) + std::fabs(form.a[2])) * radius;
-        if (value[k] + most + error[k] < 0.0) return Coverage::outside;
-    }
-    bool is_inside = true;
-    for (std::size_t k = 0; k < forms.count(); ++k) {
-        slope[k] = forms.slope(k);
-        const double change = slope[k] * radius;
+        const double change = forms.slope(k) * radius;
         if (value[k] + change + (error[k] + gamma(4) * change) < 0.0) return Coverage::outside;
         const double narrowing = 1.1 * forms.narrowing(k, size + 2.0 * radius);
         is_inside = is_inside && value[k] - change - (error[k] + gamma(4) * change) > narrowing;
@@ -75,15 +68,15 @@ inline Coverage exact_coverage(const LitForms& forms, const Sphere& sphere) noex
     const auto is_beside_edge = [&](std::size_t f, std::size_t g) {
         if (value[f] >= 0.0 && value[g] >= 0.0) return false;
         const double across = dot(forms[f].a, forms[g].a);
-        double of_f = across * value[g] - slope[g] * slope[g] * value[f];
-        double of_g = across * value[f] - slope[f] * slope[f] * value[g];
+        double of_f = across * value[g] - forms.slope(g) * forms.slope(g) * value[f];
+        double of_g = across * value[f] - forms.slope(f) * forms.slope(f) * value[g];
         if (!(of_f > 0.0 && of_g > 0.0)) return false;
         const double both = of_f + of_g;  // or their squares could be too small for a double
         of_f /= both;
         of_g /= both;
-        const double longest = of_f * slope[f] + of_g * slope[g];
-        const double squared = of_f * of_f * (slope[f] * slope[f]) + 2.0 * of_f * of_g * across +
-                               of_g * of_g * (slope[g] * slope[g]) + gamma(32) * longest * longest;
+        const double longest = of_f * forms.slope(f) + of_g * forms.slope(g);
+        const double squared = of_f * of_f * (forms.slope(f) * forms.slope(f)) + 2.0 * of_f * of_g * across +
+                               of_g * of_g * (forms.slope(g) * forms.slope(g)) + gamma(32) * longest * longest;
         const double change = std::sqrt(squared) * radius;
         const double rounding = gamma(8) * (of_f * std::fabs(value[f]) + of_g * std::fabs(value[g]) + change);
         return of_f * value[f] + of_g * value[g] + change + (of_f * error[f] + of_g * error[g]) + rounding < 0.0;
@@ -103,7 +96,7 @@ inline namespace TEXGEN_BUILD {
 template <class CompiledWhereCalled = void>
 class OpenSpheres {
 public:
-    OpenSpheres(const BoxKernels& kernels, const LitForms& forms) noexcept : kernels_(kernels), forms_(forms) {}
+    OpenSpheres(const SphereBatchKernels& kernels, const LitForms& forms) noexcept : kernels_(kernels), forms_(forms) {}
 
     void add(const Sphere& sphere, Coverage& out) noexcept {
         const glm::dvec3 centre = widened(sphere.centre);
@@ -124,7 +117,7 @@ public:
         if (count_ == 0) return;
         if (!sphere_forms_) sphere_forms_.make(forms_.for_spheres());
         int classes[box_block];
-        kernels_.bound_spheres(*sphere_forms_, block_, classes);
+        kernels_.bound(*sphere_forms_, block_, classes);
         for (std::size_t i = 0; i < count_; ++i)
             *out_[i] =
                 classes[i] == body_in_doubt ? exact_coverage(forms_, *sphere_[i]) : static_cast<Coverage>(classes[i]);
@@ -132,7 +125,7 @@ public:
     }
 
 private:
-    const BoxKernels& kernels_;
+    const SphereBatchKernels& kernels_;
     const LitForms& forms_;
     OnDemand<SphereForms> sphere_forms_;
     SphereBlock block_{};
@@ -144,13 +137,10 @@ private:
 template <class CompiledWhereCalled = void>
 void cover(const LitForms& forms, const FloatForms& float_forms, std::span<const Sphere> spheres,
            const std::span<Coverage>& out) noexcept {
-    const BoxKernels& kernels = chosen<BoxKernels>();
+    const SphereBatchKernels& kernels = chosen<SphereBatchKernels>();
     OpenSpheres<> open_spheres(kernels, forms);
     classify_many<4>(
-        spheres, out,
-        [&](const float* floats, std::size_t count, int* classes) {
-            kernels.classify_spheres(float_forms, floats, count, classes);
-        },
+        spheres, out, kernels.classify, float_forms,
         [](const Sphere& sphere, float* floats) {
             for (glm::length_t j = 0; j < 3; ++j) floats[j] = sphere.centre[j];
             floats[3] = sphere.radius;

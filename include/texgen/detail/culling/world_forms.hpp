@@ -159,7 +159,7 @@ private:
     }
 
     // What is not set says nothing.
-    static constexpr LinearForm nothing{{}, 0.0, 1.0, 1.0, {}};
+    static constexpr LinearForm nothing{{}, 0.0, 1.0, 1.0};
     std::array<LinearForm, SlidePlanes::max_size> forms_{};
     std::size_t count_ = 0;
 };

@@ -41,6 +41,7 @@ void classify_boxes(const FloatForms& original, const float* boxes, std::size_t 
         WideFloats min[3], max[3], sum[3], extent[3];
         load_boxes(boxes + 6 * i, min, max);
         WideFloats size{};
+        TEXGEN_UNROLL
         for (int j = 0; j < 3; ++j) {
             sum[j] = min[j] + max[j];
             extent[j] = max[j] - min[j];
@@ -62,6 +63,7 @@ void classify_spheres(const FloatForms& original, const float* spheres, std::siz
         WideFloats twice[3], radius;
         load_spheres(spheres + 4 * i, twice, radius);
         WideFloats size = radius + radius;
+        TEXGEN_UNROLL
         for (int j = 0; j < 3; ++j) {
             twice[j] = twice[j] + twice[j];
             size = size + magnitude(twice[j]);
@@ -118,38 +120,29 @@ TEXGEN_INLINE void bound_exactly(const ExactForm& form, bool largest, const BoxB
     upper = minimum(high + lost - least_lit, upper);
 }
 
-// The least of the largest values of the sides, or of the least ones of the inner sides; q first, which is negative for
+// The least of the largest values of the sides, and of the least ones of the inner sides; q first, which is negative for
 // half of what is at the apex. Where one is negative for every box, the others are not asked.
-template <bool Largest>
-TEXGEN_INLINE void bound_least(const DoubleForms& forms, const BoxBlock& boxes, std::size_t i, double* least_lower,
-                               double* least_upper) noexcept {
-    Doubles all_lower = Doubles{} + 1.0;
-    Doubles all_upper = all_lower;
-    for (std::size_t k = forms.count; k-- > 0;) {
-        if (!any(narrow(~greater(0.0 - all_upper, 0.0)))) break;
-        const DoubleForms::Form& sides = forms.form[k];
-        const ExactForm& form = Largest ? sides.outer : sides.inner;
-        Doubles lower;
-        Doubles upper;
-        bound_form(form, Largest, boxes, i, sides.least_lit, lower, upper);
-        const LongWords is_in_doubt = greater(0.0 - lower, 0.0) & ~greater(0.0 - upper, 0.0);
-        if (any(narrow(is_in_doubt))) bound_exactly(form, Largest, boxes, i, sides.least_lit, lower, upper);
-        all_lower = minimum(lower, all_lower);
-        all_upper = minimum(upper, all_upper);
-    }
-    store(least_lower + i, all_lower);
-    store(least_upper + i, all_upper);
-}
-
 template <class CompiledWhereCalled = void>
-void bound(const DoubleForms& forms, const BoxBlock& boxes, BoxBounds& bounds) noexcept {
+void bound_boxes(const DoubleForms& forms, const BoxBlock& boxes, BoxBounds& bounds) noexcept {
     for (std::size_t i = 0; i < box_block; i += static_cast<std::size_t>(lanes)) {
-        bound_least<true>(forms, boxes, i, bounds.lower, bounds.upper);
-        const auto upper = load<Doubles>(bounds.upper + i);
-        store(bounds.inner_lower + i, upper);
-        store(bounds.inner_upper + i, upper);
-        if (any(narrow(~greater(0.0 - upper, 0.0))))
-            bound_least<false>(forms, boxes, i, bounds.inner_lower, bounds.inner_upper);
+        Doubles all_lower = Doubles{} + 1.0;
+        Doubles all_upper = all_lower;
+        for (const bool largest : {true, false}) {
+            for (std::size_t k = forms.count; k-- > 0;) {
+                if (!any(narrow(~greater(0.0 - all_upper, 0.0)))) break;
+                const DoubleForms::Form& sides = forms.form[k];
+                const ExactForm& form = largest ? sides.outer : sides.inner;
+                Doubles lower;
+                Doubles upper;
+                bound_form(form, largest, boxes, i, sides.least_lit, lower, upper);
+                const LongWords is_in_doubt = greater(0.0 - lower, 0.0) & ~greater(0.0 - upper, 0.0);
+                if (any(narrow(is_in_doubt))) bound_exactly(form, largest, boxes, i, sides.least_lit, lower, upper);
+                all_lower = minimum(lower, all_lower);
+                all_upper = minimum(upper, all_upper);
+            }
+            store((largest ? bounds.lower : bounds.inner_lower) + i, all_lower);
+            store((largest ? bounds.upper : bounds.inner_upper) + i, all_upper);
+        }
     }
 }
 
@@ -225,28 +218,6 @@ void bound_spheres(const SphereForms& forms, const SphereBlock& spheres, int* cl
                                 : each[0][lane] != 0 ? 0
                                 : each[1][lane] != 0 ? 2
                                                      : 1;
-    }
-}
-
-// What a form does not use is skipped, whatever the box has there. A NaN (of an infinity) proves nothing.
-template <class CompiledWhereCalled = void>
-void separate(const LinearForm* forms, std::size_t count, const BoxBlock& boxes, double* least_of_largest) noexcept {
-    for (std::size_t i = 0; i < box_block; i += static_cast<std::size_t>(lanes)) {
-        Doubles least = Doubles{} + 1.0;
-        Doubles size[3];
-        for (std::size_t j = 0; j < 3; ++j)
-            size[j] = maximum(0.0 - load<Doubles>(boxes.min[j] + i), load<Doubles>(boxes.max[j] + i));
-        for (std::size_t k = 0; k < count; ++k) {
-            const LinearForm& form = forms[k];
-            Doubles largest = Doubles{} + (form.d + form.error_d);
-            for (std::size_t j = 0; j < 3; ++j) {
-                if (!form.uses[j]) continue;
-                const auto vertex = load<Doubles>((form.a[j] > 0.0 ? boxes.max : boxes.min)[j] + i);
-                largest = largest + vertex * form.a[j] + size[j] * form.error_a;
-            }
-            least = minimum(largest, least);
-        }
-        store(least_of_largest + i, least);
     }
 }
 

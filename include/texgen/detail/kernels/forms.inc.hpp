@@ -5,7 +5,6 @@ namespace TEXGEN_DETAIL::TEXGEN_ISA {
 // q is split so that its products with a float are exact. What they leave of the sum is far below it, or nothing.
 template <class CompiledWhereCalled = void>
 void weigh_forms(const glm::dmat4& matrix, const FormWeights& weights, FormLanes& forms) noexcept {
-    TEXGEN_UNROLL
     for (std::size_t i = 0; i < form_lanes; i += static_cast<std::size_t>(lanes)) {
         const Doubles of[3] = {load<Doubles>(weights.of[0] + i), load<Doubles>(weights.of[1] + i),
                                load<Doubles>(weights.of[2] + i)};
@@ -27,6 +26,8 @@ void weigh_forms(const glm::dmat4& matrix, const FormWeights& weights, FormLanes
         for (std::size_t j = 0; j < 3; ++j) store(forms.a[j] + i, form[j] * scale);
         store(forms.d + i, form[3] * scale);
         store(forms.narrowing + i, load<Doubles>(weights.width + i) * scale);
+        store(forms.error_a + i, largest * scale * gamma(8) * 1.001 + 0x1p-1000);
+        store(forms.error_d + i, magnitude(form[3] * scale) * gamma(8) * 1.001 + 0x1p-1000);
     }
 }
 
@@ -170,16 +171,15 @@ int classify_box(const FormLanes& forms, const float* box_min, const float* box_
 }
 
 // Forms where they are largest over a finite box, or least: as sums of exact products with halves of the coefficients, and of
-// what those leave. That is below 2^-26 of the terms, and its own roundings below 2^-76; where it is 0, as it is for numbers
-// with few digits, the value is exact. Elsewhere its sign is known where it is larger than that.
+// what those leave, each of its terms rounded. Where they leave nothing, as numbers with few digits do, the value is exact;
+// elsewhere its sign is known where it is larger than the roundings.
 struct CloseForms {
     Doubles value;
     LongWords is_known;
 
     TEXGEN_INLINE CloseForms(const glm::dmat4& matrix, const Doubles (&of)[3], const Doubles& of_q,
                              const double (&at_positive)[4], const double (&at_negative)[4]) noexcept {
-        Doubles high{}, low{}, lost{}, size{};
-        TEXGEN_UNROLL
+        Doubles high{}, low{}, size_of_low{};
         for (std::size_t j = 0; j < 4; ++j) {
             const glm::dvec4& column = matrix[static_cast<glm::length_t>(j)];
             const double half = leading_26_bits(column.w);
@@ -193,14 +193,13 @@ struct CloseForms {
                 Doubles left;
                 high = two_sum(high, part * x, left);
                 low = low + left;
-                lost = lost + magnitude(left);
+                size_of_low = size_of_low + magnitude(left);
             }
             low = low + rest * x;
-            lost = lost + magnitude(rest * x);
-            size = size + (magnitude(row) + magnitude(of_q * column.w)) * magnitude(x);
+            size_of_low = size_of_low + magnitude(rest * x);
         }
         value = high + low;
-        is_known = at_most(lost, Doubles{}) | greater(magnitude(value), size * 0x1p-76);
+        is_known = at_most(size_of_low, Doubles{}) | greater(magnitude(value), size_of_low * gamma(24) + 0x1p-1000);
     }
 };
 
@@ -217,7 +216,12 @@ bool sharpen(const glm::dmat4& matrix, const FormWeights& weights, const float* 
                                load<Doubles>(weights.of[2] + i)};
         int is_known[lanes];
         double value[lanes];
-        const auto settle = [&](const CloseForms& close, std::uint32_t& in_doubt) {
+        // Where they are largest, and then where they are least.
+        for (int end = 0; end < 2; ++end) {
+            std::uint32_t& in_doubt = end == 0 ? doubt.largest : doubt.least;
+            if ((in_doubt >> i & ((1u << lanes) - 1)) == 0 || (end == 1 && doubt.is_any_negative)) continue;
+            const CloseForms close(matrix, of, load<Doubles>((end == 0 ? weights.of_q : weights.inner_of_q) + i),
+                                   end == 0 ? max : min, end == 0 ? min : max);
             store(is_known, narrow(close.is_known));
             store(value, close.value);
             bool any_is_negative = false;
@@ -227,14 +231,9 @@ bool sharpen(const glm::dmat4& matrix, const FormWeights& weights, const float* 
                 in_doubt &= ~bit;
                 any_is_negative |= value[lane] < 0.0 || (i + lane == form_of_q && value[lane] == 0.0);
             }
-            return any_is_negative;
-        };
-        const std::uint32_t here = ((std::uint32_t{1} << lanes) - 1) << i;
-        if ((doubt.largest & here) != 0 &&
-            settle({matrix, of, load<Doubles>(weights.of_q + i), max, min}, doubt.largest))
-            return true;
-        if (!doubt.is_any_negative && (doubt.least & here) != 0)
-            doubt.is_any_negative = settle({matrix, of, load<Doubles>(weights.inner_of_q + i), min, max}, doubt.least);
+            if (end == 0 && any_is_negative) return true;
+            doubt.is_any_negative |= any_is_negative;
+        }
     }
     return false;
 }

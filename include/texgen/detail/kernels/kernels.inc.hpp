@@ -22,6 +22,7 @@
 #include "depth.inc.hpp"
 #include "footprint.inc.hpp"
 #include "forms.inc.hpp"
+#include "separating.inc.hpp"
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
@@ -77,17 +78,51 @@ struct KernelTable<FootprintKernels, CompiledWhereCalled> {
 };
 
 template <class CompiledWhereCalled>
+struct KernelTable<FormKernels, CompiledWhereCalled> {
+    static const FormKernels& get() noexcept {
+        static constexpr FormKernels table{.weigh = weigh_forms<>};
+        return table;
+    }
+};
+
+template <class CompiledWhereCalled>
+struct KernelTable<SeparatingFormKernels, CompiledWhereCalled> {
+    static const SeparatingFormKernels& get() noexcept {
+        static constexpr SeparatingFormKernels table{.make = make_planes<>};
+        return table;
+    }
+};
+
+template <class CompiledWhereCalled>
+struct KernelTable<FloatFormKernels, CompiledWhereCalled> {
+    static const FloatFormKernels& get() noexcept {
+        static constexpr FloatFormKernels table{.round = round_forms<>};
+        return table;
+    }
+};
+
+template <class CompiledWhereCalled>
 struct KernelTable<BoxKernels, CompiledWhereCalled> {
     static const BoxKernels& get() noexcept {
-        static constexpr BoxKernels table{.weigh = weigh_forms<>,
-                                          .round = round_forms<>,
-                                          .classify_box = classify_box<>,
-                                          .sharpen = sharpen<>,
-                                          .classify_boxes = classify_boxes<>,
-                                          .classify_spheres = classify_spheres<>,
-                                          .bound = bound<>,
-                                          .bound_spheres = bound_spheres<>,
-                                          .separate = separate<>};
+        static constexpr BoxKernels table{
+            .classify = classify_box<>, .sharpen = sharpen<>, .is_separated = is_separated<>};
+        return table;
+    }
+};
+
+template <class CompiledWhereCalled>
+struct KernelTable<BoxBatchKernels, CompiledWhereCalled> {
+    static const BoxBatchKernels& get() noexcept {
+        static constexpr BoxBatchKernels table{
+            .classify = classify_boxes<>, .bound = bound_boxes<>, .separate = separate<>};
+        return table;
+    }
+};
+
+template <class CompiledWhereCalled>
+struct KernelTable<SphereBatchKernels, CompiledWhereCalled> {
+    static const SphereBatchKernels& get() noexcept {
+        static constexpr SphereBatchKernels table{.classify = classify_spheres<>, .bound = bound_spheres<>};
         return table;
     }
 };

@@ -13,12 +13,11 @@
 namespace TEXGEN_DETAIL {
 
 // a . (x, y, z) + d, known to within error_a size + error_d when it is computed in double in any order, where the size of a
-// point is |x| + |y| + |z|. A coordinate whose coefficient is exactly 0 is not used: there a box may be infinite.
+// point is |x| + |y| + |z|.
 struct LinearForm {
     std::array<double, 3> a;
     double d;
     double error_a, error_d;
-    std::array<bool, 3> uses;
 };
 
 // The forms of a slide: its sides s_min, s_max, t_min, t_max, then q, and r_min, r_max where it has a depth.
@@ -35,10 +34,10 @@ struct FormWeights {
 };
 
 // a . (x, y, z) + d, each coefficient rounded so that its sign is right and it is 0 only if it is 0, times a power of two that
-// brings the largest a of a form near to 1. Its inner side is less by narrowing * T_q, and T_q at points of a size, the sum of
-// their magnitudes, is at most largest_q * size + last_q.
+// brings the largest a of a form near to 1; in double it errs by at most error_a * size + error_d. Its inner side is less by
+// narrowing * T_q, and T_q at points of a size, the sum of their magnitudes, is at most largest_q * size + last_q.
 struct FormLanes {
-    double a[3][form_lanes], d[form_lanes], narrowing[form_lanes];
+    double a[3][form_lanes], d[form_lanes], narrowing[form_lanes], error_a[form_lanes], error_d[form_lanes];
     double largest_q, last_q;
 };
 
@@ -58,6 +57,15 @@ struct FloatForms {
     float slope[form_lanes];  // |a|, or a little more
     std::size_t count;
     float error_per_size, error;
+};
+
+// The planes beside the slide's own: of 4 edges, or 12 where there is a depth, and of 8 vertices, for each axis, and of the apex;
+// in whole vectors. A coordinate whose coefficient is exactly 0 is not used: there a box may be infinite. d holds its own error,
+// and `error` is that of a point of size 1.
+inline constexpr std::size_t max_separating = 3 * 16 + 8 + 3 * 8;
+struct SeparatingForms {
+    double a[3][max_separating], d[max_separating], error[max_separating];
+    std::size_t count;
 };
 
 // A form by its four coefficients, each rounded once, and as a sum of terms that is exact: of a coordinate, the last of which
@@ -118,27 +126,49 @@ struct BoxBounds {
     double inner_lower[box_block], inner_upper[box_block];
 };
 
-struct BoxKernels {
-    // Makes the forms, in double and in float.
+// Each table is compiled where it is asked for: a program has what its questions need. The forms are made in double and, for
+// many bodies, in float.
+struct FormKernels {
     void (*weigh)(const glm::dmat4& matrix, const FormWeights& weights, FormLanes& forms) noexcept;
+};
+struct FloatFormKernels {
     void (*round)(const FormLanes& forms, std::size_t count, FloatForms& result) noexcept;
-    // What doubles are certain of, of one box. NaN, infinities and empty boxes are in doubt.
-    int (*classify_box)(const FormLanes& forms, const float* min, const float* max, FormsInDoubt& doubt) noexcept;
+};
+
+// Further forms that are >= 0 wherever all of a slide's are, each a combination of those with weights that are exactly >= 0.
+// Where one of them is negative over all of a convex body, nothing of the body is lit.
+struct SeparatingFormKernels {
+    void (*make)(const FormLanes& forms, const glm::dmat4& matrix, const double* side, bool has_depth,
+                 SeparatingForms& planes) noexcept;
+};
+
+// One box.
+struct BoxKernels {
+    // What doubles are certain of. NaN, infinities and empty boxes are in doubt.
+    int (*classify)(const FormLanes& forms, const float* min, const float* max, FormsInDoubt& doubt) noexcept;
     // Settles of the doubt about a finite box what two doubles can, and where it touches with few digits. Returns whether the
     // box is outside.
     bool (*sharpen)(const glm::dmat4& matrix, const FormWeights& weights, const float* min, const float* max,
                     FormsInDoubt& doubt) noexcept;
-    // What floats are certain of. A box is six floats, min first; a sphere four, the radius last. NaN, infinities, empty
-    // boxes and negative radii are in doubt.
-    void (*classify_boxes)(const FloatForms& forms, const float* boxes, std::size_t count, int* classes) noexcept;
-    void (*classify_spheres)(const FloatForms& forms, const float* spheres, std::size_t count, int* classes) noexcept;
+    // Whether one of them is negative over all of a box that has points.
+    bool (*is_separated)(const SeparatingForms& planes, const float* min, const float* max) noexcept;
+};
+
+// What floats are certain of. A box is six floats, min first; a sphere four, the radius last. NaN, infinities, empty boxes
+// and negative radii are in doubt.
+using Classify = void (*)(const FloatForms& forms, const float* bodies, std::size_t count, int* classes) noexcept;
+
+struct BoxBatchKernels {
+    Classify classify;
     // What doubles are certain of, and where they are not, pairs of doubles. For proper boxes, which may be infinite.
     void (*bound)(const DoubleForms& forms, const BoxBlock& boxes, BoxBounds& bounds) noexcept;
+    // The least over them of the largest value over each box, never below the exact one.
+    void (*separate)(const SeparatingForms& planes, const BoxBlock& boxes, double* least_of_largest) noexcept;
+};
+struct SphereBatchKernels {
+    Classify classify;
     // What exact_coverage() says of spheres, but where it is next to another answer: that is doubt.
-    void (*bound_spheres)(const SphereForms& forms, const SphereBlock& spheres, int* classes) noexcept;
-    // The least over the forms of the largest value over each box, never below the exact one.
-    void (*separate)(const LinearForm* forms, std::size_t count, const BoxBlock& boxes,
-                     double* least_of_largest) noexcept;
+    void (*bound)(const SphereForms& forms, const SphereBlock& spheres, int* classes) noexcept;
 };
 
 }  // namespace TEXGEN_DETAIL

@@ -209,7 +209,12 @@ TEXGEN_EXTERN template const PointKernels& chosen<PointKernels>() noexcept;
 TEXGEN_EXTERN template const SegmentKernels& chosen<SegmentKernels>() noexcept;
 TEXGEN_EXTERN template const DepthKernels& chosen<DepthKernels>() noexcept;
 TEXGEN_EXTERN template const FootprintKernels& chosen<FootprintKernels>() noexcept;
+TEXGEN_EXTERN template const FormKernels& chosen<FormKernels>() noexcept;
+TEXGEN_EXTERN template const FloatFormKernels& chosen<FloatFormKernels>() noexcept;
+TEXGEN_EXTERN template const SeparatingFormKernels& chosen<SeparatingFormKernels>() noexcept;
 TEXGEN_EXTERN template const BoxKernels& chosen<BoxKernels>() noexcept;
+TEXGEN_EXTERN template const BoxBatchKernels& chosen<BoxBatchKernels>() noexcept;
+TEXGEN_EXTERN template const SphereBatchKernels& chosen<SphereBatchKernels>() noexcept;
 }  // namespace TEXGEN_BUILD
 }  // namespace TEXGEN_DETAIL
 #endif

@@ -215,6 +215,7 @@ TEXGEN_INLINE void load_boxes(const float* from, WideFloats (&min)[3], WideFloat
     WideFloats second[3];
     load_interleaved(from, first[0], first[1], first[2]);
     load_interleaved(from + 3 * wide_lanes, second[0], second[1], second[2]);
+    TEXGEN_UNROLL
     for (int j = 0; j < 3; ++j) {
         min[j] = every_second<0>(first[j], second[j], std::make_integer_sequence<int, wide_lanes>());
         max[j] = every_second<1>(first[j], second[j], std::make_integer_sequence<int, wide_lanes>());
@@ -225,6 +226,7 @@ TEXGEN_INLINE void load_boxes(const float* from, WideFloats (&min)[3], WideFloat
 TEXGEN_INLINE void load_spheres(const float* from, WideFloats (&centre)[3], WideFloats& radius) noexcept {
     using Lanes = std::make_integer_sequence<int, wide_lanes>;
     WideFloats four[4];
+    TEXGEN_UNROLL
     for (int i = 0; i < 4; ++i) four[i] = load<WideFloats>(from + i * wide_lanes);
     const WideFloats xz[2] = {every_second<0>(four[0], four[1], Lanes()), every_second<0>(four[2], four[3], Lanes())};
     const WideFloats yr[2] = {every_second<1>(four[0], four[1], Lanes()), every_second<1>(four[2], four[3], Lanes())};

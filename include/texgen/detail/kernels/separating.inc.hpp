@@ -1,0 +1,218 @@
+// The planes that the theorem of separating axes asks about, beside the sides, q and the limits of depth: made, a lane a form,
+// and asked about one box or many. Included by kernels.inc.hpp.
+
+namespace TEXGEN_DETAIL::TEXGEN_ISA {
+
+// Forms of a slide side by side: f of each pair, g, or h, a lane each.
+struct FormColumns {
+    double a[3][2 * form_lanes], d[2 * form_lanes];
+
+    void put(const FormLanes& forms, std::size_t k, std::size_t lane) noexcept {
+        for (std::size_t j = 0; j < 3; ++j) a[j][lane] = forms.a[j][k];
+        d[lane] = forms.d[k];
+    }
+};
+
+// The sum of N forms with weights >= 0, where they make a plane. Each coefficient is rounded, as are its product and the sums,
+// and those of a box; no a is above 2. What no form uses stays 0, and nothing else does.
+template <std::size_t N>
+TEXGEN_INLINE void add_plane(SeparatingForms& planes, const FormColumns* const (&form)[N], const Doubles (&weight)[N],
+                             const LongWords& is_plane, std::size_t but_axis, std::size_t i) noexcept {
+    constexpr double rounding = 1.001 * gamma(11 + static_cast<int>(N));
+    for (std::size_t j = 0; j < 3; ++j) {
+        Doubles sum{};
+        if (j != but_axis) {
+            Doubles size{};
+            TEXGEN_UNROLL
+            for (std::size_t k = 0; k < N; ++k) {
+                const auto a = load<Doubles>(form[k]->a[j] + i);
+                sum = sum + weight[k] * a;
+                size = size + magnitude(a);
+            }
+            sum = sum + where(greater(size, 0.0), Doubles{} + 0x1p-1000);
+        }
+        store(planes.a[j] + planes.count, sum);
+    }
+    Doubles d{}, size{}, all_weights{};
+    TEXGEN_UNROLL
+    for (std::size_t k = 0; k < N; ++k) {
+        const auto of_form = load<Doubles>(form[k]->d + i);
+        d = d + weight[k] * of_form;
+        size = size + weight[k] * magnitude(of_form);
+        all_weights = all_weights + weight[k];
+    }
+    store(planes.d + planes.count,
+          select(is_plane, d + (size * rounding + 0x1p-999), Doubles{} + std::numeric_limits<double>::infinity()));
+    store(planes.error + planes.count, all_weights * (2.0 * rounding) + 0x1p-999);
+    planes.count += static_cast<std::size_t>(lanes);
+}
+
+// The planes through an edge, where forms f and g of two coordinates meet, and parallel to an axis of the space: with
+// coefficients f_k and g_k of that axis, |g_k| f + |f_k| g has none where f_k and g_k have opposite signs.
+TEXGEN_INLINE void add_edges(SeparatingForms& planes, const FormLanes& forms, bool has_depth) noexcept {
+    constexpr std::size_t of_f[] = {0, 0, 1, 1, 0, 0, 1, 1, 2, 2, 3, 3};
+    constexpr std::size_t of_g[] = {2, 3, 2, 3, 5, 6, 5, 6, 5, 6, 5, 6};
+    constexpr auto width = static_cast<std::size_t>(lanes);
+    const std::size_t pairs = has_depth ? 12 : 4;
+    const std::size_t count = (pairs + width - 1) / width * width;  // what fills a vector is asked twice
+    FormColumns f, g;
+    for (std::size_t i = 0; i < count; ++i) {
+        f.put(forms, of_f[i < pairs ? i : i - pairs], i);
+        g.put(forms, of_g[i < pairs ? i : i - pairs], i);
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(lanes)) {
+            const auto a = load<Doubles>(f.a[axis] + i), b = load<Doubles>(g.a[axis] + i);
+            const LongWords are_opposite =
+                (greater(a, 0.0) & greater(0.0 - b, 0.0)) | (greater(0.0 - a, 0.0) & greater(b, 0.0));
+            add_plane<2>(planes, {&f, &g}, {magnitude(b), magnitude(a)}, are_opposite, axis, i);
+        }
+    }
+}
+
+// The planes through a vertex, where three forms meet, and across an axis: as f, g and h have no other point in common, the
+// products across g x h, h x f and f x g are their weights, where they have one sign. Rounded weights serve as well.
+TEXGEN_INLINE void add_vertices(SeparatingForms& planes, const FormLanes& forms) noexcept {
+    FormColumns f, g, h;
+    for (std::size_t i = 0; i < 8; ++i) {
+        f.put(forms, i / 4, i);
+        g.put(forms, 2 + i / 2 % 2, i);
+        h.put(forms, form_of_q + 1 + i % 2, i);
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::size_t m = (axis + 1) % 3, n = (axis + 2) % 3;
+        for (std::size_t i = 0; i < 8; i += static_cast<std::size_t>(lanes)) {
+            const auto across = [&](const FormColumns& k, const FormColumns& l) {
+                return load<Doubles>(k.a[m] + i) * load<Doubles>(l.a[n] + i) -
+                       load<Doubles>(k.a[n] + i) * load<Doubles>(l.a[m] + i);
+            };
+            const Doubles weight[3] = {across(g, h), across(h, f), across(f, g)};
+            const Doubles least = minimum(minimum(weight[0], weight[1]), weight[2]);
+            const Doubles largest = maximum(maximum(weight[0], weight[1]), weight[2]);
+            const LongWords have_one_sign = greater(0.0 - least, 0.0) ^ greater(largest, 0.0);
+            add_plane<3>(planes, {&f, &g, &h}, {magnitude(weight[0]), magnitude(weight[1]), magnitude(weight[2])},
+                         have_one_sign, 3, i);
+        }
+    }
+}
+
+// The planes through the apex that have x, y or z alone, a lane each. alpha T_s + beta T_t + gamma T_q with the cofactors of that
+// column of the 3x3 of the rows has no coefficient in the two others, and where alpha s + beta t + gamma has one sign
+// at the corners of the region, it has it in all of the pyramid.
+TEXGEN_INLINE void add_axes(SeparatingForms& planes, const glm::dmat4& matrix, const double* side) noexcept {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    constexpr double is_axis[3][form_lanes] = {{1.0}, {0.0, 1.0}, {0.0, 0.0, 1.0}};
+    constexpr double is_any_axis[form_lanes] = {1.0, 1.0, 1.0};
+    constexpr glm::length_t coordinates[3] = {0, 1, 3};
+    const double largest_s = larger_or_nan(std::fabs(side[0]), std::fabs(side[1]));
+    const double largest_t = larger_or_nan(std::fabs(side[2]), std::fabs(side[3]));
+    // Rows s, t and q, again and again, so that the axes which follow one can be read as well.
+    double again[3][form_lanes + 4];
+    for (std::size_t k = 0; k < 3; ++k)
+        for (std::size_t first = 0; first < form_lanes + 4; first += 3)
+            for (std::size_t j = 0; j < 3; ++j)
+                again[k][first + j] = matrix[static_cast<glm::length_t>(j)][coordinates[k]];
+    for (std::size_t i = 0; i < 3; i += static_cast<std::size_t>(lanes)) {
+        Doubles row[3][3];  // the coefficient of an axis, and of the two that follow it
+        TEXGEN_UNROLL
+        for (std::size_t k = 0; k < 3; ++k)
+            for (std::size_t j = 0; j < 3; ++j) row[k][j] = load<Doubles>(again[k] + i + j);
+        Doubles cofactor[3], error[3];
+        TEXGEN_UNROLL
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::size_t f = (k + 1) % 3, g = (k + 2) % 3;
+            const Doubles first = row[f][1] * row[g][2], second = row[f][2] * row[g][1];
+            cofactor[k] = first - second;
+            error[k] = (magnitude(first) + magnitude(second)) * gamma(3) + 0x1p-1000;
+        }
+        const auto bound = [&](const auto& s, const auto& t, const auto& q) {
+            return (error[0] * s + error[1] * t + error[2] * q) * 1.001 +
+                   (magnitude(cofactor[0]) * s + magnitude(cofactor[1]) * t + magnitude(cofactor[2]) * q) * gamma(13) +
+                   0x1p-1000;
+        };
+        const Doubles of_s[2] = {cofactor[0] * side[0], cofactor[0] * side[1]};
+        const Doubles of_t[2] = {cofactor[1] * side[2], cofactor[1] * side[3]};
+        const Doubles least = minimum(of_s[0], of_s[1]) + minimum(of_t[0], of_t[1]) + cofactor[2];
+        const Doubles largest = maximum(of_s[0], of_s[1]) + maximum(of_t[0], of_t[1]) + cofactor[2];
+        const Doubles error_at_corners = bound(largest_s, largest_t, 1.0);
+        const LongWords is_positive = greater(least, error_at_corners);
+        const LongWords is_plane =
+            (is_positive | greater(0.0 - largest, error_at_corners)) & are_nonzero(load<Doubles>(is_any_axis + i));
+        const Doubles sign = select(is_positive, Doubles{} + 1.0, Doubles{} - 1.0);
+
+        const Doubles a =
+            (cofactor[0] * row[0][0] + cofactor[1] * row[1][0] + cofactor[2] * row[2][0]) * sign + 0x1p-1000;
+        const Doubles d = (cofactor[0] * matrix[3].x + cofactor[1] * matrix[3].y + cofactor[2] * matrix[3].w) * sign;
+        const Doubles error_d = bound(std::fabs(matrix[3].x), std::fabs(matrix[3].y), std::fabs(matrix[3].w));
+        for (std::size_t j = 0; j < 3; ++j) store(planes.a[j] + planes.count, a * load<Doubles>(is_axis[j] + i));
+        store(planes.d + planes.count, select(is_plane, d + error_d, Doubles{} + infinity));
+        store(planes.error + planes.count, bound(magnitude(row[0][0]), magnitude(row[1][0]), magnitude(row[2][0])));
+        planes.count += static_cast<std::size_t>(lanes);
+    }
+}
+
+template <class CompiledWhereCalled = void>
+void make_planes(const FormLanes& forms, const glm::dmat4& matrix, const double* side, bool has_depth,
+                 SeparatingForms& planes) noexcept {
+    planes.count = 0;
+    add_edges(planes, forms, has_depth);
+    add_axes(planes, matrix, side);
+    if (has_depth) add_vertices(planes, forms);
+}
+
+// Whether a plane separates a box. Of a plane that uses a coordinate which is infinite nothing is certain. As below.
+template <class CompiledWhereCalled = void>
+bool is_separated(const SeparatingForms& planes, const float* box_min, const float* box_max) noexcept {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    double min[3], max[3];
+    double size = 0.0;
+    for (std::size_t j = 0; j < 3; ++j) {
+        min[j] = widened(box_min[j]);
+        max[j] = widened(box_max[j]);
+        const bool is_bounded = larger(-min[j], max[j]) < infinity;
+        if (!is_bounded) max[j] = -(min[j] = -infinity);
+        size += is_bounded ? larger(-min[j], max[j]) : 0.0;
+    }
+    LongWords are_negative{};
+    for (std::size_t k = 0; k < planes.count; k += static_cast<std::size_t>(lanes)) {
+        Doubles largest = load<Doubles>(planes.d + k) + load<Doubles>(planes.error + k) * size;
+        TEXGEN_UNROLL
+        for (std::size_t j = 0; j < 3; ++j) {
+            const auto a = load<Doubles>(planes.a[j] + k);
+            const Doubles vertex = select(greater(a, 0.0), Doubles{} + max[j], Doubles{} + min[j]);
+            largest = select(are_nonzero(a), largest + vertex * a, largest);
+        }
+        are_negative = are_negative | greater(0.0 - largest, 0.0);
+    }
+    return any(are_negative);
+}
+
+// Of eight boxes, the least of the largest values of the planes, never below the exact one.
+template <class CompiledWhereCalled = void>
+void separate(const SeparatingForms& planes, const BoxBlock& boxes, double* least_of_largest) noexcept {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < box_block; i += static_cast<std::size_t>(lanes)) {
+        Doubles min[3], max[3];
+        Doubles size{};
+        for (std::size_t j = 0; j < 3; ++j) {
+            min[j] = load<Doubles>(boxes.min[j] + i);
+            max[j] = load<Doubles>(boxes.max[j] + i);
+            const Doubles of_axis = maximum(0.0 - min[j], max[j]);
+            const LongWords is_bounded = greater(Doubles{} + infinity, of_axis);
+            min[j] = select(is_bounded, min[j], Doubles{} - infinity);
+            max[j] = select(is_bounded, max[j], Doubles{} + infinity);
+            size = size + where(is_bounded, of_axis);
+        }
+        Doubles least = Doubles{} + 1.0;
+        for (std::size_t k = 0; k < planes.count; ++k) {
+            if (!(planes.d[k] < infinity)) continue;
+            Doubles largest = planes.d[k] + size * planes.error[k];
+            for (std::size_t j = 0; j < 3; ++j)
+                if (const double a = planes.a[j][k]; a != 0.0) largest = largest + (a > 0.0 ? max : min)[j] * a;
+            least = minimum(largest, least);
+        }
+        store(least_of_largest + i, least);
+    }
+}
+
+}  // namespace TEXGEN_DETAIL::TEXGEN_ISA
