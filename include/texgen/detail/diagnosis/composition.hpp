@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <optional>
 
+#include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
 #include <glm/vec4.hpp>
@@ -77,7 +78,7 @@ public:
             }
         }
         const glm::dvec4 seen = row_.value * given;
-        for (std::size_t k = 0; k < 2; ++k) given_[k] = dot(seen, columns_.value[k]);
+        for (std::size_t k = 0; k < 2; ++k) given_[k] = glm::dot(seen, columns_.value[k]);
     }
 
     const ProductRow& row() const noexcept { return row_; }
@@ -87,17 +88,13 @@ public:
     // each within its share of the magnitudes m, differ in g0 p1 - g1 p0 by no more than g0 m1 + g1 m0.
     bool may_give(const ProductRow& left, const ProductColumns& right) const noexcept {
         constexpr double share = 1.01 * composed_in_float.of_magnitude;
-        const auto value = [&](std::size_t k) { return dot(left.value, right.value[k]); };
-        const auto error = [&](std::size_t k) { return share * dot(left.magnitude, right.magnitude[k]); };
+        const auto value = [&](std::size_t k) { return glm::dot(left.value, right.value[k]); };
+        const auto error = [&](std::size_t k) { return share * glm::dot(left.magnitude, right.magnitude[k]); };
         const double accepted = std::fabs(given_[0]) * error(1) + std::fabs(given_[1]) * error(0) + 0x1p-1000;
         return std::fabs(given_[0] * value(1) - given_[1] * value(0)) <= accepted && is_finite(accepted);
     }
 
 private:
-    static double dot(const glm::dvec4& a, const glm::dvec4& b) noexcept {
-        return a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w;
-    }
-
     ProductRow row_;
     ProductColumns columns_;
     std::array<double, 2> given_{};

@@ -56,9 +56,7 @@ inline constexpr double expected_rounding = 0.5 * unit_roundoff_float;
 // The smaller of the magnitudes of both elements.
 inline glm::dmat4 smaller_elements(const glm::dmat4& a, const glm::dmat4& b) noexcept {
     glm::dmat4 result(0.0);
-    for (glm::length_t column = 0; column < 4; ++column)
-        for (glm::length_t row = 0; row < 4; ++row)
-            result[column][row] = smaller(std::fabs(a[column][row]), std::fabs(b[column][row]));
+    for (glm::length_t k = 0; k < 4; ++k) result[k] = (glm::min)(glm::abs(a[k]), glm::abs(b[k]));
     return result;
 }
 

@@ -6,6 +6,12 @@ inline bool uses_normal(TexGenMode mode) noexcept {
     return mode == TexGenMode::sphere_map || mode == TexGenMode::reflection_map || mode == TexGenMode::normal_map;
 }
 
+// How many coordinates, from s on, may have a mode; 0 for no mode.
+inline int coordinates_with(TexGenMode mode) noexcept {
+    if (mode == TexGenMode::object_linear || mode == TexGenMode::eye_linear) return 4;
+    return mode == TexGenMode::sphere_map ? 2 : uses_normal(mode) ? 3 : 0;
+}
+
 // a . b with one rounding: a vertex near the eye, or far from the origin, is a small difference of large terms. The
 // product of two floats is exact in double, so only the sum needs care.
 inline double cancelling_dot(const glm::vec4& a, const glm::vec4& b) noexcept {
@@ -99,21 +105,7 @@ inline void TexGenUnit::set_object_plane(Coordinate coordinate, glm::vec4 plane)
 
 inline bool TexGenUnit::set_mode(Coordinate coordinate, TexGenMode mode) noexcept {
     CoordinateState* const state = find(coordinate);
-    if (state == nullptr) return false;
-    switch (mode) {
-        case TexGenMode::object_linear:
-        case TexGenMode::eye_linear:
-            break;
-        case TexGenMode::sphere_map:
-            if (coordinate != Coordinate::s && coordinate != Coordinate::t) return false;
-            break;
-        case TexGenMode::reflection_map:
-        case TexGenMode::normal_map:
-            if (coordinate == Coordinate::q) return false;
-            break;
-        default:
-            return false;
-    }
+    if (state == nullptr || static_cast<int>(coordinate) >= detail::coordinates_with(mode)) return false;
     state->mode = mode;
     return true;
 }
