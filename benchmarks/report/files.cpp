@@ -75,6 +75,8 @@ Staging::Staging(const fs::path& destination) {
     std::error_code error;
     destination_ = fs::absolute(destination, error).lexically_normal();
     if (!destination_.has_filename()) destination_ = destination_.parent_path();
+    if (fs::equivalent(destination_, destination_.root_path(), error))
+        throw Failure{"cannot write to " + destination.string() + ": it is the root of the file system"};
     const fs::path parent = deepest_existing_folder(destination_);
     std::random_device random;
     for (int attempt = 0; attempt < 100; ++attempt) {
@@ -105,6 +107,14 @@ void Staging::write(const std::string& name, std::string_view bytes) const {
     if (!stream) throw Failure{"cannot write " + (destination_ / name).string()};
 }
 
+void Staging::check_names() const {
+    std::error_code error;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
+        const fs::path file = destination_ / entry.path().filename();
+        if (fs::is_directory(file, error)) throw Failure{"cannot write " + file.string() + ": a folder has that name"};
+    }
+}
+
 void Staging::publish() const {
     std::error_code error;
     if (!fs::exists(destination_, error)) {
@@ -114,11 +124,7 @@ void Staging::publish() const {
         return;
     }
     std::vector<fs::path> names;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
-        names.push_back(entry.path().filename());
-        if (fs::is_directory(destination_ / names.back(), error))
-            throw Failure{"cannot write " + (destination_ / names.back()).string() + ": a folder has that name"};
-    }
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) names.push_back(entry.path().filename());
     for (const fs::path& name : names) {
         fs::rename(folder_ / name, destination_ / name, error);
         if (error) throw Failure{"cannot write " + (destination_ / name).string() + ": " + error.message()};

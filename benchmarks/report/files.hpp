@@ -29,6 +29,9 @@ public:
     const std::filesystem::path& folder() const { return folder_; }
     void write(const std::string& name, std::string_view bytes) const;
 
+    // Throws Failure where publish() would find a folder of the name of a file.
+    void check_names() const;
+
     // The whole folder is renamed where there was none. Otherwise the files replace their namesakes one by one, and
     // other files stay: the folder may be the user's home.
     void publish() const;

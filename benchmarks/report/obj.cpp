@@ -46,7 +46,7 @@ void check_vertices(const std::string& text, const std::filesystem::path& file) 
             char* end = nullptr;
             const double value = std::strtod(cursor, &end);
             if (end == cursor || !(std::fabs(value) <= 1e30))
-                throw unusable(file, "line " + std::to_string(number) + " is not a vertex of three finite numbers");
+                throw unusable(file, "line " + std::to_string(number) + " is not a vertex of three numbers up to 1e30");
             cursor = end;
         }
     }

@@ -18,6 +18,7 @@
 #include <unistd.h>
 #endif
 
+#include "../printed.hpp"
 #include "compare.hpp"
 #include "costs.hpp"
 #include "distances.hpp"
@@ -270,6 +271,10 @@ Report make_report(const Options& options, const Setting& setting) {
     return report;
 }
 
+void check_printed() {
+    if (!is_printed()) throw Failure{"cannot write to standard output"};
+}
+
 int run(const Options& options) {
     // Everything that can be wrong with the input is found before anything is written.
     const Mesh mesh = options.mesh ? load_obj(*options.mesh) : teapot(12);
@@ -298,11 +303,14 @@ int run(const Options& options) {
     for (const PictureOfScene& picture : report.room_pictures) staging.write(picture.file, picture.png);
     const std::string page = with_charts_drawn(html_of(report), Staging(options.out));
     staging.write("index.html", page);
-    staging.publish();
+    staging.check_names();
 
     std::fputs(text_of(report).c_str(), stdout);
     if (page.find(no_chart) != page.npos) std::printf("\n%s\n", no_chart);
+    check_printed();
+    staging.publish();
     std::printf("\nwritten to %s\n", (options.out / "index.html").string().c_str());
+    check_printed();
     for (const SceneReport& scene : report.scenes) {
         if (scene.comparison.is_as_promised() && scene.shadowed_by_themselves == 0) continue;
         std::fprintf(stderr, "texgen_report: the library broke its promise in %s\n", scene.name.c_str());
@@ -332,6 +340,7 @@ int main(int count, char** arguments) {
         const report::Options options = report::parse({arguments + 1, arguments + count});
         if (!options.help) return report::run(options);
         std::printf(report::usage, arguments[0], arguments[0]);
+        report::check_printed();
         return 0;
     } catch (const report::Failure& failure) {
         return report::fail(failure.message);

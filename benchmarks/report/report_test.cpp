@@ -270,6 +270,10 @@ TEST_CASE("a folder that cannot be written is refused in one line, and an old re
     place.check_refusal("--size 16x16 --out /dev/null/below", "not a folder");
     place.check_refusal("--size 16x16 --out /proc/below", "/proc/below");
     place.check_refusal("--size 16x16 --out deep/" + std::string(300, 'd'), "ddd");
+    place.check_refusal("--size 16x16 --out /", "root of the file system");
+    place.check_refusal("--size 16x16 --out /tmp/..", "root of the file system");
+    fs::create_symlink("/", "slash");
+    place.check_refusal("--size 16x16 --out slash/", "root of the file system");
     fs::create_symlink("nowhere", "dangling");
     fs::create_symlink("circle", "circle");
     place.check_refusal("--size 16x16 --out dangling", "dangling");
@@ -280,6 +284,19 @@ TEST_CASE("a folder that cannot be written is refused in one line, and an old re
     place.check_refusal("--size 16x16 --out old --mesh missing.obj", "missing.obj");
     CHECK(contents("old/index.html") == "yesterday");
     CHECK(contents("file") == "mine");
+}
+
+TEST_CASE("what cannot be printed is said, and nothing is written") {
+    const Workplace place;
+    if (!fs::exists("/dev/full")) return;
+    for (const std::string arguments : {"--help", "--size 16x16"}) {
+        CAPTURE(arguments);
+        const int status =
+            std::system(("'" TEXGEN_REPORT_PROGRAM "' " + arguments + " >/dev/full 2>../report_test_error").c_str());
+        CHECK(WEXITSTATUS(status) == 2);
+        CHECK(contents("../report_test_error") == "texgen_report: cannot write to standard output\n");
+        CHECK(place.files().empty());
+    }
 }
 
 TEST_CASE("a run writes the page and the pictures, and nothing else") {

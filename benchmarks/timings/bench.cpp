@@ -8,6 +8,8 @@
 #include <memory>
 #include <vector>
 
+#include "../printed.hpp"
+
 #if defined(__GNUC__) && defined(__x86_64__)
 #include <immintrin.h>
 #endif
@@ -160,7 +162,8 @@ int main(int count, char** arguments) {
     bench::add_scenes();
     bench::add_footprints();
     bench::Reporter reporter;
-    if (benchmark::RunSpecifiedBenchmarks(&reporter) != 0) return 0;
-    std::fprintf(stderr, "texgen_bench: no row has such a name\n");
+    const bool has_run = benchmark::RunSpecifiedBenchmarks(&reporter) != 0;
+    if (has_run && is_printed()) return 0;
+    std::fprintf(stderr, "texgen_bench: %s\n", has_run ? "cannot write to standard output" : "no row has such a name");
     return 2;
 }

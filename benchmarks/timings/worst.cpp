@@ -17,6 +17,7 @@
 
 #include <glm/ext/matrix_transform.hpp>
 
+#include "../printed.hpp"
 #include "support/near_cut.hpp"
 #include "support/race.hpp"
 #include "support/random.hpp"
@@ -156,10 +157,12 @@ int main(int count, char** arguments) {
     }
     if (count < 2) {
         std::fputs(lines.str().c_str(), stdout);
-        return 0;
+        if (is_printed()) return 0;
+        std::fputs("texgen_worst: cannot write to standard output\n", stderr);
+        return 2;
     }
     std::ofstream file(arguments[1]);
     if (file << lines.str() << std::flush) return 0;
     std::fprintf(stderr, "texgen_worst: cannot write %s\n", arguments[1]);
-    return 1;
+    return 2;
 }

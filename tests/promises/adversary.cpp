@@ -1083,6 +1083,22 @@ bool search_towards_time(double seconds, std::uint64_t seed, std::string_view on
     return all_kept;
 }
 
+bool search_towards_error(double seconds, std::uint64_t seed, std::string_view only) {
+    bool all_kept = true;
+    for (const Promise& promise : promises) {
+        if (std::string_view(promise.name).find(only) == std::string_view::npos) continue;
+        const Find worst = search(promise, seconds / static_cast<double>(promises.size()), seed);
+        const bool kept = worst.share >= 0.0 && worst.share <= 1.0;
+        all_kept = all_kept && kept;
+        std::printf("%-48s %s %.6f of it after %ld inputs:", promise.name, kept ? "kept," : "BROKEN,", worst.share,
+                    worst.tried);
+        for (const double number : worst.numbers) std::printf(" %a", number);
+        std::printf("\n");
+        std::fflush(stdout);
+    }
+    return all_kept;
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -1097,18 +1113,11 @@ int main(int count, char** arguments) {
         if (option == "--but") excepted = arguments[i + 1];
         if (option == "--towards") towards = arguments[i + 1];
     }
-    if (towards == "time") return search_towards_time(seconds, seed, only, excepted) ? EXIT_SUCCESS : EXIT_FAILURE;
-    bool all_kept = true;
-    for (const Promise& promise : promises) {
-        if (std::string_view(promise.name).find(only) == std::string_view::npos) continue;
-        const Find worst = search(promise, seconds / static_cast<double>(promises.size()), seed);
-        const bool kept = worst.share >= 0.0 && worst.share <= 1.0;
-        all_kept = all_kept && kept;
-        std::printf("%-48s %s %.6f of it after %ld inputs:", promise.name, kept ? "kept," : "BROKEN,", worst.share,
-                    worst.tried);
-        for (const double number : worst.numbers) std::printf(" %a", number);
-        std::printf("\n");
-        std::fflush(stdout);
+    const bool all_kept = towards == "time" ? search_towards_time(seconds, seed, only, excepted)
+                                            : search_towards_error(seconds, seed, only);
+    if (std::ferror(stdout) != 0) {
+        std::fputs("adversary: cannot write to standard output\n", stderr);
+        return EXIT_FAILURE;
     }
     return all_kept ? EXIT_SUCCESS : EXIT_FAILURE;
 }
