@@ -110,6 +110,27 @@ Shot near_ties_with_varying_q(int width, int height, Random& random) {
     return {{vertex(-7, -5), vertex(1031, 2), vertex(3, 1033)}, {x, y, width, height}};
 }
 
+// s/q grows along a row and is, at one column alone, the middle M of two floats. With q = 1 + t for t = (2 column + 1) / 2048,
+// and k = 2 column + 1, in units of 2^-25: (M - j k) (1 - t) + (2 M + j (2048 - k)) t = M (1 + t).
+Shot row_with_a_tie(int column, int width, int height, Random& random) {
+    const int k = 2 * column + 1;
+    std::int64_t first = 0, last = 0;
+    do {
+        const int middle = 2 * random.integer(1 << 23, (1 << 24) - 1) + 1;
+        const int j = 4 * random.integer((middle - (1 << 24)) / (4 * k), (middle - (1 << 23)) / (4 * k) - 1) + 2;
+        first = middle - std::int64_t{j} * k;
+        last = 2 * middle + std::int64_t{j} * (2048 - k);
+    } while (last >= 1 << 26 || last < 1 << 25 || first >= 1 << 24);  // they are floats then
+    const int x = random.integer(-100, 100), y = random.integer(-100, 100);
+    const auto vertex = [&](int at_x, int at_y, std::int64_t s, float q) {
+        const float value = static_cast<float>(s) * 0x1p-25f;
+        return WindowVertex{
+            {static_cast<float>(x + at_x), static_cast<float>(y + at_y)}, 1.0f, {value, value, value, q}};
+    };
+    return {{vertex(0, 0, first, 1.0f), vertex(1024, 0, last, 2.0f), vertex(0, 1024, first, 1.0f)},
+            {x, y, width, height}};
+}
+
 float any_finite(Random& random) {
     for (;;) {
         const float value = random.any_float();
@@ -199,6 +220,19 @@ TEST_CASE("every fragment of a row whose values all lie between two floats is de
         }
     }
     CHECK(ties > 50);
+}
+
+TEST_CASE("one tie anywhere in rows of values that are far from ties is rounded to the even float") {
+    Random random(201);
+    Seen seen;
+    for (int i = 0; i < 60; ++i) {
+        const int width = random.integer(70, 900), height = random.integer(1, 3),
+                  column = random.integer(64, width - 1);
+        const Shot shot = row_with_a_tie(column, width, height, random);
+        REQUIRE(support::is_tie(ExactTriangle(shot.triangle).at(shot.x(column), shot.y(0)).over_q(0)));
+        Outputs out(count_of(shot.rect), random.coin() ? 15u : 3u, static_cast<std::size_t>(random.integer(0, 15)));
+        require_right(shot, everywhere(), out, seen);
+    }
 }
 
 TEST_CASE("a value does not depend on the rectangle that it was asked with") {

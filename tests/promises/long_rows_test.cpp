@@ -41,7 +41,6 @@ Triangle triangle() {
 // A row, or column, that ends as an int does, from the middle of two others on; its last floats have values of no others.
 TileJob job_of(int width, int height, std::span<float> out) {
     TileJob job{};
-    job.numerators = 2;
     job.width = width;
     job.height = height;
     const double step = -0x1p-31;

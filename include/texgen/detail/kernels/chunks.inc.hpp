@@ -35,8 +35,7 @@ struct ChunkGroup {
 
     float bend[size];
     float middle[2][size], slope[2][size];
-    double extent[size], least_q[size];  // the least q less job.least_q
-    double reach[2][size], room[2][size];
+    float rule[size];
 
     // Of `count` chunks from the given one of row y on.
     TEXGEN_INLINE void fill(const TileJob& job, int y, int chunk, int count) noexcept {
@@ -59,39 +58,35 @@ struct ChunkGroup {
             store(&bend[i], to_floats(bends));
             const Doubles extents = magnitude(bends) * half;
             const Doubles stretch = (extents * 4.0 + 1.0) * extents + 1.0;
-            if (job.steps == StepRule::undecided) {
-                store(&extent[i], extents);
-                store(&least_q[i], (q - q * extents) - job.least_q);
-            }
+            Doubles reaches[2], room[2];
             for (std::size_t k = 0; k < 2; ++k) {
                 const Doubles u = value(job.numerator[k]) * reciprocal;
                 const Doubles d = (u * -job.q.dx + job.numerator[k].dx) * reciprocal;
                 store(&middle[k][i], to_floats(u));
                 store(&slope[k][i], to_floats(d));
-                if (job.steps != StepRule::undecided) continue;
-                const Doubles reaches = magnitude(d) * half * stretch;
-                store(&reach[k][i], reaches);
-                store(&room[k][i], job.tolerance - chunk_error(magnitude(u), reaches, job.numerator_error[k],
-                                                               job.q_error, reciprocal * stretch));
+                reaches[k] = magnitude(d) * half * stretch;
+                room[k] = job.tolerance - chunk_error(magnitude(u), reaches[k], job.numerator_error[k], job.q_error,
+                                                      reciprocal * stretch);
             }
+            if (job.steps != StepRule::undecided) continue;
+            // The cheapest rule with which a chunk stays inside the tolerance.
+            const auto all = [](StepRule rule_of_all) { return Doubles{} + static_cast<double>(rule_of_all); };
+            const auto fits = [&](const Doubles& share) {
+                return at_most(share * reaches[0], room[0]) & at_most(share * reaches[1], room[1]);
+            };
+            const Doubles square = extents * extents;
+            const Doubles fourth = square * square;
+            Doubles rules = select(fits(fourth * fourth), all(StepRule::degree8), all(StepRule::divide));
+            rules = select(fits(fourth), all(StepRule::degree4), rules);
+            rules = select(fits(square), all(StepRule::degree2), rules);
+            rules = select(at_most(extents, Doubles{} + 0.25), rules, all(StepRule::divide));
+            const LongWords holds = at_most(extents, Doubles{} + 0.75) & greater(q - q * extents, job.least_q);
+            store(&rule[i], to_floats(select(holds & fits(Doubles{}), rules, all(StepRule::none))));
         }
     }
 
-    // The cheapest rule with which chunk i stays inside the tolerance.
-    TEXGEN_INLINE StepRule rule_of(int i) const noexcept {
-        const auto fits = [&](double share) {
-            bool all = true;
-            for (std::size_t k = 0; k < 2; ++k) all = all && share * reach[k][i] <= room[k][i];
-            return all;
-        };
-        if (!(extent[i] <= 0.75 && least_q[i] > 0.0 && fits(0.0))) return StepRule::none;
-        if (!(extent[i] <= 0.25)) return StepRule::divide;
-        double share = extent[i];
-        for (const StepRule rule : {StepRule::degree2, StepRule::degree4, StepRule::degree8}) {
-            share *= share;
-            if (fits(share)) return rule;
-        }
-        return StepRule::divide;
+    TEXGEN_INLINE StepRule rule_of(const TileJob& job, int i) const noexcept {
+        return job.steps == StepRule::undecided ? static_cast<StepRule>(static_cast<int>(rule[i])) : job.steps;
     }
 };
 
@@ -121,42 +116,36 @@ struct ChunkPlace {
     }
 };
 
-// Chunks first to last of the group.
+// `count` vectors of the group's chunk i, from an index on.
 template <StepRule Rule>
-TEXGEN_INLINE void evaluate(const ChunkGroup& group, int first, int last, const TileJob& job,
-                            ChunkPlace& place) noexcept {
-    const int width = job.width;
-    const int longest = job.chunk;
-    RowOutputs<2> row(job, place.y);
-    int length = 0;
-    WideFloats first_index{};
-    for (int i = first; i < last; ++i) {
-        const int begin = place.chunk * longest;
-        const int end = longest < width - begin ? begin + longest : width;
-        if (end - begin != length) {
-            length = end - begin;
-            first_index = indices<WideFloats>() - 0.5f * static_cast<float>(length - 1);
-        }
-        const WideFloats bend = WideFloats{} + group.bend[i];
-        WideFloats middle[2], slope[2];
-        for (std::size_t k = 0; k < 2; ++k) {
-            middle[k] = WideFloats{} + group.middle[k][i];
-            slope[k] = WideFloats{} + group.slope[k][i];
-        }
-        // By turns, so that the next index does not wait for this one.
-        WideFloats index = first_index;
-        WideFloats next_index = index + static_cast<float>(wide_lanes);
-        for (std::int64_t x = begin; x < end; x += wide_lanes) {
-            const WideFloats step = bent<Rule>(index, bend);
-            WideFloats value[2];
-            for (std::size_t k = 0; k < 2; ++k) value[k] = step * slope[k] + middle[k];
-            // What a last vector writes beyond the chunk is written again by those that follow.
-            store_from(row, x, end, value, ~WideWords{});
-            const WideFloats after_next = index + static_cast<float>(2 * wide_lanes);
-            index = next_index;
-            next_index = after_next;
-        }
-        if (place.advance()) row.advance();
+TEXGEN_INLINE void fill_vectors(const ChunkGroup& group, int i, WideFloats index, float* s, float* t,
+                                std::int64_t count) noexcept {
+    const WideFloats bend = WideFloats{} + group.bend[i];
+    const WideFloats middle[2] = {WideFloats{} + group.middle[0][i], WideFloats{} + group.middle[1][i]};
+    const WideFloats slope[2] = {WideFloats{} + group.slope[0][i], WideFloats{} + group.slope[1][i]};
+    // By turns, so that the next index does not wait for this one.
+    WideFloats next_index = index + static_cast<float>(wide_lanes);
+    for (std::int64_t x = 0; x < count * wide_lanes; x += wide_lanes) {
+        const WideFloats step = bent<Rule>(index, bend);
+        store(s + x, step * slope[0] + middle[0]);
+        store(t + x, step * slope[1] + middle[1]);
+        const WideFloats after_next = index + static_cast<float>(2 * wide_lanes);
+        index = next_index;
+        next_index = after_next;
+    }
+}
+
+TEXGEN_INLINE void fill_vectors(StepRule rule, const ChunkGroup& group, int i, const WideFloats& index, float* s,
+                                float* t, std::int64_t count) noexcept {
+    switch (rule) {
+        case StepRule::degree2:
+            return fill_vectors<StepRule::degree2>(group, i, index, s, t, count);
+        case StepRule::degree4:
+            return fill_vectors<StepRule::degree4>(group, i, index, s, t, count);
+        case StepRule::degree8:
+            return fill_vectors<StepRule::degree8>(group, i, index, s, t, count);
+        default:
+            return fill_vectors<StepRule::divide>(group, i, index, s, t, count);
     }
 }
 
@@ -164,43 +153,45 @@ TEXGEN_INLINE void evaluate(const ChunkGroup& group, int first, int last, const 
 // the empty unit if there are none. The next call starts after them.
 template <class CompiledWhereCalled = void>
 TileJob::Unit fill_tile_polynomial(const TileJob& job, TileJob::Unit first) noexcept {
-    ChunkPlace place{first.x_begin / job.chunk, first.y_begin, chunks_of_row(job)};
+    const int width = job.width, height = job.height;
+    const int longest = job.chunk;
+    ChunkPlace place{first.x_begin / longest, first.y_begin, chunks_of_row(job)};
     ChunkGroup group;
-    const int height = job.height;
+    RowOutputs row(job, place.y);
     while (place.y < height) {
         const std::int64_t left = static_cast<std::int64_t>(height - place.y) * place.per_row - place.chunk;
         const int count = left < group.size ? static_cast<int>(left) : group.size;
         group.fill(job, place.y, place.chunk, count);
-        for (int i = 0; i < count;) {
-            // As many as the same rule serves.
-            StepRule rule = job.steps;
-            int last = count;
-            if (rule == StepRule::undecided) {
-                rule = group.rule_of(i);
-                for (last = i + 1; last < count && group.rule_of(last) == rule;) ++last;
+        for (int i = 0; i < count; ++i) {
+            const StepRule rule = group.rule_of(job, i);
+            const int begin = place.chunk * longest;
+            if (rule == StepRule::none) {
+                int last = i + 1;
+                while (last < count && group.rule_of(job, last) == rule) ++last;
+                if (place.per_row == 1) return {0, width, place.y, place.y + (last - i)};
+                const int in_row = place.chunk + (last - i) < place.per_row ? place.chunk + (last - i) : place.per_row;
+                return {begin, in_row < place.per_row ? in_row * longest : width, place.y, place.y + 1};
             }
-            switch (rule) {
-                case StepRule::degree2:
-                    evaluate<StepRule::degree2>(group, i, last, job, place);
-                    break;
-                case StepRule::degree4:
-                    evaluate<StepRule::degree4>(group, i, last, job, place);
-                    break;
-                case StepRule::degree8:
-                    evaluate<StepRule::degree8>(group, i, last, job, place);
-                    break;
-                case StepRule::divide:
-                    evaluate<StepRule::divide>(group, i, last, job, place);
-                    break;
-                default: {
-                    if (place.per_row == 1) return {0, job.width, place.y, place.y + (last - i)};
-                    const int in_row =
-                        place.chunk + (last - i) < place.per_row ? place.chunk + (last - i) : place.per_row;
-                    const int end = in_row < place.per_row ? in_row * job.chunk : job.width;
-                    return {place.chunk * job.chunk, end, place.y, place.y + 1};
-                }
+            const int length = longest < width - begin ? longest : width - begin;
+            WideFloats index = indices<WideFloats>() - 0.5f * static_cast<float>(length - 1);
+            // What a last vector writes beyond the chunk is written again by those that follow, where it may be written.
+            std::int64_t vectors = (length - 1) / wide_lanes + 1;
+            float buffer[2][wide_lanes];
+            float* to[2] = {row.out[0] + begin, row.out[1] + begin};
+            const bool is_cut = begin + vectors * wide_lanes > row.writable;
+            for (vectors -= is_cut ? 1 : 0;; vectors = 1) {
+                fill_vectors(rule, group, i, index, to[0], to[1], vectors);
+                if (!is_cut || to[0] == buffer[0]) break;
+                index = index + static_cast<float>(vectors * wide_lanes);
+                for (std::size_t k = 0; k < 2; ++k) to[k] = buffer[k];
             }
-            i = last;
+            if (is_cut) {
+                const int rest = (length - 1) % wide_lanes + 1;
+                for (int j = 0; j < rest; ++j)
+                    for (std::size_t k = 0; k < 2; ++k) row.out[k][begin + length - rest + j] = buffer[k][j];
+            }
+            light(job, row, begin, static_cast<std::int64_t>(begin) + length);
+            if (place.advance()) row.advance();
         }
     }
     return {0, 0, height, height};

@@ -2,12 +2,10 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// Where a row of a TileJob goes. Where there is a mask, the numerators are s and t. A copy, so that the compiler knows that
-// no store changes it.
-template <std::size_t Numerators>
+// Where a row of a TileJob goes. A copy, so that the compiler knows that no store changes it.
 struct RowOutputs {
-    float* out[Numerators];
-    std::ptrdiff_t pitch[Numerators];
+    float* out[2];
+    std::ptrdiff_t pitch[2];
     float* lit;
     std::ptrdiff_t lit_pitch;
     float min[2], max[2];
@@ -21,60 +19,23 @@ struct RowOutputs {
           max{job.max[0], job.max[1]},
           writable(job.is_contiguous ? (job.height - std::int64_t{y}) * job.width : job.width),
           writable_pitch(job.is_contiguous ? job.width : 0) {
-        for (std::size_t k = 0; k < Numerators; ++k) {
+        for (std::size_t k = 0; k < 2; ++k) {
             pitch[k] = job.is_scratch[k] ? 0 : job.pitch;
             out[k] = job.out[k] + y * pitch[k];
         }
     }
 
     TEXGEN_INLINE void advance() noexcept {
-        for (std::size_t k = 0; k < Numerators; ++k) out[k] += pitch[k];
+        for (std::size_t k = 0; k < 2; ++k) out[k] += pitch[k];
         lit += lit_pitch;
         writable -= writable_pitch;
     }
 };
 
-// Whether a mask is asked for, the layout of points and that of their coordinates are looked at vector by vector: a branch
-// that is always the same costs next to nothing, and a loop for each combination would be most of what a user compiles.
-
 // 1 inside the region of an output and in front, else 0.
 template <class Output, class Vector, class Mask>
 TEXGEN_INLINE Vector lit_of(const Output& to, const Vector (&value)[2], const Mask& in_front) noexcept {
     return one_where(in_front & inside(value[0], to.min[0], to.max[0]) & inside(value[1], to.min[1], to.max[1]));
-}
-
-// Stores one vector of coordinates from out[k] + x on, and its mask from lit + x on: inside the region and in front.
-template <std::size_t Numerators, class Vector, class Mask>
-TEXGEN_INLINE void store_all(const RowOutputs<Numerators>& row, std::int64_t x, const Vector (&value)[Numerators],
-                             const Mask& in_front) noexcept {
-    for (std::size_t k = 0; k < Numerators; ++k) store(row.out[k] + x, value[k]);
-    if constexpr (Numerators == 2)
-        if (row.lit != nullptr) store(row.lit + x, lit_of(row, value, in_front));
-}
-
-// Up to `end` of a vector that may not be written whole.
-template <std::size_t Numerators, class Vector, class Mask>
-TEXGEN_INLINE void store_part(const RowOutputs<Numerators>& row, std::int64_t x, std::int64_t end,
-                              const Vector (&value)[Numerators], const Mask& in_front) noexcept {
-    constexpr std::size_t size = sizeof(Vector) / sizeof(float);
-    float buffer[Numerators + 1][size]{};
-    RowOutputs<Numerators> buffered = row;
-    for (std::size_t k = 0; k < Numerators; ++k) buffered.out[k] = buffer[k];
-    if (row.lit != nullptr) buffered.lit = buffer[Numerators];
-    store_all(buffered, 0, value, in_front);
-    for (std::size_t i = 0; i < size && x < end; ++i, ++x) {
-        for (std::size_t k = 0; k < Numerators; ++k) row.out[k][x] = buffer[k][i];
-        if (row.lit != nullptr) row.lit[x] = buffer[Numerators][i];
-    }
-}
-
-// A whole vector where it may be written, else up to `end`.
-template <std::size_t Numerators, class Vector, class Mask>
-TEXGEN_INLINE void store_from(const RowOutputs<Numerators>& row, std::int64_t x, std::int64_t end,
-                              const Vector (&value)[Numerators], const Mask& in_front) noexcept {
-    constexpr auto size = static_cast<std::int64_t>(sizeof(Vector) / sizeof(float));
-    if (x + size <= row.writable) return store_all(row, x, value, in_front);
-    store_part(row, x, end, value, in_front);
 }
 
 // The first `count` lanes.
@@ -84,6 +45,47 @@ TEXGEN_INLINE void store_some(float* to, int count, const Vector& values) noexce
     float buffer[sizeof(Vector) / sizeof(float)];
     store(buffer, values);
     for (int i = 0; i < count; ++i) to[i] = buffer[i];
+}
+
+// Coordinates from x on: whole vectors where they may be written, else up to `end`.
+template <class Vector>
+TEXGEN_INLINE void store_both(const RowOutputs& row, std::int64_t x, std::int64_t end,
+                              const Vector (&value)[2]) noexcept {
+    if (x + static_cast<std::int64_t>(sizeof(Vector) / sizeof(float)) <= row.writable) {
+        store(row.out[0] + x, value[0]);
+        store(row.out[1] + x, value[1]);
+    } else {
+        store_some(row.out[0] + x, static_cast<int>(end - x), value[0]);
+        store_some(row.out[1] + x, static_cast<int>(end - x), value[1]);
+    }
+}
+
+// The mask of `count` fragments in front, from the coordinates that stand there: so the loops that compute them ask for no mask.
+// A last vector is one that ends with them.
+template <class Vector>
+TEXGEN_INLINE bool light_in(const TileJob& job, const float* s, const float* t, float* lit,
+                            std::int64_t count) noexcept {
+    constexpr auto size = static_cast<std::int64_t>(sizeof(Vector) / sizeof(float));
+    if (count < size) return false;
+    for (std::int64_t x = 0; x < count; x += size) {
+        const std::int64_t at = x < count - size ? x : count - size;
+        const Vector value[2] = {load<Vector>(s + at), load<Vector>(t + at)};
+        store(lit + at, one_where(inside(value[0], job.min[0], job.max[0]) & inside(value[1], job.min[1], job.max[1])));
+    }
+    return true;
+}
+template <class CompiledWhereCalled = void>
+TEXGEN_APART void light_apart(const TileJob& job, const float* s, const float* t, float* lit,
+                              std::int64_t count) noexcept {
+    if (light_in<WideFloats>(job, s, t, lit, count) || light_in<Floats>(job, s, t, lit, count)) return;
+    for (std::int64_t x = 0; x < count; ++x) {
+        const bool is_lit = s[x] >= job.min[0] && s[x] <= job.max[0] && t[x] >= job.min[1] && t[x] <= job.max[1];
+        lit[x] = is_lit ? 1.0f : 0.0f;
+    }
+}
+// Of a part of a row, where a mask is asked for.
+TEXGEN_INLINE void light(const TileJob& job, const RowOutputs& row, std::int64_t x, std::int64_t end) noexcept {
+    if (row.lit != nullptr) light_apart(job, row.out[0] + x, row.out[1] + x, row.lit + x, end - x);
 }
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA

@@ -3,74 +3,132 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// The functions of the row's index.
-template <std::size_t Numerators>
-struct TileRow : RowOutputs<Numerators> {
-    double base[Numerators];
-    double q;
-
-    TEXGEN_INLINE TileRow(const TileJob& job, int y) noexcept : RowOutputs<Numerators>(job, y) {}
+// The functions of a row's index.
+struct TileRow {
+    double base[2], q;
 
     TEXGEN_INLINE void move_to(const TileJob& job, int y) noexcept {
         q = job.q.base + y * job.q.dy;
-        for (std::size_t k = 0; k < Numerators; ++k) base[k] = job.numerator[k].base + y * job.numerator[k].dy;
+        for (std::size_t k = 0; k < 2; ++k) base[k] = job.numerator[k].base + y * job.numerator[k].dy;
+    }
+    TEXGEN_INLINE Doubles q_at(const TileJob& job, const Doubles& index) const noexcept { return index * job.q.dx + q; }
+    TEXGEN_INLINE Doubles numerator_at(const TileJob& job, std::size_t k, const Doubles& index) const noexcept {
+        return index * job.numerator[k].dx + base[k];
     }
 };
 
-// One vector of quotients from `index` on. With Exact, marks in `doubtful` where value - error and value + error do
-// not round to one float; else numerators and q are rounded to float and divided there.
-template <bool Exact, std::size_t Numerators>
-TEXGEN_INLINE void divide_vector(const TileJob& job, const TileRow<Numerators>& row, const Doubles& index,
-                                 Doubles& reciprocal, Floats (&quotient)[Numerators], Words& doubtful) noexcept {
+// One vector of quotients. With Exact, marks in `doubtful` where value - error and value + error do not round to one float; else
+// numerators and q are rounded to float and divided there.
+template <bool Exact>
+TEXGEN_INLINE void divide_vector(const TileJob& job, const TileRow& row, const Doubles& index, Doubles& reciprocal,
+                                 Floats (&quotient)[2], Words& doubtful) noexcept {
     if constexpr (Exact) {
-        if (!job.q_is_constant) reciprocal = 1.0 / (index * job.q.dx + row.q);
-        for (std::size_t k = 0; k < Numerators; ++k) {
-            const Doubles value = (index * job.numerator[k].dx + row.base[k]) * reciprocal;
+        if (!job.q_is_constant) reciprocal = 1.0 / row.q_at(job, index);
+        for (std::size_t k = 0; k < 2; ++k) {
+            const Doubles value = row.numerator_at(job, k, index) * reciprocal;
             quotient[k] = to_floats(value - job.quotient_error[k]);
             doubtful |= bits(quotient[k]) ^ bits(to_floats(value + job.quotient_error[k]));
         }
     } else {
-        const Floats float_reciprocal = 1.0f / to_floats(index * job.q.dx + row.q);
-        for (std::size_t k = 0; k < Numerators; ++k)
-            quotient[k] = to_floats(index * job.numerator[k].dx + row.base[k]) * float_reciprocal;
+        const Floats float_reciprocal = 1.0f / to_floats(row.q_at(job, index));
+        for (std::size_t k = 0; k < 2; ++k) quotient[k] = to_floats(row.numerator_at(job, k, index)) * float_reciprocal;
     }
 }
 
-// The units of the job from `unit` on, up to the first one with a doubtful value (it is written all the same). What a last
-// vector writes beyond its row is written again by those that follow, and may only cause a doubt too many.
-template <bool Exact, std::size_t Numerators>
-TEXGEN_INLINE TileJob::Unit divide_units(const TileJob& job, TileJob::Unit unit) noexcept {
+// Divides a part of a row, or whole rows. Whether a value is in doubt (it is written all the same). What a last vector writes
+// beyond its row is written again by those that follow, and may only cause a doubt too many.
+template <bool Exact>
+TEXGEN_INLINE bool divide_part(const TileJob& job, const TileJob::Unit& part) noexcept {
+    const auto [x_begin, x_end, y_begin, y_end] = part;
     Doubles reciprocal = Doubles{} + 1.0 / job.q.base;
-    for (; !job.is_done(unit); unit = job.unit_after(unit)) {
-        Words doubtful{};
-        TileRow<Numerators> row(job, unit.y_begin);
-        for (int y = unit.y_begin; y < unit.y_end; ++y, row.advance()) {
-            row.move_to(job, y);
-            Doubles index = indices<Doubles>() + static_cast<double>(unit.x_begin);
-            Floats quotient[Numerators];
-            std::int64_t x = unit.x_begin;  // what follows the last vector may be no int
-            const std::int64_t last = row.writable - lanes;
-            for (; x < unit.x_end && x <= last; x += lanes, index += static_cast<double>(lanes)) {
-                divide_vector<Exact>(job, row, index, reciprocal, quotient, doubtful);
-                store_all(row, x, quotient, ~Words{});
-            }
-            if (x >= unit.x_end) continue;
-            divide_vector<Exact>(job, row, index, reciprocal, quotient, doubtful);
-            store_part(row, x, unit.x_end, quotient, ~Words{});
+    Words doubtful{};
+    RowOutputs row(job, y_begin);
+    TileRow tile_row;
+    for (int y = y_begin; y < y_end; ++y, row.advance()) {
+        tile_row.move_to(job, y);
+        Doubles index = indices<Doubles>() + static_cast<double>(x_begin);
+        Floats quotient[2];
+        std::int64_t x = x_begin;  // what follows the last vector may be no int
+        const std::int64_t last = row.writable - lanes;
+        for (; x < x_end && x <= last; x += lanes, index += static_cast<double>(lanes)) {
+            divide_vector<Exact>(job, tile_row, index, reciprocal, quotient, doubtful);
+            for (std::size_t k = 0; k < 2; ++k) store(row.out[k] + x, quotient[k]);
         }
-        if (Exact && any(doubtful)) break;
+        if (x < x_end) {
+            divide_vector<Exact>(job, tile_row, index, reciprocal, quotient, doubtful);
+            for (std::size_t k = 0; k < 2; ++k) store_some(row.out[k] + x, static_cast<int>(x_end - x), quotient[k]);
+        }
+        light(job, row, x_begin, x_end);
     }
-    return unit;
-}
-
-template <class CompiledWhereCalled = void>
-TileJob::Unit fill_tile_exact(const TileJob& job, TileJob::Unit first) noexcept {
-    return job.numerators == 2 ? divide_units<true, 2>(job, first) : divide_units<true, 1>(job, first);
+    return Exact && any(doubtful);
 }
 
 template <class CompiledWhereCalled = void>
 void fill_tile_float_divided(const TileJob& job) noexcept {
-    divide_units<false, 2>(job, job.unit_at(0, 0));
+    divide_part<false>(job, {0, job.width, 0, job.height});
+}
+
+// The same of a job that knows its ulps: pairs of vectors share a division, which adds two roundings to a quotient, and integers are asked
+// whether it is in doubt. The last pair of a row is one that ends with it, for which there is room.
+inline constexpr int pair = 2 * lanes;
+template <class CompiledWhereCalled = void>
+TEXGEN_APART bool divide_in_pairs(const TileJob& job, const TileJob::Unit& part) noexcept {
+    const auto [x_begin, x_end, y_begin, y_end] = part;
+    const int ulps = job.ulps;
+    WideWords least = ~WideWords{} & 0x7fffffff;
+    RowOutputs row(job, y_begin);
+    TileRow tile_row;
+    for (int y = y_begin; y < y_end; ++y, row.advance()) {
+        tile_row.move_to(job, y);
+        float* const out[2] = {row.out[0], row.out[1]};
+        const std::int64_t last = std::int64_t{x_end} - pair;
+        std::int64_t x = x_begin;
+        for (Doubles index = indices<Doubles>() + static_cast<double>(x_begin);;) {
+            const Doubles next_index = index + static_cast<double>(lanes);
+            const Doubles q = tile_row.q_at(job, index), next_q = tile_row.q_at(job, next_index);
+            const Doubles of_both = 1.0 / (q * next_q);
+            const Doubles reciprocal = of_both * next_q, next_reciprocal = of_both * q;
+            Doubles value[2], next_value[2];
+            for (std::size_t k = 0; k < 2; ++k) {
+                value[k] = tile_row.numerator_at(job, k, index) * reciprocal;
+                next_value[k] = tile_row.numerator_at(job, k, next_index) * next_reciprocal;
+                store(out[k] + x, to_floats(value[k]));
+                store(out[k] + x + lanes, to_floats(next_value[k]));
+            }
+            least = minimum(least, minimum(distances_from_middles(value[0], value[1], ulps),
+                                           distances_from_middles(next_value[0], next_value[1], ulps)));
+            if (x == last) break;
+            x += pair;
+            index = index + static_cast<double>(pair);
+            if (x <= last) continue;
+            index = index - static_cast<double>(x - last);
+            x = last;
+        }
+        light(job, row, x_begin, x_end);
+    }
+    return any(equal(least, 0));
+}
+
+// Does the units from `first` on up to the first one that is in doubt. Where none is, more and more of them are done at once, in
+// pairs if those will do; what is in doubt then is done again by less.
+template <class CompiledWhereCalled = void>
+TileJob::Unit fill_tile_exact(const TileJob& job, TileJob::Unit first) noexcept {
+    constexpr int most = 16 * TileJob::unit_size;
+    bool is_quick = job.ulps != 0;
+    TileJob::Unit unit = first;
+    for (int size = TileJob::unit_size; !job.is_done(unit);) {
+        const bool in_pairs = is_quick && size > TileJob::unit_size && unit.x_end - unit.x_begin >= pair;
+        if (!(in_pairs ? divide_in_pairs(job, unit) : divide_part<true>(job, unit))) {
+            size = size < most ? 2 * size : most;
+            unit = job.unit_after(unit, size);
+        } else {
+            if (size == TileJob::unit_size) return unit;
+            is_quick = is_quick && size > 2 * TileJob::unit_size;
+            size = TileJob::unit_size;
+            unit = job.unit_at(unit.x_begin, unit.y_begin);
+        }
+    }
+    return unit;
 }
 
 // A function of a row's index.
@@ -209,7 +267,7 @@ std::uint64_t fill_tile_closely(const TileJob& job, const CloseFunctions& functi
     CloseRow rows[3];
     for (std::size_t k = 0; k < 3; ++k) rows[k].take(*function[k]);
     const CloseRow& q_row = rows[2];
-    RowOutputs<2> row(job, unit.y_begin);
+    RowOutputs row(job, unit.y_begin);
     const Doubles half_q_error = q_row.error * 0.5;
     std::uint64_t doubtful = 0;
     int shift = 0;
@@ -222,7 +280,14 @@ std::uint64_t fill_tile_closely(const TileJob& job, const CloseFunctions& functi
             Words doubt = narrow(q.doubt);
             for (std::size_t k = 0; k < 2; ++k)
                 doubt |= divide_closely(rows[k], q_row, q, half_q_error, index, x, value[k]);
-            store_from(row, x, unit.x_end, value, narrow(q.in_front));
+            store_both(row, x, unit.x_end, value);
+            if (row.lit != nullptr) {
+                const Floats lit = lit_of(row, value, narrow(q.in_front));
+                if (x + lanes <= row.writable)
+                    store(row.lit + x, lit);
+                else
+                    store_some(row.lit + x, static_cast<int>(unit.x_end - x), lit);
+            }
             const int count = unit.x_end - x < lanes ? static_cast<int>(unit.x_end - x) : lanes;
             if (any(doubt))
                 for (int i = 0; i < count; ++i)

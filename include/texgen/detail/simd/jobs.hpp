@@ -18,10 +18,9 @@ struct RampOf {
 };
 using Ramp = RampOf<double>;
 
-// numerator[k] / q over a rectangle; out[k], and lit (or null) from the closed region. With one numerator the second is the
-// same again. Rows of the outputs are pitch apart; those of an output that only the mask needs are one and the same.
+// numerator[k] / q over a rectangle; out[k], and lit (or null) from the closed region. One numerator alone is in both
+// places. Rows of the outputs are pitch apart; those of an output that only the mask needs are one and the same.
 struct TileJob {
-    int numerators;
     int width, height;
     int chunk = 0;                         // the most fragments of a row that share a middle
     StepRule steps = StepRule::undecided;  // of all chunks
@@ -29,6 +28,7 @@ struct TileJob {
     Ramp q;
     bool q_is_constant;
     double quotient_error[2] = {};   // for fill_exact
+    std::int32_t ulps = 0;           // see Corners::ulps_of_quotients
     double numerator_error[2] = {};  // for fill_polynomial, as what follows
     double q_error = 0.0;
     double least_q = 0.0;  // below it no certificate holds
@@ -48,12 +48,12 @@ struct TileJob {
 
     static constexpr int unit_size = 64;
 
-    Unit unit_at(int x, int y) const noexcept {
-        const int rows = width >= unit_size ? 1 : unit_size / width;
-        return {x, unit_size < width - x ? x + unit_size : width, y, rows < height - y ? y + rows : height};
+    Unit unit_at(int x, int y, int size = unit_size) const noexcept {
+        const int rows = x != 0 || width >= size ? 1 : size / width;
+        return {x, size < width - x ? x + size : width, y, rows < height - y ? y + rows : height};
     }
-    Unit unit_after(const Unit& unit) const noexcept {
-        return unit.x_end < width ? unit_at(unit.x_end, unit.y_begin) : unit_at(0, unit.y_end);
+    Unit unit_after(const Unit& unit, int size = unit_size) const noexcept {
+        return unit.x_end < width ? unit_at(unit.x_end, unit.y_begin, size) : unit_at(0, unit.y_end, size);
     }
     bool is_done(const Unit& unit) const noexcept { return unit.y_begin >= height; }
 };

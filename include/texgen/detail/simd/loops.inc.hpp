@@ -129,6 +129,9 @@ TEXGEN_INLINE LongWords are_near_middles(const Doubles& a, std::int64_t ulps) no
     const auto mask = static_cast<std::uint64_t>(0x1ffffffe - 2 * ulps);
     return LongWords::of([&](int i) { return ((bit_cast<std::uint64_t>(a.lane[i]) + offset) & mask) == 0 ? -1 : 0; });
 }
+TEXGEN_INLINE Words distances_from_middles(const Doubles& a, const Doubles& b, int ulps) noexcept {
+    return ~(are_near_middles(a, ulps) | are_near_middles(b, ulps)) & 1;
+}
 TEXGEN_INLINE Doubles middle_near(const Doubles& a) noexcept {
     return Doubles::of([&](int i) {
         return bit_cast<double>((bit_cast<std::uint64_t>(a.lane[i]) & ~std::uint64_t{0x1fffffff}) | 0x10000000);

@@ -73,6 +73,16 @@ TEXGEN_INLINE Doubles select(const LongWords& mask, const Doubles& a, const Doub
 TEXGEN_INLINE LongWords are_near_middles(const Doubles& a, long long ulps) noexcept {
     return ((__builtin_bit_cast(LongWords, a) + (ulps - 0x10000000)) & (0x1ffffffe - 2 * ulps)) == 0;
 }
+// As many numbers as a and b have, in whatever order, none negative: 0 for each that is so near a middle. The low words decide.
+template <int... Lane>
+TEXGEN_INLINE WideWords low_words(const Doubles& a, const Doubles& b, std::integer_sequence<int, Lane...>) noexcept {
+    constexpr int low = std::endian::native == std::endian::little ? 0 : 1;
+    return __builtin_shufflevector(__builtin_bit_cast(WideWords, a), __builtin_bit_cast(WideWords, b),
+                                   (Lane / 4 * 4 + Lane % 2 * 2 + Lane % 4 / 2 * wide_lanes + low)...);
+}
+TEXGEN_INLINE WideWords distances_from_middles(const Doubles& a, const Doubles& b, int ulps) noexcept {
+    return (low_words(a, b, std::make_integer_sequence<int, wide_lanes>()) + (ulps - 0x10000000)) & (0x1ffffffe - 2 * ulps);
+}
 TEXGEN_INLINE Doubles middle_near(const Doubles& a) noexcept {
     return __builtin_bit_cast(Doubles, (__builtin_bit_cast(LongWords, a) & ~0x1fffffffLL) | 0x10000000);
 }
@@ -90,6 +100,7 @@ TEXGEN_INLINE LongWords are_positive(const Residues& a) noexcept { return __buil
 TEXGEN_INLINE Words narrow(const LongWords& mask) noexcept { return __builtin_convertvector(mask, Words); }
 TEXGEN_INLINE int lane(const Words& a, int i) noexcept { return a[i]; }
 TEXGEN_INLINE Words equal(const Words& a, int b) noexcept { return a == b; }
+TEXGEN_INLINE WideWords equal(const WideWords& a, int b) noexcept { return a == b; }
 TEXGEN_INLINE Floats select(const Words& mask, const Floats& a, const Floats& b) noexcept {
     return __builtin_bit_cast(Floats, (mask & bits(a)) | (~mask & bits(b)));
 }

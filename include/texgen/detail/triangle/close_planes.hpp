@@ -193,6 +193,7 @@ inline bool take_exact_quotients(const CloseFunctions& functions, TileJob& job) 
     }
     job.q = {1.0, 0.0, 0.0};
     job.q_is_constant = true;
+    job.ulps = 0;
     return is_any_exact;
 }
 

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 #include "../../primitives.hpp"
 #include "../arithmetic/rounding.hpp"
@@ -58,6 +59,26 @@ struct Corners {
     // The error of F/Q in double for a tile well in front: as in certain_quotient(), where it is worst.
     Double2 quotient_error(const Double2& largest) const noexcept {
         return (numerator_error + largest * q_error) * (1.0001 * reciprocal) + largest * (4.0 * unit_roundoff_double);
+    }
+
+    // How many of its own ulps the error of a quotient in double is at most, two more roundings included, as 1 less than a power
+    // of two: the middles of floats are doubles whose last 29 bits are 2^28, so of a quotient that is farther from those the
+    // nearest float is certain. 0 where that is too many, or a quotient may be no normal float, or two q have no product. Of a
+    // tile well in front; an ulp of a quotient u is at least 2^-53 |u|, and the corners have the least |u| where no numerator
+    // changes its sign.
+    std::int32_t ulps_of_quotients(const Double2& error) const noexcept {
+        Double2 u[4];
+        TEXGEN_UNROLL
+        for (std::size_t i = 0; i < 4; ++i) u[i] = numerator[i] / q[i];
+        const Double2 least =
+            larger(smaller(smaller(u[0], u[1]), smaller(u[2], u[3])), -larger(larger(u[0], u[1]), larger(u[2], u[3]))) *
+            0.99;
+        if (!all_less(double2_of(0x1p-125, 0x1p-125), least)) return 0;
+        const double ulps = larger(error[0] / least[0], error[1] / least[1]) * 0x1p53 + 2.0;
+        if (!(ulps < 0x1p15 && least_q > 0x1p-500 && largest_q < 0x1p500)) return 0;
+        std::int32_t result = 7;
+        while (result <= static_cast<std::int32_t>(ulps)) result = 2 * result + 1;
+        return result;
     }
 };
 

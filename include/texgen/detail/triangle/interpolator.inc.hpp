@@ -131,6 +131,8 @@ private:
         TileJob job = make_job(tile, at);
         const Double2 error = at.quotient_error(at.largest_quotient());
         for (std::size_t k = 0; k < 2; ++k) job.quotient_error[k] = error[k];
+        // A small tile does not repay the search for its least quotient.
+        job.ulps = static_cast<std::int64_t>(tile.width) * tile.height < 256 ? 0 : at.ulps_of_quotients(error);
         TileJob::Unit unit = kernels_.fill_exact(job, job.unit_at(0, 0));
         if (job.is_done(unit)) return;
         const CloseFunctions functions = close_functions(tile);
@@ -244,7 +246,6 @@ private:
     // What every kernel needs. A factor that the numerators and q share is free.
     TileJob make_job(const Tile& tile, const Corners& at, double factor = 1.0) noexcept {
         TileJob job;  // not {}: all zeros would cost what a row does
-        job.numerators = static_cast<int>(count_);
         job.width = tile.width;
         job.height = tile.height;
         job.q = {at.q_ramp.base * factor, at.q_ramp.dx * factor, at.q_ramp.dy * factor};
