@@ -479,7 +479,7 @@ double of_poses(double distance, std::uint64_t seed) {
 }
 
 // How far vertices that clip_to_slide() makes are outside the region, as a share of slide_clip_error.
-double of_clips(bool about_apex, std::uint64_t seed) {
+double of_clips(bool about_apex, bool has_depth, std::uint64_t seed) {
     Random random(seed);
     double worst = 0.0;
     for (int i = 0; i < 3000; ++i) {
@@ -489,16 +489,57 @@ double of_clips(bool about_apex, std::uint64_t seed) {
             storage[v].position = glm::vec4(0.0f, 0.0f, 0.0f, 1.0f);
             const double s = size * random.uniform(-2.0, 3.0), t = size * random.uniform(-2.0, 3.0);
             const double q = size * random.uniform(-0.5, 1.0);
-            storage[v].strq = glm::vec4(s, t, 0.0, q);
+            storage[v].strq = glm::vec4(s, t, has_depth ? size * random.uniform(-2.0, 3.0) : 0.0, q);
         }
-        const texgen::TextureRegion region = texgen::atlas_tile({-0.1, 0.3}, {0.7, 1.1});
+        const texgen::TextureRegion sides = texgen::atlas_tile({-0.1, 0.3}, {0.7, 1.1});
+        const texgen::TextureRegion region = has_depth ? sides.with_depth(-0.2, 0.9) : sides;
         const std::size_t count = clip_to_slide(std::span(storage).first(3), region, storage);
         for (std::size_t v = 0; v < count; ++v) {
-            for (int k = 0; k < 2; ++k) {
+            for (int k = 0; k < (has_depth ? 3 : 2); ++k) {
                 const double u = static_cast<double>(storage[v].strq[k]), q = static_cast<double>(storage[v].strq.w);
-                const double side = std::max(std::fabs(region.min()[k]), std::fabs(region.max()[k]));
-                worst = std::max(worst, std::max(region.min()[k] * q - u, u - region.max()[k] * q) /
-                                            (texgen::slide_clip_error * side * q));
+                const double min = k == 2 ? region.depth()->x : region.min()[k];
+                const double max = k == 2 ? region.depth()->y : region.max()[k];
+                worst = std::max(worst, std::max(min * q - u, u - max * q) /
+                                            (texgen::slide_clip_error * std::max(std::fabs(min), std::fabs(max)) * q));
+            }
+        }
+    }
+    return worst;
+}
+
+// The r that a depth is asked of, and the planes of a region with a depth, in float ulps.
+struct WorstDepths {
+    double r = 0.0, planes = 0.0;
+};
+WorstDepths of_depths(double z_far, bool is_reversed, std::uint64_t seed) {
+    Random random(seed);
+    WorstDepths worst;
+    for (int i = 0; i < 100; ++i) {
+        const texgen::Aim aim{random.vector3(5.0), random.vector3(5.0), random.direction()};
+        const texgen::PerspectiveLens lens{texgen::degrees(random.uniform(20.0, 120.0)), 1.5, 0.5, z_far, is_reversed};
+        const auto projector = make_projector(lens, aim, random.coin() ? texgen::opengl : texgen::direct3d);
+        if (!projector) continue;
+        const double r_min = random.uniform(0.0, 0.9);
+        const texgen::TextureRegion region = texgen::whole_texture().with_depth(r_min, random.uniform(r_min, 1.0));
+        const auto texgen = texture_from_world(*projector, region);
+        std::vector<glm::vec3> points(64);
+        for (glm::vec3& point : points) point = random.vector3(random.power_of_ten(-1.0, 2.0));
+        Outputs out(points.size(), 4u);
+        project(texgen, texgen::world_space(points), region, out.spans());
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            const Homogeneous at = support::exactly_at(texgen.matrix(), points[k]);
+            if (at.q.sign() > 0) worst.r = std::max(worst.r, error_in_ulps(out[2][k], at.over_q(2)));
+        }
+        const texgen::ClipPlanes planes = clip_planes(texgen, region);
+        for (std::size_t k = 5; k < planes.size(); ++k) {
+            const double sign = k == 5 ? 1.0 : -1.0;
+            for (int j = 0; j < 4; ++j) {
+                const glm::dvec4& column = texgen.matrix()[j];
+                const support::Dyadic exact =
+                    support::Dyadic(sign) *
+                    (support::Dyadic(column.z) -
+                     support::Dyadic(k == 5 ? region.depth()->x : region.depth()->y) * support::Dyadic(column.w));
+                worst.planes = std::max(worst.planes, error_in_ulps(planes[k][j], {exact, support::Dyadic(1.0)}));
             }
         }
     }
@@ -618,8 +659,8 @@ TEST_CASE("no ceiling is raised") {
     for (const char* const distance : {"1", "1e3", "1e5", "1e7"})
         hold("object_linear in float, texels of 4096", std::string(distance) + " from the origin", false,
              of_poses(std::strtod(distance, nullptr), ++seed));
-    hold("clip_to_slide, share of slide_clip_error", "ordinary", true, of_clips(false, ++seed));
-    hold("clip_to_slide, share of slide_clip_error", "about the projector", true, of_clips(true, ++seed));
+    hold("clip_to_slide, share of slide_clip_error", "ordinary", true, of_clips(false, false, ++seed));
+    hold("clip_to_slide, share of slide_clip_error", "about the projector", true, of_clips(true, false, ++seed));
     for (std::size_t i = 0; i < corner_families.size(); ++i) {
         const WorstSurfaces worst = of_surfaces(support::corner_families[i], ++seed);
         hold("slide_area, 2^-52 of itself", corner_families[i], false, worst.area);
@@ -637,5 +678,18 @@ TEST_CASE("no ceiling is raised") {
     for (const char* const distance : {"1", "1e3", "1e5", "1e7"})
         hold("window_linear, 2^-53 of its terms", std::string(distance) + " from the origin", false,
              of_windows(std::strtod(distance, nullptr), ++seed));
+    seed = 9072;
+    hold("clip_to_slide with a depth, share of slide_clip_error", "ordinary", true, of_clips(false, true, ++seed));
+    hold("clip_to_slide with a depth, share of slide_clip_error", "about the projector", true,
+         of_clips(true, true, ++seed));
+    for (const double z_far : {20.0, HUGE_VAL}) {
+        for (const bool is_reversed : {false, true}) {
+            const std::string family =
+                std::string(z_far < HUGE_VAL ? "to z_far" : "infinite") + (is_reversed ? ", reversed" : "");
+            const WorstDepths worst = of_depths(z_far, is_reversed, ++seed);
+            hold("project r, exact, ulp", family, true, worst.r);
+            hold("clip_planes of a depth, ulp", family, true, worst.planes);
+        }
+    }
     if (lowered != nullptr) ceilings.write(lowered);
 }
