@@ -338,6 +338,9 @@ TEST_CASE("keystone is the exact homography, element by element within 2^-48 of 
     }
     CHECK_MESSAGE(worst <= 0x1p-48, worst_input);
     MESSAGE((worst * 0x1p52), " times 2^-52 at most: ", worst_input);
+    // One area is 2^1100 times another.
+    const Quadrilateral graded{{{-0x1p400, 0.0}, {0.0, 0.0}, {0.0, 0x1p-400}, {-0x1p100, 0x1p400}}};
+    CHECK(support::keystone_error(keystone(graded).value(), graded, texgen::whole_texture()) <= 0x1p-48);
 }
 
 TEST_CASE(
