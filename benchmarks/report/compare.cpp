@@ -285,15 +285,15 @@ int passes_for(const Run& run) {
 }
 
 // Seconds a run. They take turns, so that a change of the machine's speed meets all of them; the median of the rounds counts.
-std::vector<double> medians_of(const std::vector<Run>& runs, double enough_seconds) {
-    constexpr std::size_t fewest_rounds = 5, most_rounds = 21;
+std::vector<double> medians_of(const std::vector<Run>& runs, int most_rounds, double enough_seconds) {
+    constexpr int fewest_rounds = 5;
     std::vector<int> passes;
     for (const Run& run : runs) passes.push_back(passes_for(run));
     std::vector<std::vector<double>> seconds(runs.size());
     double total = 0;
-    for (std::size_t round = 0; round < most_rounds && (round < fewest_rounds || total < enough_seconds); ++round) {
+    for (int round = 0; round < most_rounds && (round < fewest_rounds || total < enough_seconds); ++round) {
         for (std::size_t turn = 0; turn < runs.size(); ++turn) {
-            const std::size_t i = (turn + round) % runs.size();
+            const std::size_t i = (turn + static_cast<std::size_t>(round)) % runs.size();
             seconds[i].push_back(seconds_for(runs[i], passes[i]));
             total += passes[i] * seconds[i].back();
         }
@@ -367,17 +367,17 @@ bool Comparison::is_as_promised() const {
            accepted.max_texels <= accepted_texels;
 }
 
-Comparison compare(const Workload& work, const texgen::TextureRegion& region) {
+Comparison compare(const Workload& work, const texgen::TextureRegion& region, int rounds) {
     Comparison comparison;
     comparison.evaluated_fragments = work.evaluated_fragments();
     measure_errors(comparison, work, region);
-    const std::vector<double> seconds = medians_of(runs_of(work, region), 0.8);
+    const std::vector<double> seconds = medians_of(runs_of(work, region), rounds, 0.8);
     for (std::size_t m = 0; m < methods.size(); ++m)
         comparison.measurements[m].nanoseconds = 1e9 * seconds[m] / static_cast<double>(comparison.evaluated_fragments);
     return comparison;
 }
 
-std::vector<Series> times_by_size() {
+std::vector<Series> times_by_size(int rounds) {
     std::vector<Series> series;
     for (const Method& method : methods) series.push_back({method.name, Series::Mark::line, {}});
     const texgen::Tolerance accepted = texgen::texels(accepted_texels, texture_size);
@@ -391,7 +391,7 @@ std::vector<Series> times_by_size() {
         std::vector<Run> runs = runs_of(work, region);
         runs.push_back(batch_of(work, side, texgen::exact));
         runs.push_back(batch_of(work, side, accepted));
-        const std::vector<double> seconds = medians_of(runs, 0.1);
+        const std::vector<double> seconds = medians_of(runs, rounds, 0.1);
         for (std::size_t i = 0; i < runs.size(); ++i)
             series[i].points.emplace_back(side * side, 1e9 * seconds[i] / count);
     }

@@ -47,10 +47,10 @@ struct Comparison {
 };
 
 // Runs the library and its peers over the work: first once for the errors, then in turns against the clock.
-Comparison compare(const Workload& work, const texgen::TextureRegion& region);
+Comparison compare(const Workload& work, const texgen::TextureRegion& region, int rounds);
 
 // Nanoseconds a triangle, its set-up included, against the fragments of its rectangle, 1 to 4096: a line a method.
-std::vector<Series> times_by_size();
+std::vector<Series> times_by_size(int rounds);
 
 // From how many fragments on ours takes no longer than theirs: 0 where it never takes longer, empty where that is beyond the last.
 std::optional<double> overtakes_at(const Series& ours, const Series& theirs);

@@ -40,6 +40,7 @@ namespace fs = std::filesystem;
 
 constexpr int smallest_side = 16;
 constexpr int largest_side = 4096;
+constexpr int most_rounds = 21;
 
 constexpr const char* usage =
     "usage: %s [OPTION VALUE]...\n"
@@ -52,6 +53,7 @@ constexpr const char* usage =
     "from\n"
     "                  0.1 to 100, of the slide's longer side; the mesh is 4 wide (default: perspective:30)\n"
     "  --size WxH      the size of the pictures, 16 to 4096 a side (default: 1024x1024)\n"
+    "  --rounds N      how often the loops take turns, 1 to 21; the median counts (default: 21)\n"
     "  --out DIR       the folder of the report (default: report)\n"
     "  --timings FILE  what texgen_bench_o2, then what texgen_bench_native wrote with --benchmark_out; may be "
     "repeated\n"
@@ -70,18 +72,30 @@ struct Options {
     std::optional<fs::path> mesh, slide;
     LensChoice lens;
     int width = 1024, height = 1024;
+    int rounds = most_rounds;
     fs::path out = "report";
     std::optional<std::string> costs, worst;
     std::vector<std::string> timings;
     bool help = false;
 };
 
-int parse_side(std::string_view text, std::string_view size) {
+std::optional<int> parse_integer(std::string_view text, int least, int most) {
     int value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || value < smallest_side || value > largest_side)
-        throw Failure{"bad size '" + std::string(size) + "': wanted WxH, each from 16 to 4096"};
-    return value;
+    const bool is_whole = error == std::errc() && end == text.data() + text.size();
+    return is_whole && value >= least && value <= most ? std::optional(value) : std::nullopt;
+}
+
+int parse_rounds(std::string_view text) {
+    const std::optional<int> rounds = parse_integer(text, 1, most_rounds);
+    if (!rounds) throw Failure{"bad number of rounds '" + std::string(text) + "': wanted 1 to 21"};
+    return *rounds;
+}
+
+int parse_side(std::string_view text, std::string_view size) {
+    const std::optional<int> side = parse_integer(text, smallest_side, largest_side);
+    if (!side) throw Failure{"bad size '" + std::string(size) + "': wanted WxH, each from 16 to 4096"};
+    return *side;
 }
 
 LensChoice parse_lens(std::string_view text) {
@@ -106,13 +120,15 @@ Options parse(const std::vector<std::string_view>& arguments) {
             continue;
         }
         if (option != "--mesh" && option != "--slide" && option != "--lens" && option != "--size" &&
-            option != "--out" && option != "--costs" && option != "--worst" && option != "--timings")
+            option != "--rounds" && option != "--out" && option != "--costs" && option != "--worst" &&
+            option != "--timings")
             throw Failure{"unknown option '" + std::string(option) + "'; --help lists them"};
         if (++i == arguments.size() || arguments[i].empty()) throw Failure{std::string(option) + " needs a value"};
         const std::string_view value = arguments[i];
         if (option == "--mesh") options.mesh = value;
         if (option == "--slide") options.slide = value;
         if (option == "--lens") options.lens = parse_lens(value);
+        if (option == "--rounds") options.rounds = parse_rounds(value);
         if (option == "--out") options.out = value;
         if (option == "--costs") options.costs = value;
         if (option == "--worst") options.worst = value;
@@ -250,7 +266,7 @@ Report make_report(const Options& options, const Setting& setting) {
                                             is_first ? InPage::first : in_page(view.sampling)));
         }
         progress.show("measuring " + scene.name);
-        result.comparison = compare(moved(work, scene.corner), scene.region);
+        result.comparison = compare(moved(work, scene.corner), scene.region, options.rounds);
         report.scenes.push_back(std::move(result));
     }
     progress.show("lighting the room");
@@ -265,7 +281,7 @@ Report make_report(const Options& options, const Setting& setting) {
         shown("room_reach.png", "The same light, ended at the far planes of the projectors by with_depth().",
               report.room.reach_picture, InPage::reduced)};
     progress.show("measuring triangles of all sizes");
-    report.times_by_size = times_by_size();
+    report.times_by_size = times_by_size(options.rounds);
     progress.show("measuring errors far from the origin");
     report.errors_by_distance = errors_by_distance();
     return report;

@@ -101,13 +101,16 @@ TEST_CASE("a bad option is refused in one line") {
     const Workplace place;
     place.check_refusal("--colour red", "--colour");
     place.check_refusal("teapot.obj", "teapot.obj");
-    for (const char* option : {"--mesh", "--slide", "--lens", "--size", "--out", "--costs", "--worst", "--timings"}) {
+    for (const char* option :
+         {"--mesh", "--slide", "--lens", "--size", "--rounds", "--out", "--costs", "--worst", "--timings"}) {
         place.check_refusal(option, option);
         place.check_refusal(option + std::string(" ''"), option);
     }
     for (const char* size : {"64", "x", "64x", "x64", "15x64", "64x4097", "-64x64", "64x64x64", "64,64", "1e3x64",
                              "99999999999999999999x64"})
         place.check_refusal(std::string("--size ") + size, size);
+    for (const char* rounds : {"0", "22", "-1", "1.5", "many", "99999999999"})
+        place.check_refusal(std::string("--rounds ") + rounds, rounds);
     for (const char* lens : {"30", "perspective", "perspective:", "perspective:0", "perspective:151",
                              "perspective:wide", "orthographic:-1", "orthographic:1000", "fisheye:30"})
         place.check_refusal(std::string("--lens ") + lens, lens);
@@ -120,7 +123,7 @@ TEST_CASE("a mesh that cannot be used is refused in one line") {
     place.check_refusal("--mesh \"$(printf 'two\\nlines.obj')\"", "two?lines.obj");
     const auto check = [&](const std::string& text, const std::string& reason) {
         write("mesh.obj", text);
-        place.check_refusal("--size 16x16 --mesh mesh.obj", reason);
+        place.check_refusal("--rounds 1 --size 16x16 --mesh mesh.obj", reason);
     };
     check("", "no faces");
     check(triangle, "no faces");
@@ -145,12 +148,12 @@ TEST_CASE("a mesh that cannot be used is refused in one line") {
 TEST_CASE("a slide that cannot be used is refused in one line") {
     using namespace std::string_literals;
     const Workplace place;
-    REQUIRE(place.run("--size 16x16 --out good").status == 0);
+    REQUIRE(place.run("--rounds 1 --size 16x16 --out good").status == 0);
     const std::string good = contents("good/teapot.png");
     place.check_refusal("--slide missing.png", "missing.png");
     const auto check = [&](const std::string& bytes) {
         write("slide.png", bytes);
-        place.check_refusal("--size 16x16 --slide slide.png", "slide.png");
+        place.check_refusal("--rounds 1 --size 16x16 --slide slide.png", "slide.png");
     };
     check("");
     check("not a picture");
@@ -179,7 +182,7 @@ TEST_CASE("timings become the page's tables and charts, which say where others a
     write("timings.json", timing_of("K9, 1024", "texgen, <exact>", "1.25") + timing_of("K9, 1024", "GLM, loop", "2.5") +
                               timing_of("project planar, 1024", "texgen, 1/512 texel of 4096", "3") +
                               timing_of("project planar, 1024", "GLM, mat4 * vec4", "2"));
-    CHECK(place.run("--size 16x16 --timings timings.json").status == 0);
+    CHECK(place.run("--rounds 1 --size 16x16 --timings timings.json").status == 0);
     const std::string page = contents("report/index.html");
     CHECK(page.find("<td>texgen, &lt;exact&gt;</td><td>1.250</td><td>2.00</td>") != std::string::npos);
     CHECK(page.find("<h3>Points</h3>") != std::string::npos);
@@ -194,8 +197,8 @@ TEST_CASE("without gnuplot, and with one that fails, the page says so in the pla
     write("gnuplot", "#!/bin/sh\necho '<svg'\nexit 1\n");
     fs::permissions("gnuplot", fs::perms::owner_all);
     for (const char* path : {"/nowhere", "."}) {
-        CHECK(std::system(
-                  ("PATH=" + std::string(path) + " '" TEXGEN_REPORT_PROGRAM "' --size 16x16 >output").c_str()) == 0);
+        CHECK(std::system(("PATH=" + std::string(path) + " '" TEXGEN_REPORT_PROGRAM "' --rounds 1 --size 16x16 >output")
+                              .c_str()) == 0);
         const std::string page = contents("report/index.html");
         CHECK(page.find("No chart: gnuplot is missing or failed.") != std::string::npos);
         CHECK(page.find("<svg") == std::string::npos);
@@ -208,7 +211,7 @@ TEST_CASE("names of timings are text to gnuplot, and nothing that it executes") 
     const Workplace place;
     write("timings.json", timing_of("project planar, 1024", "texgen, `touch one`' . system('touch two') #", "3") +
                               timing_of("project planar, 1024", "GLM, {/=99 @mat4} \\", "2"));
-    CHECK(place.run("--size 16x16 --timings timings.json").status == 0);
+    CHECK(place.run("--rounds 1 --size 16x16 --timings timings.json").status == 0);
     CHECK((contents("report/index.html").find("No chart") == std::string::npos) == has_gnuplot());
     for (const std::string& file : place.files()) CHECK((file.starts_with("report") || file == "timings.json"));
 }
@@ -228,14 +231,14 @@ TEST_CASE("costs become a table of the terminal and of the page, none become not
     write("costs.txt",
           "GLM's "
           "headers||200|800|0\nclip.hpp||300|900|\nclip_<near>()|clip.hpp|550|10900|7000\nodd()|nowhere.hpp|50|1|1\n");
-    const Outcome outcome = place.run("--size 16x16 --costs costs.txt");
+    const Outcome outcome = place.run("--rounds 1 --size 16x16 --costs costs.txt");
     CHECK(outcome.status == 0);
     CHECK(outcome.output.find("1.50x GLM") != std::string::npos);
     CHECK(contents("report/index.html")
               .find("<td>clip_&lt;near&gt;()</td><td>0.55</td><td>+0.25 s</td><td>10.0</td><td>7.0</td>") !=
           std::string::npos);
     write("costs.txt", "");
-    CHECK(place.run("--size 16x16 --costs costs.txt").status == 0);
+    CHECK(place.run("--rounds 1 --size 16x16 --costs costs.txt").status == 0);
     CHECK(contents("report/index.html").find("costs to compile") == std::string::npos);
 }
 
@@ -252,7 +255,7 @@ TEST_CASE("worst times that are none are refused in one line") {
 TEST_CASE("worst times become a table of the terminal and of the page that says which limits are met") {
     const Workplace place;
     write("worst.txt", "divide|<any>|2|9|8\nproject|ties everywhere|2|17|8\n");
-    const Outcome outcome = place.run("--size 16x16 --worst worst.txt");
+    const Outcome outcome = place.run("--rounds 1 --size 16x16 --worst worst.txt");
     CHECK(outcome.status == 0);
     CHECK(outcome.output.find("8.5      8  NOT MET  ties everywhere") != std::string::npos);
     const std::string page = contents("report/index.html");
@@ -265,23 +268,23 @@ TEST_CASE("worst times become a table of the terminal and of the page that says 
 TEST_CASE("a folder that cannot be written is refused in one line, and an old report survives") {
     const Workplace place;
     write("file", "mine");
-    place.check_refusal("--size 16x16 --out file", "not a folder");
-    place.check_refusal("--size 16x16 --out file/below", "not a folder");
-    place.check_refusal("--size 16x16 --out /dev/null/below", "not a folder");
-    place.check_refusal("--size 16x16 --out /proc/below", "/proc/below");
-    place.check_refusal("--size 16x16 --out deep/" + std::string(300, 'd'), "ddd");
-    place.check_refusal("--size 16x16 --out /", "root of the file system");
-    place.check_refusal("--size 16x16 --out /tmp/..", "root of the file system");
+    place.check_refusal("--rounds 1 --size 16x16 --out file", "not a folder");
+    place.check_refusal("--rounds 1 --size 16x16 --out file/below", "not a folder");
+    place.check_refusal("--rounds 1 --size 16x16 --out /dev/null/below", "not a folder");
+    place.check_refusal("--rounds 1 --size 16x16 --out /proc/below", "/proc/below");
+    place.check_refusal("--rounds 1 --size 16x16 --out deep/" + std::string(300, 'd'), "ddd");
+    place.check_refusal("--rounds 1 --size 16x16 --out /", "root of the file system");
+    place.check_refusal("--rounds 1 --size 16x16 --out /tmp/..", "root of the file system");
     fs::create_symlink("/", "slash");
-    place.check_refusal("--size 16x16 --out slash/", "root of the file system");
+    place.check_refusal("--rounds 1 --size 16x16 --out slash/", "root of the file system");
     fs::create_symlink("nowhere", "dangling");
     fs::create_symlink("circle", "circle");
-    place.check_refusal("--size 16x16 --out dangling", "dangling");
-    place.check_refusal("--size 16x16 --out circle/below", "circle");
+    place.check_refusal("--rounds 1 --size 16x16 --out dangling", "dangling");
+    place.check_refusal("--rounds 1 --size 16x16 --out circle/below", "circle");
     fs::create_directories("old/teapot.png");
     write("old/index.html", "yesterday");
-    place.check_refusal("--size 16x16 --out old", "teapot.png");
-    place.check_refusal("--size 16x16 --out old --mesh missing.obj", "missing.obj");
+    place.check_refusal("--rounds 1 --size 16x16 --out old", "teapot.png");
+    place.check_refusal("--rounds 1 --size 16x16 --out old --mesh missing.obj", "missing.obj");
     CHECK(contents("old/index.html") == "yesterday");
     CHECK(contents("file") == "mine");
 }
@@ -289,7 +292,7 @@ TEST_CASE("a folder that cannot be written is refused in one line, and an old re
 TEST_CASE("what cannot be printed is said, and nothing is written") {
     const Workplace place;
     if (!fs::exists("/dev/full")) return;
-    for (const std::string arguments : {"--help", "--size 16x16"}) {
+    for (const std::string arguments : {"--help", "--rounds 1 --size 16x16"}) {
         CAPTURE(arguments);
         const int status =
             std::system(("'" TEXGEN_REPORT_PROGRAM "' " + arguments + " >/dev/full 2>../report_test_error").c_str());
@@ -360,17 +363,17 @@ TEST_CASE("a run replaces an old report and leaves other files alone") {
     fs::create_directory("mine");
     write("mine/index.html", "yesterday");
     write("mine/letter.txt", "dear reader");
-    CHECK(place.run("--size 16x16 --out mine").status == 0);
+    CHECK(place.run("--rounds 1 --size 16x16 --out mine").status == 0);
     CHECK(contents("mine/index.html").starts_with("<!DOCTYPE html>"));
     CHECK(contents("mine/letter.txt") == "dear reader");
 }
 
 TEST_CASE("a run takes a mesh and a slide of the user's") {
     const Workplace place;
-    REQUIRE(place.run("--size 16x16 --out first").status == 0);
+    REQUIRE(place.run("--rounds 1 --size 16x16 --out first").status == 0);
     write("mesh.obj", "# relative indices, a quadrilateral, and a face with normals\n" + triangle +
                           "v 1 1 0.5\r\nvn 0 0 1\nf -4 -3 -1 -2\nf 1//1 2//1 3//1\n");
-    const Outcome outcome = place.run("--size 32x32 --mesh mesh.obj --slide first/reverse.png");
+    const Outcome outcome = place.run("--rounds 1 --size 32x32 --mesh mesh.obj --slide first/reverse.png");
     CHECK(outcome.status == 0);
     CHECK(outcome.error == "");
     CHECK(contents("report/index.html").find("mesh.obj") != std::string::npos);
@@ -384,7 +387,7 @@ TEST_CASE("a mesh of Windows and a slide of one pixel are taken, and the other k
     write("pixel.png", png_header("\0\0\0\1"s, "\0\0\0\1"s) + "\0\0\0\x0cIDAT"s +
                            "\x78\x9c\x63\x68\x68\x68\0\0\3\x04\1\x81"s + "\x4b\xd3\xd2\x10"s + "\0\0\0\0IEND"s +
                            "\xae\x42\x60\x82"s);
-    const Outcome outcome = place.run("--size 16x16 --mesh mesh.obj --slide pixel.png");
+    const Outcome outcome = place.run("--rounds 1 --size 16x16 --mesh mesh.obj --slide pixel.png");
     CHECK(outcome.status == 0);
     CHECK(outcome.error == "");
     place.check_refusal("--mesh /dev/zero", "not a regular file");
@@ -395,7 +398,7 @@ TEST_CASE("a mesh of Windows and a slide of one pixel are taken, and the other k
 TEST_CASE("whoever watches a terminal sees the progress, and a clear line after it") {
     const Workplace place;
     if (std::system("command -v script >/dev/null") != 0) return;
-    CHECK(std::system("script -qec \"'" TEXGEN_REPORT_PROGRAM "' --size 16x16\" /dev/null >watched") == 0);
+    CHECK(std::system("script -qec \"'" TEXGEN_REPORT_PROGRAM "' --rounds 1 --size 16x16\" /dev/null >watched") == 0);
     const std::string watched = contents("watched");
     CHECK(watched.find(": rendering ") != std::string::npos);
     CHECK(watched.find(": measuring errors far from the origin") != std::string::npos);
@@ -406,9 +409,9 @@ TEST_CASE("whoever watches a terminal sees the progress, and a clear line after 
 
 TEST_CASE("a lens of the user's changes the picture") {
     const Workplace place;
-    REQUIRE(place.run("--size 32x32 --out wide").status == 0);
-    REQUIRE(place.run("--size 32x32 --out narrow --lens perspective:8").status == 0);
-    REQUIRE(place.run("--size 32x32 --out parallel --lens orthographic:5.2").status == 0);
+    REQUIRE(place.run("--rounds 1 --size 32x32 --out wide").status == 0);
+    REQUIRE(place.run("--rounds 1 --size 32x32 --out narrow --lens perspective:8").status == 0);
+    REQUIRE(place.run("--rounds 1 --size 32x32 --out parallel --lens orthographic:5.2").status == 0);
     CHECK(contents("wide/teapot.png") != contents("narrow/teapot.png"));
     CHECK(contents("parallel/teapot.png") == contents("wide/orthographic.png"));
 }
@@ -425,7 +428,7 @@ TEST_CASE("in a browser the page fits a desk and a telephone, folded or not") {
         timings +=
             timing_of(scene, "texgen, 1/512 texel of 4096", "0.25") + timing_of(scene, "GLM, mat4 * vec4", "0.125");
     write("timings.json", timings);
-    REQUIRE(place.run("--size 256x256 --timings timings.json --timings timings.json").status == 0);
+    REQUIRE(place.run("--rounds 1 --size 256x256 --timings timings.json --timings timings.json").status == 0);
     for (const std::string width : {"400", "1280"}) {
         write("frame.html",
               "<body><script>function look(frame) {\n"
@@ -470,7 +473,8 @@ TEST_CASE("--help says how, and writes nothing") {
     const Outcome outcome = place.run("--help");
     CHECK(outcome.status == 0);
     CHECK(outcome.error == "");
-    for (const char* option : {"--mesh", "--slide", "--lens", "--size", "--out", "--costs", "--worst", "--timings"})
+    for (const char* option :
+         {"--mesh", "--slide", "--lens", "--size", "--rounds", "--out", "--costs", "--worst", "--timings"})
         CHECK(outcome.output.find(option) != std::string::npos);
     CHECK(place.files().empty());
 }
