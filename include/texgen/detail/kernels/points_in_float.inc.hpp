@@ -29,14 +29,15 @@ private:
 // The same in double, rounded once.
 template <std::size_t Numerators>
 struct FormsInDouble {
-    const PointJob& job;
+    PointForm form[1 + Numerators];
 
-    TEXGEN_INLINE explicit FormsInDouble(const PointJob& points) noexcept : job(points) {}
+    TEXGEN_INLINE explicit FormsInDouble(const PointJob& job) noexcept : form{job.q} {
+        for (std::size_t k = 0; k < Numerators; ++k) form[1 + k] = job.numerator[k];
+    }
     TEXGEN_INLINE WideFloats at(std::size_t k, const WideFloats& x, const WideFloats& y,
                                 const WideFloats& z) const noexcept {
-        const PointForm& form = k == 0 ? job.q : job.numerator[k - 1];
-        const auto value = [&form](const Doubles& vx, const Doubles& vy, const Doubles& vz) {
-            return detail::TEXGEN_ISA::at(form, {{vx, vy, vz}});
+        const auto value = [&](const Doubles& vx, const Doubles& vy, const Doubles& vz) {
+            return detail::TEXGEN_ISA::at(form[k], {{vx, vy, vz}});
         };
         return in_double(value, x, y, z);
     }
@@ -68,12 +69,14 @@ TEXGEN_INLINE bool are_within(const FloatDivision& division, const PointForm& nu
 // Divided in float, in blocks of float_block points and then more. The largest |v_j| bound the terms of the forms, and with the
 // largest quotient and the least q, found on the way, the error of every point: see FloatDivision. Returns where the first block
 // begins that is not inside the tolerance (it is written all the same), or the count. A NaN makes the largest quotient
-// one, and fails.
+// one, and fails. The job is copied for the loops, field by field: what was written by fields is waited for when it is read
+// whole, as it would be were its forms, which are found by their number, in the copy.
 template <template <std::size_t> class Forms, std::size_t Numerators>
-TEXGEN_INLINE std::size_t fill_points_within_of(const PointJob& job, std::size_t first) noexcept {
+TEXGEN_INLINE std::size_t fill_points_within_of(const PointJob& original, std::size_t first) noexcept {
     constexpr bool in_float = std::is_same_v<Forms<1>, FormsInFloat<1>>;
     constexpr FloatDivision division = in_float ? all_float : float_divided;
-    const Forms<Numerators> forms(job);
+    const Forms<Numerators> forms(original);
+    const PointJob job = original;
     const auto divide = [&](const WideFloats& x, const WideFloats& y, const WideFloats& z, const WideFloats& q,
                             WideFloats(&value)[2]) {
         const WideFloats reciprocal = 1.0f / q;
@@ -107,15 +110,15 @@ TEXGEN_INLINE std::size_t fill_points_within_of(const PointJob& job, std::size_t
             store_points(job, i, Numerators, value, ~WideWords{});
         }
         for (std::size_t k = 0; k < Numerators; ++k)
-            if (!are_within(division, job.numerator[k], job.q, extent, least_q, largest[k], job.tolerance))
+            if (!are_within(division, original.numerator[k], original.q, extent, least_q, largest[k],
+                            original.tolerance))
                 return begin;
     }
     return job.count;
 }
 
 template <template <std::size_t> class Forms>
-std::size_t fill_points_within(const PointJob& original, std::size_t first) noexcept {
-    const PointJob job = original;
+std::size_t fill_points_within(const PointJob& job, std::size_t first) noexcept {
     return job.numerators == 2 ? fill_points_within_of<Forms, 2>(job, first)
                                : fill_points_within_of<Forms, 1>(job, first);
 }
