@@ -116,27 +116,23 @@ struct ChunkPlace {
     }
 };
 
-// `count` vectors of the group's chunk i, from an index on.
+// `count` fragments of the group's chunk i, in whole vectors. The indices are loaded, as that is what arithmetic leaves idle.
 template <StepRule Rule>
-TEXGEN_INLINE void fill_vectors(const ChunkGroup& group, int i, WideFloats index, float* s, float* t,
-                                std::int64_t count) noexcept {
+TEXGEN_INLINE void fill_vectors(const ChunkGroup& group, int i, const float* index, float* s, float* t,
+                                int count) noexcept {
     const WideFloats bend = WideFloats{} + group.bend[i];
     const WideFloats middle[2] = {WideFloats{} + group.middle[0][i], WideFloats{} + group.middle[1][i]};
     const WideFloats slope[2] = {WideFloats{} + group.slope[0][i], WideFloats{} + group.slope[1][i]};
-    // By turns, so that the next index does not wait for this one.
-    WideFloats next_index = index + static_cast<float>(wide_lanes);
-    for (std::int64_t x = 0; x < count * wide_lanes; x += wide_lanes) {
-        const WideFloats step = bent<Rule>(index, bend);
+    for (std::ptrdiff_t x = 0; x < count; x += wide_lanes) {
+        const WideFloats step = bent<Rule>(load<WideFloats>(index + x), bend);
         store(s + x, step * slope[0] + middle[0]);
         store(t + x, step * slope[1] + middle[1]);
-        const WideFloats after_next = index + static_cast<float>(2 * wide_lanes);
-        index = next_index;
-        next_index = after_next;
     }
 }
 
-TEXGEN_INLINE void fill_vectors(StepRule rule, const ChunkGroup& group, int i, const WideFloats& index, float* s,
-                                float* t, std::int64_t count) noexcept {
+template <class CompiledWhereCalled = void>
+TEXGEN_APART void fill_vectors(StepRule rule, const ChunkGroup& group, int i, const float* index, float* s, float* t,
+                               int count) noexcept {
     switch (rule) {
         case StepRule::degree2:
             return fill_vectors<StepRule::degree2>(group, i, index, s, t, count);
@@ -158,6 +154,8 @@ TileJob::Unit fill_tile_polynomial(const TileJob& job, TileJob::Unit first) noex
     ChunkPlace place{first.x_begin / longest, first.y_begin, chunks_of_row(job)};
     ChunkGroup group;
     RowOutputs row(job, place.y);
+    alignas(WideFloats) float index[longest_chunk];
+    int indexed = 0;
     while (place.y < height) {
         const std::int64_t left = static_cast<std::int64_t>(height - place.y) * place.per_row - place.chunk;
         const int count = left < group.size ? static_cast<int>(left) : group.size;
@@ -173,22 +171,21 @@ TileJob::Unit fill_tile_polynomial(const TileJob& job, TileJob::Unit first) noex
                 return {begin, in_row < place.per_row ? in_row * longest : width, place.y, place.y + 1};
             }
             const int length = longest < width - begin ? longest : width - begin;
-            WideFloats index = indices<WideFloats>() - 0.5f * static_cast<float>(length - 1);
-            // What a last vector writes beyond the chunk is written again by those that follow, where it may be written.
-            std::int64_t vectors = (length - 1) / wide_lanes + 1;
-            float buffer[2][wide_lanes];
-            float* to[2] = {row.out[0] + begin, row.out[1] + begin};
-            const bool is_cut = begin + vectors * wide_lanes > row.writable;
-            for (vectors -= is_cut ? 1 : 0;; vectors = 1) {
-                fill_vectors(rule, group, i, index, to[0], to[1], vectors);
-                if (!is_cut || to[0] == buffer[0]) break;
-                index = index + static_cast<float>(vectors * wide_lanes);
-                for (std::size_t k = 0; k < 2; ++k) to[k] = buffer[k];
+            if (length != indexed) {
+                indexed = length;
+                const WideFloats first_index = indices<WideFloats>() - 0.5f * static_cast<float>(length - 1);
+                for (int x = 0; x < length; x += wide_lanes) store(index + x, first_index + static_cast<float>(x));
             }
-            if (is_cut) {
-                const int rest = (length - 1) % wide_lanes + 1;
+            // What a last vector writes beyond the chunk is written again by those that follow, where it may be written.
+            const int rest = (length - 1) % wide_lanes + 1;
+            const int whole = std::int64_t{begin} + length + wide_lanes - rest > row.writable ? length - rest : length;
+            float* const to[2] = {row.out[0] + begin, row.out[1] + begin};
+            fill_vectors(rule, group, i, index, to[0], to[1], whole);
+            if (whole != length) {
+                float buffer[2][wide_lanes];
+                fill_vectors(rule, group, i, index + whole, buffer[0], buffer[1], rest);
                 for (int j = 0; j < rest; ++j)
-                    for (std::size_t k = 0; k < 2; ++k) row.out[k][begin + length - rest + j] = buffer[k][j];
+                    for (std::size_t k = 0; k < 2; ++k) to[k][whole + j] = buffer[k][j];
             }
             light(job, row, begin, static_cast<std::int64_t>(begin) + length);
             if (place.advance()) row.advance();

@@ -18,6 +18,8 @@ struct RampOf {
 };
 using Ramp = RampOf<double>;
 
+inline constexpr int longest_chunk = 256;
+
 // numerator[k] / q over a rectangle; out[k], and lit (or null) from the closed region. One numerator alone is in both
 // places. Rows of the outputs are pitch apart; those of an output that only the mask needs are one and the same.
 struct TileJob {

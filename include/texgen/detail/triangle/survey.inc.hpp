@@ -23,7 +23,7 @@ struct TileSurvey {
 // fragments besides those that it has.
 inline int chunk_length(const Corners& at, int width) noexcept {
     const double q = 0.25 * (at.q[0] + at.q[1] + at.q[2] + at.q[3]);
-    int longest = 256;
+    int longest = longest_chunk;
     while (longest > 64 && std::fabs(at.q_ramp.dx) * longest > 0.25 * q) longest /= 2;
     if (width <= longest) return width;
     const int chunks = (width - 1) / longest + 1;
