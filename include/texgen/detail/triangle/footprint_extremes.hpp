@@ -44,7 +44,7 @@ public:
 
 private:
     // A convex polygon has at most one corner more after a cut, and rounding may leave another.
-    std::array<glm::dvec2, 4 + 2 * 4> corners_{};
+    std::array<glm::dvec2, 4 + 2 * 4> corners_;  // not initialized: that would cost what a cut does
     std::size_t count_ = 0;
 };
 
@@ -177,6 +177,7 @@ public:
         const double lowest = larger(of_x_.least(), of_y_.least());
         insert(0, std::sqrt(lowest));
         insert(1, std::sqrt(larger(highest * (1.0 + 0x1p-40), lowest)));
+        least_[0] = enclosed(0);
     }
 
     std::size_t count() const noexcept { return count_; }
@@ -189,7 +190,20 @@ public:
     struct Least {
         double bound, n;
     };
-    Least least_between(std::size_t i) const noexcept {
+    const Least& least_between(std::size_t i) const noexcept { return least_[i]; }
+
+    // Takes a sample at n behind sample i; false where n is no number between both.
+    bool split(std::size_t i, double n) noexcept {
+        if (!(n > samples_[i].n && n < samples_[i + 1].n)) return false;
+        insert(i + 1, n);
+        // The lines of what is between two samples go through the next ones.
+        for (std::size_t k = count_ - 2; k > i; --k) least_[k] = least_[k - 1];
+        for (std::size_t k = i > 0 ? i - 1 : 0; k <= i + 2 && k + 1 < count_; ++k) least_[k] = enclosed(k);
+        return true;
+    }
+
+private:
+    Least enclosed(std::size_t i) const noexcept {
         const Sample& low = samples_[i];
         const Sample& high = samples_[i + 1];
         if (!(high.q + field_.q_error > 0.0)) return {infinity, low.n};  // no point in front
@@ -210,14 +224,6 @@ public:
                           smaller_of({bound_at(low.n, low.q), next}, {bound_at(high.n, high.q), next}));
     }
 
-    // Takes a sample at n behind sample i; false where n is no number between both.
-    bool split(std::size_t i, double n) noexcept {
-        if (!(n > samples_[i].n && n < samples_[i + 1].n)) return false;
-        insert(i + 1, n);
-        return true;
-    }
-
-private:
     static constexpr double infinity = std::numeric_limits<double>::infinity();
 
     static Least smaller_of(const Least& a, const Least& b) noexcept { return a.bound < b.bound ? a : b; }
@@ -264,6 +270,7 @@ private:
     const WindowPolygon& polygon_;
     Sublevel of_x_, of_y_;
     std::array<Sample, 24> samples_{};
+    std::array<Least, 24> least_;  // between a sample and the next one
     std::size_t count_ = 0;
     double attained_ = infinity;
 };
