@@ -255,19 +255,36 @@ private:
     RampOf<std::uint64_t> edge_[3];  // of the sides' functions, with the weights
 };
 
-// F at one fragment.
-inline Bounded closely_at(const TrianglePlanes& planes, glm::length_t coordinate, std::int64_t x,
-                          std::int64_t y) noexcept {
-    const Tile fragment{x, y, 1, 1};
-    const CloseRamp ramp = ClosePlanes(planes, fragment).ramp(coordinate);
-    const double value = ramp.term[0].high + ramp.term[0].low;
-    const double error = ramp.error + 0x1p-52 * std::fabs(value);
-    if (std::fabs(value) > 0x1p24 * error) return {value, error};
-    CloseFunction exact;
-    PlaneResidues(planes, fragment).add_to(exact, coordinate, fragment);
-    if (!(std::fabs(value) + error < 0x1p62 * exact.grain)) return {value, error};
-    const double known = static_cast<double>(static_cast<std::int64_t>(exact.residue.base)) * exact.grain;  // integers
-    return {known, 0x1p-52 * std::fabs(known)};
-}
+// One function of a tile to twice the precision, and by its residue.
+class ClosePlane {
+public:
+    ClosePlane(const TrianglePlanes& planes, glm::length_t coordinate, const Tile& tile) noexcept
+        : tile_(tile), ramp_(ClosePlanes(planes, tile).ramp(coordinate)) {
+        PlaneResidues(planes, tile).add_to(exact_, coordinate, tile);
+    }
+
+    CloseRamp moved_to(std::int64_t x, std::int64_t y) const noexcept {
+        return ramp_.moved(static_cast<double>(x - tile_.x), static_cast<double>(y - tile_.y));  // integers
+    }
+
+    // At one fragment: with a small error beside the value, where 2^62 grains are more than that is without the residue.
+    Bounded at(std::int64_t x, std::int64_t y) const noexcept {
+        const DoubleDouble close = moved_to(x, y).term[0];
+        const double value = close.high + close.low;
+        const double error = ramp_.error + 0x1p-52 * std::fabs(value);
+        if (std::fabs(value) > 0x1p24 * error || !(std::fabs(value) + error < 0x1p62 * exact_.grain))
+            return {value, error};
+        const std::uint64_t residue = exact_.residue.base +
+                                      static_cast<std::uint64_t>(x - tile_.x) * exact_.residue.dx +
+                                      static_cast<std::uint64_t>(y - tile_.y) * exact_.residue.dy;
+        const double known = static_cast<double>(static_cast<std::int64_t>(residue)) * exact_.grain;  // integers
+        return {known, 0x1p-52 * std::fabs(known)};
+    }
+
+private:
+    Tile tile_;
+    CloseRamp ramp_;
+    CloseFunction exact_;
+};
 
 }  // namespace TEXGEN_DETAIL

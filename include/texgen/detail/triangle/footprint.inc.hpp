@@ -49,12 +49,13 @@ Footprint footprint_of(const glm::dvec2& dx, const glm::dvec2& dy, const Determi
             glm::dvec2(major.x / texels.s, major.y / texels.t) * (length / scale) / unit};
 }
 
-// The footprint of a fragment, empty behind the projector.
-inline std::optional<Footprint> footprint_at(const FootprintFunctions& functions, const TexelsPerUnit& texels,
-                                             std::int64_t x, std::int64_t y) noexcept {
+// The footprint of a fragment, empty behind the projector; where q is in doubt, close_q() has it.
+template <class CloseQ>
+std::optional<Footprint> footprint_at(const FootprintFunctions& functions, const TexelsPerUnit& texels, std::int64_t x,
+                                      std::int64_t y, const CloseQ& close_q) noexcept {
     const TrianglePlanes& planes = functions.triangle.planes;
     Bounded bounded = planes.at(functions.triangle.q, x, y);
-    if (!(std::fabs(bounded.value) > 0x1p24 * bounded.error)) bounded = closely_at(planes, 3, x, y);
+    if (!(std::fabs(bounded.value) > 0x1p24 * bounded.error)) bounded = close_q().at(x, y);
     double q = bounded.value;
     if (!(std::fabs(q) > 0x1p24 * bounded.error || bounded.error == 0.0))
         q = ExactFragment(planes, x, y).function(3).estimate() * planes.factor();
@@ -149,7 +150,9 @@ inline FootprintSetup::FootprintSetup(const TriangleSetup& triangle, TexelsPerUn
     : functions_(triangle.functions()), texels_(texels) {}
 
 inline std::optional<Footprint> FootprintSetup::at(int x, int y) const noexcept {
-    return detail::footprint_at(functions_, texels_, x, y);
+    return detail::footprint_at(functions_, texels_, x, y, [&] {
+        return detail::ClosePlane(functions_.triangle.planes, 3, {x, y, 1, 1});
+    });
 }
 
 // A numerator N = N^ + e over (Q^ + f)^2: the error is at most (e + 2 |f| |N|/Q) / Q^2 but for squares of f/Q, below 2^-23

@@ -16,12 +16,30 @@ public:
         if (at.all_behind()) return store_rows(tile, nothing());
         const bool may_be_vectors = at.well_in_front() && at.least_q > 0x1p-12 * at.largest_q;
         if (may_be_vectors && tile.width <= largest_index && fill_in_vectors(tile, at)) return;
-        if (tile.width <= 8 && tile.height <= 8) return fill_one_by_one(tile);
-        for (const Tile& half : tile.halves()) fill_all(half, survey(functions_.triangle, half).at);
+        const int least = may_be_vectors ? 8 : 2;
+        if (tile.width <= least && tile.height <= least) return fill_one_by_one(tile);
+        // So that q, if it is 0 somewhere, is so in one of the halves.
+        const double change_across_width = tile.width * std::fabs(at.q_ramp.dx);
+        const double change = tile.height * std::fabs(at.q_ramp.dy);
+        const bool across_width =
+            tile.height <= 1 ||
+            (tile.width > 1 && (may_be_vectors ? tile.width >= tile.height : change_across_width >= change));
+        for (const Tile& half : tile.halves(across_width)) fill_all(half, corners_at(half));
     }
 
 private:
     static constexpr int largest_index = 1 << 24;  // floats beyond are not every integer
+
+    // Of q alone.
+    Corners corners_at(const Tile& tile) noexcept {
+        const CloseRamp q = close_q().moved_to(tile.x, tile.y);
+        return corners_of(CloseRamps{tile, {q, q, q}});
+    }
+
+    const ClosePlane& close_q() noexcept {
+        if (!close_q_) close_q_.make(functions_.triangle.planes, 3, rect_);
+        return *close_q_;
+    }
 
     static Footprint nothing() noexcept { return {{0.0, 0.0}, {0.0, 0.0}, 0.0, {0.0, 0.0}, 0.0, {0.0, 0.0}}; }
 
@@ -124,7 +142,8 @@ private:
     void fill_one_by_one(const Tile& tile) noexcept {
         for (std::int64_t y = tile.y; y < tile.y + tile.height; ++y) {
             for (std::int64_t x = tile.x; x < tile.x + tile.width; ++x) {
-                const std::optional<Footprint> footprint = footprint_at(functions_, texels_, x, y);
+                const std::optional<Footprint> footprint =
+                    footprint_at(functions_, texels_, x, y, [this]() -> const ClosePlane& { return close_q(); });
                 store_rows({x, y, 1, 1}, footprint ? *footprint : nothing());
             }
         }
@@ -143,6 +162,7 @@ private:
     TexelsPerUnit texels_;
     Tile rect_;
     Footprints out_;
+    OnDemand<ClosePlane> close_q_;
 };
 
 // The footprints of a rectangle, for outputs that are computed.

@@ -32,11 +32,12 @@ struct Tile {
     std::int64_t x, y;
     int width, height;
 
-    // Across the longer side.
-    std::array<Tile, 2> halves() const noexcept {
+    // Across the longer side, or a given one.
+    std::array<Tile, 2> halves() const noexcept { return halves(width >= height); }
+    std::array<Tile, 2> halves(bool across_width) const noexcept {
         Tile first = *this;
         Tile second = *this;
-        if (width >= height) {
+        if (across_width) {
             first.width = width / 2;
             second.x += first.width;
             second.width -= first.width;
