@@ -55,6 +55,7 @@ long count_of(const char* name, long usual) {
 struct Inequality {
     std::array<Dyadic, 4> c;
     bool is_strict;
+    std::array<double, 4> near_to_c = {};  // within a few ulp, of those that are asked often
 };
 
 // Whether a point fulfils all of them: Fourier and Motzkin's elimination, which is exact, and for the last variable its
@@ -68,7 +69,7 @@ bool have_a_solution(std::vector<Inequality> all) {
         }
         for (const Inequality& low : lower) {
             for (const Inequality& high : upper) {
-                Inequality sum{{}, low.is_strict || high.is_strict};
+                Inequality sum{{}, low.is_strict || high.is_strict, {}};
                 for (std::size_t k = variable + 1; k < 4; ++k)
                     sum.c[k] = high.c[k] * low.c[variable] - low.c[k] * high.c[variable];
                 rest.push_back(sum);
@@ -132,7 +133,7 @@ public:
         };
         const std::array<Dyadic, 4> q = row(3);
         const auto form = [&](const std::array<Dyadic, 4>& coordinate, double side, double sign) {
-            Inequality one{{}, false};
+            Inequality one{{}, false, {}};
             for (std::size_t j = 0; j < 4; ++j) one.c[j] = Dyadic(sign) * (coordinate[j] - Dyadic(side) * q[j]);
             return one;
         };
@@ -144,8 +145,11 @@ public:
             if (!std::isinf(inner)) inner_forms_.push_back(form(row(k / 2), inner, sign));
             no_float_is_inside_ = no_float_is_inside_ || inner == sign * infinite;
         }
-        forms_.push_back({q, true});
-        inner_forms_.push_back({q, true});
+        forms_.push_back({q, true, {}});
+        inner_forms_.push_back({q, true, {}});
+        for (std::vector<Inequality>* const forms : {&forms_, &inner_forms_})
+            for (Inequality& one : *forms)
+                for (std::size_t j = 0; j < 4; ++j) one.near_to_c[j] = one.c[j].estimate();
     }
 
     const std::vector<Inequality>& forms() const { return forms_; }
@@ -154,14 +158,22 @@ public:
 
     // The sign of a form where it is largest over the box (or least).
     static int extreme_sign(const Inequality& form, const Box& box, bool largest) {
-        Dyadic value = form.c[3];
+        std::array<double, 3> vertex{};
+        double nearly = form.near_to_c[3], size = std::fabs(nearly);
         for (int j = 0; j < 3; ++j) {
-            const Dyadic& a = form.c[static_cast<std::size_t>(j)];
-            if (a.sign() == 0) continue;
-            const float x = (a.sign() > 0) == largest ? box.max[j] : box.min[j];
-            if (std::isinf(x)) return largest ? 1 : -1;
-            value = value + a * Dyadic(x);
+            const auto i = static_cast<std::size_t>(j);
+            const int sign = form.c[i].sign();
+            if (sign == 0) continue;
+            vertex[i] = static_cast<double>((sign > 0) == largest ? box.max[j] : box.min[j]);
+            if (std::isinf(vertex[i])) return largest ? 1 : -1;
+            nearly += form.near_to_c[i] * vertex[i];
+            size += std::fabs(form.near_to_c[i] * vertex[i]);
         }
+        // A dozen roundings, each below 2^-50 of what it is of.
+        if (std::fabs(nearly) > 0x1p-45 * size + 0x1p-900 && size < 0x1p900) return nearly > 0.0 ? 1 : -1;
+        Dyadic value = form.c[3];
+        for (std::size_t j = 0; j < 3; ++j)
+            if (form.c[j].sign() != 0) value = value + form.c[j] * Dyadic(vertex[j]);
         return value.sign();
     }
 
@@ -183,7 +195,7 @@ public:
     bool is_outside(const Box& box) const {
         std::vector<Inequality> all = forms_;
         for (int j = 0; j < 3; ++j) {
-            Inequality low{{}, false}, high{{}, false};
+            Inequality low{{}, false, {}}, high{{}, false, {}};
             low.c[static_cast<std::size_t>(j)] = Dyadic(1.0);
             high.c[static_cast<std::size_t>(j)] = Dyadic(-1.0);
             if (!std::isinf(box.min[j])) {
