@@ -100,7 +100,7 @@ public:
                          up = up_along_t / glm::length(across(1)) * across(1);
         const double accepted = 8.0 * rounding_ * (1.0 + 1.0 / focal_length_.x);
         double lowest = 0.0, highest = 0.0;
-        for (const glm::length_t axis : {1, 2}) {
+        for (glm::length_t axis = 1; axis < 3; ++axis) {
             if (std::fabs(side[axis]) > accepted) continue;
             lowest = smaller(lowest, up[axis]);
             highest = larger(highest, up[axis]);
