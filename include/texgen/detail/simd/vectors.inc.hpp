@@ -81,7 +81,8 @@ TEXGEN_INLINE WideWords low_words(const Doubles& a, const Doubles& b, std::integ
                                    (Lane / 4 * 4 + Lane % 2 * 2 + Lane % 4 / 2 * wide_lanes + low)...);
 }
 TEXGEN_INLINE WideWords distances_from_middles(const Doubles& a, const Doubles& b, int ulps) noexcept {
-    return (low_words(a, b, std::make_integer_sequence<int, wide_lanes>()) + (ulps - 0x10000000)) & (0x1ffffffe - 2 * ulps);
+    return (low_words(a, b, std::make_integer_sequence<int, wide_lanes>()) + (ulps - 0x10000000)) &
+           (0x1ffffffe - 2 * ulps);
 }
 TEXGEN_INLINE Doubles middle_near(const Doubles& a) noexcept {
     return __builtin_bit_cast(Doubles, (__builtin_bit_cast(LongWords, a) & ~0x1fffffffLL) | 0x10000000);
