@@ -908,7 +908,6 @@ TEST_CASE("no sphere is outside or inside that is not, and few of a scene are pa
                 const glm::dvec3 way = point - glm::dvec3(sphere.centre);
                 const float distance = support::to_float(std::sqrt(way.x * way.x + way.y * way.y + way.z * way.z));
                 sphere.radius = support::neighbour(distance, random.integer(-2, 2));
-                if (!(sphere.radius >= 0.0f && sphere.radius < infinity)) sphere.radius = 0.0f;
             }
             if (i % 4 == 2) {  // touching the nearest side
                 double nearest = infinite;
@@ -925,7 +924,7 @@ TEST_CASE("no sphere is outside or inside that is not, and few of a scene are pa
                 if (nearest < 1e6)
                     sphere.radius = support::neighbour(support::to_float(nearest), random.integer(-2, 2));
             }
-            if (i % 20 == 1) sphere.radius = 0.0f;
+            if (i % 20 == 1 || !(sphere.radius >= 0.0f && sphere.radius < infinity)) sphere.radius = 0.0f;
             spheres.push_back(sphere);
         }
         std::vector<Coverage> answers(spheres.size());
