@@ -547,3 +547,30 @@ TEST_CASE("half-way between two subnormal floats, along a segment, is rounded to
     CHECK(s == expected);
     CHECK(t == expected);
 }
+
+TEST_CASE("half-way between two floats, where quotients in double cancel about an infinite q, is rounded to even") {
+    Random random(61);
+    int ties = 0;
+    for (int i = 0; i < 2000; ++i) {
+        // At 1/2 q is a power of two, and the values are (A + B) / 2^n, of 25 bits in a half of all cases.
+        const int n = random.integer(2, 12);
+        const float half = static_cast<float>(std::ldexp(1.0, n - 1));
+        const float a = random.uniform_float(1.0, 2.0), b = random.uniform_float(2.0, 4.0);
+        const Segment segment{{a, b, 0.0f, half - 1.0f}, {b, a, 0.0f, half + 1.0f}};
+        const double exact_value = std::ldexp(static_cast<double>(a) + static_cast<double>(b), -n);
+        const auto expected = static_cast<float>(exact_value);
+        const double other = 2.0 * exact_value - static_cast<double>(expected);
+        ties += static_cast<double>(expected) != exact_value && static_cast<double>(static_cast<float>(other)) == other
+                    ? 1
+                    : 0;
+        std::vector<float> alpha(64);
+        for (float& x : alpha) x = random.uniform_float(0.0, 1.0);
+        const auto k = static_cast<std::size_t>(random.integer(0, 63));
+        alpha[k] = 0.5f;
+        std::vector<float> s(alpha.size()), t(alpha.size());
+        interpolate(segment, alpha, texgen::whole_texture(), {.s = s, .t = t, .r = {}, .lit = {}});
+        REQUIRE_MESSAGE(s[k] == expected, hex(segment));
+        REQUIRE_MESSAGE(t[k] == expected, hex(segment));
+    }
+    CHECK(ties > 500);
+}

@@ -56,6 +56,7 @@ template <class CompiledWhereCalled>
 struct KernelTable<SegmentKernels, CompiledWhereCalled> {
     static const SegmentKernels& get() noexcept {
         static constexpr SegmentKernels table{.fill_exact = fill_segment_exact<>,
+                                              .fill_in_double = fill_segment_in_double<>,
                                               .fill_all_float = fill_segment_all_float<>};
         return table;
     }

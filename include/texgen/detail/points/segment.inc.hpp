@@ -34,38 +34,77 @@ inline void interpolate_one(const SegmentJob& job, std::size_t i) noexcept {
     if (job.lit != nullptr) job.lit[i] = in_front && is_inside(value[0], value[1], job.min, job.max) ? 1.0f : 0.0f;
 }
 
-// The largest |F/Q| of a segment whose ends are in front, where it is at an end.
-inline double largest_quotient(const SegmentJob& job, int k) noexcept {
-    return 1.001 * larger(std::fabs(job.a[k]) / job.q_a, std::fabs(job.b[k]) / job.q_b);
+// The quotients at the ends of a segment in front, but for some ulps.
+struct EndQuotients {
+    double of_q_a, of_q_b;
+    double at_a[2], at_b[2];
+
+    explicit EndQuotients(const SegmentJob& job) noexcept : of_q_a(1.0 / job.q_a), of_q_b(1.0 / job.q_b) {
+        for (int k = 0; k < job.numerators; ++k) {
+            at_a[k] = job.a[k] * of_q_a;
+            at_b[k] = job.b[k] * of_q_b;
+        }
+    }
+
+    double least(int k) const noexcept { return smaller(std::fabs(at_a[k]), std::fabs(at_b[k])); }
+    double largest(int k) const noexcept { return larger(std::fabs(at_a[k]), std::fabs(at_b[k])); }
+    double sum(int k) const noexcept { return std::fabs(at_a[k]) + std::fabs(at_b[k]); }
+};
+
+// With D = Q1 - Q0, u is exactly
+//   U + d / (alpha + p),  U = (F1 - F0) / D, p = Q0 / D, d = (F0 Q1 - F1 Q0) / D^2.
+inline void prepare_asymptote(SegmentJob& job) noexcept {
+    const double inverse = 1.0 / (job.q_b - job.q_a);
+    job.pole = job.q_a * inverse;
+    for (int k = 0; k < job.numerators; ++k) {
+        job.base[k] = (job.b[k] - job.a[k]) * inverse;
+        job.slope[k] = (job.a[k] * job.q_b - job.b[k] * job.q_a) * inverse * inverse;
+    }
+}
+
+// The roundings of U, p and d above: of D, its reciprocal and their products, or of each once more to float.
+struct AsymptoteRoundings {
+    double base, pole, slope;
+};
+inline constexpr AsymptoteRoundings rounded_in_double{4.0, 3.0, 7.0}, rounded_to_float{1.0, 1.0, 1.0};
+
+// The error of that in unit roundoffs; infinite where numbers could leave their range. p is at most max(1, Q0 / Q1) times the
+// divisor: its roundings and one for the sum, three for a reciprocal that two vectors share, those of d and one for the product
+// are of u - U, which is largest at an end; the last sum is of u.
+inline double asymptote_error(const SegmentJob& job, const EndQuotients& u, int k,
+                              const AsymptoteRoundings& of) noexcept {
+    const double part = larger(std::fabs(u.at_a[k] - job.base[k]), std::fabs(u.at_b[k] - job.base[k]));
+    const double ratio = larger(1.0, job.q_a * u.of_q_b);
+    const double pole = std::fabs(job.pole);
+    if (!(u.sum(k) + std::fabs(job.base[k]) < 0x1p60 && ratio < 0x1p10 && pole < 0x1p30 && pole > 0x1p-30))
+        return std::numeric_limits<double>::infinity();
+    return 1.01 * ((of.slope + 5.0 + of.pole * ratio) * part + of.base * std::fabs(job.base[k]) + u.largest(k));
+}
+inline double asymptote_error_in_float(const SegmentJob& job, const EndQuotients& u, int k) noexcept {
+    return unit_roundoff_float * asymptote_error(job, u, k, rounded_to_float) + 0x1p-90;
 }
 
 // About the end where q is less, with i the alpha from there, u is exactly
 //   u0 + d i / (1 + b i),  b = (Q1 - Q0) / Q0 >= 0,  d = (u1 - u0) Q1 / Q0,
-// and the step lies between 0 and u1 - u0. With r = 2^-24: 1 - alpha, b, its product and the sum, the product of two sums,
-// its reciprocal, the products with the other sum and with i, d and its product are rounded, 10 r of the step at most; u0 and
-// the last sum once each. Infinite where a float could leave its range.
-inline double segment_float_error(const SegmentJob& job, int k) noexcept {
-    const double u_a = job.a[k] / job.q_a;
-    const double u_b = job.b[k] / job.q_b;
-    const double size_a = std::fabs(u_a);
-    const double size_b = std::fabs(u_b);
-    const double largest = larger_or_nan(size_a, size_b);
-    const double ratio = larger(job.q_a, job.q_b) / smaller(job.q_a, job.q_b);
-    if (!(largest < 0x1p60 && ratio < 0x1p60)) return std::numeric_limits<double>::infinity();
-    return 1.001 * unit_roundoff_float * (2.0 * largest + 11.0 * std::fabs(u_a - u_b)) + 0x1p-120;
+// and the step lies between 0 and u1 - u0.
+inline void prepare_end(SegmentJob& job, const EndQuotients& u) noexcept {
+    job.about_b = job.q_b < job.q_a;
+    const double ratio = job.about_b ? job.q_a * u.of_q_b : job.q_b * u.of_q_a;
+    job.pole = 1.0;
+    job.bend = job.about_b ? (job.q_a - job.q_b) * u.of_q_b : (job.q_b - job.q_a) * u.of_q_a;
+    for (int k = 0; k < job.numerators; ++k) {
+        job.base[k] = job.about_b ? u.at_b[k] : u.at_a[k];
+        job.slope[k] = ((job.about_b ? u.at_a[k] : u.at_b[k]) - job.base[k]) * ratio;
+    }
 }
 
-inline void prepare_float(SegmentJob& job) noexcept {
-    job.about_b = job.q_b < job.q_a;
-    const double q = job.about_b ? job.q_b : job.q_a;
-    const double far_q = job.about_b ? job.q_a : job.q_b;
-    job.bend = static_cast<float>((far_q - q) / q);
-    for (int k = 0; k < job.numerators; ++k) {
-        const double u = (job.about_b ? job.b[k] : job.a[k]) / q;
-        const double far_u = (job.about_b ? job.a[k] : job.b[k]) / far_q;
-        job.base[k] = static_cast<float>(u);
-        job.slope[k] = static_cast<float>((far_u - u) * (far_q / q));
-    }
+// The error of that in float. With r = 2^-24: 1 - alpha, b, its product and the sum, the product of two sums, its reciprocal, the
+// products with the other sum and with i, d and its product are rounded, 10 r of the step at most; u0 and the last sum once
+// each. Infinite where a float could leave its range.
+inline double end_error_in_float(const SegmentJob& job, const EndQuotients& u, int k) noexcept {
+    const double ratio = larger(job.q_a * u.of_q_b, job.q_b * u.of_q_a);
+    if (!(u.sum(k) < 0x1p60 && ratio < 0x1p60)) return std::numeric_limits<double>::infinity();
+    return 1.001 * unit_roundoff_float * (2.0 * u.largest(k) + 11.0 * std::fabs(u.at_a[k] - u.at_b[k])) + 0x1p-120;
 }
 
 // What the segments' kernels need, but for the alphas and the outputs: coordinates `first` and the next.
@@ -112,81 +151,149 @@ inline Mixture mixture_of(double a, double b) noexcept {
     return {a + 0.0, leading, step.high - leading, leading == step.high ? Mixture::is_short : Mixture::is_long};
 }
 
-// What rounding makes of a mixture. Of a short one the sum is rounded in double, and of others the step and the product too,
-// which may be as large as the larger end. The terms of one in two doubles are multiples of alpha's last bit times that of the
-// lesser end, 2^-48 of their product at least: where alpha is not too small, what the first sum leaves and the rest need no more
-// than 53 bits above that.
-struct MixtureBounds {
-    double ulps = 1.0;           // of the sum in double, if it has one sign
-    double inexact_below = 0.0;  // see SegmentJob
+// The sum a + alpha (b - a) in double is within so many ulps. Of a short mixture it is rounded once, of others the step and the
+// product too, which may be as large as the larger end.
+inline double ulps_of_sum(double a, double b) noexcept {
+    if (mixture_of(a, b).kind == Mixture::is_short) return 1.0;
+    const double ratio = larger(std::fabs(a), std::fabs(b)) / smaller(std::fabs(a), std::fabs(b));
+    return a * b > 0.0 && is_finite(ratio) ? 1.0 + 2.0 * ratio : std::numeric_limits<double>::infinity();
+}
 
-    MixtureBounds(const Mixture& mixture, double a, double b) noexcept {
-        if (mixture.kind == Mixture::is_short) return;
-        const double ratio = larger(std::fabs(a), std::fabs(b)) / smaller(std::fabs(a), std::fabs(b));
-        ulps = a * b > 0.0 && is_finite(ratio) ? 1.0 + 2.0 * ratio : std::numeric_limits<double>::infinity();
-        inexact_below = 0x1p-54 * ratio;
-    }
-};
+// The most ulps for which quotients in double are worth a try: more are in doubt too often.
+inline constexpr double quick_ulps = 0x1p13;
 
-// What the kernels in double need.
-inline void prepare_exact(SegmentJob& job) noexcept {
-    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-    job.q = is_finite(job.q_a + job.q_b) ? mixture_of(job.q_a, job.q_b) : Mixture{nan, nan, 0.0, Mixture::is_short};
-    const MixtureBounds of_q(job.q, job.q_a, job.q_b);
-    // A numerator whose quotient is one; where q is not finite all quotients are 0.
-    const double least_normal = is_finite(job.q_a + job.q_b) ? 0x1p-126 * larger(job.q_a, job.q_b) : 0.0;
-    job.inexact_alpha[0] = 0.0;
-    job.inexact_alpha[1] = of_q.inexact_below;
-    job.subnormal_alpha[0] = job.subnormal_alpha[1] = 0.0;
-    job.are_short = job.q.kind == Mixture::is_short;
-    job.is_quick = job.q_a > 0.0 && job.q_b > 0.0;
+// Whether there are so few about the asymptote, and no subnormal floats; takes how many.
+inline bool is_quick_about_asymptote(const SegmentJob& job, const EndQuotients& u, double& ulps) noexcept {
     for (int k = 0; k < job.numerators; ++k) {
-        const double a = job.a[k];
-        const double b = job.b[k];
-        job.numerator[k] = mixture_of(a, b);
-        job.are_short = job.are_short && job.numerator[k].kind == Mixture::is_short;
-        const MixtureBounds bounds(job.numerator[k], a, b);
-        job.inexact_alpha[1] = larger(job.inexact_alpha[1], bounds.inexact_below);
-        // A division that two vectors share rounds four times.
-        const double ulps = bounds.ulps + of_q.ulps + 4.0;
-        job.is_quick = job.is_quick && ulps < 0x1p14;
-        job.ulps[k] = 7;
-        while (job.is_quick && job.ulps[k] <= static_cast<std::int32_t>(ulps)) job.ulps[k] = 2 * job.ulps[k] + 1;
-        // Where no end is 0 a mixture is 0 or more than 2^-51 of lesser^2 / larger: alpha is then no less than a half of their
-        // ratio, or the mixture more than half of a.
-        const double lesser = smaller(std::fabs(a), std::fabs(b));
-        const double larger_one = larger(std::fabs(a), std::fabs(b));
-        if (a == 0.0) {
-            if (b != 0.0) job.subnormal_alpha[1] = larger(job.subnormal_alpha[1], 2.0 * least_normal / std::fabs(b));
-        } else if (!(b == 0.0 ? 0x1p-24 * larger_one >= least_normal
-                              : 0x1p-52 * lesser * lesser >= least_normal * larger_one)) {
-            job.subnormal_alpha[0] = -1.0;
-            job.subnormal_alpha[1] = 2.0;
-            job.is_quick = false;
+        if (!(u.at_a[k] * u.at_b[k] > 0.0 && u.least(k) > 0x1p-120)) return false;
+        ulps = larger(ulps, asymptote_error(job, u, k, rounded_in_double) / u.least(k));
+    }
+    return ulps < quick_ulps;
+}
+
+// Where sums a + alpha (b - a) can have a quotient that is no normal float: for alphas in (0, last], or all where that is 2; 0
+// where they cannot. Where no end is 0 a sum is 0 or more than 2^-51 of lesser^2 / larger: alpha is then no less than a half of
+// their ratio, or the sum more than half of a.
+inline double last_subnormal_alpha(double a, double b, double least_normal) noexcept {
+    const double lesser = smaller(std::fabs(a), std::fabs(b));
+    const double larger_one = larger(std::fabs(a), std::fabs(b));
+    if (!(larger_one > 0.0)) return 0.0;
+    if (a == 0.0) return smaller(2.5 * least_normal / larger_one, 2.0);
+    const double least = lesser == 0.0 ? 0x1p-24 * larger_one : 0x1p-52 * lesser * (lesser / larger_one);
+    return least >= least_normal ? 0.0 : 2.0;
+}
+inline double last_subnormal_alpha(const SegmentJob& job) noexcept {
+    const double least_normal = 0x1p-126 * larger(job.q_a, job.q_b);
+    double last = 0.0;
+    for (int k = 0; k < job.numerators; ++k)
+        last = larger(last, last_subnormal_alpha(job.a[k], job.b[k], least_normal));
+    return last;
+}
+
+// The same of the quotients of two sums. A division that two vectors share rounds four times.
+inline bool is_quick_by_sums(const SegmentJob& job, double& ulps) noexcept {
+    ulps = 0.0;
+    for (int k = 0; k < job.numerators; ++k) ulps = larger(ulps, ulps_of_sum(job.a[k], job.b[k]));
+    ulps += ulps_of_sum(job.q_a, job.q_b) + 4.0;
+    return ulps < quick_ulps && job.small_alpha < 2.0f;
+}
+
+// Whether a tolerance accepts quotients in double of no more than `largest`, rounded to float.
+inline bool accepts_rounding(double largest, double tolerance) noexcept {
+    return unit_roundoff_float * 1.001 * largest <= tolerance;
+}
+
+// What fill_in_double needs, and small_alpha; whether it is worth a try.
+inline bool prepare_in_double(SegmentJob& job, double tolerance) noexcept {
+    const bool is_in_front = job.q_a > 0.0 && job.q_b > 0.0;
+    const EndQuotients u(job);
+    double ulps = 0.0;
+    prepare_asymptote(job);
+    job.is_asymptotic = is_in_front && is_quick_about_asymptote(job, u, ulps);
+    job.small_alpha = 0.0f;
+    if (!job.is_asymptotic) {
+        job.small_alpha = static_cast<float>(last_subnormal_alpha(job));
+        if (!is_in_front || !is_quick_by_sums(job, ulps)) return false;
+        job.pole = job.q_a;
+        job.bend = job.q_b - job.q_a;
+        for (int k = 0; k < job.numerators; ++k) {
+            job.base[k] = job.a[k] + 0.0;
+            job.slope[k] = job.b[k] - job.a[k];
         }
     }
+    job.ulps = static_cast<std::int32_t>(std::bit_ceil(static_cast<std::uint32_t>(ulps) + 8)) - 1;
+    job.are_accepted = true;
+    for (int k = 0; k < job.numerators; ++k)
+        job.are_accepted = job.are_accepted && accepts_rounding(u.largest(k), tolerance);
+    return true;
+}
+
+// What fill_exact needs. The terms of a mixture in two doubles are multiples of alpha's last bit times that of the lesser end,
+// 2^-48 of their product at least: where alpha is not too small, what the first sum leaves and the rest need no more than 53
+// bits above that.
+inline void prepare_exact(SegmentJob& job) noexcept {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    double inexact = 0.0;
+    job.are_short = true;
+    const auto mixed_exactly = [&](double a, double b) {
+        const Mixture mixture = mixture_of(a, b);
+        if (mixture.kind == Mixture::is_short) return mixture;
+        job.are_short = false;
+        inexact = larger(inexact, 0x1p-54 * larger(std::fabs(a), std::fabs(b)) / smaller(std::fabs(a), std::fabs(b)));
+        return mixture;
+    };
+    job.q = is_finite(job.q_a + job.q_b) ? mixed_exactly(job.q_a, job.q_b) : Mixture{nan, nan, 0.0, Mixture::is_short};
+    for (int k = 0; k < job.numerators; ++k) job.numerator[k] = mixed_exactly(job.a[k], job.b[k]);
+    // As a float it has the same floats below it.
+    job.inexact_alpha = static_cast<float>(smaller(inexact, 2.0));
 }
 
 inline namespace TEXGEN_BUILD {
 
-// The nearest floats from `first` on: in vectors; what those cannot decide value by value.
-inline void interpolate_exact(const SegmentKernels& kernels, SegmentJob& job, std::size_t first) noexcept {
-    prepare_exact(job);
-    fill_blocks(kernels.fill_exact, job, first, interpolate_one);
-}
-
-// In float where that stays inside the tolerance for the whole segment, else the nearest float.
-inline void interpolate_job(const SegmentKernels& kernels, SegmentJob job, double tolerance) noexcept {
-    bool float_fits = tolerance > 0.0 && job.q_a > 0.0 && job.q_b > 0.0;
-    for (int k = 0; k < job.numerators; ++k) float_fits = float_fits && segment_float_error(job, k) <= tolerance;
-    if (!float_fits) return interpolate_exact(kernels, job, 0);
-    prepare_float(job);
+// The nearest floats from `first` on: by quotients in double; where those decide nothing in two doubles, with the rest of sixteen
+// blocks; what that cannot decide value by value.
+inline void interpolate_in_double(const SegmentKernels& kernels, SegmentJob& job, std::size_t first,
+                                  double tolerance) noexcept {
+    constexpr std::size_t part = 16 * exact_block;
+    const bool is_quick = prepare_in_double(job, tolerance);
     const std::size_t count = job.count;
-    for (std::size_t i = kernels.fill_all_float(job, 0); i < count; i = kernels.fill_all_float(job, i)) {
-        job.count = count - i < float_block ? count : i + float_block;
-        interpolate_exact(kernels, job, i);
+    bool is_prepared = false;
+    for (std::size_t i = first; i < count;) {
+        if (is_quick) i = kernels.fill_in_double(job, i);
+        if (i == count) return;
+        if (!is_prepared) prepare_exact(job);
+        is_prepared = true;
+        if (is_quick && count - i > part) job.count = (i / part + 1) * part;
+        fill_blocks(kernels.fill_exact, job, i, interpolate_one);
         i = job.count;
         job.count = count;
+    }
+}
+
+// Whether the error of a form in float is inside the tolerance; false where it is NaN.
+template <class Error>
+inline bool float_fits(const Error& error, const SegmentJob& job, const EndQuotients& u, double tolerance) noexcept {
+    for (int k = 0; k < job.numerators; ++k)
+        if (!(error(job, u, k) <= tolerance)) return false;
+    return true;
+}
+
+// In float where that stays inside the tolerance for the whole segment, else in double.
+inline void interpolate_job(const SegmentKernels& kernels, SegmentJob& job, double tolerance) noexcept {
+    if (!(tolerance > 0.0 && job.q_a > 0.0 && job.q_b > 0.0)) return interpolate_in_double(kernels, job, 0, tolerance);
+    const EndQuotients u(job);
+    prepare_asymptote(job);
+    job.is_asymptotic = float_fits(asymptote_error_in_float, job, u, tolerance);
+    if (!job.is_asymptotic) {
+        if (!float_fits(end_error_in_float, job, u, tolerance))
+            return interpolate_in_double(kernels, job, 0, tolerance);
+        prepare_end(job, u);
+    }
+    for (std::size_t i = kernels.fill_all_float(job, 0); i < job.count; i = kernels.fill_all_float(job, i)) {
+        SegmentJob block = job;
+        block.count = job.count - i < float_block ? job.count : i + float_block;
+        interpolate_in_double(kernels, block, i, tolerance);
+        i = block.count;
     }
 }
 
@@ -214,17 +321,20 @@ inline Work work(const Segment& segment, TextureRegion region, Tolerance toleran
 
 inline glm::dvec2 error_bound(const Segment& segment, Tolerance tolerance) noexcept {
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    const detail::SegmentJob job = detail::segment_job(segment, 0, 2);
+    detail::SegmentJob job = detail::segment_job(segment, 0, 2);
     const double sum = job.a[0] + job.a[1] + job.b[0] + job.b[1] + job.q_a + job.q_b;
     if (!detail::is_finite(sum)) return {infinity, infinity};
     if (job.q_a <= 0.0 && job.q_b <= 0.0) return {0.0, 0.0};
     if (job.q_a <= 0.0 || job.q_b <= 0.0) return {infinity, infinity};
+    const detail::EndQuotients u(job);
+    detail::prepare_asymptote(job);
     const auto bound = [&](int k) {
-        const double of_nearest = detail::half_ulp(detail::largest_quotient(job, k));
-        const double of_float = detail::segment_float_error(job, k);
+        const double rounded = detail::half_ulp(1.001 * u.largest(k)), accepted = detail::accepted(tolerance);
+        double largest = detail::accepts_rounding(u.largest(k), accepted) ? 1.001 * rounded : rounded;
         // Where both are next to one another, a file with other flags may have decided otherwise.
-        const bool may_be_float = of_float * (1.0 - 0x1p-40) <= detail::accepted(tolerance);
-        return may_be_float ? detail::larger(of_float, of_nearest) : of_nearest;
+        for (const double error : {detail::asymptote_error_in_float(job, u, k), detail::end_error_in_float(job, u, k)})
+            if (error * (1.0 - 0x1p-40) <= accepted) largest = detail::larger(largest, error);
+        return largest;
     };
     return {bound(0), bound(1)};
 }
@@ -244,7 +354,7 @@ void interpolate(const Segment& segment, std::span<const float> alpha, TextureRe
     detail::for_each_group(out, alpha.size(), lit, [&](int first, int numerators, const detail::PointOutputs& outputs) {
         detail::SegmentJob job = detail::segment_job(segment, first, numerators);
         lit.copy_to(job.min, job.max);
-        const auto run = [&](const detail::SegmentJob& part) { detail::interpolate_job(kernels, part, accepted); };
+        const auto run = [&](detail::SegmentJob& part) { detail::interpolate_job(kernels, part, accepted); };
 
         const std::size_t whole = alpha.size() / detail::point_quantum * detail::point_quantum;
         job.alpha = alpha.data();

@@ -137,18 +137,21 @@ struct SegmentJob : DividedOutput {
     const float* alpha;
     double a[2], b[2];
     double q_a, q_b;
+    // For fill_in_double and fill_all_float, where all is in front. About what it is where q is infinite,
+    //   base + slope / (alpha + pole),
+    // else in double (base + slope alpha) / (pole + bend alpha), and in float, about the end where q is less,
+    // base + slope i / (1 + bend i), i the alpha from there.
+    bool is_asymptotic;
+    bool about_b;
+    double base[2], slope[2], pole, bend;
+    std::int32_t ulps;  // that quotients in double are within, 1 less than a power of two
+    bool are_accepted;  // whichever of two floats they are rounded to
+    float small_alpha;  // only for alphas in (0, small_alpha] floats may be subnormal, and the ulps too few
     // For fill_exact.
     Mixture numerator[2];
     Mixture q;
-    // Ranges of alpha, without their first numbers: where a sum in two doubles may not be exact, and a float be subnormal.
-    double inexact_alpha[2], subnormal_alpha[2];
-    bool are_short;  // all mixtures
-    // For every other alpha all is in front, and quotients in double are within so many ulps, 1 less than a power of two.
-    bool is_quick;
-    std::int32_t ulps[2];
-    // For fill_all_float: about the end where q is less, base + slope i / (1 + bend i), i the alpha from there.
-    bool about_b;
-    float bend, base[2], slope[2];
+    bool are_short;       // all mixtures
+    float inexact_alpha;  // only for alphas in (0, inexact_alpha] sums in two doubles may not be exact
 
     void advance(std::size_t values) noexcept { alpha += values; }
 };
@@ -216,6 +219,9 @@ struct PointKernels {
 
 struct SegmentKernels {
     Undecided (*fill_exact)(const SegmentJob&, std::size_t first) noexcept;
+    // The first value from `first` on of a block of float_block with one near the middle of two floats, or with an alpha that is
+    // no number or too small, or the count.
+    std::size_t (*fill_in_double)(const SegmentJob&, std::size_t first) noexcept;
     // The first value from `first` on of a block of float_block with an alpha that is no number, or the count.
     std::size_t (*fill_all_float)(const SegmentJob&, std::size_t first) noexcept;
 };

@@ -10,9 +10,9 @@
 //   all_float       numerators, q and quotient in float
 //   polynomial      in float about the middle of a chunk, with a polynomial instead of a division
 //
-// exact, float_divided and all_float serve points, exact and all_float segments, exact, float_divided and polynomial
-// triangles, double_rounded and all_float footprints. double_rounded serves the doubt of points and segments, too, where
-// their tolerance holds both floats.
+// exact, float_divided and all_float serve points, exact, double_rounded and all_float segments, exact, float_divided and
+// polynomial triangles, double_rounded and all_float footprints. double_rounded serves the doubt of points, too, where their
+// tolerance holds both floats.
 
 #include <limits>
 
