@@ -32,6 +32,9 @@ struct RowOutputs {
     }
 };
 
+// Whether a mask of points is asked for, their layout and that of their coordinates are looked at vector by vector: a branch
+// that is always the same costs next to nothing, and a loop for each combination would be most of what a user compiles.
+
 // 1 inside the region of an output and in front, else 0.
 template <class Output, class Vector, class Mask>
 TEXGEN_INLINE Vector lit_of(const Output& to, const Vector (&value)[2], const Mask& in_front) noexcept {
