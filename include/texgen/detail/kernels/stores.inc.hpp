@@ -8,15 +8,12 @@ struct RowOutputs {
     std::ptrdiff_t pitch[2];
     float* lit;
     std::ptrdiff_t lit_pitch;
-    float min[2], max[2];
     std::int64_t writable;  // from its first fragment on: where rows follow one another, the rows below too
     std::int64_t writable_pitch;
 
     TEXGEN_INLINE RowOutputs(const TileJob& job, int y) noexcept
         : lit(job.lit == nullptr ? nullptr : job.lit + y * job.pitch),
           lit_pitch(job.lit == nullptr ? 0 : job.pitch),
-          min{job.min[0], job.min[1]},
-          max{job.max[0], job.max[1]},
           writable(job.is_contiguous ? (job.height - std::int64_t{y}) * job.width : job.width),
           writable_pitch(job.is_contiguous ? job.width : 0) {
         for (std::size_t k = 0; k < 2; ++k) {
@@ -35,10 +32,15 @@ struct RowOutputs {
 // Whether a mask of points is asked for, their layout and that of their coordinates are looked at vector by vector: a branch
 // that is always the same costs next to nothing, and a loop for each combination would be most of what a user compiles.
 
-// 1 inside the region of an output and in front, else 0.
+// A mask of what is inside the region of an output.
+template <class Output, class Vector>
+TEXGEN_INLINE auto in_region(const Output& to, const Vector (&value)[2]) noexcept {
+    return inside(value[0], to.min[0], to.max[0]) & inside(value[1], to.min[1], to.max[1]);
+}
+// 1 there and in front, else 0.
 template <class Output, class Vector, class Mask>
 TEXGEN_INLINE Vector lit_of(const Output& to, const Vector (&value)[2], const Mask& in_front) noexcept {
-    return one_where(in_front & inside(value[0], to.min[0], to.max[0]) & inside(value[1], to.min[1], to.max[1]));
+    return one_where(in_front & in_region(to, value));
 }
 
 // The first `count` lanes.
@@ -50,17 +52,12 @@ TEXGEN_INLINE void store_some(float* to, int count, const Vector& values) noexce
     for (int i = 0; i < count; ++i) to[i] = buffer[i];
 }
 
-// Coordinates from x on: whole vectors where they may be written, else up to `end`.
+// A whole vector where it may be written, else up to `end`.
 template <class Vector>
-TEXGEN_INLINE void store_both(const RowOutputs& row, std::int64_t x, std::int64_t end,
-                              const Vector (&value)[2]) noexcept {
-    if (x + static_cast<std::int64_t>(sizeof(Vector) / sizeof(float)) <= row.writable) {
-        store(row.out[0] + x, value[0]);
-        store(row.out[1] + x, value[1]);
-    } else {
-        store_some(row.out[0] + x, static_cast<int>(end - x), value[0]);
-        store_some(row.out[1] + x, static_cast<int>(end - x), value[1]);
-    }
+TEXGEN_INLINE void store_from(float* to, std::int64_t x, std::int64_t end, std::int64_t writable,
+                              const Vector& values) noexcept {
+    if (x + static_cast<std::int64_t>(sizeof(Vector) / sizeof(float)) <= writable) return store(to + x, values);
+    store_some(to + x, static_cast<int>(end - x), values);
 }
 
 // The mask of `count` fragments in front, from the coordinates that stand there: so the loops that compute them ask for no mask.

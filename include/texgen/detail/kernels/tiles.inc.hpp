@@ -280,14 +280,9 @@ std::uint64_t fill_tile_closely(const TileJob& job, const CloseFunctions& functi
             Words doubt = narrow(q.doubt);
             for (std::size_t k = 0; k < 2; ++k)
                 doubt |= divide_closely(rows[k], q_row, q, half_q_error, index, x, value[k]);
-            store_both(row, x, unit.x_end, value);
-            if (row.lit != nullptr) {
-                const Floats lit = lit_of(row, value, narrow(q.in_front));
-                if (x + lanes <= row.writable)
-                    store(row.lit + x, lit);
-                else
-                    store_some(row.lit + x, static_cast<int>(unit.x_end - x), lit);
-            }
+            for (std::size_t k = 0; k < 2; ++k) store_from(row.out[k], x, unit.x_end, row.writable, value[k]);
+            if (row.lit != nullptr)
+                store_from(row.lit, x, unit.x_end, row.writable, lit_of(job, value, narrow(q.in_front)));
             const int count = unit.x_end - x < lanes ? static_cast<int>(unit.x_end - x) : lanes;
             if (any(doubt))
                 for (int i = 0; i < count; ++i)
