@@ -84,7 +84,7 @@ Shot ties_of_long_numbers(int width, int height, Random& random) {
         return WindowVertex{
             {static_cast<float>(x + columns * column), row}, 1.0f, {s, random.uniform_float(0.0, 1.0), s, 1.0f}};
     };
-    return {{vertex(0, random.uniform_float(0.0, 0x1p-8)), vertex(1000, random.uniform_float(0x1p20, 0x1p22)),
+    return {{vertex(0, random.uniform_float(0.0, 0x1p-12)), vertex(1000, random.uniform_float(0x1p28, 0x1p30)),
              vertex(random.integer(0, 2), random.uniform_float(0.0, 1e3))},
             {x, y, width, height}};
 }
