@@ -197,15 +197,37 @@ inline bool take_exact_quotients(const CloseFunctions& functions, TileJob& job) 
     return is_any_exact;
 }
 
-// The linear functions of a triangle as integers modulo 2^64, times powers of two of which they are multiples at every fragment:
-// products and sums of floats are multiples of the products of their last bits. So the lowest digits are known of what two
-// doubles have the leading ones of.
+// Powers of two of which the functions of a triangle are multiples at every fragment: products and sums of floats are multiples
+// of the products of their last bits.
+class PlaneGrains {
+public:
+    explicit PlaneGrains(const TrianglePlanes& planes) noexcept : planes_(planes) {
+        const glm::dvec2 a = planes.corner(0), b = planes.corner(1), c = planes.corner(2);
+        of_window = {smaller(0.5, common_unit(a.x, b.x, c.x)), smaller(0.5, common_unit(a.y, b.y, c.y))};
+        of_weights = common_unit(planes.weight(0), planes.weight(1), planes.weight(2));
+    }
+
+    double of_values(glm::length_t coordinate) const noexcept {
+        return common_unit(planes_.value(0, coordinate), planes_.value(1, coordinate), planes_.value(2, coordinate));
+    }
+    // 0 where that is too small for a double.
+    double with(double values) const noexcept { return of_weights * (of_window.x * of_window.y) * values; }
+
+    glm::dvec2 of_window;
+    double of_weights;
+
+private:
+    const TrianglePlanes& planes_;
+};
+
+// The linear functions of a triangle in these grains, modulo 2^64: so the lowest digits are known of what two doubles have the
+// leading ones of.
 class PlaneResidues {
 public:
-    PlaneResidues(const TrianglePlanes& planes, const Tile& tile) noexcept : planes_(planes), tile_(tile) {
-        const glm::dvec2 a = planes.corner(0), b = planes.corner(1), c = planes.corner(2);
-        const glm::dvec2 unit(smaller(0.5, common_unit(a.x, b.x, c.x)), smaller(0.5, common_unit(a.y, b.y, c.y)));
-        const double of_weights = common_unit(planes.weight(0), planes.weight(1), planes.weight(2));
+    PlaneResidues(const TrianglePlanes& planes, const Tile& tile) noexcept
+        : planes_(planes), tile_(tile), grains_(planes) {
+        const glm::dvec2 unit = grains_.of_window;
+        const double of_weights = grains_.of_weights;
         const double per_x = reciprocal_power_of_two(unit.x), per_y = reciprocal_power_of_two(unit.y);
         const double per_weight = reciprocal_power_of_two(of_weights);
         const std::uint64_t one_x = residue_of(per_x), one_y = residue_of(per_y);
@@ -223,15 +245,11 @@ public:
             edge_[i] = {weight * (x[j] * y[k] - y[j] * x[k]), weight * ((y[j] - y[k]) * one_x),
                         weight * ((x[k] - x[j]) * one_y)};
         }
-        grain_ = of_weights * (unit.x * unit.y);
     }
-
-    // 0 where that is too small for a double.
-    double grain(glm::length_t coordinate) const noexcept { return grain_ * last_bit_of(coordinate); }
 
     // Of a part of the tile.
     TEXGEN_APART void add_to(CloseFunction& function, glm::length_t coordinate, const Tile& part) const noexcept {
-        const double unit = last_bit_of(coordinate);
+        const double unit = grains_.of_values(coordinate);
         const double per_unit = reciprocal_power_of_two(unit);
         RampOf<std::uint64_t> sum{};
         for (std::size_t i = 0; i < 3; ++i) {
@@ -240,18 +258,14 @@ public:
         }
         sum.base += static_cast<std::uint64_t>(part.x - tile_.x) * sum.dx;
         sum.base += static_cast<std::uint64_t>(part.y - tile_.y) * sum.dy;
-        function.grain = grain_ * unit;
+        function.grain = grains_.with(unit);
         function.residue = sum;
     }
 
 private:
-    double last_bit_of(glm::length_t coordinate) const noexcept {
-        return common_unit(planes_.value(0, coordinate), planes_.value(1, coordinate), planes_.value(2, coordinate));
-    }
-
     const TrianglePlanes& planes_;
     Tile tile_;
-    double grain_;
+    PlaneGrains grains_;
     RampOf<std::uint64_t> edge_[3];  // of the sides' functions, with the weights
 };
 

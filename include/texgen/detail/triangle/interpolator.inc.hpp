@@ -93,27 +93,32 @@ private:
     // The planes as they are will do where the grains make them exact.
     TEXGEN_APART CloseRamps made_close() noexcept {
         CloseRamps plain = plain_ramps(rect_);
-        const PlaneResidues& residues = plane_residues();
+        const PlaneGrains grains(triangle_.planes);
         bool are_exact = true;
         for (std::size_t k = 0; k < 3 && are_exact; ++k)
-            are_exact = plain.function[k].take_multiples(residues.grain(coordinate_of(k)));
+            are_exact = plain.function[k].take_multiples(grains.with(grains.of_values(coordinate_of(k))));
         return are_exact ? plain : ClosePlanes(triangle_.planes, rect_).ramps(coordinate_of(0), coordinate_of(1));
     }
 
     // Of the numerators and q.
     glm::length_t coordinate_of(std::size_t k) const noexcept { return k == 2 ? 3 : coordinate_[count_ == 1 ? 0 : k]; }
 
-    const PlaneResidues& plane_residues() noexcept {
+    TEXGEN_APART void add_residues(CloseFunctions& functions, const Tile& tile) noexcept {
         if (!residues_) residues_.make(triangle_.planes, rect_);
-        return *residues_;
-    }
-
-    TEXGEN_APART CloseFunctions close_functions(const Tile& tile) noexcept {
-        CloseFunctions functions = close_ramps(tile).split();
-        const PlaneResidues& residues = plane_residues();
+        const PlaneResidues& residues = *residues_;
         for (std::size_t k = 0; k < 2; ++k) residues.add_to(functions.numerator[k], coordinate_of(k), tile);
         residues.add_to(functions.q, 3, tile);
-        return functions;
+    }
+
+    // A unit to twice the precision; what that leaves in doubt with residues, and the rest one by one.
+    TEXGEN_APART void fill_closely(const Tile& tile, const TileJob& job, CloseFunctions& functions,
+                                   const TileJob::Unit& unit) noexcept {
+        std::uint64_t doubtful = kernels_.fill_closely(job, functions, unit);
+        if (doubtful != 0 && !(functions.q.grain > 0.0)) {
+            add_residues(functions, tile);
+            doubtful = kernels_.fill_closely(job, functions, unit);
+        }
+        fill_some(tile, unit, doubtful);
     }
 
     // A tile behind is cleared; one that is in doubt is halved, until it is so small that it is divided closely.
@@ -135,12 +140,15 @@ private:
         job.ulps = static_cast<std::int64_t>(tile.width) * tile.height < 256 ? 0 : at.ulps_of_quotients(error);
         TileJob::Unit unit = kernels_.fill_exact(job, job.unit_at(0, 0));
         if (job.is_done(unit)) return;
-        const CloseFunctions functions = close_functions(tile);
-        if (take_exact_quotients(functions, job)) unit = kernels_.fill_exact(job, unit);
+        CloseFunctions functions = close_ramps(tile).split();
+        if (is_constant(functions.q.high)) {
+            add_residues(functions, tile);
+            if (take_exact_quotients(functions, job)) unit = kernels_.fill_exact(job, unit);
+        }
         // Doubt has company: twice as many units after each failure that follows another.
         for (int many = 1; !job.is_done(unit);) {
             for (int i = 0; i < many && !job.is_done(unit); ++i, unit = job.unit_after(unit))
-                fill_some(tile, unit, kernels_.fill_closely(job, functions, unit));
+                fill_closely(tile, job, functions, unit);
             const TileJob::Unit next = kernels_.fill_exact(job, unit);
             many = next.x_begin == unit.x_begin && next.y_begin == unit.y_begin ? 2 * many : 1;
             unit = next;
@@ -155,19 +163,17 @@ private:
         const TileJob::Unit unit{x, x + tile.width, y, y + tile.height};
         if (!closely_) {
             const bool is_close = static_cast<bool>(close_);
-            closely_.make(CloseJob{make_job(whole_, at),
-                                   is_close ? close_functions(whole_) : plain_ramps(whole_).split(), is_close});
+            closely_.make(CloseJob{make_job(whole_, at), (is_close ? close_ramps(whole_) : plain_ramps(whole_)).split(),
+                                   is_close});
             closely_->job.is_contiguous = false;
         }
-        const TileJob& job = closely_->job;
-        const CloseFunctions& functions = closely_->functions;
-        std::uint64_t doubtful = kernels_.fill_closely(job, functions, unit);
-        if (doubtful != 0 && !closely_->is_close) {
-            closely_->functions = close_functions(whole_);
-            closely_->is_close = true;
-            doubtful = kernels_.fill_closely(job, functions, unit);
+        auto& [job, functions, is_close] = *closely_;
+        if (!is_close) {
+            if (kernels_.fill_closely(job, functions, unit) == 0) return;
+            functions = close_ramps(whole_).split();
+            is_close = true;
         }
-        fill_some(whole_, unit, doubtful);
+        fill_closely(whole_, job, functions, unit);
     }
 
     // The planes as they are.
