@@ -39,7 +39,7 @@ public:
 
     // Makes triangles ready, in place of those that it had.
     // Guarantee: each as TriangleSetup::of() does, in double about the vertex with the largest clip_w; nothing of the caller's is
-    // kept but copies, of 244 bytes a triangle. Memory is allocated only when the count exceeds all former ones; noexcept.
+    // kept but copies, of 276 bytes a triangle. Memory is allocated only when the count exceeds all former ones; noexcept.
     // Shapes: as TriangleSetup::of(). Fewer than 2^32 - 1 triangles (asserted).
     // Bad input: what TriangleSetup::of() refuses is dark: all that is computed of it is 0.
     template <class CompiledWhereCalled = detail::ThisBuild>
@@ -84,7 +84,7 @@ inline namespace TEXGEN_BUILD {
 // Shapes: as many rectangles as triangles, of no negative size, and outputs of all their fragments together, or empty ones
 // (all asserted; else nothing is written). Fragments outside a triangle get the values of its plane; where the interpolated
 // 1/w is not positive nothing is promised.
-// Cost: with its set-up a tile of 8 x 8 takes a third to a half of what a TriangleSetup does; beyond 512 fragments it is left to
+// Cost: with its set-up a tile of 8 x 8 takes a quarter to a third of what a TriangleSetup does; beyond 512 fragments it is left to
 // one, as is what is in doubt, which costs some tiles of a friendly triangle's.
 // Bad input: an empty rectangle has no values.
 template <class CompiledWhereCalled = void>

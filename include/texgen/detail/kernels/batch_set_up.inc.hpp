@@ -75,7 +75,7 @@ TEXGEN_INLINE Words set_up_lanes(const float* triangles, BatchPlanes* planes) no
     const Doubles b_dy_terms = size_c_x * reach_y * batch_plane_error;
     const Doubles c_dy_terms = size_b_x * reach_y * batch_plane_error;
 
-    Doubles value[BatchPlanes::count];
+    Doubles value[BatchPlanes::count]{};
     Doubles all_errors{};
     TEXGEN_UNROLL
     for (std::size_t k = 0; k < 4; ++k) {
@@ -109,14 +109,12 @@ TEXGEN_INLINE Words set_up_lanes(const float* triangles, BatchPlanes* planes) no
     constexpr auto count = static_cast<int>(BatchPlanes::count);
     TEXGEN_UNROLL
     for (int first = 0; first < count; first += lanes) {
-        // The last square overlaps the one before.
-        const int begin = first + lanes <= count ? first : count - lanes;
         Doubles row[lanes];
         TEXGEN_UNROLL
-        for (int j = 0; j < lanes; ++j) row[j] = value[begin + j];
+        for (int j = 0; j < lanes; ++j) row[j] = value[first + j];
         transpose(row);
         TEXGEN_UNROLL
-        for (int j = 0; j < lanes; ++j) store(&planes[j].value[begin], row[j]);
+        for (int j = 0; j < lanes; ++j) store(&planes[j].value[first], row[j]);
     }
     return narrow(~is_known);
 }
@@ -149,13 +147,12 @@ struct BatchLanes {
         TEXGEN_UNROLL
         for (int first = 0; first < count; first += lanes) {
             if (!with_r && first >= static_cast<int>(BatchPlanes::r)) break;
-            const int begin = first + lanes <= count ? first : count - lanes;
             Doubles row[lanes];
             TEXGEN_UNROLL
-            for (int j = 0; j < lanes; ++j) row[j] = load<Doubles>(&planes[j]->value[begin]);
+            for (int j = 0; j < lanes; ++j) row[j] = load<Doubles>(&planes[j]->value[first]);
             transpose(row);
             TEXGEN_UNROLL
-            for (int j = 0; j < lanes; ++j) value[begin + j] = row[j];
+            for (int j = 0; j < lanes; ++j) value[first + j] = row[j];
         }
     }
 };
@@ -220,11 +217,14 @@ struct FragmentOutputs {
         TEXGEN_UNROLL
         for (std::size_t k = 0; k < Numerators; ++k)
             if (out[k] != nullptr) store(out[k] + n, value[k]);
-        if (lit == nullptr) return;
-        Mask is_lit = in_front & inside(value[0], min[0], max[0]) & inside(value[1], min[1], max[1]);
+        if (lit != nullptr) store(lit + n, one_where(in_front & are_inside(value)));
+    }
+    template <std::size_t Numerators, class Vector>
+    TEXGEN_INLINE auto are_inside(const Vector (&value)[Numerators]) const noexcept {
+        auto result = inside(value[0], min[0], max[0]) & inside(value[1], min[1], max[1]);
         if constexpr (Numerators == 3)
-            if (has_depth) is_lit &= inside(value[2], r_min, r_max);
-        store(lit + n, one_where(is_lit));
+            if (has_depth) result &= inside(value[2], r_min, r_max);
+        return result;
     }
 };
 
@@ -242,7 +242,7 @@ struct ScratchOutputs {
     void copy_to(const FragmentOutputs& original, std::size_t n, std::size_t count) const noexcept {
         for (std::size_t k = 0; k < 4; ++k) {
             float* const to = k < 3 ? original.out[k] : original.lit;
-            for (std::size_t i = 0; to != nullptr && i < count; ++i) to[n + i] = values[k][i];
+            if (to != nullptr) std::memcpy(to + n, values[k], count * sizeof(float));
         }
     }
 };

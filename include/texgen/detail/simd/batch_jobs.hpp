@@ -30,8 +30,9 @@ struct BatchVertex {
 
 // The linear functions of a triangle (triangle/planes.hpp), each as base, dx, dy about the vertex of the largest w and e: their
 // errors x and y from there are at most e (1 + |x| per_reach[0] + |y| per_reach[1]).
-struct alignas(32) BatchPlanes {
-    static constexpr std::size_t s = 0, t = 4, q = 8, origin = 12, per_reach = 14, r = 16, count = 20;
+// In whole vectors: the last four are 0.
+struct alignas(64) BatchPlanes {
+    static constexpr std::size_t s = 0, t = 4, q = 8, origin = 12, per_reach = 14, r = 16, count = 24;
     static constexpr std::size_t of_numerator[3] = {s, t, r};
 
     double value[count];

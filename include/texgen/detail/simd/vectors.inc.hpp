@@ -20,6 +20,15 @@ TEXGEN_INLINE Vector indices() noexcept {
     return result;
 }
 
+template <class Vector, class Lane>
+TEXGEN_INLINE Vector lanes_of(const Lane& lane) noexcept {
+    Vector result{};
+    TEXGEN_UNROLL
+    for (int i = 0; i < lanes; ++i) result[i] = lane(i);
+    return result;
+}
+
+TEXGEN_INLINE Doubles to_doubles(const Words& values) noexcept { return __builtin_convertvector(values, Doubles); }
 TEXGEN_INLINE Floats to_floats(const Doubles& values) noexcept { return __builtin_convertvector(values, Floats); }
 TEXGEN_INLINE Words bits(const Floats& values) noexcept { return __builtin_bit_cast(Words, values); }
 
@@ -70,8 +79,12 @@ TEXGEN_INLINE Doubles select(const LongWords& mask, const Doubles& a, const Doub
 }
 // Where a number lies within so many of its ulps, 1 less than a power of two, of the middle of two normal floats (or one
 // more beyond it), and that middle.
+TEXGEN_INLINE LongWords off_middles(const Doubles& a, long long ulps) noexcept {
+    return (__builtin_bit_cast(LongWords, a) + (ulps - 0x10000000)) & (0x1ffffffe - 2 * ulps);
+}
+TEXGEN_INLINE LongWords equal(const LongWords& a, int b) noexcept { return a == b; }
 TEXGEN_INLINE LongWords are_near_middles(const Doubles& a, long long ulps) noexcept {
-    return ((__builtin_bit_cast(LongWords, a) + (ulps - 0x10000000)) & (0x1ffffffe - 2 * ulps)) == 0;
+    return equal(off_middles(a, ulps), 0);
 }
 // As many numbers as a and b have, in whatever order, none negative: 0 for each that is so near a middle. The low words decide.
 template <int... Lane>
@@ -275,17 +288,38 @@ TEXGEN_INLINE void store_interleaved(float* to, const Vector& a, const Vector& b
     store_interleaved(to + 2 * n, ac_high, bd_high);
 }
 
-// Lane i of vector k becomes lane k of vector i.
+// Lane i of vector k becomes lane k of vector i: in blocks of 16 bytes, then block by block, since what crosses them is dear.
+template <int First, int Block, class Vector, int... Lane>
+TEXGEN_INLINE Vector zipped_in_blocks(const Vector& a, const Vector& b, std::integer_sequence<int, Lane...>) noexcept {
+    return __builtin_shufflevector(a, b,
+                                   (Lane / Block * Block + First * Block / 2 + Lane % Block / 2 + Lane % 2 * lanes)...);
+}
+template <int First, int Block, class Vector, int... Lane>
+TEXGEN_INLINE Vector every_second_block(const Vector& a, const Vector& b,
+                                        std::integer_sequence<int, Lane...>) noexcept {
+    return __builtin_shufflevector(a, b, ((2 * (Lane / Block) + First) * Block + Lane % Block)...);
+}
 template <class Vector>
 TEXGEN_INLINE void transpose(Vector (&rows)[lanes]) noexcept {
     using Lanes = std::make_integer_sequence<int, lanes>;
+    constexpr int in_16_bytes = 16 * lanes / static_cast<int>(sizeof(Vector));
+    constexpr int block = in_16_bytes < lanes ? in_16_bytes : lanes;
+    Vector mixed[lanes];
     TEXGEN_UNROLL
     for (int size = 1; size < lanes; size *= 2) {
-        Vector mixed[lanes];
         TEXGEN_UNROLL
         for (int i = 0; i < lanes / 2; ++i) {
-            mixed[2 * i] = zipped<0>(rows[i], rows[i + lanes / 2], Lanes());
-            mixed[2 * i + 1] = zipped<lanes / 2>(rows[i], rows[i + lanes / 2], Lanes());
+            if (size < block) {
+                const Vector& a = rows[2 * i / block * block + i % (block / 2)];
+                const Vector& b = rows[2 * i / block * block + i % (block / 2) + block / 2];
+                mixed[2 * i] = zipped_in_blocks<0, block>(a, b, Lanes());
+                mixed[2 * i + 1] = zipped_in_blocks<1, block>(a, b, Lanes());
+            } else {
+                const Vector& a = rows[i / block * 2 * block + i % block];
+                const Vector& b = rows[i / block * 2 * block + i % block + block];
+                mixed[i] = every_second_block<0, block>(a, b, Lanes());
+                mixed[i + lanes / 2] = every_second_block<1, block>(a, b, Lanes());
+            }
         }
         TEXGEN_UNROLL
         for (int i = 0; i < lanes; ++i) rows[i] = mixed[i];
@@ -319,7 +353,7 @@ TEXGEN_INLINE std::uint64_t lane_bits(const LongWords& mask) noexcept {
 }
 TEXGEN_INLINE bool any(const LongWords& mask) noexcept {
 #if TEXGEN_LANE_BYTES == 64
-    return any(narrow(mask));
+    return lane_bits(mask) != 0;
 #elif TEXGEN_LANE_BYTES == 32
     return !__builtin_ia32_ptestz256(mask, mask);
 #else
