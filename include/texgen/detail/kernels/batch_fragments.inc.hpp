@@ -5,43 +5,58 @@ namespace TEXGEN_DETAIL::TEXGEN_ISA {
 // The functions of one triangle, as BatchLanes has those of several.
 struct OneTriangle {
     const double* value;
-    TEXGEN_INLINE Doubles operator[](std::size_t k) const noexcept { return Doubles{} + value[k]; }
+    TEXGEN_INLINE Doubles operator[](std::size_t k) const noexcept { return value[k] - Doubles{}; }
 };
 
-// A vector of fragments at (x, y): quotients, and in_front where they are. Returns the lanes in doubt.
-template <std::size_t Numerators, class Functions>
-TEXGEN_INLINE Words divide_lanes(const Functions& functions, const Doubles& x, const Doubles& y, double tolerance,
-                                 Floats (&quotient)[Numerators], Words& in_front) noexcept {
-    const Doubles p_x = x - functions[BatchPlanes::origin];
-    const Doubles p_y = y - functions[BatchPlanes::origin + 1];
-    const Doubles stretch = magnitude(p_x) * functions[BatchPlanes::per_reach] +
-                            (magnitude(p_y) * functions[BatchPlanes::per_reach + 1] + 1.001);
-    const Doubles q =
-        functions[BatchPlanes::q] + (functions[BatchPlanes::q + 1] * p_x + functions[BatchPlanes::q + 2] * p_y);
-    const Doubles q_error = functions[BatchPlanes::q + 3] * stretch;
-    const LongWords front = greater(q, q_error * 0x1p24);
-    Words doubtful = narrow(~(front | greater(q * -1.0, q_error)));
-    in_front = narrow(front);
-    const Doubles reciprocal = where(front, 1.0 / q);
-    const Doubles relative_error = q_error * (reciprocal * 1.0001) + 8.0 * unit_roundoff_double;
-    const Doubles stretched = stretch * (reciprocal * 1.0001);
-    TEXGEN_UNROLL
-    for (std::size_t k = 0; k < Numerators; ++k) {
-        const std::size_t place = BatchPlanes::of_numerator[k];
-        const Doubles f = functions[place] + (functions[place + 1] * p_x + functions[place + 2] * p_y);
-        const Doubles u = f * reciprocal + 0.0;  // no -0
-        const Doubles size = magnitude(u);
-        const Doubles error = functions[place + 3] * stretched + size * relative_error;
-        if (tolerance > 0.0) {
-            quotient[k] = to_floats(u);
-            const Doubles written = error + size * (1.0001 * unit_roundoff_float) + 0x1p-149;
-            if (!any(~at_most(written, Doubles{} + tolerance))) continue;
+// A vector of fragments at (x, y): quotients, where they are in front, and the lanes in doubt, of their side or their value.
+template <std::size_t Numerators>
+struct FragmentLanes {
+    Floats quotient[Numerators];
+    LongWords front;
+    Words doubtful;
+
+    template <class Functions>
+    TEXGEN_INLINE void divide(const Functions& functions, const Doubles& x, const Doubles& y,
+                              double tolerance) noexcept {
+        const Doubles p_x = x - functions[BatchPlanes::origin];
+        const Doubles p_y = y - functions[BatchPlanes::origin + 1];
+        const Doubles stretch = magnitude(p_x) * functions[BatchPlanes::per_reach] +
+                                (magnitude(p_y) * functions[BatchPlanes::per_reach + 1] + 1.001);
+        const Doubles q =
+            functions[BatchPlanes::q] + (functions[BatchPlanes::q + 1] * p_x + functions[BatchPlanes::q + 2] * p_y);
+        const Doubles q_error = functions[BatchPlanes::q + 3] * stretch;
+        front = greater(q, q_error * 0x1p24);
+        const LongWords is_open = ~(front | greater(q * -1.0, q_error));
+        doubtful = Words{};
+        if (any(is_open)) doubtful = narrow(is_open);
+        const Doubles reciprocal = where(front, 1.0 / q);
+        const Doubles relative_error = q_error * (reciprocal * 1.0001) + 8.0 * unit_roundoff_double;
+        const Doubles stretched = stretch * (reciprocal * 1.0001);
+        Doubles u[Numerators];
+        Doubles largest{}, largest_error{};
+        TEXGEN_UNROLL
+        for (std::size_t k = 0; k < Numerators; ++k) {
+            const std::size_t place = BatchPlanes::of_numerator[k];
+            u[k] = (functions[place] + (functions[place + 1] * p_x + functions[place + 2] * p_y)) * reciprocal +
+                   0.0;  // no -0
+            largest = k == 0 ? magnitude(u[k]) : maximum(largest, magnitude(u[k]));
+            largest_error = k == 0 ? functions[place + 3] : maximum(largest_error, functions[place + 3]);
+            quotient[k] = to_floats(u[k]);
         }
-        quotient[k] = to_floats(u - error);
-        doubtful |= bits(quotient[k]) ^ bits(to_floats(u + error));
+        if (tolerance > 0.0) {
+            const Doubles written =
+                largest_error * stretched + (largest * (relative_error + 1.0001 * unit_roundoff_float) + 0x1p-149);
+            if (!any(~at_most(written, Doubles{} + tolerance))) return;
+        }
+        TEXGEN_UNROLL
+        for (std::size_t k = 0; k < Numerators; ++k) {
+            const Doubles error =
+                functions[BatchPlanes::of_numerator[k] + 3] * stretched + magnitude(u[k]) * relative_error;
+            quotient[k] = to_floats(u[k] - error);
+            doubtful |= bits(quotient[k]) ^ bits(to_floats(u[k] + error));
+        }
     }
-    return doubtful;
-}
+};
 
 template <std::size_t Numerators>
 TEXGEN_INLINE Undecided divide_all_fragments(const FragmentsJob& job, std::size_t first) noexcept {
@@ -68,31 +83,35 @@ TEXGEN_INLINE Undecided divide_all_fragments(const FragmentsJob& job, std::size_
             }
             const Doubles x = walk.x + left;
             const Doubles y = walk.y + top;
-            Floats quotient[Numerators];
-            Words in_front;
-            Words in_doubt;
             const bool is_one = !any(load<Words>(ids) ^ (Words{} + static_cast<int>(ids[0])));
+            FragmentLanes<Numerators> fragments;
             if (is_one) {
-                const OneTriangle functions{planes_of(ids[0])->value};
-                in_doubt = divide_lanes(functions, x, y, job.tolerance, quotient, in_front);
+                fragments.divide(OneTriangle{planes_of(ids[0])->value}, x, y, job.tolerance);
             } else {
                 const BatchPlanes* of_lane[lanes];
                 TEXGEN_UNROLL
                 for (std::size_t i = 0; i < size; ++i) of_lane[i] = planes_of(ids[i]);
                 BatchLanes functions;
                 functions.load_from(of_lane, Numerators == 3);
-                in_doubt = divide_lanes(functions, x, y, job.tolerance, quotient, in_front);
-            }
-            if (any(in_doubt)) {
-                const float* of_lane[lanes];
-                TEXGEN_UNROLL
-                for (std::size_t i = 0; i < size; ++i)
-                    of_lane[i] = job.vertices + 3 * BatchVertex::size * (ids[i] < job.triangles ? ids[i] : 0);
-                in_doubt = divide_lanes_closely(of_lane, x, y, is_one, in_doubt, quotient, in_front);
+                fragments.divide(functions, x, y, job.tolerance);
             }
             const bool is_whole = n + size <= job.count;
-            (is_whole ? out : in_scratch).put(is_whole ? n : 0, quotient, in_front);
-            doubtful |= std::uint64_t{bits_of(in_doubt)} << (n - begin);
+            const FragmentOutputs& to = is_whole ? out : in_scratch;
+            const std::size_t at = is_whole ? n : 0;
+            if (!any(fragments.doubtful)) {
+                to.put(at, fragments.quotient, narrow(fragments.front));
+                continue;
+            }
+            const float* of_lane[lanes];
+            TEXGEN_UNROLL
+            for (std::size_t i = 0; i < size; ++i)
+                of_lane[i] = job.vertices + 3 * BatchVertex::size * (ids[i] < job.triangles ? ids[i] : 0);
+            FragmentLanes<Numerators> again = fragments;
+            Words in_front = narrow(again.front);
+            const Words undecided =
+                divide_lanes_closely(of_lane, x, y, is_one, again.doubtful, again.quotient, in_front);
+            to.put(at, again.quotient, in_front);
+            doubtful |= std::uint64_t{bits_of(undecided)} << (n - begin);
         }
         if (n > job.count) scratch.copy_to(out, n - size, job.count + size - n);
         if (doubtful != 0) return {begin, doubtful};
