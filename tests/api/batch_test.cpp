@@ -415,6 +415,43 @@ TEST_CASE("what doubles leave in doubt of a visibility buffer is decided as for 
     }
 }
 
+TEST_CASE("a tie that has more bits than two doubles is decided as for each triangle alone") {
+    Random random(9);
+    for (int round = 0; round < 2000; ++round) {
+        // The fragment is half-way between a and b, where (w_b s_a + w_a s_b) / (w_a + w_b) is the middle of two floats.
+        const FragmentRect rect{random.integer(600, 1000), random.integer(600, 1000), 1, 1};
+        const auto odd = [&] { return 2 * random.integer(1 << 16, 1 << 18) + 1; };
+        const int w[2] = {odd(), odd()};
+        const double off[2] = {random.integer(1, 1 << 20) * 0x1p-12, random.integer(1, 1 << 20) * 0x1p-12};
+        const int middle[2] = {2 * random.integer(3 << 22, 7 << 21) + 1, 2 * random.integer(3 << 22, 7 << 21) + 1};
+        const auto vertex = [&](int side) {
+            const double sign = side == 0 ? -1.0 : 1.0;
+            const auto texture = [&](int k) { return (middle[k] + sign * w[side]) * 0x1p-25; };
+            return texgen::WindowVertex{
+                {support::to_float(rect.x + 0.5 + sign * off[0]), support::to_float(rect.y + 0.5 + sign * off[1])},
+                support::to_float(w[side]),
+                {support::to_float(texture(0)), support::to_float(texture(1)), 0.0f, 1.0f}};
+        };
+        const auto any = [&] { return support::to_float(random.uniform(0x1p-12, 0x1p-11)); };
+        const Triangle triangle{vertex(0),
+                                vertex(1),
+                                {{any(), any()},
+                                 support::to_float(random.uniform(1.0, 2.0)),
+                                 {any(), any(), any(), support::to_float(random.uniform(1.0, 2.0))}}};
+        TriangleBatch batch(support::everywhere());
+        batch.assign({&triangle, 1});
+        const std::uint32_t id = 0;
+        Outputs out(1, 3u);
+        interpolate(batch, {&id, 1}, rect, out.spans());
+        const auto at = support::ExactTriangle(triangle).at(rect.x, rect.y);
+        for (std::size_t k = 0; k < 2; ++k) {
+            const support::Quotient u = at.over_q(k);
+            REQUIRE(compare(u, middle[k] * 0x1p-25) == 0);
+            CHECK_MESSAGE(is_nearest(out[k][0], u), support::hex(triangle), " at ", support::text(rect));
+        }
+    }
+}
+
 TEST_CASE("what faces away is dark where that is asked for, and nothing else is changed") {
     Random random(8);
     const auto mirrored = [](Triangle triangle) {
