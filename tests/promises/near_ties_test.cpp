@@ -5,15 +5,18 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "judges/exact.hpp"
 #include "judges/fragments.hpp"
 #include "support/outputs.hpp"
+#include "texgen/batch.hpp"
 #include "texgen/interpolate.hpp"
 #include "texgen/texcoord.hpp"
 
@@ -55,14 +58,32 @@ Answer of_segment(const std::vector<double>& n, std::size_t count) {
 }
 
 // Three times the window, w, and s, t, r, q; at the fragment (20, 20), the first of the rectangle.
-Answer of_triangle(const std::vector<double>& n, std::size_t count) {
+texgen::Triangle triangle_of(const std::vector<double>& n) {
     const auto vertex = [&](std::size_t i) {
         return texgen::WindowVertex{
             {support::to_float(n[i]), support::to_float(n[i + 1])}, support::to_float(n[i + 2]), four(n, i + 3)};
     };
-    const texgen::Triangle triangle{vertex(0), vertex(7), vertex(14)};
+    return {vertex(0), vertex(7), vertex(14)};
+}
+Answer of_triangle(const std::vector<double>& n, std::size_t count) {
+    const texgen::Triangle triangle = triangle_of(n);
     Answer answer{support::ExactTriangle(triangle).at(20, 20), Outputs(count, 3u)};
     interpolate(support::setup_of(triangle), {20, 20, static_cast<int>(count), 1}, answer.out.spans());
+    return answer;
+}
+
+// The same by a batch, as a tile and by its id.
+Answer of_tile(const std::vector<double>& n, int width, int height, bool by_id) {
+    const texgen::Triangle triangle = triangle_of(n);
+    texgen::TriangleBatch batch(everywhere());
+    batch.assign({&triangle, 1});
+    const texgen::FragmentRect rect{20, 20, width, height};
+    const auto count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    Answer answer{support::ExactTriangle(triangle).at(20, 20), Outputs(count, 3u)};
+    if (by_id)
+        interpolate(batch, std::vector<std::uint32_t>(count, 0), rect, answer.out.spans());
+    else
+        interpolate(batch, {&rect, 1}, answer.out.spans());
     return answer;
 }
 
@@ -95,6 +116,13 @@ TEST_CASE("next to the middle of two floats the nearest is found, alone and in c
                 next_to_the_middle += distance_in_half_ulps(answer.out[k][0], u) < 0x1p-29;
             }
         }
+        if (kind != "triangle") continue;
+        for (const auto& [width, height] : {std::pair{8, 8}, std::pair{16, 4}, std::pair{64, 1}, std::pair{5, 3}})
+            for (const bool by_id : {false, true}) {
+                const Answer answer = of_tile(numbers, width, height, by_id);
+                for (std::size_t k = 0; k < 2; ++k)
+                    CHECK_MESSAGE(is_nearest(answer.out[k][0], answer.exact.over_q(k)), line, " ", width, " ", by_id);
+            }
     }
     CHECK(lines >= 100);
     CHECK(next_to_the_middle >= 4 * lines);

@@ -4,6 +4,8 @@
 
 #include "batch_closely.inc.hpp"
 #include "batch_fragments.inc.hpp"
+#include "batch_survey.inc.hpp"
+
 #include "batch_tiles.inc.hpp"
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {

@@ -1,0 +1,183 @@
+// What is known of a batch's tiles before they are divided, a block of them in lanes. Included by batch.inc.hpp.
+
+namespace TEXGEN_DETAIL::TEXGEN_ISA {
+
+// Of a block of tiles what their kernels need: numerators, q and bounds for the quotients in double; in float, about the middle
+// of the tile, u + (dx x + dy y) / (1 + bend_x x + bend_y y).
+struct BatchTiles {
+    double per_width[batch_block];
+    double base[3][batch_block], q[batch_block], error[3][batch_block];
+    double ulps[batch_block];  // what quotients are within, of their own, a power of two
+    float middle[3][batch_block], dx[3][batch_block], dy[3][batch_block], bend_x[batch_block], bend_y[batch_block];
+    std::uint64_t are_dark, are_exact, have_middles, are_float, are_polynomial;  // a bit a tile
+};
+
+// A tile in each lane: its first fragment, from the vertex that its functions are about; the steps to its last column and row; by
+// how much more the functions may err there than at the vertices; and what a sum for each of its vectors is rounded by.
+struct TileLanes {
+    Doubles x, y, right, bottom, stretch, sums;
+
+    TEXGEN_INLINE TileLanes(const int (*tile)[4], const BatchLanes& planes, double* per_width) noexcept {
+        Words given[4];
+        TEXGEN_UNROLL
+        for (int k = 0; k < 4; ++k) given[k] = lanes_of<Words>([&](int i) { return tile[i][k]; });
+        const Doubles width = to_doubles(given[2]);
+        const Doubles height = to_doubles(given[3]);
+        store(per_width, 1.0 / width);
+        x = to_doubles(given[0]) + 0.5 - planes[BatchPlanes::origin];
+        y = to_doubles(given[1]) + 0.5 - planes[BatchPlanes::origin + 1];
+        right = width - 1.0;
+        bottom = height - 1.0;
+        stretch = maximum(maximum((magnitude(x) + width) * planes[BatchPlanes::per_reach],
+                                  (magnitude(y) + height) * planes[BatchPlanes::per_reach + 1]),
+                          Doubles{} + 1.0);
+        sums = (width * height * (1.0 / lanes) + 8.0) * unit_roundoff_double;
+    }
+};
+
+// A linear function of the window over a tile: at its corner fragments, and a bound on its error. At a fragment of the first
+// vectors two products, of at most twice its size, and two sums are rounded, by 6 u of it; and one sum for each vector below.
+struct TileFunction {
+    Doubles dx, dy, at[4], least, largest, size, error;
+
+    TEXGEN_INLINE TileFunction(const Doubles* function, const TileLanes& tile) noexcept {
+        dx = function[1];
+        dy = function[2];
+        at[0] = function[0] + (dx * tile.x + dy * tile.y) + 0.0;  // no -0
+        at[1] = at[0] + dx * tile.right;
+        at[2] = at[0] + dy * tile.bottom;
+        at[3] = at[2] + dx * tile.right;
+        least = least_of(at);
+        largest = maximum(maximum(at[0], at[1]), maximum(at[2], at[3]));
+        size = maximum(largest, least * -1.0);
+        error = function[3] * tile.stretch + size * tile.sums;
+    }
+
+    TEXGEN_INLINE static Doubles least_of(const Doubles (&at)[4]) noexcept {
+        return minimum(minimum(at[0], at[1]), minimum(at[2], at[3]));
+    }
+};
+
+// Tiles all of whose fragments in front are beyond a side of the region, with the margins of side_of() in triangle/corners.hpp.
+// `outwards` is -1 for the lower side and 1 for the upper one.
+TEXGEN_INLINE LongWords are_beyond(const TileFunction& f, const TileFunction& q, double bound, double outwards,
+                                   double tolerance) noexcept {
+    const double size = std::fabs(bound);
+    const double slack = size * 0x1p-22 + (0x1p-125 + 2.0 * tolerance);
+    const Doubles margin = (f.error + q.error * (size + slack) + q.size * (slack + size * gamma(4))) * 1.0002;
+    Doubles g[4];
+    TEXGEN_UNROLL
+    for (std::size_t i = 0; i < 4; ++i) g[i] = f.at[i] * outwards - q.at[i] * (outwards * bound);
+    return greater(TileFunction::least_of(g) * (1.0 - gamma(4)), margin);
+}
+
+// In float a tile is what a chunk is (chunks.inc.hpp), in two directions. With r = 2^-24 the numerator of a step D carries 3 r D,
+// x of the denominator 3 r X, X being its largest, so that the step has 3 r X / (1 - X) D of it; the polynomial adds 3 r D (a
+// division 2 r D), the product r D, and the value r D + 2 r |u|.
+// Where the middle is in the region no tile is dark: returns the tiles of which no more need be known.
+template <std::size_t Numerators>
+TEXGEN_INLINE LongWords prepare_in_float(const BatchJob& job, const BatchLanes& planes, const TileLanes& tile,
+                                         std::size_t first, BatchTiles& tiles) noexcept {
+    // Steps along a single column or row say nothing, and might be infinite.
+    const LongWords has_columns = greater(tile.right, 0.0);
+    const LongWords has_rows = greater(tile.bottom, 0.0);
+    const Doubles half_x = tile.right * 0.5;
+    const Doubles half_y = tile.bottom * 0.5;
+    const Doubles middle_x = tile.x + half_x;
+    const Doubles middle_y = tile.y + half_y;
+    const Doubles* const q = &planes.value[BatchPlanes::q];
+    const Doubles middle_q = q[0] + (q[1] * middle_x + q[2] * middle_y);
+    const Doubles q_error = q[3] * tile.stretch;
+    const Doubles per_q = 1.0 / middle_q;
+    const Doubles bend_x = where(has_columns, q[1] * per_q);
+    const Doubles bend_y = where(has_rows, q[2] * per_q);
+    store(&tiles.bend_x[first], to_floats(bend_x));
+    store(&tiles.bend_y[first], to_floats(bend_y));
+    const Doubles extent = magnitude(bend_x) * half_x + magnitude(bend_y) * half_y;
+    const Doubles stretched = (extent * 4.0 + 1.0) * extent + 1.0;
+    Doubles share = extent * extent;
+    share = share * share;
+    share = share * share;
+    const Doubles step_error = (extent * stretched * 3.1 + 8.1) * unit_roundoff_float;
+    const Doubles error_share = per_q * stretched * 1.001;
+    const Doubles tolerance = Doubles{} + job.tolerance * (1.0 - 0x1p-18);
+    LongWords is_float = greater(middle_q, q_error * 0x1p26) & at_most(extent, Doubles{} + 0.75);
+    LongWords is_polynomial = at_most(extent, Doubles{} + 0.25);
+    LongWords is_inside = is_float;
+    TEXGEN_UNROLL
+    for (std::size_t k = 0; k < Numerators; ++k) {
+        const Doubles* const f = &planes.value[BatchPlanes::of_numerator[k]];
+        const Doubles u = (f[0] + (f[1] * middle_x + f[2] * middle_y)) * per_q;
+        const Doubles slope_x = where(has_columns, (f[1] - u * q[1]) * per_q);
+        const Doubles slope_y = where(has_rows, (f[2] - u * q[2]) * per_q);
+        store(&tiles.middle[k][first], to_floats(u));
+        store(&tiles.dx[k][first], to_floats(slope_x));
+        store(&tiles.dy[k][first], to_floats(slope_y));
+        const Doubles step = (magnitude(slope_x) * half_x + magnitude(slope_y) * half_y) * stretched;
+        const Doubles size_u = magnitude(u);
+        const Doubles rest = size_u * (2.001 * unit_roundoff_float) + (step * step_error + 0x1p-115) +
+                             ((size_u + step) * q_error + f[3] * tile.stretch) * error_share;
+        is_float &= at_most(rest, tolerance);
+        is_polynomial &= at_most(rest + step * share, tolerance);
+        const bool has_limits = k < 2 || job.has_depth;
+        const double min = static_cast<double>(k < 2 ? job.min[k] : job.r_min);
+        const double max = static_cast<double>(k < 2 ? job.max[k] : job.r_max);
+        if (has_limits) is_inside &= ~(greater(u, max) | greater(Doubles{} + min, u));
+    }
+    tiles.are_float |= lane_bits(is_float) << first;
+    tiles.are_polynomial |= lane_bits(is_polynomial & is_float) << first;
+    return is_float & is_inside;
+}
+
+// The bounds are those of triangle/corners.hpp: the roundings of a quotient's division and product, two more than there, and of
+// its bound are below 8 u.
+template <std::size_t Numerators>
+TEXGEN_APART void prepare(const BatchJob& job, const BatchLanes& planes, const TileLanes& tile, std::size_t first,
+                          BatchTiles& tiles) noexcept {
+    const Doubles* const value = planes.value;
+    const TileFunction q(&value[BatchPlanes::q], tile);
+    const Doubles reciprocal = 1.0 / (q.least - q.error);
+    const LongWords well_in_front = greater(q.least, q.error * 0x1p24);
+    store(&tiles.q[first], q.at[0]);
+    const LongWords is_exact = well_in_front & greater(q.least, q.largest * 0x1p-12);
+    LongWords is_dark = greater(q.largest * -1.0, q.error);
+    Doubles ulps = Doubles{} + 4.0;
+    LongWords have_middles = is_exact;
+    TEXGEN_UNROLL
+    for (std::size_t k = 0; k < Numerators; ++k) {
+        const TileFunction f(&value[BatchPlanes::of_numerator[k]], tile);
+        const Doubles largest = (f.size + f.error) * reciprocal;
+        const Doubles error =
+            (f.error + largest * q.error) * (reciprocal * 1.0001) + largest * (8.0 * unit_roundoff_double);
+        store(&tiles.base[k][first], f.at[0]);
+        store(&tiles.error[k][first], error);
+        // Where numerators have one sign, a lower bound on what is above 2^-125 of the quotients, times q: they are normal floats,
+        // and an ulp of one in double is 2^-53 of it at least.
+        const Doubles least = (maximum(f.least, f.largest * -1.0) - f.error) - q.largest * 0x1p-125;
+        const LongWords is_normal = greater(least, 0.0);
+        ulps = maximum(ulps, where(is_normal, error * q.largest / least * (0x1p53 * 1.001)));
+        have_middles &= is_normal;
+        if (k < 2) {
+            const double min = static_cast<double>(job.min[k]);
+            const double max = static_cast<double>(job.max[k]);
+            // A corner in the region spares the rest.
+            if (any(greater(q.at[0] * min, f.at[0]) | greater(f.at[0], q.at[0] * max))) {
+                is_dark |= are_beyond(f, q, min, -1.0, job.tolerance);
+                is_dark |= are_beyond(f, q, max, 1.0, job.tolerance);
+            }
+        }
+        if (k == 2 && job.has_depth) {
+            // Infinite limits as r_coverage() has them.
+            const double r_min = larger(-0x1p500, smaller(0x1p128, static_cast<double>(job.r_min)));
+            const double r_max = larger(-0x1p128, smaller(0x1p500, static_cast<double>(job.r_max)));
+            is_dark |= are_beyond(f, q, r_min, -1.0, job.tolerance);
+            is_dark |= are_beyond(f, q, r_max, 1.0, job.tolerance);
+        }
+    }
+    store(&tiles.ulps[first], power_of_two_below(ulps) * 2.0);
+    tiles.are_dark |= lane_bits(is_dark) << first;
+    tiles.are_exact |= lane_bits(is_exact) << first;
+    tiles.have_middles |= lane_bits(have_middles & greater(Doubles{} + 0x1p14, ulps)) << first;
+}
+
+}  // namespace TEXGEN_DETAIL::TEXGEN_ISA
