@@ -11,7 +11,7 @@ struct VertexLanes {
     TEXGEN_INLINE void load_from(const float* const (&triangle)[lanes], std::size_t i, bool is_one) noexcept {
         if (is_one) {
             TEXGEN_UNROLL
-            for (std::size_t k = 0; k < 8; ++k) value[k] = Floats{} + triangle[0][i * BatchVertex::size + k];
+            for (std::size_t k = 0; k < 8; ++k) value[k] = triangle[0][i * BatchVertex::size + k] - Floats{};
             return;
         }
         TEXGEN_UNROLL
