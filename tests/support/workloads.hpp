@@ -925,11 +925,13 @@ Calls volume_calls(const Numbers& n) {
     if (HasDepth) region = region.with_depth(sides.x, sides.w);
     return calls_of([texgen, region] { keep(texgen::LitVolume<texgen::World>(texgen, region)); });
 }
-inline Calls planes_calls(const Numbers& n) {
+template <bool HasDepth>
+Calls planes_calls(const Numbers& n) {
     Reader reader(n);
     const texgen::WorldTexgen texgen(reader.dmat4());
     const glm::dvec4 sides = reader.dvec4();
-    const texgen::TextureRegion region = texgen::atlas_tile({sides.x, sides.y}, {sides.z, sides.w});
+    texgen::TextureRegion region = texgen::atlas_tile({sides.x, sides.y}, {sides.z, sides.w});
+    if (HasDepth) region = region.with_depth(sides.x, sides.w);
     return calls_of([texgen, region] { keep(texgen::clip_planes(texgen, region)); });
 }
 
@@ -1437,6 +1439,8 @@ inline const std::array workloads{
              detail::coverage_calls<texgen::Box, 1, detail::whole_volume>, detail::of_touching},
     Workload{"coverage of 256 boxes, with a depth", 24, detail::ordinary_boxes, detail::hostile_boxes,
              detail::coverage_calls<texgen::Box, detail::bodies, detail::whole_volume>, detail::of_touching},
+    Workload{"coverage of a sphere, with a depth", 16, detail::ordinary_spheres, detail::hostile_spheres,
+             detail::coverage_calls<texgen::Sphere, 1, detail::whole_volume>, detail::of_touching},
     Workload{"coverage of 256 spheres, with a depth", 16, detail::ordinary_spheres, detail::hostile_spheres,
              detail::coverage_calls<texgen::Sphere, detail::bodies, detail::whole_volume>, detail::of_touching},
     Workload{"coverage of a box, asked once, with a depth", 24, detail::ordinary_boxes, detail::hostile_boxes,
@@ -1455,7 +1459,10 @@ inline const std::array workloads{
              detail::one_question_calls<texgen::Box>, detail::of_touching},
     Workload{"coverage of a sphere, asked once", 16, detail::ordinary_spheres, detail::hostile_spheres,
              detail::one_question_calls<texgen::Sphere>, detail::of_touching},
-    Workload{"clip_planes", 0, detail::ordinary_volume, detail::hostile_volume, detail::planes_calls, detail::always},
+    Workload{"clip_planes", 0, detail::ordinary_volume, detail::hostile_volume, detail::planes_calls<false>,
+             detail::always},
+    Workload{"clip_planes with a depth", 0, detail::ordinary_volume, detail::hostile_volume, detail::planes_calls<true>,
+             detail::always},
     Workload{"clip_to_near", 24, detail::ordinary_polygon, detail::hostile_numbers<24>, detail::clip_calls<true>,
              detail::always},
     Workload{"clip_to_slide", 24, detail::ordinary_polygon, detail::hostile_numbers<24>, detail::clip_calls<false>,
