@@ -26,6 +26,7 @@
 #include "files.hpp"
 #include "html.hpp"
 #include "page.hpp"
+#include "readme_table.hpp"
 #include "render.hpp"
 #include "room.hpp"
 #include "scenes.hpp"
@@ -56,7 +57,8 @@ constexpr const char* usage =
     "  --rounds N      how often the loops take turns, 1 to 21; the median counts (default: 21)\n"
     "  --out DIR       the folder of the report (default: report)\n"
     "  --timings FILE  what texgen_bench_o2, then what texgen_bench_native wrote with --benchmark_out; may be "
-    "repeated\n"
+    "repeated;\n"
+    "                  of two the rows of the README's table become times.md\n"
     "  --worst FILE    what texgen_worst wrote: the worst input found for each function\n"
     "  --costs FILE    what costs.cmake wrote: what it costs to compile the headers and calls\n"
     "  --help          this text\n"
@@ -319,6 +321,7 @@ int run(const Options& options) {
     for (const PictureOfScene& picture : report.room_pictures) staging.write(picture.file, picture.png);
     const std::string page = with_charts_drawn(html_of(report), Staging(options.out));
     staging.write("index.html", page);
+    if (const std::string table = readme_table_of(report); !table.empty()) staging.write("times.md", table);
     staging.check_names();
 
     std::fputs(text_of(report).c_str(), stdout);

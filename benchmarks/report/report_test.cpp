@@ -190,6 +190,14 @@ TEST_CASE("timings become the page's tables and charts, which say where others a
     CHECK(page.find("1.50 times the time of GLM, mat4 * vec4") < page.find("<h2>"));
     CHECK(page.find("<b>not the fastest</b>") != std::string::npos);
     CHECK(page.find(has_gnuplot() ? "<title>GLM, mat4 * vec4</title>" : "No chart") != std::string::npos);
+
+    write("timings.json", timing_of("project planar, 1024", "texgen, exact", "0.75") +
+                              timing_of("project planar, 1024", "GLM, mat4 * vec4", "16.25"));
+    CHECK(!fs::exists("report/times.md"));
+    CHECK(place.run("--rounds 1 --size 16x16 --timings timings.json --timings timings.json").status == 0);
+    const std::string table = contents("report/times.md");
+    CHECK(table.find("| points, planar | 0.75 / 0.75, 1.0e-3 | | 16.2 / 16.2, 1.0e-3 | |\n") != std::string::npos);
+    CHECK(table.find("| a segment | | | | |\n") != std::string::npos);
 }
 
 TEST_CASE("without gnuplot, and with one that fails, the page says so in the place of its charts and is complete") {
