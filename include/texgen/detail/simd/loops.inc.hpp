@@ -132,10 +132,10 @@ TEXGEN_INLINE Doubles where(const LongWords& mask, const Doubles& values) noexce
 TEXGEN_INLINE Doubles select(const LongWords& mask, const Doubles& a, const Doubles& b) noexcept {
     return Doubles::of([&](int i) { return mask.lane[i] != 0 ? a.lane[i] : b.lane[i]; });
 }
-TEXGEN_INLINE LongWords off_middles(const Doubles& a, std::int64_t ulps) noexcept {
+TEXGEN_INLINE LongWords are_near_middles(const Doubles& a, std::int64_t ulps) noexcept {
     const auto offset = static_cast<std::uint64_t>(ulps - 0x10000000);
     const auto mask = static_cast<std::uint64_t>(0x1ffffffe - 2 * ulps);
-    return LongWords::of([&](int i) { return static_cast<int>((bit_cast<std::uint64_t>(a.lane[i]) + offset) & mask); });
+    return LongWords::of([&](int i) { return ((bit_cast<std::uint64_t>(a.lane[i]) + offset) & mask) == 0 ? -1 : 0; });
 }
 TEXGEN_INLINE Words distances_from_middles(const Doubles& a, const Doubles& b, int ulps) noexcept {
     return ~(are_near_middles(a, ulps) | are_near_middles(b, ulps)) & 1;
@@ -164,9 +164,6 @@ TEXGEN_INLINE Words narrow(const LongWords& mask) noexcept { return mask; }
 TEXGEN_INLINE int lane(const Words& a, int i) noexcept { return a.lane[i]; }
 TEXGEN_INLINE Words equal(const Words& a, int b) noexcept {
     return Words::of([&](int i) { return a.lane[i] == b ? -1 : 0; });
-}
-TEXGEN_INLINE LongWords are_near_middles(const Doubles& a, std::int64_t ulps) noexcept {
-    return equal(off_middles(a, ulps), 0);
 }
 TEXGEN_INLINE Doubles with_sign_of(const Doubles& size, const Doubles& sign) noexcept {
     return Doubles::of([&](int i) { return std::copysign(size.lane[i], sign.lane[i]); });

@@ -79,12 +79,8 @@ TEXGEN_INLINE Doubles select(const LongWords& mask, const Doubles& a, const Doub
 }
 // Where a number lies within so many of its ulps, 1 less than a power of two, of the middle of two normal floats (or one
 // more beyond it), and that middle.
-TEXGEN_INLINE LongWords off_middles(const Doubles& a, long long ulps) noexcept {
-    return (__builtin_bit_cast(LongWords, a) + (ulps - 0x10000000)) & (0x1ffffffe - 2 * ulps);
-}
-TEXGEN_INLINE LongWords equal(const LongWords& a, int b) noexcept { return a == b; }
 TEXGEN_INLINE LongWords are_near_middles(const Doubles& a, long long ulps) noexcept {
-    return equal(off_middles(a, ulps), 0);
+    return ((__builtin_bit_cast(LongWords, a) + (ulps - 0x10000000)) & (0x1ffffffe - 2 * ulps)) == 0;
 }
 // As many numbers as a and b have, in whatever order, none negative: 0 for each that is so near a middle. The low words decide.
 template <int... Lane>
