@@ -294,14 +294,15 @@ std::string chart_of(const std::vector<Timings>& builds, const std::string& scen
             "To the left is faster, further down more accurate.");
 }
 
-std::vector<Contest> contests_of(const std::vector<Timings>& builds, const std::string& scene,
-                                 const std::string& ours) {
+std::vector<Contest> contests_of(const std::vector<Timings>& builds, const std::string& scene, const std::string& ours,
+                                 const std::string& theirs) {
     std::vector<Contest> contests;
     for (const Timings& build : builds) {
         const Timing* best = nullptr;
         for (const Timing& row : build.rows)
-            if (row.scene == scene && !is_ours(row) && !row.variant.starts_with("rejected") &&
-                !row.variant.starts_with("floor") && (best == nullptr || row.nanoseconds < best->nanoseconds))
+            if (row.scene == scene && (theirs.empty() || row.variant == theirs) && !is_ours(row) &&
+                !row.variant.starts_with("rejected") && !row.variant.starts_with("floor") &&
+                (best == nullptr || row.nanoseconds < best->nanoseconds))
                 best = &row;
         const Timing* row = build.find(scene, ours);
         if (row != nullptr && best != nullptr) contests.push_back({short_flags(build), *row, *best});

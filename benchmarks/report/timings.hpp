@@ -31,12 +31,13 @@ Timings read_timings(const std::string& file);
 std::string table_of(const std::vector<Timings>& builds, const std::string& scene);
 std::string chart_of(const std::vector<Timings>& builds, const std::string& scene);
 
-// One of the library's ways and the fastest of the others'; one a build.
+// One of the library's ways and the fastest of the others', or the one that is named; one a build.
 struct Contest {
     std::string flags;
     Timing ours, theirs;
 };
-std::vector<Contest> contests_of(const std::vector<Timings>& builds, const std::string& scene, const std::string& ours);
+std::vector<Contest> contests_of(const std::vector<Timings>& builds, const std::string& scene, const std::string& ours,
+                                 const std::string& theirs = {});
 
 // Promised against measured for a terminal.
 std::string text_of(const std::vector<Timings>& builds);
