@@ -188,7 +188,7 @@ inline bool take_exact_quotients(const CloseFunctions& functions, TileJob& job) 
         const bool is_exact =
             is_multiple(f, 0, exact.base, q) && is_multiple(f, 1, exact.dx, q) && is_multiple(f, 2, exact.dy, q);
         if (is_exact) ramp = exact;
-        job.quotient_error[k] = is_exact ? 0.0 : job.quotient_error[k] + gamma(5) * size;
+        job.quotient_error[k] = is_exact ? 0.0 : (f.error + size * q.error) * (1.001 * reciprocal) + gamma(5) * size;
         is_any_exact |= is_exact;
     }
     job.q = {1.0, 0.0, 0.0};
