@@ -19,9 +19,9 @@
 #include "segments.inc.hpp"
 
 #include "boxes.inc.hpp"
-#include "depth.inc.hpp"
 #include "footprint.inc.hpp"
 #include "forms.inc.hpp"
+#include "mask.inc.hpp"
 #include "separating.inc.hpp"
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
@@ -63,9 +63,9 @@ struct KernelTable<SegmentKernels, CompiledWhereCalled> {
 };
 
 template <class CompiledWhereCalled>
-struct KernelTable<DepthKernels, CompiledWhereCalled> {
-    static const DepthKernels& get() noexcept {
-        static constexpr DepthKernels table{.darken = darken<>};
+struct KernelTable<MaskKernels, CompiledWhereCalled> {
+    static const MaskKernels& get() noexcept {
+        static constexpr MaskKernels table{.light_all = light_all<>, .darken = darken<>};
         return table;
     }
 };

@@ -43,13 +43,21 @@ TEXGEN_INLINE Vector lit_of(const Output& to, const Vector (&value)[2], const Ma
     return one_where(in_front & in_region(to, value));
 }
 
-// The first `count` lanes.
+// The first `count` lanes, by parts of fixed sizes: of one after another compilers make a call of memcpy.
 template <class Vector>
 TEXGEN_INLINE void store_some(float* to, int count, const Vector& values) noexcept {
-    if (count == static_cast<int>(sizeof(Vector) / sizeof(float))) return store(to, values);
-    float buffer[sizeof(Vector) / sizeof(float)];
+    constexpr auto size = sizeof(Vector) / sizeof(float);
+    if (count == static_cast<int>(size)) return store(to, values);
+    float buffer[size];
     store(buffer, values);
-    for (int i = 0; i < count; ++i) to[i] = buffer[i];
+    const float* from = buffer;
+    TEXGEN_UNROLL
+    for (int part = static_cast<int>(size) / 2; part > 0; part /= 2) {
+        if ((count & part) == 0) continue;
+        std::memcpy(to, from, static_cast<std::size_t>(part) * sizeof(float));
+        to += part;
+        from += part;
+    }
 }
 
 // A whole vector where it may be written, else up to `end`.

@@ -95,7 +95,7 @@ void darken_batch(Job job, const PointOutputs& out, const Batch& batch, const Ru
         if (!is_needed) continue;
         job.out[0] = r != nullptr && part == job.count ? r : buffer;
         run(job);
-        chosen<DepthKernels>().darken(lit, job.out[0], part, out.r_min, out.r_max);
+        chosen<MaskKernels>().darken(lit, job.out[0], part, out.r_min, out.r_max);
         if (r != nullptr && job.out[0] == buffer) std::memcpy(r, buffer, part * sizeof(float));
     }
 }

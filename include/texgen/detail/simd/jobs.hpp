@@ -226,8 +226,9 @@ struct SegmentKernels {
     std::size_t (*fill_all_float)(const SegmentJob&, std::size_t first) noexcept;
 };
 
-// What the depth of a region takes from a mask.
-struct DepthKernels {
+// A mask of what is certainly inside, and what the depth of a region takes from one.
+struct MaskKernels {
+    void (*light_all)(float* lit, std::size_t count) noexcept;
     // lit becomes 0 where r is not in [min, max].
     void (*darken)(float* lit, const float* r, std::size_t count, float min, float max) noexcept;
 };

@@ -207,7 +207,7 @@ inline namespace TEXGEN_BUILD {
 TEXGEN_EXTERN template const TileKernels& chosen<TileKernels>() noexcept;
 TEXGEN_EXTERN template const PointKernels& chosen<PointKernels>() noexcept;
 TEXGEN_EXTERN template const SegmentKernels& chosen<SegmentKernels>() noexcept;
-TEXGEN_EXTERN template const DepthKernels& chosen<DepthKernels>() noexcept;
+TEXGEN_EXTERN template const MaskKernels& chosen<MaskKernels>() noexcept;
 TEXGEN_EXTERN template const FootprintKernels& chosen<FootprintKernels>() noexcept;
 TEXGEN_EXTERN template const FormKernels& chosen<FormKernels>() noexcept;
 TEXGEN_EXTERN template const FloatFormKernels& chosen<FloatFormKernels>() noexcept;

@@ -29,6 +29,8 @@ public:
         output_[1] = t;
         lit_ = lit;
     }
+    // As it is known already.
+    void leave_mask() noexcept { lit_ = {}; }
     // One coordinate, 0 to 2 for s, t, r.
     void add(glm::length_t coordinate, const std::span<float>& output) noexcept {
         alone_ = triangle_.planes.planes(coordinate, coordinate);
@@ -66,11 +68,9 @@ public:
 
 private:
     static Plan plan_without_survey(const Tile& tile, const Corners& at) noexcept {
-        return {Work::divide,
-                pays_for_chunks(tile) ? chunk_length(at, tile.width) : 0,
-                StepRule::undecided,
-                {},
-                Coverage::inside};
+        return {Work::divide,        pays_for_chunks(tile) ? chunk_length(at, tile.width) : 0,
+                StepRule::undecided, {},
+                Coverage::partial,   Coverage::inside};
     }
 
     void fill(const Tile& tile) noexcept {
@@ -137,7 +137,7 @@ private:
         const Double2 error = at.quotient_error(at.largest_quotient());
         for (std::size_t k = 0; k < 2; ++k) job.quotient_error[k] = error[k];
         // A small tile does not repay the search for its least quotient.
-        job.ulps = static_cast<std::int64_t>(tile.width) * tile.height < 256 ? 0 : at.ulps_of_quotients(error);
+        job.ulps = static_cast<std::int64_t>(tile.width) * tile.height < 1024 ? 0 : at.ulps_of_quotients(error);
         TileJob::Unit unit = kernels_.fill_exact(job, job.unit_at(0, 0));
         if (job.is_done(unit)) return;
         CloseFunctions functions = close_ramps(tile).split();
@@ -330,8 +330,8 @@ inline void darken_beyond_depth(const TileKernels& kernels, const TriangleFuncti
     const std::size_t length = count / rows;
     float* const first = lit.data() + offset_in(rect, tile.x, tile.y);
     for (std::size_t y = 0; y < rows; ++y)
-        chosen<DepthKernels>().darken(first + y * static_cast<std::size_t>(rect.width), buffer.data() + y * length,
-                                      length, triangle.lit.r_min(), triangle.lit.r_max());
+        chosen<MaskKernels>().darken(first + y * static_cast<std::size_t>(rect.width), buffer.data() + y * length,
+                                     length, triangle.lit.r_min(), triangle.lit.r_max());
 }
 
 // The fragments of a rectangle, for outputs that are computed.
@@ -347,10 +347,14 @@ inline Work interpolate_tile(const TriangleSetup& setup, const Tile& tile, const
 
     const TileKernels& kernels = chosen<TileKernels>();
 
+    // What is certainly inside is lit, and s and t need not be compared.
+    const bool is_inside = plan.sides == Coverage::inside;
+    if (is_inside && !out.lit.empty()) chosen<MaskKernels>().light_all(out.lit.data(), out.lit.size());
     const bool both = !out.s.empty() && !out.t.empty();
-    if (both || !out.lit.empty()) {
+    if (both || (!is_inside && !out.lit.empty())) {
         TileInterpolator<> interpolator(kernels, triangle, tile, found.close);
         interpolator.add(out.s, out.t, out.lit);
+        if (is_inside) interpolator.leave_mask();
         if (both)
             interpolator.interpolate(tile, found.at, plan);
         else
@@ -365,8 +369,8 @@ inline Work interpolate_tile(const TriangleSetup& setup, const Tile& tile, const
         float buffer[1024];
         darken_beyond_depth(kernels, triangle, tile, tile, buffer, out.lit);
     } else {
-        chosen<DepthKernels>().darken(out.lit.data(), out.r.data(), out.lit.size(), triangle.lit.r_min(),
-                                      triangle.lit.r_max());
+        chosen<MaskKernels>().darken(out.lit.data(), out.r.data(), out.lit.size(), triangle.lit.r_min(),
+                                     triangle.lit.r_max());
     }
     return plan.work;
 }

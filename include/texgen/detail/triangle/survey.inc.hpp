@@ -10,10 +10,14 @@ struct Plan {
     int chunk;
     StepRule steps;
     double error[2];
-    Coverage depth;  // inside: r need not be compared
+    Coverage sides, depth;  // inside: s and t, or r, need not be compared
 };
 
 struct TileSurvey {
+    // No more than the corners, and those in place: zeros, or a copy, would cost what a small tile does.
+    TileSurvey(const TriangleFunctions& triangle, const Tile& tile) noexcept
+        : at(corners_of(triangle.planes, triangle.st, triangle.q, tile)) {}
+
     Corners at;
     Plan plan;
     OnDemand<CloseRamps> close;  // where the planes cancel
@@ -76,29 +80,30 @@ TEXGEN_APART inline Coverage depth_coverage(const TriangleFunctions& triangle, c
     return r_coverage(at, triangle.lit, triangle.tolerance);
 }
 
-inline Plan choose_plan(const TriangleFunctions& triangle, const Tile& tile, const Corners& at) noexcept {
-    Plan plan{Work::nothing, 0, StepRule::undecided, {}, Coverage::inside};
-    if (at.all_behind()) return plan;
-    const Coverage sides = st_coverage(at, triangle.lit, triangle.tolerance);
-    if (sides == Coverage::outside) return plan;
+// In place: a copy of what was just written field by field would wait for it.
+inline void choose_plan(const TriangleFunctions& triangle, const Tile& tile, const Corners& at, Plan& plan) noexcept {
+    plan.work = Work::nothing;
+    plan.chunk = 0;
+    plan.steps = StepRule::undecided;
+    plan.depth = Coverage::inside;
+    if (at.all_behind()) return;
+    plan.sides = st_coverage(at, triangle.lit, triangle.tolerance);
+    if (plan.sides == Coverage::outside) return;
     if (triangle.lit.has_depth()) plan.depth = depth_coverage(triangle, tile);
-    if (plan.depth == Coverage::outside) return plan;
+    if (plan.depth == Coverage::outside) return;
 
-    const bool all_inside = sides == Coverage::inside && plan.depth == Coverage::inside;
+    const bool all_inside = plan.sides == Coverage::inside && plan.depth == Coverage::inside;
     plan.work = all_inside ? Work::divide : Work::divide_and_test;
     if (at.well_in_front() && is_constant(at.q_ramp)) plan.work = Work::affine;
-    if (triangle.tolerance == 0.0 || !pays_for_chunks(tile)) return plan;
+    if (triangle.tolerance == 0.0 || !pays_for_chunks(tile)) return;
     plan.chunk = chunk_length(at, tile.width);
-    if (!at.well_in_front()) return plan;
-    choose_steps(plan, at, triangle.tolerance * (1.0 - 0x1p-18));
-    return plan;
+    if (at.well_in_front()) choose_steps(plan, at, triangle.tolerance * (1.0 - 0x1p-18));
 }
 
 inline TileSurvey survey(const TriangleFunctions& triangle, const Tile& tile) noexcept {
-    TileSurvey found;  // not {}: zeros would cost what a small tile does
-    found.at = corners_of(triangle.planes, triangle.st, triangle.q, tile);
+    TileSurvey found(triangle, tile);
     for (;;) {
-        found.plan = choose_plan(triangle, tile, found.at);
+        choose_plan(triangle, tile, found.at, found.plan);
         if (found.close || found.plan.work == Work::nothing || !found.at.cancel()) return found;
         found.close.make(ClosePlanes(triangle.planes, tile).ramps(0, 1));
         found.at = corners_of(*found.close);

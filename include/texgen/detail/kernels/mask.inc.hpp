@@ -1,6 +1,14 @@
-// The inner loops of a mask that a depth bounds. Included by kernels.inc.hpp.
+// The inner loops of a mask that is made by itself. Included by kernels.inc.hpp.
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
+
+template <class CompiledWhereCalled = void>
+void light_all(float* lit, std::size_t count) noexcept {
+    constexpr auto size = static_cast<std::size_t>(wide_lanes);
+    const WideFloats ones = WideFloats{} + 1.0f;
+    for (; count >= size; count -= size, lit += size) store(lit, ones);
+    for (; count > 0; --count, ++lit) *lit = 1.0f;
+}
 
 template <class CompiledWhereCalled = void>
 void darken(float* lit, const float* r, std::size_t count, float min, float max) noexcept {
