@@ -37,7 +37,7 @@ private:
     }
 
     const ClosePlane& close_q() noexcept {
-        if (!close_q_) close_q_.make(functions_.triangle.planes, 3, rect_);
+        if (!close_q_) close_q_.make(functions_.triangle.planes, glm::length_t{3}, rect_);
         return *close_q_;
     }
 
