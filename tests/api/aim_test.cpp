@@ -14,6 +14,7 @@
 #include "judges/oracle.hpp"
 #include "judges/real.hpp"
 #include "support/hex.hpp"
+#include "support/mirrors.hpp"
 #include "support/random.hpp"
 #include "texgen/projector.hpp"
 
@@ -276,26 +277,8 @@ TEST_CASE("a mirrored view is V R, within 1 ulp or 2^-96 of its terms: at any di
             normal, i % 3 == 0 ? -0.5 * along * random.uniform(0.999, 1.001) : along * random.uniform(-2.0, 2.0));
         const auto mirrored = texgen::mirrored(*view, plane);
         REQUIRE(mirrored);
-        Rational squared = 0;
-        for (int k = 0; k < 3; ++k) squared += exactly(plane[k]) * exactly(plane[k]);
-        for (int row = 0; row < 4; ++row) {
-            Rational factor = 0, size = 0;
-            for (int k = 0; k < 3; ++k) {
-                const Rational term = 2 * exactly(view->matrix()[k][row]) * exactly(plane[k]) / squared;
-                factor += term;
-                size += support::magnitude(term);
-            }
-            for (int column = 0; column < 4; ++column) {
-                const Rational element = exactly(view->matrix()[column][row]), component = exactly(plane[column]);
-                const Rational exact = element - factor * component;
-                const Rational terms = support::magnitude(element) + size * support::magnitude(component);
-                const double computed = mirrored->matrix()[column][row];
-                const Rational error = support::magnitude(exactly(computed) - exact);
-                if (error <= terms * support::power_of_two(-96)) continue;
-                const double ulps = support::ulp_error(computed, exact);
-                if (ulps > worst) worst = ulps, worst_input = hex(position) + " " + hex(normal) + " " + hex(plane.w);
-            }
-        }
+        const double error = support::mirror_error(*view, plane, mirrored->matrix());
+        if (error > worst) worst = error, worst_input = hex(position) + " " + hex(normal) + " " + hex(plane.w);
     }
     CHECK_MESSAGE(worst <= 1.0, worst_input);
     MESSAGE(worst, " ulp at most");

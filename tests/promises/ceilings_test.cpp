@@ -21,7 +21,9 @@
 #include "judges/fragments.hpp"
 #include "judges/rational_matrix.hpp"
 #include "judges/real.hpp"
+#include "support/aspects.hpp"
 #include "support/hard_triangles.hpp"
+#include "support/mirrors.hpp"
 #include "support/outputs.hpp"
 #include "support/random.hpp"
 #include "support/surfaces.hpp"
@@ -424,6 +426,43 @@ double of_pinholes(bool about_the_middle, std::uint64_t seed) {
     return worst;
 }
 
+// Views in a mirror, in double ulps.
+double of_mirrors(double distance, std::uint64_t seed) {
+    Random random(seed);
+    double worst = 0.0;
+    for (int i = 0; i < 200; ++i) {
+        const glm::dvec3 position = distance * random.direction(), normal = random.direction();
+        const texgen::Aim aim{position, position + random.direction(), random.direction()};
+        const auto view = look_at(aim).value();
+        // The mirror is in front of the camera, where the translation cancels.
+        const glm::dvec4 plane(
+            normal, random.uniform(0.1, 3.0) - (normal.x * position.x + normal.y * position.y + normal.z * position.z));
+        worst = std::max(worst, support::mirror_error(view, plane, mirrored(view, plane).value().matrix()));
+    }
+    return worst;
+}
+
+struct WorstAspects {
+    double angle = 0.0, sides = 0.0, crop = 0.0;  // double ulps; 2^-53 of the largest side
+};
+
+WorstAspects of_aspects(std::uint64_t seed) {
+    Random random(seed);
+    WorstAspects worst;
+    for (int i = 0; i < 300; ++i) {
+        const texgen::PerspectiveLens lens = support::random_perspective(random);
+        const double wider = lens.aspect * random.uniform(1.0, 10.0);
+        worst.angle = std::max(worst.angle, support::narrowed_angle_error(lens, contain(lens, wider)));
+        const auto rectangle = support::random_rectangle<texgen::FrustumLens>(random);
+        const double aspect = random.power_of_ten(-1.0, 1.0);
+        const support::Narrowing narrowing(rectangle, aspect);
+        worst.sides = std::max(worst.sides, narrowing.contain_error(rectangle, contain(rectangle, aspect)));
+        const texgen::TextureRegion picture = texgen::atlas_tile({0.25, 0.5}, {0.75, 0.625});
+        worst.crop = std::max(worst.crop, narrowing.cover_error(picture, cover(rectangle, aspect, picture)));
+    }
+    return worst;
+}
+
 // Views whose `up` is that near to where they look, or any: the rotation in double ulps of 1.
 double of_views(bool nearly_parallel, std::uint64_t seed) {
     Random random(seed);
@@ -691,5 +730,13 @@ TEST_CASE("no ceiling is raised") {
             hold("clip_planes of a depth, ulp", family, true, worst.planes);
         }
     }
+    seed = 9090;
+    for (const char* const distance : {"1", "1e7"})
+        hold("mirrored, ulp", std::string(distance) + " from the origin", false,
+             of_mirrors(std::strtod(distance, nullptr), ++seed));
+    const WorstAspects aspects = of_aspects(++seed);
+    hold("contain, ulp of the angle", "any", false, aspects.angle);
+    hold("contain, 2^-53 of the largest side", "any", false, aspects.sides);
+    hold("cover, 2^-53 of the largest side", "any", false, aspects.crop);
     if (lowered != nullptr) ceilings.write(lowered);
 }

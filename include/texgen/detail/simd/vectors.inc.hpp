@@ -77,28 +77,33 @@ TEXGEN_INLINE Doubles where(const LongWords& mask, const Doubles& values) noexce
 TEXGEN_INLINE Doubles select(const LongWords& mask, const Doubles& a, const Doubles& b) noexcept {
     return mask ? a : b;
 }
+// Integers modulo 2^64 or 2^32.
+using Residues [[gnu::vector_size(TEXGEN_LANE_BYTES)]] = std::uint64_t;
+using WideResidues [[gnu::vector_size(TEXGEN_LANE_BYTES)]] = std::uint32_t;
+
 // Where a number lies within so many of its ulps, 1 less than a power of two, of the middle of two normal floats (or one
 // more beyond it), and that middle.
-TEXGEN_INLINE LongWords are_near_middles(const Doubles& a, long long ulps) noexcept {
-    return ((__builtin_bit_cast(LongWords, a) + (ulps - 0x10000000)) & (0x1ffffffe - 2 * ulps)) == 0;
+TEXGEN_INLINE LongWords are_near_middles(const Doubles& a, std::int64_t ulps) noexcept {
+    return ((__builtin_bit_cast(Residues, a) + static_cast<std::uint64_t>(ulps - 0x10000000)) &
+            static_cast<std::uint64_t>(0x1ffffffe - 2 * ulps)) == 0;
 }
 // As many numbers as a and b have, in whatever order, none negative: 0 for each that is so near a middle. The low words decide.
 template <int... Lane>
-TEXGEN_INLINE WideWords low_words(const Doubles& a, const Doubles& b, std::integer_sequence<int, Lane...>) noexcept {
+TEXGEN_INLINE WideResidues low_words(const Doubles& a, const Doubles& b, std::integer_sequence<int, Lane...>) noexcept {
     constexpr int low = std::endian::native == std::endian::little ? 0 : 1;
-    return __builtin_shufflevector(__builtin_bit_cast(WideWords, a), __builtin_bit_cast(WideWords, b),
+    return __builtin_shufflevector(__builtin_bit_cast(WideResidues, a), __builtin_bit_cast(WideResidues, b),
                                    (Lane / 4 * 4 + Lane % 2 * 2 + Lane % 4 / 2 * wide_lanes + low)...);
 }
 TEXGEN_INLINE WideWords distances_from_middles(const Doubles& a, const Doubles& b, int ulps) noexcept {
-    return (low_words(a, b, std::make_integer_sequence<int, wide_lanes>()) + (ulps - 0x10000000)) &
-           (0x1ffffffe - 2 * ulps);
+    const WideResidues low = low_words(a, b, std::make_integer_sequence<int, wide_lanes>());
+    return __builtin_bit_cast(WideWords, (low + static_cast<std::uint32_t>(ulps - 0x10000000)) &
+                                             static_cast<std::uint32_t>(0x1ffffffe - 2 * ulps));
 }
 TEXGEN_INLINE Doubles middle_near(const Doubles& a) noexcept {
     return __builtin_bit_cast(Doubles, (__builtin_bit_cast(LongWords, a) & ~0x1fffffffLL) | 0x10000000);
 }
 
-// Integers modulo 2^64, and a number that is one of less than 2^63.
-using Residues [[gnu::vector_size(TEXGEN_LANE_BYTES)]] = std::uint64_t;
+// A number that is an integer of less than 2^63, and what is asked of residues.
 TEXGEN_INLINE Residues to_residues(const Doubles& integers) noexcept {
     return __builtin_bit_cast(Residues, __builtin_convertvector(integers, LongWords));
 }
