@@ -5,6 +5,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -225,14 +226,38 @@ TEST_CASE("every fragment of a row whose values all lie between two floats is de
 TEST_CASE("one tie anywhere in rows of values that are far from ties is rounded to the even float") {
     Random random(201);
     Seen seen;
+    int long_ones = 0;  // so long that pairs of vectors share a division
     for (int i = 0; i < 60; ++i) {
-        const int width = random.integer(70, 900), height = random.integer(1, 3),
-                  column = random.integer(64, width - 1);
+        const int width = random.integer(70, 1500), height = random.integer(1, 3),
+                  column = random.integer(64, std::min(width, 900) - 1);
+        long_ones += width * height >= 1024;
         const Shot shot = row_with_a_tie(column, width, height, random);
         REQUIRE(support::is_tie(ExactTriangle(shot.triangle).at(shot.x(column), shot.y(0)).over_q(0)));
         Outputs out(count_of(shot.rect), random.coin() ? 15u : 3u, static_cast<std::size_t>(random.integer(0, 15)));
         require_right(shot, everywhere(), out, seen);
     }
+    CHECK(long_ones > 20);
+}
+
+TEST_CASE("a tie that a corner 2^-20 to 2^-100 of a pixel off its place leaves is rounded to its side") {
+    Random random(202);
+    Seen seen;
+    int ties = 0;
+    for (int i = 0; i < 600; ++i) {
+        const int width = random.integer(4, 64), column = random.integer(0, width - 1);
+        Shot shot = row_with_a_tie(column, width, random.integer(1, 8), random);
+        for (WindowVertex* vertex : {&shot.triangle.a, &shot.triangle.b, &shot.triangle.c})
+            vertex->window.x -= static_cast<float>(shot.rect.x);
+        shot.rect.x = 0;
+        // Every other one of so many bits that no residue holds them.
+        const float bits = i % 2 == 0 ? 1.0f : random.uniform_float(1.0, 2.0);
+        shot.triangle.c.window.x = std::ldexp(random.coin() ? bits : -bits, random.integer(-100, -20));
+        if (i % 2 != 0) shot.triangle.c.window.y = random.uniform_float(512.0, 1024.0);
+        ties += support::is_tie(ExactTriangle(shot.triangle).at(shot.x(column), shot.y(0)).over_q(0));
+        Outputs out(count_of(shot.rect), random.coin() ? 15u : 3u, static_cast<std::size_t>(random.integer(0, 15)));
+        require_right(shot, everywhere(), out, seen);
+    }
+    CHECK(ties == 0);
 }
 
 TEST_CASE("a value does not depend on the rectangle that it was asked with") {

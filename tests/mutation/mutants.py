@@ -519,6 +519,8 @@ MUTANTS = [
     *_of("detail/kernels/tiles.inc.hpp",
          ("doubt goes to the other neighbour", "with_sign_of(unit * 0x1p-26, remainder)",
           "with_sign_of(unit * 0x1p-26, remainder * -1.0)", "near_ties_test"),
+         ("residues of any length are believed", "is_known = greater(finer * 0x1p62", "is_known = greater(finer * 0x1p90",
+          "interpolate_test"),
          ("a residue forgets q", "of_row * to_residues(where(is_known, of_f)) - q.residues_at(x)",
           "of_row * to_residues(where(is_known, of_f)) - 0 * q.residues_at(x)", "interpolate_test"),
          ("what is behind is -0, and in doubt", "where(q.in_front, sum * q.reciprocal);", "sum * q.reciprocal;",
