@@ -82,12 +82,13 @@ inline std::optional<FootprintExtremes> extremes_over(const FootprintFunctions& 
     glm::dvec2 reach(0.0, 0.0);
     for (std::size_t i = 0; i < polygon.count(); ++i)
         for (glm::length_t axis = 0; axis < 2; ++axis) reach[axis] = larger(std::fabs(polygon[i][axis]), reach[axis]);
-    const auto size_of = [&](const Slope::Terms& magnitude) {
-        return larger(magnitude.dx + reach.y * magnitude.twist, magnitude.dy + reach.x * magnitude.twist);
+    const auto size_of = [&](const Slope::Terms& magnitude, double texels_per_unit) {
+        const double size = larger(magnitude.dx + reach.y * magnitude.twist, magnitude.dy + reach.x * magnitude.twist);
+        return size > 0.0 ? larger(size * texels_per_unit, 0x1p-1000) : 0.0;
     };
     const Ramp& q = functions.triangle.q.value;
     const Ramp& q_magnitude = functions.triangle.q.magnitude;
-    const double size = size_of(s.magnitude) * texels.s + size_of(t.magnitude) * texels.t;
+    const double size = size_of(s.magnitude, texels.s) + size_of(t.magnitude, texels.t);
     const double q_size = q_magnitude.base + reach.x * q_magnitude.dx + reach.y * q_magnitude.dy;
     // Both are brought near 1, so that no fourth power leaves the range of double; J in texels is then `back` times
     // what the field says.

@@ -147,23 +147,28 @@ public:
 
     // The slope of one coordinate, 0 to 2 for s, t, r. Each mu carries 3 u: products of two floats are exact, so s and t
     // that are large everywhere cancel without harm. The area carries 4 u, a difference of points 1 u, products and sums
-    // 5 u: gamma(16) of the magnitudes covers the values, and a step from the first vertex.
+    // 5 u: gamma(16) of the magnitudes covers the values, and a step from the first vertex. A weight times the area is at
+    // most 2, so only the last product of a mu may be below the normal numbers, and errs by 2^-1074 there, as what it is
+    // multiplied by does; gamma(16) 2^-1020 covers both.
     Slope slope(glm::length_t coordinate) const noexcept {
         const WindowVertex* const corner[] = {&triangle_.a, &triangle_.b, &triangle_.c};
         const double area = twice_area();
+        double least = 0.0;
         const auto mu = [&](int i, int j) {
-            return (widened(corner[i]->strq[coordinate]) * widened(corner[j]->strq.w) -
-                    widened(corner[j]->strq[coordinate]) * widened(corner[i]->strq.w)) *
-                   (weight_[i] * weight_[j]) * area;
+            const double difference = widened(corner[i]->strq[coordinate]) * widened(corner[j]->strq.w) -
+                                      widened(corner[j]->strq[coordinate]) * widened(corner[i]->strq.w);
+            if (difference != 0.0) least = 0x1p-1020;
+            return difference * weight_[j] * (weight_[i] * area);
         };
         const double ab = mu(0, 1);
         const double bc = mu(1, 2);
         const double ca = mu(2, 0);
-        const double size_ab = std::fabs(ab);
-        const double size_ca = std::fabs(ca);
-        return {{-(ab * to_c_.y + ca * to_b_.y), ab * to_c_.x + ca * to_b_.x, ab + bc + ca},
-                {size_ab * std::fabs(to_c_.y) + size_ca * std::fabs(to_b_.y),
-                 size_ab * std::fabs(to_c_.x) + size_ca * std::fabs(to_b_.x), size_ab + std::fabs(bc) + size_ca}};
+        const double size_ab = std::fabs(ab) + least;
+        const double size_ca = std::fabs(ca) + least;
+        return {
+            {-(ab * to_c_.y + ca * to_b_.y), ab * to_c_.x + ca * to_b_.x, ab + bc + ca},
+            {size_ab * std::fabs(to_c_.y) + size_ca * std::fabs(to_b_.y) + least,
+             size_ab * std::fabs(to_c_.x) + size_ca * std::fabs(to_b_.x) + least, size_ab + std::fabs(bc) + size_ca}};
     }
 
     // The Jacobian determinant of (s/q, t/q), times Q^3: the same everywhere. With M the matrix of the corners' (s, t, q),
