@@ -11,13 +11,7 @@
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
 template <class CompiledWhereCalled>
-struct KernelTable<BatchKernels, CompiledWhereCalled> {
-    static const BatchKernels& get() noexcept {
-        static constexpr BatchKernels table{.set_up = set_up_batch<>,
-                                            .divide_tiles = divide_batch_tiles<>,
-                                            .divide_fragments = divide_batch_fragments<>};
-        return table;
-    }
-};
+inline constexpr BatchKernels kernel_table<BatchKernels, CompiledWhereCalled>{
+    .set_up = set_up_batch<>, .divide_tiles = divide_batch_tiles<>, .divide_fragments = divide_batch_fragments<>};
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA

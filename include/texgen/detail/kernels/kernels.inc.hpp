@@ -28,104 +28,55 @@ namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
 // The kernels of a kind, compiled where it is asked for.
 template <class Table, class CompiledWhereCalled = void>
-struct KernelTable;
+inline constexpr Table kernel_table;
 
 template <class CompiledWhereCalled>
-struct KernelTable<TileKernels, CompiledWhereCalled> {
-    static const TileKernels& get() noexcept {
-        static constexpr TileKernels table{.fill_exact = fill_tile_exact<>,
-                                           .fill_float_divided = fill_tile_float_divided<>,
-                                           .fill_polynomial = fill_tile_polynomial<>,
-                                           .fill_closely = fill_tile_closely<>};
-        return table;
-    }
-};
+inline constexpr TileKernels kernel_table<TileKernels, CompiledWhereCalled>{
+    .fill_exact = fill_tile_exact<>,
+    .fill_float_divided = fill_tile_float_divided<>,
+    .fill_polynomial = fill_tile_polynomial<>,
+    .fill_closely = fill_tile_closely<>};
 
 template <class CompiledWhereCalled>
-struct KernelTable<PointKernels, CompiledWhereCalled> {
-    static const PointKernels& get() noexcept {
-        static constexpr PointKernels table{.fill_exact = fill_points_exact<>,
-                                            .fill_all_float = fill_points_within<FormsInFloat>,
-                                            .fill_float_divided = fill_points_within<FormsInDouble>,
-                                            .generate = generate_points<>};
-        return table;
-    }
-};
+inline constexpr PointKernels kernel_table<PointKernels, CompiledWhereCalled>{
+    .fill_exact = fill_points_exact<>,
+    .fill_all_float = fill_points_within<FormsInFloat>,
+    .fill_float_divided = fill_points_within<FormsInDouble>,
+    .generate = generate_points<>};
 
 template <class CompiledWhereCalled>
-struct KernelTable<SegmentKernels, CompiledWhereCalled> {
-    static const SegmentKernels& get() noexcept {
-        static constexpr SegmentKernels table{.fill_exact = fill_segment_exact<>,
-                                              .fill_in_double = fill_segment_in_double<>,
-                                              .fill_all_float = fill_segment_all_float<>};
-        return table;
-    }
-};
+inline constexpr SegmentKernels kernel_table<SegmentKernels, CompiledWhereCalled>{
+    .fill_exact = fill_segment_exact<>,
+    .fill_in_double = fill_segment_in_double<>,
+    .fill_all_float = fill_segment_all_float<>};
 
 template <class CompiledWhereCalled>
-struct KernelTable<MaskKernels, CompiledWhereCalled> {
-    static const MaskKernels& get() noexcept {
-        static constexpr MaskKernels table{.light_all = light_all<>, .darken = darken<>};
-        return table;
-    }
-};
+inline constexpr MaskKernels kernel_table<MaskKernels, CompiledWhereCalled>{.light_all = light_all<>,
+                                                                            .darken = darken<>};
 
 template <class CompiledWhereCalled>
-struct KernelTable<FootprintKernels, CompiledWhereCalled> {
-    static const FootprintKernels& get() noexcept {
-        static constexpr FootprintKernels table{.differentiate = differentiate<>, .filter = filter<>};
-        return table;
-    }
-};
+inline constexpr FootprintKernels kernel_table<FootprintKernels, CompiledWhereCalled>{.differentiate = differentiate<>,
+                                                                                      .filter = filter<>};
 
 template <class CompiledWhereCalled>
-struct KernelTable<FormKernels, CompiledWhereCalled> {
-    static const FormKernels& get() noexcept {
-        static constexpr FormKernels table{.weigh = weigh_forms<>};
-        return table;
-    }
-};
+inline constexpr FormKernels kernel_table<FormKernels, CompiledWhereCalled>{.weigh = weigh_forms<>};
 
 template <class CompiledWhereCalled>
-struct KernelTable<SeparatingFormKernels, CompiledWhereCalled> {
-    static const SeparatingFormKernels& get() noexcept {
-        static constexpr SeparatingFormKernels table{.make = make_planes<>};
-        return table;
-    }
-};
+inline constexpr SeparatingFormKernels kernel_table<SeparatingFormKernels, CompiledWhereCalled>{.make = make_planes<>};
 
 template <class CompiledWhereCalled>
-struct KernelTable<FloatFormKernels, CompiledWhereCalled> {
-    static const FloatFormKernels& get() noexcept {
-        static constexpr FloatFormKernels table{.round = round_forms<>};
-        return table;
-    }
-};
+inline constexpr FloatFormKernels kernel_table<FloatFormKernels, CompiledWhereCalled>{.round = round_forms<>};
 
 template <class CompiledWhereCalled>
-struct KernelTable<BoxKernels, CompiledWhereCalled> {
-    static const BoxKernels& get() noexcept {
-        static constexpr BoxKernels table{
-            .classify = classify_box<>, .sharpen = sharpen<>, .is_separated = is_separated<>};
-        return table;
-    }
-};
+inline constexpr BoxKernels kernel_table<BoxKernels, CompiledWhereCalled>{
+    .classify = classify_box<>, .sharpen = sharpen<>, .is_separated = is_separated<>};
 
 template <class CompiledWhereCalled>
-struct KernelTable<BoxBatchKernels, CompiledWhereCalled> {
-    static const BoxBatchKernels& get() noexcept {
-        static constexpr BoxBatchKernels table{
-            .classify = classify_boxes<>, .bound = bound_boxes<>, .separate = separate<>};
-        return table;
-    }
-};
+inline constexpr BoxBatchKernels kernel_table<BoxBatchKernels, CompiledWhereCalled>{
+    .classify = classify_boxes<>, .bound = bound_boxes<>, .separate = separate<>};
 
 template <class CompiledWhereCalled>
-struct KernelTable<SphereBatchKernels, CompiledWhereCalled> {
-    static const SphereBatchKernels& get() noexcept {
-        static constexpr SphereBatchKernels table{.classify = classify_spheres<>, .bound = bound_spheres<>};
-        return table;
-    }
-};
+inline constexpr SphereBatchKernels kernel_table<SphereBatchKernels, CompiledWhereCalled>{
+    .classify = classify_spheres<>, .bound = bound_spheres<>};
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA

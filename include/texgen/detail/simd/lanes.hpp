@@ -175,10 +175,10 @@ const Table& choose() noexcept {
     __builtin_cpu_init();
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq") &&
         __builtin_cpu_supports("avx512bw"))
-        return avx512::KernelTable<Table>::get();
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return avx2::KernelTable<Table>::get();
+        return avx512::kernel_table<Table>;
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return avx2::kernel_table<Table>;
 #endif
-    return of_flags::KernelTable<Table>::get();
+    return of_flags::kernel_table<Table>;
 }
 
 template <class Table>
