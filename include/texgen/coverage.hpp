@@ -5,10 +5,8 @@
 #include "detail/language.hpp"
 
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <span>
 

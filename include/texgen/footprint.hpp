@@ -19,7 +19,6 @@
 
 #include "conventions.hpp"
 #include "detail/arithmetic/nearest.hpp"
-#include "detail/assert.hpp"
 #include "detail/simd/lanes.hpp"
 #include "detail/triangle/footprint_extremes.hpp"
 #include "detail/triangle/functions.hpp"

@@ -19,13 +19,11 @@
 #include <limits>
 #include <optional>
 #include <span>
-#include <utility>
 
 #include <glm/vec2.hpp>
 
 #include "conventions.hpp"
 #include "detail/arithmetic/nearest.hpp"
-#include "detail/assert.hpp"
 #include "detail/culling/lit_test.hpp"
 #include "detail/on_demand.hpp"
 #include "detail/simd/lanes.hpp"

@@ -7,7 +7,6 @@
 #include <limits>
 #include <optional>
 
-#include <glm/common.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
