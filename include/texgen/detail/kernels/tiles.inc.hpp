@@ -50,14 +50,13 @@ TEXGEN_INLINE bool divide_part(const TileJob& job, const TileJob::Unit& part) no
         Floats quotient[2];
         std::int64_t x = x_begin;  // what follows the last vector may be no int
         const std::int64_t last = row.writable - lanes;
-        for (; x < x_end && x <= last; x += lanes, index += static_cast<double>(lanes)) {
+        for (; x < x_end; x += lanes, index += static_cast<double>(lanes)) {
             divide_vector<Exact>(job, tile_row, index, reciprocal, quotient, doubtful);
+            if (x > last) break;
             for (std::size_t k = 0; k < 2; ++k) store(row.out[k] + x, quotient[k]);
         }
-        if (x < x_end) {
-            divide_vector<Exact>(job, tile_row, index, reciprocal, quotient, doubtful);
+        if (x < x_end)
             for (std::size_t k = 0; k < 2; ++k) store_some(row.out[k] + x, static_cast<int>(x_end - x), quotient[k]);
-        }
         light(job, row, x_begin, x_end);
     }
     return Exact && any(doubtful);
@@ -68,62 +67,69 @@ void fill_tile_float_divided(const TileJob& job) noexcept {
     divide_part<false>(job, {0, job.width, 0, job.height});
 }
 
-// The same of a job that knows its ulps: pairs of vectors share a division, which adds two roundings to a quotient, and integers are asked
-// whether it is in doubt. The last pair of a row is one that ends with it, for which there is room.
+// The same of a job that knows its ulps, unit by unit of its rows: pairs of vectors share a division, which adds two roundings to a
+// quotient, and integers are asked whether it is in doubt. Returns the first unit that is. The last pair of a row ends with it,
+// and may begin in the unit before, which was certain in here: the first unit is no shorter than a pair.
 inline constexpr int pair = 2 * lanes;
 template <class CompiledWhereCalled = void>
-TEXGEN_APART bool divide_in_pairs(const TileJob& job, const TileJob::Unit& part) noexcept {
-    const auto [x_begin, x_end, y_begin, y_end] = part;
+TEXGEN_APART TileJob::Unit divide_in_pairs(const TileJob& job, const TileJob::Unit& first) noexcept {
+    const int width = job.width, height = job.height;
     const int ulps = job.ulps;
-    WideWords least = ~WideWords{} & 0x7fffffff;
-    RowOutputs row(job, y_begin);
+    RowOutputs row(job, first.y_begin);
     TileRow tile_row;
-    for (int y = y_begin; y < y_end; ++y, row.advance()) {
+    int begin = first.x_begin;
+    for (int y = first.y_begin; y < height; ++y, row.advance(), begin = 0) {
         tile_row.move_to(job, y);
         float* const out[2] = {row.out[0], row.out[1]};
-        const std::int64_t last = std::int64_t{x_end} - pair;
-        std::int64_t x = x_begin;
-        for (Doubles index = indices<Doubles>() + static_cast<double>(x_begin);;) {
-            const Doubles next_index = index + static_cast<double>(lanes);
-            const Doubles q = tile_row.q_at(job, index), next_q = tile_row.q_at(job, next_index);
-            const Doubles of_both = 1.0 / (q * next_q);
-            const Doubles reciprocal = of_both * next_q, next_reciprocal = of_both * q;
-            Doubles value[2], next_value[2];
-            for (std::size_t k = 0; k < 2; ++k) {
-                value[k] = tile_row.numerator_at(job, k, index) * reciprocal;
-                next_value[k] = tile_row.numerator_at(job, k, next_index) * next_reciprocal;
-                store(out[k] + x, to_floats(value[k]));
-                store(out[k] + x + lanes, to_floats(next_value[k]));
+        Doubles index = indices<Doubles>() + static_cast<double>(begin);
+        int certain = begin;
+        while (certain < width) {
+            const int end = width - certain < TileJob::unit_size ? width : certain + TileJob::unit_size;
+            WideWords least = ~WideWords{} & 0x7fffffff;
+            for (int x = certain; x < end; x += pair, index = index + static_cast<double>(pair)) {
+                if (x > end - pair) {
+                    index = index - static_cast<double>(x - (end - pair));
+                    x = end - pair;
+                }
+                const Doubles next_index = index + static_cast<double>(lanes);
+                const Doubles q = tile_row.q_at(job, index), next_q = tile_row.q_at(job, next_index);
+                const Doubles of_both = 1.0 / (q * next_q);
+                const Doubles reciprocal = of_both * next_q, next_reciprocal = of_both * q;
+                Doubles value[2], next_value[2];
+                for (std::size_t k = 0; k < 2; ++k) {
+                    value[k] = tile_row.numerator_at(job, k, index) * reciprocal;
+                    next_value[k] = tile_row.numerator_at(job, k, next_index) * next_reciprocal;
+                    store(out[k] + x, to_floats(value[k]));
+                    store(out[k] + x + lanes, to_floats(next_value[k]));
+                }
+                least = minimum(least, minimum(distances_from_middles(value[0], value[1], ulps),
+                                               distances_from_middles(next_value[0], next_value[1], ulps)));
             }
-            least = minimum(least, minimum(distances_from_middles(value[0], value[1], ulps),
-                                           distances_from_middles(next_value[0], next_value[1], ulps)));
-            if (x == last) break;
-            x += pair;
-            index = index + static_cast<double>(pair);
-            if (x <= last) continue;
-            index = index - static_cast<double>(x - last);
-            x = last;
+            if (any(equal(least, 0))) break;
+            certain = end;
         }
-        light(job, row, x_begin, x_end);
+        light(job, row, begin, certain);
+        if (certain < width) return job.unit_at(certain, y);
     }
-    return any(equal(least, 0));
+    return {0, 0, height, height};
 }
 
-// Does the units from `first` on up to the first one that is in doubt. Where none is, more and more of them are done at once, in
-// pairs if those will do; what is in doubt then is done again by less.
+// Does the units from `first` on up to the first one that is in doubt. Where none is, more and more of them are done at once, and
+// what is in doubt then is done again by less; or all are done in pairs, but those that are in doubt then.
 template <class CompiledWhereCalled = void>
 TileJob::Unit fill_tile_exact(const TileJob& job, TileJob::Unit first) noexcept {
     constexpr int most = 16 * TileJob::unit_size;
-    bool is_quick = job.ulps != 0;
     TileJob::Unit unit = first;
     for (int size = TileJob::unit_size; !job.is_done(unit);) {
-        const bool in_pairs = is_quick && size > TileJob::unit_size && unit.x_end - unit.x_begin >= pair;
-        if (!(in_pairs ? divide_in_pairs(job, unit) : divide_part<true>(job, unit))) {
-            size = size < most ? 2 * size : most;
+        if (job.ulps != 0 && unit.x_end - unit.x_begin >= pair) {
+            unit = divide_in_pairs(job, unit);
+            if (job.is_done(unit)) return unit;
+        }
+        if (!divide_part<true>(job, unit)) {
+            size = job.ulps != 0 ? size : size < most ? 2 * size : most;
             unit = job.unit_after(unit, size);
         } else {
             if (size == TileJob::unit_size) return unit;
-            is_quick = is_quick && size > 2 * TileJob::unit_size;
             size = TileJob::unit_size;
             unit = job.unit_at(unit.x_begin, unit.y_begin);
         }

@@ -64,17 +64,17 @@ struct Corners {
     // How many of its own ulps the error of a quotient in double is at most, two more roundings included, as 1 less than a power
     // of two: the middles of floats are doubles whose last 29 bits are 2^28, so of a quotient that is farther from those the
     // nearest float is certain. 0 where that is too many, or a quotient may be no normal float, or two q have no product. Of a
-    // tile well in front; an ulp of a quotient u is at least 2^-53 |u|, and the corners have the least |u| where no numerator
-    // changes its sign.
-    std::int32_t ulps_of_quotients(const Double2& error) const noexcept {
-        Double2 u[4];
-        TEXGEN_UNROLL
-        for (std::size_t i = 0; i < 4; ++i) u[i] = numerator[i] / q[i];
+    // tile well in front, where no numerator changes its sign, so that the corners have the least |F|: F/Q errs by e_F / |F| +
+    // e_Q / Q of itself and six roundings, and an ulp of it is at least 2^-53 of it.
+    std::int32_t ulps_of_quotients() const noexcept {
+        const auto& f = numerator;
         const Double2 least =
-            larger(smaller(smaller(u[0], u[1]), smaller(u[2], u[3])), -larger(larger(u[0], u[1]), larger(u[2], u[3]))) *
-            0.99;
-        if (!all_less(double2_of(0x1p-125, 0x1p-125), least)) return 0;
-        const double ulps = larger(error[0] / least[0], error[1] / least[1]) * 0x1p53 + 2.0;
+            larger(smaller(smaller(f[0], f[1]), smaller(f[2], f[3])), -larger(larger(f[0], f[1]), larger(f[2], f[3]))) -
+            numerator_error;
+        if (!all_less(double2_of(0x1p-124, 0x1p-124) * largest_q, least)) return 0;
+        const double share =
+            larger(numerator_error[0] / least[0], numerator_error[1] / least[1]) + q_error * reciprocal;
+        const double ulps = share * 0x1.01p53 + 6.0;
         if (!(ulps < 0x1p15 && least_q > 0x1p-500 && largest_q < 0x1p500)) return 0;
         std::int32_t result = 7;
         while (result <= static_cast<std::int32_t>(ulps)) result = 2 * result + 1;

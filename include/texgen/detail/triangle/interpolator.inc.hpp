@@ -137,7 +137,7 @@ private:
         const Double2 error = at.quotient_error(at.largest_quotient());
         for (std::size_t k = 0; k < 2; ++k) job.quotient_error[k] = error[k];
         // A small tile does not repay the search for its least quotient.
-        job.ulps = static_cast<std::int64_t>(tile.width) * tile.height < 1024 ? 0 : at.ulps_of_quotients(error);
+        job.ulps = static_cast<std::int64_t>(tile.width) * tile.height < 1024 ? 0 : at.ulps_of_quotients();
         TileJob::Unit unit = kernels_.fill_exact(job, job.unit_at(0, 0));
         if (job.is_done(unit)) return;
         CloseFunctions functions = close_ramps(tile).split();
