@@ -132,6 +132,30 @@ Shot row_with_a_tie(int column, int width, int height, Random& random) {
             {x, y, width, height}};
 }
 
+// The same where s is a hundred times as large at the row's beginning, and its function has more bits than a double. With k near
+// to 2048, 2 M + j (2048 - k) is a float because it is below 2^24, and M - j k because it is a multiple of 2^12.
+Shot steep_row_with_a_tie(int column, Random& random) {
+    const int k = 2 * column + 1;
+    std::uint32_t inverse = 1;  // of k, modulo 2^32: Newton's iteration doubles its right bits
+    for (int j = 0; j < 5; ++j) inverse *= 2u - static_cast<std::uint32_t>(k) * inverse;
+    std::int64_t first = 0, last = 0;
+    do {
+        const int middle = 2 * random.integer(1 << 23, (1 << 24) - 1) + 1;
+        const int least = -2 * middle / (2048 - k), range = (1 << 24) / (2048 - k);
+        int j = least + random.integer(range / 2, range);
+        j += static_cast<int>((static_cast<std::uint32_t>(middle) * inverse - static_cast<std::uint32_t>(j)) & 0xfffu);
+        first = middle - std::int64_t{j} * k;
+        last = 2 * middle + std::int64_t{j} * (2048 - k);
+    } while (last < 1 << 22 || last >= 1 << 24 || first >= std::int64_t{1} << 36);
+    const auto vertex = [&](float x, float y, std::int64_t s, float q) {
+        const float value = static_cast<float>(s) * 0x1p-25f;
+        return WindowVertex{{x, y}, 1.0f, {value, value, value, q}};
+    };
+    return {{vertex(0.0f, 0.0f, first, 1.0f), vertex(1024.0f, 0.0f, last, 2.0f),
+             vertex(0.0f, random.uniform_float(512.0, 1024.0), first, 1.0f)},
+            {0, 0, column + random.integer(1, 4), random.integer(2, 3)}};
+}
+
 float any_finite(Random& random) {
     for (;;) {
         const float value = random.any_float();
@@ -258,6 +282,80 @@ TEST_CASE("a tie that a corner 2^-20 to 2^-100 of a pixel off its place leaves i
         require_right(shot, everywhere(), out, seen);
     }
     CHECK(ties == 0);
+}
+
+TEST_CASE("a tie far down a row from where s is largest is rounded to the even float, and beside it to its side") {
+    Random random(203);
+    Seen seen;
+    for (int i = 0; i < 100; ++i) {
+        const int column = random.integer(993, 1015);
+        Shot shot = steep_row_with_a_tie(column, random);
+        REQUIRE(support::is_tie(ExactTriangle(shot.triangle).at(column, 0).over_q(0)));
+        if (i % 2 != 0) shot.triangle.c.window.x = std::ldexp(random.coin() ? 1.0f : -1.0f, random.integer(-60, -40));
+        Outputs out(count_of(shot.rect), 3u);
+        require_right(shot, everywhere(), out, seen);
+    }
+}
+
+TEST_CASE("what has more bits than a residue is not what the residue says: neither 0, nor of its sign") {
+    Random random(204);
+    Seen seen;
+    const auto bits = [&] { return random.coin() ? random.uniform_float(1.0, 2.0) : random.uniform_float(-2.0, -1.0); };
+    for (int i = 0; i < 300; ++i) {
+        // s and q are multiples of a far corner's last bit, by so many times 2^64 on the side ab; s/q is half-way between two
+        // subnormal floats.
+        const float s = static_cast<float>(2 * random.integer(1, 1000) + 1) * 0x1p-149f;
+        const float off = std::ldexp(1.0f, random.integer(-110, -40));
+        const Triangle flat{{{0.0f, 0.5f}, 1.0f, {s, s, s, 2.0f}},
+                            {{1024.0f, 0.5f}, 1.0f, {2.0f * s, 2.0f * s, 2.0f * s, 4.0f}},
+                            {{off, 1024.5f}, 1.0f, {s, s, s, 2.0f}}};
+        const Shot ties{flat, {0, 0, random.integer(4, 64), 1}};
+        REQUIRE(support::is_tie(ExactTriangle(flat).at(3, 0).over_q(0)));
+        Outputs out(count_of(ties.rect), 3u);
+        require_right(ties, everywhere(), out, seen);
+        // q is almost 0 in one column: c is off its place, and a has more bits for nothing.
+        const int width = random.integer(4, 64);
+        const float root = static_cast<float>(random.integer(0, width - 1)) + 0.5f;
+        const auto vertex = [](float x, float y, float q) { return WindowVertex{{x, y}, 1.0f, {1.0f, 1.0f, 1.0f, q}}; };
+        const Triangle turning{vertex(0.0f, std::ldexp(bits(), random.integer(-30, -5)), -root),
+                               vertex(1024.0f, 0.0f, 1024.0f - root),
+                               vertex(std::ldexp(bits(), random.integer(-95, -70)), 1024.0f, -root)};
+        const Shot at_root{turning, {0, 0, width, random.integer(1, 8)}};
+        Outputs of_root(count_of(at_root.rect), 3u);
+        require_right(at_root, everywhere(), of_root, seen);
+    }
+}
+
+TEST_CASE("a tie on a side is a tie wherever the row begins, and whatever the numbers of the far corner are") {
+    Random random(205);
+    Seen seen;
+    for (int i = 0; i < 400; ++i) {
+        const int column = random.integer(0, 200);
+        Shot shot = row_with_a_tie(column, 1, 1, random);
+        const int x = shot.rect.x + column, y = shot.rect.y;
+        shot.triangle.a.window.y = shot.triangle.b.window.y = static_cast<float>(y) + 0.5f;
+        // Of few bits, and t is 0; or of more than a double has, and w is not 1.
+        glm::vec2& far_corner = shot.triangle.c.window;
+        if (i % 2 == 0) {
+            far_corner = {0.5f * static_cast<float>(random.integer(-9, 9)),
+                          static_cast<float>(y) + 0.5f * static_cast<float>(random.integer(2, 8))};
+            for (WindowVertex* vertex : vertices(shot.triangle)) vertex->strq.y = 0.0f;
+        } else {
+            far_corner = {std::ldexp(1.0f, random.integer(-60, -30)),
+                          static_cast<float>(y) + random.uniform_float(1.0, 64.0)};
+            for (WindowVertex* vertex : vertices(shot.triangle)) {
+                const float w = std::ldexp(1.0f, random.integer(-3, 3));
+                vertex->clip_w *= w;
+                vertex->strq *= w;
+            }
+            shot.triangle.c.clip_w = random.uniform_float(4.0, 16.0);
+        }
+        shot.triangle = support::rotated(shot.triangle, random.integer(0, 2));
+        shot.rect = {x - random.integer(0, column), y, random.integer(1, 300), 1};
+        REQUIRE(support::is_tie(ExactTriangle(shot.triangle).at(x, y).over_q(0)));
+        Outputs out(count_of(shot.rect), 3u);
+        require_right(shot, everywhere(), out, seen);
+    }
 }
 
 TEST_CASE("a value does not depend on the rectangle that it was asked with") {

@@ -143,7 +143,7 @@ private:
     double magnitude_[3];
 };
 
-// A power of two of which three numbers are multiples.
+// A power of two of which three numbers are multiples: finite where they are 0, too.
 TEXGEN_APART inline double common_unit(double a, double b, double c) noexcept {
     return smaller(smallest_last_bit(a, b, c), 0x1p500);
 }
