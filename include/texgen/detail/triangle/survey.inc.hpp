@@ -80,19 +80,21 @@ TEXGEN_APART inline Coverage depth_coverage(const TriangleFunctions& triangle, c
     return r_coverage(at, triangle.lit, triangle.tolerance);
 }
 
-// In place: a copy of what was just written field by field would wait for it.
+// In place: a copy of what was just written field by field would wait for it, as would a comparison of two such fields at once.
 inline void choose_plan(const TriangleFunctions& triangle, const Tile& tile, const Corners& at, Plan& plan) noexcept {
     plan.work = Work::nothing;
     plan.chunk = 0;
     plan.steps = StepRule::undecided;
     plan.depth = Coverage::inside;
     if (at.all_behind()) return;
-    plan.sides = st_coverage(at, triangle.lit, triangle.tolerance);
-    if (plan.sides == Coverage::outside) return;
-    if (triangle.lit.has_depth()) plan.depth = depth_coverage(triangle, tile);
-    if (plan.depth == Coverage::outside) return;
+    const Coverage sides = st_coverage(at, triangle.lit, triangle.tolerance);
+    plan.sides = sides;
+    if (sides == Coverage::outside) return;
+    Coverage depth = Coverage::inside;
+    if (triangle.lit.has_depth()) depth = plan.depth = depth_coverage(triangle, tile);
+    if (depth == Coverage::outside) return;
 
-    const bool all_inside = plan.sides == Coverage::inside && plan.depth == Coverage::inside;
+    const bool all_inside = sides == Coverage::inside && depth == Coverage::inside;
     plan.work = all_inside ? Work::divide : Work::divide_and_test;
     if (at.well_in_front() && is_constant(at.q_ramp)) plan.work = Work::affine;
     if (triangle.tolerance == 0.0 || !pays_for_chunks(tile)) return;
