@@ -386,7 +386,7 @@ MUTANTS = [
           "", "batch_test near_ties_test"),
          ("a row alone keeps its slopes", "along[k] = plane[is_turned ? 2 : 1];",
           "along[k] = plane[1];", "batch_test"),
-         ("vectors of a column are a row apart", "rows = lanes;", "rows = 1.0;", "batch_test"),
+         ("vectors of a column are a row apart", "            rows = walk.rows_per_vector;\n", "", "batch_test"),
          ("the last tile of a batch writes whole vectors", "done + static_cast<std::size_t>(wide_lanes) > job.count",
           "done > job.count", "batch_test")),
     *_of("detail/kernels/batch_fragments.inc.hpp",

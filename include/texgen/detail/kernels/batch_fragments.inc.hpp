@@ -91,9 +91,7 @@ TEXGEN_INLINE Undecided divide_all_fragments(const FragmentsJob& job, std::size_
                 const BatchPlanes* of_lane[lanes];
                 TEXGEN_UNROLL
                 for (std::size_t i = 0; i < size; ++i) of_lane[i] = planes_of(ids[i]);
-                BatchLanes functions;
-                functions.load_from(of_lane, Numerators == 3);
-                fragments.divide(functions, x, y, job.tolerance);
+                fragments.divide(BatchLanes(of_lane, Numerators == 3), x, y, job.tolerance);
             }
             const bool is_whole = n + size <= job.count;
             const FragmentOutputs& to = is_whole ? out : in_scratch;

@@ -135,21 +135,30 @@ unsigned set_up_batch(const float* triangles, BatchPlanes* planes) noexcept {
     return unknown;
 }
 
-// The functions of a triangle in each lane.
+// The functions of a triangle in each lane; of r only with_r.
 struct BatchLanes {
     Doubles value[BatchPlanes::count]{};
 
+    // Of triangles that follow one another.
+    TEXGEN_INLINE BatchLanes(const BatchPlanes* planes, bool with_r) noexcept {
+        load_from([&](int j) { return planes + j; }, with_r);
+    }
+    TEXGEN_INLINE BatchLanes(const BatchPlanes* const (&planes)[lanes], bool with_r) noexcept {
+        load_from([&](int j) { return planes[j]; }, with_r);
+    }
+
     TEXGEN_INLINE const Doubles& operator[](std::size_t k) const noexcept { return value[k]; }
 
-    // Of r only with_r.
-    TEXGEN_INLINE void load_from(const BatchPlanes* const (&planes)[lanes], bool with_r) noexcept {
+private:
+    template <class PlanesOf>
+    TEXGEN_INLINE void load_from(const PlanesOf& planes_of, bool with_r) noexcept {
         constexpr auto count = static_cast<int>(BatchPlanes::count);
         TEXGEN_UNROLL
         for (int first = 0; first < count; first += lanes) {
             if (!with_r && first >= static_cast<int>(BatchPlanes::r)) break;
             Doubles row[lanes];
             TEXGEN_UNROLL
-            for (int j = 0; j < lanes; ++j) row[j] = load<Doubles>(&planes[j]->value[first]);
+            for (int j = 0; j < lanes; ++j) row[j] = load<Doubles>(&planes_of(j)->value[first]);
             transpose(row);
             TEXGEN_UNROLL
             for (int j = 0; j < lanes; ++j) value[first + j] = row[j];

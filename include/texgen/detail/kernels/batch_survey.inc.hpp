@@ -9,7 +9,16 @@ struct BatchTiles {
     double base[3][batch_block], q[batch_block], error[3][batch_block];
     double ulps[batch_block];  // what quotients are within, of their own, a power of two
     float middle[3][batch_block], dx[3][batch_block], dy[3][batch_block], bend_x[batch_block], bend_y[batch_block];
-    std::uint64_t are_dark, are_exact, have_middles, are_float, are_polynomial;  // a bit a tile
+    // A bit for each tile and kind, in one number: stores of several would be waited for where they are read at once.
+    enum Kind : std::size_t { is_dark, is_exact, has_middles, is_float, is_polynomial };
+    std::uint64_t kinds;
+
+    TEXGEN_INLINE void add(Kind kind, const LongWords& mask, std::size_t first) noexcept {
+        kinds |= lane_bits(mask) << (kind * batch_block + first);
+    }
+    TEXGEN_INLINE bool has(Kind kind, std::size_t i) const noexcept {
+        return (kinds >> (kind * batch_block + i) & 1u) != 0;
+    }
 };
 
 // A tile in each lane: its first fragment, from the vertex that its functions are about; the steps to its last column and row; by
@@ -19,8 +28,7 @@ struct TileLanes {
 
     TEXGEN_INLINE TileLanes(const int (*tile)[4], const BatchLanes& planes, double* per_width) noexcept {
         Words given[4];
-        TEXGEN_UNROLL
-        for (int k = 0; k < 4; ++k) given[k] = lanes_of<Words>([&](int i) { return tile[i][k]; });
+        load_fours(*tile, given);
         const Doubles width = to_doubles(given[2]);
         const Doubles height = to_doubles(given[3]);
         store(per_width, 1.0 / width);
@@ -76,8 +84,10 @@ TEXGEN_INLINE LongWords are_beyond(const TileFunction& f, const TileFunction& q,
 // division 2 r D), the product r D, and the value r D + 2 r |u|.
 // Where the middle is in the region no tile is dark: returns the tiles of which no more need be known.
 template <std::size_t Numerators>
-TEXGEN_INLINE LongWords prepare_in_float(const BatchJob& job, const BatchLanes& planes, const TileLanes& tile,
+TEXGEN_INLINE LongWords prepare_in_float(const BatchJob& job, const BatchPlanes* of_tiles, const int (*block)[4],
                                          std::size_t first, BatchTiles& tiles) noexcept {
+    const BatchLanes planes(of_tiles, Numerators == 3);
+    const TileLanes tile(block, planes, &tiles.per_width[first]);
     // Steps along a single column or row say nothing, and might be infinite.
     const LongWords has_columns = greater(tile.right, 0.0);
     const LongWords has_rows = greater(tile.bottom, 0.0);
@@ -124,16 +134,18 @@ TEXGEN_INLINE LongWords prepare_in_float(const BatchJob& job, const BatchLanes& 
         const double max = static_cast<double>(k < 2 ? job.max[k] : job.r_max);
         if (has_limits) is_inside &= ~(greater(u, max) | greater(Doubles{} + min, u));
     }
-    tiles.are_float |= lane_bits(is_float) << first;
-    tiles.are_polynomial |= lane_bits(is_polynomial & is_float) << first;
+    tiles.add(BatchTiles::is_float, is_float, first);
+    tiles.add(BatchTiles::is_polynomial, is_polynomial & is_float, first);
     return is_float & is_inside;
 }
 
 // The bounds are those of triangle/corners.hpp: the roundings of a quotient's division and product, two more than there, and of
 // its bound are below 8 u.
 template <std::size_t Numerators>
-TEXGEN_APART void prepare(const BatchJob& job, const BatchLanes& planes, const TileLanes& tile, std::size_t first,
+TEXGEN_APART void prepare(const BatchJob& job, const BatchPlanes* of_tiles, const int (*block)[4], std::size_t first,
                           BatchTiles& tiles) noexcept {
+    const BatchLanes planes(of_tiles, Numerators == 3);
+    const TileLanes tile(block, planes, &tiles.per_width[first]);
     const Doubles* const value = planes.value;
     const TileFunction q(&value[BatchPlanes::q], tile);
     const Doubles reciprocal = 1.0 / (q.least - q.error);
@@ -175,9 +187,9 @@ TEXGEN_APART void prepare(const BatchJob& job, const BatchLanes& planes, const T
         }
     }
     store(&tiles.ulps[first], power_of_two_below(ulps) * 2.0);
-    tiles.are_dark |= lane_bits(is_dark) << first;
-    tiles.are_exact |= lane_bits(is_exact) << first;
-    tiles.have_middles |= lane_bits(have_middles & greater(Doubles{} + 0x1p14, ulps)) << first;
+    tiles.add(BatchTiles::is_dark, is_dark, first);
+    tiles.add(BatchTiles::is_exact, is_exact, first);
+    tiles.add(BatchTiles::has_middles, have_middles & greater(Doubles{} + 0x1p14, ulps), first);
 }
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA

@@ -2,24 +2,57 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// The rectangle of a tile as its kernels walk it: a row alone is a column.
+// Whether a positive number divides a power of two: it is one, and no larger.
+TEXGEN_INLINE bool divides(int a, int power_of_two) noexcept { return (a & (a - 1)) == 0 && a <= power_of_two; }
+
+// The rectangle of a tile as its kernels walk it: a row alone is a column. Most tiles have the shape of the one before.
 struct TileShape {
-    int width;
-    std::size_t count;
-    double per_width;
-    double last_row;
-    bool is_turned;
+    int width = 0;
+    bool is_turned = false;
+    std::size_t count = 0;
+    double per_width = 1.0, last_row = 0.0;
+    bool is_whole = false;          // its rows are whole vectors, or vectors have whole rows
+    bool has_wide_columns = false;  // wide vectors have whole rows
+    // The columns and rows of the first vector, by how many rows the next is below it, and the same in float about the middle.
+    Doubles x{}, y{};
+    double rows = 1.0;
+    WideFloats wide_x{}, wide_y{};
+    float wide_rows = 1.0f;
 
-    TEXGEN_INLINE TileShape(int tile_width, int tile_height, double per_tile_width) noexcept
-        : width(tile_height == 1 ? 1 : tile_width),
-          count(static_cast<std::size_t>(tile_width) * static_cast<std::size_t>(tile_height)),
-          per_width(tile_height == 1 ? 1.0 : per_tile_width),
-          last_row((tile_height == 1 ? tile_width : tile_height) - 1),
-          is_turned(tile_height == 1) {}
+    TEXGEN_INLINE TileShape() noexcept = default;
 
-    TEXGEN_INLINE bool is_whole() const noexcept {
-        return width < lanes ? lanes % width == 0 && count % static_cast<std::size_t>(lanes) == 0 : width % lanes == 0;
+    TEXGEN_INLINE bool is_of(int tile_width, int tile_height) const noexcept {
+        return given_[0] == tile_width && given_[1] == tile_height;
     }
+    TEXGEN_INLINE void take(int tile_width, int tile_height, double per_tile_width) noexcept {
+        given_[0] = tile_width;
+        given_[1] = tile_height;
+        is_turned = tile_height == 1;
+        width = is_turned ? 1 : tile_width;
+        count = static_cast<std::size_t>(tile_width) * static_cast<std::size_t>(tile_height);
+        per_width = is_turned ? 1.0 : per_tile_width;
+        last_row = (is_turned ? tile_width : tile_height) - 1;
+        const bool is_narrow = divides(width, lanes);
+        is_whole = is_narrow ? count % static_cast<std::size_t>(lanes) == 0 : width % lanes == 0;
+        has_wide_columns = divides(width, wide_lanes);
+        x = indices<Doubles>();
+        y = Doubles{};
+        rows = 1.0;
+        if (is_narrow) {
+            const FragmentWalk<Doubles, double> walk(width, per_width, 0.0);
+            x = walk.x;
+            y = walk.y;
+            rows = walk.rows_per_vector;
+        }
+        if (!has_wide_columns) return;
+        const FragmentWalk<WideFloats, float> wide(static_cast<float>(width), static_cast<float>(per_width), 0.0);
+        wide_x = wide.x - 0.5f * static_cast<float>(width - 1);
+        wide_y = wide.y - static_cast<float>(0.5 * last_row);
+        wide_rows = wide.rows_per_vector;
+    }
+
+private:
+    int given_[2] = {0, 0};
 };
 
 // Where the values of a tile go, whole vectors; none is null, so that loops need not ask.
@@ -120,25 +153,15 @@ TEXGEN_APART bool divide_whole_tile(const BatchPlanes& planes, const BatchTiles&
     const TileFunctions<Numerators> f(planes, tiles, i, shape.is_turned);
     const std::size_t end = shape.count;
     const std::size_t pitch = HasWholeRows ? size : static_cast<std::size_t>(shape.width);
-    Doubles x = indices<Doubles>();
-    Doubles y{};
-    double rows = 1.0;
-    if (HasWholeRows && shape.width == 1) {
-        std::swap(x, y);
-        rows = lanes;
-    } else if (HasWholeRows && shape.width != lanes) {
-        const FragmentWalk<Doubles, double> walk(shape.width, shape.per_width, 0.0);
-        x = walk.x;
-        y = walk.y;
-        rows = walk.rows_per_vector;
-    }
+    const double rows = shape.rows;
+    Doubles x = shape.x;
     TileColumn<Numerators> column;
     column.ulps = static_cast<long long>(tiles.ulps[i]) - 1;
     LongWords doubtful{};
     for (std::size_t begin = 0; begin < pitch; begin += size) {
         TEXGEN_UNROLL
         for (std::size_t k = 0; k <= Numerators; ++k) {
-            column.value[k] = f.at(k, x, y);
+            column.value[k] = f.at(k, x, shape.y);
             column.step[k] = Doubles{} + f.down[k] * rows;
         }
         std::size_t n = begin;
@@ -150,47 +173,56 @@ TEXGEN_APART bool divide_whole_tile(const BatchPlanes& planes, const BatchTiles&
     return !any(doubtful);
 }
 
+// 1 / (1 + x), see chunks.inc.hpp.
+template <bool IsPolynomial>
+TEXGEN_INLINE WideFloats bent_factor(const WideFloats& x) noexcept {
+    if constexpr (!IsPolynomial) return 1.0f / (x + 1.0f);
+    WideFloats factor = 1.0f - x;
+    WideFloats power = x * x;
+    factor = factor * power + factor;
+    power = power * power;
+    return factor * power + factor;
+}
+
 template <std::size_t Numerators, bool HasWholeRows, bool IsPolynomial>
 TEXGEN_APART void divide_tile_float(const BatchTiles& tiles, std::size_t i, const TileShape& shape,
                                     const TileOutputs<Numerators>& original) noexcept {
     const TileOutputs<Numerators> out = original;
     const std::size_t end = shape.count;
-    FragmentWalk<WideFloats, float> walk(static_cast<float>(shape.width), static_cast<float>(shape.per_width), 0.0);
-    const float half_x = 0.5f * static_cast<float>(shape.width - 1);
-    const auto half_y = static_cast<float>(0.5 * shape.last_row);
     const float bend_x = shape.is_turned ? tiles.bend_y[i] : tiles.bend_x[i];
     const float bend_y = shape.is_turned ? tiles.bend_x[i] : tiles.bend_y[i];
+    const auto& along = shape.is_turned ? tiles.dy : tiles.dx;
+    const auto& down = shape.is_turned ? tiles.dx : tiles.dy;
     float dx[Numerators], dy[Numerators];
     WideFloats middle[Numerators], first[Numerators];
-    const WideFloats x_start = walk.x - half_x;
-    const WideFloats bend_start = x_start * bend_x;
     TEXGEN_UNROLL
     for (std::size_t k = 0; k < Numerators; ++k) {
-        dx[k] = shape.is_turned ? tiles.dy[k][i] : tiles.dx[k][i];
-        dy[k] = shape.is_turned ? tiles.dx[k][i] : tiles.dy[k][i];
+        dx[k] = along[k][i];
+        dy[k] = down[k][i];
         middle[k] = WideFloats{} + tiles.middle[k][i];
-        first[k] = x_start * dx[k];
+        first[k] = shape.wide_x * dx[k];
     }
-    for (std::size_t n = 0; n < end; n += static_cast<std::size_t>(wide_lanes)) {
-        const WideFloats y = walk.y - half_y;
-        const WideFloats x = walk.x - half_x;
-        const WideFloats bend = HasWholeRows ? y * bend_y + bend_start : y * bend_y + x * bend_x;
-        WideFloats factor;
-        if constexpr (IsPolynomial) {
-            factor = 1.0f - bend;
-            WideFloats power = bend * bend;
-            factor = factor * power + factor;
-            power = power * power;
-            factor = factor * power + factor;
-        } else {
-            factor = 1.0f / (bend + 1.0f);
-        }
+    const auto put = [&](std::size_t n, const WideFloats& bend, const auto& step) {
+        const WideFloats factor = bent_factor<IsPolynomial>(bend);
         WideFloats value[Numerators];
         TEXGEN_UNROLL
-        for (std::size_t k = 0; k < Numerators; ++k)
-            value[k] = (HasWholeRows ? y * dy[k] + first[k] : y * dy[k] + x * dx[k]) * factor + middle[k];
+        for (std::size_t k = 0; k < Numerators; ++k) value[k] = step(k) * factor + middle[k];
         out.put(n, value);
-        walk.template advance<HasWholeRows>();
+    };
+    if constexpr (HasWholeRows) {
+        const WideFloats bend_start = shape.wide_x * bend_x;
+        WideFloats y = shape.wide_y;
+        for (std::size_t n = 0; n < end; n += static_cast<std::size_t>(wide_lanes), y = y + shape.wide_rows)
+            put(n, y * bend_y + bend_start, [&](std::size_t k) { return y * dy[k] + first[k]; });
+    } else {
+        FragmentWalk<WideFloats, float> walk(static_cast<float>(shape.width), static_cast<float>(shape.per_width), 0.0);
+        const float half_x = 0.5f * static_cast<float>(shape.width - 1);
+        const auto half_y = static_cast<float>(0.5 * shape.last_row);
+        for (std::size_t n = 0; n < end; n += static_cast<std::size_t>(wide_lanes), walk.advance()) {
+            const WideFloats y = walk.y - half_y;
+            const WideFloats x = walk.x - half_x;
+            put(n, y * bend_y + x * bend_x, [&](std::size_t k) { return y * dy[k] + x * dx[k]; });
+        }
     }
 }
 
@@ -198,15 +230,15 @@ TEXGEN_APART void divide_tile_float(const BatchTiles& tiles, std::size_t i, cons
 template <std::size_t Numerators>
 TEXGEN_INLINE bool divide_tile_by_tier(const BatchPlanes& planes, const BatchTiles& tiles, std::size_t i,
                                        const TileShape& shape, const TileOutputs<Numerators>& out) noexcept {
-    if ((tiles.are_float >> i & 1u) == 0) {
-        if ((tiles.have_middles >> i & 1u) == 0 || !shape.is_whole())
+    if (!tiles.has(BatchTiles::is_float, i)) {
+        if (!tiles.has(BatchTiles::has_middles, i) || !shape.is_whole)
             return divide_tile<Numerators>(planes, tiles, i, shape, out);
         return shape.width <= lanes ? divide_whole_tile<Numerators, true>(planes, tiles, i, shape, out)
                                     : divide_whole_tile<Numerators, false>(planes, tiles, i, shape, out);
     }
-    if ((tiles.are_polynomial >> i & 1u) == 0)
+    if (!tiles.has(BatchTiles::is_polynomial, i))
         divide_tile_float<Numerators, false, false>(tiles, i, shape, out);
-    else if (wide_lanes % shape.width == 0)
+    else if (shape.has_wide_columns)
         divide_tile_float<Numerators, true, true>(tiles, i, shape, out);
     else
         divide_tile_float<Numerators, false, true>(tiles, i, shape, out);
@@ -240,42 +272,40 @@ template <std::size_t Numerators>
 TEXGEN_INLINE Undecided divide_all_tiles(const TilesJob& job, std::size_t first, std::size_t done) noexcept {
     const FragmentOutputs out(job);
     ScratchOutputs<largest_batch_tile + wide_lanes> scratch;
-    BatchTiles tiles{};
+    BatchTiles tiles;
+    TileShape shape;
     for (; first < job.tile_count; first += batch_block) {
         const std::size_t count = job.tile_count - first < batch_block ? job.tile_count - first : batch_block;
-        tiles.are_dark = tiles.are_exact = tiles.have_middles = tiles.are_float = tiles.are_polynomial = 0;
+        tiles.kinds = 0;
         // The last block in a whole one.
-        int padded[batch_block][4]{};
+        int padded[batch_block][4];
         const int(*block)[4] = job.tiles + first;
         if (count < batch_block) {
+            std::memset(padded, 0, sizeof padded);
             std::memcpy(padded, block, count * sizeof padded[0]);
             block = padded;
         }
         for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(lanes)) {
-            const BatchPlanes* of_tile[lanes];
-            TEXGEN_UNROLL
-            for (std::size_t j = 0; j < static_cast<std::size_t>(lanes); ++j) of_tile[j] = &job.planes[first + i + j];
-            BatchLanes planes;
-            planes.load_from(of_tile, Numerators == 3);
-            const TileLanes tile(block + i, planes, &tiles.per_width[i]);
+            const BatchPlanes* const planes = job.planes + first + i;
             const bool is_all_float =
-                job.tolerance > 0.0 && !any(~prepare_in_float<Numerators>(job, planes, tile, i, tiles));
-            if (!is_all_float) prepare<Numerators>(job, planes, tile, i, tiles);
+                job.tolerance > 0.0 && !any(~prepare_in_float<Numerators>(job, planes, block + i, i, tiles));
+            if (!is_all_float) prepare<Numerators>(job, planes, block + i, i, tiles);
         }
         std::uint64_t doubtful = 0;
         for (std::size_t i = 0; i < count; ++i) {
             const int width = job.tiles[first + i][2];
             const int height = job.tiles[first + i][3];
             if (width <= 0 || height <= 0) continue;
-            const TileShape shape(width, height, tiles.per_width[i]);
+            if (!shape.is_of(width, height)) shape.take(width, height, tiles.per_width[i]);
             const std::size_t begin = done;
             done += shape.count;
             bool is_certain = false;
-            if ((tiles.are_dark >> i & 1u) != 0) {
+            if (tiles.has(BatchTiles::is_dark, i)) {
                 for (float* const array : {out.out[0], out.out[1], out.out[2], out.lit})
                     for (std::size_t n = begin; array != nullptr && n < done; ++n) array[n] = 0.0f;
                 is_certain = true;
-            } else if (((tiles.are_exact | tiles.are_float) >> i & 1u) != 0 && shape.count <= largest_batch_tile) {
+            } else if ((tiles.has(BatchTiles::is_exact, i) || tiles.has(BatchTiles::is_float, i)) &&
+                       shape.count <= largest_batch_tile) {
                 const bool is_at_end = done + static_cast<std::size_t>(wide_lanes) > job.count;
                 is_certain =
                     fill_tile<Numerators>(out, job.planes[first + i], tiles, i, shape, begin, is_at_end, scratch);

@@ -60,17 +60,17 @@ template <class CompiledWhereCalled = void>
 void classify_spheres(const FloatForms& original, const float* spheres, std::size_t count, int* out) noexcept {
     const FloatForms forms = original;
     for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(wide_lanes)) {
-        WideFloats twice[3], radius;
-        load_spheres(spheres + 4 * i, twice, radius);
-        WideFloats size = radius + radius;
+        WideFloats sphere[4], twice[3];  // the radius last
+        load_fours(spheres + 4 * i, sphere);
+        const WideFloats diameter = sphere[3] + sphere[3];
+        WideFloats size = diameter;
         TEXGEN_UNROLL
         for (int j = 0; j < 3; ++j) {
-            twice[j] = twice[j] + twice[j];
+            twice[j] = sphere[j] + sphere[j];
             size = size + magnitude(twice[j]);
         }
-        const WideFloats diameter = radius + radius;
         const auto change = [&](std::size_t k) { return diameter * forms.slope[k]; };
-        store(out + i, classes(forms, twice, change, size + diameter, at_most(WideFloats{}, radius)));
+        store(out + i, classes(forms, twice, change, size + diameter, at_most(WideFloats{}, sphere[3])));
     }
 }
 

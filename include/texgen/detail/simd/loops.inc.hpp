@@ -249,9 +249,9 @@ TEXGEN_INLINE void load_boxes(const float* from, WideFloats (&min)[3], WideFloat
         max[j] = WideFloats::of([&](int i) { return from[6 * i + 3 + j]; });
     }
 }
-TEXGEN_INLINE void load_spheres(const float* from, WideFloats (&centre)[3], WideFloats& radius) noexcept {
-    for (int j = 0; j < 3; ++j) centre[j] = WideFloats::of([&](int i) { return from[4 * i + j]; });
-    radius = WideFloats::of([&](int i) { return from[4 * i + 3]; });
+template <class Vector, class Number>
+TEXGEN_INLINE void load_fours(const Number* from, Vector (&values)[4]) noexcept {
+    for (int j = 0; j < 4; ++j) values[j] = Vector::of([&](int i) { return from[4 * i + j]; });
 }
 TEXGEN_INLINE void store_interleaved(float* to, const Floats& a, const Floats& b) noexcept {
     for (int i = 0; i < lanes; ++i) {

@@ -248,18 +248,20 @@ TEXGEN_INLINE void load_boxes(const float* from, WideFloats (&min)[3], WideFloat
     }
 }
 
-// Four floats a sphere, the radius last.
-TEXGEN_INLINE void load_spheres(const float* from, WideFloats (&centre)[3], WideFloats& radius) noexcept {
-    using Lanes = std::make_integer_sequence<int, wide_lanes>;
-    WideFloats four[4];
+// Four numbers for every lane, one after another.
+template <class Vector, class Number>
+TEXGEN_INLINE void load_fours(const Number* from, Vector (&values)[4]) noexcept {
+    constexpr int n = static_cast<int>(sizeof(Vector) / sizeof(Number));
+    using Lanes = std::make_integer_sequence<int, n>;
+    Vector four[4];
     TEXGEN_UNROLL
-    for (int i = 0; i < 4; ++i) four[i] = load<WideFloats>(from + i * wide_lanes);
-    const WideFloats xz[2] = {every_second<0>(four[0], four[1], Lanes()), every_second<0>(four[2], four[3], Lanes())};
-    const WideFloats yr[2] = {every_second<1>(four[0], four[1], Lanes()), every_second<1>(four[2], four[3], Lanes())};
-    centre[0] = every_second<0>(xz[0], xz[1], Lanes());
-    centre[1] = every_second<0>(yr[0], yr[1], Lanes());
-    centre[2] = every_second<1>(xz[0], xz[1], Lanes());
-    radius = every_second<1>(yr[0], yr[1], Lanes());
+    for (int i = 0; i < 4; ++i) four[i] = load<Vector>(from + i * n);
+    const Vector even[2] = {every_second<0>(four[0], four[1], Lanes()), every_second<0>(four[2], four[3], Lanes())};
+    const Vector odd[2] = {every_second<1>(four[0], four[1], Lanes()), every_second<1>(four[2], four[3], Lanes())};
+    values[0] = every_second<0>(even[0], even[1], Lanes());
+    values[1] = every_second<0>(odd[0], odd[1], Lanes());
+    values[2] = every_second<1>(even[0], even[1], Lanes());
+    values[3] = every_second<1>(odd[0], odd[1], Lanes());
 }
 
 // Lane i of both vectors in turn.
