@@ -56,19 +56,22 @@ struct ChunkGroup {
             const Doubles reciprocal = 1.0 / q;
             const Doubles bends = reciprocal * job.q.dx;
             store(&bend[i], to_floats(bends));
+            Doubles u[2], d[2];
+            for (std::size_t k = 0; k < 2; ++k) {
+                u[k] = value(job.numerator[k]) * reciprocal;
+                d[k] = (u[k] * -job.q.dx + job.numerator[k].dx) * reciprocal;
+                store(&middle[k][i], to_floats(u[k]));
+                store(&slope[k][i], to_floats(d[k]));
+            }
+            if (job.steps != StepRule::undecided) continue;
             const Doubles extents = magnitude(bends) * half;
             const Doubles stretch = (extents * 4.0 + 1.0) * extents + 1.0;
             Doubles reaches[2], room[2];
             for (std::size_t k = 0; k < 2; ++k) {
-                const Doubles u = value(job.numerator[k]) * reciprocal;
-                const Doubles d = (u * -job.q.dx + job.numerator[k].dx) * reciprocal;
-                store(&middle[k][i], to_floats(u));
-                store(&slope[k][i], to_floats(d));
-                reaches[k] = magnitude(d) * half * stretch;
-                room[k] = job.tolerance - chunk_error(magnitude(u), reaches[k], job.numerator_error[k], job.q_error,
+                reaches[k] = magnitude(d[k]) * half * stretch;
+                room[k] = job.tolerance - chunk_error(magnitude(u[k]), reaches[k], job.numerator_error[k], job.q_error,
                                                       reciprocal * stretch);
             }
-            if (job.steps != StepRule::undecided) continue;
             // The cheapest rule with which a chunk stays inside the tolerance.
             const auto all = [](StepRule rule_of_all) { return Doubles{} + static_cast<double>(rule_of_all); };
             const auto fits = [&](const Doubles& share) {
@@ -103,45 +106,43 @@ TEXGEN_INLINE WideFloats bent(const WideFloats& i, const WideFloats& bend) noexc
     return result;
 }
 
-// A chunk of a row, counted from the left.
-struct ChunkPlace {
-    int chunk, y;
-    int per_row;
-
-    TEXGEN_INLINE bool advance() noexcept {
-        const bool is_last = ++chunk == per_row;
-        chunk = is_last ? 0 : chunk;
-        y += is_last ? 1 : 0;
-        return is_last;
-    }
-};
-
-// `count` fragments of the group's chunk i, in whole vectors. The indices are loaded, as that is what arithmetic leaves idle.
+// `count` fragments of a chunk, in whole vectors. The indices are loaded, as that is what arithmetic leaves idle; so are products
+// and sums by themselves, where a step needs few.
 template <StepRule Rule>
-TEXGEN_INLINE void fill_vectors(const ChunkGroup& group, int i, const float* index, float* s, float* t,
-                                int count) noexcept {
-    const WideFloats bend = WideFloats{} + group.bend[i];
-    const WideFloats middle[2] = {WideFloats{} + group.middle[0][i], WideFloats{} + group.middle[1][i]};
-    const WideFloats slope[2] = {WideFloats{} + group.slope[0][i], WideFloats{} + group.slope[1][i]};
+TEXGEN_INLINE void fill_vectors(const WideFloats& bend, const WideFloats (&middle)[2], const WideFloats (&slope)[2],
+                                const float* index, float* s, float* t, int count) noexcept {
+    constexpr bool needs_few = Rule == StepRule::degree2 || (Rule == StepRule::degree4 && wide_lanes == 16);
     for (std::ptrdiff_t x = 0; x < count; x += wide_lanes) {
         const WideFloats step = bent<Rule>(load<WideFloats>(index + x), bend);
-        store(s + x, step * slope[0] + middle[0]);
-        store(t + x, step * slope[1] + middle[1]);
+        if constexpr (needs_few) {
+            WideFloats product[2] = {step * slope[0], step * slope[1]};
+            TEXGEN_LEAVE_UNFUSED(product);
+            store(s + x, product[0] + middle[0]);
+            store(t + x, product[1] + middle[1]);
+        } else {
+            store(s + x, step * slope[0] + middle[0]);
+            store(t + x, step * slope[1] + middle[1]);
+        }
     }
 }
 
+// The group's chunks from `first` to `end`, which follow one another: what the last vector of one writes beyond it the next one
+// writes again.
 template <class CompiledWhereCalled = void>
-TEXGEN_APART void fill_vectors(StepRule rule, const ChunkGroup& group, int i, const float* index, float* s, float* t,
-                               int count) noexcept {
-    switch (rule) {
-        case StepRule::degree2:
-            return fill_vectors<StepRule::degree2>(group, i, index, s, t, count);
-        case StepRule::degree4:
-            return fill_vectors<StepRule::degree4>(group, i, index, s, t, count);
-        case StepRule::degree8:
-            return fill_vectors<StepRule::degree8>(group, i, index, s, t, count);
-        default:
-            return fill_vectors<StepRule::divide>(group, i, index, s, t, count);
+TEXGEN_APART void fill_chunks(StepRule rule, const ChunkGroup& group, int first, int end, const float* index, float* s,
+                              float* t, int count) noexcept {
+    for (std::ptrdiff_t i = first; i < end; ++i, s += count, t += count) {
+        const WideFloats bend = group.bend[i] - WideFloats{};
+        const WideFloats middle[2] = {group.middle[0][i] - WideFloats{}, group.middle[1][i] - WideFloats{}};
+        const WideFloats slope[2] = {group.slope[0][i] - WideFloats{}, group.slope[1][i] - WideFloats{}};
+        if (rule == StepRule::degree2)
+            fill_vectors<StepRule::degree2>(bend, middle, slope, index, s, t, count);
+        else if (rule == StepRule::degree4)
+            fill_vectors<StepRule::degree4>(bend, middle, slope, index, s, t, count);
+        else if (rule == StepRule::degree8)
+            fill_vectors<StepRule::degree8>(bend, middle, slope, index, s, t, count);
+        else
+            fill_vectors<StepRule::divide>(bend, middle, slope, index, s, t, count);
     }
 }
 
@@ -151,44 +152,50 @@ template <class CompiledWhereCalled = void>
 TileJob::Unit fill_tile_polynomial(const TileJob& job, TileJob::Unit first) noexcept {
     const int width = job.width, height = job.height;
     const int longest = job.chunk;
-    ChunkPlace place{first.x_begin / longest, first.y_begin, chunks_of_row(job)};
+    const int per_row = chunks_of_row(job), whole_chunks = width / longest;
+    // Where the rows of the outputs follow one another, and consist of whole chunks, so do those.
+    const bool is_seamless = job.is_contiguous && whole_chunks * longest == width;
+    int chunk = first.x_begin / longest, y = first.y_begin;
     ChunkGroup group;
-    RowOutputs row(job, place.y);
-    alignas(WideFloats) float index[longest_chunk];
+    RowOutputs row(job, y);
+    alignas(WideFloats) float index[longest_chunk], buffer[2][longest_chunk];
     int indexed = 0;
-    while (place.y < height) {
-        const std::int64_t left = static_cast<std::int64_t>(height - place.y) * place.per_row - place.chunk;
+    while (y < height) {
+        const std::int64_t left = static_cast<std::int64_t>(height - y) * per_row - chunk;
         const int count = left < group.size ? static_cast<int>(left) : group.size;
-        group.fill(job, place.y, place.chunk, count);
-        for (int i = 0; i < count; ++i) {
+        group.fill(job, y, chunk, count);
+        for (int i = 0, end; i < count; i = end) {
+            // Chunks of a rule that follow one another are filled at once, but the last one where its last vector has no room.
             const StepRule rule = group.rule_of(job, i);
-            const int begin = place.chunk * longest;
-            if (rule == StepRule::none) {
-                int last = i + 1;
-                while (last < count && group.rule_of(job, last) == rule) ++last;
-                if (place.per_row == 1) return {0, width, place.y, place.y + (last - i)};
-                const int in_row = place.chunk + (last - i) < place.per_row ? place.chunk + (last - i) : place.per_row;
-                return {begin, in_row < place.per_row ? in_row * longest : width, place.y, place.y + 1};
-            }
+            const int in_row = whole_chunks > chunk ? whole_chunks - chunk : 1;
+            const int most = is_seamless || count - i < in_row ? count : i + in_row;
+            end = job.steps != StepRule::undecided ? most : i + 1;
+            while (end < most && group.rule_of(job, end) == rule) ++end;
+            const int begin = chunk * longest;
             const int length = longest < width - begin ? longest : width - begin;
+            if (rule == StepRule::none) {
+                if (per_row == 1) return {0, width, y, y + (end - i)};
+                const std::int64_t last = std::int64_t{begin} + (end - i) * length;
+                return {begin, last < width ? static_cast<int>(last) : width, y, y + 1};
+            }
             if (length != indexed) {
                 indexed = length;
                 const WideFloats first_index = indices<WideFloats>() - 0.5f * static_cast<float>(length - 1);
                 for (int x = 0; x < length; x += wide_lanes) store(index + x, first_index + static_cast<float>(x));
             }
-            // What a last vector writes beyond the chunk is written again by those that follow, where it may be written.
-            const int rest = (length - 1) % wide_lanes + 1;
-            const int whole = std::int64_t{begin} + length + wide_lanes - rest > row.writable ? length - rest : length;
-            float* const to[2] = {row.out[0] + begin, row.out[1] + begin};
-            fill_vectors(rule, group, i, index, to[0], to[1], whole);
-            if (whole != length) {
-                float buffer[2][wide_lanes];
-                fill_vectors(rule, group, i, index + whole, buffer[0], buffer[1], rest);
-                for (int j = 0; j < rest; ++j)
-                    for (std::size_t k = 0; k < 2; ++k) to[k][whole + j] = buffer[k][j];
+            const int beyond = wide_lanes - 1 - (length - 1) % wide_lanes;
+            bool has_room = std::int64_t{begin} + (end - i) * length + beyond <= row.writable;
+            if (!has_room && end - i > 1) {
+                --end;
+                has_room = true;
             }
-            light(job, row, begin, static_cast<std::int64_t>(begin) + length);
-            if (place.advance()) row.advance();
+            float* const to[2] = {row.out[0] + begin, row.out[1] + begin};
+            fill_chunks(rule, group, i, end, index, has_room ? to[0] : buffer[0], has_room ? to[1] : buffer[1], length);
+            if (!has_room)
+                for (std::size_t k = 0; k < 2; ++k)
+                    std::memcpy(to[k], buffer[k], static_cast<std::size_t>(length) * sizeof(float));
+            light(job, row, begin, std::int64_t{begin} + (end - i) * length);
+            for (chunk += end - i; chunk >= per_row; chunk -= per_row, ++y) row.advance();
         }
     }
     return {0, 0, height, height};
