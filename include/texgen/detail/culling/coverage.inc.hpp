@@ -152,17 +152,8 @@ template <class CompiledWhereCalled = void>
 void cover(const LitForms& forms, const FloatForms& float_forms, const SeparatingForms& separating,
            std::span<const Box> boxes, const std::span<Coverage>& out) noexcept {
     const BoxBatchKernels& kernels = chosen<BoxBatchKernels>();
-    OpenBoxes<> open_boxes(kernels, forms, separating);
-    classify_many<6>(
-        boxes, out, kernels.classify, float_forms,
-        [](const Box& box, float* floats) {
-            for (glm::length_t j = 0; j < 3; ++j) {
-                floats[j] = box.min[j];
-                floats[3 + j] = box.max[j];
-            }
-        },
-        [&](std::size_t i, bool is_in_doubt) { open_boxes.add(boxes[i], is_in_doubt, out[i]); });
-    open_boxes.decide();
+    OpenBoxes<> open(kernels, forms, separating);
+    classify_many<6>(boxes, out, kernels.classify, float_forms, open);
 }
 
 // One box; separating() is asked where a further plane may make it outside.

@@ -5,11 +5,22 @@ namespace TEXGEN_DETAIL {
 // Kernels know no Coverage but its numbers.
 static_assert(Coverage{0} == Coverage::outside && Coverage{1} == Coverage::partial && Coverage{2} == Coverage::inside);
 
-// Classifies bodies of `Floats` floats each by a kernel, and calls decide(i, is_in_doubt) for those that are left open. Where
-// the floats of bodies do not follow one another, as where the user aligns GLM's vectors, copy(body, floats) makes them.
-template <std::size_t Floats, class Body, class Copy, class Decide>
+inline void copy_floats(const Box& box, float* floats) noexcept {
+    for (glm::length_t j = 0; j < 3; ++j) {
+        floats[j] = box.min[j];
+        floats[3 + j] = box.max[j];
+    }
+}
+inline void copy_floats(const Sphere& sphere, float* floats) noexcept {
+    for (glm::length_t j = 0; j < 3; ++j) floats[j] = sphere.centre[j];
+    floats[3] = sphere.radius;
+}
+
+// Classifies bodies of `Floats` floats each by a kernel, and has decided what is left open. Floats of bodies that do not follow
+// one another, as where the user aligns GLM's vectors, are copied.
+template <std::size_t Floats, class Body, class OpenBodies>
 void classify_many(std::span<const Body> bodies, std::span<Coverage> out, Classify classify, const FloatForms& forms,
-                   const Copy& copy, const Decide& decide) noexcept {
+                   OpenBodies& open_bodies) noexcept {
     constexpr std::size_t chunk = 16 * body_quantum;
     constexpr bool is_dense = sizeof(Body) == Floats * sizeof(float);
     constexpr std::size_t copied = is_dense ? body_quantum : chunk;
@@ -25,7 +36,7 @@ void classify_many(std::span<const Body> bodies, std::span<Coverage> out, Classi
             classify(forms, reinterpret_cast<const float*>(&bodies[begin]), count, classes);
         } else {
             float copies[copied][Floats] = {};
-            for (std::size_t i = 0; i < count; ++i) copy(bodies[begin + i], copies[i]);
+            for (std::size_t i = 0; i < count; ++i) copy_floats(bodies[begin + i], copies[i]);
             classify(forms, copies[0], (count + body_quantum - 1) / body_quantum * body_quantum, classes);
         }
         // Without a branch for each.
@@ -35,9 +46,11 @@ void classify_many(std::span<const Body> bodies, std::span<Coverage> out, Classi
             open[open_count] = i;
             open_count += static_cast<std::size_t>(classes[i] >= open_body);
         }
-        for (std::size_t k = 0; k < open_count; ++k) decide(begin + open[k], classes[open[k]] == body_in_doubt);
+        for (std::size_t k = 0; k < open_count; ++k)
+            open_bodies.add(bodies[begin + open[k]], classes[open[k]] == body_in_doubt, out[begin + open[k]]);
         begin += count;
     }
+    open_bodies.decide();
 }
 
 // The extremes of a form over a sphere are its value at the centre +- |a| radius. Beside an edge of the pyramid a sphere
@@ -98,7 +111,7 @@ class OpenSpheres {
 public:
     OpenSpheres(const SphereBatchKernels& kernels, const LitForms& forms) noexcept : kernels_(kernels), forms_(forms) {}
 
-    void add(const Sphere& sphere, Coverage& out) noexcept {
+    void add(const Sphere& sphere, bool, Coverage& out) noexcept {
         const glm::dvec3 centre = widened(sphere.centre);
         const bool is_sphere = is_finite(centre.x) && is_finite(centre.y) && is_finite(centre.z) &&
                                sphere.radius >= 0.0f && is_finite(widened(sphere.radius));
@@ -138,15 +151,8 @@ template <class CompiledWhereCalled = void>
 void cover(const LitForms& forms, const FloatForms& float_forms, std::span<const Sphere> spheres,
            const std::span<Coverage>& out) noexcept {
     const SphereBatchKernels& kernels = chosen<SphereBatchKernels>();
-    OpenSpheres<> open_spheres(kernels, forms);
-    classify_many<4>(
-        spheres, out, kernels.classify, float_forms,
-        [](const Sphere& sphere, float* floats) {
-            for (glm::length_t j = 0; j < 3; ++j) floats[j] = sphere.centre[j];
-            floats[3] = sphere.radius;
-        },
-        [&](std::size_t i, bool) { open_spheres.add(spheres[i], out[i]); });
-    open_spheres.decide();
+    OpenSpheres<> open(kernels, forms);
+    classify_many<4>(spheres, out, kernels.classify, float_forms, open);
 }
 
 }  // namespace TEXGEN_BUILD
