@@ -452,6 +452,36 @@ TEST_CASE("a tie that has more bits than two doubles is decided as for each tria
     }
 }
 
+TEST_CASE("quotients at the middle of two floats are the nearest where s changes its sign or is no normal float") {
+    Random random(10);
+    const auto check = [](const Shot& shot) {
+        TriangleBatch batch(support::everywhere());
+        batch.assign({&shot.triangle, 1});
+        Outputs out(count_of(shot.rect), 3u);
+        interpolate(batch, {&shot.rect, 1}, out.spans());
+        const support::ExactTriangle exact(shot.triangle);
+        for (int i = 0; i < shot.rect.width; ++i)
+            for (std::size_t k = 0; k < 2; ++k)
+                REQUIRE_MESSAGE(is_nearest(out[k][static_cast<std::size_t>(i)], exact.at(shot.x(i), 0).over_q(k)),
+                                support::hex(shot), " fragment ", i);
+    };
+    for (int round = 0; round < 100; ++round) {
+        Shot steep = support::steep_row_with_a_tie(random.integer(1020, 1023), random);
+        REQUIRE(is_tie(support::ExactTriangle(steep.triangle).at(steep.rect.x, 0).over_q(0)));
+        steep.rect = {steep.rect.x - random.integer(0, 9), 0, 64, 1};
+        check(steep);
+        // s is 2 m + 1 of the least floats, and q is 2 and not half an ulp of a double more.
+        const float s = static_cast<float>(2 * random.integer(1, 1000) + 1) * 0x1p-149f;
+        const auto vertex = [s](float x, float y, float q) {
+            return texgen::WindowVertex{{x, y}, 1.0f, {s, 0.5f, 0.5f, q}};
+        };
+        constexpr float below_centre = 0.5f - 0x1p-25f;
+        check({{vertex(0.0f, below_centre, 2.0f), vertex(1024.0f, below_centre, 2.0f),
+                vertex(0.0f, 1024.0f, 2.0f + 0x1p-22f)},
+               {random.integer(0, 900), 0, 64, 1}});
+    }
+}
+
 TEST_CASE("what faces away is dark where that is asked for, and nothing else is changed") {
     Random random(8);
     const auto mirrored = [](Triangle triangle) {

@@ -132,30 +132,6 @@ Shot row_with_a_tie(int column, int width, int height, Random& random) {
             {x, y, width, height}};
 }
 
-// The same where s is a hundred times as large at the row's beginning, and its function has more bits than a double. With k near
-// to 2048, 2 M + j (2048 - k) is a float because it is below 2^24, and M - j k because it is a multiple of 2^12.
-Shot steep_row_with_a_tie(int column, Random& random) {
-    const int k = 2 * column + 1;
-    std::uint32_t inverse = 1;  // of k, modulo 2^32: Newton's iteration doubles its right bits
-    for (int j = 0; j < 5; ++j) inverse *= 2u - static_cast<std::uint32_t>(k) * inverse;
-    std::int64_t first = 0, last = 0;
-    do {
-        const int middle = 2 * random.integer(1 << 23, (1 << 24) - 1) + 1;
-        const int least = -2 * middle / (2048 - k), range = (1 << 24) / (2048 - k);
-        int j = least + random.integer(range / 2, range);
-        j += static_cast<int>((static_cast<std::uint32_t>(middle) * inverse - static_cast<std::uint32_t>(j)) & 0xfffu);
-        first = middle - std::int64_t{j} * k;
-        last = 2 * middle + std::int64_t{j} * (2048 - k);
-    } while (last < 1 << 22 || last >= 1 << 24 || first >= std::int64_t{1} << 36);
-    const auto vertex = [&](float x, float y, std::int64_t s, float q) {
-        const float value = static_cast<float>(s) * 0x1p-25f;
-        return WindowVertex{{x, y}, 1.0f, {value, value, value, q}};
-    };
-    return {{vertex(0.0f, 0.0f, first, 1.0f), vertex(1024.0f, 0.0f, last, 2.0f),
-             vertex(0.0f, random.uniform_float(512.0, 1024.0), first, 1.0f)},
-            {0, 0, column + random.integer(1, 4), random.integer(2, 3)}};
-}
-
 float any_finite(Random& random) {
     for (;;) {
         const float value = random.any_float();
@@ -289,7 +265,8 @@ TEST_CASE("a tie far down a row from where s is largest is rounded to the even f
     Seen seen;
     for (int i = 0; i < 100; ++i) {
         const int column = random.integer(993, 1015);
-        Shot shot = steep_row_with_a_tie(column, random);
+        Shot shot = support::steep_row_with_a_tie(column, random);
+        shot.rect = {0, 0, column + random.integer(1, 4), random.integer(2, 3)};
         REQUIRE(support::is_tie(ExactTriangle(shot.triangle).at(column, 0).over_q(0)));
         if (i % 2 != 0) shot.triangle.c.window.x = std::ldexp(random.coin() ? 1.0f : -1.0f, random.integer(-60, -40));
         Outputs out(count_of(shot.rect), 3u);

@@ -269,6 +269,32 @@ inline double spread(const texgen::Triangle& triangle, float (*value)(const texg
 
 }  // namespace detail
 
+// s/q is the middle M of two floats at one column, from 993 to 1023, hundreds to thousands of times that at column 0, and a
+// function of more bits than a double. With q = 1 + t for t = (2 column + 1) / 2048 and k = 2 column + 1, in units of 2^-25,
+//   (M - j k) (1 - t) + (2 M + j (2048 - k)) t = M (1 + t):
+// the first is a float as it is a multiple of 2^13, and the second as it is below 2^24.
+inline Shot steep_row_with_a_tie(int column, Random& random) {
+    const int k = 2 * column + 1;
+    std::uint32_t inverse = 1;  // of k, modulo 2^32: Newton's iteration doubles its right bits
+    for (int i = 0; i < 5; ++i) inverse *= 2u - static_cast<std::uint32_t>(k) * inverse;
+    std::int64_t first = 0, last = 0;
+    do {
+        const int middle = 2 * random.integer(1 << 23, (1 << 24) - 1) + 1;
+        const int range = (1 << 24) / (2048 - k);
+        int j = -2 * middle / (2048 - k) + random.integer(range / 2, range);
+        j += static_cast<int>((static_cast<std::uint32_t>(middle) * inverse - static_cast<std::uint32_t>(j)) & 0x1fffu);
+        first = middle - std::int64_t{j} * k;
+        last = 2 * middle + std::int64_t{j} * (2048 - k);
+    } while (last < 1 << 22 || last >= 1 << 24 || first >= std::int64_t{1} << 37);
+    const auto vertex = [](float x, float y, std::int64_t s, float q) {
+        const float value = static_cast<float>(s) * 0x1p-25f;
+        return texgen::WindowVertex{{x, y}, 1.0f, {value, 0.25f * q, 0.25f * q, q}};
+    };
+    return {{vertex(0.0f, 0.0f, first, 1.0f), vertex(1024.0f, 0.0f, last, 2.0f),
+             vertex(0.0f, random.uniform_float(512.0, 1024.0), first, 1.0f)},
+            {column, 0, 1, 1}};
+}
+
 struct HardFamily {
     const char* name;
     Shot (*make)(Random&);
