@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "html.hpp"
+#include "timings.hpp"
 
 namespace report {
 
@@ -16,13 +17,9 @@ struct Row {
     std::string_view scene, exact, tolerant, glm, eigen;
 };
 
-constexpr const char* exact = "texgen, exact";
-constexpr const char* fine = "texgen, 1/512 texel of 4096";
-constexpr const char* coarse = "texgen, 1/16 texel of 1024";
-constexpr const char* planes = "GLM, plane equations";
+using namespace way;
 constexpr const char* planes_looked_up = "GLM, plane equations looked up";
 constexpr const char* arrays = "Eigen, plane equations in arrays";
-constexpr const char* five_planes = "GLM, five planes";
 constexpr const char* blocks = "Eigen, array blocks";
 
 constexpr Row rows[] = {
@@ -34,13 +31,13 @@ constexpr Row rows[] = {
     {"the same, ids in any order", "visibility buffer, 128x64, ids in any order", exact, fine, planes_looked_up, ""},
     {"boxes against a projector, one by one", "Coverage, 4096 boxes, scattered", "texgen, one box at a time", "",
      five_planes, ""},
-    {"the same, 4096 at once", "Coverage, 4096 boxes, scattered", "texgen, a batch", "", five_planes, ""},
+    {"the same, 4096 at once", "Coverage, 4096 boxes, scattered", batch, "", five_planes, ""},
     {"points, one by one", "project interleaved, 1024", "texgen, exact, one by one", "", "GLM, mat4 * vec4, one by one",
      ""},
-    {"points, planar", "project planar, 1024", exact, coarse, "GLM, mat4 * vec4", blocks},
+    {"points, planar", "project planar, 1024", exact, coarse, product, blocks},
     {"the same, `within` a box", "project planar, 1024", "texgen, exact, within a box",
-     "texgen, 1/16 texel of 1024, within a box", "GLM, mat4 * vec4", blocks},
-    {"a segment", "segment, 1024", exact, coarse, "GLM, mix", blocks},
+     "texgen, 1/16 texel of 1024, within a box", product, blocks},
+    {"a segment", "segment, 1024", exact, coarse, mix, blocks},
     {"rows of 1024 x 16, q/w by 1.3", "rows, 1024x16, q/w by 1.3", exact, fine, planes, arrays},
     {"the same, q/w by 30", "rows, 1024x16, q/w by 30", exact, fine, planes, arrays},
 };

@@ -72,15 +72,8 @@ struct Promise {
     double ratio;
 };
 
-constexpr const char* exact = "texgen, exact";
-constexpr const char* fine = "texgen, 1/512 texel of 4096";
-constexpr const char* coarse = "texgen, 1/16 texel of 1024";
-constexpr const char* planes = "GLM, plane equations";
+using namespace way;
 constexpr const char* barycentric = "GLM, barycentric";
-constexpr const char* product = "GLM, mat4 * vec4";
-constexpr const char* mix = "GLM, mix";
-constexpr const char* batch = "texgen, a batch";
-constexpr const char* five_planes = "GLM, five planes";
 constexpr const char* every_pair = "T_o and coverage() of every pair";
 constexpr const char* stores = "floor: two store streams";
 constexpr const char* copying = "floor: copying as many bytes";

@@ -8,6 +8,18 @@
 
 namespace report {
 
+// Ways, as the benchmarks call them.
+namespace way {
+inline constexpr const char* exact = "texgen, exact";
+inline constexpr const char* fine = "texgen, 1/512 texel of 4096";
+inline constexpr const char* coarse = "texgen, 1/16 texel of 1024";
+inline constexpr const char* batch = "texgen, a batch";
+inline constexpr const char* planes = "GLM, plane equations";
+inline constexpr const char* product = "GLM, mat4 * vec4";
+inline constexpr const char* mix = "GLM, mix";
+inline constexpr const char* five_planes = "GLM, five planes";
+}  // namespace way
+
 struct Timing {
     double number;  // rows in the order of the benchmark
     std::string scene, variant;
