@@ -281,6 +281,8 @@ MUTANTS = [
           "(area.value > 0.0 ? 1 : -1) : area.value > 0.0 ? 1 : area.value < 0.0 ? -1 : 0;", "bounds_test interpolate_test"),
          ("a clip_w of zero is taken", "vertex.clip_w > 0.0f &&", "vertex.clip_w >= 0.0f &&", "interpolate_test")),
     *_of("detail/triangle/interpolator.inc.hpp",
+         ("small tiles are never in doubt", "if (kernels_.fill_unit(job)) fill_from_doubt(tile, job, job.unit_at(0, 0));",
+          "kernels_.fill_unit(job);", "interpolate_test near_ties_test"),
          ("what may be inside is lit", "is_inside = plan.sides == Coverage::inside", "is_inside = plan.sides != Coverage::outside",
           "interpolate_test tolerance_test"),
          ("the error of float_divided is halved", "largest * float_divided.roundings",
@@ -529,6 +531,8 @@ MUTANTS = [
           {"survives": "It is asserted first; that they are no points otherwise is for builds without assertions, which the "
                        "tests are not."})),
     *_of("detail/kernels/tiles.inc.hpp",
+         ("the last column of a small tile's vectors runs on beyond the rows",
+          "begin = begin + 2 * lanes <= width ? begin + lanes : width - lanes;", "begin += lanes;", "interpolate_test"),
          ("doubt goes to the other neighbour", "with_sign_of(unit * 0x1p-26, remainder)",
           "with_sign_of(unit * 0x1p-26, remainder * -1.0)", "near_ties_test"),
          ("residues of any length are believed", "is_known = greater(finer * 0x1p62", "is_known = greater(finer * 0x1p90",

@@ -32,6 +32,7 @@ inline constexpr Table kernel_table;
 
 template <class CompiledWhereCalled>
 inline constexpr TileKernels kernel_table<TileKernels, CompiledWhereCalled>{
+    .fill_unit = fill_tile_unit<>,
     .fill_exact = fill_tile_exact<>,
     .fill_float_divided = fill_tile_float_divided<>,
     .fill_polynomial = fill_tile_polynomial<>,

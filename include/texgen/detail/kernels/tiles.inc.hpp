@@ -3,6 +3,37 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
+// A tile of no more than a unit whose rows follow one another: a column of vectors at a time, of which the last ends with the rows.
+// Where those are shorter, what a vector writes beyond its row is written again by those that follow.
+template <class CompiledWhereCalled = void>
+bool fill_tile_unit(const TileJob& job) noexcept {
+    const int width = job.width;
+    const int count = width * job.height;
+    float* const out[2] = {job.out[0], job.out[1]};
+    Words doubtful{};
+    for (int begin = 0;;) {
+        const Doubles x = minimum(indices<Doubles>() + static_cast<double>(begin), Doubles{} + (width - 1.0));
+        const auto first_of = [&](const Ramp& ramp) { return x * ramp.dx + ramp.base; };
+        const Doubles first_q = first_of(job.q);
+        const Doubles first[2] = {first_of(job.numerator[0]), first_of(job.numerator[1])};
+        Doubles y{};
+        for (int n = begin; n < count; n += width, y = y + 1.0) {
+            const Doubles reciprocal = 1.0 / (y * job.q.dy + first_q);
+            Floats quotient[2];
+            for (std::size_t k = 0; k < 2; ++k) {
+                const Doubles value = (y * job.numerator[k].dy + first[k]) * reciprocal;
+                quotient[k] = to_floats(value - job.quotient_error[k]);
+                doubtful |= bits(quotient[k]) ^ bits(to_floats(value + job.quotient_error[k]));
+            }
+            for (std::size_t k = 0; k < 2; ++k) store_from(out[k], n, count, count, quotient[k]);
+        }
+        if (begin + lanes >= width) break;
+        begin = begin + 2 * lanes <= width ? begin + lanes : width - lanes;
+    }
+    if (job.lit != nullptr) light_apart(job, out[0], out[1], job.lit, count);
+    return any(doubtful);
+}
+
 // The functions of a row's index.
 struct TileRow {
     double base[2], q;

@@ -50,6 +50,10 @@ struct TileJob {
 
     static constexpr int unit_size = 64;
 
+    // Whether it is one unit, of short rows that follow one another.
+    bool is_unit() const noexcept {
+        return is_contiguous && width <= unit_size / 4 && std::int64_t{width} * height <= unit_size;
+    }
     Unit unit_at(int x, int y, int size = unit_size) const noexcept {
         const int rows = x != 0 || width >= size ? 1 : size / width;
         return {x, size < width - x ? x + size : width, y, rows < height - y ? y + rows : height};
@@ -193,6 +197,8 @@ struct FootprintJob {
 
 // A kernel is called by its tier, see tiers.hpp.
 struct TileKernels {
+    // A job that is_unit(). Whether a value is in doubt.
+    bool (*fill_unit)(const TileJob&) noexcept;
     // The first unit from `first` on that is in doubt.
     TileJob::Unit (*fill_exact)(const TileJob&, TileJob::Unit first) noexcept;
     void (*fill_float_divided)(const TileJob&) noexcept;

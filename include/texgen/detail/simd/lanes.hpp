@@ -39,6 +39,7 @@
 #define TEXGEN_BUILD TEXGEN_NAMED(TEXGEN_COMPILER, _scalar)
 #define TEXGEN_INLINE inline
 #define TEXGEN_APART
+#define TEXGEN_RARE
 #define TEXGEN_UNROLL
 #define TEXGEN_LEAVE_UNFUSED(products) static_cast<void>(products)
 
@@ -109,7 +110,8 @@ inline bool all_less(const Double2& a, const Double2& b) noexcept { return a[0] 
 #endif
 
 #define TEXGEN_INLINE [[gnu::always_inline]] inline
-#define TEXGEN_APART [[gnu::noinline]]  // what is rare, so that it costs the rest no registers
+#define TEXGEN_APART [[gnu::noinline]]            // what is rare, so that it costs the rest no registers
+#define TEXGEN_RARE [[gnu::noinline, gnu::cold]]  // what only ties need, so that it costs the rest no room
 
 // GCC keeps a loop over an array of vectors, and so the array in memory, below -O3.
 #ifdef __clang__

@@ -144,18 +144,18 @@ private:
 };
 
 // A power of two of which three numbers are multiples: finite where they are 0, too.
-TEXGEN_APART inline double common_unit(double a, double b, double c) noexcept {
+TEXGEN_RARE inline double common_unit(double a, double b, double c) noexcept {
     return smaller(smallest_last_bit(a, b, c), 0x1p500);
 }
 
 // A whole number modulo 2^64: halves of it fit a signed integer.
-TEXGEN_APART inline std::uint64_t residue_of(double number) noexcept {
+TEXGEN_RARE inline std::uint64_t residue_of(double number) noexcept {
     if (std::fabs(number) < 0x1p63) return static_cast<std::uint64_t>(static_cast<std::int64_t>(number));
     return 2 * static_cast<std::uint64_t>(static_cast<std::int64_t>(0.5 * std::fmod(number, 0x1p64)));
 }
 
 // Whether a coefficient of a function is u times q, which is constant: exactly.
-TEXGEN_APART inline bool is_multiple(const CloseFunction& f, std::size_t j, double u, const CloseFunction& q) noexcept {
+TEXGEN_RARE inline bool is_multiple(const CloseFunction& f, std::size_t j, double u, const CloseFunction& q) noexcept {
     double Ramp::*const part = j == 0 ? &Ramp::base : j == 1 ? &Ramp::dx : &Ramp::dy;
     const std::uint64_t residue = j == 0 ? f.residue.base : j == 1 ? f.residue.dx : f.residue.dy;
     const DoubleDouble product = two_product(u, q.high.base);
@@ -248,7 +248,7 @@ public:
     }
 
     // Of a part of the tile.
-    TEXGEN_APART void add_to(CloseFunction& function, glm::length_t coordinate, const Tile& part) const noexcept {
+    TEXGEN_RARE void add_to(CloseFunction& function, glm::length_t coordinate, const Tile& part) const noexcept {
         const double unit = grains_.of_values(coordinate);
         const double per_unit = reciprocal_power_of_two(unit);
         RampOf<std::uint64_t> sum{};

@@ -138,8 +138,15 @@ private:
         for (std::size_t k = 0; k < 2; ++k) job.quotient_error[k] = error[k];
         // A small tile does not repay the search for its least quotient.
         job.ulps = static_cast<std::int64_t>(tile.width) * tile.height < 1024 ? 0 : at.ulps_of_quotients();
-        TileJob::Unit unit = kernels_.fill_exact(job, job.unit_at(0, 0));
-        if (job.is_done(unit)) return;
+        if (job.is_unit()) {
+            if (kernels_.fill_unit(job)) fill_from_doubt(tile, job, job.unit_at(0, 0));
+            return;
+        }
+        const TileJob::Unit unit = kernels_.fill_exact(job, job.unit_at(0, 0));
+        if (!job.is_done(unit)) fill_from_doubt(tile, job, unit);
+    }
+
+    TEXGEN_RARE void fill_from_doubt(const Tile& tile, TileJob& job, TileJob::Unit unit) noexcept {
         CloseFunctions functions = close_ramps(tile).split();
         if (is_constant(functions.q.high)) {
             add_residues(functions, tile);
