@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 #include <limits>
 #include <span>
 
@@ -55,5 +56,7 @@ inline glm::dvec2 error_bound(const Segment& segment, Tolerance tolerance = exac
 
 }  // namespace TEXGEN_COMPILER
 }  // namespace TEXGEN_NAMESPACE
+
+#include "detail/points/segment_forms.inc.hpp"
 
 #include "detail/points/segment.inc.hpp"

@@ -159,14 +159,15 @@ TEST_CASE("values of a segment in doubt have the same bits in vectors and one by
         for (const int first : {0, 2}) {
             std::array<std::vector<float>, 2> in_vectors, one_by_one;
             for (auto* arrays : {&in_vectors, &one_by_one}) arrays->fill(std::vector<float>(count));
-            texgen::detail::SegmentJob job = texgen::detail::segment_job(stretch.segment, first, first == 0 ? 2 : 1);
+            texgen::detail::SegmentJob job{};
+            texgen::detail::prepare_job(job, stretch.segment, first, first == 0 ? 2 : 1, 0.0);
             job.count = count;
             job.alpha = stretch.alpha.data();
             const auto write_to = [&](std::array<std::vector<float>, 2>& arrays) {
                 for (std::size_t k = 0; k < 2; ++k) job.out[k] = arrays[k].data();
             };
             write_to(in_vectors);
-            interpolate_job(texgen::detail::chosen<texgen::detail::SegmentKernels>(), job, 0.0);
+            interpolate_job(texgen::detail::chosen<texgen::detail::SegmentKernels>(), job);
             write_to(one_by_one);
             for (std::size_t i = 0; i < count; ++i) texgen::detail::interpolate_one(job, i);
             for (std::size_t k = 0; k < 2; ++k)

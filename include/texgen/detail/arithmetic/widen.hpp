@@ -2,8 +2,9 @@
 
 // From float to double, and of the float that was given. g++ 12 from -O2 on takes (double)(float)x of two or four
 // neighbours for x itself: where a caller rounds to float and a function that widens is inlined behind it, the rounding is
-// lost, and the results are not those of the floats. The volatile keeps it. For set-ups and single points; loops over
-// arrays load their floats from memory, and need none of this.
+// lost, and the results are not those of the floats. The volatile keeps it; by reference, so that a float that is in memory
+// is read there, and not stored once more. For set-ups and single points; loops over arrays load their floats from memory, and
+// need none of this.
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
@@ -13,8 +14,8 @@
 
 namespace TEXGEN_DETAIL {
 
-inline double widened(float value) noexcept {
-    const volatile float given = value;
+inline double widened(const float& value) noexcept {
+    const volatile float& given = value;
     return static_cast<double>(given);
 }
 

@@ -7,29 +7,41 @@ struct ExactSum {
     Doubles high, low;
 };
 
-// Exactly, but where an alpha is among inexact_alpha. The first term is a multiple of the second's ulp, so that the quick sum
-// is exact too, but where the ends are far apart.
-template <bool IsShort>
-TEXGEN_INLINE ExactSum exactly_at(const Mixture& mixture, const Doubles& alpha) noexcept {
-    ExactSum sum;
-    const Doubles part = alpha * mixture.step;
-    sum.high = part + mixture.base;
-    sum.low = part - (sum.high - mixture.base);
-    if (IsShort || mixture.kind == Mixture::is_short) return sum;
-    if (mixture.kind == Mixture::is_not_finite) return {(1.0 - alpha) * mixture.base + part, Doubles{}};
-    if (mixture.kind == Mixture::is_far) sum.high = two_sum(Doubles{} + mixture.base, part, sum.low);
-    sum.high = quick_two_sum(sum.high, sum.low + alpha * mixture.rest, sum.low);
-    return sum;
-}
+// A mixture in all lanes.
+struct MixtureLanes {
+    Doubles base, step, rest;
+    Mixture::Kind kind;
 
-// What that is off by at most.
-TEXGEN_INLINE Doubles lost_at(const Mixture& mixture, const Doubles& alpha) noexcept {
-    if (mixture.kind == Mixture::is_short || mixture.kind == Mixture::is_not_finite) return Doubles{};
-    Doubles low, lost;
-    two_sum(Doubles{} + mixture.base, alpha * mixture.step, low);
-    two_sum(low, alpha * mixture.rest, lost);
-    return magnitude(lost);
-}
+    TEXGEN_INLINE explicit MixtureLanes(const Mixture& of) noexcept
+        : base(Doubles{} + of.base), step(Doubles{} + of.step), rest(Doubles{} + of.rest), kind(of.kind) {}
+
+    // Exactly, but where an alpha is among inexact_alpha. The first term is a multiple of the second's ulp, so that the quick
+    // sum is exact too, but where the ends are far apart.
+    template <bool IsShort>
+    TEXGEN_INLINE ExactSum exactly_at(const Doubles& alpha) const noexcept {
+        ExactSum sum;
+        const Doubles part = alpha * step;
+        if (!IsShort && kind == Mixture::is_far) {
+            sum.high = two_sum(base, part, sum.low);
+        } else {
+            sum.high = part + base;
+            sum.low = part - (sum.high - base);
+            if (IsShort || kind == Mixture::is_short) return sum;
+            if (kind == Mixture::is_not_finite) return {(1.0 - alpha) * base + part, Doubles{}};
+        }
+        sum.high = quick_two_sum(sum.high, sum.low + alpha * rest, sum.low);
+        return sum;
+    }
+
+    // What that is off by at most.
+    TEXGEN_INLINE Doubles lost_at(const Doubles& alpha) const noexcept {
+        if (kind == Mixture::is_short || kind == Mixture::is_not_finite) return Doubles{};
+        Doubles low, lost;
+        two_sum(base, alpha * step, low);
+        two_sum(low, alpha * rest, lost);
+        return magnitude(lost);
+    }
+};
 
 // Whether one of these alphas is in (0, last].
 TEXGEN_INLINE bool has_small_alpha(const SegmentJob& job, std::size_t begin, std::size_t end, float last) noexcept {
@@ -61,83 +73,93 @@ TEXGEN_INLINE Doubles middle_of_floats(const Doubles& quotient) noexcept {
 }
 
 // Blocks end at multiples of their size.
-TEXGEN_INLINE std::size_t end_of_block(const DividedOutput& output, std::size_t begin, std::size_t size) noexcept {
+TEXGEN_INLINE std::size_t end_of_block(std::size_t count, std::size_t begin, std::size_t size) noexcept {
     const std::size_t next = (begin / size + 1) * size;
-    return next < output.count ? next : output.count;
+    return next < count ? next : count;
 }
 
 // Blocks, on both sides of the projector, up to the first with values that stay in doubt.
 template <std::size_t Numerators, bool AreShort>
-TEXGEN_INLINE Undecided fill_segment_closely(const SegmentJob& original, std::size_t first) noexcept {
+Undecided fill_segment_closely(const SegmentJob& job, std::size_t first) noexcept {
     constexpr auto width = static_cast<std::size_t>(lanes);
-    const SegmentJob job = original;
+    const std::size_t count = job.count;
+    const float* const from = job.alpha;
+    float* const out[2] = {job.out[0], job.out[Numerators - 1]};
+    float* const lit = Numerators == 2 ? job.lit : nullptr;
+    const MixtureLanes q_mixture(job.q);
+    const MixtureLanes mixture[2] = {MixtureLanes(job.numerator[0]), MixtureLanes(job.numerator[Numerators - 1])};
+    const bool is_constant = job.q.kind == Mixture::is_short && job.q.step == 0.0;
+    const Doubles last_in_front = Doubles{} + (job.q_a > 0.0 ? 1.0 : -1.0);  // alpha, where q is constant
+    const bool are_finite = mixture[0].kind != Mixture::is_not_finite && mixture[1].kind != Mixture::is_not_finite;
+    ExactSum q{q_mixture.base, Doubles{}};
+    Doubles reciprocal = 1.0 / q.high;
     std::size_t begin = first, end = first;
-    bool has_inexact = false, has_subnormal = false;
+    bool has_inexact = false, has_subnormal = false, is_plain = false;
     std::uint64_t doubtful = 0;
-    for (std::size_t i = first; i < job.count; i += width) {
+    for (std::size_t i = first; i < count; i += width) {
         if (i % exact_block == 0) {
             if (doubtful != 0) break;
             begin = i;
         }
         if (i == end) {
-            end = end_of_block(job, i, float_block);
+            end = end_of_block(count, i, float_block);
             has_inexact = !AreShort && has_small_alpha(job, i, end, job.inexact_alpha);
             has_subnormal = has_small_alpha(job, i, end, job.small_alpha);
+            is_plain = !has_inexact && !has_subnormal && are_finite;
         }
-        const Doubles alpha = to_doubles(load<Floats>(job.alpha + i));
-        const ExactSum q = exactly_at<AreShort>(job.q, alpha);
-        const LongWords in_front = greater(q.high, 0.0);
-        const Doubles reciprocal = 1.0 / q.high;
+        const Doubles alpha = to_doubles(load<Floats>(from + i));
+        if (!is_constant) {
+            q = q_mixture.exactly_at<AreShort>(alpha);
+            reciprocal = 1.0 / q.high;
+        }
+        const LongWords in_front = is_constant ? at_most(alpha, last_in_front) : greater(q.high, 0.0);
         ExactSum s[2];
         Doubles quotient[2];
-        LongWords are_near[2], are_small{}, any_near{};
+        Floats value[2];
         TEXGEN_UNROLL
         for (std::size_t k = 0; k < Numerators; ++k) {
-            s[k] = exactly_at<AreShort>(job.numerator[k], alpha);
+            s[k] = mixture[k].template exactly_at<AreShort>(alpha);
             quotient[k] = where(in_front, s[k].high * reciprocal);
-            are_near[k] = are_near_middles(quotient[k], 7);
-            if (has_subnormal) {
-                const LongWords is_small =
-                    at_most(magnitude(quotient[k]), Doubles{} + 0x1p-125) & are_nonzero(quotient[k]);
-                are_small |= is_small;
-                are_near[k] |= is_small;
-            }
-            any_near |= are_near[k];
         }
-        const std::uint64_t near_bits = lane_bits(any_near);
-        Floats value[2];
-        if (near_bits == 0) {
-            TEXGEN_UNROLL
-            for (std::size_t k = 0; k < Numerators; ++k) value[k] = to_floats(quotient[k]);
-        } else if (!has_inexact && (near_bits & lane_bits(are_small | are_nonzero(q.low))) == 0) {
+        const WideWords distance = distances_from_middles(quotient[0], quotient[Numerators - 1], 7);
+        const bool are_near = any(equal(distance, 0));
+        const auto small = [&](std::size_t k) {
+            return at_most(magnitude(quotient[k]), Doubles{} + 0x1p-125) & are_nonzero(quotient[k]);
+        };
+        if (are_near && is_plain && (is_constant || !any_nonzero_near(distance, q.low))) {
             // The sign of s - middle q decides everywhere, and is exact near the middle, as q.low is 0 and the sums are exact.
             // What is 0 becomes so little that its float is 0, and no subnormal double, which takes long.
             TEXGEN_UNROLL
             for (std::size_t k = 0; k < Numerators; ++k) {
                 const Doubles middle = middle_near(quotient[k] + 0x1p-900);
-                value[k] = job.numerator[k].kind == Mixture::is_not_finite
-                               ? to_floats(quotient[k])
-                               : rounded_from(middle, small_difference(s[k], q, middle));
+                value[k] = rounded_from(middle, small_difference(s[k], q, middle));
             }
+        } else if (!are_near && !(has_subnormal && any(small(0) | small(Numerators - 1)))) {
+            TEXGEN_UNROLL
+            for (std::size_t k = 0; k < Numerators; ++k) value[k] = to_floats(quotient[k]);
         } else {
             LongWords known = ~LongWords{};
-            const Doubles q_lost = has_inexact ? lost_at(job.q, alpha) : Doubles{};
+            const Doubles q_lost = has_inexact ? q_mixture.lost_at(alpha) : Doubles{};
             TEXGEN_UNROLL
             for (std::size_t k = 0; k < Numerators; ++k) {
-                const Doubles s_lost = has_inexact ? lost_at(job.numerator[k], alpha) : Doubles{};
-                const Doubles middle = select(are_small, middle_of_floats(quotient[k]),
-                                              select(are_near[k], middle_near(quotient[k]), quotient[k]));
+                const LongWords is_small = has_subnormal ? small(k) : LongWords{};
+                const LongWords is_near = are_near_middles(quotient[k], 7) | is_small;
+                const Doubles s_lost = has_inexact ? mixture[k].lost_at(alpha) : Doubles{};
+                const Doubles middle = select(is_small, middle_of_floats(quotient[k]),
+                                              select(is_near, middle_near(quotient[k]), quotient[k]));
                 const Doubles last_product = middle * q.low;
                 const Doubles remainder = small_difference(s[k], q, middle) - last_product;
                 const Doubles lost = s_lost + magnitude(middle) * q_lost + magnitude(last_product) * 0x1p-51;
-                known &= ~are_near[k] | at_most(lost * 2.0, magnitude(remainder));
-                value[k] = rounded_from(middle, where(are_near[k], remainder));
+                known &= ~is_near | at_most(lost * 2.0, magnitude(remainder));
+                value[k] = rounded_from(middle, where(is_near, remainder));
             }
             doubtful |= lane_bits(~known) << (i - begin);
         }
-        store_points(job, i, Numerators, value, narrow(in_front));
+        if (lit != nullptr) store(lit + i, lit_of(job, value, narrow(in_front)));
+        TEXGEN_UNROLL
+        for (std::size_t k = 0; k < Numerators; ++k) store(out[k] + i, value[k]);
     }
-    return doubtful != 0 ? Undecided{begin, doubtful} : Undecided{job.count, 0};
+    return doubtful != 0 ? Undecided{begin, doubtful} : Undecided{count, 0};
 }
 
 template <class CompiledWhereCalled = void>
@@ -147,11 +169,26 @@ Undecided fill_segment_exact(const SegmentJob& job, std::size_t first) noexcept 
     return job.are_short ? fill_segment_closely<1, true>(job, first) : fill_segment_closely<1, false>(job, first);
 }
 
+// Values in front by fill(job, begin, end), which is the first value that it does not vouch for or the end; with their mask,
+// where one is asked for.
+TEXGEN_INLINE std::size_t fill_in_front(std::size_t (*fill)(const SegmentJob&, std::size_t, std::size_t) noexcept,
+                                        const SegmentJob& job, std::size_t first) noexcept {
+    if (job.lit == nullptr) return fill(job, first, job.count);
+    for (std::size_t begin = first; begin < job.count;) {
+        const std::size_t end = end_of_block(job.count, begin, float_block);
+        if (fill(job, begin, end) != end) return begin;
+        light_apart(job, job.out[0] + begin, job.out[1] + begin, job.lit + begin,
+                    static_cast<std::int64_t>(end - begin));
+        begin = end;
+    }
+    return job.count;
+}
+
 // Two vectors by one division, all of it in front: an alpha that is no number spoils its neighbour. The divisions of a block go
 // first: they take long, and what waits for one has little room to wait in.
 template <std::size_t Numerators, bool IsAsymptotic>
-TEXGEN_INLINE std::size_t fill_segment_in_double_of(const SegmentJob& job, std::size_t first) noexcept {
-    const DividedOutput output = job;
+std::size_t fill_segment_in_double_of(const SegmentJob& job, std::size_t first, std::size_t count) noexcept {
+    float* const out[2] = {job.out[0], job.out[Numerators - 1]};
     const float* const from = job.alpha;
     const double pole = job.pole, bend = job.bend;
     const double base[2] = {job.base[0], job.base[1]}, slope[2] = {job.slope[0], job.slope[1]};
@@ -159,8 +196,8 @@ TEXGEN_INLINE std::size_t fill_segment_in_double_of(const SegmentJob& job, std::
     const bool are_accepted = job.are_accepted;
     constexpr auto width = static_cast<std::size_t>(lanes);
     Doubles reciprocal[float_block / width];
-    for (std::size_t begin = first; begin < output.count;) {
-        const std::size_t end = end_of_block(output, begin, float_block);
+    for (std::size_t begin = first; begin < count;) {
+        const std::size_t end = end_of_block(count, begin, float_block);
         if (has_small_alpha(job, begin, end, job.small_alpha)) return begin;
         WideWords distance = WideWords{} + 0x7fffffff;
         Doubles sum{};
@@ -190,70 +227,77 @@ TEXGEN_INLINE std::size_t fill_segment_in_double_of(const SegmentJob& job, std::
                 value[k] = to_floats(quotient[k]);
             }
             distance = minimum(distance, distances_from_middles(quotient[0], quotient[Numerators - 1], ulps));
-            store_points(output, i, Numerators, value, ~Words{});
+            TEXGEN_UNROLL
+            for (std::size_t k = 0; k < Numerators; ++k) store(out[k] + i, value[k]);
         }
         if ((!are_accepted && any(equal(distance, 0))) || any(~at_most(sum - sum, Doubles{}))) return begin;
         begin = end;
     }
-    return output.count;
+    return count;
 }
 
 template <class CompiledWhereCalled = void>
 std::size_t fill_segment_in_double(const SegmentJob& job, std::size_t first) noexcept {
     if (job.numerators == 2)
-        return job.is_asymptotic ? fill_segment_in_double_of<2, true>(job, first)
-                                 : fill_segment_in_double_of<2, false>(job, first);
-    return job.is_asymptotic ? fill_segment_in_double_of<1, true>(job, first)
-                             : fill_segment_in_double_of<1, false>(job, first);
+        return fill_in_front(
+            job.is_asymptotic ? fill_segment_in_double_of<2, true> : fill_segment_in_double_of<2, false>, job, first);
+    return fill_in_front(job.is_asymptotic ? fill_segment_in_double_of<1, true> : fill_segment_in_double_of<1, false>,
+                         job, first);
 }
 
-// The same in float, its block left to others.
+// The same in float. The step of the steeper coordinate is what is divided by two vectors, and the other's a share of it: a
+// product less, and of fewer sums that compilers fuse with products, which wait for stores.
 template <std::size_t Numerators, bool IsAsymptotic>
-TEXGEN_INLINE std::size_t fill_segment_all_float_of(const SegmentJob& job, std::size_t first) noexcept {
-    const DividedOutput output = job;
+std::size_t fill_segment_all_float_of(const SegmentJob& job, std::size_t first, std::size_t count) noexcept {
     const float* const from = job.alpha;
     constexpr auto width = static_cast<std::size_t>(wide_lanes);
+    const int other = Numerators == 2 ? 1 - job.steeper : 0;
+    float* const out = job.out[job.steeper];
+    float* const other_out = job.out[other];
     const auto pole = static_cast<float>(job.pole), bend = static_cast<float>(job.bend);
-    const float base[2] = {static_cast<float>(job.base[0]), static_cast<float>(job.base[1])};
-    const float slope[2] = {static_cast<float>(job.slope[0]), static_cast<float>(job.slope[1])};
+    const auto base = static_cast<float>(job.base[job.steeper]), other_base = static_cast<float>(job.base[other]);
+    const auto slope = static_cast<float>(job.step), share = static_cast<float>(job.share);
     // alpha, or 1 - alpha.
     const float start = job.about_b ? 1.0f : 0.0f, direction = job.about_b ? -1.0f : 1.0f;
     const auto load_alpha = [&](std::size_t i) {
         const auto alpha = load<WideFloats>(from + i);
         return IsAsymptotic ? alpha : alpha * direction + start;
     };
-    const auto store_value = [&](std::size_t i, const WideFloats& alpha, const WideFloats& reciprocal) {
-        const WideFloats step = IsAsymptotic ? reciprocal : alpha * reciprocal;
-        WideFloats value[2];
-        for (std::size_t k = 0; k < Numerators; ++k) value[k] = step * slope[k] + base[k];
-        store_points(output, i, Numerators, value, ~WideWords{});
+    const auto store_at = [&](std::size_t i, const WideFloats& alpha, const WideFloats& of_q) {
+        const WideFloats step = IsAsymptotic ? of_q : of_q * alpha;
+        store(out + i, step + base);
+        if (Numerators == 2) store(other_out + i, step * share + other_base);
     };
-    for (std::size_t begin = first; begin < output.count; begin += float_block) {
-        const std::size_t end = end_of_block(output, begin, float_block);
-        WideFloats sum{};
-        for (std::size_t i = begin; i < end; i += 2 * width) {
-            const bool is_last = i + width == end;
-            const WideFloats alpha = load_alpha(i), next_alpha = load_alpha(is_last ? i : i + width);
-            const WideFloats q = IsAsymptotic ? alpha + pole : alpha * bend + pole;
-            const WideFloats next_q = IsAsymptotic ? next_alpha + pole : next_alpha * bend + pole;
-            const WideFloats product = q * next_q;
-            sum = sum + product;
-            const WideFloats of_both = 1.0f / product;
-            store_value(i, alpha, of_both * next_q);
-            if (!is_last) store_value(i + width, next_alpha, of_both * q);
-        }
-        if (largest_lane(magnitude_bits(sum - sum)) != 0) return begin;
+    WideFloats sum{};
+    const auto fill_both = [&](std::size_t i, std::size_t next) {
+        const WideFloats alpha = load_alpha(i), next_alpha = load_alpha(next);
+        const WideFloats q = IsAsymptotic ? alpha + pole : alpha * bend + pole;
+        const WideFloats next_q = IsAsymptotic ? next_alpha + pole : next_alpha * bend + pole;
+        const WideFloats product = q * next_q;
+        sum = sum + product;
+        const WideFloats of_both = slope / product;
+        store_at(i, alpha, of_both * next_q);
+        store_at(next, next_alpha, of_both * q);
+    };
+    for (std::size_t begin = first; begin < count;) {
+        const std::size_t end = end_of_block(count, begin, float_block);
+        sum = WideFloats{};
+        std::size_t i = begin;
+        for (; i + width < end; i += 2 * width) fill_both(i, i + width);
+        if (i < end) fill_both(i, i);
+        if (any(~at_most(sum - sum, WideFloats{}))) return begin;
+        begin = end;
     }
-    return output.count;
+    return count;
 }
 
 template <class CompiledWhereCalled = void>
 std::size_t fill_segment_all_float(const SegmentJob& job, std::size_t first) noexcept {
     if (job.numerators == 2)
-        return job.is_asymptotic ? fill_segment_all_float_of<2, true>(job, first)
-                                 : fill_segment_all_float_of<2, false>(job, first);
-    return job.is_asymptotic ? fill_segment_all_float_of<1, true>(job, first)
-                             : fill_segment_all_float_of<1, false>(job, first);
+        return fill_in_front(
+            job.is_asymptotic ? fill_segment_all_float_of<2, true> : fill_segment_all_float_of<2, false>, job, first);
+    return fill_in_front(job.is_asymptotic ? fill_segment_all_float_of<1, true> : fill_segment_all_float_of<1, false>,
+                         job, first);
 }
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA

@@ -68,11 +68,10 @@ TEXGEN_INLINE void store_from(float* to, std::int64_t x, std::int64_t end, std::
     store_some(to + x, static_cast<int>(end - x), values);
 }
 
-// The mask of `count` fragments in front, from the coordinates that stand there: so the loops that compute them ask for no mask.
+// The mask of `count` fragments or values in front, from the coordinates that stand there: so the loops that compute them ask for no mask.
 // A last vector is one that ends with them.
-template <class Vector>
-TEXGEN_INLINE bool light_in(const TileJob& job, const float* s, const float* t, float* lit,
-                            std::int64_t count) noexcept {
+template <class Vector, class Job>
+TEXGEN_INLINE bool light_in(const Job& job, const float* s, const float* t, float* lit, std::int64_t count) noexcept {
     constexpr auto size = static_cast<std::int64_t>(sizeof(Vector) / sizeof(float));
     if (count < size) return false;
     for (std::int64_t x = 0; x < count; x += size) {
@@ -82,9 +81,8 @@ TEXGEN_INLINE bool light_in(const TileJob& job, const float* s, const float* t, 
     }
     return true;
 }
-template <class CompiledWhereCalled = void>
-TEXGEN_APART void light_apart(const TileJob& job, const float* s, const float* t, float* lit,
-                              std::int64_t count) noexcept {
+template <class Job>
+TEXGEN_APART void light_apart(const Job& job, const float* s, const float* t, float* lit, std::int64_t count) noexcept {
     if (light_in<WideFloats>(job, s, t, lit, count) || light_in<Floats>(job, s, t, lit, count)) return;
     for (std::int64_t x = 0; x < count; ++x) {
         const bool is_lit = s[x] >= job.min[0] && s[x] <= job.max[0] && t[x] >= job.min[1] && t[x] <= job.max[1];

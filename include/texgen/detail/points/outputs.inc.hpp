@@ -53,17 +53,17 @@ struct PointOutputs {
 // Calls group(first, numerators, outputs) for the coordinates that are computed together: s and t where both are asked for
 // or the mask is, either one alone, and r, which takes from the mask what a depth does not hold.
 template <class Group>
-void for_each_group(const Texcoords& out, std::size_t count, const LitTest& region, const Group& group) noexcept {
+TEXGEN_INLINE void for_each_group(const Texcoords& out, std::size_t count, const LitTest& region,
+                                  const Group& group) noexcept {
     float* const s = array_of(out.s, count);
     float* const t = array_of(out.t, count);
     float* const r = array_of(out.r, count);
     float* const lit = array_of(out.lit, count);
-    if (lit != nullptr || (s != nullptr && t != nullptr))
-        group(0, 2, PointOutputs{{s, t}, lit});
-    else if (s != nullptr)
-        group(0, 1, PointOutputs{{s}});
-    else if (t != nullptr)
-        group(1, 1, PointOutputs{{t}});
+    const bool are_both = lit != nullptr || (s != nullptr && t != nullptr);
+    if (are_both || s != nullptr || t != nullptr) {
+        const bool is_t = !are_both && s == nullptr;
+        group(is_t ? 1 : 0, are_both ? 2 : 1, PointOutputs{{is_t ? t : s, are_both ? t : nullptr}, lit});
+    }
     float* const darkened = region.has_depth() ? lit : nullptr;
     if (r != nullptr || darkened != nullptr)
         group(2, 1, PointOutputs{{r}, darkened, nullptr, region.r_min(), region.r_max()});
@@ -85,6 +85,7 @@ void darken_batch(Job job, const PointOutputs& out, const Batch& batch, const Ru
     constexpr std::size_t size = 4 * copy_size;
     const auto [first, count, whole] = batch;
     float buffer[size];
+    job.lit = nullptr;
     for (std::size_t begin = 0; begin < count; begin += size, job.advance(job.count)) {
         job.count = whole - begin < size ? whole - begin : size;
         const std::size_t part = count - begin < job.count ? count - begin : job.count;
@@ -100,20 +101,11 @@ void darken_batch(Job job, const PointOutputs& out, const Batch& batch, const Ru
     }
 }
 
-// Runs a job for a batch. What has no place of its own goes through buffers. The job is changed in place: copies of what has
-// just been written, in other sizes, wait for it.
+// Runs a job for a batch whose results have no place of their own: through buffers, or to take light.
 template <class Job, class Run>
-void run_batch(Job& job, const PointOutputs& out, const Batch& batch, const Run& run) noexcept {
+TEXGEN_APART void run_apart(Job& job, const PointOutputs& out, const Batch& batch, const Run& run) noexcept {
     if (job.numerators == 1 && out.lit != nullptr) return darken_batch(job, out, batch, run);
     const auto [first, count, whole] = batch;
-    if (count == whole && out.are_complete(job.numerators)) {
-        job.count = count;
-        job.interleaved_st = out.st != nullptr;
-        for (int k = 0; k < job.numerators; ++k)
-            job.out[k] = job.interleaved_st ? out.st + 2 * first : out.coordinate[k] + first;
-        job.lit = out.lit != nullptr ? out.lit + first : nullptr;
-        return run(job);
-    }
     float buffer[3][copy_size];
     job.out[0] = buffer[0];
     job.out[1] = buffer[1];
@@ -133,6 +125,22 @@ void run_batch(Job& job, const PointOutputs& out, const Batch& batch, const Run&
         }
         job.advance(job.count);
     }
+}
+
+// Runs a job for a batch. The job is changed in place: copies of what has just been written, in other sizes, wait for it.
+template <class Job, class Run>
+TEXGEN_INLINE void run_batch(Job& job, const PointOutputs& out, const Batch& batch, const Run& run) noexcept {
+    if (batch.count != batch.whole || !out.are_complete(job.numerators) ||
+        (job.numerators == 1 && out.lit != nullptr)) {
+        const PointOutputs copy = out;  // so that the other ones need no memory
+        return run_apart(job, copy, batch, run);
+    }
+    job.count = batch.count;
+    job.interleaved_st = out.st != nullptr;
+    for (int k = 0; k < job.numerators; ++k)
+        job.out[k] = job.interleaved_st ? out.st + 2 * batch.first : out.coordinate[k] + batch.first;
+    job.lit = out.lit != nullptr ? out.lit + batch.first : nullptr;
+    run(job);
 }
 
 // The values of a job from `first` on by its kernel, and by one(job, i) what that cannot decide.

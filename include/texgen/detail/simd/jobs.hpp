@@ -139,15 +139,20 @@ struct Mixture {
 // numerator[k] / q along a segment: values at alpha = 0 and at alpha = 1.
 struct SegmentJob : DividedOutput {
     const float* alpha;
-    double a[2], b[2];
+    double a[2], b[2];  // one numerator alone is in both places
     double q_a, q_b;
-    // For fill_in_double and fill_all_float, where all is in front. About what it is where q is infinite,
+    double tolerance;
+    bool is_in_float, is_quick;  // fill_all_float is inside the tolerance; else whether fill_in_double is worth a try
+    // For both, where all is in front. About what it is where q is infinite,
     //   base + slope / (alpha + pole),
     // else in double (base + slope alpha) / (pole + bend alpha), and in float, about the end where q is less,
     // base + slope i / (1 + bend i), i the alpha from there.
     bool is_asymptotic;
     bool about_b;
     double base[2], slope[2], pole, bend;
+    // In float the slope of one coordinate is `step`, and that of the other a share of it.
+    int steeper;
+    double step, share;
     std::int32_t ulps;  // that quotients in double are within, 1 less than a power of two
     bool are_accepted;  // whichever of two floats they are rounded to
     float small_alpha;  // only for alphas in (0, small_alpha] floats may be subnormal, and the ulps too few

@@ -287,5 +287,8 @@ TEXGEN_INLINE bool any(const Words& mask) noexcept {
     for (int i = 0; i < lanes; ++i) all |= mask.lane[i];
     return all != 0;
 }
+TEXGEN_INLINE bool any_nonzero_near(const Words& distance, const Doubles& a) noexcept {
+    return any(equal(distance, 0) & are_nonzero(a));
+}
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA

@@ -87,15 +87,18 @@ TEXGEN_INLINE LongWords are_near_middles(const Doubles& a, std::int64_t ulps) no
     return ((__builtin_bit_cast(Residues, a) + static_cast<std::uint64_t>(ulps - 0x10000000)) &
             static_cast<std::uint64_t>(0x1ffffffe - 2 * ulps)) == 0;
 }
-// As many numbers as a and b have, in whatever order, none negative: 0 for each that is so near a middle. The low words decide.
-template <int... Lane>
-TEXGEN_INLINE WideResidues low_words(const Doubles& a, const Doubles& b, std::integer_sequence<int, Lane...>) noexcept {
-    constexpr int low = std::endian::native == std::endian::little ? 0 : 1;
-    return __builtin_shufflevector(__builtin_bit_cast(WideResidues, a), __builtin_bit_cast(WideResidues, b),
-                                   (Lane / 4 * 4 + Lane % 2 * 2 + Lane % 4 / 2 * wide_lanes + low)...);
+// The low words of a and b, or the high ones, in whatever order. Shuffled as floats within 16 bytes: of words GCC takes what
+// crosses them.
+template <bool AreHigh, int... Lane>
+TEXGEN_INLINE WideResidues words_of(const Doubles& a, const Doubles& b, std::integer_sequence<int, Lane...>) noexcept {
+    constexpr int word = AreHigh == (std::endian::native == std::endian::little) ? 1 : 0;
+    return __builtin_bit_cast(
+        WideResidues, __builtin_shufflevector(__builtin_bit_cast(WideFloats, a), __builtin_bit_cast(WideFloats, b),
+                                              (Lane / 4 * 4 + Lane % 2 * 2 + Lane % 4 / 2 * wide_lanes + word)...));
 }
+// As many numbers as a and b have, none negative: 0 for each that is so near a middle. The low words decide.
 TEXGEN_INLINE WideWords distances_from_middles(const Doubles& a, const Doubles& b, int ulps) noexcept {
-    const WideResidues low = low_words(a, b, std::make_integer_sequence<int, wide_lanes>());
+    const WideResidues low = words_of<false>(a, b, std::make_integer_sequence<int, wide_lanes>());
     return __builtin_bit_cast(WideWords, (low + static_cast<std::uint32_t>(ulps - 0x10000000)) &
                                              static_cast<std::uint32_t>(0x1ffffffe - 2 * ulps));
 }
@@ -112,7 +115,13 @@ TEXGEN_INLINE Doubles signs_of(const Residues& a) noexcept { return __builtin_bi
 TEXGEN_INLINE LongWords are_zero(const Residues& a) noexcept { return a == 0; }
 TEXGEN_INLINE LongWords are_positive(const Residues& a) noexcept { return __builtin_bit_cast(LongWords, a) > 0; }
 
-TEXGEN_INLINE Words narrow(const LongWords& mask) noexcept { return __builtin_convertvector(mask, Words); }
+TEXGEN_INLINE Words narrow(const LongWords& mask) noexcept {
+#if TEXGEN_LANE_BYTES == 64
+    return __builtin_ia32_cvtmask2d256(__builtin_ia32_cvtq2mask512(mask));
+#else
+    return __builtin_convertvector(mask, Words);
+#endif
+}
 TEXGEN_INLINE int lane(const Words& a, int i) noexcept { return a[i]; }
 TEXGEN_INLINE Words equal(const Words& a, int b) noexcept { return a == b; }
 TEXGEN_INLINE WideWords equal(const WideWords& a, int b) noexcept { return a == b; }
@@ -364,8 +373,17 @@ TEXGEN_INLINE bool any(const LongWords& mask) noexcept {
 #endif
 }
 TEXGEN_INLINE bool any(const WideWords& mask) noexcept {
+#if TEXGEN_LANE_BYTES == 64
+    return __builtin_ia32_cvtd2mask512(mask) != 0;
+#else
     using Half = std::make_integer_sequence<int, lanes>;
     return any(half_of<0>(mask, Half()) | half_of<lanes>(mask, Half()));
+#endif
+}
+// Whether a number that is not subnormal is not 0 where either distance is.
+TEXGEN_INLINE bool any_nonzero_near(const WideWords& distance, const Doubles& a) noexcept {
+    const WideResidues high = words_of<true>(a, a, std::make_integer_sequence<int, wide_lanes>());
+    return any((distance == 0) & ((high & 0x7fffffffu) != 0));
 }
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA
