@@ -146,8 +146,8 @@ TEXGEN_APART void fill_chunks(StepRule rule, const ChunkGroup& group, int first,
     }
 }
 
-// Does the job from `first` on. Stops at chunks that no rule serves and returns them, a part of one row or whole rows;
-// the empty unit if there are none. The next call starts after them.
+// Does the job from `first` on. Stops at chunks that no rule serves and that are not filled, and returns them, a part of one row or
+// whole rows; the empty unit if there are none. The next call starts after them.
 template <class CompiledWhereCalled = void>
 TileJob::Unit fill_tile_polynomial(const TileJob& job, TileJob::Unit first) noexcept {
     const int width = job.width, height = job.height;
@@ -165,7 +165,7 @@ TileJob::Unit fill_tile_polynomial(const TileJob& job, TileJob::Unit first) noex
         const int count = left < group.size ? static_cast<int>(left) : group.size;
         group.fill(job, y, chunk, count);
         for (int i = 0, end; i < count; i = end) {
-            // Chunks of a rule that follow one another are filled at once, but the last one where its last vector has no room.
+            // Chunks of a rule that follow one another are filled at once, if there is room for the last vector.
             const StepRule rule = group.rule_of(job, i);
             const int in_row = whole_chunks > chunk ? whole_chunks - chunk : 1;
             const int most = is_seamless || count - i < in_row ? count : i + in_row;
@@ -174,27 +174,30 @@ TileJob::Unit fill_tile_polynomial(const TileJob& job, TileJob::Unit first) noex
             const int begin = chunk * longest;
             const int length = longest < width - begin ? longest : width - begin;
             if (rule == StepRule::none) {
-                if (per_row == 1) return {0, width, y, y + (end - i)};
                 const std::int64_t last = std::int64_t{begin} + (end - i) * length;
-                return {begin, last < width ? static_cast<int>(last) : width, y, y + 1};
+                const int x_end = last < width ? static_cast<int>(last) : width;
+                if (per_row == 1) return {0, width, y, y + (end - i)};
+                if (begin < job.filled.x_begin || x_end > job.filled.x_end) return {begin, x_end, y, y + 1};
+            } else {
+                if (length != indexed) {
+                    indexed = length;
+                    const WideFloats first_index = indices<WideFloats>() - 0.5f * static_cast<float>(length - 1);
+                    for (int x = 0; x < length; x += wide_lanes) store(index + x, first_index + static_cast<float>(x));
+                }
+                const int beyond = wide_lanes - 1 - (length - 1) % wide_lanes;
+                const auto has_room_for = [&](int chunks) {
+                    return std::int64_t{begin} + chunks * length + beyond <= row.writable;
+                };
+                while (end - i > 1 && !has_room_for(end - i)) --end;
+                const bool has_room = has_room_for(end - i);
+                float* const to[2] = {row.out[0] + begin, row.out[1] + begin};
+                fill_chunks(rule, group, i, end, index, has_room ? to[0] : buffer[0], has_room ? to[1] : buffer[1],
+                            length);
+                if (!has_room)
+                    for (std::size_t k = 0; k < 2; ++k)
+                        std::memcpy(to[k], buffer[k], static_cast<std::size_t>(length) * sizeof(float));
+                light(job, row, begin, std::int64_t{begin} + (end - i) * length);
             }
-            if (length != indexed) {
-                indexed = length;
-                const WideFloats first_index = indices<WideFloats>() - 0.5f * static_cast<float>(length - 1);
-                for (int x = 0; x < length; x += wide_lanes) store(index + x, first_index + static_cast<float>(x));
-            }
-            const int beyond = wide_lanes - 1 - (length - 1) % wide_lanes;
-            bool has_room = std::int64_t{begin} + (end - i) * length + beyond <= row.writable;
-            if (!has_room && end - i > 1) {
-                --end;
-                has_room = true;
-            }
-            float* const to[2] = {row.out[0] + begin, row.out[1] + begin};
-            fill_chunks(rule, group, i, end, index, has_room ? to[0] : buffer[0], has_room ? to[1] : buffer[1], length);
-            if (!has_room)
-                for (std::size_t k = 0; k < 2; ++k)
-                    std::memcpy(to[k], buffer[k], static_cast<std::size_t>(length) * sizeof(float));
-            light(job, row, begin, std::int64_t{begin} + (end - i) * length);
             for (chunk += end - i; chunk >= per_row; chunk -= per_row, ++y) row.advance();
         }
     }

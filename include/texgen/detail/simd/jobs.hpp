@@ -48,6 +48,8 @@ struct TileJob {
         int x_begin, x_end, y_begin, y_end;
     };
 
+    Unit filled = {0, 0, 0, 0};  // in its columns chunks that no rule serves are filled
+
     static constexpr int unit_size = 64;
 
     // Whether it is one unit, of short rows that follow one another.

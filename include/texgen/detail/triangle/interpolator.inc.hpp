@@ -67,15 +67,11 @@ public:
     }
 
 private:
-    static Plan plan_without_survey(const Tile& tile, const Corners& at) noexcept {
-        return {Work::divide,        pays_for_chunks(tile) ? chunk_length(at, tile.width) : 0,
-                StepRule::undecided, {},
-                Coverage::partial,   Coverage::inside};
-    }
-
-    void fill(const Tile& tile) noexcept {
+    TEXGEN_APART void fill(const Tile& tile, int longest = longest_chunk) noexcept {
         const Corners at = corners_at(tile);
-        fill(tile, at, plan_without_survey(tile, at));
+        Plan plan = plan_without_survey(tile, at);
+        if (plan.chunk > longest) plan.chunk = 0;
+        fill(tile, at, plan);
     }
 
     void fill(const Tile& tile, const Corners& at, const Plan& plan) noexcept {
@@ -205,7 +201,7 @@ private:
         }
     }
 
-    void fill_polynomial(const Tile& tile, const Corners& at, const Plan& plan) noexcept {
+    TEXGEN_APART void fill_polynomial(const Tile& tile, const Corners& at, const Plan& plan) noexcept {
         TileJob job = make_job(tile, at);
         job.chunk = plan.chunk;
         job.steps = plan.steps;
@@ -213,15 +209,24 @@ private:
         job.q_error = at.q_error;
         job.least_q = 0x1p24 * at.q_error;
         for (std::size_t k = 0; k < 2; ++k) job.numerator_error[k] = at.numerator_error[k];
-        TileJob::Unit next{0, 0, 0, 0};
-        while (true) {
+        for (TileJob::Unit next{0, 0, 0, 0};;) {
             const TileJob::Unit refused = kernels_.fill_polynomial(job, next);
             if (job.is_done(refused)) return;
-            const Tile rest = part_of(tile, refused);
-            fill_float_divided(rest, corners_at(rest));
+            fill_refused(tile, job, refused);
             next = refused.x_end < tile.width ? TileJob::Unit{refused.x_end, 0, refused.y_begin, 0}
                                               : TileJob::Unit{0, 0, refused.y_end, 0};
         }
+    }
+
+    // In shorter chunks, or by divisions. Below what is refused of a row the same will be; then no vector may be written beyond its row.
+    TEXGEN_APART void fill_refused(const Tile& tile, TileJob& job, const TileJob::Unit& refused) noexcept {
+        Tile rest = part_of(tile, refused);
+        if (rest.width < tile.width && job.filled.x_end == 0) {
+            rest.height = tile.height - refused.y_begin;
+            job.filled = refused;
+            job.is_contiguous = false;
+        }
+        fill(rest, job.chunk - 1);
     }
 
     void fill_float_divided(const Tile& tile, const Corners& at) noexcept {

@@ -40,6 +40,13 @@ inline bool pays_for_chunks(const Tile& tile) noexcept {
     return tile.width >= 16 && static_cast<std::int64_t>(tile.width) * tile.height > 64;
 }
 
+// Of a tile that is divided, whatever it shows.
+inline Plan plan_without_survey(const Tile& tile, const Corners& at) noexcept {
+    return {Work::divide,        pays_for_chunks(tile) ? chunk_length(at, tile.width) : 0,
+            StepRule::undecided, {},
+            Coverage::partial,   Coverage::inside};
+}
+
 // The cheapest rule that serves every chunk of a tile well in front, and the error that it leaves; less work than a division
 // is said of it then, and affine where a line would do. The bound is that of the kernel with each of its terms at its
 // largest. A step of i is i (F_x Q - F Q_x) over the Q at both of its ends, and that difference is constant along a row.
