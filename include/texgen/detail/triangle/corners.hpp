@@ -126,6 +126,18 @@ inline Corners corners_of(const CloseRamps& close) noexcept {
     return corners;
 }
 
+// The planes of these corners, as they are.
+TEXGEN_APART inline CloseRamps ramps_of(const Corners& at, const Tile& tile) noexcept {
+    const auto plain = [](double base, double dx, double dy, double error) {
+        return CloseRamp{{{base, 0.0}, {dx, 0.0}, {dy, 0.0}}, error};
+    };
+    const auto numerator = [&](std::size_t k) {
+        const auto& [base, dx, dy] = at.numerator_ramp;
+        return plain(base[k], dx[k], dy[k], at.numerator_error[k]);
+    };
+    return {tile, {numerator(0), numerator(1), plain(at.q_ramp.base, at.q_ramp.dx, at.q_ramp.dy, at.q_error)}};
+}
+
 // The least and the largest G = F - bound Q at the corners, which is positive above a side of the region and negative below
 // it, and how far from 0 they must be.
 struct SideOfBound {

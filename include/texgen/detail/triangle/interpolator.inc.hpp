@@ -179,17 +179,8 @@ private:
         fill_closely(whole_, job, functions, unit);
     }
 
-    // The planes as they are.
-    TEXGEN_APART CloseRamps plain_ramps(const Tile& tile) const noexcept {
-        const Corners at = corners_of(triangle_.planes, *planes_, triangle_.q, tile);
-        const auto plain = [](double base, double dx, double dy, double error) {
-            return CloseRamp{{{base, 0.0}, {dx, 0.0}, {dy, 0.0}}, error};
-        };
-        const auto numerator = [&](std::size_t k) {
-            const auto& [base, dx, dy] = at.numerator_ramp;
-            return plain(base[k], dx[k], dy[k], at.numerator_error[k]);
-        };
-        return {tile, {numerator(0), numerator(1), plain(at.q_ramp.base, at.q_ramp.dx, at.q_ramp.dy, at.q_error)}};
+    CloseRamps plain_ramps(const Tile& tile) const noexcept {
+        return ramps_of(corners_of(triangle_.planes, *planes_, triangle_.q, tile), tile);
     }
 
     // Fragments of a unit, one by one: a bit for each.
