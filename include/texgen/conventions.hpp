@@ -85,8 +85,6 @@ public:
                a.has_depth_ == b.has_depth_ && a.depth_.x == b.depth_.x && a.depth_.y == b.depth_.y;
     }
 
-    friend GLM_CONSTEXPR TextureRegion whole_texture() noexcept;
-    friend GLM_CONSTEXPR TextureRegion rectangle_texture(double width, double height) noexcept;
     friend GLM_CONSTEXPR TextureRegion atlas_tile(glm::dvec2 min, glm::dvec2 max) noexcept;
 
 private:
@@ -98,16 +96,16 @@ private:
     bool has_depth_ = false;
 };
 
-// [0, 1] x [0, 1]: all of a texture that is addressed by fractions.
-inline GLM_CONSTEXPR TextureRegion whole_texture() noexcept { return {glm::dvec2(0.0, 0.0), glm::dvec2(1.0, 1.0)}; }
+// From min to max: a tile of a larger texture, in the units of that texture.
+inline GLM_CONSTEXPR TextureRegion atlas_tile(glm::dvec2 min, glm::dvec2 max) noexcept { return {min, max}; }
 
 // [0, width] x [0, height] in texels, as GL_TEXTURE_RECTANGLE addresses its image.
 inline GLM_CONSTEXPR TextureRegion rectangle_texture(double width, double height) noexcept {
-    return {glm::dvec2(0.0, 0.0), glm::dvec2(width, height)};
+    return atlas_tile(glm::dvec2(0.0, 0.0), glm::dvec2(width, height));
 }
 
-// From min to max: a tile of a larger texture, in the units of that texture.
-inline GLM_CONSTEXPR TextureRegion atlas_tile(glm::dvec2 min, glm::dvec2 max) noexcept { return {min, max}; }
+// [0, 1] x [0, 1]: all of a texture that is addressed by fractions.
+inline GLM_CONSTEXPR TextureRegion whole_texture() noexcept { return rectangle_texture(1.0, 1.0); }
 
 // An angle that knows its unit: made by radians() or degrees() only, so that a bare number does not convert.
 class Angle {
@@ -118,7 +116,6 @@ public:
     friend constexpr bool operator==(const Angle& a, const Angle& b) noexcept { return a.radians_ == b.radians_; }
 
     friend constexpr Angle radians(double) noexcept;
-    friend constexpr Angle degrees(double) noexcept;
 
 private:
     explicit constexpr Angle(double value) noexcept : radians_(value) {}
@@ -128,7 +125,7 @@ private:
 
 // The two ways to make one.
 constexpr Angle radians(double value) noexcept { return Angle(value); }
-constexpr Angle degrees(double value) noexcept { return Angle(value * (3.14159265358979323846 / 180.0)); }
+constexpr Angle degrees(double value) noexcept { return radians(value * (3.14159265358979323846 / 180.0)); }
 
 // The dial: the largest |error| that the caller accepts in s and in t, in the units of the region; in r the same
 // relative to max(1, |r|). The rounding of the nearest float is always allowed: |error| <= max(value, 1/2 ulp).

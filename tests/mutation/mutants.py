@@ -25,9 +25,9 @@ def _of(header, *rows):
 
 MUTANTS = [
     *_of("conventions.hpp",
-         ("degrees are radians", "Angle(value * (3.14159265358979323846 / 180.0))", "Angle(value)",
+         ("degrees are radians", "radians(value * (3.14159265358979323846 / 180.0))", "radians(value)",
           "conventions_test lens_test"),
-         ("a rectangle texture is turned", "glm::dvec2(width, height)}", "glm::dvec2(height, width)}",
+         ("a rectangle texture is turned", "glm::dvec2(width, height)", "glm::dvec2(height, width)",
           "conventions_test"),
          ("Direct3D's origin is at the bottom",
           "direct3d{DepthRange::zero_to_one, NdcY::up, TextureOrigin::top_left,",
