@@ -227,18 +227,9 @@ void bound_spheres(const SphereForms& forms, const SphereBlock& spheres, int* cl
             for (std::size_t f = 0; f < form_of_q; ++f)
                 for (std::size_t g = form_of_q + 1; g < forms.count; ++g) try_edge(f, g);
         }
-        const LongWords inside = ~not_inside;
-        const LongWords in_doubt = (perhaps_outside & ~outside) | (perhaps_inside & not_inside & ~outside);
-        const Words is_outside = narrow(outside), is_inside = narrow(inside & ~outside), doubts = narrow(in_doubt);
-        int each[3][lanes];
-        store(each[0], is_outside);
-        store(each[1], is_inside);
-        store(each[2], doubts);
-        for (std::size_t lane = 0; lane < static_cast<std::size_t>(lanes); ++lane)
-            classes[i + lane] = each[2][lane] != 0   ? body_in_doubt
-                                : each[0][lane] != 0 ? 0
-                                : each[1][lane] != 0 ? 2
-                                                     : 1;
+        const Words in_doubt = narrow((perhaps_outside | (perhaps_inside & not_inside)) & ~outside);
+        const Words partial = narrow(not_inside & ~outside), inside = narrow(~not_inside & ~outside);
+        store(classes + i, (in_doubt & body_in_doubt) | (~in_doubt & ((partial & 1) | (inside & 2))));
     }
 }
 

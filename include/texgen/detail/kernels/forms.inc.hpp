@@ -186,8 +186,7 @@ bool sharpen(const glm::dmat4& matrix, const FormWeights& weights, const float* 
     for (std::size_t i = 0; i < form_lanes; i += static_cast<std::size_t>(lanes)) {
         const Doubles of[3] = {load<Doubles>(weights.of[0] + i), load<Doubles>(weights.of[1] + i),
                                load<Doubles>(weights.of[2] + i)};
-        int is_known[lanes];
-        double value[lanes];
+        const auto bits = [i](const LongWords& mask) { return static_cast<std::uint32_t>(lane_bits(mask)) << i; };
         // Where they are largest, and then where they are least.
         for (int end = 0; end < 2; ++end) {
             std::uint32_t& in_doubt = end == 0 ? doubt.largest : doubt.least;
@@ -206,15 +205,11 @@ bool sharpen(const glm::dmat4& matrix, const FormWeights& weights, const float* 
                 close.add((sum - first) * x);
                 close.add_low(rest * x);
             }
-            store(is_known, narrow(close.is_known()));
-            store(value, close.value());
-            bool any_is_negative = false;
-            for (std::size_t lane = 0; lane < static_cast<std::size_t>(lanes); ++lane) {
-                const std::uint32_t bit = std::uint32_t{1} << (i + lane);
-                if ((in_doubt & bit) == 0 || is_known[lane] == 0) continue;
-                in_doubt &= ~bit;
-                any_is_negative |= value[lane] < 0.0 || (i + lane == form_of_q && value[lane] == 0.0);
-            }
+            const std::uint32_t settled = in_doubt & bits(close.is_known());
+            in_doubt &= ~settled;
+            const Doubles value = close.value();
+            const std::uint32_t dark = bits(greater(0.0 - value, 0.0)) | (bits(~are_nonzero(value)) & 1u << form_of_q);
+            const bool any_is_negative = (settled & dark) != 0;
             if (end == 0 && any_is_negative) return true;
             doubt.is_any_negative |= any_is_negative;
         }
