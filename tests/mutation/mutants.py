@@ -606,9 +606,9 @@ MUTANTS = [
          ("coefficients lose their low parts", "if (has_low[j]) keep(product_rest);", "", "doubt_test"),
          ("a sum in lanes loses in silence", "        result.lost = lost * 1.001;", "        result.lost = lost * 0.0;", "doubt_test"),
          ("what a sum that cancels leaves is lost", "magnitude(result.high) * 0x1p-60", "magnitude(result.high) * 0x1p60", "doubt_test"),
-         ("ties in lanes go up", "where(are_nonzero(remainder), with_sign_of(error, remainder))",
-          "with_sign_of(error, remainder)", "doubt_test"),
-         ("a quotient in lanes loses in silence", "(is_precise & (is_alone |", "(is_alone | (is_alone |", "doubt_test",
+         ("ties in lanes go up", "where(are_nonzero(remainder), with_sign_of(size * 0x1p-48, remainder))",
+          "with_sign_of(size * 0x1p-48, remainder)", "doubt_test"),
+         ("a quotient in lanes loses in silence", "(is_precise & (~is_near |", "(~is_near | (~is_near |", "doubt_test",
           {"survives": "A numerator of three products that loses a share of itself beyond what is kept of what two doubles "
                        "leave has not been found; the proof leans on it."}),
          ("a side in lanes is known", "is_known = in_front | at_most(q.lost * 2.0, -1.0 * q.high);",

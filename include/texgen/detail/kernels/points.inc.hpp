@@ -100,6 +100,8 @@ template <class Terms>
 TEXGEN_INLINE Again fill_block_again(const DividedOutput& output, const Terms& terms, std::size_t begin,
                                      std::size_t end, Effort effort) noexcept {
     const auto numerators = static_cast<std::size_t>(output.numerators);
+    // Floats below are no further apart than the tolerance.
+    const Doubles within = power_of_two_below(Doubles{} + terms.tolerance()) * 0x1p24;
     std::uint64_t doubtful = 0;
     for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(lanes)) {
         const auto at = terms.load(i);
@@ -133,8 +135,8 @@ TEXGEN_INLINE Again fill_block_again(const DividedOutput& output, const Terms& t
                     effort.are_ties = !divide_nearly(numerator.nearly_at(at), numerator.error_at(at), q, value[k]);
                 if (!effort.are_ties) continue;
                 if (numerator.is_finite)
-                    value[k] = nearest_quotients(numerator.at(at, effort.precisely), q, terms.tolerance(),
-                                                 effort.precisely, is_known);
+                    value[k] =
+                        nearest_quotients(numerator.at(at, effort.precisely), q, within, effort.precisely, is_known);
                 else
                     value[k] = to_floats(where(in_front, numerator.nearly_at(at) * q.reciprocal));
             }

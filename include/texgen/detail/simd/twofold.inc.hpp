@@ -119,7 +119,7 @@ struct TwofoldForm {
 struct TwofoldDivisor {
     LongWords in_front, is_known;  // is_known: the side is, and in front the value well enough to divide by
     Doubles high, low, lost, reciprocal;
-    Doubles part[2];  // high in parts of 27 bits and less, whose products with 25 bits are exact
+    Doubles part[2], low_part[2];  // high and low in parts of 27 bits and less, whose products with 25 bits are exact
 
     TEXGEN_INLINE explicit TwofoldDivisor(const Twofold& q) noexcept {
         in_front = greater(q.high, 0.0) & at_most(q.lost, q.high * 0x1p-50);
@@ -130,6 +130,8 @@ struct TwofoldDivisor {
         reciprocal = where(in_front, 1.0 / q.high);
         part[0] = leading_bits<27>(q.high);
         part[1] = q.high - part[0];
+        low_part[0] = leading_bits<27>(q.low);
+        low_part[1] = q.low - low_part[0];
     }
 };
 
@@ -144,23 +146,29 @@ TEXGEN_INLINE bool divide_nearly(const Doubles& s, const Doubles& s_error, const
 }
 
 // The floats nearest to s / q in front, 0 elsewhere; `is_known` loses the lanes in front where that is in doubt.
-// As nearest_quotient(): two neighbours are left, and the sign of s - middle q decides. That is a small number beside both
-// products (either will do where they are no further apart than the tolerance), so s - middle q' is exact for the leading
-// 53 bits q' of q; and precisely the rest is summed exactly where it is but short, as it is of ties.
-TEXGEN_INLINE Floats nearest_quotients(const Twofold& s, const TwofoldDivisor& q, double tolerance, bool precisely,
+// As nearest_quotient(): where the quotient, which errs by less than 2^-48 of it, 32 ulps, is so near the middle of two
+// floats, the sign of s - middle q decides. That is a small number beside both products, so s - middle q' is exact for the
+// leading 53 bits q' of q; and precisely the rest is summed exactly where it is but short, as it is of ties. Below `within`
+// either float will do. Integers know the middles of normal floats; those of subnormal ones are found by rounding.
+TEXGEN_INLINE Floats nearest_quotients(const Twofold& s, const TwofoldDivisor& q, const Doubles& within, bool precisely,
                                        LongWords& is_known) noexcept {
     const Doubles quotient = where(q.in_front, s.high * q.reciprocal) + 0.0;
-    const Doubles error = magnitude(quotient) * 0x1p-48;
-    const Floats first = to_floats(quotient - error);
-    const Doubles low = to_doubles(first);
-    const Doubles high = to_doubles(to_floats(quotient + error));
+    const Doubles size = magnitude(quotient);
     const LongWords is_precise = at_most(s.lost, magnitude(s.high) * 0x1p-50);
-    const LongWords is_alone = at_most(high, low) | at_most(high - low, Doubles{} + tolerance);
-    if (!any(~is_alone)) {
+    const LongWords is_open = ~greater(within, size);
+    const LongWords is_small = is_open & greater(Doubles{} + 0x1p-125, size) & greater(size, 0x1p-800);
+    LongWords is_near = is_open & are_near_middles(quotient, 63);
+    if (!any(is_near | is_small)) {
         is_known &= ~q.in_front | is_precise;
-        return first;
+        return to_floats(quotient);
     }
-    const Doubles middle = low * 0.5 + high * 0.5;  // next to 2^128 it is infinite, and the lane in doubt
+    Doubles middle = middle_near(quotient + 0x1p-900);  // of 0 it is subnormal, which takes long
+    if (any(is_small)) {
+        const Doubles error = size * 0x1p-48;
+        const Doubles low = to_doubles(to_floats(quotient - error)), high = to_doubles(to_floats(quotient + error));
+        middle = select(is_small, low * 0.5 + high * 0.5, middle);
+        is_near = (is_near & ~is_small) | (is_small & greater(high, low));
+    }
     const Doubles leading_rest = (s.high - middle * q.part[0]) - middle * q.part[1];
     Doubles remainder;
     Doubles lost = s.lost + magnitude(middle) * q.lost;
@@ -169,16 +177,16 @@ TEXGEN_INLINE Floats nearest_quotients(const Twofold& s, const TwofoldDivisor& q
         remainder = leading_rest + (s.low - low_product);
         lost = lost + (magnitude(s.low) + magnitude(low_product)) * 0x1p-52;
     } else {
-        const Doubles q_low = leading_bits<27>(q.low);
-        const Doubles last_product = middle * (q.low - q_low);
+        const Doubles last_product = middle * q.low_part[1];
         Doubles left[2];
         Doubles sum = two_sum(leading_rest, s.low, left[0]);
-        sum = two_sum(sum, -1.0 * (middle * q_low), left[1]);
+        sum = two_sum(sum, -1.0 * (middle * q.low_part[0]), left[1]);
         remainder = sum + ((left[0] + left[1]) - last_product);
         lost = lost + (magnitude(left[0]) + magnitude(left[1]) + magnitude(last_product)) * 0x1p-51;
     }
-    is_known &= ~q.in_front | (is_precise & (is_alone | at_most(lost * 2.0, magnitude(remainder))));
-    return to_floats(middle + where(are_nonzero(remainder), with_sign_of(error, remainder)));
+    is_known &= ~q.in_front | (is_precise & (~is_near | at_most(lost * 2.0, magnitude(remainder))));
+    const Doubles decided = middle + where(are_nonzero(remainder), with_sign_of(size * 0x1p-48, remainder));
+    return to_floats(select(is_near, decided, quotient));
 }
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA
