@@ -53,7 +53,7 @@ public:
     void interpolate(const Tile& tile, const Corners& at, const Plan& plan) noexcept {
         whole_ = tile;
         closely_.drop();
-        fill(tile, at, plan);
+        triangle_.tolerance == 0.0 ? fill_exact(tile, at) : fill(tile, at, plan);
     }
 
     // In parts that the scratch arrays hold.
@@ -75,7 +75,6 @@ private:
     }
 
     void fill(const Tile& tile, const Corners& at, const Plan& plan) noexcept {
-        if (triangle_.tolerance == 0.0) return fill_exact(tile, at);
         if (at.well_in_front()) return plan.chunk != 0 ? fill_polynomial(tile, at, plan) : fill_float_divided(tile, at);
         split(tile, at, [&](const Tile& half) { fill(half); });
     }
