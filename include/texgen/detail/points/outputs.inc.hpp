@@ -53,8 +53,7 @@ struct PointOutputs {
 // Calls group(first, numerators, outputs) for the coordinates that are computed together: s and t where both are asked for
 // or the mask is, either one alone, and r, which takes from the mask what a depth does not hold.
 template <class Group>
-TEXGEN_INLINE void for_each_group(const Texcoords& out, std::size_t count, const LitTest& region,
-                                  const Group& group) noexcept {
+void for_each_group(const Texcoords& out, std::size_t count, const LitTest& region, const Group& group) noexcept {
     float* const s = array_of(out.s, count);
     float* const t = array_of(out.t, count);
     float* const r = array_of(out.r, count);
@@ -101,10 +100,25 @@ void darken_batch(Job job, const PointOutputs& out, const Batch& batch, const Ru
     }
 }
 
-// Runs a job for a batch whose results have no place of their own: through buffers, or to take light.
+// Where the results of a batch go, if all have a place of their own. The job is changed in place: copies of what has just been
+// written, in other sizes, wait for it.
+template <class Job>
+TEXGEN_INLINE bool is_placed(Job& job, const PointOutputs& out, const Batch& batch) noexcept {
+    if (batch.count != batch.whole || !out.are_complete(job.numerators)) return false;
+    if (job.numerators == 1 && out.lit != nullptr) return false;
+    job.count = batch.count;
+    job.interleaved_st = out.st != nullptr;
+    for (int k = 0; k < job.numerators; ++k)
+        job.out[k] = job.interleaved_st ? out.st + 2 * batch.first : out.coordinate[k] + batch.first;
+    job.lit = out.lit != nullptr ? out.lit + batch.first : nullptr;
+    return true;
+}
+
+// Runs a job for a batch. What has no place of its own goes through buffers.
 template <class Job, class Run>
-TEXGEN_APART void run_apart(Job& job, const PointOutputs& out, const Batch& batch, const Run& run) noexcept {
+void run_batch(Job& job, const PointOutputs& out, const Batch& batch, const Run& run) noexcept {
     if (job.numerators == 1 && out.lit != nullptr) return darken_batch(job, out, batch, run);
+    if (is_placed(job, out, batch)) return run(job);
     const auto [first, count, whole] = batch;
     float buffer[3][copy_size];
     job.out[0] = buffer[0];
@@ -125,22 +139,6 @@ TEXGEN_APART void run_apart(Job& job, const PointOutputs& out, const Batch& batc
         }
         job.advance(job.count);
     }
-}
-
-// Runs a job for a batch. The job is changed in place: copies of what has just been written, in other sizes, wait for it.
-template <class Job, class Run>
-TEXGEN_INLINE void run_batch(Job& job, const PointOutputs& out, const Batch& batch, const Run& run) noexcept {
-    if (batch.count != batch.whole || !out.are_complete(job.numerators) ||
-        (job.numerators == 1 && out.lit != nullptr)) {
-        const PointOutputs copy = out;  // so that the other ones need no memory
-        return run_apart(job, copy, batch, run);
-    }
-    job.count = batch.count;
-    job.interleaved_st = out.st != nullptr;
-    for (int k = 0; k < job.numerators; ++k)
-        job.out[k] = job.interleaved_st ? out.st + 2 * batch.first : out.coordinate[k] + batch.first;
-    job.lit = out.lit != nullptr ? out.lit + batch.first : nullptr;
-    run(job);
 }
 
 // The values of a job from `first` on by its kernel, and by one(job, i) what that cannot decide.

@@ -260,7 +260,7 @@ TEXGEN_APART void run_rest(SegmentJob& job, const PointOutputs& outputs, std::sp
     float padded[point_quantum];
     for (std::size_t i = 0; i < point_quantum; ++i) padded[i] = alpha[first + (i < rest ? i : rest - 1)];
     job.alpha = padded;
-    run_apart(job, outputs, {first, rest, point_quantum}, run);
+    run_batch(job, outputs, {first, rest, point_quantum}, run);
 }
 
 // Values along a segment, a group of coordinates after another.
@@ -277,10 +277,14 @@ struct SegmentGroups {
         const auto run = [](SegmentJob& part) { interpolate_job(chosen<SegmentKernels>(), part); };
         const std::size_t whole = alpha.size() / point_quantum * point_quantum;
         job.alpha = alpha.data();
-        if (whole != 0) run_batch(job, outputs, {0, whole, whole}, run);
+        if (whole != 0) {
+            if (is_placed(job, outputs, {0, whole, whole}))
+                run(job);
+            else
+                run_batch(job, outputs, {0, whole, whole}, run);
+        }
         if (whole == alpha.size()) return;
-        const PointOutputs copy = outputs;
-        run_rest(job, copy, alpha, run);
+        run_rest(job, outputs, alpha, run);
     }
 };
 
