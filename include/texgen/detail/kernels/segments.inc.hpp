@@ -89,7 +89,6 @@ Undecided fill_segment_closely(const SegmentJob& job, std::size_t first) noexcep
     const MixtureLanes q_mixture(job.q);
     const MixtureLanes mixture[2] = {MixtureLanes(job.numerator[0]), MixtureLanes(job.numerator[Numerators - 1])};
     const bool is_constant = job.q.kind == Mixture::is_short && job.q.step == 0.0;
-    const Doubles last_in_front = Doubles{} + (job.q_a > 0.0 ? 1.0 : -1.0);  // alpha, where q is constant
     const bool are_finite = mixture[0].kind != Mixture::is_not_finite && mixture[1].kind != Mixture::is_not_finite;
     ExactSum q{q_mixture.base, Doubles{}};
     Doubles reciprocal = 1.0 / q.high;
@@ -108,11 +107,13 @@ Undecided fill_segment_closely(const SegmentJob& job, std::size_t first) noexcep
             is_plain = !has_inexact && !has_subnormal && are_finite;
         }
         const Doubles alpha = to_doubles(load<Floats>(from + i));
-        if (!is_constant) {
+        if (is_constant) {
+            q.high = q_mixture.base + alpha * 0.0;  // none where alpha is no number
+        } else {
             q = q_mixture.exactly_at<AreShort>(alpha);
             reciprocal = 1.0 / q.high;
         }
-        const LongWords in_front = is_constant ? at_most(alpha, last_in_front) : greater(q.high, 0.0);
+        const LongWords in_front = greater(q.high, 0.0);
         ExactSum s[2];
         Doubles quotient[2];
         Floats value[2];
