@@ -8,6 +8,8 @@
 
 #include "batch_tiles.inc.hpp"
 
+#include "batch_residues.inc.hpp"
+
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
 template <class CompiledWhereCalled>

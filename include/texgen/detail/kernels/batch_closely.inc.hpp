@@ -139,6 +139,33 @@ struct CloseLanes {
     }
 };
 
+// The last bit of each that is set; of 0 it is that of no other number.
+TEXGEN_INLINE Doubles last_bits(const Doubles& a) noexcept {
+    const Doubles size = magnitude(a);
+    const Doubles last = select(are_nonzero(size - power_of_two_below(a)), size - magnitude(without_last_bit(a)), size);
+    return where(are_nonzero(a), last) + where(~are_nonzero(a), Doubles{} + 0x1p500);
+}
+
+TEXGEN_INLINE Doubles least_of_three(const Doubles& a, const Doubles& b, const Doubles& c) noexcept {
+    return minimum(a, minimum(b, c));
+}
+// Powers of two of which function k, 0 to 3 for s, t, r, q, of the triangle in each lane is a multiple at every fragment: as PlaneGrains
+// has them.
+TEXGEN_APART Doubles grains_of(const float* const (&triangle)[lanes], bool is_one, std::size_t k) noexcept {
+    VertexLanes vertex[3];
+    TEXGEN_UNROLL
+    for (std::size_t i = 0; i < 3; ++i) vertex[i].load_from(triangle, i, is_one);
+    const auto last_bit = [&](std::size_t i, std::size_t place) {
+        return last_bits(to_doubles(vertex[i].value[place]));
+    };
+    const auto of_all = [&](std::size_t place) {
+        return least_of_three(last_bit(0, place), last_bit(1, place), last_bit(2, place));
+    };
+    const Doubles of_window = minimum(of_all(0), Doubles{} + 0.5) * minimum(of_all(1), Doubles{} + 0.5);
+    const Doubles w[3] = {last_bit(0, 2), last_bit(1, 2), last_bit(2, 2)};
+    return of_window * (least_of_three(w[0] * w[1], w[1] * w[2], w[2] * w[0]) * of_all(BatchVertex::strq + k));
+}
+
 // The lanes in doubt (what is not 0) of a vector of fragments at (x, y), again. Returns those that stay so.
 template <std::size_t Numerators>
 TEXGEN_APART Words divide_lanes_closely(const float* const (&triangle)[lanes], const Doubles& x, const Doubles& y,
@@ -170,9 +197,19 @@ TEXGEN_APART Words divide_lanes_closely(const float* const (&triangle)[lanes], c
             const Doubles sum = two_sum(f.high - middle * upper, middle * lower * -1.0, rest);
             const Doubles remainder = sum + (rest + (f.low - middle * (q.low * 0.5)));
             const Doubles bound = magnitude(middle) * (q.lost * 0.5) + f.lost;
+            const Doubles unit = power_of_two_below(middle);
             const LongWords is_open = greater(magnitude(remainder), bound);
             const LongWords is_tie = at_most(magnitude(remainder) + bound, Doubles{});
-            doubt |= ~(decide_between(below, above, middle, remainder, is_open, is_tie, value) | equal(differ, 0));
+            const Words may_differ = in_doubt & ~equal(differ, 0);
+            Words decided = decide_between(below, above, middle, unit, remainder, is_open, is_tie, value);
+            if (any(may_differ & ~decided)) {
+                // A multiple of its terms' grains that is certainly smaller than those is 0.
+                const Doubles finer =
+                    minimum(unit * 0x1p-25 * grains_of(triangle, is_one, 3), grains_of(triangle, is_one, k));
+                decided = decide_between(below, above, middle, unit, remainder, is_open,
+                                         is_tie | greater(finer, magnitude(remainder) + bound), value);
+            }
+            doubt |= may_differ & ~decided;
         }
         quotient[k] = select(in_doubt, value, quotient[k]);
     }

@@ -245,18 +245,18 @@ TEXGEN_INLINE bool divide_tile_by_tier(const BatchPlanes& planes, const BatchTil
     return true;
 }
 
-// A tile's values to its place in the outputs, from `begin` on. At their end whole vectors might reach beyond it.
-template <std::size_t Numerators>
-TEXGEN_INLINE bool fill_tile(const FragmentOutputs& out, const BatchPlanes& planes, const BatchTiles& tiles,
-                             std::size_t i, const TileShape& shape, std::size_t begin, bool is_at_end,
-                             ScratchOutputs<largest_batch_tile + wide_lanes>& scratch) noexcept {
+// A tile's values to its place in the outputs, from `begin` on; by way of scratch where whole vectors might reach beyond what may
+// be written.
+template <std::size_t Numerators, class Divide>
+TEXGEN_INLINE bool fill_tile(const FragmentOutputs& out, const TileShape& shape, std::size_t begin, bool in_scratch,
+                             ScratchOutputs<largest_batch_tile + wide_lanes>& scratch, const Divide& divide) noexcept {
     TileOutputs<Numerators> here;
     TEXGEN_UNROLL
     for (std::size_t k = 0; k < Numerators; ++k)
-        here.out[k] = out.out[k] == nullptr || is_at_end ? scratch.values[k] : out.out[k] + begin;
-    const bool is_certain = divide_tile_by_tier<Numerators>(planes, tiles, i, shape, here);
+        here.out[k] = out.out[k] == nullptr || in_scratch ? scratch.values[k] : out.out[k] + begin;
+    const bool is_certain = divide(here);
     if (out.lit != nullptr) {
-        float* const lit = is_at_end ? scratch.values[3] : out.lit + begin;
+        float* const lit = in_scratch ? scratch.values[3] : out.lit + begin;
         for (std::size_t n = 0; n < shape.count; n += static_cast<std::size_t>(lanes)) {
             Floats value[Numerators];
             TEXGEN_UNROLL
@@ -264,9 +264,15 @@ TEXGEN_INLINE bool fill_tile(const FragmentOutputs& out, const BatchPlanes& plan
             store(lit + n, one_where(out.are_inside(value)));
         }
     }
-    if (is_at_end) scratch.copy_to(out, begin, shape.count);
+    if (in_scratch) scratch.copy_to(out, begin, shape.count);
     return is_certain;
 }
+
+// Tiles of the block from `first` on that are in doubt, a bit each, by residues; its values begin at `done`. Returns those that
+// stay so.
+template <std::size_t Numerators>
+std::uint64_t decide_tiles(const TilesJob& job, const FragmentOutputs& out, const BatchTiles& tiles, std::size_t first,
+                           const int (*block)[4], std::uint64_t doubtful, std::size_t done) noexcept;
 
 template <std::size_t Numerators>
 TEXGEN_INLINE Undecided divide_all_tiles(const TilesJob& job, std::size_t first, std::size_t done) noexcept {
@@ -291,7 +297,8 @@ TEXGEN_INLINE Undecided divide_all_tiles(const TilesJob& job, std::size_t first,
                 job.tolerance > 0.0 && !any(~prepare_in_float<Numerators>(job, planes, block + i, i, tiles));
             if (!is_all_float) prepare<Numerators>(job, planes, block + i, i, tiles);
         }
-        std::uint64_t doubtful = 0;
+        std::uint64_t doubtful = 0, in_doubt = 0;
+        const std::size_t begin_of_block = done;
         for (std::size_t i = 0; i < count; ++i) {
             const int width = job.tiles[first + i][2];
             const int height = job.tiles[first + i][3];
@@ -299,19 +306,23 @@ TEXGEN_INLINE Undecided divide_all_tiles(const TilesJob& job, std::size_t first,
             if (!shape.is_of(width, height)) shape.take(width, height, tiles.per_width[i]);
             const std::size_t begin = done;
             done += shape.count;
-            bool is_certain = false;
             if (tiles.has(BatchTiles::is_dark, i)) {
                 for (float* const array : {out.out[0], out.out[1], out.out[2], out.lit})
                     for (std::size_t n = begin; array != nullptr && n < done; ++n) array[n] = 0.0f;
-                is_certain = true;
             } else if ((tiles.has(BatchTiles::is_exact, i) || tiles.has(BatchTiles::is_float, i)) &&
                        shape.count <= largest_batch_tile) {
                 const bool is_at_end = done + static_cast<std::size_t>(wide_lanes) > job.count;
-                is_certain =
-                    fill_tile<Numerators>(out, job.planes[first + i], tiles, i, shape, begin, is_at_end, scratch);
+                const bool is_certain = fill_tile<Numerators>(
+                    out, shape, begin, is_at_end, scratch, [&](const TileOutputs<Numerators>& here) {
+                        return divide_tile_by_tier<Numerators>(job.planes[first + i], tiles, i, shape, here);
+                    });
+                if (!is_certain) in_doubt |= std::uint64_t{1} << i;
+            } else {
+                doubtful |= std::uint64_t{1} << i;
             }
-            if (!is_certain) doubtful |= std::uint64_t{1} << i;
         }
+        if (in_doubt != 0)
+            doubtful |= decide_tiles<Numerators>(job, out, tiles, first, block, in_doubt, begin_of_block);
         if (doubtful != 0) return {first, doubtful};
     }
     return {job.tile_count, 0};

@@ -202,6 +202,7 @@ struct CloseRow {
 struct CloseQ {
     Doubles upper, lower, low, reciprocal, relative_error;
     LongWords in_front, doubt;
+    Residues residues;
 
     TEXGEN_INLINE CloseQ(const CloseRow& row, double unit, const Doubles& index, std::int64_t x) noexcept {
         const Doubles high = index * row.high_dx + row.high;
@@ -209,7 +210,8 @@ struct CloseQ {
         const Doubles q = high + rest;
         in_front = greater(q, row.error * 256.0);
         doubt = ~(in_front | greater(q * -1.0, row.error));
-        if (any(doubt)) doubt &= ~row.are_known(q) | are_positive(row.residues_at(x));
+        residues = row.residues_at(x);
+        if (any(doubt)) doubt &= ~row.are_known(q) | are_positive(residues);
         reciprocal = where(in_front, 1.0 / q);
         relative_error = reciprocal * row.error + 0x1p-50;
         upper = (high + unit) - unit;
@@ -220,12 +222,11 @@ struct CloseQ {
 };
 
 // The nearer of `below` and `above`, next to one another, by the sign of the remainder that a quotient leaves beyond their
-// middle (`middle` is twice that). Returns the lanes that this decides.
-TEXGEN_INLINE Words decide_between(const Floats& below, const Floats& above, const Doubles& middle,
+// middle (`middle` is twice that, `unit` the power of two below it). Returns the lanes that this decides.
+TEXGEN_INLINE Words decide_between(const Floats& below, const Floats& above, const Doubles& middle, const Doubles& unit,
                                    const Doubles& remainder, const LongWords& is_open, const LongWords& is_tie,
                                    Floats& value) noexcept {
     // A step from the middle that is less than half of what the floats are away.
-    const Doubles unit = power_of_two_below(middle);
     const Doubles step = where(is_open, with_sign_of(unit * 0x1p-26, remainder));
     const Floats nearest = to_floats((middle + step) * 0.5);
     const LongWords are_neighbours = at_most(to_doubles(above) - to_doubles(below), unit * 0x1p-24);
@@ -241,33 +242,35 @@ struct CloseRemainder {
     Doubles middle, unit, value, error;  // middle is twice m, and unit the power of two below it
 };
 
-// Where F - m Q is in doubt its residue says what it is: the finer one of its terms' grains times an integer. Returns the
-// lanes of `doubt` that this does not decide; F nearly is `sum`.
-TEXGEN_INLINE Words decide_by_residues(const CloseRow& row, const CloseRow& q, const CloseRemainder& remainder,
-                                       const Doubles& sum, std::int64_t x, const Words& doubt, Floats& value) noexcept {
-    const Doubles finer = minimum(remainder.unit * (0x1p-25 * q.grain), Doubles{} + row.grain);
-    const Doubles per_finer = 1.0 / finer;
-    const Doubles of_f = per_finer * row.grain;
-    const Doubles of_q = remainder.middle * (0.5 * q.grain) * per_finer;
+// The sign of F - m Q by its residue: the finer one of its terms' grains times an integer. Returns the lanes of `doubt` that
+// this does not decide.
+TEXGEN_INLINE Words decide_by_residues(const Residues& f, double f_grain, const Residues& q, double q_grain,
+                                       const CloseRemainder& remainder, const Words& doubt, Floats& value) noexcept {
+    const Doubles finer = minimum(remainder.unit * (0x1p-25 * q_grain), Doubles{} + f_grain);
+    const Doubles per_finer = reciprocals_of_powers(finer);
+    const Doubles of_f = per_finer * f_grain;
+    const Doubles of_q = remainder.middle * (0.5 * q_grain) * per_finer;
     const LongWords is_known = greater(finer * 0x1p62, magnitude(remainder.value) + remainder.error) &
-                               greater(0x1p62 - maximum(of_f, magnitude(of_q)), 0.0);
-    const Residues of_row = row.residues_at(x);
-    const Residues residues =
-        of_row * to_residues(where(is_known, of_f)) - q.residues_at(x) * to_residues(where(is_known, of_q));
+                               greater(Doubles{} + 0x1p62, maximum(of_f, magnitude(of_q)));
+    const Residues residues = f * to_residues(where(is_known, of_f)) - q * to_residues(where(is_known, of_q));
     Floats nearest;
-    const Words decided = doubt & decide_between(remainder.below, remainder.above, remainder.middle, signs_of(residues),
-                                                 is_known & ~are_zero(residues), is_known, nearest);
-    const Words vanishes = doubt & narrow(row.are_known(sum) & are_zero(of_row));
-    value = select(vanishes, Floats{}, select(decided, nearest, value));
-    return doubt & ~(decided | vanishes);
+    const Words decided = doubt & decide_between(remainder.below, remainder.above, remainder.middle, remainder.unit,
+                                                 signs_of(residues), is_known & ~are_zero(residues), is_known, nearest);
+    value = select(decided, nearest, value);
+    return doubt & ~decided;
+}
+// Where F is 0, as its residue says, so is the quotient.
+TEXGEN_INLINE Words decide_zeros(const LongWords& are_zeros, const Words& doubt, Floats& value) noexcept {
+    value = select(doubt & narrow(are_zeros), Floats{}, value);
+    return doubt & ~narrow(are_zeros);
 }
 
 // The quotients of a vector, 0 behind. Where value - error and value + error do not round to one float but to neighbours, the
-// sign of F - m Q decides. That is a multiple of the grain of its terms: what is certainly smaller is 0, and the tie is certain,
-// too. Returns the lanes that stay in doubt.
-TEXGEN_INLINE Words divide_closely(const CloseRow& row, const CloseRow& q_row, const CloseQ& q,
-                                   const Doubles& half_q_error, const Doubles& index, std::int64_t x,
-                                   Floats& value) noexcept {
+// sign of F - m Q decides: that of its residue, if there is one that says all of it, else of what two doubles hold. It is a
+// multiple of the grain of its terms: what is certainly smaller is 0, and the tie is certain, too. Returns the lanes that stay in
+// doubt.
+TEXGEN_INLINE Words divide_closely(const CloseRow& row, double q_grain, const CloseQ& q, const Doubles& half_q_error,
+                                   const Doubles& index, std::int64_t x, Floats& value) noexcept {
     const Doubles high = index * row.high_dx + row.high;
     const Doubles low = index * row.low_dx + row.low;
     const Doubles sum = high + low;
@@ -288,13 +291,21 @@ TEXGEN_INLINE Words divide_closely(const CloseRow& row, const CloseRow& q_row, c
     remainder.unit = power_of_two_below(middle);
     remainder.value = (rest - middle * q.lower) + (lost + (low - middle * q.low));
     remainder.error = magnitude(middle) * half_q_error + row.error;
+    Words doubt = ~equal(differ, 0);
+    if (q_grain > 0.0) {
+        const Residues residues = row.residues_at(x);
+        doubt = decide_by_residues(residues, row.grain, q.residues, q_grain, remainder, doubt, value);
+        if (!any(doubt)) return doubt;
+        doubt = decide_zeros(row.are_known(sum) & are_zero(residues), doubt, value);
+    }
     const LongWords is_open = greater(magnitude(remainder.value), remainder.error);
     const LongWords is_tie =
-        greater(minimum(remainder.unit * (0x1p-25 * q_row.grain), Doubles{} + row.grain), remainder.error * 4.0);
-    const Words decided =
-        decide_between(remainder.below, remainder.above, middle, remainder.value, is_open, is_tie, value);
-    const Words doubt = ~(decided | equal(differ, 0));
-    return any(doubt) ? decide_by_residues(row, q_row, remainder, sum, x, doubt, value) : doubt;
+        greater(minimum(remainder.unit * (0x1p-25 * q_grain), Doubles{} + row.grain), remainder.error * 4.0);
+    Floats nearest;
+    const Words decided = doubt & decide_between(remainder.below, remainder.above, middle, remainder.unit,
+                                                 remainder.value, is_open, is_tie, nearest);
+    value = select(decided, nearest, value);
+    return doubt & ~decided;
 }
 
 // One numerator stands in both places.
@@ -316,7 +327,7 @@ std::uint64_t fill_tile_closely(const TileJob& job, const CloseFunctions& functi
             Floats value[2];
             Words doubt = narrow(q.doubt);
             for (std::size_t k = 0; k < 2; ++k)
-                doubt |= divide_closely(rows[k], q_row, q, half_q_error, index, x, value[k]);
+                doubt |= divide_closely(rows[k], q_row.grain, q, half_q_error, index, x, value[k]);
             for (std::size_t k = 0; k < 2; ++k) store_from(row.out[k], x, unit.x_end, row.writable, value[k]);
             if (row.lit != nullptr)
                 store_from(row.lit, x, unit.x_end, row.writable, lit_of(job, value, narrow(q.in_front)));

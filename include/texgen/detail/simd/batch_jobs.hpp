@@ -47,6 +47,7 @@ inline constexpr std::size_t largest_batch_tile = 512;
 // An output is null, or an array of `count` floats; r is computed where it has one, and where the mask is to have a depth.
 struct BatchJob {
     const BatchPlanes* planes;
+    const float* vertices;
     double tolerance;
     float* out[3];
     float* lit;
@@ -66,7 +67,6 @@ struct TilesJob : BatchJob {
 
 // Triangle ids[k] of `triangles` at fragment k of a rectangle; any other id is no triangle.
 struct FragmentsJob : BatchJob {
-    const float* vertices;
     const std::uint32_t* ids;
     std::uint32_t triangles;
     int x, y, width;

@@ -2,6 +2,8 @@
 
 // The kernels of batches: apart from all others, so that only files with batches pay for them.
 
+#include <bit>
+
 #include "batch_jobs.hpp"
 #include "lanes.hpp"
 

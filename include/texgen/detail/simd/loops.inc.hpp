@@ -150,6 +150,12 @@ using Residues = Lanes<std::uint64_t>;
 TEXGEN_INLINE Residues to_residues(const Doubles& integers) noexcept {
     return Residues::of([&](int i) { return static_cast<std::uint64_t>(static_cast<std::int64_t>(integers.lane[i])); });
 }
+TEXGEN_INLINE Doubles without_last_bit(const Doubles& a) noexcept {
+    return Doubles::of([&](int i) {
+        const auto bits = bit_cast<std::uint64_t>(a.lane[i]);
+        return bit_cast<double>(bits & (bits - 1));
+    });
+}
 TEXGEN_INLINE Doubles signs_of(const Residues& a) noexcept {
     return Doubles::of([&](int i) { return bit_cast<double>(a.lane[i]); });
 }
@@ -171,6 +177,10 @@ TEXGEN_INLINE Doubles with_sign_of(const Doubles& size, const Doubles& sign) noe
 TEXGEN_INLINE Doubles power_of_two_below(const Doubles& a) noexcept {
     return Doubles::of(
         [&](int i) { return bit_cast<double>(bit_cast<std::uint64_t>(a.lane[i]) & 0x7ff0000000000000); });
+}
+TEXGEN_INLINE Doubles reciprocals_of_powers(const Doubles& a) noexcept {
+    return Doubles::of(
+        [&](int i) { return bit_cast<double>(0x7fe0000000000000 - bit_cast<std::uint64_t>(a.lane[i])); });
 }
 
 TEXGEN_INLINE WideWords magnitude_bits(const WideFloats& a) noexcept {

@@ -110,6 +110,11 @@ TEXGEN_INLINE Doubles middle_near(const Doubles& a) noexcept {
 TEXGEN_INLINE Residues to_residues(const Doubles& integers) noexcept {
     return __builtin_bit_cast(Residues, __builtin_convertvector(integers, LongWords));
 }
+// A number without its last bit that is set; of a power of two, or 0, it is none.
+TEXGEN_INLINE Doubles without_last_bit(const Doubles& a) noexcept {
+    const auto bits = __builtin_bit_cast(Residues, a);
+    return __builtin_bit_cast(Doubles, bits & (bits - 1));
+}
 // Numbers with the signs of integers.
 TEXGEN_INLINE Doubles signs_of(const Residues& a) noexcept { return __builtin_bit_cast(Doubles, a); }
 TEXGEN_INLINE LongWords are_zero(const Residues& a) noexcept { return a == 0; }
@@ -136,6 +141,10 @@ TEXGEN_INLINE Doubles with_sign_of(const Doubles& size, const Doubles& sign) noe
 // The power of two at or below the magnitude of a normal number.
 TEXGEN_INLINE Doubles power_of_two_below(const Doubles& a) noexcept {
     return __builtin_bit_cast(Doubles, __builtin_bit_cast(LongWords, a) & 0x7ff0000000000000);
+}
+// Of powers of two that have normal reciprocals; 2^1023 of 0.
+TEXGEN_INLINE Doubles reciprocals_of_powers(const Doubles& a) noexcept {
+    return __builtin_bit_cast(Doubles, 0x7fe0000000000000 - __builtin_bit_cast(LongWords, a));
 }
 
 // The bits of |a|, in the order of |a|; a NaN is beyond infinity, so that a largest magnitude keeps it.

@@ -60,6 +60,7 @@ void interpolate_apart(const TriangleBatch& batch, std::size_t triangle, const T
 // What every kernel is given of a batch.
 inline void describe(BatchJob& job, const TriangleBatch& batch, const Texcoords& out, std::size_t count) noexcept {
     job.planes = batch.planes();
+    job.vertices = batch.size() == 0 ? nullptr : &batch.triangle(0).a.window.x;
     job.tolerance = accepted(batch.tolerance());
     job.out[0] = array_of(out.s, count);
     job.out[1] = array_of(out.t, count);
@@ -179,7 +180,6 @@ void interpolate(const TriangleBatch& batch, std::span<const std::uint32_t> ids,
     if (ids.size() != count || !detail::take_computed(out, count)) return;
     detail::FragmentsJob job{};
     detail::describe(job, batch, out, count);
-    job.vertices = batch.size() == 0 ? nullptr : &batch.triangle(0).a.window.x;
     job.ids = ids.data();
     job.triangles = static_cast<std::uint32_t>(batch.size());
     job.x = rect.x;
