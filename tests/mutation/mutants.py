@@ -275,6 +275,8 @@ MUTANTS = [
           "static_cast<double>(tile.x) - a_.x", "interpolate_test"),
          ("the bound of a plane", "               gamma(20);", "               0.05 * gamma(20);", "bounds_test interpolate_test"),
          ("the exact edge forgets a term", "{-to_y[j], to_x[k]}", "{-to_y[j], to_y[k]}", "interpolate_test"),
+         ("a side's corners have each other's parts", "side, widened(planes_.vertex(other).clip_w)",
+          "side, widened(planes_.vertex(end).clip_w)", "batch_test interpolate_test"),
          ("weights are rotated", "weight_[1] = a * c;\n        weight_[2] = a * b;",
           "weight_[1] = a * b;\n        weight_[2] = a * c;", "interpolate_test"),
          ("the area is decided in double", "(area.value > 0.0 ? 1 : -1) : exact_area().sign();",

@@ -236,7 +236,7 @@ private:
 
     // One fragment, every decision exact.
     void fill_one(std::int64_t x, std::int64_t y) noexcept {
-        const ExactFragment exact(triangle_.planes, x, y);
+        const ExactFragment exact(triangle_.planes, x, y, ExactFragment::Factor::any);
         const ExactFragment::Sum q = exact.function(3);
         const bool in_front = q.sign() > 0;
         float value[2] = {0.0f, 0.0f};

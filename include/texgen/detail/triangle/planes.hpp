@@ -295,16 +295,21 @@ private:
     double weight_[3];  // w_j w_k times a common factor, with the sign of the orientation
 };
 
-// The functions at one fragment, exactly: F = sum G_i f_i with G_i = E_i w_j w_k, but for the planes' common factor.
+// The functions at one fragment, exactly: F = sum G_i f_i with G_i = E_i w_j w_k, but for the planes' common factor, or for any
+// positive one.
 class ExactFragment {
 public:
-    TEXGEN_APART ExactFragment(const TrianglePlanes& planes, std::int64_t x, std::int64_t y) noexcept
+    enum class Factor { of_planes, any };
+
+    TEXGEN_APART ExactFragment(const TrianglePlanes& planes, std::int64_t x, std::int64_t y,
+                               Factor up_to = Factor::of_planes) noexcept
         : planes_(planes) {
         DoubleDouble to_x[3], to_y[3];
         for (std::size_t i = 0; i < 3; ++i) {
             to_x[i] = two_sum(planes.corner(i).x, -(static_cast<double>(x) + 0.5));  // integers
             to_y[i] = two_sum(planes.corner(i).y, -(static_cast<double>(y) + 0.5));  // integers
         }
+        if (up_to == Factor::any && is_on_side(to_x, to_y)) return;
         for (std::size_t i = 0; i < 3; ++i) {
             const std::size_t j = (i + 1) % 3;
             const std::size_t k = (i + 2) % 3;
@@ -345,6 +350,27 @@ public:
     }
 
 private:
+    // On the line through corners j and k the third one, whose numbers may be long, has no part, and along either axis
+    // G_j : G_k = w_k (k - p) : w_j (p - j). False where p is on none, or a difference is no double.
+    bool is_on_side(const DoubleDouble (&to_x)[3], const DoubleDouble (&to_y)[3]) noexcept {
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::size_t j = (i + 1) % 3;
+            const std::size_t k = (i + 2) % 3;
+            if (to_x[j].low != 0.0 || to_y[j].low != 0.0 || to_x[k].low != 0.0 || to_y[k].low != 0.0) continue;
+            const DoubleDouble left = two_product(to_x[j].high, to_y[k].high);
+            const DoubleDouble right = two_product(to_y[j].high, to_x[k].high);
+            if (left.high != right.high || left.low != right.low) continue;
+            const DoubleDouble(&to)[3] = to_x[j].high != to_x[k].high ? to_x : to_y;
+            for (const std::size_t end : {j, k}) {
+                const std::size_t other = end == j ? k : j;
+                const double side = to[end].high < to[other].high ? to[other].high : -to[other].high;
+                weighted_[end].add_product(side, widened(planes_.vertex(other).clip_w));
+            }
+            return true;
+        }
+        return false;
+    }
+
     const TrianglePlanes& planes_;
     Expansion<32> weighted_[3];
 };
