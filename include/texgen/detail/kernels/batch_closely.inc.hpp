@@ -151,6 +151,7 @@ TEXGEN_INLINE Doubles least_of_three(const Doubles& a, const Doubles& b, const D
 }
 // Powers of two of which function k, 0 to 3 for s, t, r, q, of the triangle in each lane is a multiple at every fragment: as PlaneGrains
 // has them.
+template <class CompiledWhereCalled = void>
 TEXGEN_APART Doubles grains_of(const float* const (&triangle)[lanes], bool is_one, std::size_t k) noexcept {
     VertexLanes vertex[3];
     TEXGEN_UNROLL
