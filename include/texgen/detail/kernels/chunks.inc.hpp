@@ -174,9 +174,10 @@ TileJob::Unit fill_tile_polynomial(const TileJob& job, TileJob::Unit first) noex
             const int begin = chunk * longest;
             const int length = longest < width - begin ? longest : width - begin;
             if (rule == StepRule::none) {
+                while (per_row == 1 && end < count && group.rule_of(job, end) == rule) ++end;
+                if (per_row == 1) return {0, width, y, y + (end - i)};
                 const std::int64_t last = std::int64_t{begin} + (end - i) * length;
                 const int x_end = last < width ? static_cast<int>(last) : width;
-                if (per_row == 1) return {0, width, y, y + (end - i)};
                 if (begin < job.filled.x_begin || x_end > job.filled.x_end) return {begin, x_end, y, y + 1};
             } else {
                 if (length != indexed) {
