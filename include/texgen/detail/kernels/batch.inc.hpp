@@ -14,6 +14,8 @@ namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
 template <class CompiledWhereCalled>
 inline constexpr BatchKernels kernel_table<BatchKernels, CompiledWhereCalled>{
-    .set_up = set_up_batch<>, .divide_tiles = divide_batch_tiles<>, .divide_fragments = divide_batch_fragments<>};
+    .set_up = set_up_batch<CompiledWhereCalled>,
+    .divide_tiles = divide_batch_tiles<CompiledWhereCalled>,
+    .divide_fragments = divide_batch_fragments<CompiledWhereCalled>};
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA

@@ -26,58 +26,64 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// The kernels of a kind, compiled where it is asked for.
+// The kernels of a kind, compiled where it is asked for: named without the parameter they would be here.
 template <class Table, class CompiledWhereCalled = void>
 inline constexpr Table kernel_table;
 
 template <class CompiledWhereCalled>
 inline constexpr TileKernels kernel_table<TileKernels, CompiledWhereCalled>{
-    .fill_unit = fill_tile_unit<>,
-    .fill_exact = fill_tile_exact<>,
-    .fill_float_divided = fill_tile_float_divided<>,
-    .fill_polynomial = fill_tile_polynomial<>,
-    .fill_closely = fill_tile_closely<>};
+    .fill_unit = fill_tile_unit<CompiledWhereCalled>,
+    .fill_exact = fill_tile_exact<CompiledWhereCalled>,
+    .fill_float_divided = fill_tile_float_divided<CompiledWhereCalled>,
+    .fill_polynomial = fill_tile_polynomial<CompiledWhereCalled>,
+    .fill_closely = fill_tile_closely<CompiledWhereCalled>};
 
 template <class CompiledWhereCalled>
 inline constexpr PointKernels kernel_table<PointKernels, CompiledWhereCalled>{
-    .fill_exact = fill_points_exact<>,
-    .fill_all_float = fill_points_within<FormsInFloat>,
-    .fill_float_divided = fill_points_within<FormsInDouble>,
-    .generate = generate_points<>};
+    .fill_exact = fill_points_exact<CompiledWhereCalled>,
+    .fill_all_float = fill_points_within<FormsInFloat, CompiledWhereCalled>,
+    .fill_float_divided = fill_points_within<FormsInDouble, CompiledWhereCalled>,
+    .generate = generate_points<CompiledWhereCalled>};
 
 template <class CompiledWhereCalled>
 inline constexpr SegmentKernels kernel_table<SegmentKernels, CompiledWhereCalled>{
-    .fill_exact = fill_segment_exact<>,
-    .fill_in_double = fill_segment_in_double<>,
-    .fill_all_float = fill_segment_all_float<>};
+    .fill_exact = fill_segment_exact<CompiledWhereCalled>,
+    .fill_in_double = fill_segment_in_double<CompiledWhereCalled>,
+    .fill_all_float = fill_segment_all_float<CompiledWhereCalled>};
 
 template <class CompiledWhereCalled>
-inline constexpr MaskKernels kernel_table<MaskKernels, CompiledWhereCalled>{.light_all = light_all<>,
-                                                                            .darken = darken<>};
+inline constexpr MaskKernels kernel_table<MaskKernels, CompiledWhereCalled>{.light_all = light_all<CompiledWhereCalled>,
+                                                                            .darken = darken<CompiledWhereCalled>};
 
 template <class CompiledWhereCalled>
-inline constexpr FootprintKernels kernel_table<FootprintKernels, CompiledWhereCalled>{.differentiate = differentiate<>,
-                                                                                      .filter = filter<>};
+inline constexpr FootprintKernels kernel_table<FootprintKernels, CompiledWhereCalled>{
+    .differentiate = differentiate<CompiledWhereCalled>, .filter = filter<CompiledWhereCalled>};
 
 template <class CompiledWhereCalled>
-inline constexpr FormKernels kernel_table<FormKernels, CompiledWhereCalled>{.weigh = weigh_forms<>};
+inline constexpr FormKernels kernel_table<FormKernels, CompiledWhereCalled>{.weigh = weigh_forms<CompiledWhereCalled>};
 
 template <class CompiledWhereCalled>
-inline constexpr SeparatingFormKernels kernel_table<SeparatingFormKernels, CompiledWhereCalled>{.make = make_planes<>};
+inline constexpr SeparatingFormKernels kernel_table<SeparatingFormKernels, CompiledWhereCalled>{
+    .make = make_planes<CompiledWhereCalled>};
 
 template <class CompiledWhereCalled>
-inline constexpr FloatFormKernels kernel_table<FloatFormKernels, CompiledWhereCalled>{.round = round_forms<>};
+inline constexpr FloatFormKernels kernel_table<FloatFormKernels, CompiledWhereCalled>{
+    .round = round_forms<CompiledWhereCalled>};
 
 template <class CompiledWhereCalled>
 inline constexpr BoxKernels kernel_table<BoxKernels, CompiledWhereCalled>{
-    .classify = classify_box<>, .sharpen = sharpen<>, .is_separated = is_separated<>};
+    .classify = classify_box<CompiledWhereCalled>,
+    .sharpen = sharpen<CompiledWhereCalled>,
+    .is_separated = is_separated<CompiledWhereCalled>};
 
 template <class CompiledWhereCalled>
 inline constexpr BoxBatchKernels kernel_table<BoxBatchKernels, CompiledWhereCalled>{
-    .classify = classify_boxes<>, .bound = bound_boxes<>, .separate = separate<>};
+    .classify = classify_boxes<CompiledWhereCalled>,
+    .bound = bound_boxes<CompiledWhereCalled>,
+    .separate = separate<CompiledWhereCalled>};
 
 template <class CompiledWhereCalled>
 inline constexpr SphereBatchKernels kernel_table<SphereBatchKernels, CompiledWhereCalled>{
-    .classify = classify_spheres<>, .bound = bound_spheres<>};
+    .classify = classify_spheres<CompiledWhereCalled>, .bound = bound_spheres<CompiledWhereCalled>};
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA

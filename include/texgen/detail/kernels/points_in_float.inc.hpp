@@ -117,7 +117,7 @@ TEXGEN_INLINE std::size_t fill_points_within_of(const PointJob& original, std::s
     return job.count;
 }
 
-template <template <std::size_t> class Forms>
+template <template <std::size_t> class Forms, class CompiledWhereCalled = void>
 std::size_t fill_points_within(const PointJob& job, std::size_t first) noexcept {
     return job.numerators == 2 ? fill_points_within_of<Forms, 2>(job, first)
                                : fill_points_within_of<Forms, 1>(job, first);

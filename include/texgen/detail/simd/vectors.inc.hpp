@@ -392,7 +392,8 @@ TEXGEN_INLINE bool any(const WideWords& mask) noexcept {
 // Whether a number that is not subnormal is not 0 where either distance is.
 TEXGEN_INLINE bool any_nonzero_near(const WideWords& distance, const Doubles& a) noexcept {
     const WideResidues high = words_of<true>(a, a, std::make_integer_sequence<int, wide_lanes>());
-    return any((distance == 0) & ((high & 0x7fffffffu) != 0));
+    const WideWords both = (distance == 0) & ((high & 0x7fffffffu) != 0);
+    return any(both);
 }
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA
