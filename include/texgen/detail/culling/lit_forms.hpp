@@ -104,7 +104,7 @@ public:
     }
 
     // Side k, the inner one: its coefficients, each rounded once, and its sign at a finite point, exactly.
-    std::array<double, 4> inner_side(std::size_t k) const noexcept { return form_of(k, inner_weight_[k]).rounded; }
+    std::array<double, 4> inner_side(std::size_t k) const noexcept { return form_of(k, inner_weight_[k]); }
     int inner_sign_at(std::size_t k, const std::array<double, 4>& form, const Point& point,
                       CloseRows& close) const noexcept {
         const Bounded value = value_of(form, form[3], point);
@@ -140,9 +140,13 @@ public:
 
     // In double, for boxes that floats leave in doubt.
     DoubleForms in_double() const noexcept {
-        DoubleForms result{{}, count_};
-        for (std::size_t k = 0; k < count_; ++k)
-            result.form[k] = {form_of(k, weight(k)), form_of(k, inner_weight_[k]), k == q ? 0x1p-1000 : 0.0};
+        DoubleForms result;
+        result.count = count_;
+        for (std::size_t k = 0; k < count_; ++k) {
+            take_exact_form(k, weight(k), result.form[k].outer);
+            take_exact_form(k, inner_weight_[k], result.form[k].inner);
+            result.form[k].least_lit = k == q ? 0x1p-1000 : 0.0;
+        }
         return result;
     }
 
@@ -235,19 +239,40 @@ private:
         return {value, gamma(8) * magnitude};
     }
 
-    // What the second half of a product leaves of a coefficient is far below it, or nothing.
-    CloseForm form_of(std::size_t k, const Weight& weight) const noexcept {
+    // Each coefficient is rounded so that its sign is right and it is 0 only if it is 0: what the second half of a product
+    // leaves of the sum is far below it, or nothing.
+    Row form_of(std::size_t k, const Weight& weight) const noexcept {
         const auto i = static_cast<glm::length_t>(coordinate_of(k));
-        CloseForm form;
+        Row form;
         for (std::size_t j = 0; j < 4; ++j) {
             const glm::dvec4& column = matrix_[static_cast<glm::length_t>(j)];
             const double half = leading_26_bits(column.w);
             const DoubleDouble sum = two_sum(weight.of_row * column[i], weight.of_q * half);
-            form.high[j] = sum.high;
-            form.low[j] = sum.low + weight.of_q * (column.w - half);
-            form.rounded[j] = form.high[j] + form.low[j];
+            form[j] = sum.high + (sum.low + weight.of_q * (column.w - half));
         }
         return form;
+    }
+
+    void take_exact_form(std::size_t k, const Weight& weight, ExactForm& form) const noexcept {
+        form.rounded = form_of(k, weight);
+        form.term_count = 0;
+        for (std::size_t j = 0; j < 4; ++j) {
+            const auto add = [&](double factor) {
+                if (factor != 0.0) form.terms[form.term_count++] = {factor, j};
+            };
+            if (form.rounded[j] == 0.0) continue;
+            const glm::dvec4& column = matrix_[static_cast<glm::length_t>(j)];
+            const double half = leading_26_bits(column.w);
+            const double of_row = weight.of_row * column[static_cast<glm::length_t>(coordinate_of(k))];
+            const DoubleDouble most = two_sum(of_row, weight.of_q * half);
+            const DoubleDouble all = two_sum(most.high, weight.of_q * (column.w - half));
+            for (const double part : {all.high, all.low, most.low}) {
+                const double first = leading_26_bits(part);
+                add(first);
+                add(part - first);
+            }
+        }
+        while (form.term_count < 2) form.terms[form.term_count++] = {0.0, 3};
     }
 
     // Adds a product with a number of 24 digits.

@@ -76,13 +76,14 @@ void classify_spheres(const FloatForms& original, const float* spheres, std::siz
 
 // Bounds on a form, whose signs are right, where it is largest or least. In double a coefficient, a product and three sums
 // are rounded; no error is infinite, as an infinite value has the right sign.
-TEXGEN_INLINE void bound_form(const CloseForm& form, const Doubles (&at_positive)[3], const Doubles (&at_negative)[3],
+TEXGEN_INLINE void bound_form(const ExactForm& form, bool largest, const BoxBlock& boxes, std::size_t i,
                               double least_lit, Doubles& lower, Doubles& upper) noexcept {
     Doubles value = Doubles{} + form.rounded[3];
     Doubles size = magnitude(value);
     const auto add = [&](std::size_t j) {
         if (form.rounded[j] == 0.0) return;
-        const Doubles term = (form.rounded[j] > 0.0 ? at_positive : at_negative)[j] * form.rounded[j];
+        const auto vertex = load<Doubles>(((form.rounded[j] > 0.0) == largest ? boxes.max : boxes.min)[j] + i);
+        const Doubles term = vertex * form.rounded[j];
         value = value + term;
         size = size + magnitude(term);
     };
@@ -94,46 +95,29 @@ TEXGEN_INLINE void bound_form(const CloseForm& form, const Doubles (&at_positive
     upper = value + error - least_lit;
 }
 
-// Sums of products with floats, in two doubles: of exact ones, and of what those leave, rounded. Where that is nothing, as of
-// numbers with few digits, the value is exact; elsewhere its sign is known where it is larger than the roundings, of up to 24
-// terms. Of what is infinite it is not.
-struct ProductSums {
-    Doubles high, low, size_of_low;
-
-    TEXGEN_INLINE ProductSums(const Doubles& constant, const Doubles& constant_low) noexcept
-        : high(constant), low(constant_low), size_of_low(magnitude(constant_low)) {}
-
-    TEXGEN_INLINE void add(const Doubles& product) noexcept {
-        Doubles left;
-        high = two_sum(high, product, left);
-        add_low(left);
-    }
-    TEXGEN_INLINE void add_low(const Doubles& term) noexcept {
-        low = low + term;
-        size_of_low = size_of_low + magnitude(term);
-    }
-    TEXGEN_INLINE Doubles value() const noexcept { return high + low; }
-    TEXGEN_INLINE LongWords is_known() const noexcept {
-        return at_most(size_of_low, Doubles{}) | greater(magnitude(value()), size_of_low * gamma(24) + 0x1p-1000);
-    }
-};
-
-// The same in two doubles, where they know the sign.
-TEXGEN_INLINE void bound_closely(const CloseForm& form, const Doubles (&at_positive)[3],
-                                 const Doubles (&at_negative)[3], double least_lit, Doubles& lower,
-                                 Doubles& upper) noexcept {
-    ProductSums sum(Doubles{} + form.high[3], Doubles{} + form.low[3]);
+// The same as a sum of exact terms in two doubles, which tells how much at most they leave out: nothing for numbers with few
+// digits, however much they cancel. What is infinite becomes a NaN here, and stays as it is.
+// Source: Ogita, Rump, Oishi, Accurate Sum and Dot Product, SIAM J. Sci. Comput. 26 (2005), Sum2.
+TEXGEN_INLINE void bound_exactly(const ExactForm& form, bool largest, const BoxBlock& boxes, std::size_t i,
+                                 double least_lit, Doubles& lower, Doubles& upper) noexcept {
+    Doubles vertex[4] = {{}, {}, {}, Doubles{} + 1.0};
     for (std::size_t j = 0; j < 3; ++j) {
-        if (form.rounded[j] == 0.0) continue;
-        const Doubles& x = (form.rounded[j] > 0.0 ? at_positive : at_negative)[j];
-        const double first = leading_26_bits(form.high[j]);
-        sum.add(x * first);
-        if (form.high[j] != first) sum.add(x * (form.high[j] - first));
-        if (form.low[j] != 0.0) sum.add_low(x * form.low[j]);
+        if (form.rounded[j] != 0.0)
+            vertex[j] = load<Doubles>(((form.rounded[j] > 0.0) == largest ? boxes.max : boxes.min)[j] + i);
     }
-    const LongWords is_known = sum.is_known();
-    lower = select(is_known, sum.value() - least_lit, lower);
-    upper = select(is_known, sum.value() - least_lit, upper);
+    const auto term = [&](std::size_t k) { return vertex[form.terms[k].coordinate] * form.terms[k].factor; };
+    Doubles low, rest;
+    Doubles high = two_sum(term(0), term(1), low);
+    Doubles lost{};
+    for (std::size_t k = 2; k < form.term_count; ++k) {
+        high = two_sum(high, term(k), rest);
+        low = two_sum(low, rest, rest);
+        lost = lost + magnitude(rest);
+    }
+    high = high + low;
+    lost = lost + lost;
+    lower = maximum(high - lost - least_lit, lower);
+    upper = minimum(high + lost - least_lit, upper);
 }
 
 // The least of the largest values of the sides, and of the least ones of the inner sides; q first, which is negative for
@@ -141,23 +125,18 @@ TEXGEN_INLINE void bound_closely(const CloseForm& form, const Doubles (&at_posit
 template <class CompiledWhereCalled = void>
 void bound_boxes(const DoubleForms& forms, const BoxBlock& boxes, BoxBounds& bounds) noexcept {
     for (std::size_t i = 0; i < box_block; i += static_cast<std::size_t>(lanes)) {
-        const Doubles max[3] = {load<Doubles>(boxes.max[0] + i), load<Doubles>(boxes.max[1] + i),
-                                load<Doubles>(boxes.max[2] + i)};
-        const Doubles min[3] = {load<Doubles>(boxes.min[0] + i), load<Doubles>(boxes.min[1] + i),
-                                load<Doubles>(boxes.min[2] + i)};
         Doubles all_lower = Doubles{} + 1.0;
         Doubles all_upper = all_lower;
         for (const bool largest : {true, false}) {
             for (std::size_t k = forms.count; k-- > 0;) {
                 if (!any(narrow(~greater(0.0 - all_upper, 0.0)))) break;
                 const DoubleForms::Form& sides = forms.form[k];
-                const CloseForm& form = largest ? sides.outer : sides.inner;
+                const ExactForm& form = largest ? sides.outer : sides.inner;
                 Doubles lower;
                 Doubles upper;
-                bound_form(form, largest ? max : min, largest ? min : max, sides.least_lit, lower, upper);
+                bound_form(form, largest, boxes, i, sides.least_lit, lower, upper);
                 const LongWords is_in_doubt = greater(0.0 - lower, 0.0) & ~greater(0.0 - upper, 0.0);
-                if (any(narrow(is_in_doubt)))
-                    bound_closely(form, largest ? max : min, largest ? min : max, sides.least_lit, lower, upper);
+                if (any(narrow(is_in_doubt))) bound_exactly(form, largest, boxes, i, sides.least_lit, lower, upper);
                 all_lower = minimum(lower, all_lower);
                 all_upper = minimum(upper, all_upper);
             }
@@ -227,9 +206,18 @@ void bound_spheres(const SphereForms& forms, const SphereBlock& spheres, int* cl
             for (std::size_t f = 0; f < form_of_q; ++f)
                 for (std::size_t g = form_of_q + 1; g < forms.count; ++g) try_edge(f, g);
         }
-        const Words in_doubt = narrow((perhaps_outside | (perhaps_inside & not_inside)) & ~outside);
-        const Words partial = narrow(not_inside & ~outside), inside = narrow(~not_inside & ~outside);
-        store(classes + i, (in_doubt & body_in_doubt) | (~in_doubt & ((partial & 1) | (inside & 2))));
+        const LongWords inside = ~not_inside;
+        const LongWords in_doubt = (perhaps_outside & ~outside) | (perhaps_inside & not_inside & ~outside);
+        const Words is_outside = narrow(outside), is_inside = narrow(inside & ~outside), doubts = narrow(in_doubt);
+        int each[3][lanes];
+        store(each[0], is_outside);
+        store(each[1], is_inside);
+        store(each[2], doubts);
+        for (std::size_t lane = 0; lane < static_cast<std::size_t>(lanes); ++lane)
+            classes[i + lane] = each[2][lane] != 0   ? body_in_doubt
+                                : each[0][lane] != 0 ? 0
+                                : each[1][lane] != 0 ? 2
+                                                     : 1;
     }
 }
 

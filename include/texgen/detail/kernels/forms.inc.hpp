@@ -2,16 +2,7 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// A coefficient of forms, and what it leaves, rounded. q is split so that its products with a float are exact. What they leave of
-// the sum is far below it, or nothing.
-TEXGEN_INLINE Doubles weighed(const Doubles (&of)[3], const Doubles& of_q, const glm::dvec4& column,
-                              Doubles& rest) noexcept {
-    const double half = leading_26_bits(column.w);
-    const Doubles sum = two_sum(of[0] * column.x + (of[1] * column.y + of[2] * column.z), of_q * half, rest);
-    rest = rest + of_q * (column.w - half);
-    return sum;
-}
-
+// q is split so that its products with a float are exact. What they leave of the sum is far below it, or nothing.
 template <class CompiledWhereCalled = void>
 void weigh_forms(const glm::dmat4& matrix, const FormWeights& weights, FormLanes& forms) noexcept {
     for (std::size_t i = 0; i < form_lanes; i += static_cast<std::size_t>(lanes)) {
@@ -21,9 +12,13 @@ void weigh_forms(const glm::dmat4& matrix, const FormWeights& weights, FormLanes
         Doubles form[4];
         TEXGEN_UNROLL
         for (std::size_t j = 0; j < 4; ++j) {
+            const glm::dvec4& column = matrix[static_cast<glm::length_t>(j)];
+            const double high = leading_26_bits(column.w);
+            const double low = column.w - high;
+            const Doubles row = of[0] * column.x + (of[1] * column.y + of[2] * column.z);
             Doubles rest;
-            const Doubles sum = weighed(of, of_q, matrix[static_cast<glm::length_t>(j)], rest);
-            form[j] = sum + rest;
+            const Doubles sum = two_sum(row, of_q * high, rest);
+            form[j] = sum + (rest + of_q * low);
         }
         const Doubles largest = maximum(maximum(magnitude(form[0]), magnitude(form[1])), magnitude(form[2]));
         const Doubles size = select(greater(largest, 0.0), largest, maximum(magnitude(form[3]), Doubles{} + 0x1p-900));
@@ -175,10 +170,43 @@ int classify_box(const FormLanes& forms, const float* box_min, const float* box_
     return body_in_doubt;
 }
 
+// Forms where they are largest over a finite box, or least: as sums of exact products with halves of the coefficients, and of
+// what those leave, each of its terms rounded. Where they leave nothing, as numbers with few digits do, the value is exact;
+// elsewhere its sign is known where it is larger than the roundings.
+struct CloseForms {
+    Doubles value;
+    LongWords is_known;
+
+    TEXGEN_INLINE CloseForms(const glm::dmat4& matrix, const Doubles (&of)[3], const Doubles& of_q,
+                             const double (&at_positive)[4], const double (&at_negative)[4]) noexcept {
+        Doubles high{}, low{}, size_of_low{};
+        for (std::size_t j = 0; j < 4; ++j) {
+            const glm::dvec4& column = matrix[static_cast<glm::length_t>(j)];
+            const double half = leading_26_bits(column.w);
+            const Doubles row = of[0] * column.x + (of[1] * column.y + of[2] * column.z);
+            Doubles rest;
+            const Doubles sum = two_sum(row, of_q * half, rest);
+            rest = rest + of_q * (column.w - half);
+            const Doubles x = select(greater(sum + rest, 0.0), Doubles{} + at_positive[j], Doubles{} + at_negative[j]);
+            const Doubles first = leading_bits<27>(sum);
+            for (const Doubles& part : {first, sum - first}) {
+                Doubles left;
+                high = two_sum(high, part * x, left);
+                low = low + left;
+                size_of_low = size_of_low + magnitude(left);
+            }
+            low = low + rest * x;
+            size_of_low = size_of_low + magnitude(rest * x);
+        }
+        value = high + low;
+        is_known = at_most(size_of_low, Doubles{}) | greater(magnitude(value), size_of_low * gamma(24) + 0x1p-1000);
+    }
+};
+
 template <class CompiledWhereCalled = void>
 bool sharpen(const glm::dmat4& matrix, const FormWeights& weights, const float* box_min, const float* box_max,
              FormsInDoubt& doubt) noexcept {
-    double min[3], max[3];
+    double min[4] = {0.0, 0.0, 0.0, 1.0}, max[4] = {0.0, 0.0, 0.0, 1.0};
     for (std::size_t j = 0; j < 3; ++j) {
         min[j] = widened(box_min[j]);
         max[j] = widened(box_max[j]);
@@ -186,30 +214,23 @@ bool sharpen(const glm::dmat4& matrix, const FormWeights& weights, const float* 
     for (std::size_t i = 0; i < form_lanes; i += static_cast<std::size_t>(lanes)) {
         const Doubles of[3] = {load<Doubles>(weights.of[0] + i), load<Doubles>(weights.of[1] + i),
                                load<Doubles>(weights.of[2] + i)};
-        const auto bits = [i](const LongWords& mask) { return static_cast<std::uint32_t>(lane_bits(mask)) << i; };
+        int is_known[lanes];
+        double value[lanes];
         // Where they are largest, and then where they are least.
         for (int end = 0; end < 2; ++end) {
             std::uint32_t& in_doubt = end == 0 ? doubt.largest : doubt.least;
             if ((in_doubt >> i & ((1u << lanes) - 1)) == 0 || (end == 1 && doubt.is_any_negative)) continue;
-            const auto of_q = load<Doubles>((end == 0 ? weights.of_q : weights.inner_of_q) + i);
-            Doubles rest;
-            const Doubles constant = weighed(of, of_q, matrix[3], rest);
-            ProductSums close(constant, rest);
-            for (std::size_t j = 0; j < 3; ++j) {
-                const Doubles sum = weighed(of, of_q, matrix[static_cast<glm::length_t>(j)], rest);
-                const LongWords is_positive = greater(sum + rest, 0.0);
-                const Doubles x = end == 0 ? select(is_positive, Doubles{} + max[j], Doubles{} + min[j])
-                                           : select(is_positive, Doubles{} + min[j], Doubles{} + max[j]);
-                const Doubles first = leading_bits<27>(sum);
-                close.add(first * x);
-                close.add((sum - first) * x);
-                close.add_low(rest * x);
+            const CloseForms close(matrix, of, load<Doubles>((end == 0 ? weights.of_q : weights.inner_of_q) + i),
+                                   end == 0 ? max : min, end == 0 ? min : max);
+            store(is_known, narrow(close.is_known));
+            store(value, close.value);
+            bool any_is_negative = false;
+            for (std::size_t lane = 0; lane < static_cast<std::size_t>(lanes); ++lane) {
+                const std::uint32_t bit = std::uint32_t{1} << (i + lane);
+                if ((in_doubt & bit) == 0 || is_known[lane] == 0) continue;
+                in_doubt &= ~bit;
+                any_is_negative |= value[lane] < 0.0 || (i + lane == form_of_q && value[lane] == 0.0);
             }
-            const std::uint32_t settled = in_doubt & bits(close.is_known());
-            in_doubt &= ~settled;
-            const Doubles value = close.value();
-            const std::uint32_t dark = bits(greater(0.0 - value, 0.0)) | (bits(~are_nonzero(value)) & 1u << form_of_q);
-            const bool any_is_negative = (settled & dark) != 0;
             if (end == 0 && any_is_negative) return true;
             doubt.is_any_negative |= any_is_negative;
         }

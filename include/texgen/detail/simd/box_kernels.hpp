@@ -68,16 +68,23 @@ struct SeparatingForms {
     std::size_t count;
 };
 
-// A form: each coefficient is high + low, but for a rounding of low; and rounded, so that its sign is right and it is 0 only if
-// it is 0.
-struct CloseForm {
-    std::array<double, 4> rounded, high, low;
+// A form by its four coefficients, each rounded once, and as a sum of terms that is exact: of a coordinate, the last of which
+// is 1, and a factor with so few digits that its product with any float is a double. There are at least two.
+struct ExactForm {
+    struct Term {
+        double factor;
+        std::size_t coordinate;
+    };
+    std::array<double, 4> rounded;
+    std::array<Term, 24> terms;
+    std::size_t term_count;
 };
 
-// The forms for boxes that floats leave in doubt, and the inner ones. A point is outside where a form is below least_lit.
+// The same for boxes that floats leave in doubt, and the inner ones. A point is outside where
+// a form is below least_lit.
 struct DoubleForms {
     struct Form {
-        CloseForm outer, inner;
+        ExactForm outer, inner;
         double least_lit;  // 0, and for q a number that is smaller than any other value
     };
     std::array<Form, max_forms> form;
