@@ -264,6 +264,7 @@ TEXGEN_APART void run_rest(SegmentJob& job, const PointOutputs& outputs, std::sp
 }
 
 // Values along a segment, a group of coordinates after another.
+template <class CompiledWhereCalled = void>
 struct SegmentGroups {
     const Segment& segment;
     std::span<const float> alpha;
@@ -345,7 +346,7 @@ void interpolate(const Segment& segment, std::span<const float> alpha, TextureRe
     const double accepted = detail::accepted(tolerance);
     detail::LitTest lit(out.lit.empty() ? whole_texture() : region);
     if (lit.has_depth() && detail::depth_coverage(segment, lit, accepted) == Coverage::inside) lit.drop_depth();
-    detail::for_each_group(out, alpha.size(), lit, detail::SegmentGroups{segment, alpha, lit, accepted});
+    detail::for_each_group(out, alpha.size(), lit, detail::SegmentGroups<>{segment, alpha, lit, accepted});
 }
 
 }  // namespace TEXGEN_BUILD
