@@ -172,6 +172,7 @@ Undecided fill_segment_exact(const SegmentJob& job, std::size_t first) noexcept 
 
 // Values in front by fill(job, begin, end), which is the first value that it does not vouch for or the end; with their mask,
 // where one is asked for.
+template <class CompiledWhereCalled = void>
 TEXGEN_INLINE std::size_t fill_in_front(std::size_t (*fill)(const SegmentJob&, std::size_t, std::size_t) noexcept,
                                         const SegmentJob& job, std::size_t first) noexcept {
     if (job.lit == nullptr) return fill(job, first, job.count);

@@ -90,6 +90,7 @@ TEXGEN_APART void light_apart(const Job& job, const float* s, const float* t, fl
     }
 }
 // Of a part of a row, where a mask is asked for.
+template <class CompiledWhereCalled = void>
 TEXGEN_INLINE void light(const TileJob& job, const RowOutputs& row, std::int64_t x, std::int64_t end) noexcept {
     if (row.lit != nullptr) light_apart(job, row.out[0] + x, row.out[1] + x, row.lit + x, end - x);
 }
