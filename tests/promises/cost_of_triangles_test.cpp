@@ -101,11 +101,11 @@ TEST_CASE("a triangle that the near plane cuts costs at most 16 times the ordina
                     REQUIRE(of_order <= 16.0 * of_ordinary);
                 }
                 const auto [least, largest] = std::minmax_element(seconds.begin(), seconds.end());
-                dear += *largest > 4.0 * of_ordinary;
-                if (*largest <= 3.0 * *least) continue;
                 const auto shot_of = [&, t = triangle, r = rect](const double* order) {
                     return Shot{support::rotated(t, static_cast<int>(order - seconds.data())), r};
                 };
+                dear += *largest > 4.0 * of_ordinary && cost(shot_of(largest), tolerance, 4.0) > 4.0;
+                if (*largest <= 3.0 * *least) continue;
                 const double ratio = support::worst_over_ordinary_within(3.0, Workload(shot_of(least), tolerance),
                                                                          Workload(shot_of(largest), tolerance));
                 REQUIRE_MESSAGE(ratio <= 3.0, hex(shot_of(largest)));
