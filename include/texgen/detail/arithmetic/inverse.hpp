@@ -3,32 +3,44 @@
 // The inverse of a 4x4 with a certificate. A determinant says nothing about singularity (it has a scale), the residual
 // does: if norm(I - A X) < 1 for any X at all, A is regular, and A^-1 is as near to X as the residual is small.
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <utility>
 
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
+#include <glm/vec4.hpp>
 
 #include "rounding.hpp"
 
 namespace TEXGEN_DETAIL {
 
+inline bool is_finite(float value) noexcept { return std::fabs(value) <= 0x1.fffffep127f; }
 inline bool is_finite(double value) noexcept { return std::fabs(value) <= 1.7976931348623157e308; }
-
-inline bool is_finite(const glm::dmat4& matrix) noexcept {
-    for (glm::length_t column = 0; column < 4; ++column)
-        for (glm::length_t row = 0; row < 4; ++row)
-            if (!is_finite(matrix[column][row])) return false;
+template <glm::length_t N, class Scalar, glm::qualifier Q>
+bool is_finite(const glm::vec<N, Scalar, Q>& v) noexcept {
+    for (glm::length_t i = 0; i < N; ++i)
+        if (!is_finite(v[i])) return false;
     return true;
 }
+inline bool is_finite(const glm::dmat4& m) noexcept {
+    return is_finite(m[0]) && is_finite(m[1]) && is_finite(m[2]) && is_finite(m[3]);
+}
 
-// The magnitudes of the elements.
+inline glm::dvec4 times_powers_of_two(const glm::dvec4& v, const glm::ivec4& exponent) noexcept {
+    return {std::scalbn(v.x, exponent.x), std::scalbn(v.y, exponent.y), std::scalbn(v.z, exponent.z),
+            std::scalbn(v.w, exponent.w)};
+}
+
+// The magnitudes of the elements. (Without glm::abs(), which calls a function of each.)
+inline glm::dvec4 absolute(const glm::dvec4& v) noexcept {
+    return {std::fabs(v.x), std::fabs(v.y), std::fabs(v.z), std::fabs(v.w)};
+}
 inline glm::dmat4 absolute(const glm::dmat4& m) noexcept {
-    return {glm::abs(m[0]), glm::abs(m[1]), glm::abs(m[2]), glm::abs(m[3])};
+    return {absolute(m[0]), absolute(m[1]), absolute(m[2]), absolute(m[3])};
 }
 
 // An element other than 0 that scaling makes smaller could be rounded there, and B would be another matrix: one of rank 3
@@ -61,83 +73,69 @@ public:
     }
 
 private:
-    using Row = std::array<double, 4>;
-    using Square = std::array<Row, 4>;  // [row][column]
-
-    // start - row . column of a matrix.
-    static double residual_of(const Row& row, const Square& matrix, std::size_t column, double start) noexcept {
-        DoubleDouble sum{start, 0.0};
-        for (std::size_t k = 0; k < 4; ++k) sum = add_product(sum, -row[k], matrix[k][column]);
-        return sum.high;
+    // start - row . column.
+    static double residual_of(const glm::dvec4& row, const glm::dvec4& column, double start) noexcept {
+        const DoubleDouble half = add_product(add_product({start, 0.0}, -row.x, column.x), -row.y, column.y);
+        return add_product(add_product(half, -row.z, column.z), -row.w, column.w).high;
     }
 
     // The same and a bound on its error: one rounding, four sums within 2^-102 of the terms, and products that underflow.
-    static Bounded bounded_residual_of(const Row& row, const Square& matrix, std::size_t column,
-                                       double start) noexcept {
-        const double value = residual_of(row, matrix, column, start);
-        double magnitude = std::fabs(start);
-        for (std::size_t k = 0; k < 4; ++k) magnitude += std::fabs(row[k]) * std::fabs(matrix[k][column]);
+    static Bounded bounded_residual_of(const glm::dvec4& row, const glm::dvec4& column, double start) noexcept {
+        const double value = residual_of(row, column, start);
+        const double magnitude = std::fabs(start) + glm::dot(absolute(row), absolute(column));
         return {value, gamma(2) * std::fabs(value) + 0x1p-99 * magnitude + 0x1p-1000};
     }
 
     bool equilibrate() noexcept;
     bool eliminate() noexcept;
     void clear_what_has_no_terms() noexcept;
-    Square residual() const noexcept;
-    double certificate(const Square& residual) const noexcept;
-    bool correct(const Square& residual) noexcept;
-    bool is_as_good_as_its_terms(const Square& residual) const noexcept;
+    glm::dmat4 residual() const noexcept;
+    double certificate(const glm::dmat4& residual) const noexcept;
+    bool is_as_good_as_its_terms(const glm::dmat4& residual) const noexcept;
     double contraction() const noexcept;
     glm::dvec4 error_of_row(const glm::dvec4& solution, const glm::dvec4& row, double contraction) const noexcept;
 
-    Square scaled_{};                       // B
-    Square inverse_{};                      // X
-    std::array<int, 4> row_exponent_{};     // R = diag(2^row_exponent)
-    std::array<int, 4> column_exponent_{};  // C = diag(2^column_exponent)
+    glm::dmat4 scaled_;              // B
+    glm::dmat4 inverse_{0.0};        // X
+    glm::ivec4 row_exponent_{0};     // R = diag(2^row_exponent)
+    glm::ivec4 column_exponent_{0};  // C = diag(2^column_exponent)
     double beta_ = std::numeric_limits<double>::infinity();
 };
 
-inline CertifiedInverse::CertifiedInverse(const glm::dmat4& matrix) noexcept {
-    for (glm::length_t row = 0; row < 4; ++row) {
-        for (glm::length_t column = 0; column < 4; ++column) {
-            const double element = matrix[column][row];
-            if (!is_finite(element)) return;
-            scaled_[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)] = element;
-        }
-    }
-    if (!equilibrate() || !eliminate()) return;
+inline CertifiedInverse::CertifiedInverse(const glm::dmat4& matrix) noexcept : scaled_(matrix) {
+    if (!is_finite(matrix) || !equilibrate() || !eliminate()) return;
     clear_what_has_no_terms();
-    Square residual = this->residual();
-    beta_ = certificate(residual);
+    glm::dmat4 lacking = residual();
+    beta_ = certificate(lacking);
     if (!regular()) return;
-    // A step takes about 50 bits from what is noise: 900 in all lie between the elements.
+    // A step, X <- X + X (I - B X), takes about 50 bits from what is noise: 900 in all lie between the elements.
     constexpr int most_steps = 20;
-    correct(residual);
+    inverse_ += inverse_ * lacking;
     for (int step = 2; step <= most_steps; ++step) {
-        residual = this->residual();
-        const bool is_last = is_as_good_as_its_terms(residual);
-        if (!correct(residual) || is_last) return;
+        const glm::dmat4 before = inverse_;
+        lacking = residual();
+        const bool is_last = is_as_good_as_its_terms(lacking);
+        inverse_ += before * lacking;
+        if (is_last || inverse_ == before) return;
     }
 }
 
 // False where a row or a column is 0, or an element becomes smaller than least_scaled.
 inline bool CertifiedInverse::equilibrate() noexcept {
     bool is_exact = true;
-    const auto scale = [&is_exact](double& element, int shift) {
-        is_exact = is_exact && (element == 0.0 || std::fabs(std::scalbn(element, shift)) >= least_scaled);
-        element = std::scalbn(element, shift);
-    };
     // Rows, then columns, three times.
     for (int pass = 0; pass < 6; ++pass) {
-        const bool is_of_rows = pass % 2 == 0;
-        for (std::size_t i = 0; i < 4; ++i) {
-            const auto element = [&](std::size_t k) -> double& { return is_of_rows ? scaled_[i][k] : scaled_[k][i]; };
-            double largest = 0.0;
-            for (std::size_t k = 0; k < 4; ++k) largest = std::fmax(largest, std::fabs(element(k)));
+        scaled_ = glm::transpose(scaled_);
+        for (glm::length_t i = 0; i < 4; ++i) {
+            const glm::dvec4 line = scaled_[i];
+            const double largest =
+                larger(larger(std::fabs(line.x), std::fabs(line.y)), larger(std::fabs(line.z), std::fabs(line.w)));
             if (largest == 0.0) return false;
             const int shift = -std::ilogb(largest);
-            for (std::size_t k = 0; k < 4; ++k) scale(element(k), shift);
-            (is_of_rows ? row_exponent_ : column_exponent_)[i] += shift;
+            scaled_[i] = times_powers_of_two(line, glm::ivec4(shift));
+            for (glm::length_t k = 0; k < 4; ++k)
+                is_exact = is_exact && (line[k] == 0.0 || std::fabs(scaled_[i][k]) >= least_scaled);
+            (pass % 2 == 0 ? row_exponent_ : column_exponent_)[i] += shift;
         }
     }
     return is_exact;
@@ -145,181 +143,119 @@ inline bool CertifiedInverse::equilibrate() noexcept {
 
 // Gauss-Jordan with partial pivoting.
 inline bool CertifiedInverse::eliminate() noexcept {
-    Square left = scaled_;
-    Square& right = inverse_;
-    for (std::size_t i = 0; i < 4; ++i) right[i][i] = 1.0;
-    for (std::size_t column = 0; column < 4; ++column) {
-        std::size_t pivot = column;
-        for (std::size_t row = column + 1; row < 4; ++row)
+    glm::dmat4 left = glm::transpose(scaled_), right(1.0);  // rows
+    for (glm::length_t column = 0; column < 4; ++column) {
+        glm::length_t pivot = column;
+        for (glm::length_t row = column + 1; row < 4; ++row)
             if (std::fabs(left[row][column]) > std::fabs(left[pivot][column])) pivot = row;
         if (left[pivot][column] == 0.0) return false;
         std::swap(left[pivot], left[column]);
         std::swap(right[pivot], right[column]);
         const double reciprocal = 1.0 / left[column][column];
-        for (std::size_t k = 0; k < 4; ++k) {
-            left[column][k] *= reciprocal;
-            right[column][k] *= reciprocal;
-        }
-        for (std::size_t row = 0; row < 4; ++row) {
+        left[column] *= reciprocal;
+        right[column] *= reciprocal;
+        for (glm::length_t row = 0; row < 4; ++row) {
             if (row == column) continue;
             const double factor = left[row][column];
-            for (std::size_t k = 0; k < 4; ++k) {
-                left[row][k] -= factor * left[column][k];
-                right[row][k] -= factor * right[column][k];
-            }
+            left[row] -= factor * left[column];
+            right[row] -= factor * right[column];
         }
     }
+    inverse_ = glm::transpose(right);
     return true;
 }
 
 // An element of B^-1 is a cofactor over the determinant. Where a factor of each of the cofactor's products is 0 so is the
 // element; what elimination has left there would never be small beside terms that are 0.
 inline void CertifiedInverse::clear_what_has_no_terms() noexcept {
-    for (std::size_t i = 0; i < 4; ++i) {
-        for (std::size_t j = 0; j < 4; ++j) {
-            const auto is_factor = [&](std::size_t row, std::size_t column) {
-                return scaled_[(j + row) % 4][(i + column) % 4] != 0.0;
+    for (glm::length_t i = 0; i < 4; ++i) {
+        for (glm::length_t j = 0; j < 4; ++j) {
+            const auto is_factor = [&](glm::length_t row, glm::length_t column) {
+                return scaled_[(i + column) % 4][(j + row) % 4] != 0.0;
             };
             bool has_term = false;
-            for (std::size_t k = 0; k < 3; ++k) {
-                const std::size_t l = 1 + (k + 1) % 3, m = 1 + (k + 2) % 3;
+            for (glm::length_t k = 0; k < 3; ++k) {
+                const glm::length_t l = 1 + (k + 1) % 3, m = 1 + (k + 2) % 3;
                 has_term = has_term || (is_factor(1, 1 + k) &&
                                         ((is_factor(2, l) && is_factor(3, m)) || (is_factor(2, m) && is_factor(3, l))));
             }
-            if (!has_term) inverse_[i][j] = 0.0;
+            if (!has_term) inverse_[j][i] = 0.0;
         }
     }
 }
 
 // I - B X.
-inline CertifiedInverse::Square CertifiedInverse::residual() const noexcept {
-    Square result;
-    for (std::size_t i = 0; i < 4; ++i)
-        for (std::size_t j = 0; j < 4; ++j) result[i][j] = residual_of(scaled_[i], inverse_, j, i == j ? 1.0 : 0.0);
+inline glm::dmat4 CertifiedInverse::residual() const noexcept {
+    const glm::dmat4 rows = glm::transpose(scaled_);
+    glm::dmat4 result;
+    for (glm::length_t i = 0; i < 4; ++i)
+        for (glm::length_t j = 0; j < 4; ++j) result[j][i] = residual_of(rows[i], inverse_[j], i == j ? 1.0 : 0.0);
     return result;
 }
 
-inline double CertifiedInverse::certificate(const Square& residual) const noexcept {
-    double residual_norm = 0.0;
-    double product_norm = 0.0;
-    for (std::size_t i = 0; i < 4; ++i) {
-        double of_residual = 0.0;
-        double product = 0.0;
-        for (std::size_t j = 0; j < 4; ++j) {
-            of_residual += std::fabs(residual[i][j]);
-            for (std::size_t k = 0; k < 4; ++k) product += std::fabs(inverse_[i][k]) * std::fabs(scaled_[k][j]);
-        }
-        residual_norm = larger_or_nan(residual_norm, of_residual);
-        product_norm = larger_or_nan(product_norm, product);
+inline double CertifiedInverse::certificate(const glm::dmat4& residual) const noexcept {
+    const glm::dvec4 all(1.0);
+    const glm::dvec4 of_residual = absolute(residual) * all;
+    const glm::dvec4 of_product = absolute(inverse_) * absolute(scaled_) * all;
+    double residual_norm = 0.0, product_norm = 0.0;
+    for (glm::length_t i = 0; i < 4; ++i) {
+        residual_norm = larger_or_nan(residual_norm, of_residual[i]);
+        product_norm = larger_or_nan(product_norm, of_product[i]);
     }
     return residual_norm + 5.0 * unit_roundoff_double * product_norm;
-}
-
-// X <- X + X (I - B X). Whether that changes X.
-inline bool CertifiedInverse::correct(const Square& residual) noexcept {
-    const Square before = inverse_;
-    bool is_changed = false;
-    for (std::size_t i = 0; i < 4; ++i) {
-        for (std::size_t j = 0; j < 4; ++j) {
-            double correction = 0.0;
-            for (std::size_t k = 0; k < 4; ++k) correction += before[i][k] * residual[k][j];
-            inverse_[i][j] = before[i][j] + correction;
-            is_changed = is_changed || inverse_[i][j] != before[i][j];
-        }
-    }
-    return is_changed;
 }
 
 // Whether each element is within 2 ulp of the largest of its terms in X B X. With R = I - B X, X lacks X R + X R^2 + ...
 // Where no element of R is above 2^-10, the sum of all powers of |R| is at most 1.1 (|R| + |R|^2 + |R|^3), element by
 // element: a path of more than 3 steps between 4 places goes in a circle. The error of R itself, 2^-100 of the terms of
 // I and B X, adds as little to X as that.
-inline bool CertifiedInverse::is_as_good_as_its_terms(const Square& residual) const noexcept {
-    Square lacking{};
-    Square powers{};
-    for (std::size_t i = 0; i < 4; ++i) {
-        for (std::size_t j = 0; j < 4; ++j) {
-            double sum = 0.0;
-            double size = 0.0;
-            for (std::size_t k = 0; k < 4; ++k) {
-                const double term = inverse_[i][k] * residual[k][j];
-                sum += term;
-                size += std::fabs(term);
-            }
-            lacking[i][j] = std::fabs(sum) + gamma(5) * size;
-            powers[i][j] = std::fabs(residual[i][j]);
-            if (!(powers[i][j] <= 0x1p-10)) return false;
-        }
-    }
-    const Square first = powers;
-    for (int power = 2; power <= 3; ++power) {
-        const Square before = powers;
-        for (std::size_t i = 0; i < 4; ++i) {
-            for (std::size_t j = 0; j < 4; ++j) {
-                powers[i][j] = first[i][j];
-                for (std::size_t k = 0; k < 4; ++k) powers[i][j] += first[i][k] * before[k][j];
-            }
-        }
-    }
-    for (std::size_t i = 0; i < 4; ++i) {
-        Row largest_in_product{};
-        for (std::size_t k = 0; k < 4; ++k)
-            for (std::size_t l = 0; l < 4; ++l)
-                largest_in_product[l] = larger(largest_in_product[l], std::fabs(inverse_[i][k] * scaled_[k][l]));
-        for (std::size_t j = 0; j < 4; ++j) {
-            double largest = 0.0;
-            double error = lacking[i][j];
-            for (std::size_t k = 0; k < 4; ++k) {
-                largest = larger(largest, largest_in_product[k] * std::fabs(inverse_[k][j]));
-                error += 1.1 * lacking[i][k] * powers[k][j];
-            }
+inline bool CertifiedInverse::is_as_good_as_its_terms(const glm::dmat4& residual) const noexcept {
+    const glm::dmat4 r = absolute(residual);
+    const glm::dmat4 powers = r + r * (r + r * r);
+    const glm::dmat4 lacking = absolute(inverse_ * residual) + gamma(5) * (absolute(inverse_) * r);
+    const glm::dmat4 error = lacking + 1.1 * (lacking * powers);
+    const glm::dmat4 b = absolute(glm::transpose(scaled_)), x = absolute(glm::transpose(inverse_));  // rows
+    for (glm::length_t i = 0; i < 4; ++i) {
+        glm::dvec4 of_product(0.0), largest(0.0);
+        for (glm::length_t k = 0; k < 4; ++k) of_product = (glm::max)(of_product, x[i][k] * b[k]);
+        for (glm::length_t k = 0; k < 4; ++k) largest = (glm::max)(largest, of_product[k] * x[k]);
+        for (glm::length_t j = 0; j < 4; ++j) {
+            if (!(r[j][i] <= 0x1p-10)) return false;
             // Nothing is promised of what may leave the range.
-            if (largest < least_scaled) continue;
-            if (!(error < std::scalbn(1.999, std::ilogb(largest) - 52))) return false;
+            if (largest[j] < least_scaled) continue;
+            if (!(error[j][i] < std::scalbn(1.999, std::ilogb(largest[j]) - 52))) return false;
         }
     }
     return true;
 }
 
 inline glm::dmat4 CertifiedInverse::matrix() const noexcept {
-    glm::dmat4 result(0.0);
-    for (std::size_t i = 0; i < 4; ++i)
-        for (std::size_t j = 0; j < 4; ++j)
-            result[static_cast<glm::length_t>(j)][static_cast<glm::length_t>(i)] =
-                std::scalbn(inverse_[i][j], column_exponent_[i] + row_exponent_[j]);
+    glm::dmat4 result;
+    for (glm::length_t j = 0; j < 4; ++j)
+        result[j] = times_powers_of_two(inverse_[j], column_exponent_ + row_exponent_[j]);
     return result;
 }
 
 inline glm::dvec4 CertifiedInverse::solve_row(const glm::dvec4& row) const noexcept {
     // y A = row with B = R A C is (y R^-1) B = row C.
-    Row target{};
-    for (std::size_t k = 0; k < 4; ++k)
-        target[k] = std::scalbn(row[static_cast<glm::length_t>(k)], column_exponent_[k]);
-    Row solution{};
-    Row residual = target;
+    const glm::dvec4 target = times_powers_of_two(row, column_exponent_);
+    glm::dvec4 solution(0.0), residual = target;
     for (int pass = 0; pass < 3; ++pass) {
-        for (std::size_t j = 0; j < 4; ++j)
-            for (std::size_t k = 0; k < 4; ++k) solution[j] += residual[k] * inverse_[k][j];
-        for (std::size_t j = 0; j < 4; ++j) residual[j] = residual_of(solution, scaled_, j, target[j]);
+        for (glm::length_t j = 0; j < 4; ++j)
+            for (glm::length_t k = 0; k < 4; ++k) solution[j] += residual[k] * inverse_[j][k];
+        for (glm::length_t j = 0; j < 4; ++j) residual[j] = residual_of(solution, scaled_[j], target[j]);
     }
-    glm::dvec4 result(0.0);
-    for (std::size_t j = 0; j < 4; ++j)
-        result[static_cast<glm::length_t>(j)] = std::scalbn(solution[j], row_exponent_[j]);
-    return result;
+    return times_powers_of_two(solution, row_exponent_);
 }
 
 // The largest sum of a column of |I - B X|. Infinite where A is not regular.
 inline double CertifiedInverse::contraction() const noexcept {
     if (!regular()) return std::numeric_limits<double>::infinity();
+    const glm::dmat4 terms = glm::dmat4(1.0) + absolute(scaled_) * absolute(inverse_);
+    const glm::dmat4 r = absolute(residual()) * (1.0 + gamma(2)) + terms * 0x1p-99 + 0x1p-1000;
     double largest = 0.0;
-    for (std::size_t j = 0; j < 4; ++j) {
-        double sum = 0.0;
-        for (std::size_t i = 0; i < 4; ++i) {
-            const Bounded residual = bounded_residual_of(scaled_[i], inverse_, j, i == j ? 1.0 : 0.0);
-            sum += std::fabs(residual.value) + residual.error;
-        }
-        largest = larger_or_nan(largest, 1.001 * sum);
-    }
+    for (const glm::dvec4& column : {r[0], r[1], r[2], r[3]})
+        largest = larger_or_nan(largest, 1.001 * (column.x + column.y + column.z + column.w));
     return largest;
 }
 
@@ -329,28 +265,20 @@ inline double CertifiedInverse::contraction() const noexcept {
 inline glm::dvec4 CertifiedInverse::error_of_row(const glm::dvec4& solution, const glm::dvec4& row,
                                                  double contraction) const noexcept {
     if (!(contraction < 1.0)) return glm::dvec4(std::numeric_limits<double>::infinity());
-    Row scaled_solution{};
-    for (std::size_t k = 0; k < 4; ++k)
-        scaled_solution[k] = std::scalbn(solution[static_cast<glm::length_t>(k)], -row_exponent_[k]);
-    Row lacking{};
-    Row error{};
-    for (std::size_t k = 0; k < 4; ++k) {
-        const double target = std::scalbn(row[static_cast<glm::length_t>(k)], column_exponent_[k]);
-        const Bounded residual = bounded_residual_of(scaled_solution, scaled_, k, target);
-        for (std::size_t j = 0; j < 4; ++j) {
-            lacking[j] += residual.value * inverse_[k][j];
-            error[j] += (residual.error + gamma(5) * std::fabs(residual.value)) * std::fabs(inverse_[k][j]);
-        }
+    const glm::dvec4 scaled_solution = times_powers_of_two(solution, -row_exponent_);
+    const glm::dvec4 target = times_powers_of_two(row, column_exponent_);
+    const glm::dmat4 x = glm::transpose(inverse_);  // rows
+    glm::dvec4 d(0.0), error(0.0);
+    for (glm::length_t k = 0; k < 4; ++k) {
+        const Bounded rho = bounded_residual_of(scaled_solution, scaled_[k], target[k]);
+        d += rho.value * x[k];
+        error += (rho.error + gamma(5) * std::fabs(rho.value)) * absolute(x[k]);
     }
+    const glm::dvec4 bound = absolute(d) + error;
     double largest = 0.0;
-    for (std::size_t j = 0; j < 4; ++j) largest = larger_or_nan(largest, std::fabs(lacking[j]) + error[j]);
+    for (glm::length_t j = 0; j < 4; ++j) largest = larger_or_nan(largest, bound[j]);
     const double remainder = largest * (contraction / (1.0 - contraction));
-    glm::dvec4 result(0.0);
-    for (std::size_t j = 0; j < 4; ++j) {
-        const double bound = 1.001 * (std::fabs(lacking[j]) + error[j] + remainder) + 0x1p-1000;
-        result[static_cast<glm::length_t>(j)] = std::scalbn(bound, row_exponent_[j]) + 0x1p-1074;
-    }
-    return result;
+    return times_powers_of_two(1.001 * (bound + remainder) + 0x1p-1000, row_exponent_) + 0x1p-1074;
 }
 
 inline glm::dmat4 CertifiedInverse::error_of(const glm::dmat4& solution, const glm::dmat4& rows) const noexcept {
