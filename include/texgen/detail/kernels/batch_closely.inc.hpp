@@ -27,13 +27,15 @@ struct VertexLanes {
     }
 };
 
-// The leading 26 bits of a factor, and the rest: of two such products all but that of the rests are exact.
-struct FactorInParts {
-    Doubles high, low;
+// A difference: the leading 26 bits of the double next to it, the others, and what that lacks. Of two such products all but that of
+// the others are exact.
+struct DifferenceLanes {
+    Doubles high, low, lost;
 
-    TEXGEN_INLINE void set(const Doubles& factor) noexcept {
-        high = leading_bits<26>(factor);
-        low = factor - high;
+    TEXGEN_INLINE void set(const Doubles& a, const Doubles& b) noexcept {
+        const Doubles difference = two_sum(a, b * -1.0, lost);
+        high = leading_bits<26>(difference);
+        low = difference - high;
     }
 };
 
@@ -55,12 +57,12 @@ struct CloseLanes {
     Doubles leading[3], trailing[3], low[3];  // of G_i; leading and trailing are 27 and 26 bits
     Doubles size[3];                          // of both products of E_i, times w_j w_k
     Doubles inexact;                          // 0 where all G_i are a double, exactly
-    LongWords is_known;                       // that, within 2^-98 of its size
+    LongWords is_known;                       // the sign of the area: all are within 2^-98 of their size
 
     TEXGEN_INLINE CloseLanes(const float* const (&triangle)[lanes], const Doubles& x, const Doubles& y,
                              bool is_one) noexcept {
         Doubles w[3];
-        FactorInParts to_x[3], to_y[3];
+        DifferenceLanes to_x[3], to_y[3];
         Doubles lost{}, below{};
         TEXGEN_UNROLL
         for (std::size_t i = 0; i < 3; ++i) {
@@ -69,17 +71,15 @@ struct CloseLanes {
             w[i] = to_doubles(vertex.value[2]);
             TEXGEN_UNROLL
             for (std::size_t k = 0; k < 4; ++k) given[i][k] = vertex.value[BatchVertex::strq + k];
-            Doubles error[2];
-            const Doubles d_x = two_sum(to_doubles(vertex.value[0]), x * -1.0, error[0]);
-            const Doubles d_y = two_sum(to_doubles(vertex.value[1]), y * -1.0, error[1]);
-            to_x[i].set(d_x);
-            to_y[i].set(d_y);
-            lost = lost + (magnitude(error[0]) + magnitude(error[1]));
+            to_x[i].set(to_doubles(vertex.value[0]), x);
+            to_y[i].set(to_doubles(vertex.value[1]), y);
+            lost = lost + (magnitude(to_x[i].lost) + magnitude(to_y[i].lost));
             below = below + (magnitude(to_x[i].low) + magnitude(to_y[i].low));
         }
-        const bool is_short = !any(greater(below, 0.0));
+        const bool is_lost = any(greater(lost, 0.0));
+        const bool is_short = !is_lost && !any(greater(below, 0.0));
         EdgeLanes edge[3];
-        inexact = below;
+        inexact = below + lost;
         TEXGEN_UNROLL
         for (std::size_t i = 0; i < 3; ++i) {
             const std::size_t j = (i + 1) % 3;
@@ -94,12 +94,16 @@ struct CloseLanes {
             const Doubles right_middle = two_sum(to_y[j].high * to_x[k].low, to_y[j].low * to_x[k].high, error[1]);
             const Doubles middle = two_sum(left_middle, right_middle * -1.0, error[2]);
             const Doubles sum = two_sum(edge[i].high, middle, error[3]);
-            const Doubles last = to_x[j].low * to_y[k].low - to_y[j].low * to_x[k].low;
+            Doubles last = to_x[j].low * to_y[k].low - to_y[j].low * to_x[k].low;
+            if (is_lost)
+                last = last +
+                       (((to_x[j].high + to_x[j].low) * to_y[k].lost + to_x[j].lost * (to_y[k].high + to_y[k].low)) -
+                        ((to_y[j].high + to_y[j].low) * to_x[k].lost + to_y[j].lost * (to_x[k].high + to_x[k].low)));
             const Doubles rest = ((edge[i].low + error[3]) + (error[2] + (error[0] - error[1]))) + last;
             edge[i].high = two_sum(sum, rest, edge[i].low);
         }
         const Doubles area = edge[0].high + edge[1].high + edge[2].high;
-        is_known = at_most(lost, Doubles{}) & greater(magnitude(area), (size[0] + size[1] + size[2]) * 0x1p-49);
+        is_known = greater(magnitude(area), (size[0] + size[1] + size[2]) * 0x1p-49);
         TEXGEN_UNROLL
         for (std::size_t i = 0; i < 3; ++i) {
             const Doubles w_j = w[(i + 1) % 3];
@@ -149,22 +153,161 @@ TEXGEN_INLINE Doubles last_bits(const Doubles& a) noexcept {
 TEXGEN_INLINE Doubles least_of_three(const Doubles& a, const Doubles& b, const Doubles& c) noexcept {
     return minimum(a, minimum(b, c));
 }
-// Powers of two of which function k, 0 to 3 for s, t, r, q, of the triangle in each lane is a multiple at every fragment: as PlaneGrains
-// has them.
-template <class CompiledWhereCalled = void>
-TEXGEN_APART Doubles grains_of(const float* const (&triangle)[lanes], bool is_one, std::size_t k) noexcept {
-    VertexLanes vertex[3];
+TEXGEN_INLINE Doubles largest_of_three(const Doubles& a, const Doubles& b, const Doubles& c) noexcept {
+    return maximum(a, maximum(b, c));
+}
+
+// Three numbers as integers, in a power of two of which they are multiples.
+struct IntegerLanes {
+    Doubles unit, per_unit, largest;
+    Doubles value[3];
+
+    TEXGEN_INLINE IntegerLanes(const Doubles& a, const Doubles& b, const Doubles& c, double largest_unit) noexcept {
+        unit = minimum(least_of_three(last_bits(a), last_bits(b), last_bits(c)), Doubles{} + largest_unit);
+        per_unit = reciprocals_of_powers(unit);
+        value[0] = a * per_unit;
+        value[1] = b * per_unit;
+        value[2] = c * per_unit;
+        largest = largest_of_three(magnitude(value[0]), magnitude(value[1]), magnitude(value[2]));
+    }
+};
+
+// Of the values of a function at the corners: integers times a grain are the function's terms.
+struct ResidueValues {
+    Residues value[3];
+    Doubles grain;
+
+    TEXGEN_INLINE Residues times(const Residues (&side)[3]) const noexcept {
+        return value[0] * side[0] + (value[1] * side[1] + value[2] * side[2]);
+    }
+};
+
+// The functions of a triangle in each lane at a fragment as integers modulo 2^64, as PlaneResidues in triangle/close_planes.hpp has
+// them.
+struct ResidueLanes {
+    Floats given[3][7];  // x, y, w, s, t, r, q
+    Residues side[3];    // with the weights
+    LongWords is_known;  // no number is too long, and the area is not next to 0
+
+    TEXGEN_INLINE ResidueLanes(const float* const (&triangle)[lanes], const Doubles& at_x, const Doubles& at_y,
+                               bool is_one) noexcept {
+        TEXGEN_UNROLL
+        for (std::size_t i = 0; i < 3; ++i) {
+            VertexLanes vertex;
+            vertex.load_from(triangle, i, is_one);
+            TEXGEN_UNROLL
+            for (std::size_t k = 0; k < 7; ++k) given[i][k] = vertex.value[k < 3 ? k : BatchVertex::strq + (k - 3)];
+        }
+        const IntegerLanes x(number(0, 0), number(1, 0), number(2, 0), 0.5);
+        const IntegerLanes y(number(0, 1), number(1, 1), number(2, 1), 0.5);
+        const Doubles w[3] = {number(0, 2), number(1, 2), number(2, 2)};
+        const Doubles to_b_x = number(1, 0) - number(0, 0), to_b_y = number(1, 1) - number(0, 1);
+        const Doubles to_c_x = number(2, 0) - number(0, 0), to_c_y = number(2, 1) - number(0, 1);
+        const Doubles left = to_b_x * to_c_y, right = to_b_y * to_c_x;
+        const Doubles area = left - right;
+        const IntegerLanes weight(with_sign_of(w[1] * w[2], area), with_sign_of(w[2] * w[0], area),
+                                  with_sign_of(w[0] * w[1], area), 0x1p500);
+        const Doubles first_x = at_x * x.per_unit, first_y = at_y * y.per_unit;
+        is_known = greater(magnitude(area), (magnitude(left) + magnitude(right)) * gamma(4)) &
+                   greater(Doubles{} + 0x1p62, maximum(largest_of_three(x.largest, y.largest, weight.largest),
+                                                       maximum(magnitude(first_x), magnitude(first_y))));
+        one_x_ = known(x.per_unit);
+        one_y_ = known(y.per_unit);
+        unit_ = x.unit * y.unit * weight.unit;
+        TEXGEN_UNROLL
+        for (std::size_t i = 0; i < 3; ++i) {
+            scale_[i] = known(weight.value[i]);
+            to_x_[i] = known(x.value[i]) - known(first_x);
+            to_y_[i] = known(y.value[i]) - known(first_y);
+        }
+        TEXGEN_UNROLL
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::size_t j = (i + 1) % 3;
+            const std::size_t k = (i + 2) % 3;
+            side[i] = scale_[i] * (to_x_[j] * to_y_[k] - to_y_[j] * to_x_[k]);
+        }
+    }
+
+    // By how much the sides' functions grow along a row and down.
+    TEXGEN_INLINE void steps(Residues (&dx)[3], Residues (&dy)[3]) const noexcept {
+        TEXGEN_UNROLL
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::size_t j = (i + 1) % 3;
+            const std::size_t k = (i + 2) % 3;
+            dx[i] = scale_[i] * ((to_y_[j] - to_y_[k]) * one_x_);
+            dy[i] = scale_[i] * ((to_x_[k] - to_x_[j]) * one_y_);
+        }
+    }
+
+    // Of coordinate k, 0 to 3 for s, t, r, q.
+    TEXGEN_INLINE ResidueValues values(std::size_t k) noexcept {
+        const IntegerLanes f(number(0, 3 + k), number(1, 3 + k), number(2, 3 + k), 0x1p500);
+        is_known &= greater(Doubles{} + 0x1p62, f.largest);
+        return {{known(f.value[0]), known(f.value[1]), known(f.value[2])}, unit_ * f.unit};
+    }
+
+    TEXGEN_INLINE Doubles number(std::size_t i, std::size_t k) const noexcept { return to_doubles(given[i][k]); }
+
+private:
+    TEXGEN_INLINE Residues known(const Doubles& integer) const noexcept {
+        return to_residues(where(is_known, integer));
+    }
+
+    Residues scale_[3], to_x_[3], to_y_[3], one_x_, one_y_;
+    Doubles unit_;
+};
+
+// Quotients f / q in double, to float: where one lies within `ulps` of its ulps (see are_near_middles()) of the middle m of two
+// floats the sign of F - m Q decides, which is at most `bound`. All are normal floats. `doubt` gains the lanes that this leaves.
+template <class Grain>
+TEXGEN_INLINE Floats nearest_by_residues(const Doubles& quotient, std::int64_t ulps, const Residues& f,
+                                         const Grain& f_grain, const Residues& q, const Grain& q_grain,
+                                         const Doubles& bound, LongWords& doubt) noexcept {
+    const LongWords is_near = are_near_middles(quotient, ulps);
+    const Doubles middle = middle_near(quotient);
+    const Doubles unit = power_of_two_below(middle) * 0x1p-24;  // of which it is a multiple
+    const Doubles finer = minimum(unit * q_grain, Doubles{} + f_grain);
+    const Doubles per_finer = reciprocals_of_powers(finer);
+    const Doubles of_f = per_finer * f_grain;
+    const Doubles of_q = middle * q_grain * per_finer;
+    const LongWords is_known =
+        greater(finer * 0x1p62, bound) & greater(Doubles{} + 0x1p62, maximum(of_f, magnitude(of_q)));
+    const Residues rest = f * to_residues(where(is_known, of_f)) - q * to_residues(where(is_known, of_q));
+    doubt |= is_near & ~is_known;
+    const Doubles step = where(~are_zero(rest), with_sign_of(unit * 0.25, signs_of(rest)));
+    return to_floats(select(is_near, middle + step, quotient));
+}
+
+// What two doubles leave in doubt of a vector of fragments.
+template <std::size_t Numerators>
+struct CloseDoubt {
+    CloseRemainder remainder[Numerators];
+    Doubles size[Numerators], q_size;  // no function is more
+    Words of_value[Numerators], of_side;
+};
+
+// The same by residues. Returns the lanes that stay in doubt.
+template <std::size_t Numerators>
+TEXGEN_APART Words decide_lanes_by_residues(const float* const (&triangle)[lanes], const Doubles& x, const Doubles& y,
+                                            bool is_one, const CloseDoubt<Numerators>& close,
+                                            Floats (&quotient)[Numerators]) noexcept {
+    ResidueLanes residues(triangle, x, y, is_one);
+    const ResidueValues of_q = residues.values(3);
+    const Residues q = of_q.times(residues.side);
+    const LongWords is_behind = greater(of_q.grain * 0x1p62, close.q_size) & ~are_positive(q);
+    Words doubt = close.of_side & ~narrow(is_behind), all = close.of_side;
     TEXGEN_UNROLL
-    for (std::size_t i = 0; i < 3; ++i) vertex[i].load_from(triangle, i, is_one);
-    const auto last_bit = [&](std::size_t i, std::size_t place) {
-        return last_bits(to_doubles(vertex[i].value[place]));
-    };
-    const auto of_all = [&](std::size_t place) {
-        return least_of_three(last_bit(0, place), last_bit(1, place), last_bit(2, place));
-    };
-    const Doubles of_window = minimum(of_all(0), Doubles{} + 0.5) * minimum(of_all(1), Doubles{} + 0.5);
-    const Doubles w[3] = {last_bit(0, 2), last_bit(1, 2), last_bit(2, 2)};
-    return of_window * (least_of_three(w[0] * w[1], w[1] * w[2], w[2] * w[0]) * of_all(BatchVertex::strq + k));
+    for (std::size_t k = 0; k < Numerators; ++k) {
+        if (!any(close.of_value[k])) continue;
+        const ResidueValues of_f = residues.values(k);
+        const Residues f = of_f.times(residues.side);
+        const Words open =
+            decide_by_residues(f, of_f.grain, q, of_q.grain, close.remainder[k], close.of_value[k], quotient[k]);
+        const LongWords are_zeros = greater(of_f.grain * 0x1p62, close.size[k]) & are_zero(f);
+        doubt |= decide_zeros(are_zeros, open, quotient[k]);
+        all |= close.of_value[k];
+    }
+    return doubt | (all & ~narrow(residues.is_known));
 }
 
 // The lanes in doubt (what is not 0) of a vector of fragments at (x, y), again. Returns those that stay so.
@@ -181,41 +324,41 @@ TEXGEN_APART Words divide_lanes_closely(const float* const (&triangle)[lanes], c
     const Doubles leading = leading_bits<27>(q.high);
     const Doubles upper = leading * 0.5;
     const Doubles lower = (q.high - leading) * 0.5;
-    Words doubt = narrow(~(close.is_known & (front | at_most(q.high, q.lost * -1.0))));
+    CloseDoubt<Numerators> left;
+    left.of_side = narrow(~(front | at_most(q.high, q.lost * -1.0))) & in_doubt;
+    left.q_size = magnitude(q.high) + q.lost;
+    Words doubt = left.of_side;
     TEXGEN_UNROLL
     for (std::size_t k = 0; k < Numerators; ++k) {
         const Twofold f = close.function(k);
         const Doubles u = f.high * reciprocal + 0.0;  // no -0
         const Doubles error = magnitude(u) * relative_error + reciprocal * f.lost;
-        const Floats below = to_floats(u - error);
-        const Floats above = to_floats(u + error);
-        Floats value = below;
-        const Words differ = bits(below) ^ bits(above);
+        CloseRemainder& remainder = left.remainder[k];
+        remainder.below = to_floats(u - error);
+        remainder.above = to_floats(u + error);
+        Floats value = remainder.below;
+        const Words differ = bits(remainder.below) ^ bits(remainder.above);
+        left.of_value[k] = in_doubt & ~equal(differ, 0);
         if (any(differ)) {
             // Of F - m Q, m being the middle of the two, leading parts cancel; the next are kept in two doubles.
-            const Doubles middle = to_doubles(below) + to_doubles(above);  // twice it
+            remainder.middle = to_doubles(remainder.below) + to_doubles(remainder.above);  // twice it
+            remainder.unit = power_of_two_below(remainder.middle);
             Doubles rest;
-            const Doubles sum = two_sum(f.high - middle * upper, middle * lower * -1.0, rest);
-            const Doubles remainder = sum + (rest + (f.low - middle * (q.low * 0.5)));
-            const Doubles bound = magnitude(middle) * (q.lost * 0.5) + f.lost;
-            const Doubles unit = power_of_two_below(middle);
-            const LongWords is_open = greater(magnitude(remainder), bound);
-            const LongWords is_tie = at_most(magnitude(remainder) + bound, Doubles{});
-            const Words may_differ = in_doubt & ~equal(differ, 0);
-            Words decided = decide_between(below, above, middle, unit, remainder, is_open, is_tie, value);
-            if (any(may_differ & ~decided)) {
-                // A multiple of its terms' grains that is certainly smaller than those is 0.
-                const Doubles finer =
-                    minimum(unit * 0x1p-25 * grains_of(triangle, is_one, 3), grains_of(triangle, is_one, k));
-                decided = decide_between(below, above, middle, unit, remainder, is_open,
-                                         is_tie | greater(finer, magnitude(remainder) + bound), value);
-            }
-            doubt |= may_differ & ~decided;
+            const Doubles sum = two_sum(f.high - remainder.middle * upper, remainder.middle * lower * -1.0, rest);
+            remainder.value = sum + (rest + (f.low - remainder.middle * (q.low * 0.5)));
+            remainder.error = magnitude(remainder.middle) * (q.lost * 0.5) + f.lost;
+            left.size[k] = magnitude(f.high) + f.lost;
+            const LongWords is_open = greater(magnitude(remainder.value), remainder.error);
+            const LongWords is_tie = at_most(magnitude(remainder.value) + remainder.error, Doubles{});
+            left.of_value[k] &= ~decide_between(remainder.below, remainder.above, remainder.middle, remainder.unit,
+                                                remainder.value, is_open, is_tie, value);
+            doubt |= left.of_value[k];
         }
         quotient[k] = select(in_doubt, value, quotient[k]);
     }
+    if (any(doubt)) doubt = decide_lanes_by_residues(triangle, x, y, is_one, left, quotient);
     in_front = (in_front & ~in_doubt) | (narrow(front) & in_doubt);
-    return doubt & in_doubt;
+    return (doubt | narrow(~close.is_known)) & in_doubt;
 }
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA

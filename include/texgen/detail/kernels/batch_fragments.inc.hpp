@@ -26,9 +26,9 @@ struct FragmentLanes {
             functions[BatchPlanes::q] + (functions[BatchPlanes::q + 1] * p_x + functions[BatchPlanes::q + 2] * p_y);
         const Doubles q_error = functions[BatchPlanes::q + 3] * stretch;
         front = greater(q, q_error * 0x1p24);
-        const LongWords is_open = ~(front | greater(q * -1.0, q_error));
+        const LongWords is_beside = ~(front | greater(q * -1.0, q_error));
         doubtful = Words{};
-        if (any(is_open)) doubtful = narrow(is_open);
+        if (any(is_beside)) doubtful = narrow(is_beside);
         const Doubles reciprocal = where(front, 1.0 / q);
         const Doubles relative_error = q_error * (reciprocal * 1.0001) + 8.0 * unit_roundoff_double;
         const Doubles stretched = stretch * (reciprocal * 1.0001);
@@ -43,20 +43,45 @@ struct FragmentLanes {
             largest_error = k == 0 ? functions[place + 3] : maximum(largest_error, functions[place + 3]);
             quotient[k] = to_floats(u[k]);
         }
+        // Twice the errors: what is rounded below lacks so much.
+        LongWords is_within{};
         if (tolerance > 0.0) {
-            const Doubles written =
-                largest_error * stretched + (largest * (relative_error + 1.0001 * unit_roundoff_float) + 0x1p-149);
-            if (!any(~at_most(written, Doubles{} + tolerance))) return;
+            const Doubles written = (largest_error * stretched + largest * relative_error) * 2.0 +
+                                    (largest * (1.0001 * unit_roundoff_float) + 0x1p-149);
+            is_within = at_most(written, Doubles{} + tolerance);
+            if (!any(~is_within)) return;
         }
+        Words differ{};
         TEXGEN_UNROLL
         for (std::size_t k = 0; k < Numerators; ++k) {
             const Doubles error =
                 functions[BatchPlanes::of_numerator[k] + 3] * stretched + magnitude(u[k]) * relative_error;
             quotient[k] = to_floats(u[k] - error);
-            doubtful |= bits(quotient[k]) ^ bits(to_floats(u[k] + error));
+            differ |= bits(quotient[k]) ^ bits(to_floats(u[k] + error));
         }
+        if (any(differ)) doubtful |= differ & ~narrow(is_within);
     }
 };
+
+TEXGEN_INLINE const float* vertices_of(const BatchJob& job, std::size_t triangle) noexcept {
+    return job.vertices + 3 * BatchVertex::size * triangle;
+}
+
+// What one double leaves in doubt of a vector of fragments as two have it; vertices(i) are those of lane i. All go to their place.
+// Returns the lanes that stay in doubt.
+template <std::size_t Numerators, class VerticesOf>
+TEXGEN_INLINE Words put_doubtful(const FragmentLanes<Numerators>& fragments, const Doubles& x, const Doubles& y,
+                                 bool is_one, const VerticesOf& vertices, const FragmentOutputs& out,
+                                 std::size_t n) noexcept {
+    const float* of_lane[lanes];
+    TEXGEN_UNROLL
+    for (std::size_t i = 0; i < static_cast<std::size_t>(lanes); ++i) of_lane[i] = vertices(i);
+    FragmentLanes<Numerators> again = fragments;
+    Words in_front = narrow(again.front);
+    const Words undecided = divide_lanes_closely(of_lane, x, y, is_one, again.doubtful, again.quotient, in_front);
+    out.put(n, again.quotient, in_front);
+    return undecided;
+}
 
 template <std::size_t Numerators>
 TEXGEN_INLINE Undecided divide_all_fragments(const FragmentsJob& job, std::size_t first) noexcept {
@@ -100,15 +125,8 @@ TEXGEN_INLINE Undecided divide_all_fragments(const FragmentsJob& job, std::size_
                 to.put(at, fragments.quotient, narrow(fragments.front));
                 continue;
             }
-            const float* of_lane[lanes];
-            TEXGEN_UNROLL
-            for (std::size_t i = 0; i < size; ++i)
-                of_lane[i] = job.vertices + 3 * BatchVertex::size * (ids[i] < job.triangles ? ids[i] : 0);
-            FragmentLanes<Numerators> again = fragments;
-            Words in_front = narrow(again.front);
-            const Words undecided =
-                divide_lanes_closely(of_lane, x, y, is_one, again.doubtful, again.quotient, in_front);
-            to.put(at, again.quotient, in_front);
+            const auto vertices = [&](std::size_t i) { return vertices_of(job, ids[i] < job.triangles ? ids[i] : 0); };
+            const Words undecided = put_doubtful(fragments, x, y, is_one, vertices, to, at);
             doubtful |= std::uint64_t{bits_of(undecided)} << (n - begin);
         }
         if (n > job.count) scratch.copy_to(out, n - size, job.count + size - n);

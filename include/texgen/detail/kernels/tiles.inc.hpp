@@ -244,7 +244,8 @@ struct CloseRemainder {
 
 // The sign of F - m Q by its residue: the finer one of its terms' grains times an integer. Returns the lanes of `doubt` that
 // this does not decide.
-TEXGEN_INLINE Words decide_by_residues(const Residues& f, double f_grain, const Residues& q, double q_grain,
+template <class Grain>
+TEXGEN_INLINE Words decide_by_residues(const Residues& f, const Grain& f_grain, const Residues& q, const Grain& q_grain,
                                        const CloseRemainder& remainder, const Words& doubt, Floats& value) noexcept {
     const Doubles finer = minimum(remainder.unit * (0x1p-25 * q_grain), Doubles{} + f_grain);
     const Doubles per_finer = reciprocals_of_powers(finer);
