@@ -18,14 +18,6 @@
 
 namespace TEXGEN_DETAIL {
 
-inline bool is_finite(float value) noexcept { return std::fabs(value) <= 0x1.fffffep127f; }
-inline bool is_finite(double value) noexcept { return std::fabs(value) <= 1.7976931348623157e308; }
-template <glm::length_t N, class Scalar, glm::qualifier Q>
-bool is_finite(const glm::vec<N, Scalar, Q>& v) noexcept {
-    for (glm::length_t i = 0; i < N; ++i)
-        if (!is_finite(v[i])) return false;
-    return true;
-}
 inline bool is_finite(const glm::dmat4& m) noexcept {
     return is_finite(m[0]) && is_finite(m[1]) && is_finite(m[2]) && is_finite(m[3]);
 }

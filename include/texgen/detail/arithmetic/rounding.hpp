@@ -12,6 +12,8 @@
 #include <cstdint>
 #include <limits>
 
+#include <glm/vec2.hpp>
+
 #include "../language.hpp"
 
 // A compiler that may reorder sums takes two_sum() for a and 0, and a reciprocal for a division: no bound would hold.
@@ -40,6 +42,15 @@ inline double magnitude(double a) noexcept { return std::fabs(a); }
 
 // The larger of two, and a NaN if either is one: for what must never be taken for small.
 constexpr double larger_or_nan(double a, double b) noexcept { return a > b || !(a == a) ? a : b; }
+
+inline bool is_finite(float value) noexcept { return std::fabs(value) <= 0x1.fffffep127f; }
+inline bool is_finite(double value) noexcept { return std::fabs(value) <= 1.7976931348623157e308; }
+template <glm::length_t N, class Scalar, glm::qualifier Q>
+bool is_finite(const glm::vec<N, Scalar, Q>& v) noexcept {
+    for (glm::length_t i = 0; i < N; ++i)
+        if (!is_finite(v[i])) return false;
+    return true;
+}
 
 constexpr int sign_of(double a) noexcept { return a > 0.0 ? 1 : a < 0.0 ? -1 : 0; }
 

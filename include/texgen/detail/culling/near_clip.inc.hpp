@@ -2,12 +2,6 @@
 
 namespace TEXGEN_DETAIL {
 
-inline bool is_finite(const glm::vec4& v) noexcept {
-    constexpr float largest = (std::numeric_limits<float>::max)();
-    return std::fabs(v.x) <= largest && std::fabs(v.y) <= largest && std::fabs(v.z) <= largest &&
-           std::fabs(v.w) <= largest;
-}
-
 // The signed distance of a homogeneous point from a clipping plane, in no unit; inside is >= 0, and the sign is exact.
 class ClipDistance {
 public:

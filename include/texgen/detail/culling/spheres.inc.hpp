@@ -113,8 +113,7 @@ public:
 
     void add(const Sphere& sphere, bool, Coverage& out) noexcept {
         const glm::dvec3 centre = widened(sphere.centre);
-        const bool is_sphere = is_finite(centre.x) && is_finite(centre.y) && is_finite(centre.z) &&
-                               sphere.radius >= 0.0f && is_finite(widened(sphere.radius));
+        const bool is_sphere = is_finite(sphere.centre) && sphere.radius >= 0.0f && is_finite(sphere.radius);
         if (!is_sphere || !forms_.can_say()) {
             out = exact_coverage(forms_, sphere);
             return;

@@ -22,7 +22,7 @@ inline double cancelling_dot(const glm::vec4& a, const glm::vec4& b) noexcept {
         lost += next.low;
     }
     // What is lost of an infinity is no number.
-    return std::fabs(sum) <= (std::numeric_limits<double>::max)() ? sum + lost : sum;
+    return is_finite(sum) ? sum + lost : sum;
 }
 
 // v / |v|, and zero for zero. The power of two keeps the squares inside the range of double.
@@ -115,8 +115,7 @@ inline bool TexGenUnit::set_eye_plane(Coordinate coordinate, glm::vec4 plane, co
     const detail::CertifiedInverse inverse(detail::widened(modelview));
     if (state == nullptr || !inverse.regular()) return false;
     const glm::vec4 stored(inverse.solve_row(detail::widened(plane)));
-    for (glm::length_t i = 0; i < 4; ++i)
-        if (!(std::fabs(stored[i]) <= (std::numeric_limits<float>::max)())) return false;
+    if (!detail::is_finite(stored)) return false;
     state->eye_plane = stored;
     return true;
 }
@@ -143,7 +142,7 @@ inline glm::vec4 TexGenUnit::generate(const FixedFunctionVertex& vertex, const E
     if (eye_space.wants_normal()) {
         normal = eye_space.normal(vertex.normal);
         const double size = detail::largest(normal);
-        if (size > 1.0 && size <= (std::numeric_limits<double>::max)()) exponent = std::ilogb(size);
+        if (size > 1.0 && detail::is_finite(size)) exponent = std::ilogb(size);
         const glm::dvec3 n = detail::times_power_of_two(normal, -exponent);
         const glm::dvec3 to_vertex = detail::direction({eye.x, eye.y, eye.z});
         const double n_dot_u = detail::dot(n, to_vertex);

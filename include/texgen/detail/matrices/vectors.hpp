@@ -14,8 +14,6 @@
 
 namespace TEXGEN_DETAIL {
 
-inline bool is_finite(const glm::dvec3& v) noexcept { return is_finite(v.x) && is_finite(v.y) && is_finite(v.z); }
-
 inline double dot(const glm::dvec3& a, const glm::dvec3& b) noexcept {
     return std::fma(a.z, b.z, std::fma(a.y, b.y, a.x * b.x));
 }
