@@ -1060,6 +1060,33 @@ TEST_CASE("a batch has room for what rounds off the slide where s hardly changes
     CHECK(answers == std::vector{Coverage::outside, Coverage::partial, Coverage::inside, Coverage::inside});
 }
 
+TEST_CASE("a batch of spheres answers as the single question where sides of the slide are nearly one plane") {
+    // A side at infinity is q, as s <= 1 nearly is: what weighs them is noise, and another one in vectors.
+    const glm::dmat4 matrix{
+        {0x1.551cd266a9d58p9, -0x1.3b81ebf445084p84, 0x1.af5955321f24cp46, -0x1.43d7e9a6db7b6p2},
+        {0x1.4f991f25cfcc8p-19, 0x1.8af80740606cap-84, -0x1.00fe11fbbb954p94, 0x1.d5946c49badp70},
+        {0x1.59aa370764aacp-13, -0x1.23db22a41ac28p-43, -0x1.a10589b706878p-66, 0x1.bbde6447d5fa8p42},
+        {0x1.a3fdc30796fp-89, -0x1.413a26abfa0eap-8, 0x1.ae96da0e57f2p10, -0x1.4504a77b7fb68p49}};
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const TextureRegion region = atlas_tile({-infinity, 0.0}, {1.0, infinity}).with_depth(-0.144, infinity);
+    const LitVolume<texgen::World> volume(WorldTexgen(matrix), region);
+    std::vector<Sphere> spheres{{{-0x1.9ea102p-37f, -0x1.a5823ep-35f, -0x1.0fa61p-35f}, 0x1.cp0f}};
+    Random random(1177);
+    for (int i = 1; i < 4000; ++i)
+        spheres.push_back({{random.uniform_float(-0x1p-34, 0x1p-34), random.uniform_float(-0x1p-34, 0x1p-34),
+                            random.uniform_float(-0x1p-34, 0x1p-34)},
+                           random.uniform_float(0.0, 4.0)});
+    std::vector<Coverage> answers(spheres.size());
+    volume.coverage(spheres, answers);
+    int outside = 0;
+    for (std::size_t i = 0; i < spheres.size(); ++i) {
+        INFO(hex(spheres[i]));
+        REQUIRE(answers[i] == volume.coverage(spheres[i]));
+        outside += answers[i] == Coverage::outside;
+    }
+    CHECK(outside > 0);
+}
+
 TEST_CASE("what cancels to less than two doubles hold is not taken for 0") {
     // At (1, 1, 1) is s - q = 1 + 2^-53 - 2^-130 - 1 - 2^-53, so that s/q is rounded to 1 and is less.
     const auto of = [](double of_z) {
