@@ -27,20 +27,22 @@ struct CloseSums {
 
     // A sum in one double, and what that left.
     template <std::size_t Count>
-    CloseSums(const Double2& sum, const Double2 (&left)[Count]) noexcept : lost{} {
-        Double2 error, third{};
-        Double2 rest = left[0];
-        for (std::size_t i = 1; i < Count; ++i) {
-            rest = two_sum(rest, left[i], error);
-            third = third + error;
-            lost = lost + magnitude(error);
+    CloseSums(const Double2& sum, const Double2 (&left)[Count]) noexcept {
+        Double2 error[Count];
+        Double2 rest = two_sum(left[0], left[1], error[1]);
+        lost = magnitude(error[1]);
+        for (std::size_t i = 2; i < Count; ++i) {
+            rest = two_sum(rest, left[i], error[i]);
+            lost = lost + magnitude(error[i]);
         }
         high = two_sum(sum, rest, low);
-        if (is_within(0x1p-60, 0) && is_within(0x1p-60, 1)) return;
+        if (!any_less(magnitude(high) * 0x1p-60, lost)) return;
         // Beside a sum that cancels that is much, and is kept.
-        rest = two_sum(low, third, error);
+        Double2 third = error[1];
+        for (std::size_t i = 2; i < Count; ++i) third = third + error[i];
+        rest = two_sum(low, third, error[0]);
         high = two_sum(high, rest, low);
-        lost = lost * 0x1p-49 + magnitude(error);
+        lost = lost * 0x1p-49 + magnitude(error[0]);
     }
 
     // Whether it is certain to this share of itself, as 0 is where it is exact.
@@ -84,11 +86,12 @@ inline bool divide_closely(const FormPair& numerators, const PointForm& q_form, 
     bool is_tied[2];
     float other[2];
     double middle[2];
+    const Double2 quotient = s.high / q.high[0] + 0.0;  // no -0
+    const Double2 error = magnitude(quotient) * 0x1p-48;
+    const Double2 low = quotient - error, high = quotient + error;
     for (std::size_t k = 0; k < 2; ++k) {
-        const double quotient = s.high[k] / q.high[0] + 0.0;  // no -0
-        const double error = 0x1p-48 * std::fabs(quotient);
-        value[k] = static_cast<float>(quotient - error);
-        other[k] = static_cast<float>(quotient + error);
+        value[k] = static_cast<float>(low[k]);
+        other[k] = static_cast<float>(high[k]);
         is_decided[k] = is_q_close && s.is_within(enough, k);
         is_tied[k] = is_decided[k] && value[k] != other[k];
         middle[k] = is_tied[k] ? middle_of(value[k], other[k]) : 0.0;
