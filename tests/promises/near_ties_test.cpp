@@ -117,11 +117,12 @@ TEST_CASE("next to the middle of two floats the nearest is found, alone and in c
             }
         }
         if (kind != "triangle") continue;
-        for (const auto& [width, height] : {std::pair{8, 8}, std::pair{16, 4}, std::pair{64, 1}, std::pair{5, 3}})
+        for (const auto& size : {std::pair{8, 8}, std::pair{16, 4}, std::pair{64, 1}, std::pair{5, 3}})
             for (const bool by_id : {false, true}) {
-                const Answer answer = of_tile(numbers, width, height, by_id);
+                const Answer answer = of_tile(numbers, size.first, size.second, by_id);
                 for (std::size_t k = 0; k < 2; ++k)
-                    CHECK_MESSAGE(is_nearest(answer.out[k][0], answer.exact.over_q(k)), line, " ", width, " ", by_id);
+                    CHECK_MESSAGE(is_nearest(answer.out[k][0], answer.exact.over_q(k)), line, " ", size.first, " ",
+                                  by_id);
             }
     }
     CHECK(lines >= 100);
