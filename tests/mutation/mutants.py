@@ -283,7 +283,7 @@ MUTANTS = [
           "(area.value > 0.0 ? 1 : -1) : area.value > 0.0 ? 1 : area.value < 0.0 ? -1 : 0;", "bounds_test interpolate_test"),
          ("a clip_w of zero is taken", "vertex.clip_w > 0.0f &&", "vertex.clip_w >= 0.0f &&", "interpolate_test")),
     *_of("detail/triangle/interpolator.inc.hpp",
-         ("small tiles are never in doubt", "if (kernels_.fill_unit(job)) fill_from_doubt(tile, job, job.unit_at(0, 0));",
+         ("small tiles are never in doubt", "if (kernels_.fill_unit(job)) fill_from_doubt(tile, at, job, job.unit_at(0, 0));",
           "kernels_.fill_unit(job);", "interpolate_test near_ties_test"),
          ("what may be inside is lit", "is_inside = plan.sides == Coverage::inside", "is_inside = plan.sides != Coverage::outside",
           "interpolate_test tolerance_test"),

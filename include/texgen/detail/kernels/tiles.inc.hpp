@@ -200,14 +200,15 @@ struct CloseRow {
 // A vector of q, and what its quotients share. In what is left of a quotient, F - m Q, m is the middle of two floats, which
 // has 25 bits: with half of the high part of Q in two parts of 26 bits the products with 2 m are exact.
 struct CloseQ {
-    Doubles upper, lower, low, reciprocal, relative_error;
+    Doubles value, upper, lower, low, reciprocal, relative_error;
     LongWords in_front, doubt;
     Residues residues;
 
-    TEXGEN_INLINE CloseQ(const CloseRow& row, double unit, const Doubles& index, std::int64_t x) noexcept {
+    TEXGEN_INLINE void move_to(const CloseRow& row, double unit, const Doubles& index, std::int64_t x) noexcept {
         const Doubles high = index * row.high_dx + row.high;
         const Doubles rest = index * row.low_dx + row.low;
         const Doubles q = high + rest;
+        value = q;
         in_front = greater(q, row.error * 256.0);
         doubt = ~(in_front | greater(q * -1.0, row.error));
         residues = row.residues_at(x);
@@ -284,21 +285,24 @@ TEXGEN_INLINE Words divide_closely(const CloseRow& row, double q_grain, const Cl
     const Words differ = bits(remainder.below) ^ bits(remainder.above);
     if (!any(differ)) return Words{};
     const Doubles middle = to_doubles(remainder.below) + to_doubles(remainder.above);
-    const Doubles product = middle * q.upper;
-    const Doubles rest = high - product;
-    const Doubles taken = rest - high;
-    const Doubles lost = (high - (rest - taken)) - (product + taken);
     remainder.middle = middle;
     remainder.unit = power_of_two_below(middle);
-    remainder.value = (rest - middle * q.lower) + (lost + (low - middle * q.low));
-    remainder.error = magnitude(middle) * half_q_error + row.error;
     Words doubt = ~equal(differ, 0);
     if (q_grain > 0.0) {
+        // The middle is as near to the quotient as F/Q is: so |F - m Q| is at most twice the error times Q.
+        remainder.value = Doubles{};
+        remainder.error = error * q.value * 2.25;
         const Residues residues = row.residues_at(x);
         doubt = decide_by_residues(residues, row.grain, q.residues, q_grain, remainder, doubt, value);
         if (!any(doubt)) return doubt;
         doubt = decide_zeros(row.are_known(sum) & are_zero(residues), doubt, value);
     }
+    const Doubles product = middle * q.upper;
+    const Doubles rest = high - product;
+    const Doubles taken = rest - high;
+    const Doubles lost = (high - (rest - taken)) - (product + taken);
+    remainder.value = (rest - middle * q.lower) + (lost + (low - middle * q.low));
+    remainder.error = magnitude(middle) * half_q_error + row.error;
     const LongWords is_open = greater(magnitude(remainder.value), remainder.error);
     const LongWords is_tie =
         greater(minimum(remainder.unit * (0x1p-25 * q_grain), Doubles{} + row.grain), remainder.error * 4.0);
@@ -318,13 +322,18 @@ std::uint64_t fill_tile_closely(const TileJob& job, const CloseFunctions& functi
     const CloseRow& q_row = rows[2];
     RowOutputs row(job, unit.y_begin);
     const Doubles half_q_error = q_row.error * 0.5;
+    const bool q_is_constant =
+        is_constant(functions.q.high) && is_constant(functions.q.low) && is_constant(functions.q.residue);
+    bool is_known = false;
+    CloseQ q;
     std::uint64_t doubtful = 0;
     int shift = 0;
     for (int y = unit.y_begin; y < unit.y_end; ++y, row.advance()) {
         for (std::size_t k = 0; k < 3; ++k) rows[k].move_to(*function[k], y);
         for (std::int64_t x = unit.x_begin; x < unit.x_end; x += lanes) {
             const Doubles index = indices<Doubles>() + static_cast<double>(x);
-            const CloseQ q(q_row, functions.q_unit, index, x);
+            if (!is_known) q.move_to(q_row, functions.q_unit, index, x);
+            is_known = q_is_constant;
             Floats value[2];
             Words doubt = narrow(q.doubt);
             for (std::size_t k = 0; k < 2; ++k)

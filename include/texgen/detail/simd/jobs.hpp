@@ -18,6 +18,11 @@ struct RampOf {
 };
 using Ramp = RampOf<double>;
 
+template <class Number>
+bool is_constant(const RampOf<Number>& ramp) noexcept {
+    return ramp.dx == 0 && ramp.dy == 0;
+}
+
 inline constexpr int longest_chunk = 256;
 
 // numerator[k] / q over a rectangle; out[k], and lit (or null) from the closed region. One numerator alone is in both

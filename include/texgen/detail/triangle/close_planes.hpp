@@ -47,7 +47,7 @@ struct CloseRamp {
 
     // As high and low parts, see CloseFunction. The coefficients of low are at most half a unit: they, two products and two
     // sums are rounded in double, 6 u of half of width + height + 1 units: less than 2^-50 of those.
-    TEXGEN_APART CloseFunction split(const Tile& tile) const noexcept {
+    TEXGEN_APART void split(const Tile& tile, CloseFunction& result) const noexcept {
         const double unit = unit_for(tile);
         const double rounder = 0x1.8p52 * unit;
         double high[3];
@@ -56,11 +56,9 @@ struct CloseRamp {
             high[j] = (term[j].high + rounder) - rounder;
             low[j] = (term[j].high - high[j]) + term[j].low;
         }
-        return {{high[0], high[1], high[2]},
-                {low[0], low[1], low[2]},
-                error + 0x1p-50 * (1.0 + tile.width + tile.height) * unit,
-                0.0,
-                {}};
+        result.high = {high[0], high[1], high[2]};
+        result.low = {low[0], low[1], low[2]};
+        result.error = error + 0x1p-50 * (1.0 + tile.width + tile.height) * unit;
     }
     double unit_for(const Tile& tile) const noexcept {
         const double size = size_over(tile);
@@ -80,16 +78,16 @@ struct CloseRamps {
         const auto y = static_cast<double>(part.y - tile.y);  // integers
         CloseRamps result = *this;
         result.tile = part;
+        if (x == 0.0 && y == 0.0) return result;
         for (CloseRamp& ramp : result.function) ramp = ramp.moved(x, y);
         return result;
     }
 
-    CloseFunctions split() const noexcept {
-        CloseFunctions result;
-        for (std::size_t k = 0; k < 2; ++k) result.numerator[k] = function[k].split(tile);
-        result.q = function[q].split(tile);
+    // Residues stay.
+    void split(CloseFunctions& result) const noexcept {
+        for (std::size_t k = 0; k < 2; ++k) function[k].split(tile, result.numerator[k]);
+        function[q].split(tile, result.q);
         result.q_unit = 0x1.8p78 * function[q].unit_for(tile);
-        return result;
     }
 };
 
@@ -165,7 +163,7 @@ TEXGEN_RARE inline bool is_multiple(const CloseFunction& f, std::size_t j, doubl
                          0x1p-50 * (std::fabs(product.low) + std::fabs(f.low.*part) + std::fabs(rest));
     const double unit = (u != 0.0 ? last_bit(u) : 1.0) * q.grain;
     const double finer = smaller(unit, f.grain);
-    if (!(std::fabs(difference) + error < 0x1p62 * finer)) return false;
+    if (!(std::fabs(difference) <= error && error < 0x1p61 * finer)) return false;
     const double per_finer = reciprocal_power_of_two(finer);
     return residue * residue_of(f.grain * per_finer) == q.residue.base * residue_of(u * q.grain * per_finer);
 }

@@ -3,10 +3,14 @@
 namespace TEXGEN_DETAIL {
 inline namespace TEXGEN_BUILD {
 
-struct CloseJob {
+// The functions of a tile where it is in doubt: of the planes as they are, or close, and with residues or not.
+struct DoubtfulFunctions : CloseFunctions {
+    bool are_close, have_residues = false;
+};
+
+struct DoubtfulJob {
     TileJob job;
-    CloseFunctions functions;
-    bool is_close;  // else of the planes as they are
+    DoubtfulFunctions functions;
 };
 
 // Interpolates up to two coordinates, and the mask, of a triangle into the caller's arrays.
@@ -41,7 +45,7 @@ public:
     }
 
     Corners corners_at(const Tile& tile) noexcept {
-        const Corners at = corners_of(triangle_.planes, *planes_, triangle_.q, tile);
+        const Corners at = plain_corners(tile);
         return at.all_behind() || !at.cancel() ? at : corners_of(close_ramps(tile));
     }
 
@@ -52,7 +56,7 @@ public:
 
     void interpolate(const Tile& tile, const Corners& at, const Plan& plan) noexcept {
         whole_ = tile;
-        closely_.drop();
+        doubtful_.drop();
         triangle_.tolerance == 0.0 ? fill_exact(tile, at) : fill(tile, at, plan);
     }
 
@@ -81,38 +85,47 @@ private:
 
     // They are made when a tile first needs them, for all of the rectangle.
     TEXGEN_APART CloseRamps close_ramps(const Tile& tile) noexcept {
-        if (!close_) close_.make(made_close());
+        if (!close_)
+            close_.make(
+                close_ramps_of(triangle_.planes, plain_corners(rect_), coordinate_of(0), coordinate_of(1), rect_));
         return close_->moved_to(tile);
     }
 
-    // The planes as they are will do where the grains make them exact.
-    TEXGEN_APART CloseRamps made_close() noexcept {
-        CloseRamps plain = plain_ramps(rect_);
-        const PlaneGrains grains(triangle_.planes);
-        bool are_exact = true;
-        for (std::size_t k = 0; k < 3 && are_exact; ++k)
-            are_exact = plain.function[k].take_multiples(grains.with(grains.of_values(coordinate_of(k))));
-        return are_exact ? plain : ClosePlanes(triangle_.planes, rect_).ramps(coordinate_of(0), coordinate_of(1));
+    glm::length_t coordinate_of(std::size_t k) const noexcept { return coordinate_[count_ == 1 ? 0 : k]; }
+
+    Corners plain_corners(const Tile& tile) const noexcept {
+        return corners_of(triangle_.planes, *planes_, triangle_.q, tile);
     }
 
-    // Of the numerators and q.
-    glm::length_t coordinate_of(std::size_t k) const noexcept { return k == 2 ? 3 : coordinate_[count_ == 1 ? 0 : k]; }
-
-    TEXGEN_APART void add_residues(CloseFunctions& functions, const Tile& tile) noexcept {
-        if (!residues_) residues_.make(triangle_.planes, rect_);
-        const PlaneResidues& residues = *residues_;
-        for (std::size_t k = 0; k < 2; ++k) residues.add_to(functions.numerator[k], coordinate_of(k), tile);
-        residues.add_to(functions.q, 3, tile);
+    // What is known of the functions of a tile at first: what corners say, or two doubles where those are made already.
+    TEXGEN_RARE DoubtfulFunctions functions_of(const Tile& tile, const Corners& at) noexcept {
+        DoubtfulFunctions result{{}, static_cast<bool>(close_)};
+        result.are_close ? close_ramps(tile).split(result) : take_planes(at, result);
+        return result;
     }
 
-    // A unit to twice the precision; what that leaves in doubt with residues, and the rest one by one.
-    TEXGEN_APART void fill_closely(const Tile& tile, const TileJob& job, CloseFunctions& functions,
+    // More of them, if there is more: residues, which cost less than two doubles; and two doubles, at once where the planes err by
+    // more than residues know.
+    TEXGEN_RARE bool sharpen(const Tile& tile, DoubtfulFunctions& functions) noexcept {
+        if (functions.have_residues && functions.are_close) return false;
+        if (!functions.have_residues) {
+            functions.have_residues = true;
+            if (!residues_) residues_.make(triangle_.planes, rect_);
+            for (std::size_t k = 0; k < 2; ++k) residues_->add_to(functions.numerator[k], coordinate_of(k), tile);
+            residues_->add_to(functions.q, 3, tile);
+            const auto& [first, second] = functions.numerator;
+            const bool may_decide = first.error < 0x1p58 * first.grain || second.error < 0x1p58 * second.grain;
+            if (functions.are_close || (may_decide && functions.q.error < 0x1p33 * functions.q.grain)) return true;
+        }
+        close_ramps(tile).split(functions);
+        return functions.are_close = true;
+    }
+
+    // A unit with what is known of the functions, and with more while that leaves doubt; the rest one by one.
+    TEXGEN_APART void fill_closely(const Tile& tile, const TileJob& job, DoubtfulFunctions& functions,
                                    const TileJob::Unit& unit) noexcept {
         std::uint64_t doubtful = kernels_.fill_closely(job, functions, unit);
-        if (doubtful != 0 && !(functions.q.grain > 0.0)) {
-            add_residues(functions, tile);
-            doubtful = kernels_.fill_closely(job, functions, unit);
-        }
+        while (doubtful != 0 && sharpen(tile, functions)) doubtful = kernels_.fill_closely(job, functions, unit);
         fill_some(tile, unit, doubtful);
     }
 
@@ -134,19 +147,21 @@ private:
         // A small tile does not repay the search for its least quotient.
         job.ulps = static_cast<std::int64_t>(tile.width) * tile.height < 1024 ? 0 : at.ulps_of_quotients();
         if (job.is_unit()) {
-            if (kernels_.fill_unit(job)) fill_from_doubt(tile, job, job.unit_at(0, 0));
+            if (kernels_.fill_unit(job)) fill_from_doubt(tile, at, job, job.unit_at(0, 0));
             return;
         }
         const TileJob::Unit unit = kernels_.fill_exact(job, job.unit_at(0, 0));
-        if (!job.is_done(unit)) fill_from_doubt(tile, job, unit);
+        if (!job.is_done(unit)) fill_from_doubt(tile, at, job, unit);
     }
 
-    TEXGEN_RARE void fill_from_doubt(const Tile& tile, TileJob& job, TileJob::Unit unit) noexcept {
-        CloseFunctions functions = close_ramps(tile).split();
-        if (is_constant(functions.q.high)) {
-            add_residues(functions, tile);
-            if (take_exact_quotients(functions, job)) unit = kernels_.fill_exact(job, unit);
-        }
+    TEXGEN_RARE void fill_from_doubt(const Tile& tile, const Corners& at, TileJob& job, TileJob::Unit unit) noexcept {
+        DoubtfulFunctions functions = functions_of(tile, at);
+        const bool q_is_constant = is_constant(functions.q.high);
+        if (q_is_constant || !functions.are_close) sharpen(tile, functions);
+        // What residues decide of a few fragments they decide sooner than their quotients are seen to be exact.
+        if (q_is_constant && (functions.are_close || tile.width + tile.height > 4) &&
+            take_exact_quotients(functions, job))
+            unit = kernels_.fill_exact(job, unit);
         // Doubt has company: twice as many units after each failure that follows another.
         for (int many = 1; !job.is_done(unit);) {
             for (int i = 0; i < many && !job.is_done(unit); ++i, unit = job.unit_after(unit))
@@ -162,24 +177,11 @@ private:
     void fill_closely(const Tile& tile, const Corners& at) noexcept {
         const int x = static_cast<int>(tile.x - whole_.x);
         const int y = static_cast<int>(tile.y - whole_.y);
-        const TileJob::Unit unit{x, x + tile.width, y, y + tile.height};
-        if (!closely_) {
-            const bool is_close = static_cast<bool>(close_);
-            closely_.make(CloseJob{make_job(whole_, at), (is_close ? close_ramps(whole_) : plain_ramps(whole_)).split(),
-                                   is_close});
-            closely_->job.is_contiguous = false;
+        if (!doubtful_) {
+            doubtful_.make(DoubtfulJob{make_job(whole_, at), functions_of(whole_, plain_corners(whole_))});
+            doubtful_->job.is_contiguous = false;
         }
-        auto& [job, functions, is_close] = *closely_;
-        if (!is_close) {
-            if (kernels_.fill_closely(job, functions, unit) == 0) return;
-            functions = close_ramps(whole_).split();
-            is_close = true;
-        }
-        fill_closely(whole_, job, functions, unit);
-    }
-
-    CloseRamps plain_ramps(const Tile& tile) const noexcept {
-        return ramps_of(corners_of(triangle_.planes, *planes_, triangle_.q, tile), tile);
+        fill_closely(whole_, doubtful_->job, doubtful_->functions, {x, x + tile.width, y, y + tile.height});
     }
 
     // Fragments of a unit, one by one: a bit for each.
@@ -291,7 +293,7 @@ private:
     PlaneOf<Double2> alone_;
     OnDemand<CloseRamps>& close_;
     Tile whole_;  // what is being interpolated
-    OnDemand<CloseJob> closely_;
+    OnDemand<DoubtfulJob> doubtful_;
     OnDemand<PlaneResidues> residues_;
     std::span<float> output_[2];
     std::span<float> lit_;

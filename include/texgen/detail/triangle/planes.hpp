@@ -90,8 +90,6 @@ struct PlaneOf {
 };
 using Plane = PlaneOf<double>;
 
-inline bool is_constant(const Ramp& ramp) noexcept { return ramp.dx == 0.0 && ramp.dy == 0.0; }
-
 // The derivatives of f/q by x and y, times Q^2, as functions of p - a. With mu_ij = (f_i q_j - f_j q_i) times the weights
 // of i and j, and twice the signed area,
 //   d(f/q)/dx Q^2 = F_x Q - F Q_x = -area (mu_ab (c - p).y + mu_bc (a - p).y + mu_ca (b - p).y)
