@@ -51,7 +51,7 @@ public:
         if (!can_say()) return;
         kernels.weigh(matrix_, weights_, lanes_);
         for (std::size_t k = 0; k < count_; ++k)
-            slope_[k] = (1.0 + gamma(8)) * std::sqrt(a(k, 0) * a(k, 0) + a(k, 1) * a(k, 1) + a(k, 2) * a(k, 2));
+            lanes_.slope[k] = (1.0 + gamma(8)) * std::sqrt(a(k, 0) * a(k, 0) + a(k, 1) * a(k, 1) + a(k, 2) * a(k, 2));
     }
 
     // Five forms, or seven with a depth.
@@ -82,8 +82,7 @@ public:
         return {{a(k, 0), a(k, 1), a(k, 2)}, lanes_.d[k], lanes_.error_a[k], lanes_.error_d[k]};
     }
 
-    // |a| of form k, or up to 2^-49 of it more.
-    double slope(std::size_t k) const noexcept { return slope_[k]; }
+    double slope(std::size_t k) const noexcept { return lanes_.slope[k]; }
 
     // How much less form k may be for its inner side at points of this size, or more: (side - inner side) T_q.
     double narrowing(std::size_t k, double size) const noexcept {
@@ -122,19 +121,6 @@ public:
     SeparatingForms separating(const SeparatingFormKernels& kernels) const noexcept {
         SeparatingForms result;
         kernels.make(lanes_, matrix_, side_.data(), count_ == max_forms, result);
-        return result;
-    }
-
-    SphereForms for_spheres() const noexcept {
-        SphereForms result;
-        for (std::size_t k = 0; k < count_; ++k) {
-            result.form[k] = (*this)[k];
-            result.narrowing[k] = lanes_.narrowing[k];
-        }
-        result.slope = slope_;
-        result.largest_q = lanes_.largest_q;
-        result.last_q = lanes_.last_q;
-        result.count = count_;
         return result;
     }
 
@@ -338,7 +324,6 @@ private:
     FormWeights weights_;
     std::array<Weight, max_forms> inner_weight_;
     FormLanes lanes_{};
-    std::array<double, max_forms> slope_{};
     bool is_usable_;
     bool lights_nothing_;
 };

@@ -127,9 +127,8 @@ public:
 
     void decide() noexcept {
         if (count_ == 0) return;
-        if (!sphere_forms_) sphere_forms_.make(forms_.for_spheres());
         int classes[box_block];
-        kernels_.bound(*sphere_forms_, block_, classes);
+        kernels_.bound(forms_.lanes(), forms_.count(), block_, classes);
         for (std::size_t i = 0; i < count_; ++i)
             *out_[i] =
                 classes[i] == body_in_doubt ? exact_coverage(forms_, *sphere_[i]) : static_cast<Coverage>(classes[i]);
@@ -139,7 +138,6 @@ public:
 private:
     const SphereBatchKernels& kernels_;
     const LitForms& forms_;
-    OnDemand<SphereForms> sphere_forms_;
     SphereBlock block_{};
     const Sphere* sphere_[box_block];
     Coverage* out_[box_block];

@@ -150,7 +150,7 @@ void bound_boxes(const DoubleForms& forms, const BoxBlock& boxes, BoxBounds& bou
 // twice what is rounded, so half of one more or less decides. A root is a square here. At an angle of 2^-4 or more between
 // two planes their weights magnify roundings by less than 2^12: in the sum, and relative to its change in that.
 template <class CompiledWhereCalled = void>
-void bound_spheres(const SphereForms& forms, const SphereBlock& spheres, int* classes) noexcept {
+void bound_spheres(const FormLanes& forms, std::size_t count, const SphereBlock& spheres, int* classes) noexcept {
     for (std::size_t i = 0; i < box_block; i += static_cast<std::size_t>(lanes)) {
         const Doubles centre[3] = {load<Doubles>(spheres.centre[0] + i), load<Doubles>(spheres.centre[1] + i),
                                    load<Doubles>(spheres.centre[2] + i)};
@@ -159,10 +159,10 @@ void bound_spheres(const SphereForms& forms, const SphereBlock& spheres, int* cl
         const Doubles of_q = ((size + radius * 2.0) * forms.largest_q + forms.last_q) * 1.1;
         Doubles value[max_forms], error[max_forms];
         LongWords outside{}, perhaps_outside{}, dark{}, not_inside{}, perhaps_inside = ~outside;
-        for (std::size_t k = 0; k < forms.count; ++k) {
-            const LinearForm& form = forms.form[k];
-            value[k] = centre[0] * form.a[0] + (centre[1] * form.a[1] + (centre[2] * form.a[2] + form.d));
-            error[k] = size * form.error_a + form.error_d;
+        for (std::size_t k = 0; k < count; ++k) {
+            value[k] =
+                centre[0] * forms.a[0][k] + (centre[1] * forms.a[1][k] + (centre[2] * forms.a[2][k] + forms.d[k]));
+            error[k] = size * forms.error_a[k] + forms.error_d[k];
             const Doubles change = radius * forms.slope[k];
             const Doubles rounding = error[k] + change * gamma(4);
             const Doubles least = value[k] - change - of_q * forms.narrowing[k];
@@ -175,9 +175,8 @@ void bound_spheres(const SphereForms& forms, const SphereBlock& spheres, int* cl
         const auto try_edge = [&](std::size_t f, std::size_t g) {
             const LongWords asked = (greater(0.0 - value[f], 0.0) | greater(0.0 - value[g], 0.0)) & ~outside;
             if (!any(asked)) return;
-            const auto& a = forms.form[f].a;
-            const auto& b = forms.form[g].a;
-            const double across = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+            const auto& a = forms.a;
+            const double across = a[0][f] * a[0][g] + a[1][f] * a[1][g] + a[2][f] * a[2][g];
             const double squared_f = forms.slope[f] * forms.slope[f];
             const double squared_g = forms.slope[g] * forms.slope[g];
             // Of planes that are nearly one, the weights are what rounding leaves.
@@ -209,20 +208,11 @@ void bound_spheres(const SphereForms& forms, const SphereBlock& spheres, int* cl
             for (std::size_t f = 0; f < 2; ++f)
                 for (std::size_t g = 2; g < form_of_q; ++g) try_edge(f, g);
             for (std::size_t f = 0; f < form_of_q; ++f)
-                for (std::size_t g = form_of_q + 1; g < forms.count; ++g) try_edge(f, g);
+                for (std::size_t g = form_of_q + 1; g < count; ++g) try_edge(f, g);
         }
-        const LongWords inside = ~not_inside;
-        const LongWords in_doubt = (perhaps_outside & ~outside) | (perhaps_inside & not_inside & ~outside);
-        const Words is_outside = narrow(outside), is_inside = narrow(inside & ~outside), doubts = narrow(in_doubt);
-        int each[3][lanes];
-        store(each[0], is_outside);
-        store(each[1], is_inside);
-        store(each[2], doubts);
-        for (std::size_t lane = 0; lane < static_cast<std::size_t>(lanes); ++lane)
-            classes[i + lane] = each[2][lane] != 0   ? body_in_doubt
-                                : each[0][lane] != 0 ? 0
-                                : each[1][lane] != 0 ? 2
-                                                     : 1;
+        const LongWords in_doubt = (perhaps_outside | (perhaps_inside & not_inside)) & ~outside;
+        const Words is_inside = narrow(~(not_inside | outside | in_doubt)) & 1;
+        store(classes + i, 1 + is_inside - (narrow(outside) & 1) + (narrow(in_doubt) & (body_in_doubt - 1)));
     }
 }
 

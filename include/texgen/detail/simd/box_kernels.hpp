@@ -38,6 +38,7 @@ struct FormWeights {
 // narrowing * T_q, and T_q at points of a size, the sum of their magnitudes, is at most largest_q * size + last_q.
 struct FormLanes {
     double a[3][form_lanes], d[form_lanes], narrowing[form_lanes], error_a[form_lanes], error_d[form_lanes];
+    double slope[form_lanes];  // |a|, or up to 2^-49 of it more
     double largest_q, last_q;
 };
 
@@ -106,19 +107,11 @@ struct BoxBlock {
     double max[3][box_block];
 };
 
-// Spheres, planar; and the forms with all that they need of them.
+// Spheres, planar.
 struct SphereBlock {
     double centre[3][box_block];
     double radius[box_block];
 };
-struct SphereForms {
-    std::array<LinearForm, max_forms> form;
-    std::array<double, max_forms> slope;  // |a|, or up to 2^-49 of it more
-    std::array<double, max_forms> narrowing;
-    double largest_q, last_q;
-    std::size_t count;
-};
-
 // Bounds on the least over the forms of the largest value over each box, and on the least of the inner ones: their
 // signs are right, and where a lower one is negative beside an upper one that is not, nothing is known.
 struct BoxBounds {
@@ -168,7 +161,7 @@ struct BoxBatchKernels {
 struct SphereBatchKernels {
     Classify classify;
     // What exact_coverage() says of spheres, but where it is next to another answer: that is doubt.
-    void (*bound)(const SphereForms& forms, const SphereBlock& spheres, int* classes) noexcept;
+    void (*bound)(const FormLanes& forms, std::size_t count, const SphereBlock& spheres, int* classes) noexcept;
 };
 
 }  // namespace TEXGEN_DETAIL
