@@ -65,21 +65,20 @@ public:
             all_finite_ = false;
             return;
         }
-        const Bounded s = value_at(texgen_[0], v);
-        const Bounded t = value_at(texgen_[1], v);
-        const Bounded r = value_at(texgen_[2], v);
-        const Bounded q = value_at(texgen_[3], v);
+        const Bounded strq[] = {value_at(texgen_[0], v), value_at(texgen_[1], v), value_at(texgen_[2], v),
+                                value_at(texgen_[3], v)};
+        const Bounded& q = strq[3];
         ++count_;
         behind_ = behind_ && q.value <= -q.error;
         for (std::size_t side = 0; side < side_count_; ++side) {
-            const Bounded& u = side < 2 ? s : side < 4 ? t : r;
-            const double end = at(sides_[side / 2], side % 2);
+            const Bounded& u = strq[side / 2];
+            const double end = side % 2 == 0 ? sides_[side / 2].x : sides_[side / 2].y;
             const double distance = side % 2 == 0 ? u.value - end * q.value : end * q.value - u.value;
             const double error =
                 u.error + std::fabs(end) * q.error + gamma(3) * (std::fabs(u.value) + std::fabs(end * q.value));
             outside_[side] = outside_[side] && distance < -error;
         }
-        const glm::dvec3 str = glm::dvec3(s.value, t.value, r.value) / q.value;
+        const glm::dvec3 str = glm::dvec3(strq[0].value, strq[1].value, strq[2].value) / q.value;
         const glm::dvec2 st(str.x, str.y);
         // What floats have thrown behind the projector too.
         if (has_right_ && q.value != 0.0) compare(v, st);
@@ -126,8 +125,6 @@ private:
         if (!m) return {};
         return {{form(*m, 0), form(*m, 1), form(*m, 2), form(*m, 3)}};
     }
-
-    static double at(const glm::dvec2& v, std::size_t component) noexcept { return component == 0 ? v.x : v.y; }
 
     bool is_lit(const glm::dvec3& str) const noexcept {
         for (std::size_t k = 0; k < side_count_ / 2; ++k) {

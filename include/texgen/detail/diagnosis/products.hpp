@@ -149,18 +149,13 @@ inline Product scale_bias_factor(const Factors& factors, const Composition& comp
 // The pose as a mistake would use it; empty for an inverse that does not exist.
 inline std::optional<Product> pose_factor(const Factors& factors, PoseUse use) noexcept {
     if (!factors.pose) return use == PoseUse::right ? std::optional(lens_factor(glm::dmat4(1.0))) : std::nullopt;
-    switch (use) {
-        case PoseUse::right:
-            return pose_factor(*factors.pose);
-        case PoseUse::left_out:
-            return lens_factor(glm::dmat4(1.0));
-        case PoseUse::doubled:
-            return pose_factor(*factors.pose) * pose_factor(*factors.pose);
-        case PoseUse::inverted:
-            break;
+    if (use == PoseUse::left_out) return lens_factor(glm::dmat4(1.0));
+    if (use == PoseUse::inverted) {
+        const CertifiedInverse inverse(*factors.pose);
+        return inverse.regular() ? std::optional(pose_factor(as_in_scenes(inverse.matrix()))) : std::nullopt;
     }
-    const CertifiedInverse inverse(*factors.pose);
-    return inverse.regular() ? std::optional(pose_factor(as_in_scenes(inverse.matrix()))) : std::nullopt;
+    const Product once = pose_factor(*factors.pose);
+    return use == PoseUse::doubled ? once * once : once;
 }
 
 // V X, and S P V X.

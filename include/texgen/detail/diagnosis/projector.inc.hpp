@@ -4,15 +4,10 @@ namespace TEXGEN_DETAIL {
 
 // Whether a matrix holds numbers to go on with; if not, says why.
 inline bool is_usable(const glm::dmat4& m, Diagnosis& diagnosis) noexcept {
-    if (!is_finite(m)) {
-        diagnosis.add(Defect::not_finite);
-        return false;
-    }
-    if (m == glm::dmat4(0.0)) {
-        diagnosis.add(Defect::never_written);
-        return false;
-    }
-    return true;
+    const bool has_numbers = is_finite(m), is_written = m != glm::dmat4(0.0);
+    if (!has_numbers) diagnosis.add(Defect::not_finite);
+    if (!is_written) diagnosis.add(Defect::never_written);
+    return has_numbers && is_written;
 }
 
 // Of a lens of which nothing is known its round numbers may speak.

@@ -151,10 +151,9 @@ struct DepthEnds {
     std::array<double, 2> other_lows;
 };
 inline std::optional<DepthEnds> depth_ends(DepthMapping depth, const std::optional<Conventions>& conventions) noexcept {
-    if (depth == DepthMapping::unit) return DepthEnds{0.0, {0.5, -1.0}};
-    if (!conventions) return std::nullopt;
-    const bool is_zero_to_one = conventions->depth == DepthRange::zero_to_one;
-    return is_zero_to_one ? DepthEnds{0.0, {0.5, -1.0}} : DepthEnds{-1.0, {0.0, 0.0}};
+    if (depth == DepthMapping::unit || (conventions && conventions->depth == DepthRange::zero_to_one))
+        return DepthEnds{0.0, {0.5, -1.0}};
+    return conventions ? std::optional(DepthEnds{-1.0, {0.0, 0.0}}) : std::nullopt;
 }
 
 // Whether near and far are round numbers if the range is the other one, and near is none as it is: what floats are not exact
