@@ -107,6 +107,12 @@ inline DoubleDouble two_sum(double a, double b) noexcept {
     return {sum, (a - (sum - b_part)) + (b - b_part)};
 }
 
+// The same where |b| <= |a|.
+inline DoubleDouble quick_two_sum(double a, double b) noexcept {
+    const double sum = a + b;
+    return {sum, b - (sum - a)};
+}
+
 // Exactly a * b where neither the product nor its last bit leaves the range of double.
 inline DoubleDouble two_product(double a, double b) noexcept {
     const double product = a * b;
@@ -119,24 +125,18 @@ inline DoubleDouble operator-(const DoubleDouble& a) noexcept { return {-a.high,
 // Bounds for Basic Building Blocks of Double-Word Arithmetic, ACM TOMS 44 (2017).
 inline DoubleDouble sum(const DoubleDouble& a, const DoubleDouble& b) noexcept {
     const DoubleDouble exact = two_sum(a.high, b.high);
-    const double low = exact.low + (a.low + b.low);
-    const double high = exact.high + low;
-    return {high, low - (high - exact.high)};
+    return quick_two_sum(exact.high, exact.low + (a.low + b.low));
 }
 inline DoubleDouble product(const DoubleDouble& a, const DoubleDouble& b) noexcept {
     const DoubleDouble exact = two_product(a.high, b.high);
-    const double low = exact.low + (a.high * b.low + a.low * b.high);
-    const double high = exact.high + low;
-    return {high, low - (high - exact.high)};
+    return quick_two_sum(exact.high, exact.low + (a.high * b.low + a.low * b.high));
 }
 
 // a + b c within 2^-104 (|a| + |b c|).
 inline DoubleDouble add_product(DoubleDouble a, double b, double c) noexcept {
     const DoubleDouble product = two_product(b, c);
     const DoubleDouble sum = two_sum(a.high, product.high);
-    const double low = sum.low + (a.low + product.low);
-    const double high = sum.high + low;
-    return {high, low - (high - sum.high)};
+    return quick_two_sum(sum.high, sum.low + (a.low + product.low));
 }
 
 // A sum in two doubles, and twice what they leave out at most: nothing for numbers with few digits, however much they cancel.
