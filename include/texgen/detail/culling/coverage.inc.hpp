@@ -2,18 +2,6 @@
 
 namespace TEXGEN_DETAIL {
 
-// Whether a box is inside the inner side k, exactly.
-inline bool is_inside_inner_side(const LitForms& forms, std::size_t k, const Box& box, CloseRows& close) noexcept {
-    const std::array<double, 4> form = forms.inner_side(k);
-    Point vertex{};
-    for (std::size_t j = 0; j < 3; ++j) {
-        if (form[j] == 0.0) continue;
-        vertex[j] = widened((form[j] > 0.0 ? box.min : box.max)[static_cast<glm::length_t>(j)]);
-        if (!is_finite(vertex[j])) return false;
-    }
-    return forms.inner_sign_at(k, form, vertex, close) >= 0;
-}
-
 // What the planes say of a box, exactly: of those that are in doubt. For a NaN, and for forms of which nothing is known:
 // partial.
 inline Coverage exact_coverage(const LitForms& forms, const Box& box, const FormsInDoubt& doubt = {}) noexcept {
@@ -31,11 +19,10 @@ inline Coverage exact_coverage(const LitForms& forms, const Box& box, const Form
     // The vertex where a form is largest, or least; false where it is infinite there.
     const glm::dvec3 min = widened(box.min);
     const glm::dvec3 max = widened(box.max);
-    const auto take_vertex = [&](std::size_t k, bool largest, Point& vertex) {
+    const auto take_vertex = [&](const Point& a, bool largest, Point& vertex) {
         for (std::size_t j = 0; j < 3; ++j) {
-            const double a = forms.a(k, j);
-            if (a == 0.0) continue;
-            vertex[j] = ((a > 0.0) == largest ? max : min)[static_cast<glm::length_t>(j)];
+            if (a[j] == 0.0) continue;
+            vertex[j] = ((a[j] > 0.0) == largest ? max : min)[static_cast<glm::length_t>(j)];
             if (!is_finite(vertex[j])) return false;
         }
         return true;
@@ -43,15 +30,17 @@ inline Coverage exact_coverage(const LitForms& forms, const Box& box, const Form
     CloseRows close;
     const auto sign_at_vertex = [&](std::size_t k, bool largest) {
         Point vertex{};
-        return take_vertex(k, largest, vertex) ? forms.sign_at(k, vertex, close) : largest ? 1 : -1;
+        return take_vertex(forms.a(k), largest, vertex) ? forms.sign_at(k, vertex, close) : largest ? 1 : -1;
     };
     double size = 0.0;
     for (glm::length_t j = 0; j < 3; ++j) size += larger(std::fabs(min[j]), std::fabs(max[j]));
     // Almost always the outer side has room for the inner one.
     const auto is_inside_side = [&](std::size_t k) {
-        Point vertex{};
-        return (take_vertex(k, false, vertex) && forms.is_inside_at(k, vertex, size)) ||
-               is_inside_inner_side(forms, k, box, close);
+        Point vertex{}, inner_vertex{};
+        if (take_vertex(forms.a(k), false, vertex) && forms.is_inside_at(k, vertex, size)) return true;
+        const std::array<double, 4> inner = forms.inner_side(k);
+        return take_vertex({inner[0], inner[1], inner[2]}, false, inner_vertex) &&
+               forms.inner_sign_at(k, inner, inner_vertex, close) >= 0;
     };
     bool is_inside = !doubt.is_any_negative;
     for (std::size_t k = forms.count(); k-- > 0;) {

@@ -50,8 +50,10 @@ public:
             is_matrix_finite && (is_empty(region) || (is_usable_ && lanes_.largest_q == 0.0 && lanes_.last_q == 0.0));
         if (!can_say()) return;
         kernels.weigh(matrix_, weights_, lanes_);
-        for (std::size_t k = 0; k < count_; ++k)
-            lanes_.slope[k] = (1.0 + gamma(8)) * std::sqrt(a(k, 0) * a(k, 0) + a(k, 1) * a(k, 1) + a(k, 2) * a(k, 2));
+        for (std::size_t k = 0; k < count_; ++k) {
+            const Point of = a(k);
+            lanes_.slope[k] = (1.0 + gamma(8)) * std::sqrt(of[0] * of[0] + of[1] * of[1] + of[2] * of[2]);
+        }
     }
 
     // Five forms, or seven with a depth.
@@ -75,11 +77,11 @@ public:
 
     // The forms, each times a positive number that brings its largest a near to 1.
     const FormLanes& lanes() const noexcept { return lanes_; }
-    double a(std::size_t k, std::size_t j) const noexcept { return lanes_.a[j][k]; }
+    Point a(std::size_t k) const noexcept { return {lanes_.a[0][k], lanes_.a[1][k], lanes_.a[2][k]}; }
     const glm::dmat4& matrix() const noexcept { return matrix_; }
     const FormWeights& weights() const noexcept { return weights_; }
     LinearForm operator[](std::size_t k) const noexcept {
-        return {{a(k, 0), a(k, 1), a(k, 2)}, lanes_.d[k], lanes_.error_a[k], lanes_.error_d[k]};
+        return {a(k), lanes_.d[k], lanes_.error_a[k], lanes_.error_d[k]};
     }
 
     double slope(std::size_t k) const noexcept { return lanes_.slope[k]; }
@@ -211,9 +213,7 @@ private:
         return k < 2 ? 0 : k < q ? 1 : k == q ? 3 : 2;
     }
 
-    Bounded value_at(std::size_t k, const Point& point) const noexcept {
-        return value_of(Point{a(k, 0), a(k, 1), a(k, 2)}, lanes_.d[k], point);
-    }
+    Bounded value_at(std::size_t k, const Point& point) const noexcept { return value_of(a(k), lanes_.d[k], point); }
     template <class Coefficients>
     static Bounded value_of(const Coefficients& a, double d, const Point& point) noexcept {
         double value = d;
