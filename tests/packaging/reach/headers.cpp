@@ -8,6 +8,9 @@
 #include <bits/stdc++.h>
 #define min(a, b) (((a) < (b)) ? (a) : (b))
 #define max(a, b) (((a) > (b)) ? (a) : (b))
+#elif __has_include(<sys/sysmacros.h>)
+// major() and minor(), which are macros of <sys/types.h> on macOS and the BSDs.
+#include <sys/sysmacros.h>
 #endif
 
 #include <texgen/batch.hpp>

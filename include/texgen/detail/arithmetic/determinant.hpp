@@ -46,7 +46,7 @@ public:
 
     // In double, within gamma(4) of the sum of its terms' magnitudes, which is the other one.
     std::pair<double, double> nearly() const noexcept {
-        return {minor(1, 2) * row_[0].z + minor(2, 0) * row_[1].z + minor(0, 1) * row_[2].z, size()};
+        return {minor_of(1, 2) * row_[0].z + minor_of(2, 0) * row_[1].z + minor_of(0, 1) * row_[2].z, size()};
     }
 
     Expansion<12> exactly() const noexcept {
@@ -60,7 +60,7 @@ public:
     }
 
 private:
-    double minor(int i, int j) const noexcept { return row_[i].x * row_[j].y - row_[j].x * row_[i].y; }
+    double minor_of(int i, int j) const noexcept { return row_[i].x * row_[j].y - row_[j].x * row_[i].y; }
     DoubleDouble exact_minor(int i, int j) const noexcept {
         return two_sum(row_[i].x * row_[j].y, -row_[j].x * row_[i].y);
     }

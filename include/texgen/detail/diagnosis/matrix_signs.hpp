@@ -71,8 +71,8 @@ struct Minor {
     bool stands_out;
 };
 
-inline Minor minor(const glm::dmat4& m, const std::array<glm::length_t, 3>& rows,
-                   const std::array<glm::length_t, 3>& columns) noexcept {
+inline Minor minor_of(const glm::dmat4& m, const std::array<glm::length_t, 3>& rows,
+                      const std::array<glm::length_t, 3>& columns) noexcept {
     const auto row = [&](std::size_t i) {
         return glm::dvec3(m[columns[0]][rows[i]], m[columns[1]][rows[i]], m[columns[2]][rows[i]]);
     };
@@ -92,8 +92,8 @@ inline constexpr std::array<glm::length_t, 3> axes{0, 1, 2};
 // Whether three rows have rank 3. Valid ones do by their axes, or by two axes and the constants where light is parallel;
 // translations enter neither.
 inline bool are_independent(const glm::dmat4& m, const std::array<glm::length_t, 3>& rows) noexcept {
-    return minor(m, rows, axes).stands_out || minor(m, rows, {0, 1, 3}).stands_out ||
-           minor(m, rows, {0, 2, 3}).stands_out || minor(m, rows, {1, 2, 3}).stands_out;
+    return minor_of(m, rows, axes).stands_out || minor_of(m, rows, {0, 1, 3}).stands_out ||
+           minor_of(m, rows, {0, 2, 3}).stands_out || minor_of(m, rows, {1, 2, 3}).stands_out;
 }
 
 // An affine matrix for row vectors: the translation stands in the last row. An affine one has (0, 0, 0, 1) there.
@@ -196,8 +196,8 @@ inline bool is_opengl_default(const glm::dmat4& m) noexcept {
 // determinant in a left-handed one, or have one in a right-handed one. Parallel light does not say which way is forwards.
 inline bool is_mirrored(const glm::dmat4& texgen, const glm::dmat4& world_from_space,
                         Conventions conventions) noexcept {
-    const Minor picture = minor(texgen, {0, 1, 3}, axes);
-    const Minor pose = minor(world_from_space, axes, axes);
+    const Minor picture = minor_of(texgen, {0, 1, 3}, axes);
+    const Minor pose = minor_of(world_from_space, axes, axes);
     if (!picture.stands_out || !pose.stands_out) return false;
     const bool is_left =
         ((picture.value > 0.0) == (pose.value > 0.0)) == (conventions.origin == TextureOrigin::bottom_left);

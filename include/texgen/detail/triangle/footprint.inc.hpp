@@ -36,7 +36,7 @@ Footprint footprint_of(const glm::dvec2& dx, const glm::dvec2& dy, const Determi
     const double largest = 0.5 * (a + c) + root;  // the larger eigenvalue of J J^T, and det^2 over it the smaller
     const double det = std::fabs(determinant(unit) * (texels.s * scale) * (texels.t * scale));
     const double length = std::sqrt(largest);
-    glm::dvec2 major(1.0, 0.0);
+    glm::dvec2 major{1.0, 0.0};
     if (root > 0.0) {
         major = half < 0.0 ? glm::dvec2(b, root - half) : glm::dvec2(half + root, b);
         major *= 1.0 / std::sqrt(major.x * major.x + major.y * major.y);
