@@ -252,7 +252,8 @@ using Setup = ProjectionSetup<Space>;
 // too few for a range, and for an angle unless the picture stands on its head in the world for the conventions given.
 // What it cannot see: mistakes that are other set-ups, until it is told what was meant. The lens from 0.1 to 100 for [0, 1],
 // under the bias of [-1, 1], is the one from 10/199.9 to 100 for [-1, 1]: any row z that is not reversed is that of some
-// lens in both ranges. NDC without a bias are a lens beside its axis, and a pose is the view from another place.
+// lens in both ranges. NDC without a bias are a lens beside its axis, of 90 degrees one of round numbers; a pose is the view
+// from another place; and a lens along an axis of an object whose pose is not given may have been stretched with it.
 // Bad input: what is not finite is reported, and the rest is examined without it.
 // Source: Everitt, Projective Texture Mapping, (3) and (4), and what is made of them.
 template <class Space>

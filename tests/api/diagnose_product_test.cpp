@@ -450,6 +450,8 @@ TEST_CASE("of a matrix alone the numbers that people write name what is wrong wi
             m.depth = DepthMapping::unit;
             if (!leaves_a_trace(m, mistake, Told::nothing)) m.fovy = 30.0;
             if (mistake == Mistake::no_bias || mistake == Mistake::bias_without_w) m.fovy = random.integer(20, 120);
+            // Where r lacks no bias that is round, that is the quarter of a lens as well.
+            if (m.fovy == 90.0 && (m.is_zero_to_one() || mistake == Mistake::bias_without_w)) m.fovy = 91.0;
             // Where far is much farther, near is round in float with a bias of r and without one.
             if (!is_of_range(mistake)) m.z_far = std::min(m.z_far, 200.0 * m.z_near);
             const In in = random.coin() ? In::object : In::world;
@@ -494,6 +496,63 @@ TEST_CASE("a lens of the other range is a lens from another distance, and named 
         REQUIRE(diagnosis.size() == 1);
         CHECK(diagnosis[0].defect == Defect::depth_range_mismatch);
         CHECK(diagnosis_of(other, In::world, std::nullopt, Told::lens, false, texgen).empty());
+    }
+}
+
+TEST_CASE("the quarters of a lens of 90 degrees are not found fault with, whose sides are as long as near is far") {
+    Random random(641);
+    for (int i = 0; i < 4096; ++i) {
+        const auto bit = [&](int k) { return (i >> k) % 2 != 0; };
+        const texgen::Aim aim{{2.0, 5.0, 5.0}, {-2.0, -4.0, 0.0}, {0.0, 1.0, 0.0}};
+        Meant m;
+        m.kind = LensKind::frustum;
+        m.aim = aim;
+        m.conventions = any_conventions(random);
+        m.depth = bit(0) ? DepthMapping::unit : DepthMapping::ndc;
+        m.z_near = bit(1) ? 0.125 : 0.1 * random.integer(1, 30);
+        m.z_far = bit(2) ? 100.0 : 20.0;
+        const double height = m.z_near * (bit(3) ? 1.0 : 2.0), width = height * (bit(4) ? 1.0 : 1.5);
+        m.left = bit(5) ? 0.0 : -width, m.bottom = bit(6) ? 0.0 : -height;
+        m.right = m.left + width, m.top = m.bottom + height;
+        const texgen::WorldTexgen texgen = texture_from_world(*right_projector(m), m.region, m.depth);
+        const glm::dmat4 given = bit(7) ? texgen.matrix() : glm::dmat4(texgen.rounded());
+        for (const Told told : {Told::nothing, Told::projector}) {
+            const bool has_conventions = bit(8);
+            require_valid(m, given, diagnosis_of(m, In::world, right_projector(m), told, has_conventions, given));
+        }
+    }
+}
+
+TEST_CASE("the sides of an object that is stretched by an unknown pose are not taken for those of the lens") {
+    Random random(642);
+    for (int i = 0; i < 2000; ++i) {
+        Meant m = human(Mistake::none, random);
+        m.aspect = random.coin() ? 1.5 : 2.0;
+        m.depth = DepthMapping::unit;
+        const int axis = random.integer(0, 2);  // level, along an axis of the world
+        m.aim.target = m.aim.position;
+        m.aim.target[axis == 1 ? 0 : axis] += random.coin() ? 5.0 : -5.0;
+        m.pose[1] *= random.coin() ? 1.0 / (m.aspect * m.aspect) : m.aspect * m.aspect;
+        const std::optional<Projector> projector = right_projector(m);
+        const glm::dmat4 texgen = object_linear(*projector, texgen::ModelMatrix(m.pose), m.region, m.depth).matrix();
+        require_valid(
+            m, texgen,
+            diagnose(texgen::ObjectTexgen(texgen), {.projector = projector, .region = m.region, .depth = m.depth}));
+    }
+}
+
+TEST_CASE("factors that commute are not taken for a wrong order, where floats fit it no worse") {
+    Random random(643);
+    for (int i = 0; i < 20000; ++i) {
+        Meant m = human(Mistake::none, random);
+        m.depth = DepthMapping::unit;
+        m.aim.position = {0.0, 0.0, 0.0};
+        if (random.coin()) m.aim.target = {0.0, 0.0, m.is_left() ? 5.0 : -5.0};
+        m.pose = glm::dmat4(1.0);
+        for (int k = 0; k < 3; ++k) m.pose[k] *= 74.6;
+        const std::optional<Projector> projector = right_projector(m);
+        const glm::dmat4 texgen = made<float>(m, Mistake::none, random);
+        require_valid(m, texgen, diagnosis_of(m, In::object, projector, Told::projector, false, texgen));
     }
 }
 

@@ -197,6 +197,8 @@ inline std::optional<Composition> composition_of(const glm::dmat4& texgen, const
     if (multiple.within(closest) > 0.0) return Composition{};
     if (is_of_other_range(texgen, factors.scale_bias, right)) return Composition{.other_depth = true};
     const bool is_near = multiple.within(composed_in_float) > 0.0;
+    // Factors that commute give the same in another order, whose multiple fits as well but for what is rounded.
+    if (is_near && multiple.within({2.0 * closest.of_element, 2.0 * closest.of_magnitude}) > 0.0) return Composition{};
     if (!is_near && is_bias_without_w(texgen, factors)) return Composition{.scale_bias = ScaleBiasUse::without_w};
     return composition_of(as_in_scenes(texgen), as_in_scenes(factors), is_near ? 1 : 2, closest,
                           is_near ? std::optional(Composition{}) : std::nullopt);

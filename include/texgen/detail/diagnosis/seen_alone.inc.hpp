@@ -50,12 +50,17 @@ inline SeenScaleBias seen_scale_bias(const SetupMatrices& setup) noexcept {
     return {{std::fabs(s[0].x), std::fabs(s[1].y)}, {s[3].x, s[3].y}, up_along_t};
 }
 
-// Whether a lens whose axis goes to the picture's corner is the quarter of another: r has its bias if that makes near round.
-inline bool is_quarter_of_lens(const SeenLens& lens, const SetupMatrices& setup) noexcept {
+// Whether a lens whose axis goes to the picture's corner is the quarter of another, or the whole that has no bias, by r: which
+// makes near round. Empty where r has no bias, or is not known to have one.
+struct RoundNear {
+    bool of_quarter, of_whole;
+};
+inline std::optional<RoundNear> round_near(const SeenLens& lens, const SetupMatrices& setup) noexcept {
     constexpr double enough_bits = 8.0;
     const std::optional<Conventions> conventions = known_conventions(setup);
-    return conventions && conventions->depth == DepthRange::negative_one_to_one && setup.depth == DepthMapping::unit &&
-           roundness(lens.distance_of(0.0)) > enough_bits;
+    if (!conventions || conventions->depth == DepthRange::zero_to_one || setup.depth == DepthMapping::ndc)
+        return std::nullopt;
+    return RoundNear{roundness(lens.distance_of(0.0)) > enough_bits, roundness(lens.distance_of(-1.0)) > enough_bits};
 }
 
 // Says what the lens that is seen shows. What is known of the lens decides; where nothing is, only numbers that are round
@@ -71,27 +76,36 @@ inline void examine_seen_lens(const SeenLens& lens, const SetupMatrices& setup, 
         return std::fabs(focal_length * std::sin(half) - std::cos(half)) <=
                larger(4.0 * error, 0x1p-16) * std::cos(half);
     };
+    const std::optional<RoundNear> near_of = round_near(lens, setup);
+    // A tangent of 1 is that of a quarter, too, whose sides are as long as its near plane is far.
+    const auto shows_meant = [&](double focal_length) {
+        return is_meant(focal_length) &&
+               (facts.fovy || (near_of && near_of->of_whole) || std::fabs(focal_length - 1.0) > error);
+    };
+    // The size and the aspect of what is seen are the lens's only where they are not of an object that is stretched.
+    const bool shows_size = setup.is_placed() || setup.in_eye_space || !lens.may_be_stretched();
     const std::optional<DepthEnds> ends = depth_ends(setup.depth, known_conventions(setup));
     // With w biased as well, and halved, only its size is another.
     const bool halves_w = std::fabs(lens.per_distance() - 0.5) <= 4.0 * lens.rounding();
-    if (s.is_missed_by(lens) && (facts.fovy || halves_w || !is_quarter_of_lens(lens, setup))) {
-        if (is_meant(as_clip.y) && !halves_w) {
+    if (s.is_missed_by(lens) && (facts.fovy || halves_w || !(near_of && near_of->of_quarter))) {
+        if (shows_meant(as_clip.y) && !halves_w) {
             diagnosis.add(Defect::scale_bias_missing);
             return;
         }
-        if (is_meant(as_clip.y) || is_meant(as_clip.y / 0.5) || is_meant(in_ndc.y)) {
+        if (shows_meant(as_clip.y) || shows_meant(as_clip.y / 0.5) || shows_meant(in_ndc.y)) {
             diagnosis.add(Defect::bias_without_w);
             return;
         }
     } else if (facts.fovy) {
         // A view by half a turn would turn the picture as well as a tangent below 0.
-        if (!is_meant(in_ndc.y) && (mistakes_unit(in_ndc.y, *facts.fovy) || mistakes_unit(-in_ndc.y, *facts.fovy)))
+        if (shows_size && !is_meant(in_ndc.y) &&
+            (mistakes_unit(in_ndc.y, *facts.fovy) || mistakes_unit(-in_ndc.y, *facts.fovy)))
             diagnosis.add(Defect::angle_unit_mistaken);
     } else if (lens.is_centred_on(s.bias) && !is_meant(in_ndc.y) &&
                is_of_degrees_as_radians(lens, in_ndc.y, s.up_along_t)) {
         diagnosis.add(Defect::angle_unit_mistaken);
     }
-    if (facts.aspect && std::fabs(*facts.aspect - 1.0) > 0x1p-10 &&
+    if (shows_size && facts.aspect && std::fabs(*facts.aspect - 1.0) > 0x1p-10 &&
         std::fabs(in_ndc.y / in_ndc.x * *facts.aspect - 1.0) <= 0x1p-12)
         diagnosis.add(Defect::aspect_inverted);
     const bool knows_planes = facts.z_near || facts.z_far;

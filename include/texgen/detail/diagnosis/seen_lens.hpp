@@ -66,6 +66,16 @@ public:
                std::fabs(cosine) <= 4.0 * rounding_ * (2.0 + 1.0 / focal_length_.x + 1.0 / focal_length_.y);
     }
 
+    // Whether one of its directions is along an axis of the space: a scale along that axis would be a part of the lens.
+    bool may_be_stretched() const noexcept {
+        const auto is_along_axis = [&](const glm::dvec3& v) {
+            const double accepted = 8.0 * rounding_ * (1.0 + 1.0 / focal_length_.x + 1.0 / focal_length_.y);
+            const glm::dvec3 share = glm::abs(v) / glm::length(v);
+            return larger(smaller(share.x, share.y), smaller(larger(share.x, share.y), share.z)) <= accepted;
+        };
+        return is_along_axis(across(0)) || is_along_axis(across(1)) || is_along_axis(q_);
+    }
+
     // Whether the lens's axis goes to that s and t.
     bool is_centred_on(const glm::dvec2& st) const noexcept {
         const glm::dvec2 accepted = 4.0 * rounding_ * (glm::abs(st) + focal_length_ + 1.0);
