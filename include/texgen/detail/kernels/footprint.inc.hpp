@@ -112,7 +112,7 @@ TEXGEN_INLINE int filter_rows(const FootprintJob& job, int first) noexcept {
             const WideFloats s_dy = linear<InFloat>(index, job.texels[0].dy, -job.texels[0].twist);
             const WideFloats t_dy = linear<InFloat>(index, job.texels[1].dy, -job.texels[1].twist);
             const WideFloats square = larger_of(s_dy * s_dy + t_dy * t_dy, WideFloats{} + static_cast<float>(dx_dx));
-            too_small = maximum(too_small, (WideWords{} + smallest) - signed_bits(square));
+            too_small |= less(signed_bits(square), WideWords{} + smallest);
             if (!Shape || level != nullptr) {
                 const WideFloats q_q = q * q;
                 store_some(level + x, count, half_log2_of_quotient(square, q_q * q_q) + job.level_offset);
@@ -143,7 +143,7 @@ TEXGEN_INLINE int filter_rows(const FootprintJob& job, int first) noexcept {
                 }
             }
         }
-        if (largest_lane(too_small) > 0) return y;
+        if (any(too_small)) return y;
     }
     return job.height;
 }

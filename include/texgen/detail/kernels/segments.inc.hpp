@@ -2,9 +2,13 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// A number as an unevaluated sum of two doubles, exactly; high is the nearest double.
+// A sum of two doubles, the second the lesser, and its nearest double. What that leaves only ties ask for.
 struct ExactSum {
-    Doubles high, low;
+    Doubles first, second, high;
+
+    TEXGEN_INLINE ExactSum(const Doubles& a, const Doubles& b) noexcept : first(a), second(b), high(a + b) {}
+
+    TEXGEN_INLINE Doubles low() const noexcept { return second - (high - first); }
 };
 
 // A mixture in all lanes.
@@ -19,18 +23,12 @@ struct MixtureLanes {
     // sum is exact too, but where the ends are far apart.
     template <bool IsShort>
     TEXGEN_INLINE ExactSum exactly_at(const Doubles& alpha) const noexcept {
-        ExactSum sum;
         const Doubles part = alpha * step;
-        if (!IsShort && kind == Mixture::is_far) {
-            sum.high = two_sum(base, part, sum.low);
-        } else {
-            sum.high = part + base;
-            sum.low = part - (sum.high - base);
-            if (IsShort || kind == Mixture::is_short) return sum;
-            if (kind == Mixture::is_not_finite) return {(1.0 - alpha) * base + part, Doubles{}};
-        }
-        sum.high = quick_two_sum(sum.high, sum.low + alpha * rest, sum.low);
-        return sum;
+        if (IsShort || kind == Mixture::is_short) return {base, part};
+        if (kind == Mixture::is_not_finite) return {(1.0 - alpha) * base, part};
+        Doubles low;
+        const Doubles sum = kind == Mixture::is_far ? two_sum(base, part, low) : quick_two_sum(base, part, low);
+        return {sum, low + alpha * rest};
     }
 
     // What that is off by at most.
@@ -54,16 +52,16 @@ TEXGEN_INLINE bool has_small_alpha(const SegmentJob& job, std::size_t begin, std
     return any(are);
 }
 
-// s - middle q but for middle q.low, where both products are about the same.
+// s - middle q but for middle q.low(), where both products are about the same.
 TEXGEN_INLINE Doubles small_difference(const ExactSum& s, const ExactSum& q, const Doubles& middle) noexcept {
     const Doubles q_part = leading_bits<27>(q.high);
-    return ((s.high - middle * q_part) - middle * (q.high - q_part)) + s.low;
+    return ((s.high - middle * q_part) - middle * (q.high - q_part)) + s.low();
 }
 
-// The float next to the middle of two in the direction of a remainder, the even one where that is 0.
-TEXGEN_INLINE Floats rounded_from(const Doubles& middle, const Doubles& remainder) noexcept {
+// The float next to the middle of two in the direction of a remainder, the even one where that is 0; 0 behind.
+TEXGEN_INLINE Floats rounded_from(const Doubles& middle, const Doubles& remainder, const LongWords& in_front) noexcept {
     const Doubles away = with_sign_of(magnitude(middle) * 0x1p-51, remainder);
-    return to_floats(middle + where(are_nonzero(remainder), away));
+    return to_floats(where(in_front, middle + where(are_nonzero(remainder), away)));
 }
 
 // The middle of the two floats next to a quotient that may be subnormal, or the only one.
@@ -89,78 +87,81 @@ Undecided fill_segment_closely(const SegmentJob& job, std::size_t first) noexcep
     const MixtureLanes q_mixture(job.q);
     const MixtureLanes mixture[2] = {MixtureLanes(job.numerator[0]), MixtureLanes(job.numerator[Numerators - 1])};
     const bool is_constant = job.q.kind == Mixture::is_short && job.q.step == 0.0;
+    const auto inexact_alpha = widened(job.inexact_alpha);
     const bool are_finite = mixture[0].kind != Mixture::is_not_finite && mixture[1].kind != Mixture::is_not_finite;
-    ExactSum q{q_mixture.base, Doubles{}};
+    ExactSum q(q_mixture.base, Doubles{});
     Doubles reciprocal = 1.0 / q.high;
-    std::size_t begin = first, end = first;
-    bool has_inexact = false, has_subnormal = false, is_plain = false;
-    std::uint64_t doubtful = 0;
-    for (std::size_t i = first; i < count; i += width) {
-        if (i % exact_block == 0) {
-            if (doubtful != 0) break;
-            begin = i;
-        }
-        if (i == end) {
-            end = end_of_block(count, i, float_block);
-            has_inexact = !AreShort && has_small_alpha(job, i, end, job.inexact_alpha);
-            has_subnormal = has_small_alpha(job, i, end, job.small_alpha);
-            is_plain = !has_inexact && !has_subnormal && are_finite;
-        }
-        const Doubles alpha = to_doubles(load<Floats>(from + i));
-        if (is_constant) {
-            q.high = q_mixture.base + alpha * 0.0;  // none where alpha is no number
-        } else {
-            q = q_mixture.exactly_at<AreShort>(alpha);
-            reciprocal = 1.0 / q.high;
-        }
-        const LongWords in_front = greater(q.high, 0.0);
-        ExactSum s[2];
-        Doubles quotient[2];
-        Floats value[2];
-        TEXGEN_UNROLL
-        for (std::size_t k = 0; k < Numerators; ++k) {
-            s[k] = mixture[k].template exactly_at<AreShort>(alpha);
-            quotient[k] = where(in_front, s[k].high * reciprocal);
-        }
-        const WideWords distance = distances_from_middles(quotient[0], quotient[Numerators - 1], 7);
-        const bool are_near = any(equal(distance, 0));
-        const auto small = [&](std::size_t k) {
-            return at_most(magnitude(quotient[k]), Doubles{} + 0x1p-125) & are_nonzero(quotient[k]);
-        };
-        if (are_near && is_plain && (is_constant || !any_nonzero_near(distance, q.low))) {
-            // The sign of s - middle q decides everywhere, and is exact near the middle, as q.low is 0 and the sums are exact.
-            // What is 0 becomes so little that its float is 0, and no subnormal double, which takes long.
-            TEXGEN_UNROLL
-            for (std::size_t k = 0; k < Numerators; ++k) {
-                const Doubles middle = middle_near(quotient[k] + 0x1p-900);
-                value[k] = rounded_from(middle, small_difference(s[k], q, middle));
+    for (std::size_t begin = first; begin < count;) {
+        const std::size_t end = end_of_block(count, begin, exact_block);
+        const bool has_inexact = !AreShort && has_small_alpha(job, begin, end, job.inexact_alpha);
+        const bool has_subnormal = has_small_alpha(job, begin, end, job.small_alpha);
+        std::uint64_t doubtful = 0;
+        for (std::size_t i = begin; i < end; i += width) {
+            const Doubles alpha = to_doubles(load<Floats>(from + i));
+            if (is_constant) {
+                q.high = q_mixture.base + alpha * 0.0;  // no number where alpha is none
+            } else {
+                q = q_mixture.exactly_at<AreShort>(alpha);
+                reciprocal = 1.0 / q.high;
             }
-        } else if (!are_near && !(has_subnormal && any(small(0) | small(Numerators - 1)))) {
+            const LongWords in_front = greater(q.high, 0.0);
+            const ExactSum s[2] = {mixture[0].template exactly_at<AreShort>(alpha),
+                                   mixture[Numerators - 1].template exactly_at<AreShort>(alpha)};
+            Doubles quotient[2];
+            Floats value[2];
             TEXGEN_UNROLL
-            for (std::size_t k = 0; k < Numerators; ++k) value[k] = to_floats(quotient[k]);
-        } else {
-            LongWords known = ~LongWords{};
-            const Doubles q_lost = has_inexact ? q_mixture.lost_at(alpha) : Doubles{};
-            TEXGEN_UNROLL
-            for (std::size_t k = 0; k < Numerators; ++k) {
-                const LongWords is_small = has_subnormal ? small(k) : LongWords{};
-                const LongWords is_near = are_near_middles(quotient[k], 7) | is_small;
-                const Doubles s_lost = has_inexact ? mixture[k].lost_at(alpha) : Doubles{};
-                const Doubles middle = select(is_small, middle_of_floats(quotient[k]),
-                                              select(is_near, middle_near(quotient[k]), quotient[k]));
-                const Doubles last_product = middle * q.low;
-                const Doubles remainder = small_difference(s[k], q, middle) - last_product;
-                const Doubles lost = s_lost + magnitude(middle) * q_lost + magnitude(last_product) * 0x1p-51;
-                known &= ~is_near | at_most(lost * 2.0, magnitude(remainder));
-                value[k] = rounded_from(middle, where(is_near, remainder));
+            for (std::size_t k = 0; k < Numerators; ++k) quotient[k] = s[k].high * reciprocal + 0x1p-900;
+            const WideWords distance = distances_from_middles(quotient[0], quotient[Numerators - 1], 7);
+            const bool are_near = any_zero(distance);
+            const auto small = [&](std::size_t k) {
+                const Doubles size = magnitude(quotient[k]);
+                return at_most(size, Doubles{} + 0x1p-125) & greater(size, 0x1p-800);
+            };
+            const bool are_small = has_subnormal && any(small(0) | small(Numerators - 1));
+            const auto are_exact = [&] {
+                if (!has_inexact) return is_constant || !any_nonzero_near(distance, q.low());
+                const LongWords is_inexact = at_most(alpha, Doubles{} + inexact_alpha);
+                return !any_nonzero_near(distance, select(is_inexact, Doubles{} + 1.0, q.low()));
+            };
+            if (!are_near && !are_small) {
+                TEXGEN_UNROLL
+                for (std::size_t k = 0; k < Numerators; ++k) value[k] = to_floats(where(in_front, quotient[k]));
+            } else if (!are_small && are_finite && are_exact()) {
+                // The sign of s - middle q decides everywhere, and is exact near the middle, as q.low() is 0 and the sums are exact.
+                TEXGEN_UNROLL
+                for (std::size_t k = 0; k < Numerators; ++k) {
+                    const Doubles middle = middle_near(quotient[k]);
+                    value[k] = rounded_from(middle, small_difference(s[k], q, middle), in_front);
+                }
+            } else {
+                LongWords in_doubt{};
+                const Doubles q_lost = has_inexact ? q_mixture.lost_at(alpha) : Doubles{};
+                TEXGEN_UNROLL
+                for (std::size_t k = 0; k < Numerators; ++k) {
+                    const LongWords is_small = has_subnormal ? small(k) : LongWords{};
+                    const LongWords is_near = are_near_middles(quotient[k], 7) | is_small;
+                    const Doubles s_lost = has_inexact ? mixture[k].lost_at(alpha) : Doubles{};
+                    const Doubles middle = select(is_small, middle_of_floats(quotient[k]),
+                                                  select(is_near, middle_near(quotient[k]), quotient[k]));
+                    const Doubles last_product = middle * q.low();
+                    const Doubles remainder = small_difference(s[k], q, middle) - last_product;
+                    const Doubles lost = s_lost + magnitude(middle) * q_lost + magnitude(last_product) * 0x1p-51;
+                    in_doubt |= is_near & ~at_most(lost * 2.0, magnitude(remainder));
+                    value[k] = rounded_from(middle, where(is_near, remainder), in_front);
+                }
+                doubtful |= lane_bits(in_front & in_doubt) << (i - begin);
             }
-            doubtful |= lane_bits(~known) << (i - begin);
+            if (lit != nullptr) {
+                const Floats ones = to_floats(where(in_front, Doubles{} + 1.0));
+                store(lit + i, select(in_region(job, value), ones, Floats{}));
+            }
+            TEXGEN_UNROLL
+            for (std::size_t k = 0; k < Numerators; ++k) store(out[k] + i, value[k]);
         }
-        if (lit != nullptr) store(lit + i, lit_of(job, value, narrow(in_front)));
-        TEXGEN_UNROLL
-        for (std::size_t k = 0; k < Numerators; ++k) store(out[k] + i, value[k]);
+        if (doubtful != 0) return {begin, doubtful};
+        begin = end;
     }
-    return doubtful != 0 ? Undecided{begin, doubtful} : Undecided{count, 0};
+    return {count, 0};
 }
 
 template <class CompiledWhereCalled = void>
@@ -232,7 +233,7 @@ std::size_t fill_segment_in_double_of(const SegmentJob& job, std::size_t first, 
             TEXGEN_UNROLL
             for (std::size_t k = 0; k < Numerators; ++k) store(out[k] + i, value[k]);
         }
-        if ((!are_accepted && any(equal(distance, 0))) || any(~at_most(sum - sum, Doubles{}))) return begin;
+        if ((!are_accepted && any_zero(distance)) || any(~at_most(sum - sum, Doubles{}))) return begin;
         begin = end;
     }
     return count;

@@ -136,7 +136,7 @@ TEXGEN_APART TileJob::Unit divide_in_pairs(const TileJob& job, const TileJob::Un
                 least = minimum(least, minimum(distances_from_middles(value[0], value[1], ulps),
                                                distances_from_middles(next_value[0], next_value[1], ulps)));
             }
-            if (any(equal(least, 0))) break;
+            if (any_zero(least)) break;
             certain = end;
         }
         light(job, row, begin, certain);

@@ -135,6 +135,13 @@ inline bool all_less(const Double2& a, const Double2& b) noexcept { return a[0] 
 #define TEXGEN_EIGHT_DOUBLES(values) __builtin_ia32_cvtps2pd512_mask(values, Doubles{}, static_cast<char>(-1), 4)
 #endif
 
+// Of 512 bits GCC 12 makes two instructions.
+#ifdef __clang__
+#define TEXGEN_MASKED_OR(a, bits, b) ((a) & (bits)) | (b)
+#else
+#define TEXGEN_MASKED_OR(a, bits, b) __builtin_ia32_pternlogq512_mask(a, bits, b, 0xea, 0xff)
+#endif
+
 namespace TEXGEN_DETAIL {
 
 // Two doubles at a time, for s and t.

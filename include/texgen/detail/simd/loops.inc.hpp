@@ -76,11 +76,6 @@ TEXGEN_INLINE Vector indices() noexcept {
     return Vector::of([](int i) { return static_cast<typename Vector::Element>(i); });
 }
 
-template <class Vector, class Lane>
-TEXGEN_INLINE Vector lanes_of(const Lane& lane) noexcept {
-    return Vector::of(lane);
-}
-
 TEXGEN_INLINE Doubles to_doubles(const Words& values) noexcept {
     return Doubles::of([&](int i) { return static_cast<double>(values.lane[i]); });
 }
@@ -216,13 +211,8 @@ template <class Vector>
 TEXGEN_INLINE Vector maximum(const Vector& a, const Vector& b) noexcept {
     return Vector::of([&](int i) { return a.lane[i] > b.lane[i] ? a.lane[i] : b.lane[i]; });
 }
-TEXGEN_INLINE int largest_lane(const WideWords& a) noexcept {
-    int largest = a.lane[0];
-    for (int i = 1; i < wide_lanes; ++i) largest = largest < a.lane[i] ? a.lane[i] : largest;
-    return largest;
-}
-
-TEXGEN_INLINE WideWords less(const WideFloats& a, const WideFloats& b) noexcept {
+template <class Vector>
+TEXGEN_INLINE WideWords less(const Vector& a, const Vector& b) noexcept {
     return WideWords::of([&](int i) { return a.lane[i] < b.lane[i] ? -1 : 0; });
 }
 TEXGEN_INLINE Doubles magnitude(const Doubles& a) noexcept {
@@ -297,6 +287,7 @@ TEXGEN_INLINE bool any(const Words& mask) noexcept {
     for (int i = 0; i < lanes; ++i) all |= mask.lane[i];
     return all != 0;
 }
+TEXGEN_INLINE bool any_zero(const Words& distance) noexcept { return any(equal(distance, 0)); }
 TEXGEN_INLINE bool any_nonzero_near(const Words& distance, const Doubles& a) noexcept {
     return any(equal(distance, 0) & are_nonzero(a));
 }

@@ -20,14 +20,6 @@ TEXGEN_INLINE Vector indices() noexcept {
     return result;
 }
 
-template <class Vector, class Lane>
-TEXGEN_INLINE Vector lanes_of(const Lane& lane) noexcept {
-    Vector result{};
-    TEXGEN_UNROLL
-    for (int i = 0; i < lanes; ++i) result[i] = lane(i);
-    return result;
-}
-
 TEXGEN_INLINE Doubles to_doubles(const Words& values) noexcept { return __builtin_convertvector(values, Doubles); }
 TEXGEN_INLINE Floats to_floats(const Doubles& values) noexcept { return __builtin_convertvector(values, Floats); }
 TEXGEN_INLINE Words bits(const Floats& values) noexcept { return __builtin_bit_cast(Words, values); }
@@ -81,6 +73,16 @@ TEXGEN_INLINE Doubles select(const LongWords& mask, const Doubles& a, const Doub
 using Residues [[gnu::vector_size(TEXGEN_LANE_BYTES)]] = std::uint64_t;
 using WideResidues [[gnu::vector_size(TEXGEN_LANE_BYTES)]] = std::uint32_t;
 
+// (a & bits) | b.
+TEXGEN_INLINE Doubles masked_or(const Doubles& a, long long bits, const Doubles& b) noexcept {
+    const auto words = __builtin_bit_cast(LongWords, a), others = __builtin_bit_cast(LongWords, b);
+#if TEXGEN_LANE_BYTES == 64
+    return __builtin_bit_cast(Doubles, TEXGEN_MASKED_OR(words, LongWords{} + bits, others));
+#else
+    return __builtin_bit_cast(Doubles, (words & bits) | others);
+#endif
+}
+
 // Where a number lies within so many of its ulps, 1 less than a power of two, of the middle of two normal floats (or one
 // more beyond it), and that middle.
 TEXGEN_INLINE LongWords are_near_middles(const Doubles& a, std::int64_t ulps) noexcept {
@@ -103,7 +105,7 @@ TEXGEN_INLINE WideWords distances_from_middles(const Doubles& a, const Doubles& 
                                              static_cast<std::uint32_t>(0x1ffffffe - 2 * ulps));
 }
 TEXGEN_INLINE Doubles middle_near(const Doubles& a) noexcept {
-    return __builtin_bit_cast(Doubles, (__builtin_bit_cast(LongWords, a) & ~0x1fffffffLL) | 0x10000000);
+    return masked_or(a, ~0x1fffffffLL, __builtin_bit_cast(Doubles, LongWords{} + 0x10000000));
 }
 
 // A number that is an integer of less than 2^63, and what is asked of residues.
@@ -129,14 +131,12 @@ TEXGEN_INLINE Words narrow(const LongWords& mask) noexcept {
 }
 TEXGEN_INLINE int lane(const Words& a, int i) noexcept { return a[i]; }
 TEXGEN_INLINE Words equal(const Words& a, int b) noexcept { return a == b; }
-TEXGEN_INLINE WideWords equal(const WideWords& a, int b) noexcept { return a == b; }
 TEXGEN_INLINE Floats select(const Words& mask, const Floats& a, const Floats& b) noexcept {
     return __builtin_bit_cast(Floats, (mask & bits(a)) | (~mask & bits(b)));
 }
 TEXGEN_INLINE Doubles with_sign_of(const Doubles& size, const Doubles& sign) noexcept {
     constexpr auto bit = static_cast<long long>(0x8000000000000000);
-    return __builtin_bit_cast(Doubles,
-                              __builtin_bit_cast(LongWords, size) | (__builtin_bit_cast(LongWords, sign) & bit));
+    return masked_or(sign, bit, size);
 }
 // The power of two at or below the magnitude of a normal number.
 TEXGEN_INLINE Doubles power_of_two_below(const Doubles& a) noexcept {
@@ -180,19 +180,6 @@ TEXGEN_INLINE Words half_of(const WideWords& words, std::integer_sequence<int, L
 TEXGEN_INLINE Doubles folded(const WideWords& words) noexcept {
     using Half = std::make_integer_sequence<int, lanes>;
     return to_doubles(__builtin_bit_cast(Floats, maximum(half_of<0>(words, Half()), half_of<lanes>(words, Half()))));
-}
-
-template <int Distance, int... Lane>
-TEXGEN_INLINE WideWords rotated(const WideWords& a, std::integer_sequence<int, Lane...>) noexcept {
-    return __builtin_shufflevector(a, a, ((Lane + Distance) % wide_lanes)...);
-}
-template <int Distance = wide_lanes / 2>
-TEXGEN_INLINE int largest_lane(const WideWords& a) noexcept {
-    if constexpr (Distance == 0)
-        return a[0];
-    else
-        return largest_lane<Distance / 2>(
-            maximum(a, rotated<Distance>(a, std::make_integer_sequence<int, wide_lanes>())));
 }
 
 template <class Vector>
@@ -348,18 +335,14 @@ TEXGEN_INLINE void transpose(Vector (&rows)[lanes]) noexcept {
 }
 
 TEXGEN_INLINE bool any(const Words& mask) noexcept {
-#if TEXGEN_LANE_BYTES == 64
-    using Quadwords [[gnu::vector_size(32)]] = long long;
+    using Quadwords [[gnu::vector_size(TEXGEN_LANE_BYTES / 2)]] = long long;
     const auto quadwords = __builtin_bit_cast(Quadwords, mask);
+#if TEXGEN_LANE_BYTES == 64
     return !__builtin_ia32_ptestz256(quadwords, quadwords);
 #elif TEXGEN_LANE_BYTES == 32
-    using Quadwords [[gnu::vector_size(16)]] = long long;
-    const auto quadwords = __builtin_bit_cast(Quadwords, mask);
     return !__builtin_ia32_ptestz128(quadwords, quadwords);
 #else
-    int all = mask[0];
-    for (int i = 1; i < lanes; ++i) all |= mask[i];
-    return all != 0;
+    return quadwords[0] != 0;
 #endif
 }
 // Bit i for lane i.
@@ -389,11 +372,24 @@ TEXGEN_INLINE bool any(const WideWords& mask) noexcept {
     return any(half_of<0>(mask, Half()) | half_of<lanes>(mask, Half()));
 #endif
 }
+// Whether a distance is 0. GCC 12 makes a vector of a mask that it asks.
+TEXGEN_INLINE bool any_zero(const WideWords& distance) noexcept {
+#if TEXGEN_LANE_BYTES == 64
+    return __builtin_ia32_cmpd512_mask(distance, WideWords{}, 0, 0xffff) != 0;
+#else
+    return any(distance == 0);
+#endif
+}
 // Whether a number that is not subnormal is not 0 where either distance is.
 TEXGEN_INLINE bool any_nonzero_near(const WideWords& distance, const Doubles& a) noexcept {
-    const WideResidues high = words_of<true>(a, a, std::make_integer_sequence<int, wide_lanes>());
-    const WideWords both = (distance == 0) & ((high & 0x7fffffffu) != 0);
+    const WideResidues high = words_of<true>(a, a, std::make_integer_sequence<int, wide_lanes>()) & 0x7fffffffu;
+#if TEXGEN_LANE_BYTES == 64
+    const auto is_near = __builtin_ia32_cmpd512_mask(distance, WideWords{}, 0, 0xffff);
+    return __builtin_ia32_cmpd512_mask(__builtin_bit_cast(WideWords, high), WideWords{}, 4, is_near) != 0;
+#else
+    const WideWords both = (distance == 0) & (high != 0);
     return any(both);
+#endif
 }
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA
