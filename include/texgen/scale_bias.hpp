@@ -5,6 +5,8 @@
 
 #include "detail/language.hpp"
 
+#include <array>
+
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
 

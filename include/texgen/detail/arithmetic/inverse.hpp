@@ -4,7 +4,6 @@
 // does: if norm(I - A X) < 1 for any X at all, A is regular, and A^-1 is as near to X as the residual is small.
 
 #include <cmath>
-#include <cstddef>
 #include <limits>
 #include <utility>
 

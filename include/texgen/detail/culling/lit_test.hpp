@@ -48,7 +48,9 @@ public:
         : min_{float_at_least((region.min)().x), float_at_least((region.min)().y)},
           max_{-float_at_least(-(region.max)().x), -float_at_least(-(region.max)().y)},
           has_depth_(region.depth().has_value()) {
-        if (has_depth_) take(*region.depth());
+        if (!has_depth_) return;
+        r_min_ = float_at_least(region.depth()->x);
+        r_max_ = -float_at_least(-region.depth()->y);
     }
 
     // Of s and t. Where there is a depth, r has to be in [r_min, r_max] as well.
@@ -72,11 +74,6 @@ public:
     }
 
 private:
-    void take(const glm::dvec2& depth) noexcept {
-        r_min_ = float_at_least(depth.x);
-        r_max_ = -float_at_least(-depth.y);
-    }
-
     float min_[2];
     float max_[2];
     bool has_depth_;

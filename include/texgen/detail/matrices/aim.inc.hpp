@@ -74,17 +74,10 @@ inline std::optional<ProjectorView> look_at(const Aim& aim, Handedness handednes
     const glm::dvec3 side = sign * detail::normalized(side_direction);
     const glm::dvec3 back = -sign * detail::normalized(forward);
     const glm::dvec3 upright = detail::normalized(detail::cross(back, side));
-    glm::dmat4 matrix(1.0);
-    for (glm::length_t i = 0; i < 3; ++i) {
-        matrix[i][0] = side[i];
-        matrix[i][1] = upright[i];
-        matrix[i][2] = back[i];
-    }
-    matrix[3][0] = -detail::rotated(side, aim.position);
-    matrix[3][1] = -detail::rotated(upright, aim.position);
-    matrix[3][2] = -detail::rotated(back, aim.position);
-    if (!detail::is_finite(matrix)) return std::nullopt;
-    return ProjectorView(matrix);
+    glm::dmat4 matrix(glm::transpose(glm::dmat3(side, upright, back)));
+    matrix[3] = {-detail::rotated(side, aim.position), -detail::rotated(upright, aim.position),
+                 -detail::rotated(back, aim.position), 1.0};
+    return detail::is_finite(matrix) ? std::optional(ProjectorView(matrix)) : std::nullopt;
 }
 
 inline std::optional<ProjectorView> view_from_opencv(const glm::dmat3& rotation, const glm::dvec3& translation,

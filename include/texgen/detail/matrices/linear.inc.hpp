@@ -103,8 +103,7 @@ std::optional<EyeTexgen> eye_planes_as_stored(const Transform<Texture, Space>& p
     const detail::CertifiedInverse inverse(modelview.matrix());
     if (!inverse.regular()) return std::nullopt;
     const glm::dmat4 stored = detail::solve_rows(inverse, planes.matrix());
-    if (!detail::is_finite(stored)) return std::nullopt;
-    return EyeTexgen(stored);
+    return detail::is_finite(stored) ? std::optional(EyeTexgen(stored)) : std::nullopt;
 }
 
 template <class Space>

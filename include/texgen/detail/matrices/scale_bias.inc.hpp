@@ -11,19 +11,15 @@ struct RemapEnds {
     constexpr double bias() const noexcept { return 0.5 * at_plus_w + 0.5 * at_minus_w; }
 };
 
-struct TextureRemap {
-    RemapEnds s, t, r;
-};
-
-constexpr TextureRemap texture_remap(Conventions conventions, const TextureRegion& region,
-                                     DepthMapping depth) noexcept {
+// Of s, t and r.
+constexpr std::array<RemapEnds, 3> texture_remap(Conventions conventions, const TextureRegion& region,
+                                                 DepthMapping depth) noexcept {
     // t grows with the clip y where the corner that (s, t) = (0, 0) addresses is where clip y is -w.
     const bool t_follows_y = (conventions.ndc_y == NdcY::up) == (conventions.origin == TextureOrigin::bottom_left);
     const RemapEnds up{(region.min)().y, (region.max)().y};
     const RemapEnds down{(region.max)().y, (region.min)().y};
     const bool halve_depth = depth == DepthMapping::unit && conventions.depth == DepthRange::negative_one_to_one;
-    return {{(region.min)().x, (region.max)().x},
-            t_follows_y ? up : down,
+    return {RemapEnds{(region.min)().x, (region.max)().x}, t_follows_y ? up : down,
             halve_depth ? RemapEnds{0.0, 1.0} : RemapEnds{-1.0, 1.0}};
 }
 
@@ -32,26 +28,24 @@ constexpr TextureRemap texture_remap(Conventions conventions, const TextureRegio
 namespace TEXGEN_NAMESPACE {
 
 inline ScaleBias scale_bias(Conventions conventions, TextureRegion region, DepthMapping depth) noexcept {
-    const detail::TextureRemap remap = detail::texture_remap(conventions, region, depth);
+    const auto [s, t, r] = detail::texture_remap(conventions, region, depth);
     glm::dmat4 matrix(1.0);
-    matrix[0][0] = remap.s.scale();
-    matrix[3][0] = remap.s.bias();
-    matrix[1][1] = remap.t.scale();
-    matrix[3][1] = remap.t.bias();
-    matrix[2][2] = remap.r.scale();
-    matrix[3][2] = remap.r.bias();
+    matrix[0].x = s.scale();
+    matrix[1].y = t.scale();
+    matrix[2].z = r.scale();
+    matrix[3] = {s.bias(), t.bias(), r.bias(), 1.0};
     return ScaleBias(matrix);
 }
 
 inline glm::vec4 to_texture(glm::vec4 projector_clip, Conventions conventions, TextureRegion region,
                             DepthMapping depth) noexcept {
-    const detail::TextureRemap remap = detail::texture_remap(conventions, region, depth);
+    const auto [s, t, r] = detail::texture_remap(conventions, region, depth);
     const glm::dvec4 clip = detail::widened(projector_clip);
     const auto component = [w = clip.w](double coordinate, const detail::RemapEnds& ends) {
         return static_cast<float>(ends.at_minus_w * (0.5 * (w - coordinate)) +
                                   ends.at_plus_w * (0.5 * (w + coordinate)));
     };
-    return {component(clip.x, remap.s), component(clip.y, remap.t), component(clip.z, remap.r), projector_clip.w};
+    return {component(clip.x, s), component(clip.y, t), component(clip.z, r), projector_clip.w};
 }
 
 }  // namespace TEXGEN_NAMESPACE
