@@ -8,9 +8,13 @@
 #include <bits/stdc++.h>
 #define min(a, b) (((a) < (b)) ? (a) : (b))
 #define max(a, b) (((a) > (b)) ? (a) : (b))
-#elif __has_include(<sys/sysmacros.h>)
-// major() and minor(), which are macros of <sys/types.h> on macOS and the BSDs.
-#include <sys/sysmacros.h>
+#else
+// What it makes macros of, and what <sys/types.h> does on macOS and the BSDs.
+#define near
+#define far
+#define small char
+#define major(device) device
+#define minor(device) device
 #endif
 
 #include <texgen/batch.hpp>

@@ -113,11 +113,11 @@ Undecided fill_segment_closely(const SegmentJob& job, std::size_t first) noexcep
             for (std::size_t k = 0; k < Numerators; ++k) quotient[k] = s[k].high * reciprocal + 0x1p-900;
             const WideWords distance = distances_from_middles(quotient[0], quotient[Numerators - 1], 7);
             const bool are_near = any_zero(distance);
-            const auto small = [&](std::size_t k) {
+            const auto may_be_subnormal = [&](std::size_t k) {
                 const Doubles size = magnitude(quotient[k]);
                 return at_most(size, Doubles{} + 0x1p-125) & greater(size, 0x1p-800);
             };
-            const bool are_small = has_subnormal && any(small(0) | small(Numerators - 1));
+            const bool are_small = has_subnormal && any(may_be_subnormal(0) | may_be_subnormal(Numerators - 1));
             const auto are_exact = [&] {
                 if (!has_inexact) return is_constant || !any_nonzero_near(distance, q.low());
                 const LongWords is_inexact = at_most(alpha, Doubles{} + inexact_alpha);
@@ -138,7 +138,7 @@ Undecided fill_segment_closely(const SegmentJob& job, std::size_t first) noexcep
                 const Doubles q_lost = has_inexact ? q_mixture.lost_at(alpha) : Doubles{};
                 TEXGEN_UNROLL
                 for (std::size_t k = 0; k < Numerators; ++k) {
-                    const LongWords is_small = has_subnormal ? small(k) : LongWords{};
+                    const LongWords is_small = has_subnormal ? may_be_subnormal(k) : LongWords{};
                     const LongWords is_near = are_near_middles(quotient[k], 7) | is_small;
                     const Doubles s_lost = has_inexact ? mixture[k].lost_at(alpha) : Doubles{};
                     const Doubles middle = select(is_small, middle_of_floats(quotient[k]),
