@@ -46,22 +46,17 @@ float nearest_to(double value, double error, const SignBeyond& sign_beyond) noex
     return sign < 0 ? low : sign > 0 ? high : static_cast<float>(middle);
 }
 
-// The sign of numerator - middle * denominator.
-template <std::size_t N, std::size_t D>
-int sign_of_remainder(const Expansion<N>& numerator, const Expansion<D>& denominator, double middle) noexcept {
-    Expansion<N + 2 * D> remainder;
-    for (std::size_t i = 0; i < numerator.count(); ++i) remainder.add(numerator.term(i));
-    remainder.add_scaled(denominator, -middle);
-    return remainder.sign();
-}
-
 // The float nearest to numerator / denominator. denominator > 0.
 template <std::size_t N, std::size_t D>
 float nearest_quotient(const Expansion<N>& numerator, const Expansion<D>& denominator) noexcept {
     if (numerator.sign() == 0) return 0.0f;
     const double quotient = numerator.estimate() / denominator.estimate();
-    return nearest_to(quotient, 0x1p-48 * std::fabs(quotient),
-                      [&](double middle) { return sign_of_remainder(numerator, denominator, middle); });
+    return nearest_to(quotient, 0x1p-48 * std::fabs(quotient), [&](double middle) {
+        Expansion<N + 2 * D> remainder;
+        for (std::size_t i = 0; i < numerator.count(); ++i) remainder.add(numerator.term(i));
+        remainder.add_scaled(denominator, -middle);
+        return remainder.sign();
+    });
 }
 
 // -1, 0 or 1: the sign of the number that `bounded` stands for, from exact() where the bound leaves it open.

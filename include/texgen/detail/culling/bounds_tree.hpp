@@ -162,14 +162,10 @@ private:
         while (steps > 0 && stage_ != Stage::sorted) {
             const std::size_t end = (std::min)(bounds_.size(), next_ + steps);
             steps -= end - next_;
-            if (stage_ == Stage::measure)
-                measure(end);
-            else if (stage_ == Stage::encode)
-                encode(end);
-            else if (stage_ == Stage::sort_by_byte)
-                sort_by_byte(end);
-            else
-                put_in_place(end);
+            if (stage_ == Stage::measure) measure(end);
+            if (stage_ == Stage::encode) encode(end);
+            if (stage_ == Stage::sort_by_byte) sort_by_byte(end);
+            if (stage_ == Stage::place) put_in_place(end);
             next_ = end;
             if (next_ == bounds_.size()) begin_next_stage();
         }

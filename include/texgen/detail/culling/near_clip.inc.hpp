@@ -3,8 +3,9 @@
 namespace TEXGEN_DETAIL {
 
 // The signed distance of a homogeneous point from a clipping plane, in no unit; inside is >= 0, and the sign is exact.
-class ClipDistance {
-public:
+struct ClipDistance {
+    double z, w, offset;
+
     // In front of the near plane z = -w, z = 0 or (reversed) z = w.
     static ClipDistance from_near(DepthRange range, bool reversed_depth) noexcept {
         if (reversed_depth) return {-1.0, 1.0, 0.0};
@@ -15,16 +16,11 @@ public:
     static ClipDistance from_eye() noexcept { return {0.0, 1.0, 0x1p-149}; }
 
     double operator()(const ClipVertex& vertex) const noexcept {
-        return z_ * widened(vertex.position.z) + w_ * widened(vertex.position.w) - offset_;
+        return z * widened(vertex.position.z) + w * widened(vertex.position.w) - offset;
     }
 
     // The z of a near plane where w is given: set, and not computed, it cannot be rounded to the other side.
-    float depth_on_plane(float w) const noexcept { return static_cast<float>(0.0 - z_ * w_) * w; }
-
-private:
-    ClipDistance(double z, double w, double offset) noexcept : z_(z), w_(w), offset_(offset) {}
-
-    double z_, w_, offset_;
+    float depth_on_plane(float given_w) const noexcept { return static_cast<float>(0.0 - z * w) * given_w; }
 };
 
 inline float between(double weight_a, float a, double weight_b, float b) noexcept {

@@ -155,23 +155,13 @@ inline glm::vec4 TexGenUnit::generate(const FixedFunctionVertex& vertex, const E
     for (glm::length_t i = 0; i < 4; ++i) {
         const CoordinateState& coordinate = states_[static_cast<std::size_t>(i)];
         if (!coordinate.enabled) continue;
-        switch (coordinate.mode) {
-            case TexGenMode::object_linear:
-                generated[i] = detail::cancelling_dot(coordinate.object_plane, vertex.position);
-                break;
-            case TexGenMode::eye_linear:
-                generated[i] = detail::dot(detail::widened(coordinate.eye_plane), eye);
-                break;
-            case TexGenMode::sphere_map:
-                generated[i] = 0.5 + 0.5 * sphere[i];
-                break;
-            case TexGenMode::reflection_map:
-                generated[i] = std::scalbn(scaled_reflection[i], 2 * exponent);
-                break;
-            case TexGenMode::normal_map:
-                generated[i] = normal[i];
-                break;
-        }
+        const TexGenMode mode = coordinate.mode;
+        generated[i] = mode == TexGenMode::object_linear
+                           ? detail::cancelling_dot(coordinate.object_plane, vertex.position)
+                       : mode == TexGenMode::eye_linear     ? detail::dot(detail::widened(coordinate.eye_plane), eye)
+                       : mode == TexGenMode::sphere_map     ? 0.5 + 0.5 * sphere[i]
+                       : mode == TexGenMode::reflection_map ? std::scalbn(scaled_reflection[i], 2 * exponent)
+                                                            : normal[i];
     }
     // The identity is left out, so that a NaN stays in its coordinate.
     if (texture_matrix_ == glm::mat4(1.0f)) return glm::vec4(generated);
