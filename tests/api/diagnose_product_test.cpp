@@ -25,6 +25,7 @@
 #include "texgen/diagnose.hpp"
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
+#include "texgen/surface.hpp"
 
 namespace {
 
@@ -708,6 +709,29 @@ TEST_CASE("cameras, narrowed lenses, cropped pictures, mirrors and flashlights a
         if (random.coin()) setup.conventions = m.conventions;
         require_valid(m, texgen, diagnose(texgen::ObjectTexgen(texgen), setup));
     }
+}
+
+TEST_CASE("the fragments of a camera's window are not found fault with, nor what fills a quadrilateral of it") {
+    Random random(644);
+    for (int i = 0; i < 2000; ++i) {
+        const Meant m = any_meant(Mistake::none, random), of_camera = any_meant(Mistake::none, random);
+        const std::optional<Projector> projector = right_projector(m), camera = right_projector(of_camera);
+        if (!projector || !camera) continue;
+        const auto texgen = window_linear(*projector, *camera, {0, 0, 640, 480}, m.region, m.depth);
+        if (!texgen) continue;
+        const bool has_projector = random.coin(), is_rounded = random.coin();
+        const texgen::WindowTexgen given = is_rounded ? texgen::WindowTexgen(texgen->rounded()) : *texgen;
+        texgen::ProjectionSetup<texgen::Window> setup{.region = m.region, .depth = m.depth};
+        if (has_projector) setup.projector = projector;
+        const Diagnosis diagnosis = diagnose(given, setup);
+        if (!is_rounded) require_valid(m, given.matrix(), diagnosis);
+        for (const texgen::Finding& finding : diagnosis)
+            REQUIRE_MESSAGE((finding.defect == Defect::precision_lost || finding.defect == Defect::rank_below_three),
+                            text(m, given.matrix(), diagnosis));
+    }
+    const auto keystone = texgen::keystone({glm::dvec2(0, 0), {640, 20}, {600, 440}, {30, 480}});
+    REQUIRE(keystone);
+    CHECK(diagnose(*keystone).empty());
 }
 
 TEST_CASE("a model that is scaled to nothing shows without any matrix") {

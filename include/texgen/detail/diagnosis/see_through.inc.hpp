@@ -9,7 +9,7 @@ struct SetupMatrices {
     const glm::dmat4* pose = nullptr;    // null: not known, or the points are in the world
     const glm::dmat4* texgen = nullptr;  // null: what the projector and the pose compose
     bool are_planes = false;             // texgen is what hardware holds, in float whatever its numbers
-    bool in_world_space = false, in_eye_space = false;
+    bool in_world_space = false, in_eye_space = false, in_window = false;
     Picture picture = {};
     DepthMapping depth = DepthMapping::unit;
     std::optional<Conventions> conventions = std::nullopt;

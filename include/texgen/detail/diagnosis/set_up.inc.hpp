@@ -88,7 +88,7 @@ inline Examined examine(const SetupMatrices& setup, Diagnosis& diagnosis) noexce
     }
     if (setup.pose != nullptr) {
         if (!is_usable(*setup.pose, diagnosis)) factors.reset();
-        if (is_affine_transposed(*setup.pose)) diagnosis.add(Defect::transposed);
+        if (!setup.in_window && is_affine_transposed(*setup.pose)) diagnosis.add(Defect::transposed);
         glm::dmat4 turned_and_scaled = *setup.pose;
         turned_and_scaled[3] = glm::dvec4(0.0);
         if (turned_and_scaled == glm::dmat4(0.0)) diagnosis.add(Defect::rank_below_three);
@@ -141,7 +141,7 @@ inline Examined examine(const SetupMatrices& setup, Diagnosis& diagnosis) noexce
     } else if (right) {
         if (!look_through(as_in_scenes(texgen), as_in_scenes(*factors), setup, diagnosis))
             diagnosis.add(Defect::not_of_this_set_up);
-    } else if (has_q) {
+    } else if (has_q && !setup.in_window) {  // a camera's inverse leaves no mark of a lens
         was_transposed = examine_alone(texgen, setup, diagnosis);
     }
     if (!has_q || (was_transposed && is_zero_row(glm::transpose(texgen), 3))) diagnosis.add(Defect::q_row_zero);
@@ -157,6 +157,7 @@ SetupMatrices matrices_of(const ProjectionSetup<Space>& setup, bool are_planes) 
             are_planes,
             std::is_same_v<Space, World>,
             std::is_same_v<Space, Eye>,
+            std::is_same_v<Space, Window>,
             {setup.region, setup.texels_per_unit},
             setup.depth,
             setup.conventions,
