@@ -19,6 +19,15 @@
 
 namespace TEXGEN_DETAIL {
 
+// Takes the multiples of the grain next to coefficients, if their errors leave no others.
+TEXGEN_RARE inline bool take_multiples(Ramp& ramp, double error, double grain) noexcept {
+    if (!(4.0 * error < grain)) return false;
+    const double rounder = 0x1.8p52 * grain;  // they are below 2^46 grains, as the error has 20 u of them
+    for (double* const coefficient : {&ramp.base, &ramp.dx, &ramp.dy})
+        *coefficient = (*coefficient + rounder) - rounder;
+    return true;
+}
+
 // base + i dx + j dy: these three terms. Within `error` of the exact value at every fragment of the tile that it was made for.
 struct CloseRamp {
     DoubleDouble term[3];
@@ -29,15 +38,6 @@ struct CloseRamp {
         for (std::size_t j = 1; j < 3; ++j)
             result.term[0] = sum(result.term[0], product(term[j], {j == 1 ? x : y, 0.0}));
         return result;
-    }
-
-    // Of double coefficients: takes the multiples of the grain next to them, if their errors leave no others.
-    bool take_multiples(double grain) noexcept {
-        if (!(4.0 * error < grain)) return false;
-        const double rounder = 0x1.8p52 * grain;  // they are below 2^46 grains, as the error has 20 u of them
-        for (DoubleDouble& coefficient : term) coefficient.high = (coefficient.high + rounder) - rounder;
-        error = 0.0;
-        return true;
     }
 
     // |base| + |i dx| + |j dy| where that is largest.
@@ -150,6 +150,16 @@ TEXGEN_RARE inline double common_unit(double a, double b, double c) noexcept {
 TEXGEN_RARE inline std::uint64_t residue_of(double number) noexcept {
     if (std::fabs(number) < 0x1p63) return static_cast<std::uint64_t>(static_cast<std::int64_t>(number));
     return 2 * static_cast<std::uint64_t>(static_cast<std::int64_t>(0.5 * std::fmod(number, 0x1p64)));
+}
+
+// Whether quotients of a tile well in front are decided by residues, of numerators as large as their errors let expect. Planes that
+// are multiples of their grains become exact: the error that is left is of what is computed of them, 2^-98 of the values.
+TEXGEN_RARE inline bool are_decided_by_residues(CloseFunctions& functions) noexcept {
+    for (CloseFunction* const f : {&functions.numerator[0], &functions.numerator[1], &functions.q})
+        if (take_multiples(f->high, f->error, f->grain)) f->error *= 0x1p-50;
+    const auto& [first, second] = functions.numerator;
+    return functions.q.error < 0x1p33 * functions.q.grain &&
+           (first.error < 0x1p58 * first.grain || second.error < 0x1p58 * second.grain);
 }
 
 // Whether a coefficient of a function is u times q, which is constant: exactly.

@@ -128,13 +128,13 @@ inline Corners corners_of(const CloseRamps& close) noexcept {
 
 // The planes of these corners, as they are: what is lost below the unit of q is far less than their errors.
 TEXGEN_RARE inline void take_planes(const Corners& at, CloseFunctions& functions) noexcept {
-    const auto take = [](CloseFunction& function, double base, double dx, double dy, double error) {
-        function.high = {base, dx, dy};
-        function.error = error;
-    };
     const auto& [base, dx, dy] = at.numerator_ramp;
-    for (std::size_t k = 0; k < 2; ++k) take(functions.numerator[k], base[k], dx[k], dy[k], at.numerator_error[k]);
-    take(functions.q, at.q_ramp.base, at.q_ramp.dx, at.q_ramp.dy, at.q_error);
+    for (std::size_t k = 0; k < 2; ++k) {
+        functions.numerator[k].high = {base[k], dx[k], dy[k]};
+        functions.numerator[k].error = at.numerator_error[k];
+    }
+    functions.q.high = at.q_ramp;
+    functions.q.error = at.q_error;
     functions.q_unit = 0x1.8p28 / reciprocal_power_of_two(larger(larger(-at.least_q, at.largest_q), at.q_error));
 }
 
@@ -142,17 +142,17 @@ TEXGEN_RARE inline void take_planes(const Corners& at, CloseFunctions& functions
 TEXGEN_APART inline CloseRamps close_ramps_of(const TrianglePlanes& planes, const Corners& at, glm::length_t first,
                                               glm::length_t second, const Tile& tile) noexcept {
     const PlaneGrains grains(planes);
-    const auto exact = [&](glm::length_t coordinate, double base, double dx, double dy, double error, CloseRamp& ramp) {
-        ramp = {{{base, 0.0}, {dx, 0.0}, {dy, 0.0}}, error};
-        return ramp.take_multiples(grains.with(grains.of_values(coordinate)));
+    const auto is_exact = [&](glm::length_t coordinate, Ramp plane, double error, CloseRamp& ramp) {
+        const bool is_known = take_multiples(plane, error, grains.with(grains.of_values(coordinate)));
+        ramp = {{{plane.base, 0.0}, {plane.dx, 0.0}, {plane.dy, 0.0}}, 0.0};
+        return is_known;
     };
     const auto& [base, dx, dy] = at.numerator_ramp;
-    const Double2& error = at.numerator_error;
     CloseRamps ramps{tile, {}};
     auto& [s, t, q] = ramps.function;
-    const bool are_exact = exact(first, base[0], dx[0], dy[0], error[0], s) &&
-                           exact(second, base[1], dx[1], dy[1], error[1], t) &&
-                           exact(3, at.q_ramp.base, at.q_ramp.dx, at.q_ramp.dy, at.q_error, q);
+    const bool are_exact = is_exact(first, {base[0], dx[0], dy[0]}, at.numerator_error[0], s) &&
+                           is_exact(second, {base[1], dx[1], dy[1]}, at.numerator_error[1], t) &&
+                           is_exact(3, at.q_ramp, at.q_error, q);
     return are_exact ? ramps : ClosePlanes(planes, tile).ramps(first, second);
 }
 

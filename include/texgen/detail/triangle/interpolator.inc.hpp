@@ -104,20 +104,17 @@ private:
         return result;
     }
 
-    // More of them, if there is more: residues, which cost less than two doubles; and two doubles, at once where the planes err by
-    // more than residues know.
+    TEXGEN_RARE void add_residues(const Tile& tile, DoubtfulFunctions& functions) noexcept {
+        if (!residues_) residues_.make(triangle_.planes, rect_);
+        for (std::size_t k = 0; k < 2; ++k) residues_->add_to(functions.numerator[k], coordinate_of(k), tile);
+        residues_->add_to(functions.q, 3, tile);
+        functions.have_residues = true;
+    }
+
+    // More of them, if there is more.
     TEXGEN_RARE bool sharpen(const Tile& tile, DoubtfulFunctions& functions) noexcept {
-        if (functions.have_residues && functions.are_close) return false;
-        if (!functions.have_residues) {
-            functions.have_residues = true;
-            if (!residues_) residues_.make(triangle_.planes, rect_);
-            for (std::size_t k = 0; k < 2; ++k) residues_->add_to(functions.numerator[k], coordinate_of(k), tile);
-            residues_->add_to(functions.q, 3, tile);
-            const auto& [first, second] = functions.numerator;
-            const bool may_decide = first.error < 0x1p58 * first.grain || second.error < 0x1p58 * second.grain;
-            if (functions.are_close || (may_decide && functions.q.error < 0x1p33 * functions.q.grain)) return true;
-        }
-        close_ramps(tile).split(functions);
+        if (functions.are_close && functions.have_residues) return false;
+        functions.are_close ? add_residues(tile, functions) : close_ramps(tile).split(functions);
         return functions.are_close = true;
     }
 
@@ -157,7 +154,9 @@ private:
     TEXGEN_RARE void fill_from_doubt(const Tile& tile, const Corners& at, TileJob& job, TileJob::Unit unit) noexcept {
         DoubtfulFunctions functions = functions_of(tile, at);
         const bool q_is_constant = is_constant(functions.q.high);
-        if (q_is_constant || !functions.are_close) sharpen(tile, functions);
+        if (q_is_constant || !functions.are_close) add_residues(tile, functions);
+        // Residues cost less than two doubles, and decide where the planes are exact or err by less than residues know.
+        if (!functions.are_close && !are_decided_by_residues(functions)) sharpen(tile, functions);
         // What residues decide of a few fragments they decide sooner than their quotients are seen to be exact.
         if (q_is_constant && (functions.are_close || tile.width + tile.height > 4) &&
             take_exact_quotients(functions, job))
