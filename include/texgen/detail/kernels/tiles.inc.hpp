@@ -20,11 +20,13 @@ bool fill_tile_unit(const TileJob& job) noexcept {
         for (int n = begin; n < count; n += width, y = y + 1.0) {
             const Doubles reciprocal = 1.0 / (y * job.q.dy + first_q);
             Floats quotient[2];
+            TEXGEN_UNROLL
             for (std::size_t k = 0; k < 2; ++k) {
                 const Doubles value = (y * job.numerator[k].dy + first[k]) * reciprocal;
                 quotient[k] = to_floats(value - job.quotient_error[k]);
                 doubtful |= bits(quotient[k]) ^ bits(to_floats(value + job.quotient_error[k]));
             }
+            TEXGEN_UNROLL
             for (std::size_t k = 0; k < 2; ++k) store_from(out[k], n, count, count, quotient[k]);
         }
         if (begin + lanes >= width) break;

@@ -50,9 +50,12 @@ struct Corners {
     // it, u = F/Q being monotone along every line.
     Double2 largest_quotient() const noexcept {
         Double2 size[4];
+        TEXGEN_UNROLL
         for (std::size_t i = 0; i < 4; ++i) size[i] = magnitude(numerator[i]) + numerator_error;
-        if (!(largest_q < 1.25 * least_q))
+        if (!(largest_q < 1.25 * least_q)) {
+            TEXGEN_UNROLL
             for (std::size_t i = 0; i < 4; ++i) size[i] = size[i] / ((q[i] - q_error) * reciprocal);
+        }
         return larger(larger(size[0], size[1]), larger(size[2], size[3])) * reciprocal;
     }
 

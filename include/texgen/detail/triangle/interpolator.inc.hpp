@@ -140,6 +140,7 @@ private:
             return split(tile, at, [&](const Tile& half) { fill_exact(half, corners_at(half)); });
         TileJob job = make_job(tile, at);
         const Double2 error = at.quotient_error(at.largest_quotient());
+        TEXGEN_UNROLL
         for (std::size_t k = 0; k < 2; ++k) job.quotient_error[k] = error[k];
         // A small tile does not repay the search for its least quotient.
         job.ulps = static_cast<std::int64_t>(tile.width) * tile.height < 1024 ? 0 : at.ulps_of_quotients();
@@ -265,6 +266,7 @@ private:
         const Double2 dx = at.numerator_ramp.dx * factor;
         const Double2 dy = at.numerator_ramp.dy * factor;
         // One coordinate alone takes the place of both.
+        TEXGEN_UNROLL
         for (std::size_t k = 0; k < 2; ++k) {
             const std::span<float>& output = output_[k < count_ ? k : 0];
             job.numerator[k] = {base[k], dx[k], dy[k]};
