@@ -4,27 +4,35 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// x, y, w and from BatchVertex::strq on s, t, r, q of a vertex of the triangle in each lane.
+// The vertices of the triangle in each lane: x, y, w, s, t, r, q.
 struct VertexLanes {
-    Floats value[8];
+    Floats value[3][7];
 
-    TEXGEN_INLINE void load_from(const float* const (&triangle)[lanes], std::size_t i, bool is_one) noexcept {
-        if (is_one) {
-            TEXGEN_UNROLL
-            for (std::size_t k = 0; k < 8; ++k) value[k] = triangle[0][i * BatchVertex::size + k] - Floats{};
-            return;
-        }
+    TEXGEN_INLINE VertexLanes(const float* const (&triangle)[lanes], bool is_one) noexcept {
         TEXGEN_UNROLL
-        for (std::size_t first = 0; first < 8; first += static_cast<std::size_t>(lanes)) {
-            Floats column[lanes];
+        for (std::size_t i = 0; i < 3; ++i) {
+            Floats given[8];
+            if (is_one) {
+                TEXGEN_UNROLL
+                for (std::size_t k = 0; k < 8; ++k) given[k] = triangle[0][i * BatchVertex::size + k] - Floats{};
+            } else {
+                TEXGEN_UNROLL
+                for (std::size_t first = 0; first < 8; first += static_cast<std::size_t>(lanes)) {
+                    Floats column[lanes];
+                    TEXGEN_UNROLL
+                    for (std::size_t j = 0; j < static_cast<std::size_t>(lanes); ++j)
+                        column[j] = load<Floats>(triangle[j] + i * BatchVertex::size + first);
+                    transpose(column);
+                    TEXGEN_UNROLL
+                    for (std::size_t j = 0; j < static_cast<std::size_t>(lanes); ++j) given[first + j] = column[j];
+                }
+            }
             TEXGEN_UNROLL
-            for (std::size_t j = 0; j < static_cast<std::size_t>(lanes); ++j)
-                column[j] = load<Floats>(triangle[j] + i * BatchVertex::size + first);
-            transpose(column);
-            TEXGEN_UNROLL
-            for (std::size_t j = 0; j < static_cast<std::size_t>(lanes); ++j) value[first + j] = column[j];
+            for (std::size_t k = 0; k < 7; ++k) value[i][k] = given[k < 3 ? k : BatchVertex::strq + (k - 3)];
         }
     }
+
+    TEXGEN_INLINE Doubles number(std::size_t i, std::size_t k) const noexcept { return to_doubles(value[i][k]); }
 };
 
 // A difference: the leading 26 bits of the double next to it, the others, and what that lacks. Of two such products all but that of
@@ -53,26 +61,24 @@ struct EdgeLanes {
 
 // What all functions of the triangles share: F = sum G_i f_i, with G_i = E_i w_j w_k.
 struct CloseLanes {
-    Floats given[3][4];                       // s, t, r, q
+    const VertexLanes& given;
     Doubles leading[3], trailing[3], low[3];  // of G_i; leading and trailing are 27 and 26 bits
     Doubles size[3];                          // of both products of E_i, times w_j w_k
     Doubles inexact;                          // 0 where all G_i are a double, exactly
+    Doubles area;                             // nearly, doubled
     LongWords is_known;                       // the sign of the area: all are within 2^-98 of their size
+    bool is_leading;                          // leading is all there is
 
-    TEXGEN_INLINE CloseLanes(const float* const (&triangle)[lanes], const Doubles& x, const Doubles& y,
-                             bool is_one) noexcept {
+    TEXGEN_INLINE CloseLanes(const VertexLanes& vertices, const Doubles& x, const Doubles& y) noexcept
+        : given(vertices) {
         Doubles w[3];
         DifferenceLanes to_x[3], to_y[3];
         Doubles lost{}, below{};
         TEXGEN_UNROLL
         for (std::size_t i = 0; i < 3; ++i) {
-            VertexLanes vertex;
-            vertex.load_from(triangle, i, is_one);
-            w[i] = to_doubles(vertex.value[2]);
-            TEXGEN_UNROLL
-            for (std::size_t k = 0; k < 4; ++k) given[i][k] = vertex.value[BatchVertex::strq + k];
-            to_x[i].set(to_doubles(vertex.value[0]), x);
-            to_y[i].set(to_doubles(vertex.value[1]), y);
+            w[i] = given.number(i, 2);
+            to_x[i].set(given.number(i, 0), x);
+            to_y[i].set(given.number(i, 1), y);
             lost = lost + (magnitude(to_x[i].lost) + magnitude(to_y[i].lost));
             below = below + (magnitude(to_x[i].low) + magnitude(to_y[i].low));
         }
@@ -102,8 +108,9 @@ struct CloseLanes {
             const Doubles rest = ((edge[i].low + error[3]) + (error[2] + (error[0] - error[1]))) + last;
             edge[i].high = two_sum(sum, rest, edge[i].low);
         }
-        const Doubles area = edge[0].high + edge[1].high + edge[2].high;
+        area = edge[0].high + edge[1].high + edge[2].high;
         is_known = greater(magnitude(area), (size[0] + size[1] + size[2]) * 0x1p-49);
+        Doubles rest{};
         TEXGEN_UNROLL
         for (std::size_t i = 0; i < 3; ++i) {
             const Doubles w_j = w[(i + 1) % 3];
@@ -117,28 +124,36 @@ struct CloseLanes {
             size[i] = size[i] * (w_j * w_k);
             leading[i] = leading_bits<27>(edge[i].high);
             trailing[i] = edge[i].high - leading[i];
+            rest = rest + (magnitude(trailing[i]) + magnitude(low[i]));
         }
+        is_leading = !any(are_nonzero(rest));
     }
 
     // The function of coordinate k, 0 to 3 for s, t, r, q.
     TEXGEN_INLINE Twofold function(std::size_t k) const noexcept {
         Doubles f[3];
         TEXGEN_UNROLL
-        for (std::size_t i = 0; i < 3; ++i) f[i] = to_doubles(given[i][k]);
+        for (std::size_t i = 0; i < 3; ++i) f[i] = given.number(i, 3 + k);
         Doubles error[5];
         Doubles sum = two_sum(leading[0] * f[0], leading[1] * f[1], error[0]);
         sum = two_sum(sum, leading[2] * f[2], error[1]);
-        Doubles rest = two_sum(trailing[0] * f[0], trailing[1] * f[1], error[2]);
-        rest = two_sum(rest, trailing[2] * f[2], error[3]);
-        sum = two_sum(sum, rest, error[4]);
-        const Doubles terms = magnitude(f[0]) * size[0] + (magnitude(f[1]) * size[1] + magnitude(f[2]) * size[2]);
-        const Doubles is_inexact = (magnitude(error[0]) + magnitude(error[1])) +
-                                   ((magnitude(error[2]) + magnitude(error[3])) + (magnitude(error[4]) + inexact));
-        rest = ((error[0] + error[1]) + error[4]) +
-               ((error[2] + error[3]) + (low[0] * f[0] + (low[1] * f[1] + low[2] * f[2])));
+        Doubles rest = error[0] + error[1];
+        Doubles is_inexact = magnitude(error[0]) + (magnitude(error[1]) + inexact);
+        if (!is_leading) {
+            Doubles second = two_sum(trailing[0] * f[0], trailing[1] * f[1], error[2]);
+            second = two_sum(second, trailing[2] * f[2], error[3]);
+            sum = two_sum(sum, second, error[4]);
+            is_inexact = is_inexact + ((magnitude(error[2]) + magnitude(error[3])) + magnitude(error[4]));
+            rest = (rest + error[4]) + ((error[2] + error[3]) + (low[0] * f[0] + (low[1] * f[1] + low[2] * f[2])));
+        }
         Twofold result;
         result.high = two_sum(sum, rest, result.low);
-        result.lost = where(greater(is_inexact, 0.0), terms * 0x1p-96);
+        result.lost = Doubles{};
+        const LongWords is_rounded = greater(is_inexact, 0.0);
+        if (any(is_rounded)) {
+            const Doubles terms = magnitude(f[0]) * size[0] + (magnitude(f[1]) * size[1] + magnitude(f[2]) * size[2]);
+            result.lost = where(is_rounded, terms * 0x1p-96);
+        }
         return result;
     }
 };
@@ -185,19 +200,13 @@ struct ResidueValues {
 // The functions of a triangle in each lane at a fragment as integers modulo 2^64, as PlaneResidues in triangle/close_planes.hpp has
 // them.
 struct ResidueLanes {
-    Floats given[3][7];  // x, y, w, s, t, r, q
+    const VertexLanes& given;
     Residues side[3];    // with the weights
     LongWords is_known;  // no number is too long, and the area is not next to 0
 
-    TEXGEN_INLINE ResidueLanes(const float* const (&triangle)[lanes], const Doubles& at_x, const Doubles& at_y,
-                               bool is_one) noexcept {
-        TEXGEN_UNROLL
-        for (std::size_t i = 0; i < 3; ++i) {
-            VertexLanes vertex;
-            vertex.load_from(triangle, i, is_one);
-            TEXGEN_UNROLL
-            for (std::size_t k = 0; k < 7; ++k) given[i][k] = vertex.value[k < 3 ? k : BatchVertex::strq + (k - 3)];
-        }
+    TEXGEN_INLINE ResidueLanes(const VertexLanes& vertices, const Doubles& at_x, const Doubles& at_y) noexcept
+        : given(vertices) {
+        const auto number = [&](std::size_t i, std::size_t k) { return given.number(i, k); };
         const IntegerLanes x(number(0, 0), number(1, 0), number(2, 0), 0.5);
         const IntegerLanes y(number(0, 1), number(1, 1), number(2, 1), 0.5);
         const Doubles w[3] = {number(0, 2), number(1, 2), number(2, 2)};
@@ -241,12 +250,10 @@ struct ResidueLanes {
 
     // Of coordinate k, 0 to 3 for s, t, r, q.
     TEXGEN_INLINE ResidueValues values(std::size_t k) noexcept {
-        const IntegerLanes f(number(0, 3 + k), number(1, 3 + k), number(2, 3 + k), 0x1p500);
+        const IntegerLanes f(given.number(0, 3 + k), given.number(1, 3 + k), given.number(2, 3 + k), 0x1p500);
         is_known &= greater(Doubles{} + 0x1p62, f.largest);
         return {{known(f.value[0]), known(f.value[1]), known(f.value[2])}, unit_ * f.unit};
     }
-
-    TEXGEN_INLINE Doubles number(std::size_t i, std::size_t k) const noexcept { return to_doubles(given[i][k]); }
 
 private:
     TEXGEN_INLINE Residues known(const Doubles& integer) const noexcept {
@@ -288,10 +295,10 @@ struct CloseDoubt {
 
 // The same by residues. Returns the lanes that stay in doubt.
 template <std::size_t Numerators>
-TEXGEN_APART Words decide_lanes_by_residues(const float* const (&triangle)[lanes], const Doubles& x, const Doubles& y,
-                                            bool is_one, const CloseDoubt<Numerators>& close,
+TEXGEN_APART Words decide_lanes_by_residues(const VertexLanes& vertices, const Doubles& x, const Doubles& y,
+                                            const CloseDoubt<Numerators>& close,
                                             Floats (&quotient)[Numerators]) noexcept {
-    ResidueLanes residues(triangle, x, y, is_one);
+    ResidueLanes residues(vertices, x, y);
     const ResidueValues of_q = residues.values(3);
     const Residues q = of_q.times(residues.side);
     const LongWords is_behind = greater(of_q.grain * 0x1p62, close.q_size) & ~are_positive(q);
@@ -316,7 +323,8 @@ TEXGEN_APART Words divide_lanes_closely(const float* const (&triangle)[lanes], c
                                         bool is_one, const Words& doubtful, Floats (&quotient)[Numerators],
                                         Words& in_front) noexcept {
     const Words in_doubt = ~equal(doubtful, 0);
-    const CloseLanes close(triangle, x, y, is_one);
+    const VertexLanes vertices(triangle, is_one);
+    const CloseLanes close(vertices, x, y);
     const Twofold q = close.function(3);
     const LongWords front = greater(q.high, q.lost * 256.0);
     const Doubles reciprocal = where(front, 1.0 / q.high);
@@ -356,7 +364,7 @@ TEXGEN_APART Words divide_lanes_closely(const float* const (&triangle)[lanes], c
         }
         quotient[k] = select(in_doubt, value, quotient[k]);
     }
-    if (any(doubt)) doubt = decide_lanes_by_residues(triangle, x, y, is_one, left, quotient);
+    if (any(doubt)) doubt = decide_lanes_by_residues(vertices, x, y, left, quotient);
     in_front = (in_front & ~in_doubt) | (narrow(front) & in_doubt);
     return (doubt | narrow(~close.is_known)) & in_doubt;
 }

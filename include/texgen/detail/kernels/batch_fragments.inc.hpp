@@ -13,7 +13,9 @@ template <std::size_t Numerators>
 struct FragmentLanes {
     Floats quotient[Numerators];
     LongWords front;
+    LongWords is_within;  // the tolerance, whichever float is taken
     Words doubtful;
+    Doubles u[Numerators], q_size;  // |q| is no more
 
     template <class Functions>
     TEXGEN_INLINE void divide(const Functions& functions, const Doubles& x, const Doubles& y,
@@ -25,14 +27,15 @@ struct FragmentLanes {
         const Doubles q =
             functions[BatchPlanes::q] + (functions[BatchPlanes::q + 1] * p_x + functions[BatchPlanes::q + 2] * p_y);
         const Doubles q_error = functions[BatchPlanes::q + 3] * stretch;
+        q_size = magnitude(q) + q_error;
         front = greater(q, q_error * 0x1p24);
         const LongWords is_beside = ~(front | greater(q * -1.0, q_error));
+        is_within = LongWords{};
         doubtful = Words{};
         if (any(is_beside)) doubtful = narrow(is_beside);
         const Doubles reciprocal = where(front, 1.0 / q);
         const Doubles relative_error = q_error * (reciprocal * 1.0001) + 8.0 * unit_roundoff_double;
         const Doubles stretched = stretch * (reciprocal * 1.0001);
-        Doubles u[Numerators];
         Doubles largest{}, largest_error{};
         TEXGEN_UNROLL
         for (std::size_t k = 0; k < Numerators; ++k) {
@@ -43,23 +46,19 @@ struct FragmentLanes {
             largest_error = k == 0 ? functions[place + 3] : maximum(largest_error, functions[place + 3]);
             quotient[k] = to_floats(u[k]);
         }
-        // Twice the errors: what is rounded below lacks so much.
-        LongWords is_within{};
         if (tolerance > 0.0) {
-            const Doubles written = (largest_error * stretched + largest * relative_error) * 2.0 +
-                                    (largest * (1.0001 * unit_roundoff_float) + 0x1p-149);
+            const Doubles written =
+                largest_error * stretched + (largest * (relative_error + 1.0001 * unit_roundoff_float) + 0x1p-149);
             is_within = at_most(written, Doubles{} + tolerance);
             if (!any(~is_within)) return;
         }
-        Words differ{};
         TEXGEN_UNROLL
         for (std::size_t k = 0; k < Numerators; ++k) {
             const Doubles error =
                 functions[BatchPlanes::of_numerator[k] + 3] * stretched + magnitude(u[k]) * relative_error;
             quotient[k] = to_floats(u[k] - error);
-            differ |= bits(quotient[k]) ^ bits(to_floats(u[k] + error));
+            doubtful |= bits(quotient[k]) ^ bits(to_floats(u[k] + error));
         }
-        if (any(differ)) doubtful |= differ & ~narrow(is_within);
     }
 };
 
@@ -76,10 +75,16 @@ TEXGEN_INLINE Words put_doubtful(const FragmentLanes<Numerators>& fragments, con
     const float* of_lane[lanes];
     TEXGEN_UNROLL
     for (std::size_t i = 0; i < static_cast<std::size_t>(lanes); ++i) of_lane[i] = vertices(i);
-    FragmentLanes<Numerators> again = fragments;
-    Words in_front = narrow(again.front);
-    const Words undecided = divide_lanes_closely(of_lane, x, y, is_one, again.doubtful, again.quotient, in_front);
-    out.put(n, again.quotient, in_front);
+    const Words are_accepted = narrow(fragments.is_within & fragments.front);
+    const Words doubtful = fragments.doubtful & ~are_accepted;
+    Words in_front = narrow(fragments.front);
+    Floats quotient[Numerators];
+    TEXGEN_UNROLL
+    for (std::size_t k = 0; k < Numerators; ++k)
+        quotient[k] = select(are_accepted, to_floats(fragments.u[k]), fragments.quotient[k]);
+    Words undecided{};
+    if (any(doubtful)) undecided = divide_lanes_closely(of_lane, x, y, is_one, doubtful, quotient, in_front);
+    out.put(n, quotient, in_front);
     return undecided;
 }
 

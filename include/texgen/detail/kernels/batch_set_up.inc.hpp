@@ -38,6 +38,20 @@ struct TriangleLanes {
     }
 };
 
+// The functions of a triangle in each lane, to as many that follow one another.
+TEXGEN_INLINE void store_planes(const Doubles (&value)[BatchPlanes::count], BatchPlanes* planes) noexcept {
+    constexpr auto count = static_cast<int>(BatchPlanes::count);
+    TEXGEN_UNROLL
+    for (int first = 0; first < count; first += lanes) {
+        Doubles row[lanes];
+        TEXGEN_UNROLL
+        for (int j = 0; j < lanes; ++j) row[j] = value[first + j];
+        transpose(row);
+        TEXGEN_UNROLL
+        for (int j = 0; j < lanes; ++j) store(&planes[j].value[first], row[j]);
+    }
+}
+
 // As TrianglePlanes, with the same operations in the same order: what they err by is said there. Where the sign of the area is
 // in doubt, or a number is not one, the error of q is infinite: those lanes are returned.
 TEXGEN_INLINE Words set_up_lanes(const float* triangles, BatchPlanes* planes) noexcept {
@@ -106,16 +120,7 @@ TEXGEN_INLINE Words set_up_lanes(const float* triangles, BatchPlanes* planes) no
     value[BatchPlanes::origin + 1] = a[1];
     value[BatchPlanes::per_reach] = 1.0 / reach_x;
     value[BatchPlanes::per_reach + 1] = 1.0 / reach_y;
-    constexpr auto count = static_cast<int>(BatchPlanes::count);
-    TEXGEN_UNROLL
-    for (int first = 0; first < count; first += lanes) {
-        Doubles row[lanes];
-        TEXGEN_UNROLL
-        for (int j = 0; j < lanes; ++j) row[j] = value[first + j];
-        transpose(row);
-        TEXGEN_UNROLL
-        for (int j = 0; j < lanes; ++j) store(&planes[j].value[first], row[j]);
-    }
+    store_planes(value, planes);
     return narrow(~is_known);
 }
 

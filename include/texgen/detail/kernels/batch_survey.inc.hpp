@@ -16,9 +16,8 @@ struct BatchTiles {
     TEXGEN_INLINE void add(Kind kind, const LongWords& mask, std::size_t first) noexcept {
         kinds |= lane_bits(mask) << (kind * batch_block + first);
     }
-    TEXGEN_INLINE bool has(Kind kind, std::size_t i) const noexcept {
-        return (kinds >> (kind * batch_block + i) & 1u) != 0;
-    }
+    TEXGEN_INLINE bool has(Kind kind, std::size_t i) const noexcept { return (all(kind) >> i & 1u) != 0; }
+    TEXGEN_INLINE std::uint64_t all(Kind kind) const noexcept { return kinds >> (kind * batch_block) & 0xff; }
 };
 
 // A tile in each lane: its first fragment, from the vertex that its functions are about; the steps to its last column and row; by

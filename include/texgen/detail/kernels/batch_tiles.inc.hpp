@@ -270,34 +270,6 @@ TEXGEN_INLINE bool fill_tile(const FragmentOutputs& out, const TileShape& shape,
     return is_certain;
 }
 
-// A tile as fragments by ids are divided, each with its own bounds: where q = 0 crosses it or comes near, or functions cancel.
-// As fill_tile().
-template <std::size_t Numerators>
-TEXGEN_APART bool fill_tile_by_fragments(const TilesJob& job, std::size_t i, const TileShape& shape,
-                                         const FragmentOutputs& out, std::size_t begin, bool in_scratch,
-                                         TileScratch& scratch) noexcept {
-    const FragmentOutputs here = in_scratch ? scratch.in_place_of(out) : out;
-    const int* const tile = job.tiles[i];
-    const OneTriangle functions{job.planes[i].value};
-    FragmentWalk<Doubles, double> walk(shape.width, shape.per_width, 0.0);
-    Words doubtful{};
-    for (std::size_t n = 0; n < shape.count; n += static_cast<std::size_t>(lanes), walk.advance()) {
-        const Doubles row = minimum(walk.y, Doubles{} + shape.last_row);
-        const Doubles x = (shape.is_turned ? row : walk.x) + (tile[0] + 0.5);
-        const Doubles y = (shape.is_turned ? walk.x : row) + (tile[1] + 0.5);
-        FragmentLanes<Numerators> fragments;
-        fragments.divide(functions, x, y, job.tolerance);
-        const std::size_t at = in_scratch ? n : begin + n;
-        if (any(fragments.doubtful))
-            doubtful |= put_doubtful(
-                fragments, x, y, true, [&](std::size_t) { return vertices_of(job, i); }, here, at);
-        else
-            here.put(at, fragments.quotient, narrow(fragments.front));
-    }
-    if (in_scratch) scratch.copy_to(out, begin, shape.count);
-    return !any(doubtful);
-}
-
 // Tiles of the block from `first` on that are in doubt, a bit each, by residues, or fragment by fragment; its values begin at
 // `done`. Returns those that stay so.
 template <std::size_t Numerators>
@@ -339,20 +311,17 @@ TEXGEN_INLINE Undecided divide_all_tiles(const TilesJob& job, std::size_t first,
             if (tiles.has(BatchTiles::is_dark, i)) {
                 for (float* const array : {out.out[0], out.out[1], out.out[2], out.lit})
                     for (std::size_t n = begin; array != nullptr && n < done; ++n) array[n] = 0.0f;
-            } else if (shape.count <= largest_batch_tile) {
-                const bool is_at_end = done + static_cast<std::size_t>(wide_lanes) > job.count;
-                if (tiles.has(BatchTiles::is_exact, i) || tiles.has(BatchTiles::is_float, i)) {
-                    const bool is_certain = fill_tile<Numerators>(
-                        out, shape, begin, is_at_end, scratch, [&](const TileOutputs<Numerators>& here) {
-                            return divide_tile_by_tier<Numerators>(job.planes[first + i], tiles, i, shape, here);
-                        });
-                    if (!is_certain) in_doubt |= std::uint64_t{1} << i;
-                } else {
-                    if (!fill_tile_by_fragments<Numerators>(job, first + i, shape, out, begin, is_at_end, scratch))
-                        doubtful |= std::uint64_t{1} << i;
-                }
-            } else {
+            } else if (shape.count > largest_batch_tile) {
                 doubtful |= std::uint64_t{1} << i;
+            } else if (tiles.has(BatchTiles::is_exact, i) || tiles.has(BatchTiles::is_float, i)) {
+                const bool is_at_end = done + static_cast<std::size_t>(wide_lanes) > job.count;
+                const bool is_certain = fill_tile<Numerators>(
+                    out, shape, begin, is_at_end, scratch, [&](const TileOutputs<Numerators>& here) {
+                        return divide_tile_by_tier<Numerators>(job.planes[first + i], tiles, i, shape, here);
+                    });
+                if (!is_certain) in_doubt |= std::uint64_t{1} << i;
+            } else {
+                in_doubt |= std::uint64_t{1} << i;
             }
         }
         if (in_doubt != 0)
