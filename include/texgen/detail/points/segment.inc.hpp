@@ -34,6 +34,25 @@ inline void interpolate_one(const SegmentJob& job, std::size_t i) noexcept {
     if (job.lit != nullptr) job.lit[i] = in_front && is_inside(value[0], value[1], job.min, job.max) ? 1.0f : 0.0f;
 }
 
+// Whether none is less than 0 or more than 1. Their bits say so quickly, but where there is a -0 or what is no number; by sixteen GCC
+// 12 does it in vectors at -O2 too.
+inline bool are_from_0_to_1(std::span<const float> alpha) noexcept {
+    std::uint32_t signs = 0;
+    const auto look_at = [&](float a) {
+        const auto bits = bit_cast<std::uint32_t>(a);
+        signs |= bits | (bit_cast<std::uint32_t>(1.0f) - bits);
+    };
+    const float* const first = alpha.data();
+    std::size_t i = 0;
+    for (; i + 16 <= alpha.size(); i += 16)
+        for (std::size_t j = 0; j < 16; ++j) look_at(first[i + j]);
+    for (; i < alpha.size(); ++i) look_at(first[i]);
+    if ((signs & 0x80000000) == 0) return true;
+    for (const float a : alpha)
+        if (a < 0.0f || a > 1.0f) return false;
+    return true;
+}
+
 // A tile of one row whose corners are the ends: given, so without an error. Of two coordinates.
 inline Corners segment_corners(const glm::dvec4& a, const glm::dvec4& b, glm::length_t first,
                                glm::length_t second) noexcept {
@@ -342,7 +361,7 @@ inline namespace TEXGEN_BUILD {
 template <class CompiledWhereCalled>
 void interpolate(const Segment& segment, std::span<const float> alpha, TextureRegion region, Texcoords out,
                  Tolerance tolerance) noexcept {
-    for ([[maybe_unused]] const float a : alpha) TEXGEN_ASSERT(!(a < 0.0f) && !(a > 1.0f));
+    TEXGEN_ASSERT(detail::are_from_0_to_1(alpha));
     const double accepted = detail::accepted(tolerance);
     detail::LitTest lit(out.lit.empty() ? whole_texture() : region);
     if (lit.has_depth() && detail::depth_coverage(segment, lit, accepted) == Coverage::inside) lit.drop_depth();
