@@ -98,4 +98,6 @@ Work interpolate(const TriangleSetup& setup, FragmentRect rect, Texcoords out) n
 
 #include "detail/triangle/survey.inc.hpp"
 
+#include "detail/triangle/units.inc.hpp"
+
 #include "detail/triangle/interpolator.inc.hpp"

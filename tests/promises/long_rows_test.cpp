@@ -76,7 +76,7 @@ TEST_CASE("units and chunks at the end of the longest rows and columns are done,
 
         std::ranges::fill(array.last(tail), poison);
         TileJob::Unit unit = is_row ? job.unit_at(longest - 300, 0) : job.unit_at(0, longest - 300);
-        for (int units = 0; !job.is_done(unit = kernels.fill_exact(job, unit)); unit = job.unit_after(unit))
+        for (int units = 0; !job.is_done(unit = fill_exact(kernels, job, unit)); unit = job.unit_after(unit))
             REQUIRE(++units < 300);
         CHECK(is_right(array.last(300), 0.0f));
         CHECK(array.last(tail)[tail - 301] == poison);
@@ -87,7 +87,7 @@ TEST_CASE("units and chunks at the end of the longest rows and columns are done,
         for (const StepRule rule : {StepRule::degree2, StepRule::undecided}) {
             job.steps = rule;
             const int first = (longest - 300) / job.chunk * job.chunk;
-            CHECK(job.is_done(kernels.fill_polynomial(job, at(first))));
+            CHECK(job.is_done(fill_polynomial(kernels, job, at(first))));
             CHECK(is_right(array.last(300), 0x1p-10f));
         }
 
@@ -96,7 +96,7 @@ TEST_CASE("units and chunks at the end of the longest rows and columns are done,
         job.steps = StepRule::undecided;
         if (is_row) {
             const int first = (longest - 1) / job.chunk * job.chunk;
-            const TileJob::Unit refused = kernels.fill_polynomial(job, at(first));
+            const TileJob::Unit refused = fill_polynomial(kernels, job, at(first));
             CHECK(refused.x_begin == first);
             CHECK(refused.x_end == longest);
         }

@@ -26,72 +26,57 @@ TEXGEN_INLINE Number chunk_error(const Number& u, const Number& reach, const Err
            ((u + reach) * q_error + numerator_error) * (reciprocal * 1.001);
 }
 
-TEXGEN_INLINE int chunks_of_row(const TileJob& job) noexcept { return (job.width - 1) / job.chunk + 1; }
-
-// Chunks that follow one another, over the ends of rows too: their coefficients, and where they are not chosen for all of
-// the job, what their certificates need.
-struct ChunkGroup {
-    static constexpr int size = 16;
-
-    float bend[size];
-    float middle[2][size], slope[2][size];
-    float rule[size];
-
-    // Of `count` chunks from the given one of row y on.
-    TEXGEN_INLINE void fill(const TileJob& job, int y, int chunk, int count) noexcept {
-        const double width = job.width;
-        const double length = job.chunk;
-        const double per_row = chunks_of_row(job);
-        const double rows_per_chunk = 1.0 / per_row;
-        for (int i = 0; i < count; i += lanes) {
-            // Half of one more keeps the quotient away from the integers.
-            const Doubles number = indices<Doubles>() + static_cast<double>(chunk + i);
-            const Doubles row = truncated((number + 0.5) * rows_per_chunk);
-            const Doubles begin = (number - row * per_row) * length;
-            const Doubles half = (minimum(begin + length, Doubles{} + width) - begin) * 0.5 - 0.5;
-            const Doubles at_x = begin + half;
-            const Doubles at_y = row + static_cast<double>(y);
-            const auto value = [&](const Ramp& ramp) { return at_x * ramp.dx + (at_y * ramp.dy + ramp.base); };
-            const Doubles q = value(job.q);
-            const Doubles reciprocal = 1.0 / q;
-            const Doubles bends = reciprocal * job.q.dx;
-            store(&bend[i], to_floats(bends));
-            Doubles u[2], d[2];
-            for (std::size_t k = 0; k < 2; ++k) {
-                u[k] = value(job.numerator[k]) * reciprocal;
-                d[k] = (u[k] * -job.q.dx + job.numerator[k].dx) * reciprocal;
-                store(&middle[k][i], to_floats(u[k]));
-                store(&slope[k][i], to_floats(d[k]));
-            }
-            if (job.steps != StepRule::undecided) continue;
-            const Doubles extents = magnitude(bends) * half;
-            const Doubles stretch = (extents * 4.0 + 1.0) * extents + 1.0;
-            Doubles reaches[2], room[2];
-            for (std::size_t k = 0; k < 2; ++k) {
-                reaches[k] = magnitude(d[k]) * half * stretch;
-                room[k] = job.tolerance - chunk_error(magnitude(u[k]), reaches[k], job.numerator_error[k], job.q_error,
-                                                      reciprocal * stretch);
-            }
-            // The cheapest rule with which a chunk stays inside the tolerance.
-            const auto all = [](StepRule rule_of_all) { return Doubles{} + static_cast<double>(rule_of_all); };
-            const auto fits = [&](const Doubles& share) {
-                return at_most(share * reaches[0], room[0]) & at_most(share * reaches[1], room[1]);
-            };
-            const Doubles square = extents * extents;
-            const Doubles fourth = square * square;
-            Doubles rules = select(fits(fourth * fourth), all(StepRule::degree8), all(StepRule::divide));
-            rules = select(fits(fourth), all(StepRule::degree4), rules);
-            rules = select(fits(square), all(StepRule::degree2), rules);
-            rules = select(at_most(extents, Doubles{} + 0.25), rules, all(StepRule::divide));
-            const LongWords holds = at_most(extents, Doubles{} + 0.75) & greater(q - q * extents, job.least_q);
-            store(&rule[i], to_floats(select(holds & fits(Doubles{}), rules, all(StepRule::none))));
+// The coefficients of `count` chunks from the given one of row y on.
+template <class CompiledWhereCalled = void>
+void weigh_chunks(const TileJob& job, ChunkGroup& group, int chunks_of_row, int y, int chunk, int count) noexcept {
+    const double width = job.width;
+    const double length = job.chunk;
+    const double per_row = chunks_of_row;
+    const double rows_per_chunk = 1.0 / per_row;
+    for (int i = 0; i < count; i += lanes) {
+        // Half of one more keeps the quotient away from the integers.
+        const Doubles number = indices<Doubles>() + static_cast<double>(chunk + i);
+        const Doubles row = truncated((number + 0.5) * rows_per_chunk);
+        const Doubles begin = (number - row * per_row) * length;
+        const Doubles half = (minimum(begin + length, Doubles{} + width) - begin) * 0.5 - 0.5;
+        const Doubles at_x = begin + half;
+        const Doubles at_y = row + static_cast<double>(y);
+        const auto value = [&](const Ramp& ramp) { return at_x * ramp.dx + (at_y * ramp.dy + ramp.base); };
+        const Doubles q = value(job.q);
+        const Doubles reciprocal = 1.0 / q;
+        const Doubles bends = reciprocal * job.q.dx;
+        store(&group.bend[i], to_floats(bends));
+        Doubles u[2], d[2];
+        for (std::size_t k = 0; k < 2; ++k) {
+            u[k] = value(job.numerator[k]) * reciprocal;
+            d[k] = (u[k] * -job.q.dx + job.numerator[k].dx) * reciprocal;
+            store(&group.middle[k][i], to_floats(u[k]));
+            store(&group.slope[k][i], to_floats(d[k]));
         }
+        if (job.steps != StepRule::undecided) continue;
+        const Doubles extents = magnitude(bends) * half;
+        const Doubles stretch = (extents * 4.0 + 1.0) * extents + 1.0;
+        Doubles reaches[2], room[2];
+        for (std::size_t k = 0; k < 2; ++k) {
+            reaches[k] = magnitude(d[k]) * half * stretch;
+            room[k] = job.tolerance - chunk_error(magnitude(u[k]), reaches[k], job.numerator_error[k], job.q_error,
+                                                  reciprocal * stretch);
+        }
+        // The cheapest rule with which a chunk stays inside the tolerance.
+        const auto all = [](StepRule rule_of_all) { return Doubles{} + static_cast<double>(rule_of_all); };
+        const auto fits = [&](const Doubles& share) {
+            return at_most(share * reaches[0], room[0]) & at_most(share * reaches[1], room[1]);
+        };
+        const Doubles square = extents * extents;
+        const Doubles fourth = square * square;
+        Doubles rules = select(fits(fourth * fourth), all(StepRule::degree8), all(StepRule::divide));
+        rules = select(fits(fourth), all(StepRule::degree4), rules);
+        rules = select(fits(square), all(StepRule::degree2), rules);
+        rules = select(at_most(extents, Doubles{} + 0.25), rules, all(StepRule::divide));
+        const LongWords holds = at_most(extents, Doubles{} + 0.75) & greater(q - q * extents, job.least_q);
+        store(&group.rule[i], to_floats(select(holds & fits(Doubles{}), rules, all(StepRule::none))));
     }
-
-    TEXGEN_INLINE StepRule rule_of(const TileJob& job, int i) const noexcept {
-        return job.steps == StepRule::undecided ? static_cast<StepRule>(static_cast<int>(rule[i])) : job.steps;
-    }
-};
+}
 
 // i / (1 + i bend).
 template <StepRule Rule>
@@ -126,83 +111,40 @@ TEXGEN_INLINE void fill_vectors(const WideFloats& bend, const WideFloats (&middl
     }
 }
 
-// The group's chunks from `first` to `end`, which follow one another: what the last vector of one writes beyond it the next one
-// writes again.
+// The group's chunks from `first` to `end`, of one rule, which begin at x of the row, and their mask. What the last vector of one
+// writes beyond it the next one writes again; where there is no room for it, it is written beside the row.
 template <class CompiledWhereCalled = void>
-TEXGEN_APART void fill_chunks(StepRule rule, const ChunkGroup& group, int first, int end, const float* index, float* s,
-                              float* t, int count) noexcept {
-    for (std::ptrdiff_t i = first; i < end; ++i, s += count, t += count) {
+void fill_chunks(const TileJob& job, const RowOutputs& row, ChunkGroup& group, int first, int end, int x) noexcept {
+    const StepRule rule = group.rule_of(job, first);
+    const int length = job.length_of_chunk(x);
+    if (length != group.indexed) {
+        group.indexed = length;
+        const WideFloats first_index = indices<WideFloats>() - 0.5f * static_cast<float>(length - 1);
+        for (int i = 0; i < length; i += wide_lanes) store(group.index + i, first_index + static_cast<float>(i));
+    }
+    alignas(WideFloats) float buffer[2][longest_chunk];
+    const std::int64_t last_with_room = row.writable - (length + wide_lanes - 1) / wide_lanes * wide_lanes;
+    std::int64_t begin = x;
+    for (std::ptrdiff_t i = first; i < end; ++i, begin += length) {
         const WideFloats bend = group.bend[i] - WideFloats{};
         const WideFloats middle[2] = {group.middle[0][i] - WideFloats{}, group.middle[1][i] - WideFloats{}};
         const WideFloats slope[2] = {group.slope[0][i] - WideFloats{}, group.slope[1][i] - WideFloats{}};
+        const bool has_room = begin <= last_with_room;
+        float* const s = has_room ? row.out[0] + begin : buffer[0];
+        float* const t = has_room ? row.out[1] + begin : buffer[1];
         if (rule == StepRule::degree2)
-            fill_vectors<StepRule::degree2>(bend, middle, slope, index, s, t, count);
+            fill_vectors<StepRule::degree2>(bend, middle, slope, group.index, s, t, length);
         else if (rule == StepRule::degree4)
-            fill_vectors<StepRule::degree4>(bend, middle, slope, index, s, t, count);
+            fill_vectors<StepRule::degree4>(bend, middle, slope, group.index, s, t, length);
         else if (rule == StepRule::degree8)
-            fill_vectors<StepRule::degree8>(bend, middle, slope, index, s, t, count);
+            fill_vectors<StepRule::degree8>(bend, middle, slope, group.index, s, t, length);
         else
-            fill_vectors<StepRule::divide>(bend, middle, slope, index, s, t, count);
+            fill_vectors<StepRule::divide>(bend, middle, slope, group.index, s, t, length);
+        if (has_room) continue;
+        for (std::size_t k = 0; k < 2; ++k)
+            std::memcpy(row.out[k] + begin, buffer[k], static_cast<std::size_t>(length) * sizeof(float));
     }
-}
-
-// Does the job from `first` on. Stops at chunks that no rule serves and that are not filled, and returns them, a part of one row or
-// whole rows; the empty unit if there are none. The next call starts after them.
-template <class CompiledWhereCalled = void>
-TileJob::Unit fill_tile_polynomial(const TileJob& job, TileJob::Unit first) noexcept {
-    const int width = job.width, height = job.height;
-    const int longest = job.chunk;
-    const int per_row = chunks_of_row(job), whole_chunks = width / longest;
-    // Where the rows of the outputs follow one another, and consist of whole chunks, so do those.
-    const bool is_seamless = job.is_contiguous && whole_chunks * longest == width;
-    int chunk = first.x_begin / longest, y = first.y_begin;
-    ChunkGroup group;
-    RowOutputs row(job, y);
-    alignas(WideFloats) float index[longest_chunk], buffer[2][longest_chunk];
-    int indexed = 0;
-    while (y < height) {
-        const std::int64_t left = static_cast<std::int64_t>(height - y) * per_row - chunk;
-        const int count = left < group.size ? static_cast<int>(left) : group.size;
-        group.fill(job, y, chunk, count);
-        for (int i = 0, end; i < count; i = end) {
-            // Chunks of a rule that follow one another are filled at once, if there is room for the last vector.
-            const StepRule rule = group.rule_of(job, i);
-            const int in_row = whole_chunks > chunk ? whole_chunks - chunk : 1;
-            const int most = is_seamless || count - i < in_row ? count : i + in_row;
-            end = job.steps != StepRule::undecided ? most : i + 1;
-            while (end < most && group.rule_of(job, end) == rule) ++end;
-            const int begin = chunk * longest;
-            const int length = longest < width - begin ? longest : width - begin;
-            if (rule == StepRule::none) {
-                while (per_row == 1 && end < count && group.rule_of(job, end) == rule) ++end;
-                if (per_row == 1) return {0, width, y, y + (end - i)};
-                const std::int64_t last = std::int64_t{begin} + (end - i) * length;
-                const int x_end = last < width ? static_cast<int>(last) : width;
-                if (begin < job.filled.x_begin || x_end > job.filled.x_end) return {begin, x_end, y, y + 1};
-            } else {
-                if (length != indexed) {
-                    indexed = length;
-                    const WideFloats first_index = indices<WideFloats>() - 0.5f * static_cast<float>(length - 1);
-                    for (int x = 0; x < length; x += wide_lanes) store(index + x, first_index + static_cast<float>(x));
-                }
-                const int beyond = wide_lanes - 1 - (length - 1) % wide_lanes;
-                const auto has_room_for = [&](int chunks) {
-                    return std::int64_t{begin} + chunks * length + beyond <= row.writable;
-                };
-                while (end - i > 1 && !has_room_for(end - i)) --end;
-                const bool has_room = has_room_for(end - i);
-                float* const to[2] = {row.out[0] + begin, row.out[1] + begin};
-                fill_chunks(rule, group, i, end, index, has_room ? to[0] : buffer[0], has_room ? to[1] : buffer[1],
-                            length);
-                if (!has_room)
-                    for (std::size_t k = 0; k < 2; ++k)
-                        std::memcpy(to[k], buffer[k], static_cast<std::size_t>(length) * sizeof(float));
-                light(job, row, begin, std::int64_t{begin} + (end - i) * length);
-            }
-            for (chunk += end - i; chunk >= per_row; chunk -= per_row, ++y) row.advance();
-        }
-    }
-    return {0, 0, height, height};
+    light(job, row, x, begin);
 }
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA

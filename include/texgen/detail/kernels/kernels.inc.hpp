@@ -33,9 +33,11 @@ inline constexpr Table kernel_table;
 template <class CompiledWhereCalled>
 inline constexpr TileKernels kernel_table<TileKernels, CompiledWhereCalled>{
     .fill_unit = fill_tile_unit<CompiledWhereCalled>,
-    .fill_exact = fill_tile_exact<CompiledWhereCalled>,
+    .divide = divide_tile<CompiledWhereCalled>,
+    .divide_in_pairs = divide_in_pairs<CompiledWhereCalled>,
     .fill_float_divided = fill_tile_float_divided<CompiledWhereCalled>,
-    .fill_polynomial = fill_tile_polynomial<CompiledWhereCalled>,
+    .weigh_chunks = weigh_chunks<CompiledWhereCalled>,
+    .fill_chunks = fill_chunks<CompiledWhereCalled>,
     .fill_closely = fill_tile_closely<CompiledWhereCalled>};
 
 template <class CompiledWhereCalled>

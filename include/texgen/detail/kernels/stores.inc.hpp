@@ -2,33 +2,6 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// Where a row of a TileJob goes. A copy, so that the compiler knows that no store changes it.
-struct RowOutputs {
-    float* out[2];
-    std::ptrdiff_t pitch[2];
-    float* lit;
-    std::ptrdiff_t lit_pitch;
-    std::int64_t writable;  // from its first fragment on: where rows follow one another, the rows below too
-    std::int64_t writable_pitch;
-
-    TEXGEN_INLINE RowOutputs(const TileJob& job, int y) noexcept
-        : lit(job.lit == nullptr ? nullptr : job.lit + y * job.pitch),
-          lit_pitch(job.lit == nullptr ? 0 : job.pitch),
-          writable(job.is_contiguous ? (job.height - std::int64_t{y}) * job.width : job.width),
-          writable_pitch(job.is_contiguous ? job.width : 0) {
-        for (std::size_t k = 0; k < 2; ++k) {
-            pitch[k] = job.is_scratch[k] ? 0 : job.pitch;
-            out[k] = job.out[k] + y * pitch[k];
-        }
-    }
-
-    TEXGEN_INLINE void advance() noexcept {
-        for (std::size_t k = 0; k < 2; ++k) out[k] += pitch[k];
-        lit += lit_pitch;
-        writable -= writable_pitch;
-    }
-};
-
 // Whether a mask of points is asked for, their layout and that of their coordinates are looked at vector by vector: a branch
 // that is always the same costs next to nothing, and a loop for each combination would be most of what a user compiles.
 

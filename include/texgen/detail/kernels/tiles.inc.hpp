@@ -96,6 +96,10 @@ TEXGEN_INLINE bool divide_part(const TileJob& job, const TileJob::Unit& part) no
 }
 
 template <class CompiledWhereCalled = void>
+bool divide_tile(const TileJob& job, const TileJob::Unit& part) noexcept {
+    return divide_part<true>(job, part);
+}
+template <class CompiledWhereCalled = void>
 void fill_tile_float_divided(const TileJob& job) noexcept {
     divide_part<false>(job, {0, job.width, 0, job.height});
 }
@@ -105,7 +109,7 @@ void fill_tile_float_divided(const TileJob& job) noexcept {
 // and may begin in the unit before, which was certain in here: the first unit is no shorter than a pair.
 inline constexpr int pair = 2 * lanes;
 template <class CompiledWhereCalled = void>
-TEXGEN_APART TileJob::Unit divide_in_pairs(const TileJob& job, const TileJob::Unit& first) noexcept {
+TileJob::Unit divide_in_pairs(const TileJob& job, const TileJob::Unit& first) noexcept {
     const int width = job.width, height = job.height;
     const int ulps = job.ulps;
     RowOutputs row(job, first.y_begin);
@@ -145,29 +149,6 @@ TEXGEN_APART TileJob::Unit divide_in_pairs(const TileJob& job, const TileJob::Un
         if (certain < width) return job.unit_at(certain, y);
     }
     return {0, 0, height, height};
-}
-
-// Does the units from `first` on up to the first one that is in doubt. Where none is, more and more of them are done at once, and
-// what is in doubt then is done again by less; or all are done in pairs, but those that are in doubt then.
-template <class CompiledWhereCalled = void>
-TileJob::Unit fill_tile_exact(const TileJob& job, TileJob::Unit first) noexcept {
-    constexpr int most = 16 * TileJob::unit_size;
-    TileJob::Unit unit = first;
-    for (int size = TileJob::unit_size; !job.is_done(unit);) {
-        if (job.ulps != 0 && unit.x_end - unit.x_begin >= pair) {
-            unit = divide_in_pairs(job, unit);
-            if (job.is_done(unit)) return unit;
-        }
-        if (!divide_part<true>(job, unit)) {
-            size = job.ulps != 0 ? size : size < most ? 2 * size : most;
-            unit = job.unit_after(unit, size);
-        } else {
-            if (size == TileJob::unit_size) return unit;
-            size = TileJob::unit_size;
-            unit = job.unit_at(unit.x_begin, unit.y_begin);
-        }
-    }
-    return unit;
 }
 
 // A function of a row's index.

@@ -56,6 +56,9 @@ struct TileJob {
     Unit filled = {0, 0, 0, 0};  // in its columns chunks that no rule serves are filled
 
     static constexpr int unit_size = 64;
+    static constexpr int longest_pair = 16;  // the fragments that share a division are no more, in vectors of any size
+
+    int length_of_chunk(int begin) const noexcept { return chunk < width - begin ? chunk : width - begin; }
 
     // Whether it is one unit, of short rows that follow one another.
     bool is_unit() const noexcept {
@@ -69,6 +72,49 @@ struct TileJob {
         return unit.x_end < width ? unit_at(unit.x_end, unit.y_begin, size) : unit_at(0, unit.y_end, size);
     }
     bool is_done(const Unit& unit) const noexcept { return unit.y_begin >= height; }
+};
+
+// Where a row of a TileJob goes. A copy, so that the compiler knows that no store changes it.
+struct RowOutputs {
+    float* out[2];
+    std::ptrdiff_t pitch[2];
+    float* lit;
+    std::ptrdiff_t lit_pitch;
+    std::int64_t writable;  // from its first fragment on: where rows follow one another, the rows below too
+    std::int64_t writable_pitch;
+
+    RowOutputs(const TileJob& job, int y) noexcept
+        : lit(job.lit == nullptr ? nullptr : job.lit + y * job.pitch),
+          lit_pitch(job.lit == nullptr ? 0 : job.pitch),
+          writable(job.is_contiguous ? (job.height - std::int64_t{y}) * job.width : job.width),
+          writable_pitch(job.is_contiguous ? job.width : 0) {
+        for (std::size_t k = 0; k < 2; ++k) {
+            pitch[k] = job.is_scratch[k] ? 0 : job.pitch;
+            out[k] = job.out[k] + y * pitch[k];
+        }
+    }
+
+    void advance() noexcept {
+        for (std::size_t k = 0; k < 2; ++k) out[k] += pitch[k];
+        lit += lit_pitch;
+        writable -= writable_pitch;
+    }
+};
+
+// Chunks that follow one another, over the ends of rows too: their coefficients, and where they are not chosen for all of
+// the job, what their certificates need.
+struct ChunkGroup {
+    static constexpr int size = 16;
+
+    float bend[size];
+    float middle[2][size], slope[2][size];
+    float rule[size];
+    alignas(64) float index[longest_chunk];  // of each fragment of a chunk, from the middle,
+    int indexed = 0;                         // which has so many
+
+    StepRule rule_of(const TileJob& job, int i) const noexcept {
+        return job.steps == StepRule::undecided ? static_cast<StepRule>(static_cast<int>(rule[i])) : job.steps;
+    }
 };
 
 // The same functions of a tile to twice the precision: each is high + low, within `error` of the exact one. The coefficients of
@@ -211,11 +257,13 @@ struct FootprintJob {
 struct TileKernels {
     // A job that is_unit(). Whether a value is in doubt.
     bool (*fill_unit)(const TileJob&) noexcept;
-    // The first unit from `first` on that is in doubt.
-    TileJob::Unit (*fill_exact)(const TileJob&, TileJob::Unit first) noexcept;
+    // Whether a value of a part is in doubt; and the first unit from `first` on that is, of a job that knows its ulps.
+    bool (*divide)(const TileJob&, const TileJob::Unit& part) noexcept;
+    TileJob::Unit (*divide_in_pairs)(const TileJob&, const TileJob::Unit& first) noexcept;
     void (*fill_float_divided)(const TileJob&) noexcept;
-    // The first unit from `first` on that no rule serves, of one row or of whole rows.
-    TileJob::Unit (*fill_polynomial)(const TileJob&, TileJob::Unit first) noexcept;
+    // Makes a group of `count` chunks from one of row y on; and fills some of it that have one rule, from x of a row on.
+    void (*weigh_chunks)(const TileJob&, ChunkGroup&, int chunks_of_row, int y, int chunk, int count) noexcept;
+    void (*fill_chunks)(const TileJob&, const RowOutputs&, ChunkGroup&, int first, int end, int x) noexcept;
     // A unit on either side of the projector. A bit for each fragment that stays in doubt, row by row.
     std::uint64_t (*fill_closely)(const TileJob&, const CloseFunctions&, TileJob::Unit unit) noexcept;
 };

@@ -148,7 +148,7 @@ private:
             if (kernels_.fill_unit(job)) fill_from_doubt(tile, at, job, job.unit_at(0, 0));
             return;
         }
-        const TileJob::Unit unit = kernels_.fill_exact(job, job.unit_at(0, 0));
+        const TileJob::Unit unit = detail::fill_exact(kernels_, job, job.unit_at(0, 0));
         if (!job.is_done(unit)) fill_from_doubt(tile, at, job, unit);
     }
 
@@ -161,12 +161,12 @@ private:
         // What residues decide of a few fragments they decide sooner than their quotients are seen to be exact.
         if (q_is_constant && (functions.are_close || tile.width + tile.height > 4) &&
             take_exact_quotients(functions, job))
-            unit = kernels_.fill_exact(job, unit);
+            unit = detail::fill_exact(kernels_, job, unit);
         // Doubt has company: twice as many units after each failure that follows another.
         for (int many = 1; !job.is_done(unit);) {
             for (int i = 0; i < many && !job.is_done(unit); ++i, unit = job.unit_after(unit))
                 fill_closely(tile, job, functions, unit);
-            const TileJob::Unit next = kernels_.fill_exact(job, unit);
+            const TileJob::Unit next = detail::fill_exact(kernels_, job, unit);
             many = next.x_begin == unit.x_begin && next.y_begin == unit.y_begin ? 2 * many : 1;
             unit = next;
         }
@@ -202,7 +202,7 @@ private:
         job.least_q = 0x1p24 * at.q_error;
         for (std::size_t k = 0; k < 2; ++k) job.numerator_error[k] = at.numerator_error[k];
         for (TileJob::Unit next{0, 0, 0, 0};;) {
-            const TileJob::Unit refused = kernels_.fill_polynomial(job, next);
+            const TileJob::Unit refused = detail::fill_polynomial(kernels_, job, next);
             if (job.is_done(refused)) return;
             fill_refused(tile, job, refused);
             next = refused.x_end < tile.width ? TileJob::Unit{refused.x_end, 0, refused.y_begin, 0}

@@ -1,0 +1,68 @@
+// A job unit by unit, and chunk by chunk, by the kernels of any instruction set. Included by interpolate.hpp.
+
+namespace TEXGEN_DETAIL {
+inline namespace TEXGEN_BUILD {
+
+// Does the units from `first` on up to the first one that is in doubt. Where none is, more and more of them are done at once, and
+// what is in doubt then is done again by less; or all are done in pairs, but those that are in doubt then.
+inline TileJob::Unit fill_exact(const TileKernels& kernels, const TileJob& job, TileJob::Unit first) noexcept {
+    constexpr int most = 16 * TileJob::unit_size;
+    TileJob::Unit unit = first;
+    for (int size = TileJob::unit_size; !job.is_done(unit);) {
+        if (job.ulps != 0 && unit.x_end - unit.x_begin >= TileJob::longest_pair) {
+            unit = kernels.divide_in_pairs(job, unit);
+            if (job.is_done(unit)) return unit;
+        }
+        if (!kernels.divide(job, unit)) {
+            size = job.ulps != 0 ? size : size < most ? 2 * size : most;
+            unit = job.unit_after(unit, size);
+        } else {
+            if (size == TileJob::unit_size) return unit;
+            size = TileJob::unit_size;
+            unit = job.unit_at(unit.x_begin, unit.y_begin);
+        }
+    }
+    return unit;
+}
+
+// Does the job from `first` on. Stops at chunks that no rule serves and that are not filled, and returns them, a part of one row or
+// whole rows; the empty unit if there are none. The next call starts after them.
+inline TileJob::Unit fill_polynomial(const TileKernels& kernels, const TileJob& job, TileJob::Unit first) noexcept {
+    const int width = job.width, height = job.height;
+    const int longest = job.chunk;
+    const int whole_chunks = width / longest;
+    const int per_row = whole_chunks + (whole_chunks * longest < width ? 1 : 0);
+    // Where the rows of the outputs follow one another, and consist of whole chunks, so do those.
+    const bool is_seamless = job.is_contiguous && whole_chunks * longest == width;
+    int chunk = first.x_begin / longest, y = first.y_begin;
+    ChunkGroup group;
+    RowOutputs row(job, y);
+    while (y < height) {
+        const std::int64_t left = static_cast<std::int64_t>(height - y) * per_row - chunk;
+        const int count = left < group.size ? static_cast<int>(left) : group.size;
+        kernels.weigh_chunks(job, group, per_row, y, chunk, count);
+        for (int i = 0, end; i < count; i = end) {
+            // Chunks of a rule that follow one another are filled at once.
+            const StepRule rule = group.rule_of(job, i);
+            const int in_row = whole_chunks > chunk ? whole_chunks - chunk : 1;
+            const int most = is_seamless || count - i < in_row ? count : i + in_row;
+            end = job.steps != StepRule::undecided ? most : i + 1;
+            while (end < most && group.rule_of(job, end) == rule) ++end;
+            const int begin = chunk * longest;
+            if (rule == StepRule::none) {
+                while (per_row == 1 && end < count && group.rule_of(job, end) == rule) ++end;
+                if (per_row == 1) return {0, width, y, y + (end - i)};
+                const std::int64_t last = std::int64_t{begin} + (end - i) * job.length_of_chunk(begin);
+                const int x_end = last < width ? static_cast<int>(last) : width;
+                if (begin < job.filled.x_begin || x_end > job.filled.x_end) return {begin, x_end, y, y + 1};
+            } else {
+                kernels.fill_chunks(job, row, group, i, end, begin);
+            }
+            for (chunk += end - i; chunk >= per_row; chunk -= per_row, ++y) row.advance();
+        }
+    }
+    return {0, 0, height, height};
+}
+
+}  // namespace TEXGEN_BUILD
+}  // namespace TEXGEN_DETAIL
