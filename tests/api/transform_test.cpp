@@ -289,6 +289,24 @@ TEST_CASE("uniform scales from 1e-30 to 1e30 are regular, and inverted within 2 
     }
 }
 
+TEST_CASE(
+    "elements of four times their largest term are inverted within 2 ulp of it, and may err by next to all of that") {
+    Random random(48);
+    double worst = 0.0;
+    for (int i = 0; i < 150; ++i) {
+        // Next to a Hadamard matrix, whose terms are all of one size.
+        glm::dmat4 m(1.0, 1.0, 1.0, 1.0, 1.0, -1.0, 1.0, -1.0, 1.0, 1.0, -1.0, -1.0, 1.0, -1.0, -1.0, 1.0);
+        for (int column = 0; column < 4; ++column)
+            for (int row = 0; row < 4; ++row) m[column][row] *= 0.5 * (1.0 + random.uniform(-0x1p-6, 0x1p-6));
+        const auto answer = inverse(ModelMatrix(m));
+        REQUIRE_MESSAGE(answer, hex(m));
+        const double error = worst_error(m, answer->matrix());
+        REQUIRE_MESSAGE(error <= 2.0, hex(m));
+        worst = std::max(worst, error);
+    }
+    CHECK(worst > 1.9);
+}
+
 TEST_CASE("each axis may have its own scale, and rows and columns any power of two") {
     Random random(46);
     for (int i = 0; i < 300; ++i) {

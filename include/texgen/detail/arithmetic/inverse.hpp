@@ -50,7 +50,8 @@ public:
     bool regular() const noexcept { return beta_ < 1.0; }
 
     // A^-1 = C X R; each element within 2 ulp of the largest of its terms in A^-1 A A^-1 while the condition of B stays
-    // below 1e8 and its terms, in X B X, above least_scaled.
+    // below 1e8 and its terms, in X B X, above least_scaled. Half an ulp of its own may be all of that: as B X = 1 has four
+    // terms, one of X B X is at least a quarter of it.
     glm::dmat4 matrix() const noexcept;
 
     // row A^-1, solved and refined by itself: the product of row and a rounded inverse could cancel.
