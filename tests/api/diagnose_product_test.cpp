@@ -504,19 +504,23 @@ TEST_CASE("the quarters of a lens of 90 degrees are not found fault with, whose 
     Random random(641);
     for (int i = 0; i < 4096; ++i) {
         const auto bit = [&](int k) { return (i >> k) % 2 != 0; };
-        const texgen::Aim aim{{2.0, 5.0, 5.0}, {-2.0, -4.0, 0.0}, {0.0, 1.0, 0.0}};
         Meant m;
         m.kind = LensKind::frustum;
-        m.aim = aim;
+        m.aim = {{2.0 + random.integer(0, 9), 5.0, 5.0}, {-2.0, -4.0, 0.0}, {0.0, 1.0, 0.0}};
         m.conventions = any_conventions(random);
         m.depth = bit(0) ? DepthMapping::unit : DepthMapping::ndc;
-        m.z_near = bit(1) ? 0.125 : 0.1 * random.integer(1, 30);
-        m.z_far = bit(2) ? 100.0 : 20.0;
+        m.z_near = bit(1) ? 0.125 : 0.02 * random.integer(1, 30);
+        m.z_far = (bit(2) ? 1e4 : 40.0) * m.z_near;
         const double height = m.z_near * (bit(3) ? 1.0 : 2.0), width = height * (bit(4) ? 1.0 : 1.5);
         m.left = bit(5) ? 0.0 : -width, m.bottom = bit(6) ? 0.0 : -height;
         m.right = m.left + width, m.top = m.bottom + height;
         const texgen::WorldTexgen texgen = texture_from_world(*right_projector(m), m.region, m.depth);
-        const glm::dmat4 given = bit(7) ? texgen.matrix() : glm::dmat4(texgen.rounded());
+        const texgen::Projector p = *right_projector(m);
+        const glm::mat4 in_float =
+            scale_bias(m.conventions, m.region, m.depth).rounded() * p.projection.rounded() * p.view.rounded();
+        const glm::dmat4 given = bit(7)   ? texgen.matrix()
+                                 : bit(9) ? glm::dmat4(texgen.rounded())
+                                          : glm::dmat4(in_float);
         for (const Told told : {Told::nothing, Told::projector}) {
             const bool has_conventions = bit(8);
             require_valid(m, given, diagnosis_of(m, In::world, right_projector(m), told, has_conventions, given));

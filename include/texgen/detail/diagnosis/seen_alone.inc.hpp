@@ -60,7 +60,8 @@ inline std::optional<RoundNear> round_near(const SeenLens& lens, const SetupMatr
     const std::optional<Conventions> conventions = known_conventions(setup);
     if (!conventions || conventions->depth == DepthRange::zero_to_one || setup.depth == DepthMapping::ndc)
         return std::nullopt;
-    return RoundNear{roundness(lens.distance_of(0.0)) > enough_bits, roundness(lens.distance_of(-1.0)) > enough_bits};
+    const double of_quarter = roundness(lens.distance_of(0.0));
+    return RoundNear{of_quarter > enough_bits, !(of_quarter > 0.0) && roundness(lens.distance_of(-1.0)) > enough_bits};
 }
 
 // Says what the lens that is seen shows. What is known of the lens decides; where nothing is, only numbers that are round
