@@ -77,7 +77,8 @@ inline void examine_seen_lens(const SeenLens& lens, const SetupMatrices& setup, 
         return std::fabs(focal_length * std::sin(half) - std::cos(half)) <=
                larger(4.0 * error, 0x1p-16) * std::cos(half);
     };
-    const std::optional<RoundNear> near_of = round_near(lens, setup);
+    const bool is_missed = s.is_missed_by(lens);
+    const std::optional<RoundNear> near_of = is_missed ? round_near(lens, setup) : std::nullopt;
     // A tangent of 1 is that of a quarter, too, whose sides are as long as its near plane is far.
     const auto shows_meant = [&](double focal_length) {
         return is_meant(focal_length) &&
@@ -88,7 +89,7 @@ inline void examine_seen_lens(const SeenLens& lens, const SetupMatrices& setup, 
     const std::optional<DepthEnds> ends = depth_ends(setup.depth, known_conventions(setup));
     // With w biased as well, and halved, only its size is another.
     const bool halves_w = std::fabs(lens.per_distance() - 0.5) <= 4.0 * lens.rounding();
-    if (s.is_missed_by(lens) && (facts.fovy || halves_w || !(near_of && near_of->of_quarter))) {
+    if (is_missed && (facts.fovy || halves_w || !(near_of && near_of->of_quarter))) {
         if (shows_meant(as_clip.y) && !halves_w) {
             diagnosis.add(Defect::scale_bias_missing);
             return;
