@@ -1,9 +1,9 @@
-// The inner loops of points, and what those of segments share with them. Included by kernels.inc.hpp.
+// The inner loops of points. Included by kernels.inc.hpp.
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-template <class Vector, class Job>
-TEXGEN_INLINE void load_points(const Job& job, std::size_t i, Vector& x, Vector& y, Vector& z) noexcept {
+template <class Vector>
+TEXGEN_INLINE void load_points(const PointInput& job, std::size_t i, Vector& x, Vector& y, Vector& z) noexcept {
     if (job.interleaved_xyz) {
         load_interleaved(job.x + 3 * i, x, y, z);
     } else {
@@ -74,7 +74,7 @@ TEXGEN_INLINE LongWords divide_certainly(std::size_t numerators, const Doubles (
     return in_front;
 }
 
-// What decided a vector or a block of values, and is tried first with the next, so that company is not tried in vain.
+// What decided a vector or a block of points, and is tried first with the next, so that company is not tried in vain.
 enum class Rung {
     in_front,     // in double, with errors that hold for the block, which is all in front
     either_side,  // the same on both sides of the projector
@@ -86,71 +86,6 @@ struct Effort {
     bool are_ties = false;   // closely: the numerators as well as q
     bool precisely = false;  // all of the sums, or their leading part
 };
-
-// What doing a block again leaves.
-struct Again {
-    std::uint64_t doubtful;  // bit i: value begin + i
-    Effort effort;
-};
-
-// Does a block again, from each_lane on at least. What a vector needs beyond that, up to 15 that follow it get at once. Terms
-// are the sums at a vector of values: q and the numerators, nearly and in two doubles, and which lanes are behind whatever
-// their q, being no numbers.
-template <class Terms>
-TEXGEN_INLINE Again fill_block_again(const DividedOutput& output, const Terms& terms, std::size_t begin,
-                                     std::size_t end, Effort effort) noexcept {
-    const auto numerators = static_cast<std::size_t>(output.numerators);
-    // Floats below are no further apart than the tolerance.
-    const Doubles within = power_of_two_below(Doubles{} + terms.tolerance()) * 0x1p24;
-    std::uint64_t doubtful = 0;
-    for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(lanes)) {
-        const auto at = terms.load(i);
-        const LongWords are_dark = terms.are_dark(at);
-        Floats value[2];
-        if (effort.rung <= Rung::each_lane || i / static_cast<std::size_t>(lanes) % 16 == 0) {
-            Doubles numerator[2], numerator_error[2];
-            for (std::size_t k = 0; k < numerators; ++k) {
-                numerator[k] = terms.numerator[k].nearly_at(at);
-                numerator_error[k] = terms.numerator[k].error_at(at);
-            }
-            Doubt doubt;
-            const LongWords in_front =
-                divide_certainly<true>(numerators, numerator, numerator_error, terms.q.nearly_at(at),
-                                       terms.q.error_at(at), terms.tolerance(), value, doubt);
-            const bool is_decided = !any(doubt.rounding | narrow(doubt.side & ~are_dark));
-            effort = {is_decided ? Rung::each_lane : Rung::closely, false, effort.precisely && !is_decided};
-            if (is_decided) {
-                store_points(output, i, numerators, value, narrow(in_front));
-                continue;
-            }
-        }
-        LongWords in_front, is_known;
-        for (;;) {
-            TwofoldDivisor q(terms.q.at(at, effort.precisely));
-            in_front = q.in_front &= ~are_dark;
-            is_known = q.is_known | are_dark;
-            for (std::size_t k = 0; k < numerators; ++k) {
-                const auto& numerator = terms.numerator[k];
-                if (!effort.are_ties)
-                    effort.are_ties = !divide_nearly(numerator.nearly_at(at), numerator.error_at(at), q, value[k]);
-                if (!effort.are_ties) continue;
-                if (numerator.is_finite)
-                    value[k] =
-                        nearest_quotients(numerator.at(at, effort.precisely), q, within, effort.precisely, is_known);
-                else
-                    value[k] = to_floats(where(in_front, numerator.nearly_at(at) * q.reciprocal));
-            }
-            if (effort.precisely || !any(narrow(~is_known))) break;
-            effort.precisely = true;
-        }
-        store_points(output, i, numerators, value, narrow(in_front));
-        const Words doubt = narrow(~is_known);
-        if (!any(doubt)) continue;
-        for (int lane = 0; lane < lanes; ++lane)
-            if (doubt[lane] != 0) doubtful |= std::uint64_t{1} << (i - begin + static_cast<std::size_t>(lane));
-    }
-    return {doubtful, effort};
-}
 
 // The largest |x|, |y|, |z| in each lane. A NaN is the largest.
 struct PointExtent {
@@ -214,8 +149,7 @@ struct PointBlock {
     }
 };
 
-template <class Job>
-TEXGEN_INLINE PointLanes load_points(const Job& job, std::size_t i) noexcept {
+TEXGEN_INLINE PointLanes load_points(const PointInput& job, std::size_t i) noexcept {
     Floats x, y, z;
     load_points(job, i, x, y, z);
     return {{to_doubles(x), to_doubles(y), to_doubles(z)}};
@@ -245,23 +179,75 @@ TEXGEN_INLINE Doubt fill_points_block(const PointJob& job, std::size_t begin, st
     return doubt;
 }
 
-// The sums of points, for fill_block_again().
+// The sums at points: q and the numerators, nearly and in two doubles.
 struct PointTerms {
-    const PointJob& job;
     TwofoldForm q;
     TwofoldForm numerator[2];
 
-    TEXGEN_INLINE double tolerance() const noexcept { return job.tolerance; }
-    TEXGEN_INLINE explicit PointTerms(const PointJob& points) noexcept : job(points), q(points.q) {
-        for (int k = 0; k < job.numerators; ++k) numerator[k] = TwofoldForm(points.numerator[k]);
+    TEXGEN_INLINE explicit PointTerms(const PointJob& job) noexcept : q(job.q) {
+        for (int k = 0; k < job.numerators; ++k) numerator[k] = TwofoldForm(job.numerator[k]);
     }
-    TEXGEN_INLINE PointLanes load(std::size_t i) const noexcept { return load_points(job, i); }
+    // Which are behind whatever their q, being no numbers.
     TEXGEN_INLINE LongWords are_dark(const PointLanes& at) const noexcept {
         const Doubles zero =
             (at.v[0] + at.v[1] + at.v[2]) * (q.is_finite ? 0.0 : std::numeric_limits<double>::quiet_NaN());
         return ~at_most(zero, zero);
     }
 };
+
+// Does a block again, from each_lane on at least. What a vector needs beyond that, up to 15 that follow it get at once.
+// Returns what stays in doubt, bit i for point begin + i.
+TEXGEN_INLINE std::uint64_t fill_block_again(const PointJob& job, const PointTerms& terms, std::size_t begin,
+                                             std::size_t end, Effort& effort) noexcept {
+    const auto numerators = static_cast<std::size_t>(job.numerators);
+    // Floats below are no further apart than the tolerance.
+    const Doubles within = power_of_two_below(Doubles{} + job.tolerance) * 0x1p24;
+    std::uint64_t doubtful = 0;
+    for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(lanes)) {
+        const PointLanes at = load_points(job, i);
+        const LongWords are_dark = terms.are_dark(at);
+        Floats value[2];
+        if (effort.rung <= Rung::each_lane || i / static_cast<std::size_t>(lanes) % 16 == 0) {
+            Doubles numerator[2], numerator_error[2];
+            for (std::size_t k = 0; k < numerators; ++k) {
+                numerator[k] = terms.numerator[k].nearly_at(at);
+                numerator_error[k] = terms.numerator[k].error_at(at);
+            }
+            Doubt doubt;
+            const LongWords in_front =
+                divide_certainly<true>(numerators, numerator, numerator_error, terms.q.nearly_at(at),
+                                       terms.q.error_at(at), job.tolerance, value, doubt);
+            const bool is_decided = !any(doubt.rounding | narrow(doubt.side & ~are_dark));
+            effort = {is_decided ? Rung::each_lane : Rung::closely, false, effort.precisely && !is_decided};
+            if (is_decided) {
+                store_points(job, i, numerators, value, narrow(in_front));
+                continue;
+            }
+        }
+        LongWords in_front, is_known;
+        for (;;) {
+            TwofoldDivisor q(terms.q.at(at, effort.precisely));
+            in_front = q.in_front &= ~are_dark;
+            is_known = q.is_known | are_dark;
+            for (std::size_t k = 0; k < numerators; ++k) {
+                const auto& numerator = terms.numerator[k];
+                if (!effort.are_ties)
+                    effort.are_ties = !divide_nearly(numerator.nearly_at(at), numerator.error_at(at), q, value[k]);
+                if (!effort.are_ties) continue;
+                if (numerator.is_finite)
+                    value[k] =
+                        nearest_quotients(numerator.at(at, effort.precisely), q, within, effort.precisely, is_known);
+                else
+                    value[k] = to_floats(where(in_front, numerator.nearly_at(at) * q.reciprocal));
+            }
+            if (effort.precisely || !any(narrow(~is_known))) break;
+            effort.precisely = true;
+        }
+        store_points(job, i, numerators, value, narrow(in_front));
+        if (any(~is_known)) doubtful |= lane_bits(~is_known) << (i - begin);
+    }
+    return doubtful;
+}
 
 TEXGEN_INLINE std::size_t end_of_block(const PointJob& job, std::size_t begin) noexcept {
     const std::size_t next = (begin / exact_block + 1) * exact_block;
@@ -284,9 +270,8 @@ TEXGEN_APART Undecided fill_points_again(const PointJob& original, std::size_t b
     }
     const PointTerms terms(original);
     for (;;) {
-        const Again again = fill_block_again(original, terms, begin, end, effort);
-        if (again.doubtful != 0) return {begin, again.doubtful};
-        effort = again.effort;
+        const std::uint64_t doubtful = fill_block_again(original, terms, begin, end, effort);
+        if (doubtful != 0) return {begin, doubtful};
         begin = end;
         const bool is_first_of_eight = begin / exact_block % 8 == 0;
         if (begin == original.count || (is_first_of_eight && effort.rung == Rung::each_lane)) return {begin, 0};
