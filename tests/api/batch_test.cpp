@@ -2,13 +2,17 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
+#include <fstream>
 #include <limits>
 #include <optional>
 #include <span>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -453,6 +457,50 @@ TEST_CASE("a tie that has more bits than two doubles is decided as for each tria
             const support::Quotient u = at.over_q(k);
             REQUIRE(compare(u, middle[k] * 0x1p-25) == 0);
             CHECK_MESSAGE(is_nearest(out[k][0], u), support::hex(triangle), " at ", support::text(rect));
+        }
+    }
+}
+
+TEST_CASE("tiles next to the slowest that were found have the bits of a setup") {
+    std::ifstream file(TEXGEN_TEST_DATA "/promises/worst_inputs.txt");
+    std::vector<std::vector<float>> found;
+    for (std::string line; std::getline(file, line);) {
+        if (!line.starts_with("interpolate a batch")) continue;
+        std::istringstream words(line.substr(line.rfind('|') + 1));
+        std::vector<float>& numbers = found.emplace_back();
+        for (std::string word; words >> word;) numbers.push_back(std::strtof(word.c_str(), nullptr));
+        REQUIRE(numbers.size() == 23);
+    }
+    REQUIRE(!found.empty());
+    Random random(13);
+    for (int round = 0; round < 20000; ++round) {
+        std::vector<float> n = found[random.bits() % found.size()];
+        for (int change = random.integer(0, 2); change > 0; --change) {
+            float& number = n[random.bits() % n.size()];
+            const auto flipped =
+                std::bit_cast<float>(std::bit_cast<std::uint32_t>(number) ^ std::uint32_t{1} << random.integer(0, 31));
+            number = random.coin() ? flipped : std::round(number);
+        }
+        if (std::isnan(n[21]) || std::isnan(n[22])) continue;
+        const auto pixel = [](float at) { return static_cast<int>(std::clamp(at, -0x1p30f, 0x1p30f)); };
+        const auto vertex = [&](const float* v) {
+            return texgen::WindowVertex{{v[0], v[1]}, v[2], {v[3], v[4], v[5], v[6]}};
+        };
+        const Triangle triangle{vertex(&n[0]), vertex(&n[7]), vertex(&n[14])};
+        const FragmentRect rect{pixel(n[21]), pixel(n[22]), random.coin() ? 8 : 5, 8};
+        const auto setup = TriangleSetup::of(triangle, support::everywhere(), texgen::exact);
+        if (!setup) continue;
+        Outputs expected(count_of(rect), 11u);
+        if (interpolate(*setup, rect, expected.spans()) == Work::nothing) continue;
+        TriangleBatch batch(support::everywhere());
+        batch.assign({&triangle, 1});
+        Outputs out(count_of(rect), 11u);
+        interpolate(batch, {&rect, 1}, out.spans());
+        for (std::size_t i = 0; i < count_of(rect); ++i) {
+            const bool is_same = out[3][i] == expected[3][i] &&
+                                 (out[3][i] == 0.0f || (out[0][i] == expected[0][i] && out[1][i] == expected[1][i]));
+            CHECK_MESSAGE(is_same, support::hex(triangle), " at ", support::text(rect), " fragment ", i);
+            if (!is_same) return;
         }
     }
 }

@@ -1,5 +1,5 @@
-// The functions of a batch's tiles as integers modulo 2^64, as PlaneResidues in triangle/close_planes.hpp has them, a tile in
-// each lane: for quotients next to the middle of two floats. Included by batch.inc.hpp.
+// A batch's tiles that doubles leave in doubt: their functions about themselves, and as integers modulo 2^64, as PlaneResidues in
+// triangle/close_planes.hpp has them, a tile in each lane. Included by batch.inc.hpp.
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
