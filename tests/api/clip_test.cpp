@@ -96,6 +96,12 @@ TEST_CASE("a polygon in front of the near plane keeps every bit, and its order")
             polygon[1].strq.y = infinity;
             REQUIRE_MESSAGE(bits(clipped(polygon, plane)) == bits(polygon), hex_of(polygon));
         }
+        // In the plane itself nothing is behind.
+        const float z = plane.reversed ? 1.0f : plane.range == DepthRange::zero_to_one ? 0.0f : -1.0f;
+        Polygon polygon;
+        for (const glm::vec2 corner : {glm::vec2(0.0f, 0.0f), glm::vec2(1.0f, 0.0f), glm::vec2(0.0f, 1.0f)})
+            polygon.push_back({glm::vec4(corner, z, 1.0f), glm::vec4(corner, 0.0f, 1.0f)});
+        CHECK(bits(clipped(polygon, plane)) == bits(polygon));
     }
 }
 
