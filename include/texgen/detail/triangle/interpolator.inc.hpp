@@ -44,7 +44,7 @@ public:
         output_[0] = output;
     }
 
-    Corners corners_at(const Tile& tile) noexcept {
+    TEXGEN_APART Corners corners_at(const Tile& tile) noexcept {
         const Corners at = plain_corners(tile);
         return at.all_behind() || !at.cancel() ? at : corners_of(close_ramps(tile));
     }
@@ -80,7 +80,7 @@ private:
 
     void fill(const Tile& tile, const Corners& at, const Plan& plan) noexcept {
         if (at.well_in_front()) return plan.chunk != 0 ? fill_polynomial(tile, at, plan) : fill_float_divided(tile, at);
-        split(tile, at, [&](const Tile& half) { fill(half); });
+        split(tile, at);
     }
 
     // They are made when a tile first needs them, for all of the rectangle.
@@ -126,17 +126,16 @@ private:
     }
 
     // A tile behind is cleared; one that is in doubt is halved, until it is so small that it is divided closely.
-    template <class FillHalf>
-    void split(const Tile& tile, const Corners& at, const FillHalf& fill_half) noexcept {
+    TEXGEN_APART void split(const Tile& tile, const Corners& at) noexcept {
         if (at.all_behind()) return clear(tile);
         if (tile.width <= 8 && tile.height <= 8) return fill_closely(tile, at);
-        for (const Tile& half : tile.halves()) fill_half(half);
+        for (const Tile& half : tile.halves())
+            triangle_.tolerance == 0.0 ? fill_exact(half, corners_at(half)) : fill(half);
     }
 
     void fill_exact(const Tile& tile, const Corners& at) noexcept {
         // Beyond a ratio of 2^12 the error bound of the largest quotient would make the smallest ones doubtful.
-        if (!at.well_in_front() || !(at.least_q > 0x1p-12 * at.largest_q))
-            return split(tile, at, [&](const Tile& half) { fill_exact(half, corners_at(half)); });
+        if (!at.well_in_front() || !(at.least_q > 0x1p-12 * at.largest_q)) return split(tile, at);
         TileJob job = make_job(tile, at);
         const Double2 error = at.quotient_error(at.largest_quotient());
         TEXGEN_UNROLL

@@ -72,7 +72,8 @@ inline std::size_t offset_in(const Tile& rect, std::int64_t x, std::int64_t y) n
 }
 
 // Gives a tile of them one value; an empty output has none.
-inline void fill_rows(const std::span<float>& output, const Tile& rect, const Tile& tile, float value) noexcept {
+TEXGEN_APART inline void fill_rows(const std::span<float>& output, const Tile& rect, const Tile& tile,
+                                   float value) noexcept {
     if (output.empty()) return;
     for (std::int64_t y = tile.y; y < tile.y + tile.height; ++y) {
         float* const row = output.data() + offset_in(rect, tile.x, y);
