@@ -153,21 +153,20 @@ TileJob::Unit divide_in_pairs(const TileJob& job, const TileJob::Unit& first) no
 
 // A function of a row's index.
 struct CloseRow {
-    Doubles high, high_dx, low, low_dx, error;
-    double grain;
+    double high, high_dx, low, low_dx, error, grain;
     std::uint64_t residue, residue_dx;
 
     TEXGEN_INLINE void take(const CloseFunction& function) noexcept {
-        high_dx = Doubles{} + function.high.dx;
-        low_dx = Doubles{} + function.low.dx;
-        error = Doubles{} + 1.01 * function.error;
+        high_dx = function.high.dx;
+        low_dx = function.low.dx;
+        error = 1.01 * function.error;
         grain = function.grain;
         residue_dx = function.residue.dx;
     }
 
     TEXGEN_INLINE void move_to(const CloseFunction& function, int y) noexcept {
-        high = Doubles{} + (function.high.base + y * function.high.dy);
-        low = Doubles{} + (function.low.base + y * function.low.dy);
+        high = function.high.base + y * function.high.dy;
+        low = function.low.base + y * function.low.dy;
         residue = function.residue.base + static_cast<std::uint64_t>(y) * function.residue.dy;
     }
 
@@ -254,7 +253,7 @@ TEXGEN_INLINE Words decide_zeros(const LongWords& are_zeros, const Words& doubt,
 // sign of F - m Q decides: that of its residue, if there is one that says all of it, else of what two doubles hold. It is a
 // multiple of the grain of its terms: what is certainly smaller is 0, and the tie is certain, too. Returns the lanes that stay in
 // doubt.
-TEXGEN_INLINE Words divide_closely(const CloseRow& row, double q_grain, const CloseQ& q, const Doubles& half_q_error,
+TEXGEN_INLINE Words divide_closely(const CloseRow& row, double q_grain, const CloseQ& q, double half_q_error,
                                    const Doubles& index, std::int64_t x, Floats& value) noexcept {
     const Doubles high = index * row.high_dx + row.high;
     const Doubles low = index * row.low_dx + row.low;
@@ -304,7 +303,7 @@ std::uint64_t fill_tile_closely(const TileJob& job, const CloseFunctions& functi
     for (std::size_t k = 0; k < 3; ++k) rows[k].take(*function[k]);
     const CloseRow& q_row = rows[2];
     RowOutputs row(job, unit.y_begin);
-    const Doubles half_q_error = q_row.error * 0.5;
+    const double half_q_error = q_row.error * 0.5;
     const bool q_is_constant =
         is_constant(functions.q.high) && is_constant(functions.q.low) && is_constant(functions.q.residue);
     bool is_known = false;
