@@ -351,7 +351,7 @@ public:
 private:
     // On the line through corners j and k the third one, whose numbers may be long, has no part, and along either axis
     // G_j : G_k = w_k (k - p) : w_j (p - j). False where p is on none, or a difference is no double.
-    bool is_on_side(const DoubleDouble (&to_x)[3], const DoubleDouble (&to_y)[3]) noexcept {
+    TEXGEN_RARE bool is_on_side(const DoubleDouble (&to_x)[3], const DoubleDouble (&to_y)[3]) noexcept {
         for (std::size_t i = 0; i < 3; ++i) {
             const std::size_t j = (i + 1) % 3;
             const std::size_t k = (i + 2) % 3;
