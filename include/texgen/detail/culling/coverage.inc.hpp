@@ -112,11 +112,18 @@ private:
 
     void decide_doubt() noexcept {
         if (!double_forms_) double_forms_.make(forms_.in_double());
-        int classes[box_block];
-        kernels_.bound(*double_forms_, block_, classes);
-        for (std::size_t i = 0; i < count_; ++i)
-            *out_[i] =
-                classes[i] == body_in_doubt ? exact_coverage(forms_, *box_[i]) : static_cast<Coverage>(classes[i]);
+        BoxBounds bounds;
+        kernels_.bound(*double_forms_, block_, bounds);
+        for (std::size_t i = 0; i < count_; ++i) {
+            if (bounds.upper[i] < 0.0)
+                *out_[i] = Coverage::outside;
+            else if (bounds.lower[i] < 0.0)
+                *out_[i] = exact_coverage(forms_, *box_[i]);
+            else if (bounds.inner_lower[i] >= 0.0)
+                *out_[i] = Coverage::inside;
+            else if (!(bounds.inner_upper[i] < 0.0))
+                *out_[i] = exact_coverage(forms_, *box_[i]);
+        }
     }
 
     const BoxBatchKernels& kernels_;

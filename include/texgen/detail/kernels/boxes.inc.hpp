@@ -120,40 +120,29 @@ TEXGEN_INLINE void bound_exactly(const ExactForm& form, bool largest, const BoxB
     upper = minimum(high + lost - least_lit, upper);
 }
 
-TEXGEN_INLINE LongWords are_negative(const Doubles& a) noexcept { return greater(0.0 - a, 0.0); }
-
-// What is in none of these three is partial.
-TEXGEN_INLINE void store_classes(int* out, const LongWords& outside, const LongWords& inside,
-                                 const LongWords& in_doubt) noexcept {
-    store(out, 1 - (narrow(outside) & 1) + (narrow(inside) & 1) + (narrow(in_doubt) & (body_in_doubt - 1)));
-}
-
 // The least of the largest values of the sides, and of the least ones of the inner sides; q first, which is negative for
-// half of what is at the apex. Where one is negative for every box, the others are not asked. The signs of bounds are right,
-// and where the lower one is negative beside an upper one that is not, nothing is known.
+// half of what is at the apex. Where one is negative for every box, the others are not asked.
 template <class CompiledWhereCalled = void>
-void bound_boxes(const DoubleForms& forms, const BoxBlock& boxes, int* classes) noexcept {
+void bound_boxes(const DoubleForms& forms, const BoxBlock& boxes, BoxBounds& bounds) noexcept {
     for (std::size_t i = 0; i < box_block; i += static_cast<std::size_t>(lanes)) {
         Doubles all_lower = Doubles{} + 1.0;
         Doubles all_upper = all_lower;
-        LongWords outside{}, in_doubt{};
         for (const bool largest : {true, false}) {
             for (std::size_t k = forms.count; k-- > 0;) {
-                if (!any(narrow(~are_negative(all_upper)))) break;
+                if (!any(narrow(~greater(0.0 - all_upper, 0.0)))) break;
                 const DoubleForms::Form& sides = forms.form[k];
                 const ExactForm& form = largest ? sides.outer : sides.inner;
                 Doubles lower;
                 Doubles upper;
                 bound_form(form, largest, boxes, i, sides.least_lit, lower, upper);
-                if (any(narrow(are_negative(lower) & ~are_negative(upper))))
-                    bound_exactly(form, largest, boxes, i, sides.least_lit, lower, upper);
+                const LongWords is_in_doubt = greater(0.0 - lower, 0.0) & ~greater(0.0 - upper, 0.0);
+                if (any(narrow(is_in_doubt))) bound_exactly(form, largest, boxes, i, sides.least_lit, lower, upper);
                 all_lower = minimum(lower, all_lower);
                 all_upper = minimum(upper, all_upper);
             }
-            if (largest) outside = are_negative(all_upper);
-            in_doubt = in_doubt | (are_negative(all_lower) & ~are_negative(all_upper));
+            store((largest ? bounds.lower : bounds.inner_lower) + i, all_lower);
+            store((largest ? bounds.upper : bounds.inner_upper) + i, all_upper);
         }
-        store_classes(classes + i, outside, ~are_negative(all_lower), in_doubt);
     }
 }
 
@@ -222,7 +211,8 @@ void bound_spheres(const FormLanes& forms, std::size_t count, const SphereBlock&
                 for (std::size_t g = form_of_q + 1; g < count; ++g) try_edge(f, g);
         }
         const LongWords in_doubt = (perhaps_outside | (perhaps_inside & not_inside)) & ~outside;
-        store_classes(classes + i, outside, ~(not_inside | outside | in_doubt), in_doubt);
+        const Words is_inside = narrow(~(not_inside | outside | in_doubt)) & 1;
+        store(classes + i, 1 + is_inside - (narrow(outside) & 1) + (narrow(in_doubt) & (body_in_doubt - 1)));
     }
 }
 

@@ -112,6 +112,13 @@ struct SphereBlock {
     double centre[3][box_block];
     double radius[box_block];
 };
+// Bounds on the least over the forms of the largest value over each box, and on the least of the inner ones: their
+// signs are right, and where a lower one is negative beside an upper one that is not, nothing is known.
+struct BoxBounds {
+    double lower[box_block], upper[box_block];
+    double inner_lower[box_block], inner_upper[box_block];
+};
+
 // Each table is compiled where it is asked for: a program has what its questions need. The forms are made in double and, for
 // many bodies, in float.
 struct FormKernels {
@@ -147,7 +154,7 @@ using Classify = void (*)(const FloatForms& forms, const float* bodies, std::siz
 struct BoxBatchKernels {
     Classify classify;
     // What doubles are certain of, and where they are not, pairs of doubles. For proper boxes, which may be infinite.
-    void (*bound)(const DoubleForms& forms, const BoxBlock& boxes, int* classes) noexcept;
+    void (*bound)(const DoubleForms& forms, const BoxBlock& boxes, BoxBounds& bounds) noexcept;
     // The least over them of the largest value over each box, never below the exact one.
     void (*separate)(const SeparatingForms& planes, const BoxBlock& boxes, double* least_of_largest) noexcept;
 };
