@@ -377,7 +377,8 @@ TEXGEN_INLINE bool any_zero(const WideWords& distance) noexcept {
 #if TEXGEN_LANE_BYTES == 64
     return __builtin_ia32_cmpd512_mask(distance, WideWords{}, 0, 0xffff) != 0;
 #else
-    return any(distance == 0);
+    const WideWords is_zero = distance == 0;
+    return any(is_zero);
 #endif
 }
 // Whether a number that is not subnormal is not 0 where either distance is.
