@@ -114,7 +114,7 @@ inline TileSurvey survey(const TriangleFunctions& triangle, const Tile& tile) no
     for (;;) {
         choose_plan(triangle, tile, found.at, found.plan);
         if (found.close || found.plan.work == Work::nothing || !found.at.cancel()) return found;
-        found.close.make(close_ramps_of(triangle.planes, found.at, 0, 1, tile));
+        found.close.make(ClosePlanes(triangle.planes, tile).ramps(0, 1));
         found.at = corners_of(*found.close);
     }
 }
