@@ -75,7 +75,7 @@ public:
 
     // A box that is partial to the planes, or in doubt.
     void add(const Box& box, bool is_in_doubt, Coverage& out) noexcept {
-        if (!has_points(box) || !forms_.can_say()) {
+        if (!forms_.can_say()) {
             out = exact_coverage(forms_, box);
             return;
         }
@@ -107,7 +107,8 @@ private:
         double least_of_largest[box_block];
         kernels_.separate(separating_, block_, least_of_largest);
         for (std::size_t i = 0; i < count_; ++i)
-            if (*out_[i] == Coverage::partial && least_of_largest[i] < 0.0) *out_[i] = Coverage::outside;
+            if (*out_[i] == Coverage::partial && least_of_largest[i] < 0.0 && has_points(*box_[i]))
+                *out_[i] = Coverage::outside;
     }
 
     void decide_doubt() noexcept {
