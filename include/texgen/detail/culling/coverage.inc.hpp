@@ -54,15 +54,11 @@ inline Coverage exact_coverage(const LitForms& forms, const Box& box, const Form
 
 inline namespace TEXGEN_BUILD {
 
-// Whether a box holds a point that is a number.
+// Whether a box holds a point that is a number: of a NaN and beyond all numbers, inf - inf, an extent is a NaN.
 inline bool has_points(const Box& box) noexcept {
     // Without a branch for each.
     bool result = true;
-    for (glm::length_t j = 0; j < 3; ++j) {
-        result &= box.min[j] <= box.max[j];
-        result &= box.min[j] <= (std::numeric_limits<float>::max)();
-        result &= box.max[j] >= std::numeric_limits<float>::lowest();
-    }
+    for (glm::length_t j = 0; j < 3; ++j) result &= widened(box.max[j]) - widened(box.min[j]) >= 0.0;
     return result;
 }
 
@@ -75,7 +71,7 @@ public:
 
     // A box that is partial to the planes, or in doubt.
     void add(const Box& box, bool is_in_doubt, Coverage& out) noexcept {
-        if (!forms_.can_say()) {
+        if (!has_points(box) || !forms_.can_say()) {
             out = exact_coverage(forms_, box);
             return;
         }
@@ -107,8 +103,7 @@ private:
         double least_of_largest[box_block];
         kernels_.separate(separating_, block_, least_of_largest);
         for (std::size_t i = 0; i < count_; ++i)
-            if (*out_[i] == Coverage::partial && least_of_largest[i] < 0.0 && has_points(*box_[i]))
-                *out_[i] = Coverage::outside;
+            if (*out_[i] == Coverage::partial && least_of_largest[i] < 0.0) *out_[i] = Coverage::outside;
     }
 
     void decide_doubt() noexcept {

@@ -120,23 +120,11 @@ TEXGEN_INLINE void bound_exactly(const ExactForm& form, bool largest, const BoxB
     upper = minimum(high + lost - least_lit, upper);
 }
 
-// Whether a box holds a point that is a number.
-TEXGEN_INLINE LongWords have_points(const BoxBlock& boxes, std::size_t i) noexcept {
-    LongWords result = ~LongWords{};
-    TEXGEN_UNROLL
-    for (std::size_t j = 0; j < 3; ++j) {
-        const auto min = load<Doubles>(boxes.min[j] + i), max = load<Doubles>(boxes.max[j] + i);
-        result &= at_most(min, max) & at_most(min, Doubles{} + 0x1p128) & at_most(Doubles{} - 0x1p128, max);
-    }
-    return result;
-}
-
 // The least of the largest values of the sides, and of the least ones of the inner sides; q first, which is negative for
 // half of what is at the apex. Where one is negative for every box, the others are not asked.
 template <class CompiledWhereCalled = void>
 void bound_boxes(const DoubleForms& forms, const BoxBlock& boxes, BoxBounds& bounds) noexcept {
     for (std::size_t i = 0; i < box_block; i += static_cast<std::size_t>(lanes)) {
-        const LongWords are_known = have_points(boxes, i);
         Doubles all_lower = Doubles{} + 1.0;
         Doubles all_upper = all_lower;
         for (const bool largest : {true, false}) {
@@ -152,8 +140,8 @@ void bound_boxes(const DoubleForms& forms, const BoxBlock& boxes, BoxBounds& bou
                 all_lower = minimum(lower, all_lower);
                 all_upper = minimum(upper, all_upper);
             }
-            store((largest ? bounds.lower : bounds.inner_lower) + i, select(are_known, all_lower, Doubles{} - 1.0));
-            store((largest ? bounds.upper : bounds.inner_upper) + i, select(are_known, all_upper, Doubles{} + 1.0));
+            store((largest ? bounds.lower : bounds.inner_lower) + i, all_lower);
+            store((largest ? bounds.upper : bounds.inner_upper) + i, all_upper);
         }
     }
 }

@@ -153,7 +153,7 @@ using Classify = void (*)(const FloatForms& forms, const float* bodies, std::siz
 
 struct BoxBatchKernels {
     Classify classify;
-    // What doubles are certain of, and where they are not, pairs of doubles. Nothing of boxes without points.
+    // What doubles are certain of, and where they are not, pairs of doubles. For proper boxes, which may be infinite.
     void (*bound)(const DoubleForms& forms, const BoxBlock& boxes, BoxBounds& bounds) noexcept;
     // The least over them of the largest value over each box, never below the exact one.
     void (*separate)(const SeparatingForms& planes, const BoxBlock& boxes, double* least_of_largest) noexcept;
