@@ -141,24 +141,6 @@ TEXGEN_RARE inline void take_planes(const Corners& at, CloseFunctions& functions
     functions.q_unit = 0x1.8p28 / reciprocal_power_of_two(larger(larger(-at.least_q, at.largest_q), at.q_error));
 }
 
-// To twice the precision: the planes as they are will do where the grains make them exact.
-TEXGEN_APART inline CloseRamps close_ramps_of(const TrianglePlanes& planes, const Corners& at, glm::length_t first,
-                                              glm::length_t second, const Tile& tile) noexcept {
-    const PlaneGrains grains(planes);
-    const auto is_exact = [&](glm::length_t coordinate, Ramp plane, double error, CloseRamp& ramp) {
-        const bool is_known = take_multiples(plane, error, grains.with(grains.of_values(coordinate)));
-        ramp = {{{plane.base, 0.0}, {plane.dx, 0.0}, {plane.dy, 0.0}}, 0.0};
-        return is_known;
-    };
-    const auto& [base, dx, dy] = at.numerator_ramp;
-    CloseRamps ramps{tile, {}};
-    auto& [s, t, q] = ramps.function;
-    const bool are_exact = is_exact(first, {base[0], dx[0], dy[0]}, at.numerator_error[0], s) &&
-                           is_exact(second, {base[1], dx[1], dy[1]}, at.numerator_error[1], t) &&
-                           is_exact(3, at.q_ramp, at.q_error, q);
-    return are_exact ? ramps : ClosePlanes(planes, tile).ramps(first, second);
-}
-
 // The least and the largest G = F - bound Q at the corners, which is positive above a side of the region and negative below
 // it, and how far from 0 they must be.
 struct SideOfBound {

@@ -85,9 +85,7 @@ private:
 
     // They are made when a tile first needs them, for all of the rectangle.
     TEXGEN_APART CloseRamps close_ramps(const Tile& tile) noexcept {
-        if (!close_)
-            close_.make(
-                close_ramps_of(triangle_.planes, plain_corners(rect_), coordinate_of(0), coordinate_of(1), rect_));
+        if (!close_) close_.make(ClosePlanes(triangle_.planes, rect_).ramps(coordinate_of(0), coordinate_of(1)));
         return close_->moved_to(tile);
     }
 
