@@ -179,13 +179,18 @@ void bound_spheres(const FormLanes& forms, std::size_t count, const SphereBlock&
             const double across = a[0][f] * a[0][g] + a[1][f] * a[1][g] + a[2][f] * a[2][g];
             const double squared_f = forms.slope[f] * forms.slope[f];
             const double squared_g = forms.slope[g] * forms.slope[g];
-            // Of planes that are nearly one, the weights are what rounding leaves. A sum of two of the same direction is as
-            // steep as they are but for cos(2^-5), so that it is negative nowhere but beside one of them.
+            // Of planes that are nearly parallel the weights are what rounding leaves. Where they face the same way a sum of
+            // theirs is as steep as they are but for cos(2^-5): negative nowhere but beside one of them. Where they face each
+            // other, with c the cosine, of_f + of_g is (c - 1) (f + g) in units of their slopes, so that f + g < 0.
             if (!(across * across < (1.0 - 0x1p-8) * (squared_f * squared_g))) {
                 const auto is_beside = [&](std::size_t k) {
                     return greater(error[k], value[k] + radius * (0.99 * forms.slope[k]));
                 };
-                perhaps_outside = perhaps_outside | (across > 0.0 ? asked & (is_beside(f) | is_beside(g)) : asked);
+                const Doubles at_f = value[f] * forms.slope[g], at_g = value[g] * forms.slope[f];
+                const Doubles slack = (magnitude(at_f) + magnitude(at_g)) * 0x1p-47 +
+                                      (error[f] * forms.slope[g] + error[g] * forms.slope[f]) * 2.0;
+                perhaps_outside = perhaps_outside |
+                                  (asked & (across > 0.0 ? is_beside(f) | is_beside(g) : ~greater(at_f + at_g, slack)));
                 return;
             }
             Doubles of_f = value[g] * across - value[f] * squared_g;
