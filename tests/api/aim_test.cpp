@@ -210,6 +210,39 @@ TEST_CASE("the translation rounds once where its terms cancel to the last of 106
     CHECK(cancelled > 300);
 }
 
+TEST_CASE("the translation rounds once where coordinates of the position are any distance apart") {
+    Random random(87);
+    int answered = 0, tiny = 0;
+    for (int i = 0; i < 20000; ++i) {
+        // Rows with zeros and without; and of two short coordinates that a row cancels, beside any third.
+        const auto direction = [&] {
+            return i % 2 == 0 ? random.direction()
+                              : glm::dvec3(random.integer(-4, 4), random.integer(-4, 4), random.integer(-4, 4));
+        };
+        Aim aim{glm::dvec3(0.0), direction(), direction()};
+        const auto at_origin = look_at(aim);
+        if (!at_origin) continue;
+        const int row = random.integer(0, 2), x = random.integer(0, 2), y = (x + 1) % 3, z = (x + 2) % 3;
+        const int exponent = random.integer(-1021, 960);
+        aim.position[x] = std::ldexp(at_origin->matrix()[y][row], exponent);
+        aim.position[y] = -std::ldexp(at_origin->matrix()[x][row], exponent);
+        if (random.coin()) aim.position[y] = std::ldexp(random.uniform(-1.0, 1.0), random.integer(-1074, 1000));
+        aim.position[z] = std::ldexp(random.uniform(-1.0, 1.0), random.integer(-1074, 1000));
+        aim.target = aim.position;
+        for (int k = 0; k < 3; ++k) {
+            const int of_position = aim.position[k] == 0.0 ? -1074 : std::ilogb(aim.position[k]);
+            aim.target[k] += std::ldexp(direction()[k], std::max(of_position, -900));
+        }
+        const auto view = look_at(aim);
+        if (!view) continue;
+        ++answered;
+        tiny += std::fabs(view->matrix()[3][row]) < 0x1p-400 * std::fabs(aim.position[z]);
+        REQUIRE_MESSAGE(translation_error(view->matrix(), aim.position) <= 1.0, describe(aim));
+    }
+    CHECK(answered > 10000);
+    CHECK(tiny > 100);
+}
+
 TEST_CASE("positions and targets of any finite numbers are an aim, unless its translation is none of doubles") {
     Random random(86);
     int at_end = 0;

@@ -2,15 +2,28 @@
 
 namespace TEXGEN_DETAIL {
 
-// row . point for a row of a rotation, within 1 ulp however its terms cancel: far from the origin they do. The point is
-// brought to where neither products nor their last bits leave the range.
+// row . point for a row of a rotation, within 1 ulp however its terms cancel: far from the origin they do. They are brought to
+// where neither they nor their last bits leave the range. Two terms that cancel leave 0, or 2^-106 of themselves: one that is
+// 2^-200 of the largest counts where all others leave 0.
 inline double rotated(const glm::dvec3& row, const glm::dvec3& point) noexcept {
-    if (point == glm::dvec3(0.0)) return 0.0;
-    const int exponent = std::ilogb(largest(point));
-    const int shift = exponent > 900 ? 900 - exponent : exponent < -700 ? -700 - exponent : 0;
+    constexpr int none = -10000;  // less than any
+    int exponent[3], largest = none;
+    for (glm::length_t i = 0; i < 3; ++i) {
+        exponent[i] = row[i] == 0.0 || point[i] == 0.0 ? none : std::ilogb(row[i]) + std::ilogb(point[i]);
+        if (exponent[i] > largest) largest = exponent[i];
+    }
     Expansion<6> sum;
-    for (glm::length_t i = 0; i < 3; ++i) sum.add_product(row[i], std::scalbn(point[i], shift));
-    return std::scalbn(sum.estimate(), -shift);
+    double last = 0.0;
+    for (glm::length_t i = 0; i < 3; ++i) {
+        if (exponent[i] == none) continue;
+        const int of_row = std::ilogb(row[i]);
+        if (exponent[i] < largest - 200)
+            last = row[i] * point[i];
+        else
+            sum.add_product(std::scalbn(row[i], -of_row), std::scalbn(point[i], of_row - largest));
+    }
+    const double value = sum.estimate();
+    return value != 0.0 ? std::scalbn(value, largest) : last;
 }
 
 // A difference of two points as it is, unrounded: the sum of both.
