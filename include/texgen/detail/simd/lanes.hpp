@@ -137,7 +137,7 @@ inline bool all_less(const Double2& a, const Double2& b) noexcept { return a[0] 
 
 // Of 512 bits GCC 12 makes two instructions.
 #ifdef __clang__
-#define TEXGEN_MASKED_OR(a, bits, b) ((a) & (bits)) | (b)
+#define TEXGEN_MASKED_OR(a, bits, b) (((a) & (bits)) | (b))
 #else
 #define TEXGEN_MASKED_OR(a, bits, b) __builtin_ia32_pternlogq512_mask(a, bits, b, 0xea, 0xff)
 #endif

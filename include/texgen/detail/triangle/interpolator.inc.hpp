@@ -153,10 +153,7 @@ private:
         const bool q_is_constant = is_constant(functions.q.high);
         if (q_is_constant || !functions.are_close) add_residues(tile, functions);
         // Residues cost less than two doubles, and decide where the planes are exact or err by less than residues know.
-        if (!functions.are_close && !are_decided_by_residues(functions)) {
-            close_.make(ClosePlanes(triangle_.planes, rect_).ramps(coordinate_of(0), coordinate_of(1)));
-            sharpen(tile, functions);
-        }
+        if (!functions.are_close && !are_decided_by_residues(functions)) sharpen(tile, functions);
         // What residues decide of a few fragments they decide sooner than their quotients are seen to be exact.
         if (q_is_constant && (functions.are_close || tile.width + tile.height > 4) &&
             take_exact_quotients(functions, job))
