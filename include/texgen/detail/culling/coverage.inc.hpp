@@ -62,83 +62,18 @@ inline bool has_points(const Box& box) noexcept {
     return result;
 }
 
-// Boxes of which floats do not say what they are, gathered until they fill vectors.
-template <class CompiledWhereCalled = void>
-class OpenBoxes {
-public:
-    OpenBoxes(const BoxBatchKernels& kernels, const LitForms& forms, const SeparatingForms& separating) noexcept
-        : kernels_(kernels), forms_(forms), separating_(separating) {}
-
-    // A box that is partial to the planes, or in doubt.
-    void add(const Box& box, bool is_in_doubt, Coverage& out) noexcept {
-        if (!has_points(box) || !forms_.can_say()) {
-            out = exact_coverage(forms_, box);
-            return;
-        }
-        for (std::size_t j = 0; j < 3; ++j) {
-            block_.min[j][count_] = widened(box.min[static_cast<glm::length_t>(j)]);
-            block_.max[j][count_] = widened(box.max[static_cast<glm::length_t>(j)]);
-        }
-        box_[count_] = &box;
-        out_[count_] = &out;
-        is_in_doubt_ = is_in_doubt_ || is_in_doubt;
-        if (++count_ == box_block) decide();
-    }
-
-    // The planes in double, where there is doubt; and those that a further plane separates from the pyramid are
-    // outside.
-    void decide() noexcept {
-        if (count_ == 0) return;
-        for (std::size_t i = 0; i < count_; ++i) *out_[i] = Coverage::partial;
-        if (is_in_doubt_) decide_doubt();
-        bool any_is_partial = false;
-        for (std::size_t i = 0; i < count_; ++i) any_is_partial |= *out_[i] == Coverage::partial;
-        if (any_is_partial) separate();
-        count_ = 0;
-        is_in_doubt_ = false;
-    }
-
-private:
-    void separate() noexcept {
-        double least_of_largest[box_block];
-        kernels_.separate(separating_, block_, least_of_largest);
-        for (std::size_t i = 0; i < count_; ++i)
-            if (*out_[i] == Coverage::partial && least_of_largest[i] < 0.0) *out_[i] = Coverage::outside;
-    }
-
-    void decide_doubt() noexcept {
-        if (!double_forms_) double_forms_.make(forms_.in_double());
-        BoxBounds bounds;
-        kernels_.bound(*double_forms_, block_, bounds);
-        for (std::size_t i = 0; i < count_; ++i) {
-            if (bounds.upper[i] < 0.0)
-                *out_[i] = Coverage::outside;
-            else if (bounds.lower[i] < 0.0)
-                *out_[i] = exact_coverage(forms_, *box_[i]);
-            else if (bounds.inner_lower[i] >= 0.0)
-                *out_[i] = Coverage::inside;
-            else if (!(bounds.inner_upper[i] < 0.0))
-                *out_[i] = exact_coverage(forms_, *box_[i]);
-        }
-    }
-
-    const BoxBatchKernels& kernels_;
-    const LitForms& forms_;
-    const SeparatingForms& separating_;
-    OnDemand<DoubleForms> double_forms_;
-    BoxBlock block_{};
-    const Box* box_[box_block];
-    Coverage* out_[box_block];
-    std::size_t count_ = 0;
-    bool is_in_doubt_ = false;
-};
-
 template <class CompiledWhereCalled = void>
 void cover(const LitForms& forms, const FloatForms& float_forms, const SeparatingForms& separating,
            std::span<const Box> boxes, const std::span<Coverage>& out) noexcept {
     const BoxBatchKernels& kernels = chosen<BoxBatchKernels>();
-    OpenBoxes<> open(kernels, forms, separating);
-    classify_many<6>(boxes, out, kernels.classify, float_forms, open);
+    DoubleForms double_forms;
+    bool is_made = false;
+    classify_many<6>(forms, float_forms, boxes, out, kernels.classify,
+                     [&](const OpenRow* open, std::size_t count, bool is_any_in_doubt, int* classes) {
+                         if (is_any_in_doubt && !is_made) forms.take_in_double(double_forms);
+                         is_made = is_made || is_any_in_doubt;
+                         kernels.decide(is_any_in_doubt ? &double_forms : nullptr, separating, open, count, classes);
+                     });
 }
 
 // One box; separating() is asked where a further plane may make it outside.

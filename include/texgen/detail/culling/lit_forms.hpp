@@ -127,15 +127,12 @@ public:
     }
 
     // In double, for boxes that floats leave in doubt.
-    DoubleForms in_double() const noexcept {
-        DoubleForms result;
+    void take_in_double(DoubleForms& result) const noexcept {
         result.count = count_;
         for (std::size_t k = 0; k < count_; ++k) {
-            take_exact_form(k, weight(k), result.form[k].outer);
-            take_exact_form(k, inner_weight_[k], result.form[k].inner);
-            result.form[k].least_lit = k == q ? 0x1p-1000 : 0.0;
+            take_at_vertex(k, weight(k), true, result.form[k].largest);
+            take_at_vertex(k, inner_weight_[k], false, result.form[k].least);
         }
-        return result;
     }
 
     // T_s, T_t, T_r and T_q.
@@ -239,14 +236,21 @@ private:
         return form;
     }
 
-    void take_exact_form(std::size_t k, const Weight& weight, ExactForm& form) const noexcept {
-        form.rounded = form_of(k, weight);
+    void take_at_vertex(std::size_t k, const Weight& weight, bool is_largest, FormAtVertex& form) const noexcept {
+        form.coefficient = form_of(k, weight);
         form.term_count = 0;
         for (std::size_t j = 0; j < 4; ++j) {
+            const double coefficient = form.coefficient[j];
+            form.error[j] = std::fabs(coefficient) * gamma(8);
+            if (j < 3)
+                form.row[j] = coefficient == 0.0                  ? FormAtVertex::row_of_0
+                              : (coefficient > 0.0) == is_largest ? 3 + j
+                                                                  : j;
+            if (coefficient == 0.0) continue;
             const auto add = [&](double factor) {
-                if (factor != 0.0) form.terms[form.term_count++] = {factor, j};
+                if (factor != 0.0)
+                    form.term[form.term_count++] = {factor, j < 3 ? form.row[j] : FormAtVertex::row_of_1};
             };
-            if (form.rounded[j] == 0.0) continue;
             const glm::dvec4& column = matrix_[static_cast<glm::length_t>(j)];
             const double half = leading_26_bits(column.w);
             const double of_row = weight.of_row * column[static_cast<glm::length_t>(coordinate_of(k))];
@@ -258,7 +262,11 @@ private:
                 add(part - first);
             }
         }
-        while (form.term_count < 2) form.terms[form.term_count++] = {0.0, 3};
+        if (k == q) {
+            form.coefficient[3] -= 0x1p-1000;
+            form.term[form.term_count++] = {-0x1p-1000, FormAtVertex::row_of_1};
+        }
+        while (form.term_count < 2) form.term[form.term_count++] = {0.0, FormAtVertex::row_of_0};
     }
 
     // Adds a product with a number of 24 digits.

@@ -5,27 +5,50 @@ namespace TEXGEN_DETAIL {
 // Kernels know no Coverage but its numbers.
 static_assert(Coverage{0} == Coverage::outside && Coverage{1} == Coverage::partial && Coverage{2} == Coverage::inside);
 
-inline void copy_floats(const Box& box, float* floats) noexcept {
-    for (glm::length_t j = 0; j < 3; ++j) {
-        floats[j] = box.min[j];
-        floats[3 + j] = box.max[j];
+// The floats of a body, this far apart.
+inline void copy_floats(const Box& box, float* to, std::size_t distance) noexcept {
+    TEXGEN_UNROLL
+    for (std::size_t j = 0; j < 3; ++j) {
+        to[j * distance] = box.min[static_cast<glm::length_t>(j)];
+        to[(3 + j) * distance] = box.max[static_cast<glm::length_t>(j)];
     }
 }
-inline void copy_floats(const Sphere& sphere, float* floats) noexcept {
-    for (glm::length_t j = 0; j < 3; ++j) floats[j] = sphere.centre[j];
-    floats[3] = sphere.radius;
+inline void copy_floats(const Sphere& sphere, float* to, std::size_t distance) noexcept {
+    TEXGEN_UNROLL
+    for (std::size_t j = 0; j < 3; ++j) to[j * distance] = sphere.centre[static_cast<glm::length_t>(j)];
+    to[3 * distance] = sphere.radius;
 }
 
-// Classifies bodies of `Floats` floats each by a kernel, and has decided what is left open. Floats of bodies that do not follow
-// one another, as where the user aligns GLM's vectors, are copied.
-template <std::size_t Floats, class Body, class OpenBodies>
-void classify_many(std::span<const Body> bodies, std::span<Coverage> out, Classify classify, const FloatForms& forms,
-                   OpenBodies& open_bodies) noexcept {
+// Classifies bodies of `Floats` floats each by a kernel, and has `decide` say what that leaves open, which is gathered until it
+// fills vectors. Floats of bodies that do not follow one another, as where the user aligns GLM's vectors, are copied.
+template <std::size_t Floats, class Body, class Decide>
+void classify_many(const LitForms& forms, const FloatForms& float_forms, std::span<const Body> bodies,
+                   std::span<Coverage> out, Classify classify, const Decide& decide) noexcept {
     constexpr std::size_t chunk = 16 * body_quantum;
     constexpr bool is_dense = sizeof(Body) == Floats * sizeof(float);
     constexpr std::size_t copied = is_dense ? body_quantum : chunk;
+    if (!forms.can_say()) {
+        for (std::size_t i = 0; i < bodies.size(); ++i) out[i] = exact_coverage(forms, bodies[i]);
+        return;
+    }
     int classes[chunk];
-    std::size_t open[chunk];
+    std::size_t open[chunk + body_quantum];
+    std::size_t open_count = 0;
+    OpenRow rows[Floats] = {};
+    const auto decide_last = [&](std::size_t count) {
+        bool is_any_in_doubt = false;
+        open_count -= count;
+        for (std::size_t k = 0; k < count; ++k) {
+            const std::size_t i = open[open_count + k];
+            copy_floats(bodies[i], &rows[0][k], body_quantum);
+            is_any_in_doubt |= out[i] == Coverage{body_in_doubt & 3};
+        }
+        decide(rows, count, is_any_in_doubt, classes);
+        for (std::size_t k = 0; k < count; ++k) {
+            const std::size_t i = open[open_count + k];
+            out[i] = classes[k] == body_in_doubt ? exact_coverage(forms, bodies[i]) : static_cast<Coverage>(classes[k]);
+        }
+    };
     for (std::size_t begin = 0; begin < bodies.size();) {
         // Whole quanta where they are, the rest from a copy.
         const std::size_t left = bodies.size() - begin;
@@ -33,24 +56,22 @@ void classify_many(std::span<const Body> bodies, std::span<Coverage> out, Classi
                                   : left >= body_quantum ? left / body_quantum * body_quantum
                                                          : left;
         if (is_dense && count >= body_quantum) {
-            classify(forms, reinterpret_cast<const float*>(&bodies[begin]), count, classes);
+            classify(float_forms, reinterpret_cast<const float*>(&bodies[begin]), count, classes);
         } else {
             float copies[copied][Floats] = {};
-            for (std::size_t i = 0; i < count; ++i) copy_floats(bodies[begin + i], copies[i]);
-            classify(forms, copies[0], (count + body_quantum - 1) / body_quantum * body_quantum, classes);
+            for (std::size_t i = 0; i < count; ++i) copy_floats(bodies[begin + i], copies[i], 1);
+            classify(float_forms, copies[0], (count + body_quantum - 1) / body_quantum * body_quantum, classes);
         }
         // Without a branch for each.
-        std::size_t open_count = 0;
         for (std::size_t i = 0; i < count; ++i) {
             out[begin + i] = static_cast<Coverage>(classes[i] & 3);
-            open[open_count] = i;
+            open[open_count] = begin + i;
             open_count += static_cast<std::size_t>(classes[i] >= open_body);
         }
-        for (std::size_t k = 0; k < open_count; ++k)
-            open_bodies.add(bodies[begin + open[k]], classes[open[k]] == body_in_doubt, out[begin + open[k]]);
         begin += count;
+        while (open_count >= body_quantum) decide_last(body_quantum);
     }
-    open_bodies.decide();
+    if (open_count > 0) decide_last(open_count);
 }
 
 // The extremes of a form over a sphere are its value at the centre +- |a| radius. Beside an edge of the pyramid a sphere
@@ -105,51 +126,14 @@ inline Coverage exact_coverage(const LitForms& forms, const Sphere& sphere) noex
 
 inline namespace TEXGEN_BUILD {
 
-// Spheres of which floats do not say what they are, gathered until they fill vectors.
-template <class CompiledWhereCalled = void>
-class OpenSpheres {
-public:
-    OpenSpheres(const SphereBatchKernels& kernels, const LitForms& forms) noexcept : kernels_(kernels), forms_(forms) {}
-
-    void add(const Sphere& sphere, bool, Coverage& out) noexcept {
-        const glm::dvec3 centre = widened(sphere.centre);
-        const bool is_sphere = is_finite(sphere.centre) && sphere.radius >= 0.0f && is_finite(sphere.radius);
-        if (!is_sphere || !forms_.can_say()) {
-            out = exact_coverage(forms_, sphere);
-            return;
-        }
-        for (std::size_t j = 0; j < 3; ++j) block_.centre[j][count_] = centre[static_cast<glm::length_t>(j)];
-        block_.radius[count_] = widened(sphere.radius);
-        sphere_[count_] = &sphere;
-        out_[count_] = &out;
-        if (++count_ == box_block) decide();
-    }
-
-    void decide() noexcept {
-        if (count_ == 0) return;
-        int classes[box_block];
-        kernels_.bound(forms_.lanes(), forms_.count(), block_, classes);
-        for (std::size_t i = 0; i < count_; ++i)
-            *out_[i] =
-                classes[i] == body_in_doubt ? exact_coverage(forms_, *sphere_[i]) : static_cast<Coverage>(classes[i]);
-        count_ = 0;
-    }
-
-private:
-    const SphereBatchKernels& kernels_;
-    const LitForms& forms_;
-    SphereBlock block_{};
-    const Sphere* sphere_[box_block];
-    Coverage* out_[box_block];
-    std::size_t count_ = 0;
-};
-
 template <class CompiledWhereCalled = void>
 void cover(const LitForms& forms, const FloatForms& float_forms, std::span<const Sphere> spheres,
            const std::span<Coverage>& out) noexcept {
     const SphereBatchKernels& kernels = chosen<SphereBatchKernels>();
-    OpenSpheres<> open(kernels, forms);
-    classify_many<4>(spheres, out, kernels.classify, float_forms, open);
+    classify_many<4>(forms, float_forms, spheres, out, kernels.classify,
+                     [&](const OpenRow* open, std::size_t count, bool, int* classes) {
+                         kernels.decide(forms.lanes(), forms.count(), open, count, classes);
+                     });
 }
 
 }  // namespace TEXGEN_BUILD

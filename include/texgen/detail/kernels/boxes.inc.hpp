@@ -74,38 +74,30 @@ void classify_spheres(const FloatForms& original, const float* spheres, std::siz
     }
 }
 
-// Bounds on a form, whose signs are right, where it is largest or least. In double a coefficient, a product and three sums
-// are rounded; no error is infinite, as an infinite value has the right sign.
-TEXGEN_INLINE void bound_form(const ExactForm& form, bool largest, const BoxBlock& boxes, std::size_t i,
-                              double least_lit, Doubles& lower, Doubles& upper) noexcept {
-    Doubles value = Doubles{} + form.rounded[3];
-    Doubles size = magnitude(value);
-    const auto add = [&](std::size_t j) {
-        if (form.rounded[j] == 0.0) return;
-        const auto vertex = load<Doubles>(((form.rounded[j] > 0.0) == largest ? boxes.max : boxes.min)[j] + i);
-        const Doubles term = vertex * form.rounded[j];
-        value = value + term;
-        size = size + magnitude(term);
-    };
-    add(0);
-    add(1);
-    add(2);
-    const Doubles error = minimum(size, Doubles{} + 0x1p900) * gamma(8);
-    lower = value - error - least_lit;
-    upper = value + error - least_lit;
+// A box as the rows that forms are of, a lane each.
+using BoxRows = Doubles[8];
+
+// Bounds on a form, whose signs are right: an infinite value has the right one, and no size of a row is infinite. In double a
+// coefficient, a product and three sums are rounded, and the last sum once more, half of what gamma(8) has room for.
+TEXGEN_INLINE void bound_form(const FormAtVertex& form, const BoxRows& row, const BoxRows& size, Doubles& lower,
+                              Doubles& upper) noexcept {
+    Doubles value = Doubles{} + form.coefficient[3];
+    Doubles error = Doubles{} + form.error[3];
+    TEXGEN_UNROLL
+    for (std::size_t j = 0; j < 3; ++j) {
+        value = value + row[form.row[j]] * form.coefficient[j];
+        error = error + size[form.row[j]] * form.error[j];
+    }
+    lower = value - error;
+    upper = value + error;
 }
 
 // The same as a sum of exact terms in two doubles, which tells how much at most they leave out: nothing for numbers with few
 // digits, however much they cancel. What is infinite becomes a NaN here, and stays as it is.
 // Source: Ogita, Rump, Oishi, Accurate Sum and Dot Product, SIAM J. Sci. Comput. 26 (2005), Sum2.
-TEXGEN_INLINE void bound_exactly(const ExactForm& form, bool largest, const BoxBlock& boxes, std::size_t i,
-                                 double least_lit, Doubles& lower, Doubles& upper) noexcept {
-    Doubles vertex[4] = {{}, {}, {}, Doubles{} + 1.0};
-    for (std::size_t j = 0; j < 3; ++j) {
-        if (form.rounded[j] != 0.0)
-            vertex[j] = load<Doubles>(((form.rounded[j] > 0.0) == largest ? boxes.max : boxes.min)[j] + i);
-    }
-    const auto term = [&](std::size_t k) { return vertex[form.terms[k].coordinate] * form.terms[k].factor; };
+TEXGEN_INLINE void bound_exactly(const FormAtVertex& form, const BoxRows& row, Doubles& lower,
+                                 Doubles& upper) noexcept {
+    const auto term = [&](std::size_t k) { return row[form.term[k].row] * form.term[k].factor; };
     Doubles low, rest;
     Doubles high = two_sum(term(0), term(1), low);
     Doubles lost{};
@@ -116,33 +108,57 @@ TEXGEN_INLINE void bound_exactly(const ExactForm& form, bool largest, const BoxB
     }
     high = high + low;
     lost = lost + lost;
-    lower = maximum(high - lost - least_lit, lower);
-    upper = minimum(high + lost - least_lit, upper);
+    lower = maximum(high - lost, lower);
+    upper = minimum(high + lost, upper);
 }
 
-// The least of the largest values of the sides, and of the least ones of the inner sides; q first, which is negative for
-// half of what is at the apex. Where one is negative for every box, the others are not asked.
-template <class CompiledWhereCalled = void>
-void bound_boxes(const DoubleForms& forms, const BoxBlock& boxes, BoxBounds& bounds) noexcept {
-    for (std::size_t i = 0; i < box_block; i += static_cast<std::size_t>(lanes)) {
-        Doubles all_lower = Doubles{} + 1.0;
-        Doubles all_upper = all_lower;
-        for (const bool largest : {true, false}) {
-            for (std::size_t k = forms.count; k-- > 0;) {
-                if (!any(~greater(0.0 - all_upper, 0.0))) break;
-                const DoubleForms::Form& sides = forms.form[k];
-                const ExactForm& form = largest ? sides.outer : sides.inner;
-                Doubles lower;
-                Doubles upper;
-                bound_form(form, largest, boxes, i, sides.least_lit, lower, upper);
-                const LongWords is_in_doubt = greater(0.0 - lower, 0.0) & ~greater(0.0 - upper, 0.0);
-                if (any(is_in_doubt)) bound_exactly(form, largest, boxes, i, sides.least_lit, lower, upper);
-                all_lower = minimum(lower, all_lower);
-                all_upper = minimum(upper, all_upper);
-            }
-            store((largest ? bounds.lower : bounds.inner_lower) + i, all_lower);
-            store((largest ? bounds.upper : bounds.inner_upper) + i, all_upper);
+// Whether a form is negative where it is largest, then whether an inner one is where it is least; q first, which is negative
+// for half of what is at the apex. Where that is known of every box, the other forms are not asked.
+TEXGEN_INLINE void bound_box(const DoubleForms& forms, const BoxRows& row, LongWords& outside, LongWords& inside,
+                             LongWords& in_doubt) noexcept {
+    const Doubles zero{};
+    BoxRows size;
+    TEXGEN_UNROLL
+    for (std::size_t j = 0; j < 8; ++j) size[j] = minimum(magnitude(row[j]), Doubles{} + 0x1p128);
+    for (const bool largest : {true, false}) {
+        Doubles all_lower = select(outside | in_doubt, Doubles{} - 1.0, Doubles{} + 1.0), all_upper = all_lower;
+        for (std::size_t k = forms.count; k-- > 0 && any(at_most(zero, all_upper));) {
+            const FormAtVertex& form = largest ? forms.form[k].largest : forms.form[k].least;
+            Doubles lower, upper;
+            bound_form(form, row, size, lower, upper);
+            if (any(greater(zero, lower) & at_most(zero, upper))) bound_exactly(form, row, lower, upper);
+            all_lower = minimum(lower, all_lower);
+            all_upper = minimum(upper, all_upper);
         }
+        if (largest) outside = greater(zero, all_upper) & ~in_doubt;
+        inside = ~greater(zero, all_lower);
+        in_doubt = in_doubt | (greater(zero, all_lower) & at_most(zero, all_upper));
+    }
+}
+
+// What is in none of these three is partial.
+TEXGEN_INLINE void store_classes(int* out, const LongWords& outside, const LongWords& inside,
+                                 const LongWords& in_doubt) noexcept {
+    store(out, 1 - (narrow(outside) & 1) + (narrow(inside) & 1) + (narrow(in_doubt) & (body_in_doubt - 1)));
+}
+
+template <class CompiledWhereCalled = void>
+void decide_boxes(const DoubleForms* forms, const SeparatingForms& planes, const OpenRow* boxes, std::size_t count,
+                  int* classes) noexcept {
+    for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(lanes)) {
+        BoxRows row;
+        TEXGEN_UNROLL
+        for (std::size_t j = 0; j < 6; ++j) row[j] = to_doubles(load<Floats>(boxes[j] + i));
+        row[FormAtVertex::row_of_1] = Doubles{} + 1.0;
+        row[FormAtVertex::row_of_0] = Doubles{};
+        LongWords have_points = ~LongWords{};
+        TEXGEN_UNROLL
+        for (std::size_t j = 0; j < 3; ++j) have_points = have_points & at_most(Doubles{}, row[3 + j] - row[j]);
+        LongWords outside{}, inside{}, in_doubt = ~have_points;
+        if (forms != nullptr) bound_box(*forms, row, outside, inside, in_doubt);
+        const LongWords open = have_points & ~(outside | inside);
+        if (any(open)) outside = outside | (open & are_separated(planes, row));
+        store_classes(classes + i, outside, inside, in_doubt & ~outside);
     }
 }
 
@@ -150,16 +166,21 @@ void bound_boxes(const DoubleForms& forms, const BoxBlock& boxes, BoxBounds& bou
 // twice what is rounded, so half of one more or less decides. A root is a square here. At an angle of 2^-4 or more between
 // two planes their weights magnify roundings by less than 2^12: in the sum, and relative to its change in that.
 template <class CompiledWhereCalled = void>
-void bound_spheres(const FormLanes& forms, std::size_t count, const SphereBlock& spheres, int* classes) noexcept {
-    for (std::size_t i = 0; i < box_block; i += static_cast<std::size_t>(lanes)) {
-        const Doubles centre[3] = {load<Doubles>(spheres.centre[0] + i), load<Doubles>(spheres.centre[1] + i),
-                                   load<Doubles>(spheres.centre[2] + i)};
-        const auto radius = load<Doubles>(spheres.radius + i);
+void decide_spheres(const FormLanes& forms, std::size_t form_count, const OpenRow* spheres, std::size_t count,
+                    int* classes) noexcept {
+    for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(lanes)) {
+        Doubles sphere[4];
+        TEXGEN_UNROLL
+        for (std::size_t j = 0; j < 4; ++j) sphere[j] = to_doubles(load<Floats>(spheres[j] + i));
+        const Doubles(&centre)[4] = sphere;
+        const Doubles& radius = sphere[3];
         const Doubles size = magnitude(centre[0]) + magnitude(centre[1]) + magnitude(centre[2]);
+        const LongWords is_sphere =
+            greater(Doubles{} + std::numeric_limits<double>::infinity(), size + radius) & at_most(Doubles{}, radius);
         const Doubles of_q = ((size + radius * 2.0) * forms.largest_q + forms.last_q) * 1.1;
         Doubles value[max_forms], error[max_forms];
-        LongWords outside{}, perhaps_outside{}, dark{}, not_inside{}, perhaps_inside = ~outside;
-        for (std::size_t k = 0; k < count; ++k) {
+        LongWords outside = ~is_sphere, perhaps_outside{}, dark{}, not_inside{}, perhaps_inside = is_sphere;
+        for (std::size_t k = 0; k < form_count; ++k) {
             value[k] =
                 centre[0] * forms.a[0][k] + (centre[1] * forms.a[1][k] + (centre[2] * forms.a[2][k] + forms.d[k]));
             error[k] = size * forms.error_a[k] + forms.error_d[k];
@@ -217,11 +238,11 @@ void bound_spheres(const FormLanes& forms, std::size_t count, const SphereBlock&
             for (std::size_t f = 0; f < 2; ++f)
                 for (std::size_t g = 2; g < form_of_q; ++g) try_edge(f, g);
             for (std::size_t f = 0; f < form_of_q; ++f)
-                for (std::size_t g = form_of_q + 1; g < count; ++g) try_edge(f, g);
+                for (std::size_t g = form_of_q + 1; g < form_count; ++g) try_edge(f, g);
         }
-        const LongWords in_doubt = (perhaps_outside | (perhaps_inside & not_inside)) & ~outside;
-        const Words is_inside = narrow(~(not_inside | outside | in_doubt)) & 1;
-        store(classes + i, 1 + is_inside - (narrow(outside) & 1) + (narrow(in_doubt) & (body_in_doubt - 1)));
+        outside = outside & is_sphere;
+        const LongWords in_doubt = ((perhaps_outside | (perhaps_inside & not_inside)) & ~outside) | ~is_sphere;
+        store_classes(classes + i, outside, ~(not_inside | outside | in_doubt), in_doubt);
     }
 }
 

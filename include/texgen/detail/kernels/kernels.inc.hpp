@@ -18,11 +18,12 @@
 #include "points_in_float.inc.hpp"
 #include "segments.inc.hpp"
 
+#include "separating.inc.hpp"
+
 #include "boxes.inc.hpp"
 #include "footprint.inc.hpp"
 #include "forms.inc.hpp"
 #include "mask.inc.hpp"
-#include "separating.inc.hpp"
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
@@ -80,12 +81,10 @@ inline constexpr BoxKernels kernel_table<BoxKernels, CompiledWhereCalled>{
 
 template <class CompiledWhereCalled>
 inline constexpr BoxBatchKernels kernel_table<BoxBatchKernels, CompiledWhereCalled>{
-    .classify = classify_boxes<CompiledWhereCalled>,
-    .bound = bound_boxes<CompiledWhereCalled>,
-    .separate = separate<CompiledWhereCalled>};
+    .classify = classify_boxes<CompiledWhereCalled>, .decide = decide_boxes<CompiledWhereCalled>};
 
 template <class CompiledWhereCalled>
 inline constexpr SphereBatchKernels kernel_table<SphereBatchKernels, CompiledWhereCalled>{
-    .classify = classify_spheres<CompiledWhereCalled>, .bound = bound_spheres<CompiledWhereCalled>};
+    .classify = classify_spheres<CompiledWhereCalled>, .decide = decide_spheres<CompiledWhereCalled>};
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA

@@ -18,6 +18,7 @@ struct FormColumns {
 template <std::size_t N>
 TEXGEN_INLINE void add_plane(SeparatingForms& planes, const FormColumns* const (&form)[N], const Doubles (&weight)[N],
                              const LongWords& is_plane, std::size_t but_axis, std::size_t i) noexcept {
+    if (!any(is_plane)) return;
     constexpr double rounding = 1.001 * gamma(11 + static_cast<int>(N));
     for (std::size_t j = 0; j < 3; ++j) {
         Doubles sum{};
@@ -52,16 +53,14 @@ TEXGEN_INLINE void add_plane(SeparatingForms& planes, const FormColumns* const (
 TEXGEN_INLINE void add_edges(SeparatingForms& planes, const FormLanes& forms, bool has_depth) noexcept {
     constexpr std::size_t of_f[] = {0, 0, 1, 1, 0, 0, 1, 1, 2, 2, 3, 3};
     constexpr std::size_t of_g[] = {2, 3, 2, 3, 5, 6, 5, 6, 5, 6, 5, 6};
-    constexpr auto width = static_cast<std::size_t>(lanes);
     const std::size_t pairs = has_depth ? 12 : 4;
-    const std::size_t count = (pairs + width - 1) / width * width;  // what fills a vector is asked twice
-    FormColumns f, g;
-    for (std::size_t i = 0; i < count; ++i) {
-        f.put(forms, of_f[i < pairs ? i : i - pairs], i);
-        g.put(forms, of_g[i < pairs ? i : i - pairs], i);
+    FormColumns f{}, g{};  // what fills a vector is 0, and no plane
+    for (std::size_t i = 0; i < pairs; ++i) {
+        f.put(forms, of_f[i], i);
+        g.put(forms, of_g[i], i);
     }
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(lanes)) {
+        for (std::size_t i = 0; i < pairs; i += static_cast<std::size_t>(lanes)) {
             const auto a = load<Doubles>(f.a[axis] + i), b = load<Doubles>(g.a[axis] + i);
             const LongWords are_opposite =
                 (greater(a, 0.0) & greater(0.0 - b, 0.0)) | (greater(0.0 - a, 0.0) & greater(b, 0.0));
@@ -187,32 +186,28 @@ bool is_separated(const SeparatingForms& planes, const float* box_min, const flo
     return any(are_negative);
 }
 
-// Of eight boxes, the least of the largest values of the planes, never below the exact one.
-template <class CompiledWhereCalled = void>
-void separate(const SeparatingForms& planes, const BoxBlock& boxes, double* least_of_largest) noexcept {
+// The same of a box a lane, by rows: min and max.
+TEXGEN_INLINE LongWords are_separated(const SeparatingForms& planes, const Doubles (&box)[8]) noexcept {
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < box_block; i += static_cast<std::size_t>(lanes)) {
-        Doubles min[3], max[3];
-        Doubles size{};
-        for (std::size_t j = 0; j < 3; ++j) {
-            min[j] = load<Doubles>(boxes.min[j] + i);
-            max[j] = load<Doubles>(boxes.max[j] + i);
-            const Doubles of_axis = maximum(0.0 - min[j], max[j]);
-            const LongWords is_bounded = greater(Doubles{} + infinity, of_axis);
-            min[j] = select(is_bounded, min[j], Doubles{} - infinity);
-            max[j] = select(is_bounded, max[j], Doubles{} + infinity);
-            size = size + where(is_bounded, of_axis);
-        }
-        Doubles least = Doubles{} + 1.0;
-        for (std::size_t k = 0; k < planes.count; ++k) {
-            if (!(planes.d[k] < infinity)) continue;
-            Doubles largest = planes.d[k] + size * planes.error[k];
-            for (std::size_t j = 0; j < 3; ++j)
-                if (const double a = planes.a[j][k]; a != 0.0) largest = largest + (a > 0.0 ? max : min)[j] * a;
-            least = minimum(largest, least);
-        }
-        store(least_of_largest + i, least);
+    Doubles min[3], max[3];
+    Doubles size{};
+    TEXGEN_UNROLL
+    for (std::size_t j = 0; j < 3; ++j) {
+        const Doubles of_axis = maximum(0.0 - box[j], box[3 + j]);
+        const LongWords is_bounded = greater(Doubles{} + infinity, of_axis);
+        min[j] = select(is_bounded, box[j], Doubles{} - infinity);
+        max[j] = select(is_bounded, box[3 + j], Doubles{} + infinity);
+        size = size + where(is_bounded, of_axis);
     }
+    Doubles least{};
+    for (std::size_t k = 0; k < planes.count; ++k) {
+        if (!(planes.d[k] < infinity)) continue;
+        Doubles largest = planes.d[k] + size * planes.error[k];
+        for (std::size_t j = 0; j < 3; ++j)
+            if (const double a = planes.a[j][k]; a != 0.0) largest = largest + (a > 0.0 ? max : min)[j] * a;
+        least = minimum(largest, least);
+    }
+    return greater(Doubles{}, least);
 }
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA

@@ -69,24 +69,26 @@ struct SeparatingForms {
     std::size_t count;
 };
 
-// A form by its four coefficients, each rounded once, and as a sum of terms that is exact: of a coordinate, the last of which
-// is 1, and a factor with so few digits that its product with any float is a double. There are at least two.
-struct ExactForm {
+// A form at the vertex of a box where it is largest, or least: its four coefficients, each rounded once, and the rows of the box
+// that the first three are of: min, max, 1, and 0 where a coefficient is 0, which is of no use where a box is infinite. `term`
+// is the same as an exact sum, of factors with so few digits that the product with any float is a double, at least two.
+struct FormAtVertex {
+    static constexpr std::size_t row_of_1 = 6, row_of_0 = 7;
     struct Term {
         double factor;
-        std::size_t coordinate;
+        std::size_t row;
     };
-    std::array<double, 4> rounded;
-    std::array<Term, 24> terms;
+    std::array<double, 4> coefficient, error;
+    std::array<std::size_t, 3> row;
+    std::array<Term, 25> term;
     std::size_t term_count;
 };
 
-// The same for boxes that floats leave in doubt, and the inner ones. A point is outside where
-// a form is below least_lit.
+// The forms for boxes that floats leave in doubt, where they are largest, and the inner ones where they are least. A point is
+// outside where one is below 0: of q a number is subtracted that is smaller than any other value.
 struct DoubleForms {
     struct Form {
-        ExactForm outer, inner;
-        double least_lit;  // 0, and for q a number that is smaller than any other value
+        FormAtVertex largest, least;
     };
     std::array<Form, max_forms> form;
     std::size_t count;
@@ -100,24 +102,8 @@ inline constexpr int body_in_doubt = open_body + 3;
 // The kernels of many bodies take a multiple of body_quantum.
 inline constexpr std::size_t body_quantum = 16;
 
-// Boxes, planar.
-inline constexpr std::size_t box_block = 8;
-struct BoxBlock {
-    double min[3][box_block];
-    double max[3][box_block];
-};
-
-// Spheres, planar.
-struct SphereBlock {
-    double centre[3][box_block];
-    double radius[box_block];
-};
-// Bounds on the least over the forms of the largest value over each box, and on the least of the inner ones: their
-// signs are right, and where a lower one is negative beside an upper one that is not, nothing is known.
-struct BoxBounds {
-    double lower[box_block], upper[box_block];
-    double inner_lower[box_block], inner_upper[box_block];
-};
+// Bodies that floats leave open, planar: min and max of boxes, centre and radius of spheres.
+using OpenRow = float[body_quantum];
 
 // Each table is compiled where it is asked for: a program has what its questions need. The forms are made in double and, for
 // many bodies, in float.
@@ -153,15 +139,16 @@ using Classify = void (*)(const FloatForms& forms, const float* bodies, std::siz
 
 struct BoxBatchKernels {
     Classify classify;
-    // What doubles are certain of, and where they are not, pairs of doubles. For proper boxes, which may be infinite.
-    void (*bound)(const DoubleForms& forms, const BoxBlock& boxes, BoxBounds& bounds) noexcept;
-    // The least over them of the largest value over each box, never below the exact one.
-    void (*separate)(const SeparatingForms& planes, const BoxBlock& boxes, double* least_of_largest) noexcept;
+    // What doubles are certain of, and where they are not, pairs of doubles; without forms all are partial. Those that a plane
+    // separates are outside. What has no points is in doubt.
+    void (*decide)(const DoubleForms* forms, const SeparatingForms& planes, const OpenRow* boxes, std::size_t count,
+                   int* classes) noexcept;
 };
 struct SphereBatchKernels {
     Classify classify;
-    // What exact_coverage() says of spheres, but where it is next to another answer: that is doubt.
-    void (*bound)(const FormLanes& forms, std::size_t count, const SphereBlock& spheres, int* classes) noexcept;
+    // What exact_coverage() says of spheres, but where it is next to another answer: that is doubt, as what is infinite is.
+    void (*decide)(const FormLanes& forms, std::size_t form_count, const OpenRow* spheres, std::size_t count,
+                   int* classes) noexcept;
 };
 
 }  // namespace TEXGEN_DETAIL
