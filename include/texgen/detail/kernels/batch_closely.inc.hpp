@@ -349,7 +349,8 @@ TEXGEN_APART Words divide_lanes_closely(const float* const (&triangle)[lanes], c
         left.of_value[k] = in_doubt & ~equal(differ, 0);
         if (any(differ)) {
             // Of F - m Q, m being the middle of the two, leading parts cancel; the next are kept in two doubles.
-            remainder.middle = to_doubles(remainder.below) + to_doubles(remainder.above);  // twice it
+            remainder.middle =
+                to_doubles_as_rounded(remainder.below) + to_doubles_as_rounded(remainder.above);  // twice
             remainder.unit = power_of_two_below(remainder.middle);
             Doubles rest;
             const Doubles sum = two_sum(f.high - remainder.middle * upper, remainder.middle * lower * -1.0, rest);

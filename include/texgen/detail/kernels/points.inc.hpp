@@ -63,8 +63,8 @@ TEXGEN_INLINE LongWords divide_certainly(std::size_t numerators, const Doubles (
         Words differ = bits(value[k]) ^ bits(other);
         if constexpr (Signed) {
             if (tolerance > 0.0 && any(differ)) {
-                const Words is_within =
-                    narrow(at_most((to_doubles(other) - to_doubles(value[k])) * 2.0, Doubles{} + tolerance));
+                const Words is_within = narrow(at_most(
+                    (to_doubles_as_rounded(other) - to_doubles_as_rounded(value[k])) * 2.0, Doubles{} + tolerance));
                 value[k] = select(is_within, to_floats(quotient), value[k]);
                 differ &= ~is_within;
             }

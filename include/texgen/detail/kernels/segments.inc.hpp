@@ -67,7 +67,8 @@ TEXGEN_INLINE Floats rounded_from(const Doubles& middle, const Doubles& remainde
 // The middle of the two floats next to a quotient that may be subnormal, or the only one.
 TEXGEN_INLINE Doubles middle_of_floats(const Doubles& quotient) noexcept {
     const Doubles error = quotient * 0x1p-50;
-    return to_doubles(to_floats(quotient - error)) * 0.5 + to_doubles(to_floats(quotient + error)) * 0.5;
+    return to_doubles_as_rounded(to_floats(quotient - error)) * 0.5 +
+           to_doubles_as_rounded(to_floats(quotient + error)) * 0.5;
 }
 
 // Blocks end at multiples of their size.

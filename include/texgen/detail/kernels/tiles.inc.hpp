@@ -212,7 +212,8 @@ TEXGEN_INLINE Words decide_between(const Floats& below, const Floats& above, con
     // A step from the middle that is less than half of what the floats are away.
     const Doubles step = where(is_open, with_sign_of(unit * 0x1p-26, remainder));
     const Floats nearest = to_floats((middle + step) * 0.5);
-    const LongWords are_neighbours = at_most(to_doubles(above) - to_doubles(below), unit * 0x1p-24);
+    const LongWords are_neighbours =
+        at_most(to_doubles_as_rounded(above) - to_doubles_as_rounded(below), unit * 0x1p-24);
     const Words decided =
         narrow((is_open | is_tie) & are_neighbours) & ~equal(bits(below) & bits(above) & 0x7f800000, 0);
     value = select(decided, nearest, below);
@@ -266,7 +267,7 @@ TEXGEN_INLINE Words divide_closely(const CloseRow& row, double q_grain, const Cl
     value = remainder.below;
     const Words differ = bits(remainder.below) ^ bits(remainder.above);
     if (!any(differ)) return Words{};
-    const Doubles middle = to_doubles(remainder.below) + to_doubles(remainder.above);
+    const Doubles middle = to_doubles_as_rounded(remainder.below) + to_doubles_as_rounded(remainder.above);
     remainder.middle = middle;
     remainder.unit = power_of_two_below(middle);
     Words doubt = ~equal(differ, 0);

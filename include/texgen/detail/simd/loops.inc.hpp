@@ -90,6 +90,10 @@ TEXGEN_INLINE Words bits(const Floats& values) noexcept {
 TEXGEN_INLINE Doubles to_doubles(const Floats& values) noexcept {
     return Doubles::of([&](int i) { return static_cast<double>(values.lane[i]); });
 }
+// Of doubles that were rounded to float a moment ago: see widen.hpp.
+TEXGEN_INLINE Doubles to_doubles_as_rounded(const Floats& values) noexcept {
+    return Doubles::of([&](int i) { return widened(values.lane[i]); });
+}
 
 // f(Doubles...), rounded to float.
 template <class Function, class... Vector>

@@ -165,7 +165,8 @@ TEXGEN_INLINE Floats nearest_quotients(const Twofold& s, const TwofoldDivisor& q
     Doubles middle = middle_near(quotient + 0x1p-900);  // of 0 it is subnormal, which takes long
     if (any(is_small)) {
         const Doubles error = size * 0x1p-48;
-        const Doubles low = to_doubles(to_floats(quotient - error)), high = to_doubles(to_floats(quotient + error));
+        const Doubles low = to_doubles_as_rounded(to_floats(quotient - error));
+        const Doubles high = to_doubles_as_rounded(to_floats(quotient + error));
         middle = select(is_small, low * 0.5 + high * 0.5, middle);
         is_near = (is_near & ~is_small) | (is_small & greater(high, low));
     }

@@ -32,6 +32,8 @@ TEXGEN_INLINE Doubles to_doubles(const Floats& values) noexcept {
 #endif
 }
 
+TEXGEN_INLINE Doubles to_doubles_as_rounded(const Floats& values) noexcept { return to_doubles(values); }
+
 // f(Doubles...) of each half of the vectors, rounded to float.
 template <int First, int... Lane>
 TEXGEN_INLINE Doubles half(const WideFloats& values, std::integer_sequence<int, Lane...>) noexcept {
