@@ -170,6 +170,9 @@ struct CloseRow {
         residue = function.residue.base + static_cast<std::uint64_t>(y) * function.residue.dy;
     }
 
+    TEXGEN_INLINE Doubles value_at(const Doubles& index) const noexcept {
+        return (index * high_dx + high) + (index * low_dx + low);
+    }
     TEXGEN_INLINE Residues residues_at(std::int64_t x) const noexcept {
         return (indices<Residues>() + static_cast<std::uint64_t>(x)) * residue_dx + residue;
     }
@@ -194,7 +197,7 @@ struct CloseQ {
         in_front = greater(q, row.error * 256.0);
         doubt = ~(in_front | greater(q * -1.0, row.error));
         residues = row.residues_at(x);
-        if (any(doubt)) doubt &= ~row.are_known(q) | are_positive(residues);
+        doubt &= ~row.are_known(q) | are_positive(residues);
         reciprocal = where(in_front, 1.0 / q);
         relative_error = reciprocal * row.error + 0x1p-50;
         upper = (high + unit) - unit;
@@ -296,39 +299,66 @@ TEXGEN_INLINE Words divide_closely(const CloseRow& row, double q_grain, const Cl
     return doubt & ~decided;
 }
 
-// One numerator stands in both places.
+// The same of both numerators, for a vector that has one in doubt. A bit for each of `count` lanes that stays so.
+template <class CompiledWhereCalled = void>
+TEXGEN_RARE std::uint64_t decide_vector(const CloseRow (&rows)[3], double q_unit, std::int64_t x, int count,
+                                        Floats (&value)[2]) noexcept {
+    const Doubles index = indices<Doubles>() + static_cast<double>(x);
+    CloseQ q;
+    q.move_to(rows[2], q_unit, index, x);
+    Words doubt = narrow(q.doubt);
+    for (std::size_t k = 0; k < 2; ++k)
+        doubt |= divide_closely(rows[k], rows[2].grain, q, rows[2].error * 0.5, index, x, value[k]);
+    std::uint64_t result = 0;
+    for (int i = 0; i < count; ++i)
+        if (lane(doubt, i) != 0) result |= std::uint64_t{1} << i;
+    return result;
+}
+
+// A vector that has no lane in doubt is asked no more than that. One numerator stands in both places.
 template <class CompiledWhereCalled = void>
 std::uint64_t fill_tile_closely(const TileJob& job, const CloseFunctions& functions, TileJob::Unit unit) noexcept {
     const CloseFunction* const function[] = {&functions.numerator[0], &functions.numerator[1], &functions.q};
     CloseRow rows[3];
     for (std::size_t k = 0; k < 3; ++k) rows[k].take(*function[k]);
-    const CloseRow& q_row = rows[2];
     RowOutputs row(job, unit.y_begin);
-    const double half_q_error = q_row.error * 0.5;
-    const bool q_is_constant =
-        is_constant(functions.q.high) && is_constant(functions.q.low) && is_constant(functions.q.residue);
-    bool is_known = false;
-    CloseQ q;
     std::uint64_t doubtful = 0;
-    int shift = 0;
     for (int y = unit.y_begin; y < unit.y_end; ++y, row.advance()) {
         for (std::size_t k = 0; k < 3; ++k) rows[k].move_to(*function[k], y);
         for (std::int64_t x = unit.x_begin; x < unit.x_end; x += lanes) {
             const Doubles index = indices<Doubles>() + static_cast<double>(x);
-            if (!is_known) q.move_to(q_row, functions.q_unit, index, x);
-            is_known = q_is_constant;
+            const Doubles q = rows[2].value_at(index);
+            const LongWords in_front = greater(q, rows[2].error * 256.0);
+            const Doubles reciprocal = where(in_front, 1.0 / q);
+            const Doubles relative_error = reciprocal * rows[2].error + 0x1p-50;
             Floats value[2];
-            Words doubt = narrow(q.doubt);
-            for (std::size_t k = 0; k < 2; ++k)
-                doubt |= divide_closely(rows[k], q_row.grain, q, half_q_error, index, x, value[k]);
-            for (std::size_t k = 0; k < 2; ++k) store_from(row.out[k], x, unit.x_end, row.writable, value[k]);
-            if (row.lit != nullptr)
-                store_from(row.lit, x, unit.x_end, row.writable, lit_of(job, value, narrow(q.in_front)));
+            Words doubt = narrow(~greater(magnitude(q), rows[2].error * 256.0));
+            TEXGEN_UNROLL
+            for (std::size_t k = 0; k < 2; ++k) {
+                const Doubles quotient = where(in_front, rows[k].value_at(index) * reciprocal);  // no -0 behind
+                const Doubles error = magnitude(quotient) * relative_error + reciprocal * rows[k].error;
+                value[k] = to_floats(quotient - error);
+                doubt |= bits(value[k]) ^ bits(to_floats(quotient + error));
+            }
             const int count = unit.x_end - x < lanes ? static_cast<int>(unit.x_end - x) : lanes;
-            if (any(doubt))
-                for (int i = 0; i < count; ++i)
-                    if (lane(doubt, i) != 0) doubtful |= std::uint64_t{1} << (shift + i);
-            shift += count;
+            if (any(doubt)) {
+                Floats decided[2];  // in memory: the values are in registers
+                const std::uint64_t in_doubt = decide_vector(rows, functions.q_unit, x, count, decided);
+                doubtful |= in_doubt << ((y - unit.y_begin) * (unit.x_end - unit.x_begin) + (x - unit.x_begin));
+                TEXGEN_UNROLL
+                for (std::size_t k = 0; k < 2; ++k) value[k] = decided[k];
+            }
+            const Floats lit = lit_of(job, value, narrow(in_front));
+            if (x + lanes <= row.writable) {
+                TEXGEN_UNROLL
+                for (std::size_t k = 0; k < 2; ++k) store(row.out[k] + x, value[k]);
+                if (row.lit != nullptr) store(row.lit + x, lit);
+            } else {
+                const Floats result[3] = {value[0], value[1], lit};
+                float* const to[3] = {row.out[0], row.out[1], row.lit};
+                for (std::size_t k = 0; k < 3; ++k)
+                    if (to[k] != nullptr) store_some(to[k] + x, count, result[k]);
+            }
         }
     }
     return doubtful;

@@ -152,6 +152,16 @@ TEXGEN_RARE inline std::uint64_t residue_of(double number) noexcept {
     return 2 * static_cast<std::uint64_t>(static_cast<std::int64_t>(0.5 * std::fmod(number, 0x1p64)));
 }
 
+// The functions of a tile where it is in doubt: of the planes as they are, or close, and with residues or not. Those cost less
+// than two doubles, and decide where the planes are exact or err by less than residues know: not next to q = 0.
+struct DoubtfulFunctions : CloseFunctions {
+    bool are_close, have_residues = false, residues_first = false;
+};
+struct DoubtfulJob {
+    TileJob job;
+    DoubtfulFunctions functions;
+};
+
 // Whether quotients of a tile well in front are decided by residues, of numerators as large as their errors let expect. Planes that
 // are multiples of their grains become exact: the error that is left is of what is computed of them, 2^-98 of the values.
 TEXGEN_RARE inline bool are_decided_by_residues(CloseFunctions& functions) noexcept {

@@ -19,6 +19,21 @@
 namespace TEXGEN_DETAIL {
 inline namespace TEXGEN_BUILD {
 
+// Columns of a tile, or rows.
+struct Stretch {
+    bool across_width;
+    int begin, end;
+
+    // What is before it, it, and what is after.
+    TEXGEN_RARE Tile part(const Tile& tile, std::size_t i) const noexcept {
+        const int size = across_width ? tile.width : tile.height;
+        const int first = i == 0 ? 0 : i == 1 ? begin : end;
+        const int last = i == 0 ? begin : i == 1 ? end : size;
+        return across_width ? Tile{tile.x + first, tile.y, last - first, tile.height}
+                            : Tile{tile.x, tile.y + first, tile.width, last - first};
+    }
+};
+
 // A tile of two numerators F and of Q: the linear functions, their values at the corner fragments and bounds on their
 // errors. What holds at the corners with a margin for rounding holds at every fragment.
 struct Corners {
@@ -45,6 +60,31 @@ struct Corners {
     }
     // Far enough in front that the relative error of q is below 2^-24.
     bool well_in_front() const noexcept { return least_q > 0x1p24 * q_error; }
+
+    // What of a tile is next to q = 0, along the side by which q varies more: before and after that it is behind, or q is no less
+    // than a quarter of its largest. All, if that is nothing; but where it is not few fragments, nothing in the middle of the
+    // longer side.
+    static constexpr int few = 4 * TileJob::unit_size;
+    TEXGEN_RARE Stretch next_to_zero(const Tile& tile) const noexcept {
+        const bool across_width = std::fabs(q_ramp.dx) * tile.width >= std::fabs(q_ramp.dy) * tile.height;
+        const int size = across_width ? tile.width : tile.height;
+        const double step = across_width ? q_ramp.dx : q_ramp.dy;
+        const double per_step = 1.0 / std::fabs(step);
+        // Counted from where q is least: it is at most largest_q - (size - 1 - i) |step|, and at least least_q + i |step|.
+        const auto index = [size](double i) { return i > 0.0 ? (i < size ? static_cast<int>(i) : size) : 0; };
+        int begin = index(size - 1 - (largest_q + q_error) * per_step);
+        int end = index((0.25 * largest_q - least_q) * per_step + 1.0);
+        if (begin >= end) {
+            begin = 0;
+            end = size;
+        }
+        if (std::int64_t{end - begin} * (across_width ? tile.height : tile.width) > few) {
+            const bool is_wide = tile.width >= tile.height;
+            const int half = (is_wide ? tile.width : tile.height) / 2;
+            return {is_wide, half, half};
+        }
+        return step < 0.0 ? Stretch{across_width, size - end, size - begin} : Stretch{across_width, begin, end};
+    }
 
     // The largest |F/Q| of a tile in front. Where Q varies little the quotient of the bounds will do; else the corners have
     // it, u = F/Q being monotone along every line.

@@ -3,16 +3,6 @@
 namespace TEXGEN_DETAIL {
 inline namespace TEXGEN_BUILD {
 
-// The functions of a tile where it is in doubt: of the planes as they are, or close, and with residues or not.
-struct DoubtfulFunctions : CloseFunctions {
-    bool are_close, have_residues = false;
-};
-
-struct DoubtfulJob {
-    TileJob job;
-    DoubtfulFunctions functions;
-};
-
 // Interpolates up to two coordinates, and the mask, of a triangle into the caller's arrays.
 template <class CompiledWhereCalled = void>
 class TileInterpolator {
@@ -45,7 +35,7 @@ public:
     }
 
     TEXGEN_APART Corners corners_at(const Tile& tile) noexcept {
-        const Corners at = plain_corners(tile);
+        const Corners at = corners_of(triangle_.planes, *planes_, triangle_.q, tile);
         return at.all_behind() || !at.cancel() ? at : corners_of(close_ramps(tile));
     }
 
@@ -56,6 +46,7 @@ public:
 
     void interpolate(const Tile& tile, const Corners& at, const Plan& plan) noexcept {
         whole_ = tile;
+        whole_at_ = &at;
         doubtful_.drop();
         triangle_.tolerance == 0.0 ? fill_exact(tile, at) : fill(tile, at, plan);
     }
@@ -90,9 +81,6 @@ private:
     }
 
     glm::length_t coordinate_of(std::size_t k) const noexcept { return coordinate_[count_ == 1 ? 0 : k]; }
-    Corners plain_corners(const Tile& tile) const noexcept {
-        return corners_of(triangle_.planes, *planes_, triangle_.q, tile);
-    }
 
     // What is known of the functions of a tile at first: what corners say, or two doubles where those are made already.
     TEXGEN_RARE DoubtfulFunctions functions_of(const Tile& tile, const Corners& at) noexcept {
@@ -110,8 +98,12 @@ private:
 
     // More of them, if there is more.
     TEXGEN_RARE bool sharpen(const Tile& tile, DoubtfulFunctions& functions) noexcept {
-        if (functions.are_close && functions.have_residues) return false;
-        functions.are_close ? add_residues(tile, functions) : close_ramps(tile).split(functions);
+        if (!functions.have_residues && (functions.are_close || functions.residues_first)) {
+            add_residues(tile, functions);
+            if (functions.are_close || are_decided_by_residues(functions)) return true;
+        }
+        if (functions.are_close) return false;
+        close_ramps(tile).split(functions);
         return functions.are_close = true;
     }
 
@@ -123,12 +115,21 @@ private:
         fill_some(tile, unit, doubtful);
     }
 
-    // A tile behind is cleared; one that is in doubt is halved, until it is so small that it is divided closely.
+    // A tile behind is cleared. Of one in doubt what is next to q = 0 is divided closely, if those are few; else it is halved.
     TEXGEN_APART void split(const Tile& tile, const Corners& at) noexcept {
         if (at.all_behind()) return clear(tile);
-        if (tile.width <= 8 && tile.height <= 8) return fill_closely(tile, at);
-        for (const Tile& half : tile.halves())
-            triangle_.tolerance == 0.0 ? fill_exact(half, corners_at(half)) : fill(half);
+        if (tile.count() <= TileJob::unit_size) return fill_closely(tile);
+        const Stretch stretch = at.next_to_zero(tile);
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Tile part = stretch.part(tile, i);
+            if (part.count() == 0) continue;
+            if (i == 1)
+                fill_closely(part);
+            else if (triangle_.tolerance == 0.0)
+                fill_exact(part, corners_at(part));
+            else
+                fill(part, part.count() > Corners::few ? longest_chunk : 0);
+        }
     }
 
     void fill_exact(const Tile& tile, const Corners& at) noexcept {
@@ -139,7 +140,7 @@ private:
         TEXGEN_UNROLL
         for (std::size_t k = 0; k < 2; ++k) job.quotient_error[k] = error[k];
         // A small tile does not repay the search for its least quotient.
-        job.ulps = static_cast<std::int64_t>(tile.width) * tile.height < 1024 ? 0 : at.ulps_of_quotients();
+        job.ulps = tile.count() < 1024 ? 0 : at.ulps_of_quotients();
         if (job.is_unit()) {
             if (kernels_.fill_unit(job)) fill_from_doubt(tile, at, job, job.unit_at(0, 0));
             return;
@@ -150,13 +151,10 @@ private:
 
     TEXGEN_RARE void fill_from_doubt(const Tile& tile, const Corners& at, TileJob& job, TileJob::Unit unit) noexcept {
         DoubtfulFunctions functions = functions_of(tile, at);
-        const bool q_is_constant = is_constant(functions.q.high);
-        if (q_is_constant || !functions.are_close) add_residues(tile, functions);
-        // Residues cost less than two doubles, and decide where the planes are exact or err by less than residues know.
-        if (!functions.are_close && !are_decided_by_residues(functions)) sharpen(tile, functions);
+        functions.residues_first = true;
         // What residues decide of a few fragments they decide sooner than their quotients are seen to be exact.
-        if (q_is_constant && (functions.are_close || tile.width + tile.height > 4) &&
-            take_exact_quotients(functions, job))
+        if (is_constant(functions.q.high) && sharpen(tile, functions) &&
+            (functions.are_close || tile.width + tile.height > 4) && take_exact_quotients(functions, job))
             unit = detail::fill_exact(kernels_, job, unit);
         // Doubt has company: twice as many units after each failure that follows another.
         for (int many = 1; !job.is_done(unit);) {
@@ -168,13 +166,17 @@ private:
         }
     }
 
-    // A small tile, by one job for all that there are: with the planes as they are, and closely only if that leaves doubt. What
-    // a last vector writes beyond the tile is to its right, where the halves come later.
-    void fill_closely(const Tile& tile, const Corners& at) noexcept {
+    // A small tile, rows first, by one job for all that there are: with the planes as they are, and closely only if that leaves
+    // doubt. What a last vector writes beyond the tile is to its right, where other parts come later.
+    TEXGEN_RARE void fill_closely(const Tile& tile) noexcept {
+        if (tile.count() > TileJob::unit_size) {
+            for (const Tile& half : tile.halves(tile.height == 1)) fill_closely(half);
+            return;
+        }
         const int x = static_cast<int>(tile.x - whole_.x);
         const int y = static_cast<int>(tile.y - whole_.y);
         if (!doubtful_) {
-            doubtful_.make(DoubtfulJob{make_job(whole_, at), functions_of(whole_, plain_corners(whole_))});
+            doubtful_.make(DoubtfulJob{make_job(whole_, *whole_at_), functions_of(whole_, *whole_at_)});
             doubtful_->job.is_contiguous = false;
         }
         fill_closely(whole_, doubtful_->job, doubtful_->functions, {x, x + tile.width, y, y + tile.height});
@@ -289,7 +291,8 @@ private:
     const PlaneOf<Double2>* planes_;
     PlaneOf<Double2> alone_;
     OnDemand<CloseRamps>& close_;
-    Tile whole_;  // what is being interpolated
+    Tile whole_;  // what is being interpolated, and its corners
+    const Corners* whole_at_;
     OnDemand<DoubtfulJob> doubtful_;
     OnDemand<PlaneResidues> residues_;
     std::span<float> output_[2];
@@ -314,7 +317,7 @@ template <class CompiledWhereCalled = void>
 inline void darken_beyond_depth(const TileKernels& kernels, const TriangleFunctions& triangle, const Tile& rect,
                                 const Tile& tile, const std::span<float>& buffer,
                                 const std::span<float>& lit) noexcept {
-    const std::size_t count = static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
+    const auto count = static_cast<std::size_t>(tile.count());
     if (count > buffer.size()) {
         for (const Tile& half : tile.halves()) {
             const Plan plan = survey(triangle, half).plan;

@@ -32,6 +32,8 @@ struct Tile {
     std::int64_t x, y;
     int width, height;
 
+    std::int64_t count() const noexcept { return static_cast<std::int64_t>(width) * height; }
+
     // Across the longer side, or a given one.
     std::array<Tile, 2> halves() const noexcept { return halves(width >= height); }
     std::array<Tile, 2> halves(bool across_width) const noexcept {

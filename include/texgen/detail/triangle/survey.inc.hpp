@@ -36,9 +36,7 @@ inline int chunk_length(const Corners& at, int width) noexcept {
 }
 
 // A chunk costs as much as some fragments, and the first of them as much as some tens.
-inline bool pays_for_chunks(const Tile& tile) noexcept {
-    return tile.width >= 16 && static_cast<std::int64_t>(tile.width) * tile.height > 64;
-}
+inline bool pays_for_chunks(const Tile& tile) noexcept { return tile.width >= 16 && tile.count() > 64; }
 
 // Of a tile that is divided, whatever it shows.
 inline Plan plan_without_survey(const Tile& tile, const Corners& at) noexcept {
