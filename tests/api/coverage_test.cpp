@@ -1148,7 +1148,12 @@ TEST_CASE("what is no body, no slide or no number gets a safe answer") {
           Coverage::inside);
 
     SUBCASE("spheres") {
-        const auto of = [&](const Sphere& sphere) { return coverage(transform, whole_texture(), sphere); };
+        const auto of = [&](const Sphere& sphere) {
+            Coverage of_batch{};
+            coverage(transform, whole_texture(), std::span(&sphere, 1), std::span(&of_batch, 1));
+            CHECK(of_batch == coverage(transform, whole_texture(), sphere));
+            return of_batch;
+        };
         CHECK(of({{0, 0, -10}, -1.0f}) == Coverage::outside);
         CHECK(of({{0, 0, -10}, -infinity}) == Coverage::outside);
         CHECK(of({{0, 0, -10}, nan_float}) == Coverage::partial);

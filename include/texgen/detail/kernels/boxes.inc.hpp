@@ -163,8 +163,7 @@ void decide_boxes(const DoubleForms* forms, const SeparatingForms& planes, const
 }
 
 // As exact_coverage() of a sphere, where every rounding here and there together could not change what it says: its bounds are
-// twice what is rounded, so half of one more or less decides. A root is a square here. At an angle of 2^-4 or more between
-// two planes their weights magnify roundings by less than 2^12: in the sum, and relative to its change in that.
+// twice what is rounded, so half of one more or less decides. A root is a square here.
 template <class CompiledWhereCalled = void>
 void decide_spheres(const FormLanes& forms, std::size_t form_count, const OpenRow* spheres, std::size_t count,
                     int* classes) noexcept {
@@ -194,45 +193,57 @@ void decide_spheres(const FormLanes& forms, std::size_t form_count, const OpenRo
             dark = dark | greater(0.0 - value[k], 0.0);
         }
         const auto try_edge = [&](std::size_t f, std::size_t g) {
-            const LongWords asked = (greater(0.0 - value[f], 0.0) | greater(0.0 - value[g], 0.0)) & ~outside;
+            LongWords asked = (greater(0.0 - value[f], 0.0) | greater(0.0 - value[g], 0.0)) & ~outside;
             if (!any(asked)) return;
             const auto& a = forms.a;
             const double across = a[0][f] * a[0][g] + a[1][f] * a[1][g] + a[2][f] * a[2][g];
-            const double squared_f = forms.slope[f] * forms.slope[f];
-            const double squared_g = forms.slope[g] * forms.slope[g];
-            // Of planes that are nearly parallel the weights are what rounding leaves. Where they face the same way a sum of
-            // theirs is as steep as they are but for cos(2^-5): negative nowhere but beside one of them. Where they face each
-            // other, with c the cosine, of_f + of_g is (c - 1) (f + g) in units of their slopes, so that f + g < 0.
-            if (!(across * across < (1.0 - 0x1p-8) * (squared_f * squared_g))) {
+            const double slope_f = forms.slope[f], slope_g = forms.slope[g];
+            const double squared_f = slope_f * slope_f, squared_g = slope_g * slope_g;
+            // No sum separates a sphere that reaches the edge: with the products of normals G, where (f, g) G^-1 (f, g) at the
+            // centre is at most the squared radius; here times the determinant of G. Slopes are up to 20 u more than they are,
+            // and 16 u of a value are at most its error.
+            const Doubles at_f = value[f] * slope_g, at_g = value[g] * slope_f;
+            const Doubles both_errors = error[f] * slope_g + error[g] * slope_f;
+            const Doubles squared_distance = at_f * at_f + at_g * at_g - (value[f] * value[g]) * (2.0 * across) +
+                                             (magnitude(at_f) + magnitude(at_g) + both_errors) * both_errors * 4.0;
+            const double determinant = squared_f * squared_g * (1.0 - gamma(64)) - across * across;
+            asked = asked & greater(squared_distance, radius * radius * determinant);
+            if (!any(asked)) return;
+            // Of planes that are nearly one the weights may be what rounding leaves, but a sum of theirs is as steep as they are,
+            // but for 2^-23, an eighth of the squared angle: negative nowhere but beside one of them.
+            if (across > 0.0 && !(across * across < (1.0 - 0x1p-20) * (squared_f * squared_g))) {
                 const auto is_beside = [&](std::size_t k) {
-                    return greater(error[k], value[k] + radius * (0.99 * forms.slope[k]));
+                    return greater(error[k], value[k] + radius * ((1.0 - 0x1p-22) * forms.slope[k]));
                 };
-                const Doubles at_f = value[f] * forms.slope[g], at_g = value[g] * forms.slope[f];
-                const Doubles slack = (magnitude(at_f) + magnitude(at_g)) * 0x1p-47 +
-                                      (error[f] * forms.slope[g] + error[g] * forms.slope[f]) * 2.0;
-                perhaps_outside = perhaps_outside |
-                                  (asked & (across > 0.0 ? is_beside(f) | is_beside(g) : ~greater(at_f + at_g, slack)));
-                return;
+                asked = asked & (is_beside(f) | is_beside(g));
             }
+            // What a weight may differ by, here and there: by two errors of each value, and 3 u in each product. One that may have
+            // either sign is 0, within that. The sum then differs by no more than 3 times it, beside the errors of values; of 4
+            // nothing is decided where the weights are all doubt.
+            const double slopes = slope_f + slope_g;
+            const Doubles slack = both_errors * (4.0 * slopes);
             Doubles of_f = value[g] * across - value[f] * squared_g;
             Doubles of_g = value[f] * across - value[g] * squared_f;
-            const LongWords faces = greater(of_f, 0.0) & greater(of_g, 0.0) & asked;
+            const LongWords faces = greater(of_f + slack, 0.0) & greater(of_g + slack, 0.0) & asked;
             if (!any(faces)) return;
-            const Doubles both = 1.0 / (of_f + of_g);
+            of_f = maximum(of_f, Doubles{});
+            of_g = maximum(of_g, Doubles{});
+            const Doubles both = 1.0 / maximum(of_f + of_g, slack);
             of_f = of_f * both;
             of_g = of_g * both;
-            const Doubles longest = of_f * forms.slope[f] + of_g * forms.slope[g];
-            const Doubles squared = (of_f * of_f * squared_f + of_f * of_g * (2.0 * across) + of_g * of_g * squared_g +
-                                     longest * longest * gamma(32)) *
-                                    (radius * radius);
+            const Doubles longest = (of_f * slope_f + of_g * slope_g) * radius;
+            const Doubles squared =
+                (of_f * of_f * squared_f + of_f * of_g * (2.0 * across) + of_g * of_g * squared_g) * (radius * radius);
             const Doubles sum = of_f * value[f] + of_g * value[g];
-            const Doubles rounding = (of_f * error[f] + of_g * error[g]) +
-                                     (of_f * magnitude(value[f]) + of_g * magnitude(value[g])) * gamma(8);
-            const Doubles reach = sum + rounding * 0x1p13;
-            const Doubles perhaps = sum - rounding * 0x1p13;
-            outside = outside | (faces & greater(0.0 - reach, 0.0) & greater(reach * reach, squared * (1.0 + 0x1p-36)));
+            const Doubles rounding = (of_f * error[f] + of_g * error[g]) * 8.0 + longest * gamma(16) +
+                                     slack * both * 4.0 * (magnitude(value[f]) + magnitude(value[g]) + radius * slopes);
+            const Doubles reach = sum + rounding;
+            const Doubles perhaps = sum - rounding;
+            const Doubles noise = longest * longest;
+            outside =
+                outside | (faces & greater(0.0 - reach, 0.0) & greater(reach * reach, squared + noise * gamma(48)));
             perhaps_outside = perhaps_outside | (faces & greater(0.0 - perhaps, 0.0) &
-                                                 greater(perhaps * perhaps, squared * (1.0 - 0x1p-36)));
+                                                 greater(perhaps * perhaps, squared + noise * gamma(16)));
         };
         if (any(dark & ~outside)) {
             for (std::size_t f = 0; f < 2; ++f)
