@@ -3,12 +3,13 @@
 #include "batch_set_up.inc.hpp"
 
 #include "batch_closely.inc.hpp"
+
+#include "batch_residues.inc.hpp"
+
 #include "batch_fragments.inc.hpp"
 #include "batch_survey.inc.hpp"
 
 #include "batch_tiles.inc.hpp"
-
-#include "batch_residues.inc.hpp"
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 

@@ -7,29 +7,30 @@ namespace TEXGEN_DETAIL::TEXGEN_ISA {
 // The vertices of the triangle in each lane: x, y, w, s, t, r, q.
 struct VertexLanes {
     Floats value[3][7];
+    Doubles area;        // nearly, doubled
+    LongWords has_area;  // its sign is known
 
-    TEXGEN_INLINE VertexLanes(const float* const (&triangle)[lanes], bool is_one) noexcept {
+    TEXGEN_INLINE explicit VertexLanes(const float* const (&triangle)[lanes]) noexcept {
         TEXGEN_UNROLL
         for (std::size_t i = 0; i < 3; ++i) {
             Floats given[8];
-            if (is_one) {
+            TEXGEN_UNROLL
+            for (std::size_t first = 0; first < 8; first += static_cast<std::size_t>(lanes)) {
+                Floats column[lanes];
                 TEXGEN_UNROLL
-                for (std::size_t k = 0; k < 8; ++k) given[k] = triangle[0][i * BatchVertex::size + k] - Floats{};
-            } else {
+                for (std::size_t j = 0; j < static_cast<std::size_t>(lanes); ++j)
+                    column[j] = load<Floats>(triangle[j] + i * BatchVertex::size + first);
+                transpose(column);
                 TEXGEN_UNROLL
-                for (std::size_t first = 0; first < 8; first += static_cast<std::size_t>(lanes)) {
-                    Floats column[lanes];
-                    TEXGEN_UNROLL
-                    for (std::size_t j = 0; j < static_cast<std::size_t>(lanes); ++j)
-                        column[j] = load<Floats>(triangle[j] + i * BatchVertex::size + first);
-                    transpose(column);
-                    TEXGEN_UNROLL
-                    for (std::size_t j = 0; j < static_cast<std::size_t>(lanes); ++j) given[first + j] = column[j];
-                }
+                for (std::size_t j = 0; j < static_cast<std::size_t>(lanes); ++j) given[first + j] = column[j];
             }
             TEXGEN_UNROLL
             for (std::size_t k = 0; k < 7; ++k) value[i][k] = given[k < 3 ? k : BatchVertex::strq + (k - 3)];
         }
+        const Doubles left = (number(1, 0) - number(0, 0)) * (number(2, 1) - number(0, 1));
+        const Doubles right = (number(1, 1) - number(0, 1)) * (number(2, 0) - number(0, 0));
+        area = left - right;
+        has_area = greater(magnitude(area), (magnitude(left) + magnitude(right)) * gamma(4));
     }
 
     TEXGEN_INLINE Doubles number(std::size_t i, std::size_t k) const noexcept { return to_doubles(value[i][k]); }
@@ -59,69 +60,29 @@ struct EdgeLanes {
     }
 };
 
-// What all functions of the triangles share: F = sum G_i f_i, with G_i = E_i w_j w_k.
-struct CloseLanes {
-    const VertexLanes& given;
+// Sums F = sum G_i f_i over the corners, with G_i = E_i w_j w_k: what the functions of the triangles share.
+struct CloseTerms {
     Doubles leading[3], trailing[3], low[3];  // of G_i; leading and trailing are 27 and 26 bits
-    Doubles size[3];                          // of both products of E_i, times w_j w_k
+    Doubles size[3];                          // of what E_i is the difference of, times w_j w_k
     Doubles inexact;                          // 0 where all G_i are a double, exactly
-    Doubles area;                             // nearly, doubled
-    LongWords is_known;                       // the sign of the area: all are within 2^-98 of their size
     bool is_leading;                          // leading is all there is
 
-    TEXGEN_INLINE CloseLanes(const VertexLanes& vertices, const Doubles& x, const Doubles& y) noexcept
-        : given(vertices) {
-        Doubles w[3];
-        DifferenceLanes to_x[3], to_y[3];
-        Doubles lost{}, below{};
-        TEXGEN_UNROLL
-        for (std::size_t i = 0; i < 3; ++i) {
-            w[i] = given.number(i, 2);
-            to_x[i].set(given.number(i, 0), x);
-            to_y[i].set(given.number(i, 1), y);
-            lost = lost + (magnitude(to_x[i].lost) + magnitude(to_y[i].lost));
-            below = below + (magnitude(to_x[i].low) + magnitude(to_y[i].low));
-        }
-        const bool is_lost = any(greater(lost, 0.0));
-        const bool is_short = !is_lost && !any(greater(below, 0.0));
-        EdgeLanes edge[3];
-        inexact = below + lost;
-        TEXGEN_UNROLL
-        for (std::size_t i = 0; i < 3; ++i) {
-            const std::size_t j = (i + 1) % 3;
-            const std::size_t k = (i + 2) % 3;
-            const Doubles left = to_x[j].high * to_y[k].high;
-            const Doubles right = to_y[j].high * to_x[k].high;
-            size[i] = magnitude(left) + magnitude(right);
-            edge[i].high = two_sum(left, right * -1.0, edge[i].low);
-            if (is_short) continue;
-            Doubles error[4];
-            const Doubles left_middle = two_sum(to_x[j].high * to_y[k].low, to_x[j].low * to_y[k].high, error[0]);
-            const Doubles right_middle = two_sum(to_y[j].high * to_x[k].low, to_y[j].low * to_x[k].high, error[1]);
-            const Doubles middle = two_sum(left_middle, right_middle * -1.0, error[2]);
-            const Doubles sum = two_sum(edge[i].high, middle, error[3]);
-            Doubles last = to_x[j].low * to_y[k].low - to_y[j].low * to_x[k].low;
-            if (is_lost)
-                last = last +
-                       (((to_x[j].high + to_x[j].low) * to_y[k].lost + to_x[j].lost * (to_y[k].high + to_y[k].low)) -
-                        ((to_y[j].high + to_y[j].low) * to_x[k].lost + to_y[j].lost * (to_x[k].high + to_x[k].low)));
-            const Doubles rest = ((edge[i].low + error[3]) + (error[2] + (error[0] - error[1]))) + last;
-            edge[i].high = two_sum(sum, rest, edge[i].low);
-        }
-        area = edge[0].high + edge[1].high + edge[2].high;
-        is_known = greater(magnitude(area), (size[0] + size[1] + size[2]) * 0x1p-49);
+    // Of E_i, what they are the differences of, and what is not 0 where those are not exact.
+    TEXGEN_INLINE void take(const VertexLanes& given, EdgeLanes (&edge)[3], const Doubles (&edge_size)[3],
+                            const Doubles& edge_inexact) noexcept {
+        inexact = edge_inexact;
         Doubles rest{};
         TEXGEN_UNROLL
         for (std::size_t i = 0; i < 3; ++i) {
-            const Doubles w_j = w[(i + 1) % 3];
-            const Doubles w_k = w[(i + 2) % 3];
+            const Doubles w_j = given.number((i + 1) % 3, 2);
+            const Doubles w_k = given.number((i + 2) % 3, 2);
             inexact = inexact + magnitude(edge[i].low);
-            edge[i].multiply(with_sign_of(w_j, area));
+            edge[i].multiply(with_sign_of(w_j, given.area));
             inexact = inexact + magnitude(edge[i].low);
             edge[i].multiply(w_k);
             low[i] = edge[i].low;
             inexact = inexact + magnitude(low[i]);
-            size[i] = size[i] * (w_j * w_k);
+            size[i] = edge_size[i] * (w_j * w_k);
             leading[i] = leading_bits<27>(edge[i].high);
             trailing[i] = edge[i].high - leading[i];
             rest = rest + (magnitude(trailing[i]) + magnitude(low[i]));
@@ -129,8 +90,8 @@ struct CloseLanes {
         is_leading = !any(are_nonzero(rest));
     }
 
-    // The function of coordinate k, 0 to 3 for s, t, r, q.
-    TEXGEN_INLINE Twofold function(std::size_t k) const noexcept {
+    // Of coordinate k, 0 to 3 for s, t, r, q.
+    TEXGEN_INLINE Twofold function(const VertexLanes& given, std::size_t k) const noexcept {
         Doubles f[3];
         TEXGEN_UNROLL
         for (std::size_t i = 0; i < 3; ++i) f[i] = given.number(i, 3 + k);
@@ -155,6 +116,64 @@ struct CloseLanes {
             result.lost = where(is_rounded, terms * 0x1p-96);
         }
         return result;
+    }
+};
+
+// At a fragment: all are within 2^-98 of their size.
+struct CloseLanes : CloseTerms {
+    TEXGEN_INLINE CloseLanes(const VertexLanes& given, const Doubles& x, const Doubles& y) noexcept {
+        DifferenceLanes to_x[3], to_y[3];
+        Doubles lost{}, below{};
+        TEXGEN_UNROLL
+        for (std::size_t i = 0; i < 3; ++i) {
+            to_x[i].set(given.number(i, 0), x);
+            to_y[i].set(given.number(i, 1), y);
+            lost = lost + (magnitude(to_x[i].lost) + magnitude(to_y[i].lost));
+            below = below + (magnitude(to_x[i].low) + magnitude(to_y[i].low));
+        }
+        const bool is_lost = any(greater(lost, 0.0));
+        const bool is_short = !is_lost && !any(greater(below, 0.0));
+        EdgeLanes edge[3];
+        Doubles edge_size[3];
+        TEXGEN_UNROLL
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::size_t j = (i + 1) % 3;
+            const std::size_t k = (i + 2) % 3;
+            const Doubles left = to_x[j].high * to_y[k].high;
+            const Doubles right = to_y[j].high * to_x[k].high;
+            edge_size[i] = magnitude(left) + magnitude(right);
+            edge[i].high = two_sum(left, right * -1.0, edge[i].low);
+            if (is_short) continue;
+            Doubles error[4];
+            const Doubles left_middle = two_sum(to_x[j].high * to_y[k].low, to_x[j].low * to_y[k].high, error[0]);
+            const Doubles right_middle = two_sum(to_y[j].high * to_x[k].low, to_y[j].low * to_x[k].high, error[1]);
+            const Doubles middle = two_sum(left_middle, right_middle * -1.0, error[2]);
+            const Doubles sum = two_sum(edge[i].high, middle, error[3]);
+            Doubles last = to_x[j].low * to_y[k].low - to_y[j].low * to_x[k].low;
+            if (is_lost)
+                last = last +
+                       (((to_x[j].high + to_x[j].low) * to_y[k].lost + to_x[j].lost * (to_y[k].high + to_y[k].low)) -
+                        ((to_y[j].high + to_y[j].low) * to_x[k].lost + to_y[j].lost * (to_x[k].high + to_x[k].low)));
+            const Doubles rest = ((edge[i].low + error[3]) + (error[2] + (error[0] - error[1]))) + last;
+            edge[i].high = two_sum(sum, rest, edge[i].low);
+        }
+        take(given, edge, edge_size, below + lost);
+    }
+};
+
+// By how much the functions grow along a row (axis 1) or down (axis 0): E_i does by what corners j and k are apart.
+struct CloseSteps : CloseTerms {
+    TEXGEN_INLINE CloseSteps(const VertexLanes& given, std::size_t axis) noexcept {
+        EdgeLanes edge[3];
+        Doubles edge_size[3];
+        TEXGEN_UNROLL
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::size_t j = (i + (axis == 1 ? 1 : 2)) % 3;
+            const std::size_t k = (i + (axis == 1 ? 2 : 1)) % 3;
+            edge[i].high = two_sum(given.number(j, axis), given.number(k, axis) * -1.0, edge[i].low);
+            edge_size[i] = magnitude(edge[i].high);
+        }
+        take(given, edge, edge_size, Doubles{});
     }
 };
 
@@ -210,16 +229,12 @@ struct ResidueLanes {
         const IntegerLanes x(number(0, 0), number(1, 0), number(2, 0), 0.5);
         const IntegerLanes y(number(0, 1), number(1, 1), number(2, 1), 0.5);
         const Doubles w[3] = {number(0, 2), number(1, 2), number(2, 2)};
-        const Doubles to_b_x = number(1, 0) - number(0, 0), to_b_y = number(1, 1) - number(0, 1);
-        const Doubles to_c_x = number(2, 0) - number(0, 0), to_c_y = number(2, 1) - number(0, 1);
-        const Doubles left = to_b_x * to_c_y, right = to_b_y * to_c_x;
-        const Doubles area = left - right;
-        const IntegerLanes weight(with_sign_of(w[1] * w[2], area), with_sign_of(w[2] * w[0], area),
-                                  with_sign_of(w[0] * w[1], area), 0x1p500);
+        const IntegerLanes weight(with_sign_of(w[1] * w[2], given.area), with_sign_of(w[2] * w[0], given.area),
+                                  with_sign_of(w[0] * w[1], given.area), 0x1p500);
         const Doubles first_x = at_x * x.per_unit, first_y = at_y * y.per_unit;
-        is_known = greater(magnitude(area), (magnitude(left) + magnitude(right)) * gamma(4)) &
-                   greater(Doubles{} + 0x1p62, maximum(largest_of_three(x.largest, y.largest, weight.largest),
-                                                       maximum(magnitude(first_x), magnitude(first_y))));
+        is_known =
+            given.has_area & greater(Doubles{} + 0x1p62, maximum(largest_of_three(x.largest, y.largest, weight.largest),
+                                                                 maximum(magnitude(first_x), magnitude(first_y))));
         one_x_ = known(x.per_unit);
         one_y_ = known(y.per_unit);
         unit_ = x.unit * y.unit * weight.unit;
@@ -264,27 +279,6 @@ private:
     Doubles unit_;
 };
 
-// Quotients f / q in double, to float: where one lies within `ulps` of its ulps (see are_near_middles()) of the middle m of two
-// floats the sign of F - m Q decides, which is at most `bound`. All are normal floats. `doubt` gains the lanes that this leaves.
-template <class Grain>
-TEXGEN_INLINE Floats nearest_by_residues(const Doubles& quotient, std::int64_t ulps, const Residues& f,
-                                         const Grain& f_grain, const Residues& q, const Grain& q_grain,
-                                         const Doubles& bound, LongWords& doubt) noexcept {
-    const LongWords is_near = are_near_middles(quotient, ulps);
-    const Doubles middle = middle_near(quotient);
-    const Doubles unit = power_of_two_below(middle) * 0x1p-24;  // of which it is a multiple
-    const Doubles finer = minimum(unit * q_grain, Doubles{} + f_grain);
-    const Doubles per_finer = reciprocals_of_powers(finer);
-    const Doubles of_f = per_finer * f_grain;
-    const Doubles of_q = middle * q_grain * per_finer;
-    const LongWords is_known =
-        greater(finer * 0x1p62, bound) & greater(Doubles{} + 0x1p62, maximum(of_f, magnitude(of_q)));
-    const Residues rest = f * to_residues(where(is_known, of_f)) - q * to_residues(where(is_known, of_q));
-    doubt |= is_near & ~is_known;
-    const Doubles step = where(~are_zero(rest), with_sign_of(unit * 0.25, signs_of(rest)));
-    return to_floats(select(is_near, middle + step, quotient));
-}
-
 // What two doubles leave in doubt of a vector of fragments.
 template <std::size_t Numerators>
 struct CloseDoubt {
@@ -317,16 +311,15 @@ TEXGEN_APART Words decide_lanes_by_residues(const VertexLanes& vertices, const D
     return doubt | (all & ~narrow(residues.is_known));
 }
 
-// The lanes in doubt (what is not 0) of a vector of fragments at (x, y), again. Returns those that stay so.
+// The lanes in doubt of a vector of fragments at (x, y), again: others are anything. Returns those that stay so.
 template <std::size_t Numerators>
 TEXGEN_APART Words divide_lanes_closely(const float* const (&triangle)[lanes], const Doubles& x, const Doubles& y,
-                                        bool is_one, const Words& doubtful, Floats (&quotient)[Numerators],
-                                        Words& in_front) noexcept {
-    const Words in_doubt = ~equal(doubtful, 0);
-    const VertexLanes vertices(triangle, is_one);
+                                        const Words& in_doubt, Floats (&quotient)[Numerators],
+                                        LongWords& front) noexcept {
+    const VertexLanes vertices(triangle);
     const CloseLanes close(vertices, x, y);
-    const Twofold q = close.function(3);
-    const LongWords front = greater(q.high, q.lost * 256.0);
+    const Twofold q = close.function(vertices, 3);
+    front = greater(q.high, q.lost * 256.0);
     const Doubles reciprocal = where(front, 1.0 / q.high);
     const Doubles relative_error = reciprocal * q.lost + 0x1p-50;
     const Doubles leading = leading_bits<27>(q.high);
@@ -338,7 +331,7 @@ TEXGEN_APART Words divide_lanes_closely(const float* const (&triangle)[lanes], c
     Words doubt = left.of_side;
     TEXGEN_UNROLL
     for (std::size_t k = 0; k < Numerators; ++k) {
-        const Twofold f = close.function(k);
+        const Twofold f = close.function(vertices, k);
         const Doubles u = f.high * reciprocal + 0.0;  // no -0
         const Doubles error = magnitude(u) * relative_error + reciprocal * f.lost;
         CloseRemainder& remainder = left.remainder[k];
@@ -363,11 +356,10 @@ TEXGEN_APART Words divide_lanes_closely(const float* const (&triangle)[lanes], c
                                                 remainder.value, is_open, is_tie, value);
             doubt |= left.of_value[k];
         }
-        quotient[k] = select(in_doubt, value, quotient[k]);
+        quotient[k] = value;
     }
     if (any(doubt)) doubt = decide_lanes_by_residues(vertices, x, y, left, quotient);
-    in_front = (in_front & ~in_doubt) | (narrow(front) & in_doubt);
-    return (doubt | narrow(~close.is_known)) & in_doubt;
+    return (doubt | narrow(~vertices.has_area)) & in_doubt;
 }
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA

@@ -226,12 +226,21 @@ struct FragmentOutputs {
           r_min(job.r_min),
           r_max(job.r_max) {}
 
-    template <std::size_t Numerators, class Vector, class Mask>
-    TEXGEN_INLINE void put(std::size_t n, const Vector (&value)[Numerators], const Mask& in_front) const noexcept {
+    template <std::size_t Numerators>
+    TEXGEN_INLINE void put(std::size_t n, const Floats (&value)[Numerators], const LongWords& in_front) const noexcept {
         TEXGEN_UNROLL
         for (std::size_t k = 0; k < Numerators; ++k)
             if (out[k] != nullptr) store(out[k] + n, value[k]);
-        if (lit != nullptr) store(lit + n, one_where(in_front & are_inside(value)));
+        if (lit != nullptr) store(lit + n, one_where(narrow(in_front) & are_inside(value)));
+    }
+    // What stands in other lanes stays.
+    template <std::size_t Numerators>
+    TEXGEN_INLINE void put_where(const Words& mask, std::size_t n, const Floats (&value)[Numerators],
+                                 const LongWords& in_front) const noexcept {
+        const auto put_one = [&](float* to, const Floats& one) { store(to, select(mask, one, load<Floats>(to))); };
+        for (std::size_t k = 0; k < Numerators; ++k)
+            if (out[k] != nullptr) put_one(out[k] + n, value[k]);
+        if (lit != nullptr) put_one(lit + n, one_where(narrow(in_front) & are_inside(value)));
     }
     template <std::size_t Numerators, class Vector>
     TEXGEN_INLINE auto are_inside(const Vector (&value)[Numerators]) const noexcept {

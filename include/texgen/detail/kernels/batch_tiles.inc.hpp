@@ -270,11 +270,53 @@ TEXGEN_INLINE bool fill_tile(const FragmentOutputs& out, const TileShape& shape,
     return is_certain;
 }
 
-// Tiles of the block from `first` on that are in doubt, a bit each, by residues, or fragment by fragment; its values begin at
-// `done`. Returns those that stay so.
+// Tiles of the block from `first` on that are in doubt, a bit each, again; its values begin at `done`. Returns those that stay so.
 template <std::size_t Numerators>
-std::uint64_t decide_tiles(const TilesJob& job, const FragmentOutputs& out, const BatchTiles& tiles, std::size_t first,
-                           const int (*block)[4], std::uint64_t doubtful, std::size_t done) noexcept;
+TEXGEN_APART std::uint64_t decide_tiles(const TilesJob& job, const FragmentOutputs& out, std::size_t first,
+                                        const int (*block)[4], std::uint64_t doubtful, std::size_t done) noexcept {
+    BatchFunctions functions;
+    TileScratch scratch;
+    std::uint64_t unknown = 0;
+    const auto known = static_cast<std::size_t>(std::countr_zero(doubtful));  // finite, where others may be no numbers
+    for (std::size_t i = 0; i < batch_block; i += static_cast<std::size_t>(lanes)) {
+        constexpr auto all_lanes = (std::uint64_t{1} << lanes) - 1;
+        if ((doubtful >> i & all_lanes) == 0) continue;
+        const float* of_lane[lanes];
+        TEXGEN_UNROLL
+        for (std::size_t j = 0; j < static_cast<std::size_t>(lanes); ++j)
+            of_lane[j] = vertices_of(job, first + ((doubtful >> (i + j) & 1u) != 0 ? i + j : known));
+        Words tile[4];
+        load_fours(block[i], tile);
+        const LongWords are_unknown = functions.take<Numerators>(
+            of_lane, to_doubles(tile[0]) + 0.5, to_doubles(tile[1]) + 0.5, to_doubles(tile[2]), to_doubles(tile[3]), i);
+        unknown |= lane_bits(are_unknown) << i;
+    }
+    std::uint64_t undecided = doubtful & unknown;
+    for (std::size_t i = 0; i < batch_block; ++i) {
+        if (block[i][2] <= 0 || block[i][3] <= 0) continue;
+        TileShape shape;
+        shape.take(block[i][2], block[i][3], 1.0 / block[i][2]);
+        const std::size_t begin = done;
+        done += shape.count;
+        if (((doubtful & ~unknown) >> i & 1u) == 0) continue;
+        // What follows is there already.
+        const bool in_scratch = shape.count % static_cast<std::size_t>(lanes) != 0;
+        const FragmentOutputs here = in_scratch ? scratch.in_place_of(out) : out;
+        FragmentWalk<Doubles, double> walk(shape.width, shape.per_width, 0.0);
+        Words left{};
+        for (std::size_t n = 0; n < shape.count; n += static_cast<std::size_t>(lanes), walk.advance()) {
+            const Doubles row = minimum(walk.y, Doubles{} + shape.last_row);
+            CloseFragments<Numerators> fragments;
+            fragments.divide(functions, i, shape.is_turned ? row : walk.x, shape.is_turned ? walk.x : row,
+                             job.tolerance);
+            here.put(in_scratch ? n : begin + n, fragments.quotient, fragments.front);
+            left |= fragments.doubtful;
+        }
+        if (in_scratch) scratch.copy_to(out, begin, shape.count);
+        if (any(left)) undecided |= std::uint64_t{1} << i;
+    }
+    return undecided;
+}
 
 template <std::size_t Numerators>
 TEXGEN_INLINE Undecided divide_all_tiles(const TilesJob& job, std::size_t first, std::size_t done) noexcept {
@@ -324,8 +366,7 @@ TEXGEN_INLINE Undecided divide_all_tiles(const TilesJob& job, std::size_t first,
                 in_doubt |= std::uint64_t{1} << i;
             }
         }
-        if (in_doubt != 0)
-            doubtful |= decide_tiles<Numerators>(job, out, tiles, first, block, in_doubt, begin_of_block);
+        if (in_doubt != 0) doubtful |= decide_tiles<Numerators>(job, out, first, block, in_doubt, begin_of_block);
         if (doubtful != 0) return {first, doubtful};
     }
     return {job.tile_count, 0};

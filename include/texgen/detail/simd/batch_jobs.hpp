@@ -65,7 +65,7 @@ struct TilesJob : BatchJob {
     std::size_t tile_count;
 };
 
-// Triangle ids[k] of `triangles` at fragment k of a rectangle; any other id is no triangle.
+// Triangle ids[k] of `triangles` at fragment k of a rectangle; any other id is no triangle, as planes[triangles] has it.
 struct FragmentsJob : BatchJob {
     const std::uint32_t* ids;
     std::uint32_t triangles;

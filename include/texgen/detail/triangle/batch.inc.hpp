@@ -2,10 +2,16 @@
 
 namespace TEXGEN_DETAIL {
 
-// Where vectors leave open whether a triangle has an area, or is refused: all that is refused is behind.
-inline BatchPlanes batch_planes(const Triangle& triangle) noexcept {
+// Of what is refused, or no triangle: behind everywhere, without a doubt.
+inline BatchPlanes planes_behind() noexcept {
     BatchPlanes result{};
     result.value[BatchPlanes::q] = -1.0;
+    return result;
+}
+
+// Where vectors leave open whether a triangle has an area, or is refused.
+inline BatchPlanes batch_planes(const Triangle& triangle) noexcept {
+    BatchPlanes result = planes_behind();
     const TrianglePlanes planes(triangle);
     if (!planes.is_usable()) return result;
     const auto reach_of = [&](glm::length_t axis) {
@@ -60,7 +66,7 @@ void interpolate_apart(const TriangleBatch& batch, std::size_t triangle, const T
 // What every kernel is given of a batch.
 inline void describe(BatchJob& job, const TriangleBatch& batch, const Texcoords& out, std::size_t count) noexcept {
     job.planes = batch.planes();
-    job.vertices = batch.size() == 0 ? nullptr : &batch.triangle(0).a.window.x;
+    job.vertices = &batch.triangle(0).a.window.x;
     job.tolerance = accepted(batch.tolerance());
     job.out[0] = array_of(out.s, count);
     job.out[1] = array_of(out.t, count);
@@ -105,9 +111,9 @@ inline void TriangleBatch::take(std::span<const Triangle> triangles) noexcept {
     TEXGEN_ASSERT(triangles.size() < no_triangle);
     size_ = triangles.size();
     const std::size_t whole = (size_ + batch_block - 1) / batch_block * batch_block;
-    if (whole > planes_.size()) {
-        triangles_.resize(whole + 1);  // kernels read beyond the last
-        planes_.resize(whole);
+    if (whole >= planes_.size()) {  // kernels read beyond the last
+        triangles_.resize(whole + 1);
+        planes_.resize(whole + 1);
     }
     std::copy(triangles.begin(), triangles.end(), triangles_.begin());
 }
@@ -121,6 +127,7 @@ void TriangleBatch::set_up() noexcept {
         for (std::size_t i = first; unknown != 0; unknown >>= 1, ++i)
             if ((unknown & 1u) != 0) planes_[i] = detail::batch_planes(triangles_[i]);
     }
+    planes_[size_] = detail::planes_behind();
 }
 
 template <class CompiledWhereCalled>
@@ -178,6 +185,7 @@ void interpolate(const TriangleBatch& batch, std::span<const std::uint32_t> ids,
     if (count == 0) return;
     TEXGEN_ASSERT(ids.size() == count);
     if (ids.size() != count || !detail::take_computed(out, count)) return;
+    if (batch.size() == 0) return detail::clear(out);
     detail::FragmentsJob job{};
     detail::describe(job, batch, out, count);
     job.ids = ids.data();
