@@ -563,6 +563,8 @@ MUTANTS = [
     *_of("detail/kernels/tiles.inc.hpp",
          ("the last column of a small tile's vectors runs on beyond the rows",
           "begin = begin + 2 * lanes <= width ? begin + lanes : width - lanes;", "begin += lanes;", "interpolate_test"),
+         ("next to q = 0 nothing is in doubt", "                    doubt |= bits(value[k]) ^ bits(to_floats(quotient + error));\n", "",
+          "interpolate_test"),
          ("doubt goes to the other neighbour", "with_sign_of(unit * 0x1p-26, remainder)",
           "with_sign_of(unit * 0x1p-26, remainder * -1.0)", "near_ties_test"),
          ("residues of any length are believed", "is_known = greater(finer * 0x1p62", "is_known = greater(finer * 0x1p90",

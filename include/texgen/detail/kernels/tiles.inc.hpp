@@ -299,54 +299,67 @@ TEXGEN_INLINE Words divide_closely(const CloseRow& row, double q_grain, const Cl
     return doubt & ~decided;
 }
 
-// The same of both numerators, for a vector that has one in doubt. A bit for each of `count` lanes that stays so.
+// The same of both numerators, and the lanes of a vector that stay in doubt.
 template <class CompiledWhereCalled = void>
-TEXGEN_RARE std::uint64_t decide_vector(const CloseRow (&rows)[3], double q_unit, std::int64_t x, int count,
-                                        Floats (&value)[2]) noexcept {
+TEXGEN_RARE void decide_vector(const CloseRow (&rows)[3], double q_unit, std::int64_t x, bool q_is_known, CloseQ& q,
+                               Floats (&value)[2], Words& doubt) noexcept {
     const Doubles index = indices<Doubles>() + static_cast<double>(x);
-    CloseQ q;
-    q.move_to(rows[2], q_unit, index, x);
-    Words doubt = narrow(q.doubt);
+    if (!q_is_known) q.move_to(rows[2], q_unit, index, x);
+    doubt = narrow(q.doubt);
     for (std::size_t k = 0; k < 2; ++k)
         doubt |= divide_closely(rows[k], rows[2].grain, q, rows[2].error * 0.5, index, x, value[k]);
-    std::uint64_t result = 0;
-    for (int i = 0; i < count; ++i)
-        if (lane(doubt, i) != 0) result |= std::uint64_t{1} << i;
-    return result;
 }
 
-// A vector that has no lane in doubt is asked no more than that. One numerator stands in both places.
+// A vector is asked more only where it has a lane in doubt, and only if more is known; at once if residues are. One numerator
+// stands in both places.
 template <class CompiledWhereCalled = void>
 std::uint64_t fill_tile_closely(const TileJob& job, const CloseFunctions& functions, TileJob::Unit unit) noexcept {
     const CloseFunction* const function[] = {&functions.numerator[0], &functions.numerator[1], &functions.q};
     CloseRow rows[3];
     for (std::size_t k = 0; k < 3; ++k) rows[k].take(*function[k]);
+    const bool at_once = functions.have_residues;
+    const bool q_is_constant =
+        is_constant(functions.q.high) && is_constant(functions.q.low) && is_constant(functions.q.residue);
+    bool q_is_known = false;
+    CloseQ close_q;
     RowOutputs row(job, unit.y_begin);
     std::uint64_t doubtful = 0;
     for (int y = unit.y_begin; y < unit.y_end; ++y, row.advance()) {
         for (std::size_t k = 0; k < 3; ++k) rows[k].move_to(*function[k], y);
         for (std::int64_t x = unit.x_begin; x < unit.x_end; x += lanes) {
-            const Doubles index = indices<Doubles>() + static_cast<double>(x);
-            const Doubles q = rows[2].value_at(index);
-            const LongWords in_front = greater(q, rows[2].error * 256.0);
-            const Doubles reciprocal = where(in_front, 1.0 / q);
-            const Doubles relative_error = reciprocal * rows[2].error + 0x1p-50;
-            Floats value[2];
-            Words doubt = narrow(~greater(magnitude(q), rows[2].error * 256.0));
-            TEXGEN_UNROLL
-            for (std::size_t k = 0; k < 2; ++k) {
-                const Doubles quotient = where(in_front, rows[k].value_at(index) * reciprocal);  // no -0 behind
-                const Doubles error = magnitude(quotient) * relative_error + reciprocal * rows[k].error;
-                value[k] = to_floats(quotient - error);
-                doubt |= bits(value[k]) ^ bits(to_floats(quotient + error));
-            }
             const int count = unit.x_end - x < lanes ? static_cast<int>(unit.x_end - x) : lanes;
-            if (any(doubt)) {
-                Floats decided[2];  // in memory: the values are in registers
-                const std::uint64_t in_doubt = decide_vector(rows, functions.q_unit, x, count, decided);
-                doubtful |= in_doubt << ((y - unit.y_begin) * (unit.x_end - unit.x_begin) + (x - unit.x_begin));
+            Floats value[2];
+            LongWords in_front{};
+            Words doubt{};
+            if (!at_once) {
+                const Doubles index = indices<Doubles>() + static_cast<double>(x);
+                const Doubles q = rows[2].value_at(index);
+                in_front = greater(q, rows[2].error * 256.0);
+                const Doubles reciprocal = where(in_front, 1.0 / q);
+                const Doubles relative_error = reciprocal * rows[2].error + 0x1p-50;
+                doubt = narrow(~greater(magnitude(q), rows[2].error * 256.0));
                 TEXGEN_UNROLL
-                for (std::size_t k = 0; k < 2; ++k) value[k] = decided[k];
+                for (std::size_t k = 0; k < 2; ++k) {
+                    const Doubles quotient = where(in_front, rows[k].value_at(index) * reciprocal);  // no -0 behind
+                    const Doubles error = magnitude(quotient) * relative_error + reciprocal * rows[k].error;
+                    value[k] = to_floats(quotient - error);
+                    doubt |= bits(value[k]) ^ bits(to_floats(quotient + error));
+                }
+            }
+            if (at_once || any(doubt)) {
+                if (at_once || functions.are_close) {
+                    Floats decided[2];  // in memory: the values are in registers
+                    Words open;
+                    decide_vector(rows, functions.q_unit, x, q_is_known, close_q, decided, open);
+                    q_is_known = q_is_constant;
+                    in_front = close_q.in_front;
+                    doubt = open;
+                    TEXGEN_UNROLL
+                    for (std::size_t k = 0; k < 2; ++k) value[k] = decided[k];
+                }
+                const auto first = (y - unit.y_begin) * (unit.x_end - unit.x_begin) + (x - unit.x_begin);
+                for (int i = 0; i < count; ++i)
+                    if (lane(doubt, i) != 0) doubtful |= std::uint64_t{1} << (first + i);
             }
             const Floats lit = lit_of(job, value, narrow(in_front));
             if (x + lanes <= row.writable) {

@@ -129,7 +129,8 @@ struct CloseFunction {
 struct CloseFunctions {
     CloseFunction numerator[2];
     CloseFunction q;
-    double q_unit;  // adding and taking it rounds high of q to 26 bits
+    double q_unit;                  // adding and taking it rounds high of q to 26 bits
+    bool are_close, have_residues;  // or they are of the planes as they are, without low parts, and without residues
 };
 
 // A linear form of points (x, y, z, 1).

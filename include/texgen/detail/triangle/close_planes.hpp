@@ -155,7 +155,7 @@ TEXGEN_RARE inline std::uint64_t residue_of(double number) noexcept {
 // The functions of a tile where it is in doubt: of the planes as they are, or close, and with residues or not. Those cost less
 // than two doubles, and decide where the planes are exact or err by less than residues know: not next to q = 0.
 struct DoubtfulFunctions : CloseFunctions {
-    bool are_close, have_residues = false, residues_first = false;
+    bool residues_first = false;
 };
 struct DoubtfulJob {
     TileJob job;

@@ -84,7 +84,8 @@ private:
 
     // What is known of the functions of a tile at first: what corners say, or two doubles where those are made already.
     TEXGEN_RARE DoubtfulFunctions functions_of(const Tile& tile, const Corners& at) noexcept {
-        DoubtfulFunctions result{{}, static_cast<bool>(close_)};
+        DoubtfulFunctions result{};
+        result.are_close = static_cast<bool>(close_);
         result.are_close ? close_ramps(tile).split(result) : take_planes(at, result);
         return result;
     }
