@@ -120,7 +120,8 @@ struct CloseFragments {
         const Doubles relative_error = reciprocal * q.error + 0x1p-50;
         CloseValues f[Numerators];
         Doubles u[Numerators], error[Numerators];
-        LongWords is_open[Numerators], any_open = is_beside;
+        LongWords is_open[Numerators], is_rough[Numerators], any_open = is_beside, any_rough{};
+        const bool has_tolerance = tolerance > 0.0;
         TEXGEN_UNROLL
         for (std::size_t k = 0; k < Numerators; ++k) {
             f[k] = functions.at(k, i, x, y);
@@ -129,14 +130,17 @@ struct CloseFragments {
             error[k] = size * relative_error + (reciprocal * f[k].error + 0x1p-152);
             quotient[k] = to_floats(u[k]);
             // Of normal floats that err by so little there is but one middle in reach.
-            is_open[k] = front & ~greater(minimum(magnitude(u[k] - middle_near(u[k])), size * 0x1p-27), error[k]);
-            if (tolerance > 0.0)
+            is_rough[k] = ~greater(size * 0x1p-27, error[k]);
+            is_open[k] = front & (is_rough[k] | ~greater(magnitude(u[k] - middle_near(u[k])), error[k]));
+            if (has_tolerance)
                 is_open[k] &= ~at_most(error[k] * 2.001 + (size * (1.0001 * unit_roundoff_float) + 0x1p-149),
                                        Doubles{} + tolerance);
+            any_rough |= is_rough[k];
             any_open |= is_open[k];
         }
         doubtful = Words{};
         if (!any(any_open)) return;
+        const bool has_rough = any(any_rough);
         const Residues x_index = to_residues(x), y_index = to_residues(y);
         const Residues of_q = functions.residues_at(Numerators, i, x_index, y_index);
         const double q_grain = functions.grain[Numerators][i];
@@ -147,17 +151,18 @@ struct CloseFragments {
             if (!any(is_open[k])) continue;
             const double grain = functions.grain[k][i];
             const Residues of_f = functions.residues_at(k, i, x_index, y_index);
-            const LongWords is_rough = is_open[k] & ~greater(magnitude(u[k]) * 0x1p-27, error[k]);
-            if (any(is_rough)) {
+            Words is_near = narrow(is_open[k]);
+            if (has_rough) {
+                const Words rough = is_near & narrow(is_rough[k]);
+                is_near &= ~rough;
                 const Floats above = to_floats(u[k] + error[k]);
-                const Words differ = ~equal(bits(to_floats(u[k] - error[k])) ^ bits(above), 0) & narrow(is_rough);
-                quotient[k] = select(narrow(is_rough), above, quotient[k]);
+                const Words differ = ~equal(bits(to_floats(u[k] - error[k])) ^ bits(above), 0) & rough;
+                quotient[k] = select(rough, above, quotient[k]);
                 doubtful |= decide_zeros(f[k].are_residues(grain) & are_zero(of_f), differ, quotient[k]);
             }
             // The middle is as near to the quotient as F/Q is: so |F - m Q| is at most twice the error times Q.
             const CloseMiddle middle(u[k]);
-            Words left = middle.decide(of_f, grain, of_q, q_grain, error[k] * q_value * 2.25,
-                                       narrow(is_open[k] & ~is_rough), quotient[k]);
+            Words left = middle.decide(of_f, grain, of_q, q_grain, error[k] * q_value * 2.25, is_near, quotient[k]);
             if (!any(left)) continue;
             Doubles rest_error;
             const Doubles rest = middle.rest_of(f[k], q, rest_error);
