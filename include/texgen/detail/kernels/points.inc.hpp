@@ -205,6 +205,7 @@ TEXGEN_INLINE std::uint64_t fill_block_again(const PointJob& job, const PointTer
     std::uint64_t doubtful = 0;
     for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(lanes)) {
         const PointLanes at = load_points(job, i);
+        const PointSizes sizes(at);
         const LongWords are_dark = terms.are_dark(at);
         Floats value[2];
         if (effort.rung <= Rung::each_lane || i / static_cast<std::size_t>(lanes) % 16 == 0) {
@@ -218,7 +219,8 @@ TEXGEN_INLINE std::uint64_t fill_block_again(const PointJob& job, const PointTer
                 divide_certainly<true>(numerators, numerator, numerator_error, terms.q.nearly_at(at),
                                        terms.q.error_at(at), job.tolerance, value, doubt);
             const bool is_decided = !any(doubt.rounding | narrow(doubt.side & ~are_dark));
-            effort = {is_decided ? Rung::each_lane : Rung::closely, false, effort.precisely && !is_decided};
+            effort = {is_decided ? Rung::each_lane : Rung::closely, effort.are_ties && !is_decided,
+                      effort.precisely && !is_decided};
             if (is_decided) {
                 store_points(job, i, numerators, value, narrow(in_front));
                 continue;
@@ -226,7 +228,7 @@ TEXGEN_INLINE std::uint64_t fill_block_again(const PointJob& job, const PointTer
         }
         LongWords in_front, is_known;
         for (;;) {
-            TwofoldDivisor q(terms.q.at(at, effort.precisely));
+            TwofoldDivisor q(terms.q.at(at, sizes, effort.precisely));
             in_front = q.in_front &= ~are_dark;
             is_known = q.is_known | are_dark;
             for (std::size_t k = 0; k < numerators; ++k) {
@@ -235,8 +237,8 @@ TEXGEN_INLINE std::uint64_t fill_block_again(const PointJob& job, const PointTer
                     effort.are_ties = !divide_nearly(numerator.nearly_at(at), numerator.error_at(at), q, value[k]);
                 if (!effort.are_ties) continue;
                 if (numerator.is_finite)
-                    value[k] =
-                        nearest_quotients(numerator.at(at, effort.precisely), q, within, effort.precisely, is_known);
+                    value[k] = nearest_quotients(numerator.at(at, sizes, effort.precisely), q, within, effort.precisely,
+                                                 is_known);
                 else
                     value[k] = to_floats(where(in_front, numerator.nearly_at(at) * q.reciprocal));
             }

@@ -18,29 +18,39 @@ TEXGEN_INLINE Doubles quick_two_sum(const Doubles& a, Doubles b, Doubles& error)
     return sum;
 }
 
-// A number as an unevaluated sum, high the nearest double, and a bound on what that lacks: 0 where it is exact. A sum is made
-// either precisely, or quickly: then what its leading part leaves is added in one double, which no tie is certain by.
+// A number as an unevaluated sum, high the nearest double, and a bound on what that lacks: 0 where it is exact.
 struct Twofold {
     Doubles high, low, lost;
 };
-
-// Quickly: a sum, what is left of it in at most six terms, and their magnitudes. The low part is exact where what is lost is
-// small beside the sum.
-TEXGEN_INLINE Twofold twofold_of(const Doubles& sum, const Doubles& rest, const Doubles& size) noexcept {
-    Twofold result;
-    result.high = quick_two_sum(sum, rest, result.low);
-    result.lost = size * 0x1p-51;
-    return result;
-}
+// The same with a rest, far below them, all of them multiples of a power of two.
+struct PointSum : Twofold {
+    Doubles rest, grain;
+};
 
 struct PointLanes {
     Doubles v[3];
 };
 
+// The magnitudes of coordinates, and their last bits that are set: of what has one more in front, which 1 has, too.
+struct PointSizes {
+    Doubles size[3], grain[3];
+
+    TEXGEN_INLINE explicit PointSizes(const PointLanes& at) noexcept
+        : size{magnitude(at.v[0]), magnitude(at.v[1]), magnitude(at.v[2])},
+          grain{grain_of(size[0]), grain_of(size[1]), grain_of(size[2])} {}
+
+private:
+    TEXGEN_INLINE static Doubles grain_of(const Doubles& size) noexcept {
+        const Doubles longer = size + power_of_two_below(size) * 4.0;
+        return select(greater(size, 0.0), longer - without_last_bit(longer), Doubles{} + 0x1p200);
+    }
+};
+
 // The value of a form at points. A coefficient is split in two, so that both products with a float are exact.
 struct TwofoldForm {
     PointForm form;
-    double high[3], low[3];
+    double high[3], low[3], size[3], grain[3];
+    double grain_of_w;
     bool is_used[3], has_low[3];
     bool is_finite;
 
@@ -49,6 +59,9 @@ struct TwofoldForm {
         : form(given),
           high{},
           low{},
+          size{},
+          grain{},
+          grain_of_w(last_bit(form.w)),
           is_used{},
           has_low{},
           is_finite(0.0 * (form.x + form.y + form.z + form.w) == 0.0) {
@@ -56,6 +69,8 @@ struct TwofoldForm {
         for (int j = 0; j < 3; ++j) {
             high[j] = leading_29_bits(coefficient[j]);
             low[j] = coefficient[j] - high[j];
+            size[j] = std::fabs(coefficient[j]);
+            grain[j] = last_bit(coefficient[j]);
             is_used[j] = coefficient[j] != 0.0;
             has_low[j] = low[j] != 0.0;
         }
@@ -70,47 +85,52 @@ struct TwofoldForm {
                gamma(5);
     }
 
-    // Of points that are numbers: a coordinate without a coefficient is not looked at.
-    TEXGEN_INLINE Twofold at(const PointLanes& at, bool precisely) const noexcept {
+    // Of points that are numbers: a coordinate without a coefficient is not looked at. With T the sum of the terms' magnitudes,
+    // what is left of the sum are six terms of less than 2^-50 T together, and precisely what is left of their sum five of less
+    // than 2^-101 T. The last are added in one double: exactly where their grain is at least 2^-102 T, as that of numbers of
+    // about one size is, or 2^-152 T, and else but for five roundings.
+    TEXGEN_INLINE PointSum at(const PointLanes& at, const PointSizes& of, bool precisely) const noexcept {
         Doubles sum = Doubles{} + form.w;
-        Doubles rest{}, lost{}, third{};  // what the sum leaves, and what that leaves
-        bool is_first = precisely;
+        Doubles terms = magnitude(sum);
+        Doubles second{}, third{};  // what the sum leaves, and what that leaves
+        PointSum result;
+        result.grain = Doubles{} + grain_of_w;
         const auto keep = [&](const Doubles& term) {
-            Doubles left = term;
             if (precisely) {
-                rest = two_sum(rest, term, left);
+                Doubles left;
+                second = two_sum(second, term, left);
                 third = third + left;
             } else {
-                rest = rest + term;
+                second = second + term;
             }
-            lost = lost + magnitude(left);
         };
         TEXGEN_UNROLL
         for (int j = 0; j < 3; ++j) {
             if (!is_used[j]) continue;
-            Doubles product = at.v[j] * high[j];
-            Doubles product_rest = at.v[j] * low[j];
-            if (!precisely) product = quick_two_sum(product, product_rest, product_rest);
-            Doubles error;
-            sum = two_sum(sum, product, error);
-            if (is_first)
-                rest = error;
-            else
-                keep(error);
-            is_first = false;
-            if (has_low[j]) keep(product_rest);
+            Doubles left;
+            const Doubles product = quick_two_sum(at.v[j] * high[j], at.v[j] * low[j], left);
+            if (has_low[j]) keep(left);
+            sum = two_sum(sum, product, left);
+            keep(left);
+            terms = terms + of.size[j] * size[j];
+            result.grain = minimum(of.grain[j] * grain[j], result.grain);
         }
-        if (!precisely) return twofold_of(sum, rest, lost);
-        Twofold result;
-        result.high = two_sum(sum, rest, result.low);
-        // Beside a sum that cancels what is lost is much, and is kept.
-        if (any(~at_most(lost, magnitude(result.high) * 0x1p-60))) {
-            Doubles error;
-            const Doubles second = two_sum(result.low, third, error);
-            result.high = two_sum(result.high, second, result.low);
-            lost = lost * 0x1p-50 + magnitude(error);
+        const auto lost_beyond = [&](double range) {
+            return where(greater(terms, result.grain * range), terms * (4.0 / range) + 0x1p-1000);
+        };
+        result.rest = third;
+        if (precisely) {
+            result.lost = lost_beyond(0x1p152);
+            result.high = two_sum(sum, second, result.low);
+            // Beside a sum that cancels the rest is much.
+            if (any(~at_most(magnitude(third), magnitude(result.high) * 0x1p-80))) {
+                second = two_sum(result.low, third, result.rest);
+                result.high = two_sum(result.high, second, result.low);
+            }
+        } else {
+            result.lost = lost_beyond(0x1p102);
+            result.high = quick_two_sum(sum, second, result.low);
         }
-        result.lost = lost * 1.001;
         return result;
     }
 };
@@ -118,20 +138,20 @@ struct TwofoldForm {
 // The denominators of a vector of quotients, and on which side of 0 they are.
 struct TwofoldDivisor {
     LongWords in_front, is_known;  // is_known: the side is, and in front the value well enough to divide by
-    Doubles high, low, lost, reciprocal;
-    Doubles part[2], low_part[2];  // high and low in parts of 27 bits and less, whose products with 25 bits are exact
+    Doubles high, low, rest, lost, grain, reciprocal;
+    Doubles part[2];  // high in parts of 27 bits and less, whose products with 25 bits are exact
 
-    TEXGEN_INLINE explicit TwofoldDivisor(const Twofold& q) noexcept {
+    TEXGEN_INLINE explicit TwofoldDivisor(const PointSum& q) noexcept {
         in_front = greater(q.high, 0.0) & at_most(q.lost, q.high * 0x1p-50);
         is_known = in_front | at_most(q.lost * 2.0, -1.0 * q.high);
         high = q.high;
         low = q.low;
+        rest = q.rest;
         lost = q.lost;
+        grain = q.grain;
         reciprocal = where(in_front, 1.0 / q.high);
         part[0] = leading_bits<27>(q.high);
         part[1] = q.high - part[0];
-        low_part[0] = leading_bits<27>(q.low);
-        low_part[1] = q.low - low_part[0];
     }
 };
 
@@ -150,11 +170,12 @@ TEXGEN_INLINE bool divide_nearly(const Doubles& s, const Doubles& s_error, const
 // floats, the sign of s - middle q decides. That is a small number beside both products, so s - middle q' is exact for the
 // leading 53 bits q' of q; and precisely the rest is summed exactly where it is but short, as it is of ties. Below `within`
 // either float will do. Integers know the middles of normal floats; those of subnormal ones are found by rounding.
-TEXGEN_INLINE Floats nearest_quotients(const Twofold& s, const TwofoldDivisor& q, const Doubles& within, bool precisely,
-                                       LongWords& is_known) noexcept {
+TEXGEN_INLINE Floats nearest_quotients(const PointSum& s, const TwofoldDivisor& q, const Doubles& within,
+                                       bool precisely, LongWords& is_known) noexcept {
     const Doubles quotient = where(q.in_front, s.high * q.reciprocal) + 0.0;
     const Doubles size = magnitude(quotient);
-    const LongWords is_precise = at_most(s.lost, magnitude(s.high) * 0x1p-50);
+    const Doubles size_of_s = magnitude(s.high);
+    const LongWords is_precise = at_most(s.lost, size_of_s * 0x1p-50);
     const LongWords is_open = ~greater(within, size);
     const LongWords is_small = is_open & greater(Doubles{} + 0x1p-125, size) & greater(size, 0x1p-800);
     LongWords is_near = is_open & are_near_middles(quotient, 63);
@@ -171,19 +192,25 @@ TEXGEN_INLINE Floats nearest_quotients(const Twofold& s, const TwofoldDivisor& q
         is_near = (is_near & ~is_small) | (is_small & greater(high, low));
     }
     const Doubles leading_rest = (s.high - middle * q.part[0]) - middle * q.part[1];
+    // All are multiples of the grains of s and of middle q, which is at least 2^-25 middle times q's. What is added in one
+    // double, less than 2^-47 s or precisely 2^-77 s, is exact where they are this near to it; else four roundings are lost,
+    // quickly of less than 2^-51 s.
+    const auto lost_beyond = [&](double range) {
+        const LongWords is_exact = at_most(size_of_s, s.grain * range) & at_most(q.high, q.grain * (range * 0x1p-25));
+        return where(~is_exact, size_of_s * (4.0 / range));
+    };
     Doubles remainder;
     Doubles lost = s.lost + magnitude(middle) * q.lost;
     if (!precisely) {
-        const Doubles low_product = middle * q.low;
-        remainder = leading_rest + (s.low - low_product);
-        lost = lost + (magnitude(s.low) + magnitude(low_product)) * 0x1p-52;
+        remainder = leading_rest + (s.low - middle * q.low);
+        lost = lost + lost_beyond(0x1p99);
     } else {
-        const Doubles last_product = middle * q.low_part[1];
+        const Doubles low_part = leading_bits<27>(q.low);
         Doubles left[2];
-        Doubles sum = two_sum(leading_rest, s.low, left[0]);
-        sum = two_sum(sum, -1.0 * (middle * q.low_part[0]), left[1]);
-        remainder = sum + ((left[0] + left[1]) - last_product);
-        lost = lost + (magnitude(left[0]) + magnitude(left[1]) + magnitude(last_product)) * 0x1p-51;
+        Doubles sum = two_sum(s.low, -1.0 * (middle * low_part), left[0]);
+        sum = two_sum(leading_rest, sum, left[1]);
+        remainder = sum + (((left[0] + left[1]) - middle * (q.low - low_part)) + (s.rest - middle * q.rest));
+        lost = lost + lost_beyond(0x1p130);
     }
     is_known &= ~q.in_front | (is_precise & (~is_near | at_most(lost * 2.0, magnitude(remainder))));
     const Doubles decided = middle + where(are_nonzero(remainder), with_sign_of(size * 0x1p-48, remainder));
