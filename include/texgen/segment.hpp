@@ -43,8 +43,8 @@ void interpolate(const Segment& segment, std::span<const float> alpha, TextureRe
 inline namespace TEXGEN_COMPILER {
 
 // The work that the values of a segment need, for all alpha in [0, 1].
-// Guarantee: never nothing where a value is lit (in the region, and its depth where it has one), never less than
-// divide_and_test where one is dark or behind; affine where q is the same at both ends. noexcept.
+// Guarantee: never nothing where a value is lit (in the region, and its depth where it has one); else affine where q is the
+// same at both ends, and never less than divide_and_test where it is not and a value is dark or behind. noexcept.
 // Bad input: an end that is not finite needs divide_and_test.
 inline Work work(const Segment& segment, TextureRegion region, Tolerance tolerance = exact) noexcept;
 
