@@ -93,10 +93,9 @@ TEXGEN_INLINE void bound_form(const FormAtVertex& form, const BoxRows& row, cons
 }
 
 // The same as a sum of exact terms in two doubles, which tells how much at most they leave out: nothing for numbers with few
-// digits, however much they cancel; for more of them where the two are added after each term, as they may cancel each other
-// before a small one follows. What is infinite becomes a NaN here, and stays as it is.
+// digits, however much they cancel. The two are added after each term, as they may cancel each other before a small one
+// follows. What is infinite becomes a NaN here, and stays as it is.
 // Source: Ogita, Rump, Oishi, Accurate Sum and Dot Product, SIAM J. Sci. Comput. 26 (2005), Sum2.
-template <bool AddsAtEach>
 TEXGEN_INLINE void bound_exactly(const FormAtVertex& form, const BoxRows& row, Doubles& lower,
                                  Doubles& upper) noexcept {
     const auto term = [&](std::size_t k) { return row[form.term[k].row] * form.term[k].factor; };
@@ -107,18 +106,12 @@ TEXGEN_INLINE void bound_exactly(const FormAtVertex& form, const BoxRows& row, D
         high = two_sum(high, term(k), rest);
         low = two_sum(low, rest, rest);
         lost = lost + magnitude(rest);
-        if constexpr (AddsAtEach) high = two_sum(high, low, low);
+        high = two_sum(high, low, low);
     }
     high = high + low;
     lost = lost + lost;
     lower = maximum(high - lost, lower);
     upper = minimum(high + lost, upper);
-}
-
-template <class CompiledWhereCalled = void>
-TEXGEN_APART void bound_more_exactly(const FormAtVertex& form, const BoxRows& row, Doubles& lower,
-                                     Doubles& upper) noexcept {
-    bound_exactly<true>(form, row, lower, upper);
 }
 
 // Whether a form is negative where it is largest, then whether an inner one is where it is least; q first, which is negative
@@ -135,11 +128,8 @@ TEXGEN_INLINE void bound_box(const DoubleForms& forms, const BoxRows& row, LongW
             const FormAtVertex& form = largest ? forms.form[k].largest : forms.form[k].least;
             Doubles lower, upper;
             bound_form(form, row, size, lower, upper);
-            const auto is_open = [&] { return any(greater(zero, lower) & at_most(zero, upper)); };
-            if (is_open()) {
-                bound_exactly<false>(form, row, lower, upper);
-                if (is_open()) bound_more_exactly(form, row, lower, upper);
-            }
+            const LongWords is_open = greater(zero, lower) & at_most(zero, upper) & at_most(zero, all_upper);
+            if (any(is_open)) bound_exactly(form, row, lower, upper);
             all_lower = minimum(lower, all_lower);
             all_upper = minimum(upper, all_upper);
         }
