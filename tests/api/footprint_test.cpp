@@ -841,7 +841,7 @@ TEST_CASE("a footprint of any finite derivatives is that of 400 bits, next to le
 
 TEST_CASE("triangles that double cannot hold the differences of keep their bounds and their extremes") {
     // Corners that differ by 2^-142 of the third's distance; a Q that grows to 2^269 over one pixel; and weights of 2^-410,
-    // of which products of two are below all doubles.
+    // of which products of two are below all doubles; and a Q of 2^-514, the square of which is below all doubles.
     const auto corner = [](float x, float y, float w, const glm::vec4& strq) { return WindowVertex{{x, y}, w, strq}; };
     const float tiny = 0x1.fcp-143f;
     const Triangle close{corner(-1.0f, 1.0f, 256.0f, {-1.0f, 62.0f, 2.0f, -0.0f}),
@@ -853,7 +853,10 @@ TEST_CASE("triangles that double cannot hold the differences of keep their bound
     const Triangle faint{corner(0.0f, 0x1.fffffep+127f, 0x1.2p-146f, {0.0f, 0.0f, 0.0f, 0.0f}),
                          corner(0x1.fffffep+127f, -0x1.fffffep+127f, 47.0f, {0.0f, 0.0f, 0.0f, 0x1.78p-144f}),
                          corner(tiny, 2.0f * tiny, 47.0f, {tiny, 2.0f * tiny, tiny, 2.0f * tiny})};
-    for (const Triangle& triangle : {close, steep, faint}) {
+    const Triangle dim{corner(0x1.fffffep+127f, 0x1.ffff26p+127f, 0x1.fffe4ep+127f, {1.0f, 2.0f, 3.0f, 0x1p-126f}),
+                       corner(0x1p-126f, 0x1.323232p-77f, 26.0f, {0.0f, 0.0f, 0.0f, 0.0f}),
+                       corner(-0x1p-8f, 0x1p-8f, 26.0f, {0.0f, 0.0f, 0.0f, 0.0f})};
+    for (const Triangle& triangle : {close, steep, faint, dim}) {
         int bounded = 0;
         const ExactTriangle exact(triangle);
         const FootprintSetup setup(setup_of(triangle), {4096.0, 128.0});

@@ -165,12 +165,12 @@ inline glm::dvec2 FootprintSetup::error_bound(FragmentRect rect) const noexcept 
     if (at.all_behind()) return {0.0, 0.0};
     const auto bound = [&](std::size_t k) {
         if (!at.well_in_front()) return std::numeric_limits<double>::infinity();
-        const double per_q_squared = at.reciprocal * at.reciprocal;
         const double numerator = functions_.largest(k, tile);
         const double error = functions_.error(k, tile) + 2.0 * at.q_error * at.reciprocal * numerator +
                              8.0 * detail::unit_roundoff_double * numerator;
+        const auto divided = [&](double n) { return n * at.reciprocal * at.reciprocal; };  // Q^-2 may be beyond a double
         return detail::larger(functions_.triangle.tolerance,
-                              1.001 * error * per_q_squared + detail::half_ulp(numerator * per_q_squared));
+                              1.001 * divided(error) + detail::half_ulp(divided(numerator)));
     };
     return {bound(0), bound(1)};
 }
