@@ -79,8 +79,8 @@ inline namespace TEXGEN_BUILD {
 // Writes s/q, t/q and r/q of every fragment of a rectangle of each triangle, and whether it is lit: of rects[i] those of
 // triangle i, behind those of the rectangle before it.
 // Guarantee: each value as interpolate(TriangleSetup, rects[i], ...) has it: with `exact` the same bits, else within the same
-// bound of the exact value. Everything is written: where that says Work::nothing, lit is 0, and s, t, r are 0 or their plane's;
-// where a triangle is refused all outputs are 0. No allocation, noexcept.
+// bound of the exact value. Everything is written: where nothing of a rectangle is lit, lit is 0, and s, t, r are 0 or their
+// plane's; where a triangle is refused all outputs are 0. No allocation, noexcept.
 // Shapes: as many rectangles as triangles, of no negative size, and outputs of all their fragments together, or empty ones
 // (all asserted; else nothing is written). Fragments outside a triangle get the values of its plane; where the interpolated
 // 1/w is not positive nothing is promised.

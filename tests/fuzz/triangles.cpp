@@ -135,14 +135,16 @@ void interpolate_batch(Input& input) {
     must(by_id.pads_are_intact(), "a visibility buffer writes its outputs only");
     if (tolerance.value > 0.0) return;
     const auto has = [&](const Outputs& all, std::size_t first, std::size_t i, const FragmentRect& part) {
-        Outputs alone(support::count_of(part), asked);
+        Outputs alone(support::count_of(part), asked | 8u);
         const auto setup = TriangleSetup::of(triangles[i], region);
         const bool is_written = setup && interpolate(*setup, part, alone.spans()) != Work::nothing;
+        bool is_lit = false;
+        for (std::size_t n = 0; is_written && n < alone.size(); ++n) is_lit = is_lit || alone[3][n] != 0.0f;
         for (std::size_t k = 0; k < 4; ++k)
             for (std::size_t n = 0; asked >> k & 1u && n < alone.size(); ++n)
-                if (is_written || k == 3)
-                    must(fuzz::same(all[k][first + n], is_written ? alone[k][n] : 0.0f),
-                         "a fragment's bits are those that its triangle has alone");
+                must((is_written && fuzz::same(all[k][first + n], alone[k][n])) ||
+                         (!is_lit && (all[k][first + n] == 0.0f || (setup && !is_written && k != 3))),
+                     "a fragment's bits are those that its triangle has alone, or 0 where nothing is lit");
     };
     for (std::size_t i = 0, first = 0; i < rects.size(); first += support::count_of(rects[i]), ++i)
         has(out, first, i, rects[i]);
