@@ -168,7 +168,8 @@ inline glm::dvec2 FootprintSetup::error_bound(FragmentRect rect) const noexcept 
         const double numerator = functions_.largest(k, tile);
         const double error = functions_.error(k, tile) + 2.0 * at.q_error * at.reciprocal * numerator +
                              8.0 * detail::unit_roundoff_double * numerator;
-        const auto divided = [&](double n) { return n * at.reciprocal * at.reciprocal; };  // Q^-2 may be beyond a double
+        // Q^-2 may be beyond a double.
+        const auto divided = [&](double n) { return n * at.reciprocal * at.reciprocal; };
         return detail::larger(functions_.triangle.tolerance,
                               1.001 * divided(error) + detail::half_ulp(divided(numerator)));
     };
