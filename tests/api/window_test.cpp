@@ -150,17 +150,19 @@ TEST_CASE("depth_error_bound holds for every depth that is stored as the fragmen
     int bounded = 0, unbounded = 0;
     for (int i = 0; i < 3000; ++i) {
         const WindowScene scene = random_window_scene(random, random.power_of_ten(-1.0, 2.0));
-        const auto texgen = window_linear(scene.projector, scene.camera, scene.viewport, scene.region, scene.depth);
-        REQUIRE(texgen);
+        const auto made = window_linear(scene.projector, scene.camera, scene.viewport, scene.region, scene.depth);
+        REQUIRE(made);
+        // Homogeneous coordinates have no size.
+        const texgen::WindowTexgen texgen(made->matrix() * std::ldexp(1.0, 850 * (i % 3 - 1)));
         const glm::vec3 fragment(random_fragment(random, scene.viewport));
         const auto buffer =
             std::array{DepthBuffer::unorm16, DepthBuffer::unorm24, DepthBuffer::float32}[random.bits() % 3];
-        const glm::dvec2 bound = depth_error_bound(*texgen, fragment, buffer);
+        const glm::dvec2 bound = depth_error_bound(texgen, fragment, buffer);
         // The extremes are at the ends: s/q is monotone in the depth.
         const double z = fragment.z, half_ulp = 0.5 * (static_cast<double>(support::neighbour(fragment.z, 1)) - z);
         const double step = buffer == DepthBuffer::unorm16 ? 1.0 / 65535.0 : 1.0 / 16777215.0;
         const double rounding = half_ulp + (buffer == DepthBuffer::float32 ? 0.0 : 0.6 * step);
-        const RationalMatrix matrix = exactly(texgen->matrix());
+        const RationalMatrix matrix = exactly(texgen.matrix());
         const RationalVector here = at(matrix, fragment);
         for (int c = 0; c < 2; ++c) {
             double worst = 0.0;

@@ -77,8 +77,11 @@ inline std::optional<WindowTexgen> window_linear(const Projector& projector, con
 
 inline glm::dvec2 depth_error_bound(const WindowTexgen& texture_from_window, glm::vec3 fragment,
                                     DepthBuffer buffer) noexcept {
-    const glm::dmat4& m = texture_from_window.matrix();
     const glm::dvec3 v = detail::widened(fragment);
+    // A common factor changes no quotient: the terms of q are brought near 1, so that no product leaves the range.
+    const double size_of_q = detail::row_at(texture_from_window.matrix(), 3, v).error / detail::gamma(5);
+    const glm::dmat4 m = texture_from_window.matrix() * detail::reciprocal_power_of_two(detail::smaller(
+                                                            detail::larger(size_of_q, 0x1p-1000), 0x1p1000));
     const double rounding = detail::depth_rounding(buffer, v.z);
     const detail::Bounded q = detail::row_at(m, 3, v);
     const double least_q = q.value - q.error, slope_q = m[2][3];
