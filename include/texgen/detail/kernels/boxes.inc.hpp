@@ -77,10 +77,12 @@ void classify_spheres(const FloatForms& original, const float* spheres, std::siz
 // A box as the rows that forms are of, a lane each.
 using BoxRows = Doubles[8];
 
-// Bounds on a form, whose signs are right: an infinite value has the right one, and no size of a row is infinite. In double a
-// coefficient, a product and three sums are rounded, and the last sum once more, half of what gamma(8) has room for.
-TEXGEN_INLINE void bound_form(const FormAtVertex& form, const BoxRows& row, const BoxRows& size, Doubles& lower,
-                              Doubles& upper) noexcept {
+// A form whose signs are right: an infinite value has the right one, and no size of a row is infinite. In double a
+// coefficient, a product and three sums are rounded, half of what gamma(8) has room for; the rest is for what is asked of the
+// bound. Where that leaves the sign open, and it is asked, the exact terms tell, whose magnitudes are 2^49 times that error
+// together.
+TEXGEN_INLINE Doubles signed_form(const FormAtVertex& form, const BoxRows& row, const BoxRows& size,
+                                  const LongWords& asked) noexcept {
     Doubles value = Doubles{} + form.coefficient[3];
     Doubles error = Doubles{} + form.error[3];
     TEXGEN_UNROLL
@@ -88,54 +90,29 @@ TEXGEN_INLINE void bound_form(const FormAtVertex& form, const BoxRows& row, cons
         value = value + row[form.row[j]] * form.coefficient[j];
         error = error + size[form.row[j]] * form.error[j];
     }
-    lower = value - error;
-    upper = value + error;
-}
-
-// The same as a sum of exact terms in two doubles, which tells how much at most they leave out: nothing for numbers with few
-// digits, however much they cancel. The two are added after each term, as they may cancel each other before a small one
-// follows. What is infinite becomes a NaN here, and stays as it is.
-// Source: Ogita, Rump, Oishi, Accurate Sum and Dot Product, SIAM J. Sci. Comput. 26 (2005), Sum2.
-TEXGEN_INLINE void bound_exactly(const FormAtVertex& form, const BoxRows& row, Doubles& lower,
-                                 Doubles& upper) noexcept {
-    const auto term = [&](std::size_t k) { return row[form.term[k].row] * form.term[k].factor; };
-    Doubles low, rest;
-    Doubles high = two_sum(term(0), term(1), low);
-    Doubles lost{};
-    for (std::size_t k = 2; k < form.term_count; ++k) {
-        high = two_sum(high, term(k), rest);
-        low = two_sum(low, rest, rest);
-        lost = lost + magnitude(rest);
-        high = two_sum(high, low, low);
-    }
-    high = high + low;
-    lost = lost + lost;
-    lower = maximum(high - lost, lower);
-    upper = minimum(high + lost, upper);
+    const LongWords is_open = asked & at_most(magnitude(value), error);
+    if (!any(is_open)) return value;
+    Doubles term[FormAtVertex::max_terms];
+    for (std::size_t k = 0; k < form.term_count; ++k) term[k] = row[form.term[k].row] * form.term[k].factor;
+    const Doubles sigma = power_of_two_below(maximum(error, Doubles{} + 0x1p-1000)) * 0x1p52;
+    return select(is_open, signed_sum(term, form.term_count, sigma, is_open), value);
 }
 
 // Whether a form is negative where it is largest, then whether an inner one is where it is least; q first, which is negative
 // for half of what is at the apex. Where that is known of every box, the other forms are not asked.
-TEXGEN_INLINE void bound_box(const DoubleForms& forms, const BoxRows& row, LongWords& outside, LongWords& inside,
-                             LongWords& in_doubt) noexcept {
+TEXGEN_INLINE void bound_box(const DoubleForms& forms, const BoxRows& row, const LongWords& have_points,
+                             LongWords& outside, LongWords& inside) noexcept {
     const Doubles zero{};
     BoxRows size;
     TEXGEN_UNROLL
     for (std::size_t j = 0; j < 8; ++j) size[j] = minimum(magnitude(row[j]), Doubles{} + 0x1p128);
+    inside = have_points;
     for (const bool largest : {true, false}) {
-        Doubles all_lower = select(outside | in_doubt, Doubles{} - 1.0, Doubles{} + 1.0), all_upper = all_lower;
-        for (std::size_t k = forms.count; k-- > 0 && any(at_most(zero, all_upper));) {
+        for (std::size_t k = forms.count; k-- > 0 && any(inside);) {
             const FormAtVertex& form = largest ? forms.form[k].largest : forms.form[k].least;
-            Doubles lower, upper;
-            bound_form(form, row, size, lower, upper);
-            const LongWords is_open = greater(zero, lower) & at_most(zero, upper) & at_most(zero, all_upper);
-            if (any(is_open)) bound_exactly(form, row, lower, upper);
-            all_lower = minimum(lower, all_lower);
-            all_upper = minimum(upper, all_upper);
+            inside = inside & ~greater(zero, signed_form(form, row, size, inside));
         }
-        if (largest) outside = greater(zero, all_upper) & ~in_doubt;
-        inside = ~greater(zero, all_lower);
-        in_doubt = in_doubt | (greater(zero, all_lower) & at_most(zero, all_upper));
+        if (largest) outside = have_points & ~inside;
     }
 }
 
@@ -157,11 +134,11 @@ void decide_boxes(const DoubleForms* forms, const SeparatingForms& planes, const
         LongWords have_points = ~LongWords{};
         TEXGEN_UNROLL
         for (std::size_t j = 0; j < 3; ++j) have_points = have_points & at_most(Doubles{}, row[3 + j] - row[j]);
-        LongWords outside{}, inside{}, in_doubt = ~have_points;
-        if (forms != nullptr) bound_box(*forms, row, outside, inside, in_doubt);
+        LongWords outside{}, inside{};
+        if (forms != nullptr) bound_box(*forms, row, have_points, outside, inside);
         const LongWords open = have_points & ~(outside | inside);
         if (any(open)) outside = outside | (open & are_separated(planes, row));
-        store_classes(classes + i, outside, inside, in_doubt & ~outside);
+        store_classes(classes + i, outside, inside, ~have_points);
     }
 }
 

@@ -26,11 +26,14 @@ inline constexpr std::size_t forms_without_depth = 5;
 inline constexpr std::size_t max_forms = 7;
 
 // A lane a form; those behind the last form are q's. Form k is of[0] T_s + of[1] T_t + of[2] T_r + of_q T_q, where one of the
-// three weights at most is not 0, but 1 or -1, and of_q is a float; its inner side has another of_q, which may be infinite, and
-// is `width` away.
+// three weights at most is not 0, but 1 or -1, and of_q is a float. Its inner side has weights of its own, and is `width` away.
 inline constexpr std::size_t form_lanes = 8;
 struct FormWeights {
-    double of[3][form_lanes], of_q[form_lanes], inner_of_q[form_lanes], width[form_lanes];
+    struct Sides {
+        double of[3][form_lanes], of_q[form_lanes];
+    };
+    Sides outer, inner;
+    double width[form_lanes];
 };
 
 // a . (x, y, z) + d, each coefficient rounded so that its sign is right and it is 0 only if it is 0, times a power of two that
@@ -46,7 +49,6 @@ struct FormLanes {
 struct FormsInDoubt {
     std::uint32_t largest = ~0u, least = ~0u;
     bool is_any_negative = false;  // of the least, for certain
-    bool is_finite = false;        // the box, which then has points
 };
 
 // The same in float, twice the value each, a lane a form, with one bound for all: over a body each errs by less than
@@ -71,16 +73,16 @@ struct SeparatingForms {
 
 // A form at the vertex of a box where it is largest, or least: its four coefficients, each rounded once, and the rows of the box
 // that the first three are of: min, max, 1, and 0 where a coefficient is 0, which is of no use where a box is infinite. `term`
-// is the same as an exact sum, of factors with so few digits that the product with any float is a double, at least two.
+// is the same as an exact sum, of factors with so few digits that the product with any float is a double.
 struct FormAtVertex {
-    static constexpr std::size_t row_of_1 = 6, row_of_0 = 7;
+    static constexpr std::size_t row_of_1 = 6, row_of_0 = 7, max_terms = 3 * 6 + 3 + 1;
     struct Term {
         double factor;
         std::size_t row;
     };
     std::array<double, 4> coefficient, error;
     std::array<std::size_t, 3> row;
-    std::array<Term, 25> term;
+    std::array<Term, max_terms> term;
     std::size_t term_count;
 };
 
@@ -91,7 +93,7 @@ struct DoubleForms {
         FormAtVertex largest, least;
     };
     std::array<Form, max_forms> form;
-    std::size_t count;
+    std::size_t count = 0;
 };
 
 // What the forms say of a body: the number of a Coverage (0 outside, 1 partial, 2 inside); where that is not the last word 4
@@ -125,10 +127,9 @@ struct SeparatingFormKernels {
 struct BoxKernels {
     // What doubles are certain of. NaN, infinities and empty boxes are in doubt.
     int (*classify)(const FormLanes& forms, const float* min, const float* max, FormsInDoubt& doubt) noexcept;
-    // Settles of the doubt about a finite box what two doubles can, and where it touches with few digits. Returns whether the
-    // box is outside.
-    bool (*sharpen)(const glm::dmat4& matrix, const FormWeights& weights, const float* min, const float* max,
-                    FormsInDoubt& doubt) noexcept;
+    // The same of a box that has points, by exact sums of the forms that are in doubt: the number of a Coverage.
+    int (*decide)(const glm::dmat4& matrix, const FormWeights& weights, const float* min, const float* max,
+                  const FormsInDoubt& doubt) noexcept;
     // Whether one of them is negative over all of a box that has points.
     bool (*is_separated)(const SeparatingForms& planes, const float* min, const float* max) noexcept;
 };
@@ -139,7 +140,7 @@ using Classify = void (*)(const FloatForms& forms, const float* bodies, std::siz
 
 struct BoxBatchKernels {
     Classify classify;
-    // What doubles are certain of, and where they are not, pairs of doubles; without forms all are partial. Those that a plane
+    // What doubles are certain of, and where they are not, exact sums; without forms all are partial. Those that a plane
     // separates are outside. What has no points is in doubt.
     void (*decide)(const DoubleForms* forms, const SeparatingForms& planes, const OpenRow* boxes, std::size_t count,
                    int* classes) noexcept;

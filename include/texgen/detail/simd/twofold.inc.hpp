@@ -135,6 +135,28 @@ struct TwofoldForm {
     }
 };
 
+// Numbers with the signs of exact sums of up to 26 terms, which are lost, in these lanes; sigma is a power of two, at least twice
+// the sum of their magnitudes. What is added to sigma stays between a half and twice of it: without sigma it is a multiple of
+// 2^-53 sigma, and leaves at most that of each term, of all less than a quarter of the next sigma, 2^-46 sigma. The sum so far
+// is at most half the next sigma, and with what is added there an exact multiple again, or has the sign of all that follows.
+// Source: Rump, Ogita, Oishi, Accurate Floating-Point Summation I, SIAM J. Sci. Comput. 31 (2008), ExtractVector.
+TEXGEN_INLINE Doubles signed_sum(Doubles* term, std::size_t count, Doubles sigma, const LongWords& asked) noexcept {
+    Doubles sum{}, left;
+    do {
+        const Doubles next = sigma * 0x1p-46;
+        Doubles high = sigma, low = next, rest;
+        left = Doubles{};
+        for (std::size_t k = 0; k < count; ++k) {
+            high = quick_two_sum(high, term[k], rest);
+            low = quick_two_sum(low, rest, term[k]);
+            left = left + magnitude(term[k]);
+        }
+        sum = (sum + (high - sigma)) + (low - next);
+        sigma = next * 0x1p-46;
+    } while (any(asked & greater(left, 0.0) & at_most(magnitude(sum), left * 1.001)));
+    return sum;
+}
+
 // The denominators of a vector of quotients, and on which side of 0 they are.
 struct TwofoldDivisor {
     LongWords in_front, is_known;  // is_known: the side is, and in front the value well enough to divide by
