@@ -62,10 +62,10 @@ struct Corners {
     bool well_in_front() const noexcept { return least_q > 0x1p24 * q_error; }
 
     // What of a tile is next to q = 0, along the side by which q varies more: before and after that it is behind, or q is no less
-    // than a quarter of its largest. All, if that is nothing; but where it is not few fragments, nothing in the middle of the
+    // than a share of its largest. All, if that is nothing; but where it is not few fragments, nothing in the middle of the
     // longer side.
     static constexpr int few = 4 * TileJob::unit_size;
-    TEXGEN_RARE Stretch next_to_zero(const Tile& tile) const noexcept {
+    TEXGEN_RARE Stretch next_to_zero(const Tile& tile, double share) const noexcept {
         const bool across_width = std::fabs(q_ramp.dx) * tile.width >= std::fabs(q_ramp.dy) * tile.height;
         const int size = across_width ? tile.width : tile.height;
         const double step = across_width ? q_ramp.dx : q_ramp.dy;
@@ -73,7 +73,7 @@ struct Corners {
         // Counted from where q is least: it is at most largest_q - (size - 1 - i) |step|, and at least least_q + i |step|.
         const auto index = [size](double i) { return i > 0.0 ? (i < size ? static_cast<int>(i) : size) : 0; };
         int begin = index(size - 1 - (largest_q + q_error) * per_step);
-        int end = index((0.25 * largest_q - least_q) * per_step + 1.0);
+        int end = index((share * largest_q - least_q) * per_step + 1.0);
         if (begin >= end) {
             begin = 0;
             end = size;
@@ -102,6 +102,13 @@ struct Corners {
     // The error of F/Q in double for a tile well in front: as in certain_quotient(), where it is worst.
     Double2 quotient_error(const Double2& largest) const noexcept {
         return (numerator_error + largest * q_error) * (1.0001 * reciprocal) + largest * (4.0 * unit_roundoff_double);
+    }
+
+    // The error of F/Q with F and Q rounded to float, then the reciprocal and the product. With 2^-21 <= Q <= 2 a float of
+    // F that is subnormal, or flushed to zero, adds less than 2^-104.
+    Double2 float_divided_error() const noexcept {
+        const Double2 largest = largest_quotient();
+        return largest * float_divided.roundings + 0x1p-104 + quotient_error(largest);
     }
 
     // How many of its own ulps the error of a quotient in double is at most, two more roundings included, as 1 less than a power
@@ -154,7 +161,7 @@ inline Corners corners_of(const TrianglePlanes& planes, const PlaneOf<Double2>& 
 }
 
 // Each coefficient is rounded to double; its product with an index and two sums are rounded once each.
-inline Corners corners_of(const CloseRamps& close) noexcept {
+TEXGEN_APART inline Corners corners_of(const CloseRamps& close) noexcept {
     const auto& [s, t, q] = close.function;
     const auto high = [](const DoubleDouble& of_s, const DoubleDouble& of_t) {
         return double2_of(of_s.high, of_t.high);
@@ -209,7 +216,7 @@ inline SideOfBound side_of(const Corners& at, const Double2& bound, double toler
     return {least, largest, margin};
 }
 
-// How much of all fragments in front is between two bounds of the one numerator and two of the other.
+// How much of all fragments in front, if there are any, is between two bounds of the one numerator and two of the other.
 inline Coverage coverage_of(const Corners& at, const Double2& min, const Double2& max, double tolerance) noexcept {
     const SideOfBound of_min = side_of(at, min, tolerance);
     if (of_min.any_below()) return Coverage::outside;
@@ -218,10 +225,20 @@ inline Coverage coverage_of(const Corners& at, const Double2& min, const Double2
     return of_min.all_above() && of_max.all_below() && at.all_in_front() ? Coverage::inside : Coverage::partial;
 }
 
+// The same of any tile, where that is rare.
+TEXGEN_APART inline Coverage coverage_apart(const Corners& at, const Double2& min, const Double2& max,
+                                            double tolerance) noexcept {
+    return at.all_behind() ? Coverage::outside : coverage_of(at, min, max, tolerance);
+}
+
 // How much is in the sides of a region, where the numerators are s and t.
 inline Coverage st_coverage(const Corners& at, const LitTest& lit, double tolerance) noexcept {
     return coverage_of(at, double2_of(lit.least(0), lit.least(1)), double2_of(lit.greatest(0), lit.greatest(1)),
                        tolerance);
+}
+inline Coverage st_coverage_apart(const Corners& at, const LitTest& lit, double tolerance) noexcept {
+    return coverage_apart(at, double2_of(lit.least(0), lit.least(1)), double2_of(lit.greatest(0), lit.greatest(1)),
+                          tolerance);
 }
 
 // Of a depth, where the numerators are r twice. For an infinite limit stands what is rounded to infinity; but where it is none a
@@ -230,7 +247,7 @@ inline Coverage r_coverage(const Corners& at, const LitTest& lit, double toleran
     constexpr double none = 0x1p500, infinite = 0x1p128;
     const double min = larger(-none, smaller(infinite, widened(lit.r_min())));
     const double max = larger(-infinite, smaller(none, widened(lit.r_max())));
-    return coverage_of(at, double2_of(min, min), double2_of(max, max), tolerance);
+    return coverage_apart(at, double2_of(min, min), double2_of(max, max), tolerance);
 }
 
 }  // namespace TEXGEN_BUILD

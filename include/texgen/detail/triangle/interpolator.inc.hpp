@@ -64,6 +64,7 @@ public:
 private:
     TEXGEN_APART void fill(const Tile& tile, int longest = longest_chunk) noexcept {
         const Corners at = corners_at(tile);
+        if (triangle_.tolerance == 0.0) return fill_exact(tile, at);
         Plan plan = plan_without_survey(tile, at);
         if (plan.chunk > longest) plan.chunk = 0;
         fill(tile, at, plan);
@@ -116,18 +117,25 @@ private:
         fill_some(tile, unit, doubtful);
     }
 
-    // A tile behind is cleared. Of one in doubt what is next to q = 0 is divided closely, if those are few; else it is halved.
+    // A part of a tile of which only the mask is asked for, where all of it is lit or dark.
+    bool is_mask_alone() const noexcept { return output_[0].empty() && output_[1].empty(); }
+    TEXGEN_RARE bool lights_at_once(const Tile& part) noexcept {
+        const Coverage sides = st_coverage_apart(corners_at(part), triangle_.lit, triangle_.tolerance);
+        if (sides != Coverage::partial) fill_rows(lit_, rect_, part, sides == Coverage::inside ? 1.0f : 0.0f);
+        return sides != Coverage::partial;
+    }
+
+    // A tile behind is cleared. Of one in doubt what is next to q = 0 is divided closely, if those are few; else it is halved. For the
+    // mask alone of nearest floats that is less, and by residues at once: they tell the sign of q.
     TEXGEN_APART void split(const Tile& tile, const Corners& at) noexcept {
         if (at.all_behind()) return clear(tile);
         if (tile.count() <= TileJob::unit_size) return fill_closely(tile);
-        const Stretch stretch = at.next_to_zero(tile);
+        const Stretch stretch = at.next_to_zero(tile, is_mask_alone() && triangle_.tolerance == 0.0 ? 0x1p-4 : 0x1p-2);
         for (std::size_t i = 0; i < 3; ++i) {
             const Tile part = stretch.part(tile, i);
-            if (part.count() == 0) continue;
+            if (part.count() == 0 || (is_mask_alone() && lights_at_once(part))) continue;
             if (i == 1)
                 fill_closely(part);
-            else if (triangle_.tolerance == 0.0)
-                fill_exact(part, corners_at(part));
             else
                 fill(part, part.count() > Corners::few ? longest_chunk : 0);
         }
@@ -179,6 +187,7 @@ private:
         if (!doubtful_) {
             doubtful_.make(DoubtfulJob{make_job(whole_, *whole_at_), functions_of(whole_, *whole_at_)});
             doubtful_->job.is_contiguous = false;
+            if (is_mask_alone()) add_residues(whole_, doubtful_->functions);
         }
         fill_closely(whole_, doubtful_->job, doubtful_->functions, {x, x + tile.width, y, y + tile.height});
     }
@@ -221,18 +230,11 @@ private:
     }
 
     void fill_float_divided(const Tile& tile, const Corners& at) noexcept {
-        const Double2 error = float_divided_error(at);
+        const Double2 error = at.float_divided_error();
         const bool fits = at.well_in_front() && at.least_q > 0x1p-20 * at.largest_q &&
                           error[0] <= triangle_.tolerance && error[1] <= triangle_.tolerance;
         if (!fits) return fill_exact(tile, at);
         kernels_.fill_float_divided(make_job(tile, at, reciprocal_power_of_two(at.largest_q)));
-    }
-
-    // The error of F/Q with F and Q rounded to float, then the reciprocal and the product. With 2^-21 <= Q <= 2 a float of
-    // F that is subnormal, or flushed to zero, adds less than 2^-104.
-    Double2 float_divided_error(const Corners& at) const noexcept {
-        const Double2 largest = at.largest_quotient();
-        return largest * float_divided.roundings + 0x1p-104 + at.quotient_error(largest);
     }
 
     // One fragment, every decision exact.
