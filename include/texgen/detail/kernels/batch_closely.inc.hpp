@@ -14,16 +14,7 @@ struct VertexLanes {
         TEXGEN_UNROLL
         for (std::size_t i = 0; i < 3; ++i) {
             Floats given[8];
-            TEXGEN_UNROLL
-            for (std::size_t first = 0; first < 8; first += static_cast<std::size_t>(lanes)) {
-                Floats column[lanes];
-                TEXGEN_UNROLL
-                for (std::size_t j = 0; j < static_cast<std::size_t>(lanes); ++j)
-                    column[j] = load<Floats>(triangle[j] + i * BatchVertex::size + first);
-                transpose(column);
-                TEXGEN_UNROLL
-                for (std::size_t j = 0; j < static_cast<std::size_t>(lanes); ++j) given[first + j] = column[j];
-            }
+            load_columns(given, 8, [&](std::size_t j) { return triangle[j] + i * BatchVertex::size; });
             TEXGEN_UNROLL
             for (std::size_t k = 0; k < 7; ++k) value[i][k] = given[k < 3 ? k : BatchVertex::strq + (k - 3)];
         }
@@ -184,25 +175,18 @@ TEXGEN_INLINE Doubles last_bits(const Doubles& a) noexcept {
     return where(are_nonzero(a), last) + where(~are_nonzero(a), Doubles{} + 0x1p500);
 }
 
-TEXGEN_INLINE Doubles least_of_three(const Doubles& a, const Doubles& b, const Doubles& c) noexcept {
-    return minimum(a, minimum(b, c));
-}
-TEXGEN_INLINE Doubles largest_of_three(const Doubles& a, const Doubles& b, const Doubles& c) noexcept {
-    return maximum(a, maximum(b, c));
-}
-
 // Three numbers as integers, in a power of two of which they are multiples.
 struct IntegerLanes {
     Doubles unit, per_unit, largest;
     Doubles value[3];
 
     TEXGEN_INLINE IntegerLanes(const Doubles& a, const Doubles& b, const Doubles& c, double largest_unit) noexcept {
-        unit = minimum(least_of_three(last_bits(a), last_bits(b), last_bits(c)), Doubles{} + largest_unit);
+        unit = minimum(minimum(last_bits(a), minimum(last_bits(b), last_bits(c))), Doubles{} + largest_unit);
         per_unit = reciprocals_of_powers(unit);
         value[0] = a * per_unit;
         value[1] = b * per_unit;
         value[2] = c * per_unit;
-        largest = largest_of_three(magnitude(value[0]), magnitude(value[1]), magnitude(value[2]));
+        largest = maximum(magnitude(value[0]), maximum(magnitude(value[1]), magnitude(value[2])));
     }
 };
 
@@ -232,9 +216,9 @@ struct ResidueLanes {
         const IntegerLanes weight(with_sign_of(w[1] * w[2], given.area), with_sign_of(w[2] * w[0], given.area),
                                   with_sign_of(w[0] * w[1], given.area), 0x1p500);
         const Doubles first_x = at_x * x.per_unit, first_y = at_y * y.per_unit;
-        is_known =
-            given.has_area & greater(Doubles{} + 0x1p62, maximum(largest_of_three(x.largest, y.largest, weight.largest),
-                                                                 maximum(magnitude(first_x), magnitude(first_y))));
+        const Doubles largest = maximum(maximum(x.largest, maximum(y.largest, weight.largest)),
+                                        maximum(magnitude(first_x), magnitude(first_y)));
+        is_known = given.has_area & greater(Doubles{} + 0x1p62, largest);
         one_x_ = known(x.per_unit);
         one_y_ = known(y.per_unit);
         unit_ = x.unit * y.unit * weight.unit;

@@ -2,6 +2,21 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
+// The first `count` numbers, in whole vectors, that stand at from(j) for lane j.
+template <class Vector, std::size_t Size, class From>
+TEXGEN_INLINE void load_columns(Vector (&columns)[Size], std::size_t count, const From& from) noexcept {
+    TEXGEN_UNROLL
+    for (std::size_t first = 0; first < Size; first += static_cast<std::size_t>(lanes)) {
+        if (first >= count) break;
+        Vector row[lanes];
+        TEXGEN_UNROLL
+        for (std::size_t j = 0; j < static_cast<std::size_t>(lanes); ++j) row[j] = load<Vector>(from(j) + first);
+        transpose(row);
+        TEXGEN_UNROLL
+        for (std::size_t j = 0; j < static_cast<std::size_t>(lanes); ++j) columns[first + j] = row[j];
+    }
+}
+
 // A triangle in each lane: x, y, w, s, t, r, q of its vertices, the one of the largest w first, as TrianglePlanes has them.
 struct TriangleLanes {
     Doubles vertex[3][7];
@@ -9,18 +24,8 @@ struct TriangleLanes {
     TEXGEN_INLINE explicit TriangleLanes(const float* triangles) noexcept {
         Floats given[3][8];
         TEXGEN_UNROLL
-        for (std::size_t i = 0; i < 3; ++i) {
-            TEXGEN_UNROLL
-            for (std::size_t first = 0; first < 8; first += static_cast<std::size_t>(lanes)) {
-                Floats column[lanes];
-                TEXGEN_UNROLL
-                for (std::size_t j = 0; j < static_cast<std::size_t>(lanes); ++j)
-                    column[j] = load<Floats>(triangles + (3 * j + i) * BatchVertex::size + first);
-                transpose(column);
-                TEXGEN_UNROLL
-                for (std::size_t j = 0; j < static_cast<std::size_t>(lanes); ++j) given[i][first + j] = column[j];
-            }
-        }
+        for (std::size_t i = 0; i < 3; ++i)
+            load_columns(given[i], 8, [&](std::size_t j) { return triangles + (3 * j + i) * BatchVertex::size; });
         const Doubles a = to_doubles(given[0][2]);
         const Doubles b = to_doubles(given[1][2]);
         const Doubles c = to_doubles(given[2][2]);
@@ -146,29 +151,15 @@ struct BatchLanes {
 
     // Of triangles that follow one another.
     TEXGEN_INLINE BatchLanes(const BatchPlanes* planes, bool with_r) noexcept {
-        load_from([&](int j) { return planes + j; }, with_r);
+        load_columns(value, with_r ? BatchPlanes::count : BatchPlanes::r,
+                     [&](std::size_t j) { return planes[j].value; });
     }
     TEXGEN_INLINE BatchLanes(const BatchPlanes* const (&planes)[lanes], bool with_r) noexcept {
-        load_from([&](int j) { return planes[j]; }, with_r);
+        load_columns(value, with_r ? BatchPlanes::count : BatchPlanes::r,
+                     [&](std::size_t j) { return planes[j]->value; });
     }
 
     TEXGEN_INLINE const Doubles& operator[](std::size_t k) const noexcept { return value[k]; }
-
-private:
-    template <class PlanesOf>
-    TEXGEN_INLINE void load_from(const PlanesOf& planes_of, bool with_r) noexcept {
-        constexpr auto count = static_cast<int>(BatchPlanes::count);
-        TEXGEN_UNROLL
-        for (int first = 0; first < count; first += lanes) {
-            if (!with_r && first >= static_cast<int>(BatchPlanes::r)) break;
-            Doubles row[lanes];
-            TEXGEN_UNROLL
-            for (int j = 0; j < lanes; ++j) row[j] = load<Doubles>(&planes_of(j)->value[first]);
-            transpose(row);
-            TEXGEN_UNROLL
-            for (int j = 0; j < lanes; ++j) value[first + j] = row[j];
-        }
-    }
 };
 
 // The columns and rows of a vector of fragments, which follow one another row by row. Half of one more keeps the quotient by
@@ -187,15 +178,9 @@ struct FragmentWalk {
         place();
     }
 
-    // Where vectors have whole rows, all have the same columns.
-    template <bool HasWholeRows = false>
     TEXGEN_INLINE void advance() noexcept {
-        if constexpr (HasWholeRows) {
-            y = y + rows_per_vector;
-        } else {
-            number = number + static_cast<Scalar>(size);
-            place();
-        }
+        number = number + static_cast<Scalar>(size);
+        place();
     }
 
 private:
@@ -210,22 +195,7 @@ private:
 };
 
 // Where the values of fragments go: whole vectors, of which what is too much is written again by those that follow.
-struct FragmentOutputs {
-    float* out[3];
-    float* lit;
-    float min[2], max[2];
-    bool has_depth;
-    float r_min, r_max;
-
-    TEXGEN_INLINE explicit FragmentOutputs(const BatchJob& job) noexcept
-        : out{job.out[0], job.out[1], job.out[2]},
-          lit(job.lit),
-          min{job.min[0], job.min[1]},
-          max{job.max[0], job.max[1]},
-          has_depth(job.has_depth),
-          r_min(job.r_min),
-          r_max(job.r_max) {}
-
+struct FragmentOutputs : BatchOutputs {
     template <std::size_t Numerators>
     TEXGEN_INLINE void put(std::size_t n, const Floats (&value)[Numerators], const LongWords& in_front) const noexcept {
         TEXGEN_UNROLL
