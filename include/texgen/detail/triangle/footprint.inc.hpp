@@ -43,7 +43,7 @@ Footprint footprint_of(const glm::dvec2& dx, const glm::dvec2& dy, const Determi
     }
     return {dx,
             dy,
-            0.5 * std::log2(larger(p * p + q * q, u * u + v * v)) - std::log2(scale) - std::log2(unit),
+            0.5 * std::log2(larger(p * p + q * q, u * u + v * v)) - (std::log2(scale) + std::log2(unit)),  // integers
             glm::dvec2(length, smaller(det / length, length)) / scale / unit,
             det > 0.0 ? larger(largest / det, 1.0) : infinity,
             glm::dvec2(major.x / texels.s, major.y / texels.t) * (length / scale) / unit};
