@@ -28,23 +28,23 @@ using texgen::Sphere;
 bool is_nan(const glm::vec3& v) { return std::isnan(v.x) || std::isnan(v.y) || std::isnan(v.z); }
 
 // Whether a point is lit: q > 0, and s, t, and r where there is a depth, between the sides, which may be infinite.
-bool is_lit(const glm::dmat4& matrix, const texgen::TextureRegion& region, const glm::vec3& point) {
-    const support::Homogeneous at = support::exactly_at(matrix, point);
+bool is_lit(const support::Homogeneous& at, const texgen::TextureRegion& region) {
     if (at.q.sign() <= 0) return false;
     for (std::size_t k = 0; k < (region.depth() ? 3 : 2); ++k) {
-        const int i = static_cast<int>(k);
-        const double min = k == 2 ? region.depth()->x : region.min()[i];
-        const double max = k == 2 ? region.depth()->y : region.max()[i];
-        if (std::isnan(min) || std::isnan(max)) return false;
-        if (compare(at.over_q(k), min) < 0 || compare(at.over_q(k), max) > 0) return false;
+        const glm::dvec2 limits = support::limits_of(region, k);
+        if (std::isnan(limits.x) || std::isnan(limits.y)) return false;
+        if (compare(at.over_q(k), limits.x) < 0 || compare(at.over_q(k), limits.y) > 0) return false;
     }
     return true;
 }
 
+// As real numbers, and as the floats that they are rounded to.
 void agrees(Coverage coverage, const glm::dmat4& matrix, const texgen::TextureRegion& region, const glm::vec3& point) {
     if (coverage == Coverage::partial || !fuzz::all_finite(point)) return;
-    must(is_lit(matrix, region, point) == (coverage == Coverage::inside),
-         coverage == Coverage::inside ? "inside, all points are lit" : "outside, no point is lit");
+    const support::Homogeneous at = support::exactly_at(matrix, point);
+    for (const bool lit : {is_lit(at, region), support::contains(region, at)})
+        must(lit == (coverage == Coverage::inside),
+             coverage == Coverage::inside ? "inside, all points are lit" : "outside, no point is lit");
 }
 
 void cover_boxes(Input& input, const texgen::ObjectTexgen& texgen, const texgen::TextureRegion& region) {

@@ -114,8 +114,7 @@ bool has_promised_bits(const glm::dmat4& matrix) {
 }
 
 bool is_judged(const glm::dmat4& matrix, const glm::vec3& point) {
-    // Float matrices: the products of double ones may leave the range for which something is promised.
-    return fuzz::all_finite(matrix) && fuzz::all_finite(point) && glm::dmat4(glm::mat4(matrix)) == matrix;
+    return has_promised_bits(matrix) && fuzz::all_finite(point);
 }
 
 // What is in front is within its bound of the exact value, where that is finite.
@@ -187,12 +186,22 @@ void project_points(Input& input) {
         project(texgen, positions.within(box), region, with.spans(), tolerance);
         project(texgen, positions, region, without.spans(), tolerance);
         must(with.pads_are_intact(), "project within a box writes its outputs only");
+        std::vector<glm::vec2> pairs_within(finite.size());
+        project(texgen, positions.within(box), pairs_within, tolerance);
+        const glm::dvec2 bound_within = project_error_bound(texgen, positions.within(box), tolerance);
         const std::size_t i = judged[0] % finite.size();
         if (!(tolerance.value > 0.0) && has_promised_bits(matrix))
             for (std::size_t k = 0; k < 4; ++k)
                 if (with.asked(k)) must(same(with[k][i], without[k][i]), "a box changes no bit of the nearest float");
-        if (is_judged(matrix, finite[i]))
-            must_be_right(what_is_wrong(support::exactly_at(matrix, finite[i]), region, tolerance, with, i));
+        if (is_judged(matrix, finite[i])) {
+            const support::Homogeneous at = support::exactly_at(matrix, finite[i]);
+            must_be_right(what_is_wrong(at, region, tolerance, with, i));
+            require_within(with, i, at, bound_within);
+            for (std::size_t k = 0; k < 2; ++k)
+                must(at.q.sign() > 0 ? support::keeps(pairs_within[i][static_cast<int>(k)], at.over_q(k), k, tolerance)
+                                     : pairs_within[i][static_cast<int>(k)] == 0.0f,
+                     "pairs within a box are in the tolerance");
+        }
     }
 
     // One point has the same bits.
@@ -290,17 +299,28 @@ void interpolate_segment(Input& input) {
     must(out.pads_are_intact(), "interpolate writes its outputs only");
     const glm::dvec2 bound = error_bound(segment, tolerance);
     must(bound.x >= 0.0 && bound.y >= 0.0, "an error bound is no NaN, and not negative");
+    const texgen::Work work = texgen::work(segment, region, tolerance);
+    const bool has_finite_ends = fuzz::all_finite(segment.a) && fuzz::all_finite(segment.b);
+    must(has_finite_ends || work == texgen::Work::divide_and_test, "an end that is not finite needs all work");
+    if (has_finite_ends && segment.a.w == segment.b.w)
+        must(work == texgen::Work::nothing || work == texgen::Work::affine, "a constant q needs no division");
     if (count == 0) return;
     for (const std::size_t i : {judged[0] % count, judged[1] % count}) {
+        if (out.asked(3) && has_finite_ends && !std::isnan(alpha[i])) {
+            must(out.lit()[i] == 0.0f || work != texgen::Work::nothing, "no work is needed only where nothing is lit");
+            must(out.lit()[i] == 1.0f || segment.a.w == segment.b.w || work == texgen::Work::nothing ||
+                     work == texgen::Work::divide_and_test,
+                 "what is dark is tested");
+        }
         Outputs alone(1, asked);
         interpolate(segment, std::span(&alpha[i], 1), region, alone.spans(), texgen::exact);
-        const bool is_finite = fuzz::all_finite(segment.a) && fuzz::all_finite(segment.b);
-        if (!(tolerance.value > 0.0) && is_finite)
+        if (!(tolerance.value > 0.0) && has_finite_ends)
             require_same(out, i, alone, "a value's bits are those that it has alone");
         if (out.asked(3)) must(out.lit()[i] == 0.0f || out.lit()[i] == 1.0f, "lit is 0 or 1");
         if (std::isnan(alpha[i]) && out.asked(3)) must(out.lit()[i] == 0.0f, "an alpha that is NaN is not lit");
-        if (!std::isnan(alpha[i]) && is_finite) require_within(out, i, support::exactly_at(segment, alpha[i]), bound);
-        if (!std::isnan(alpha[i]) && is_finite)
+        if (!std::isnan(alpha[i]) && has_finite_ends)
+            require_within(out, i, support::exactly_at(segment, alpha[i]), bound);
+        if (!std::isnan(alpha[i]) && has_finite_ends)
             must_be_right(what_is_wrong(support::exactly_at(segment, alpha[i]), region, tolerance, out, i));
     }
 }

@@ -5,12 +5,15 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "fuzz/input.hpp"
 #include "judges/exact.hpp"
 #include "judges/fragments.hpp"
 #include "judges/verdict.hpp"
+#include "support/footprint_outputs.hpp"
 #include "support/outputs.hpp"
 #include "texgen/batch.hpp"
 #include "texgen/clip.hpp"
@@ -22,6 +25,7 @@ namespace {
 using fuzz::Input;
 using fuzz::must;
 using fuzz::must_be_right;
+using support::Dyadic;
 using support::Outputs;
 using texgen::ClipVertex;
 using texgen::FragmentRect;
@@ -102,7 +106,7 @@ void interpolate_triangle(Input& input) {
     }
 }
 
-// A batch writes its outputs only, and with `exact` what each of its triangles has alone.
+// A batch writes its outputs only, keeps the tolerance, and has with `exact` what each of its triangles has alone.
 void interpolate_batch(Input& input) {
     std::vector<texgen::Triangle> triangles;
     std::vector<FragmentRect> rects;
@@ -114,11 +118,16 @@ void interpolate_batch(Input& input) {
         if (input.integer(0, 7) == 0) rects.back().x = input.raw<int>(), rects.back().y = input.raw<int>();
         fragments += support::count_of(rects.back());
     }
-    const texgen::TextureRegion region = input.region();
+    const texgen::TextureRegion region = input.region_with_depth();
     const Tolerance tolerance = input.tolerance();
     const unsigned asked = input.raw<std::uint8_t>() & 15u;
     texgen::TriangleBatch batch(region, tolerance);
-    batch.assign(triangles);
+    const bool skips_away = input.coin();
+    const auto origin = input.coin() ? texgen::TextureOrigin::bottom_left : texgen::TextureOrigin::top_left;
+    if (skips_away)
+        batch.assign_facing(triangles, origin);
+    else
+        batch.assign(triangles);
     Outputs out(fragments, asked, input.size(7));
     interpolate(batch, rects, out.spans());
     must(out.pads_are_intact(), "a batch writes its outputs only");
@@ -133,10 +142,15 @@ void interpolate_batch(Input& input) {
     Outputs by_id(ids.size(), asked, input.size(7));
     interpolate(batch, ids, rect, by_id.spans());
     must(by_id.pads_are_intact(), "a visibility buffer writes its outputs only");
-    if (tolerance.value > 0.0) return;
-    const auto has = [&](const Outputs& all, std::size_t first, std::size_t i, const FragmentRect& part) {
+    const auto setup_of = [&](std::size_t i) {
+        const auto& [a, b, c] = triangles[i];
+        const bool is_away = facing(a.strq, b.strq, c.strq, origin) == texgen::Facing::away;
+        return skips_away && is_away ? std::nullopt : TriangleSetup::of(triangles[i], region, tolerance);
+    };
+    const auto has_same_bits = [&](const Outputs& all, std::size_t first, std::size_t i, const FragmentRect& part) {
         Outputs alone(support::count_of(part), asked | 8u);
-        const auto setup = TriangleSetup::of(triangles[i], region);
+        if (tolerance.value > 0.0) return;
+        const auto setup = setup_of(i);
         const bool is_written = setup && interpolate(*setup, part, alone.spans()) != Work::nothing;
         bool is_lit = false;
         for (std::size_t n = 0; is_written && n < alone.size(); ++n) is_lit = is_lit || alone[3][n] != 0.0f;
@@ -146,12 +160,55 @@ void interpolate_batch(Input& input) {
                          (!is_lit && (all[k][first + n] == 0.0f || (setup && !is_written && k != 3))),
                      "a fragment's bits are those that its triangle has alone, or 0 where nothing is lit");
     };
-    for (std::size_t i = 0, first = 0; i < rects.size(); first += support::count_of(rects[i]), ++i)
-        has(out, first, i, rects[i]);
+    // One of them by the exact judge.
+    const auto keeps = [&](const Outputs& all, std::size_t first, std::size_t i, const FragmentRect& part) {
+        const std::size_t n = input.size(255) % support::count_of(part);
+        bool is_zero = true;
+        for (std::size_t k = 0; k < 4; ++k) is_zero = is_zero && (!all.asked(k) || all[k][first + n] == 0.0f);
+        if (!setup_of(i)) return must(is_zero, "of what is refused all is 0");
+        const support::ExactTriangle exact(triangles[i]);
+        const support::Shot shot{triangles[i], part};
+        const auto x = shot.x(static_cast<std::int64_t>(n) % part.width);
+        const auto y = shot.y(static_cast<std::int64_t>(n) / part.width);
+        if (!exact.has_positive_w(x, y)) return;
+        const support::Homogeneous at = exact.at(x, y);
+        if (!is_zero)
+            must_be_right(what_is_wrong(at, region, tolerance, all, first + n));
+        else if (!(tolerance.value > 0.0) && support::contains(region, at))
+            must_be_right(what_is_wrong(at, region, tolerance, all, first + n));
+    };
+    const std::size_t judged = input.size(9);
+    for (std::size_t i = 0, first = 0; i < rects.size(); first += support::count_of(rects[i]), ++i) {
+        has_same_bits(out, first, i, rects[i]);
+        if (i == judged && support::count_of(rects[i]) != 0) keeps(out, first, i, rects[i]);
+    }
+    const auto width = static_cast<std::size_t>(rect.width);
+    const std::size_t judged_id = input.size(79);
     for (std::size_t i = 0; i < ids.size(); ++i) {
-        const auto width = static_cast<std::size_t>(rect.width);
         const FragmentRect one{rect.x + static_cast<int>(i % width), rect.y + static_cast<int>(i / width), 1, 1};
-        if (ids[i] != texgen::no_triangle) has(by_id, i, ids[i], one);
+        if (ids[i] == texgen::no_triangle) continue;
+        has_same_bits(by_id, i, ids[i], one);
+        if (i == judged_id) keeps(by_id, i, ids[i], one);
+    }
+
+    // Footprints of the last row.
+    if (!input.coin()) return;
+    const FragmentRect row{rect.x, rect.y + rect.height - 1, rect.width, 1};
+    const std::span<const std::uint32_t> ids_of_row = std::span(ids).last(width);
+    const texgen::TexelsPerUnit texels{1.0 + input.integer(0, 4095), input.coin() ? 512.0 : input.wide_number()};
+    support::FootprintOutputs footprints(row, input.raw<std::uint8_t>(), input.size(7));
+    footprint(batch, ids_of_row, row, texels, footprints.spans());
+    must(footprints.pads_are_intact(), "a visibility buffer's footprints are its outputs only");
+    for (std::size_t begin = 0, end = 0; begin < width; begin = end) {
+        for (end = begin + 1; end < width && ids_of_row[end] == ids_of_row[begin];) ++end;
+        const FragmentRect run{row.x + static_cast<int>(begin), row.y, static_cast<int>(end - begin), 1};
+        support::FootprintOutputs alone(run);
+        const auto setup = ids_of_row[begin] == texgen::no_triangle ? std::nullopt : setup_of(ids_of_row[begin]);
+        const bool is_written = setup && footprint(texgen::FootprintSetup(*setup, texels), run, alone.spans());
+        for (std::size_t k = 0; k < 8; ++k)
+            for (std::size_t i = begin; footprints.asked(k) && i < end; ++i)
+                must(fuzz::same(footprints[k][i], is_written ? alone[k][i - begin] : 0.0f),
+                     "a run's footprints are those of its triangle");
     }
 }
 
@@ -203,16 +260,57 @@ void clip_slide(Input& input) {
             must(min * q - u <= room && u - max * q <= room, "what comes out is inside the region");
         }
     }
-    for (const glm::vec4& plane : clip_planes(texgen::ObjectTexgen(input.wide_matrix()), region)) (void)plane;
+}
+
+void planes_of_clip(Input& input) {
+    const glm::dmat4 matrix = input.wide_matrix();
+    const texgen::TextureRegion region = input.region_with_depth();
+    const texgen::ClipPlanes planes = clip_planes(texgen::ObjectTexgen(matrix), region);
+    must(planes.size() == (region.depth() ? 7 : 5), "a side is a plane");
+    for (int i = 0; i < 4; ++i) {
+        const double q = matrix[i].w;
+        must(fuzz::same(planes[0][i], static_cast<float>(q)), "the first plane is q");
+        for (std::size_t k = 1; k < planes.size(); ++k) {
+            const std::size_t coordinate = (k - 1) / 2;
+            const glm::dvec2 limits = support::limits_of(region, coordinate);
+            const double bound = k % 2 == 1 ? limits.x : limits.y, sign = k % 2 == 1 ? 1.0 : -1.0;
+            const double u = matrix[i][static_cast<int>(coordinate)];
+            const float value = planes[k][i];
+            if (coordinate == 2 && bound == -sign * HUGE_VAL) {
+                must(fuzz::same(value, static_cast<float>(q)), "no limit of depth is q");
+                continue;
+            }
+            if (!std::isfinite(u) || !std::isfinite(q) || !std::isfinite(bound)) {
+                must(!std::isfinite(value) || std::isfinite(bound), "what is not finite stays so");
+                continue;
+            }
+            const Dyadic exact = Dyadic(sign) * (Dyadic(u) - Dyadic(bound) * Dyadic(q));
+            if (exact.sign() == 0) must(value == 0.0f, "a coefficient 0 is 0");
+            must(exact.sign() == 0 || std::signbit(value) == (exact.sign() < 0), "a coefficient has its sign");
+            if (std::isinf(value)) {
+                must(Dyadic(0x1.fffffefp127) <= magnitude(exact), "a coefficient is infinite beyond the largest float");
+                continue;
+            }
+            const float size = std::fabs(value);
+            const double ulp = std::isinf(std::nextafter(size, HUGE_VALF))
+                                   ? 0x1p104
+                                   : static_cast<double>(std::nextafter(size, HUGE_VALF)) - static_cast<double>(size);
+            must(magnitude(Dyadic(static_cast<double>(value)) - exact) <= Dyadic((0.5 + 0x1p-29) * ulp),
+                 "a coefficient is next to the exact one");
+        }
+    }
 }
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     Input input(data, size);
-    switch (input.integer(0, 4)) {
+    switch (input.integer(0, 5)) {
         case 0:
             clip_near(input);
+            break;
+        case 3:
+            planes_of_clip(input);
             break;
         case 1:
             clip_slide(input);
