@@ -2,15 +2,54 @@
 
 namespace TEXGEN_DETAIL {
 
-// What is said of a box without asking forms: of one without points, and where they cannot say. For a NaN, beyond all numbers,
-// and where nothing is known: partial.
-inline Coverage exact_coverage(const LitForms& forms, const Box& box) noexcept {
+// What the planes say of a box, exactly: of those that are in doubt. For a NaN, and for forms of which nothing is known:
+// partial.
+inline Coverage exact_coverage(const LitForms& forms, const Box& box, const FormsInDoubt& doubt = {}) noexcept {
+    constexpr float infinity = std::numeric_limits<float>::infinity();
     bool is_empty = false;
     for (glm::length_t j = 0; j < 3; ++j) {
         if (!(box.min[j] <= box.max[j]) && !(box.min[j] > box.max[j])) return Coverage::partial;
         is_empty = is_empty || box.min[j] > box.max[j];
     }
-    return is_empty || forms.light_nothing() ? Coverage::outside : Coverage::partial;
+    if (is_empty || forms.light_nothing()) return Coverage::outside;
+    if (!forms.are_usable()) return Coverage::partial;
+    for (glm::length_t j = 0; j < 3; ++j)
+        if (box.min[j] == infinity || box.max[j] == -infinity) return Coverage::partial;  // beyond all numbers
+
+    // The vertex where a form is largest, or least; false where it is infinite there.
+    const glm::dvec3 min = widened(box.min);
+    const glm::dvec3 max = widened(box.max);
+    const auto take_vertex = [&](const Point& a, bool largest, Point& vertex) {
+        for (std::size_t j = 0; j < 3; ++j) {
+            if (a[j] == 0.0) continue;
+            vertex[j] = ((a[j] > 0.0) == largest ? max : min)[static_cast<glm::length_t>(j)];
+            if (!is_finite(vertex[j])) return false;
+        }
+        return true;
+    };
+    CloseRows close;
+    const auto sign_at_vertex = [&](std::size_t k, bool largest) {
+        Point vertex{};
+        return take_vertex(forms.a(k), largest, vertex) ? forms.sign_at(k, vertex, close) : largest ? 1 : -1;
+    };
+    double size = 0.0;
+    for (glm::length_t j = 0; j < 3; ++j) size += larger(std::fabs(min[j]), std::fabs(max[j]));
+    // Almost always the outer side has room for the inner one.
+    const auto is_inside_side = [&](std::size_t k) {
+        Point vertex{}, inner_vertex{};
+        if (take_vertex(forms.a(k), false, vertex) && forms.is_inside_at(k, vertex, size)) return true;
+        const std::array<double, 4> inner = forms.inner_side(k);
+        return take_vertex({inner[0], inner[1], inner[2]}, false, inner_vertex) &&
+               forms.inner_sign_at(k, inner, inner_vertex, close) >= 0;
+    };
+    bool is_inside = !doubt.is_any_negative;
+    for (std::size_t k = forms.count(); k-- > 0;) {
+        if ((doubt.largest >> k & 1u) != 0 && sign_at_vertex(k, true) < (k == LitForms::q ? 1 : 0))
+            return Coverage::outside;
+        if (!is_inside || (doubt.least >> k & 1u) == 0) continue;
+        is_inside = k == LitForms::q ? sign_at_vertex(k, false) > 0 : is_inside_side(k);
+    }
+    return is_inside ? Coverage::inside : Coverage::partial;
 }
 
 inline namespace TEXGEN_BUILD {
@@ -40,14 +79,16 @@ template <class Separating>
 Coverage coverage_of(const BoxKernels& kernels, const LitForms& forms, const Box& box,
                      const Separating& separating) noexcept {
     FormsInDoubt doubt;
-    int answer = forms.can_say() ? kernels.classify(forms.lanes(), &box.min.x, &box.max.x, doubt) : body_in_doubt;
-    if (answer == body_in_doubt) {
-        if (!forms.can_say() || !has_points(box)) return exact_coverage(forms, box);
-        answer = kernels.decide(forms.matrix(), forms.weights(), &box.min.x, &box.max.x, doubt);
-        if (answer == 1) answer = open_body + 1;
-    }
+    const int answer = forms.can_say() ? kernels.classify(forms.lanes(), &box.min.x, &box.max.x, doubt) : body_in_doubt;
     if (answer < open_body) return static_cast<Coverage>(answer);
-    return kernels.is_separated(separating(), &box.min.x, &box.max.x) ? Coverage::outside : Coverage::partial;
+    if (answer == body_in_doubt && doubt.is_finite &&
+        kernels.sharpen(forms.matrix(), forms.weights(), &box.min.x, &box.max.x, doubt))
+        return Coverage::outside;
+    const Coverage result = answer == body_in_doubt ? exact_coverage(forms, box, doubt) : Coverage::partial;
+    if (result != Coverage::partial) return result;
+    return forms.can_say() && has_points(box) && kernels.is_separated(separating(), &box.min.x, &box.max.x)
+               ? Coverage::outside
+               : result;
 }
 
 }  // namespace TEXGEN_BUILD

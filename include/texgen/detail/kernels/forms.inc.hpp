@@ -6,10 +6,9 @@ namespace TEXGEN_DETAIL::TEXGEN_ISA {
 template <class CompiledWhereCalled = void>
 void weigh_forms(const glm::dmat4& matrix, const FormWeights& weights, FormLanes& forms) noexcept {
     for (std::size_t i = 0; i < form_lanes; i += static_cast<std::size_t>(lanes)) {
-        const FormWeights::Sides& sides = weights.outer;
-        const Doubles of[3] = {load<Doubles>(sides.of[0] + i), load<Doubles>(sides.of[1] + i),
-                               load<Doubles>(sides.of[2] + i)};
-        const auto of_q = load<Doubles>(sides.of_q + i);
+        const Doubles of[3] = {load<Doubles>(weights.of[0] + i), load<Doubles>(weights.of[1] + i),
+                               load<Doubles>(weights.of[2] + i)};
+        const auto of_q = load<Doubles>(weights.of_q + i);
         Doubles form[4];
         TEXGEN_UNROLL
         for (std::size_t j = 0; j < 4; ++j) {
@@ -109,7 +108,7 @@ int classify_box(const FormLanes& forms, const float* box_min, const float* box_
         is_proper &= extent[j] >= 0.0;
         is_proper &= size[j] < infinity;
     }
-    doubt = {};
+    doubt = {.is_finite = is_proper};
     double narrowed = 2.2 * forms.last_q;
     bool is_unbounded[3] = {};
     if (!is_proper) {
@@ -171,70 +170,72 @@ int classify_box(const FormLanes& forms, const float* box_min, const float* box_
     return body_in_doubt;
 }
 
-// Numbers with the signs of forms at the vertex of a box, exactly, and of this sign where that is infinite. A coefficient is the
-// sum of three, and of halves of them, whose products with a float are exact.
-TEXGEN_INLINE Doubles signed_forms(const glm::dmat4& matrix, const Doubles (&of)[3], const Doubles& of_q,
-                                   const double (&at_positive)[4], const double (&at_negative)[4],
-                                   double of_infinite) noexcept {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    Doubles term[24];
-    std::size_t count = 0;
-    Doubles size{};
-    LongWords is_infinite{};
-    for (std::size_t j = 0; j < 4; ++j) {
-        const glm::dvec4& column = matrix[static_cast<glm::length_t>(j)];
-        const double half = leading_26_bits(column.w);
-        const Doubles row = of[0] * column.x + (of[1] * column.y + of[2] * column.z);
-        const Doubles most_of_q = of_q * half;
-        const Doubles low = of_q * (column.w - half);
-        Doubles rest;
-        const Doubles sum = two_sum(row, most_of_q, rest);
-        const Doubles coefficient = sum + (rest + low);
-        Doubles x = select(greater(coefficient, 0.0), Doubles{} + at_positive[j], Doubles{} + at_negative[j]);
-        if (!(larger(std::fabs(at_positive[j]), std::fabs(at_negative[j])) < infinity)) {
-            const LongWords is_bounded = greater(Doubles{} + infinity, magnitude(x));
-            is_infinite = is_infinite | (are_nonzero(coefficient) & ~is_bounded);
-            x = where(is_bounded, x);
+// Forms where they are largest over a finite box, or least: as sums of exact products with halves of the coefficients, and of
+// what those leave, each of its terms rounded. Where they leave nothing, as numbers with few digits do, the value is exact;
+// elsewhere its sign is known where it is larger than the roundings.
+struct CloseForms {
+    Doubles value;
+    LongWords is_known;
+
+    TEXGEN_INLINE CloseForms(const glm::dmat4& matrix, const Doubles (&of)[3], const Doubles& of_q,
+                             const double (&at_positive)[4], const double (&at_negative)[4]) noexcept {
+        Doubles high{}, low{}, size_of_low{};
+        for (std::size_t j = 0; j < 4; ++j) {
+            const glm::dvec4& column = matrix[static_cast<glm::length_t>(j)];
+            const double half = leading_26_bits(column.w);
+            const Doubles row = of[0] * column.x + (of[1] * column.y + of[2] * column.z);
+            Doubles rest;
+            const Doubles sum = two_sum(row, of_q * half, rest);
+            rest = rest + of_q * (column.w - half);
+            const Doubles x = select(greater(sum + rest, 0.0), Doubles{} + at_positive[j], Doubles{} + at_negative[j]);
+            const Doubles first = leading_bits<27>(sum);
+            for (const Doubles& part : {first, sum - first}) {
+                Doubles left;
+                high = two_sum(high, part * x, left);
+                low = low + left;
+                size_of_low = size_of_low + magnitude(left);
+            }
+            low = low + rest * x;
+            size_of_low = size_of_low + magnitude(rest * x);
         }
-        size = size + (magnitude(row) + magnitude(most_of_q)) * magnitude(x);
-        for (const Doubles& part : {sum, rest, low}) {
-            if (!any(are_nonzero(part))) continue;
-            const Doubles first = leading_bits<27>(part);
-            term[count++] = first * x;
-            if (any(are_nonzero(part - first))) term[count++] = (part - first) * x;
-        }
+        value = high + low;
+        is_known = at_most(size_of_low, Doubles{}) | greater(magnitude(value), size_of_low * gamma(24) + 0x1p-1000);
     }
-    const Doubles sigma = power_of_two_below(maximum(size, Doubles{} + 0x1p-900)) * 8.0;
-    return select(is_infinite, Doubles{} + of_infinite, signed_sum(term, count, sigma, ~is_infinite));
-}
+};
 
 template <class CompiledWhereCalled = void>
-int decide_box(const glm::dmat4& matrix, const FormWeights& weights, const float* box_min, const float* box_max,
-               const FormsInDoubt& doubt) noexcept {
-    constexpr double least_of_q[form_lanes] = {0.0, 0.0, 0.0, 0.0, 0x1p-1000};  // q = 0 is dark
+bool sharpen(const glm::dmat4& matrix, const FormWeights& weights, const float* box_min, const float* box_max,
+             FormsInDoubt& doubt) noexcept {
     double min[4] = {0.0, 0.0, 0.0, 1.0}, max[4] = {0.0, 0.0, 0.0, 1.0};
     for (std::size_t j = 0; j < 3; ++j) {
         min[j] = widened(box_min[j]);
         max[j] = widened(box_max[j]);
     }
-    for (const bool largest : {true, false}) {
-        if (!largest && doubt.is_any_negative) return 1;
-        const std::uint32_t asked = largest ? doubt.largest : doubt.least;
-        for (std::size_t i = 0; i < form_lanes; i += static_cast<std::size_t>(lanes)) {
-            if ((asked >> i & ((1u << lanes) - 1)) == 0) continue;
-            const FormWeights::Sides& sides = largest ? weights.outer : weights.inner;
-            const Doubles of[3] = {load<Doubles>(sides.of[0] + i), load<Doubles>(sides.of[1] + i),
-                                   load<Doubles>(sides.of[2] + i)};
-            const auto of_q = load<Doubles>(sides.of_q + i);
-            const Doubles value = largest ? signed_forms(matrix, of, of_q, max, min, 1.0)
-                                          : signed_forms(matrix, of, of_q, min, max, -1.0);
-            int is_negative[lanes];
-            store(is_negative, narrow(greater(Doubles{}, value - load<Doubles>(least_of_q + i))));
-            for (std::size_t lane = 0; lane < static_cast<std::size_t>(lanes); ++lane)
-                if ((asked >> (i + lane) & 1u) != 0 && is_negative[lane] != 0) return largest ? 0 : 1;
+    for (std::size_t i = 0; i < form_lanes; i += static_cast<std::size_t>(lanes)) {
+        const Doubles of[3] = {load<Doubles>(weights.of[0] + i), load<Doubles>(weights.of[1] + i),
+                               load<Doubles>(weights.of[2] + i)};
+        int is_known[lanes];
+        double value[lanes];
+        // Where they are largest, and then where they are least.
+        for (int end = 0; end < 2; ++end) {
+            std::uint32_t& in_doubt = end == 0 ? doubt.largest : doubt.least;
+            if ((in_doubt >> i & ((1u << lanes) - 1)) == 0 || (end == 1 && doubt.is_any_negative)) continue;
+            const CloseForms close(matrix, of, load<Doubles>((end == 0 ? weights.of_q : weights.inner_of_q) + i),
+                                   end == 0 ? max : min, end == 0 ? min : max);
+            store(is_known, narrow(close.is_known));
+            store(value, close.value);
+            bool any_is_negative = false;
+            for (std::size_t lane = 0; lane < static_cast<std::size_t>(lanes); ++lane) {
+                const std::uint32_t bit = std::uint32_t{1} << (i + lane);
+                if ((in_doubt & bit) == 0 || is_known[lane] == 0) continue;
+                in_doubt &= ~bit;
+                any_is_negative |= value[lane] < 0.0 || (i + lane == form_of_q && value[lane] == 0.0);
+            }
+            if (end == 0 && any_is_negative) return true;
+            doubt.is_any_negative |= any_is_negative;
         }
     }
-    return 2;
+    return false;
 }
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA

@@ -76,7 +76,7 @@ inline constexpr FloatFormKernels kernel_table<FloatFormKernels, CompiledWhereCa
 template <class CompiledWhereCalled>
 inline constexpr BoxKernels kernel_table<BoxKernels, CompiledWhereCalled>{
     .classify = classify_box<CompiledWhereCalled>,
-    .decide = decide_box<CompiledWhereCalled>,
+    .sharpen = sharpen<CompiledWhereCalled>,
     .is_separated = is_separated<CompiledWhereCalled>};
 
 template <class CompiledWhereCalled>

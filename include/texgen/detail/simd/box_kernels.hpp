@@ -26,14 +26,11 @@ inline constexpr std::size_t forms_without_depth = 5;
 inline constexpr std::size_t max_forms = 7;
 
 // A lane a form; those behind the last form are q's. Form k is of[0] T_s + of[1] T_t + of[2] T_r + of_q T_q, where one of the
-// three weights at most is not 0, but 1 or -1, and of_q is a float. Its inner side has weights of its own, and is `width` away.
+// three weights at most is not 0, but 1 or -1, and of_q is a float; its inner side has another of_q, which may be infinite, and
+// is `width` away.
 inline constexpr std::size_t form_lanes = 8;
 struct FormWeights {
-    struct Sides {
-        double of[3][form_lanes], of_q[form_lanes];
-    };
-    Sides outer, inner;
-    double width[form_lanes];
+    double of[3][form_lanes], of_q[form_lanes], inner_of_q[form_lanes], width[form_lanes];
 };
 
 // a . (x, y, z) + d, each coefficient rounded so that its sign is right and it is 0 only if it is 0, times a power of two that
@@ -49,6 +46,7 @@ struct FormLanes {
 struct FormsInDoubt {
     std::uint32_t largest = ~0u, least = ~0u;
     bool is_any_negative = false;  // of the least, for certain
+    bool is_finite = false;        // the box, which then has points
 };
 
 // The same in float, twice the value each, a lane a form, with one bound for all: over a body each errs by less than
@@ -127,9 +125,10 @@ struct SeparatingFormKernels {
 struct BoxKernels {
     // What doubles are certain of. NaN, infinities and empty boxes are in doubt.
     int (*classify)(const FormLanes& forms, const float* min, const float* max, FormsInDoubt& doubt) noexcept;
-    // The same of a box that has points, by exact sums of the forms that are in doubt: the number of a Coverage.
-    int (*decide)(const glm::dmat4& matrix, const FormWeights& weights, const float* min, const float* max,
-                  const FormsInDoubt& doubt) noexcept;
+    // Settles of the doubt about a finite box what two doubles can, and where it touches with few digits. Returns whether the
+    // box is outside.
+    bool (*sharpen)(const glm::dmat4& matrix, const FormWeights& weights, const float* min, const float* max,
+                    FormsInDoubt& doubt) noexcept;
     // Whether one of them is negative over all of a box that has points.
     bool (*is_separated)(const SeparatingForms& planes, const float* min, const float* max) noexcept;
 };
