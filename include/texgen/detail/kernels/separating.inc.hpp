@@ -50,6 +50,7 @@ TEXGEN_INLINE void add_plane(SeparatingForms& planes, const FormColumns* const (
 
 // The planes through an edge, where forms f and g of two coordinates meet, and parallel to an axis of the space: with
 // coefficients f_k and g_k of that axis, |g_k| f + |f_k| g has none where f_k and g_k have opposite signs.
+template <class CompiledWhereCalled = void>
 TEXGEN_INLINE void add_edges(SeparatingForms& planes, const FormLanes& forms, bool has_depth) noexcept {
     constexpr std::size_t of_f[] = {0, 0, 1, 1, 0, 0, 1, 1, 2, 2, 3, 3};
     constexpr std::size_t of_g[] = {2, 3, 2, 3, 5, 6, 5, 6, 5, 6, 5, 6};
@@ -71,6 +72,7 @@ TEXGEN_INLINE void add_edges(SeparatingForms& planes, const FormLanes& forms, bo
 
 // The planes through a vertex, where three forms meet, and across an axis: as f, g and h have no other point in common, the
 // products across g x h, h x f and f x g are their weights, where they have one sign. Rounded weights serve as well.
+template <class CompiledWhereCalled = void>
 TEXGEN_INLINE void add_vertices(SeparatingForms& planes, const FormLanes& forms) noexcept {
     FormColumns f, g, h;
     for (std::size_t i = 0; i < 8; ++i) {
@@ -98,6 +100,7 @@ TEXGEN_INLINE void add_vertices(SeparatingForms& planes, const FormLanes& forms)
 // The planes through the apex that have x, y or z alone, a lane each. alpha T_s + beta T_t + gamma T_q with the cofactors of that
 // column of the 3x3 of the rows has no coefficient in the two others, and where alpha s + beta t + gamma has one sign
 // at the corners of the region, it has it in all of the pyramid.
+template <class CompiledWhereCalled = void>
 TEXGEN_INLINE void add_axes(SeparatingForms& planes, const glm::dmat4& matrix, const double* side) noexcept {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     constexpr double is_axis[3][form_lanes] = {{1.0}, {0.0, 1.0}, {0.0, 0.0, 1.0}};
