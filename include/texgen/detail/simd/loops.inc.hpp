@@ -60,7 +60,6 @@ struct Lanes {
         return of([&](int i) { return a.lane[i] ^ b.lane[i]; });
     }
 
-private:
     static T at(T number, int) noexcept { return number; }
     static T at(const Lanes& many, int i) noexcept { return many.lane[i]; }
 };
@@ -106,11 +105,8 @@ TEXGEN_INLINE Doubles truncated(const Doubles& values) noexcept {
 }
 
 using LongWords = Words;
-TEXGEN_INLINE LongWords greater(const Doubles& a, double b) noexcept {
-    return LongWords::of([&](int i) { return a.lane[i] > b ? -1 : 0; });
-}
-TEXGEN_INLINE LongWords greater(const Doubles& a, const Doubles& b) noexcept {
-    return LongWords::of([&](int i) { return a.lane[i] > b.lane[i] ? -1 : 0; });
+TEXGEN_INLINE LongWords greater(const Doubles& a, const auto& b) noexcept {
+    return LongWords::of([&](int i) { return a.lane[i] > Doubles::at(b, i) ? -1 : 0; });
 }
 template <class Vector>
 TEXGEN_INLINE Words at_most(const Vector& a, const Vector& b) noexcept {

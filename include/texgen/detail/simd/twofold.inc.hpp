@@ -56,15 +56,7 @@ struct TwofoldForm {
 
     TwofoldForm() = default;
     TEXGEN_INLINE explicit TwofoldForm(const PointForm& given) noexcept
-        : form(given),
-          high{},
-          low{},
-          size{},
-          grain{},
-          grain_of_w(last_bit(form.w)),
-          is_used{},
-          has_low{},
-          is_finite(0.0 * (form.x + form.y + form.z + form.w) == 0.0) {
+        : form(given), grain_of_w(last_bit(form.w)), is_finite(0.0 * (form.x + form.y + form.z + form.w) == 0.0) {
         const double coefficient[3] = {form.x, form.y, form.z};
         for (int j = 0; j < 3; ++j) {
             high[j] = leading_29_bits(coefficient[j]);
@@ -158,19 +150,14 @@ TEXGEN_INLINE Doubles signed_sum(Doubles* term, std::size_t count, Doubles sigma
 }
 
 // The denominators of a vector of quotients, and on which side of 0 they are.
-struct TwofoldDivisor {
+struct TwofoldDivisor : PointSum {
     LongWords in_front, is_known;  // is_known: the side is, and in front the value well enough to divide by
-    Doubles high, low, rest, lost, grain, reciprocal;
+    Doubles reciprocal;
     Doubles part[2];  // high in parts of 27 bits and less, whose products with 25 bits are exact
 
-    TEXGEN_INLINE explicit TwofoldDivisor(const PointSum& q) noexcept {
+    TEXGEN_INLINE explicit TwofoldDivisor(const PointSum& q) noexcept : PointSum(q) {
         in_front = greater(q.high, 0.0) & at_most(q.lost, q.high * 0x1p-50);
         is_known = in_front | at_most(q.lost * 2.0, -1.0 * q.high);
-        high = q.high;
-        low = q.low;
-        rest = q.rest;
-        lost = q.lost;
-        grain = q.grain;
         reciprocal = where(in_front, 1.0 / q.high);
         part[0] = leading_bits<27>(q.high);
         part[1] = q.high - part[0];
