@@ -4,8 +4,6 @@ namespace TEXGEN_DETAIL {
 
 inline bool is_aspect(double aspect) noexcept { return aspect > 0.0 && is_finite(aspect); }
 
-inline double aspect_of(const PerspectiveLens& lens) noexcept { return lens.aspect; }
-
 // In halves: no difference leaves the range.
 template <class RectangularLens>
 double aspect_of(const RectangularLens& lens) noexcept {
@@ -68,7 +66,7 @@ inline OrthographicLens contain(const OrthographicLens& lens, double aspect) noe
 }
 
 inline TextureRegion cover(const PerspectiveLens& lens, double aspect, TextureRegion picture) noexcept {
-    return detail::cover_aspect(detail::aspect_of(lens), aspect, picture);
+    return detail::cover_aspect(lens.aspect, aspect, picture);
 }
 inline TextureRegion cover(const FrustumLens& lens, double aspect, TextureRegion picture) noexcept {
     return detail::cover_aspect(detail::aspect_of(lens), aspect, picture);
