@@ -17,6 +17,7 @@
 #include "conventions.hpp"
 #include "detail/arithmetic/inverse.hpp"
 #include "detail/arithmetic/widen.hpp"
+#include "detail/points/forms.hpp"
 #include "primitives.hpp"
 #include "projector.hpp"
 #include "scale_bias.hpp"

@@ -15,17 +15,6 @@ inline glm::dmat4 solve_rows(const CertifiedInverse& inverse, const glm::dmat4& 
                                      inverse.solve_row(row[3])));
 }
 
-// A row's value at (x, y, z, 1).
-inline Bounded row_at(const glm::dmat4& matrix, glm::length_t row, const glm::dvec3& v) noexcept {
-    const double terms[] = {matrix[0][row] * v.x, matrix[1][row] * v.y, matrix[2][row] * v.z, matrix[3][row]};
-    Bounded sum{0.0, 0.0};
-    for (const double term : terms) {
-        sum.value += term;
-        sum.error += gamma(5) * magnitude(term);
-    }
-    return sum;
-}
-
 // Of what is rounded to a depth of the buffer, how far it may be from that.
 inline double depth_rounding(DepthBuffer buffer, double depth) noexcept {
     const double steps = buffer == DepthBuffer::unorm16 ? 0x1p16 - 1.0 : 0x1p24 - 1.0;
@@ -79,18 +68,18 @@ inline glm::dvec2 depth_error_bound(const WindowTexgen& texture_from_window, glm
                                     DepthBuffer buffer) noexcept {
     const glm::dvec3 v = detail::widened(fragment);
     // A common factor changes no quotient: the terms of q are brought near 1, so that no product leaves the range.
-    const double size_of_q = detail::row_at(texture_from_window.matrix(), 3, v).error / detail::gamma(5);
+    const double size_of_q = detail::terms_at(detail::form(texture_from_window.matrix(), 3), v);
     const glm::dmat4 m = texture_from_window.matrix() * detail::reciprocal_power_of_two(detail::smaller(
                                                             detail::larger(size_of_q, 0x1p-1000), 0x1p1000));
     const double rounding = detail::depth_rounding(buffer, v.z);
-    const detail::Bounded q = detail::row_at(m, 3, v);
+    const detail::Bounded q = detail::value_at(detail::form(m, 3), v);
     const double least_q = q.value - q.error, slope_q = m[2][3];
     const double last_q = least_q - 1.001 * rounding * detail::magnitude(slope_q);
     glm::dvec2 bound(std::numeric_limits<double>::infinity());
     if (!(last_q > 0.0)) return bound;
     for (glm::length_t row = 0; row < 2; ++row) {
         // With d more depth, s/q changes by d (s' q - q' s) / (q (q + d q')), for s' and q' the slopes.
-        const detail::Bounded s = detail::row_at(m, row, v);
+        const detail::Bounded s = detail::value_at(detail::form(m, static_cast<int>(row)), v);
         const double slope = m[2][row], numerator = detail::magnitude(slope * q.value - slope_q * s.value);
         const double size = detail::magnitude(slope) * (q.error + detail::gamma(2) * detail::magnitude(q.value)) +
                             detail::magnitude(slope_q) * (s.error + detail::gamma(2) * detail::magnitude(s.value));
