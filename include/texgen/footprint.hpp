@@ -13,7 +13,6 @@
 #include <limits>
 #include <optional>
 #include <span>
-#include <utility>
 
 #include <glm/vec2.hpp>
 

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -44,8 +43,11 @@ public:
     // Within 2^-51 of itself.
     double value() const noexcept { return value(size()); }
 
-    // In double, within gamma(4) of the sum of its terms' magnitudes, which is the other one.
-    std::pair<double, double> nearly() const noexcept {
+    // In double, within gamma(4) of the sum of its terms' magnitudes, which is the size.
+    struct Nearly {
+        double value, size;
+    };
+    Nearly nearly() const noexcept {
         return {minor_of(1, 2) * row_[0].z + minor_of(2, 0) * row_[1].z + minor_of(0, 1) * row_[2].z, size()};
     }
 

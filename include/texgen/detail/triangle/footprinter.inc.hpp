@@ -150,10 +150,12 @@ private:
     }
 
     void store_rows(const Tile& tile, const Footprint& value) noexcept {
-        const std::pair<const std::span<float>&, double> stores[] = {
-            {out_.dsdx, value.dx.x},       {out_.dtdx, value.dx.y},      {out_.dsdy, value.dy.x},
-            {out_.dtdy, value.dy.y},       {out_.level, value.level},    {out_.anisotropy, value.anisotropy},
-            {out_.major_s, value.major.x}, {out_.major_t, value.major.y}};
+        const struct {
+            const std::span<float>& output;
+            double number;
+        } stores[] = {{out_.dsdx, value.dx.x},       {out_.dtdx, value.dx.y},      {out_.dsdy, value.dy.x},
+                      {out_.dtdy, value.dy.y},       {out_.level, value.level},    {out_.anisotropy, value.anisotropy},
+                      {out_.major_s, value.major.x}, {out_.major_t, value.major.y}};
         for (const auto& [output, number] : stores) fill_rows(output, rect_, tile, static_cast<float>(number));
     }
 
