@@ -13,7 +13,7 @@ public:
         : kernels_(kernels), functions_(functions), texels_(texels), rect_(rect), out_(out) {}
 
     void fill_all(const Tile& tile, const Corners& at) noexcept {
-        if (at.all_behind()) return store_rows(tile, nothing());
+        if (at.largest_q <= -at.q_error) return store_rows(tile, nothing());  // behind, or 0 everywhere
         const bool may_be_vectors = at.well_in_front() && at.least_q > 0x1p-12 * at.largest_q;
         if (may_be_vectors && tile.width <= largest_index && fill_in_vectors(tile, at)) return;
         const int least = may_be_vectors ? 8 : 2;
