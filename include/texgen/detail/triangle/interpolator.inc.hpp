@@ -126,7 +126,7 @@ private:
     }
 
     // A tile behind is cleared. Of one in doubt what is next to q = 0 is divided closely, if those are few; else it is halved. For the
-    // mask alone of nearest floats that is less, and by residues at once: they tell the sign of q.
+    // mask alone of nearest floats that is less, and by residues at once where two doubles are known.
     TEXGEN_APART void split(const Tile& tile, const Corners& at) noexcept {
         if (at.all_behind()) return clear(tile);
         if (tile.count() <= TileJob::unit_size) return fill_closely(tile);
@@ -187,7 +187,7 @@ private:
         if (!doubtful_) {
             doubtful_.make(DoubtfulJob{make_job(whole_, *whole_at_), functions_of(whole_, *whole_at_)});
             doubtful_->job.is_contiguous = false;
-            if (is_mask_alone()) add_residues(whole_, doubtful_->functions);
+            if (is_mask_alone() && doubtful_->functions.are_close) add_residues(whole_, doubtful_->functions);
         }
         fill_closely(whole_, doubtful_->job, doubtful_->functions, {x, x + tile.width, y, y + tile.height});
     }
