@@ -187,20 +187,32 @@ TEST_CASE("values of a segment in doubt have the same bits in vectors and one by
 TEST_CASE("next to ties that no two doubles tell from ties the nearest float is found all the same") {
     Random random(58);
     constexpr std::size_t count = 160;
+    const auto check_points = [](const glm::dmat4& matrix, const std::vector<glm::vec3>& points) {
+        const texgen::WorldTexgen texgen(matrix);
+        Outputs out(count);
+        project(texgen, texgen::world_space(points), everywhere(), out.spans());
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::string where = support::hex(points[i]);
+            check(out, i, support::exactly_at(matrix, points[i]), 0.0, where);
+            const glm::vec2 alone = project(texgen, texgen::world_space(points[i])).value();
+            REQUIRE_MESSAGE(support::same_bits(alone.x, out.s()[i]), where);
+            REQUIRE_MESSAGE(support::same_bits(alone.y, out.t()[i]), where);
+        }
+    };
+    std::vector<glm::vec3> points(count);
     for (const double factor : {0.1, 0.3, 1.7}) {
         for (const double least : {0x1p-120, 0x1p-170, 0x1p-220}) {
-            const glm::dmat4 matrix =
+            for (glm::vec3& point : points) point = {random.uniform_float(1.0, 2.0), 1.0f, random.integer(-1, 1)};
+            check_points(
                 support::matrix_of_rows({factor, 0x1p-24 * factor, least, 0.0}, {factor, 0x1p-24 * factor, -least, 0.0},
-                                        {factor, 0x1p-24 * factor, 0.0, 0.0}, {0.0, 0.0, 0.0, factor});
-            std::vector<glm::vec3> points;
-            for (std::size_t i = 0; i < count; ++i)
-                points.emplace_back(random.uniform_float(1.0, 2.0), 1.0f, random.integer(-1, 1));
-            Outputs out(count);
-            project(texgen::WorldTexgen(matrix), texgen::world_space(points), everywhere(), out.spans());
-            for (std::size_t i = 0; i < count; ++i)
-                check(out, i, support::exactly_at(matrix, points[i]), 0.0, support::hex(points[i]));
+                                        {factor, 0x1p-24 * factor, 0.0, 0.0}, {0.0, 0.0, 0.0, factor}),
+                points);
         }
     }
+    // A tie of a subnormal element, the last digit of which counts.
+    points.assign(count, {0x1p127f, 0.0f, 0.0f});
+    const glm::dvec4 subnormal(0x1p-1024 - 0x1p-1074, 0.0, 0.0, 0x1.000001p-896 + 0x1p-947);
+    check_points(support::matrix_of_rows(subnormal, subnormal, subnormal, {0.0, 0.0, 0.0, 0x1p-897}), points);
 }
 
 TEST_CASE("two doubles leave none of these points in doubt") {

@@ -73,6 +73,91 @@ inline float divide_exactly(const PointForm& form, const PointForm& q_form, cons
         [&] { return exactly_at(q_form, v); });
 }
 
+// A number as an integer of so many digits, if that is all of it, times a power of two.
+struct Digits {
+    std::int64_t integer;
+    int exponent;
+
+    explicit Digits(double number, int count = 53) noexcept {
+        const auto bits = bit_cast<std::uint64_t>(number);
+        const auto size =
+            static_cast<std::int64_t>(((bits & 0xfffffffffffff) | std::uint64_t{1} << 52) >> (53 - count));
+        const std::int64_t sign = static_cast<std::int64_t>(bits) >> 63;
+        integer = number == 0.0 ? 0 : (size ^ sign) - sign;
+        exponent = static_cast<int>(bits >> 52 & 0x7ff) - (1022 + count);
+    }
+};
+
+// A sum modulo a power of two: an integer without a sign, of which the last digits are kept, times 2^unit.
+template <class Integer>
+class Residue {
+public:
+    static constexpr int size = 8 * sizeof(Integer);
+
+    explicit Residue(int unit) noexcept : unit_(unit) {}
+
+    void add(const Digits& term) noexcept {
+        if (term.integer != 0) add(static_cast<Integer>(term.integer), term.exponent);
+    }
+
+    void add_product(const Digits& a, const Digits& b) noexcept {
+        if (a.integer == 0 || b.integer == 0) return;
+        add(static_cast<Integer>(a.integer) * static_cast<Integer>(b.integer), a.exponent + b.exponent);
+    }
+
+    void add_scaled(const Residue& other, const Digits& factor) noexcept {
+        add(other.integer_ * static_cast<Integer>(factor.integer), other.unit_ + factor.exponent);
+        is_whole_ = is_whole_ && other.is_whole_;
+    }
+
+    // Whether all terms are multiples of the unit. Then, of a sum of less than 2^(size - 1) units, -1, 0 or 1.
+    bool is_whole() const noexcept { return is_whole_; }
+    int sign() const noexcept { return integer_ == 0 ? 0 : integer_ >> (size - 1) != 0 ? -1 : 1; }
+
+private:
+    void add(const Integer& integer, int exponent) noexcept {
+        const int by = exponent - unit_;
+        if (by >= size) return;
+        is_whole_ = is_whole_ && by >= 0;
+        integer_ += integer << (by & (size - 1));
+    }
+
+    Integer integer_ = 0;
+    int unit_;
+    bool is_whole_ = true;
+};
+
+// The floats nearest to two numerators over q at a point, of which the quotients are within error <= 2^-44 of themselves. Beside
+// a tie |s - middle q| is at most 2.0001 q error: with a middle of 25 digits times 2^f and q below 2^(e + 1) less than
+// 2^(e - 16 + f). False where residues do not tell its sign. A template, as files of one program may differ in the widest
+// integer.
+template <class Integer>
+TEXGEN_APART bool divide_beside_ties(const FormPair& numerators, const PointForm& q_form, const glm::dvec3& v, double q,
+                                     const Double2& quotient, const Double2& error, float (&value)[2]) noexcept {
+    const Digits at[] = {Digits(v.x, 24), Digits(v.y, 24), Digits(v.z, 24)};
+    const auto residue_of = [&at](const PointForm& form, int unit) {
+        Residue<Integer> sum(unit);
+        sum.add_product(Digits(form.x), at[0]);
+        sum.add_product(Digits(form.y), at[1]);
+        sum.add_product(Digits(form.z), at[2]);
+        sum.add(Digits(form.w));
+        return sum;
+    };
+    const int unit = static_cast<int>(bit_cast<std::uint64_t>(q) >> 52) - 1023 - 15 - Residue<Integer>::size;
+    const Residue<Integer> of_q = residue_of(q_form, unit);
+    bool are_whole = true;
+    for (std::size_t k = 0; k < 2; ++k) {
+        value[k] = nearest_to(quotient[k], error[k], [&](double middle) {
+            const Digits factor(-middle, 25);
+            Residue<Integer> remainder = residue_of(numerators.form(k), unit + factor.exponent);
+            remainder.add_scaled(of_q, factor);
+            are_whole = are_whole && remainder.is_whole();
+            return remainder.sign();
+        });
+    }
+    return are_whole;
+}
+
 // The floats nearest to two numerators over q at a point of floats, every decision exact, in two doubles where they suffice.
 // False where q is not positive, or is no number.
 inline bool divide_closely(const FormPair& numerators, const PointForm& q_form, const glm::dvec3& v,
@@ -145,6 +230,11 @@ inline std::optional<glm::vec2> project_point(const glm::dmat4& matrix, const gl
         const Double2 error = magnitude(quotient) * relative_error + terms * (reciprocal * (gamma(5) * 1.001));
         if (rounds_alone(quotient[0], error[0]) && rounds_alone(quotient[1], error[1]))
             return glm::vec2(static_cast<float>(quotient[0]), static_cast<float>(quotient[1]));
+        float value[2];
+        // Beside a q that is so small elements of the matrix may be subnormal, which are no digits.
+        if (q.value > 0x1p-600 && !any_less(magnitude(quotient) * 0x1p-44, error) &&
+            divide_beside_ties<WideInteger>(forms, form(matrix, 3), v, q.value, quotient + 0.0, error, value))
+            return glm::vec2(value[0], value[1]);
     }
     if (q.value < -q.error) return std::nullopt;
     return project_closely(matrix, v);

@@ -45,6 +45,8 @@
 
 namespace TEXGEN_DETAIL {
 
+using WideInteger = std::uint64_t;
+
 // Two doubles at a time, for s and t. Laid out as those below.
 struct alignas(16) Double2 {
     double lane[2];
@@ -143,6 +145,13 @@ inline bool all_less(const Double2& a, const Double2& b) noexcept { return a[0] 
 #endif
 
 namespace TEXGEN_DETAIL {
+
+// The widest integer without a sign.
+#ifdef __SIZEOF_INT128__
+__extension__ using WideInteger = unsigned __int128;
+#else
+using WideInteger = std::uint64_t;
+#endif
 
 // Two doubles at a time, for s and t.
 using Double2 [[gnu::vector_size(16)]] = double;
