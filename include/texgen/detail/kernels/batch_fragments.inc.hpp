@@ -169,7 +169,7 @@ TEXGEN_APART std::uint64_t decide_fragments(const FragmentsJob& job, const Fragm
 template <std::size_t Numerators>
 TEXGEN_INLINE Undecided divide_all_fragments(const FragmentsJob& job, std::size_t first) noexcept {
     constexpr auto size = static_cast<std::size_t>(lanes);
-    const FragmentOutputs out{job};
+    const FragmentOutputs out(job);
     ScratchOutputs<size> scratch;
     const FragmentOutputs in_scratch = scratch.in_place_of(out);
     FragmentWalk<Doubles, double> walk(job.width, 1.0 / job.width, static_cast<double>(first));

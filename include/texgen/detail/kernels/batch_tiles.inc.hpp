@@ -320,7 +320,7 @@ TEXGEN_APART std::uint64_t decide_tiles(const TilesJob& job, const FragmentOutpu
 
 template <std::size_t Numerators>
 TEXGEN_INLINE Undecided divide_all_tiles(const TilesJob& job, std::size_t first, std::size_t done) noexcept {
-    const FragmentOutputs out{job};
+    const FragmentOutputs out(job);
     TileScratch scratch;
     BatchTiles tiles;
     TileShape shape;

@@ -44,21 +44,17 @@ inline constexpr double batch_plane_error = 1.0001 * gamma(20);
 // Tiles of more fragments are left to a TriangleSetup, which costs little beside them and resumes where one is in doubt.
 inline constexpr std::size_t largest_batch_tile = 512;
 
-// An output is null, or an array of as many floats as the job has values.
-struct BatchOutputs {
-    float* out[3];
-    float* lit;
-    float min[2], max[2];  // the region
-    bool has_depth;
-    float r_min, r_max;
-};
-
-// r is computed where it has an output, and where the mask is to have a depth.
-struct BatchJob : BatchOutputs {
+// An output is null, or an array of `count` floats; r is computed where it has one, and where the mask is to have a depth.
+struct BatchJob {
     const BatchPlanes* planes;
     const float* vertices;
     double tolerance;
+    float* out[3];
+    float* lit;
     std::size_t count;
+    float min[2], max[2];  // the region
+    bool has_depth;
+    float r_min, r_max;
 
     bool needs_r() const noexcept { return out[2] != nullptr || (has_depth && lit != nullptr); }
 };
