@@ -507,6 +507,16 @@ TEST_CASE("a vertex that one side makes is the exact intersection, each componen
     CHECK(cancelling > 1000);
 }
 
+TEST_CASE("a side next to 0 cuts where it is, whatever floats meet there") {
+    // s = 2^-400 q, from s = 0 at q = 2^127 to s = 2^-149 at q = 1: at 2^-124 of the edge, where a position of 2^26 is 0.
+    const auto vertex = [](float x, float s, float q) { return ClipVertex{{x, 0.0f, 0.0f, 1.0f}, {s, 0.0f, 0.0f, q}}; };
+    const Polygon polygon{vertex(0x1p26f, 0x1p-149f, 1.0f), vertex(1.0f, 0.0f, 0x1p127f), vertex(3.0f, 1.0f, 1.0f)};
+    const Polygon out = clipped(polygon, atlas_tile({0x1p-400, -1.0}, {2.0, 1.0}));
+    REQUIRE(out.size() == 4);
+    for (const ClipVertex& v : out)
+        CHECK_MESSAGE((v.position.x == 0x1p26f || v.position.x == 1.0f || v.position.x == 3.0f), hex(v.position));
+}
+
 TEST_CASE("the area on the slide is that of the exact clip") {
     Random random(1107);
     int partial = 0, whole = 0, through_projector_plane = 0;

@@ -2,11 +2,13 @@
 
 namespace TEXGEN_DETAIL {
 
-// The signed distance of (s, t, r, q) from a plane of the slide: sign (u - bound q), in no unit; inside is >= 0.
+// The signed distance of (s, t, r, q) from a plane of the slide: sign (u - bound q), in any unit; inside is >= 0.
 class SlideDistance {
 public:
     explicit SlideDistance(const SlidePlane& plane) noexcept
-        : coordinate_(plane.coordinate), sign_(plane.sign), per_q_(-plane.sign * usable(plane.bound)) {
+        : coordinate_(plane.coordinate),
+          sign_(plane.sign * unit_of(plane.bound)),
+          per_q_(-sign_ * std::copysign(smaller(std::fabs(plane.bound), 0x1p1000), plane.bound)) {
         const bool has_29_digits = leading_29_bits(per_q_) == per_q_;  // times a float: a double
         product_error_ = has_29_digits ? 0.0 : gamma(1);
     }
@@ -50,15 +52,16 @@ private:
     double own(const ClipVertex& vertex) const noexcept { return sign_ * widened(vertex.strq[coordinate_]); }
     double of_q(const ClipVertex& vertex) const noexcept { return per_q_ * widened(vertex.strq.w); }
 
-    // Floats have |u/q| in [2^-277, 2^277], or 0: a side that is brought into a wider range decides the same of them, and
-    // its products stay exact.
-    static double usable(double side) noexcept {
-        if (side == 0.0) return 0.0;
-        return std::copysign(smaller(larger(std::fabs(side), 0x1p-300), 0x1p300), side);
+    // So that no product with floats, which have |u/q| in [2^-277, 2^277] or 0, leaves the range of double. (A side beyond
+    // 2^1000, as an infinite one, moves no vertex by what a float shows.)
+    static double unit_of(double side) noexcept {
+        const double size = std::fabs(side);
+        if (size > 0x1p300) return 0x1p-600;
+        return size < 0x1p-300 && size > 0.0 ? 0x1p600 : 1.0;
     }
 
     glm::length_t coordinate_;
-    double sign_, per_q_;
+    double sign_, per_q_;   // in that unit
     double product_error_;  // relative
 };
 
