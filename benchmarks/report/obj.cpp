@@ -34,6 +34,25 @@ Failure unusable(const std::filesystem::path& file, const std::string& reason) {
     return {"cannot use " + file.string() + ": " + reason};
 }
 
+// A line that ends in a backslash goes on in the next one, but for comments, which may end in a path. Empty lines behind it
+// keep the count of lines.
+std::string with_lines_joined(const std::string& text) {
+    std::istringstream lines(text);
+    std::string result, line;
+    std::size_t joined = 0;
+    while (std::getline(lines, line)) {
+        if (line.ends_with('\r')) line.pop_back();
+        const bool goes_on = line.ends_with('\\') && !line.starts_with('#');
+        if (goes_on) line.back() = ' ';
+        result += line;
+        ++joined;
+        if (goes_on) continue;
+        result.append(joined, '\n');
+        joined = 0;
+    }
+    return result;
+}
+
 // The parser reads whatever is not a number as 0, so the numbers are checked here.
 void check_vertices(const std::string& text, const std::filesystem::path& file) {
     std::istringstream lines(text);
@@ -84,6 +103,7 @@ tinyobj::callback_t callbacks() {
 ObjFile parse(const std::filesystem::path& file) {
     std::string text = read_file(file);
     if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);  // a byte order mark
+    text = with_lines_joined(text);
     check_vertices(text, file);
     ObjFile obj;
     std::istringstream stream(text);

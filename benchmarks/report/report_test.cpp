@@ -138,6 +138,7 @@ TEST_CASE("a mesh that cannot be used is refused in one line") {
     check("v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "line 1");
     check("v 0 0 0\nv inf 0 0\nv 0 1 0\nf 1 2 3\n", "line 2");
     check("v 0 0 0\nv 1 0 0\nv 0 1\nf 1 2 3\n", "line 3");
+    check("v 0 \\\n0 0\nv 1 0 0\nv inf 0 0\nf 1 2 3\n", "line 4");
     check("v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n", "one point");
     check(std::string("\x7f"
                       "ELF\0\0\xff\xfe\0v\0f",
@@ -379,8 +380,9 @@ TEST_CASE("a run replaces an old report and leaves other files alone") {
 TEST_CASE("a run takes a mesh and a slide of the user's") {
     const Workplace place;
     REQUIRE(place.run("--rounds 1 --size 16x16 --out first").status == 0);
-    write("mesh.obj", "# relative indices, a quadrilateral, and a face with normals\n" + triangle +
-                          "v 1 1 0.5\r\nvn 0 0 1\nf -4 -3 -1 -2\nf 1//1 2//1 3//1\n");
+    write("mesh.obj", "# relative indices, a quadrilateral that goes on in further lines, and a face with normals\n" +
+                          triangle +
+                          "v 1 1 0.5\r\nvn 0 0 1\nf -4 -3 \\\r\n-1 \\\n-2\nf 1//1 2//1 3//1\n# C:\\\nf 1 2 3\n");
     const Outcome outcome = place.run("--rounds 1 --size 32x32 --mesh mesh.obj --slide first/reverse.png");
     CHECK(outcome.status == 0);
     CHECK(outcome.error == "");
