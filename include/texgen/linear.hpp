@@ -110,7 +110,8 @@ std::optional<EyeTexgen> eye_planes_as_stored(const Transform<Texture, Space>& p
 // Guarantee: next to the error itself while the condition of M (rows and columns scaled) stays below 1e7. No allocation,
 // noexcept.
 // Shape: elements as in stored.matrix(), planes and M as for eye_planes_as_stored().
-// Bad input: infinite where M is refused; a NaN or an infinity of a plane, given or stored, stays in its row.
+// Bad input: infinite where M is refused; a NaN or an infinity of a plane, given or stored, stays in its row, as does one that
+// their products make.
 // Source: see detail/arithmetic/inverse.hpp.
 template <class Space>
 glm::dmat4 eye_planes_error_bound(const Transform<Texture, Space>& planes, const Transform<Eye, Space>& modelview,

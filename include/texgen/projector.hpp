@@ -160,8 +160,8 @@ inline std::optional<ProjectorView> view_from_opencv(const glm::dmat3& rotation,
 
 // Makes the view that a mirror shows: V R, R the reflection x - 2 n (n.x + d) / |n|^2 in the plane n.x + d = 0. A projector
 // with it throws a picture that was rendered with it back onto the plane: a planar reflection.
-// Guarantee: each element within 1 double ulp of its exact value, or 2^-96 of its terms where they cancel to less; no
-// allocation, noexcept.
+// Guarantee: each element within 1 double ulp of its exact value, or 2^-96 of its terms where they cancel to less, while no
+// number but 0 leaves 2^-200 .. 2^200; no allocation, noexcept.
 // Shape: world to the mirrored eye space; (n, d) over the world, n of any length. As in every mirror the handedness is the
 // other one: what was front-facing faces back, and diagnose() is told so by LensFacts::mirrored.
 // Bad input: empty where n is zero, and where the plane, the view or an element of the result is not finite.
