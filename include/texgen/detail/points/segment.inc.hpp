@@ -317,7 +317,7 @@ inline namespace TEXGEN_COMPILER {
 inline Work work(const Segment& segment, TextureRegion region, Tolerance tolerance) noexcept {
     const glm::dvec4 a = detail::widened(segment.a);
     const glm::dvec4 b = detail::widened(segment.b);
-    if (!detail::is_finite(a) || !detail::is_finite(b)) return Work::divide_and_test;
+    if (!detail::is_finite(a.x + a.y + a.w) || !detail::is_finite(b.x + b.y + b.w)) return Work::divide_and_test;
     if (a.w <= 0.0 && b.w <= 0.0) return Work::nothing;
 
     const detail::LitTest sides(region);
