@@ -301,7 +301,9 @@ void interpolate_segment(Input& input) {
     must(bound.x >= 0.0 && bound.y >= 0.0, "an error bound is no NaN, and not negative");
     const texgen::Work work = texgen::work(segment, region, tolerance);
     const bool has_finite_ends = fuzz::all_finite(segment.a) && fuzz::all_finite(segment.b);
-    must(has_finite_ends || work == texgen::Work::divide_and_test, "an end that is not finite needs all work");
+    const auto has_finite_stq = [](const glm::vec4& end) { return fuzz::all_finite(glm::vec3(end.x, end.y, end.w)); };
+    must((has_finite_stq(segment.a) && has_finite_stq(segment.b)) || work == texgen::Work::divide_and_test,
+         "an end whose s, t or q is not finite needs all work");
     if (has_finite_ends && segment.a.w == segment.b.w)
         must(work == texgen::Work::nothing || work == texgen::Work::affine, "a constant q needs no division");
     if (count == 0) return;
