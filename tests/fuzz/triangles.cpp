@@ -196,13 +196,14 @@ void interpolate_batch(Input& input) {
     const FragmentRect row{rect.x, rect.y + rect.height - 1, rect.width, 1};
     const std::span<const std::uint32_t> ids_of_row = std::span(ids).last(width);
     const texgen::TexelsPerUnit texels{1.0 + input.integer(0, 4095), input.coin() ? 512.0 : input.wide_number()};
-    support::FootprintOutputs footprints(row, input.raw<std::uint8_t>(), input.size(7));
+    const unsigned footprints_asked = input.raw<std::uint8_t>();
+    support::FootprintOutputs footprints(row, footprints_asked, input.size(7));
     footprint(batch, ids_of_row, row, texels, footprints.spans());
     must(footprints.pads_are_intact(), "a visibility buffer's footprints are its outputs only");
     for (std::size_t begin = 0, end = 0; begin < width; begin = end) {
         for (end = begin + 1; end < width && ids_of_row[end] == ids_of_row[begin];) ++end;
         const FragmentRect run{row.x + static_cast<int>(begin), row.y, static_cast<int>(end - begin), 1};
-        support::FootprintOutputs alone(run);
+        support::FootprintOutputs alone(run, footprints_asked);
         const auto setup = ids_of_row[begin] == texgen::no_triangle ? std::nullopt : setup_of(ids_of_row[begin]);
         const bool is_written = setup && footprint(texgen::FootprintSetup(*setup, texels), run, alone.spans());
         for (std::size_t k = 0; k < 8; ++k)
