@@ -162,7 +162,7 @@ inline Corners corners_of(const TrianglePlanes& planes, const PlaneOf<Double2>& 
 
 // Each coefficient is rounded to double; its product with an index, which is less than the width or the height, and two sums are
 // rounded once each.
-TEXGEN_APART inline Corners corners_of(const CloseRamps& close) noexcept {
+inline Corners corners_of(const CloseRamps& close) noexcept {
     const auto& [s, t, q] = close.function;
     const auto high = [](const DoubleDouble& of_s, const DoubleDouble& of_t) {
         return double2_of(of_s.high, of_t.high);
@@ -228,8 +228,8 @@ inline Coverage coverage_of(const Corners& at, const Double2& min, const Double2
 }
 
 // The same of any tile, where that is rare.
-TEXGEN_APART inline Coverage coverage_apart(const Corners& at, const Double2& min, const Double2& max,
-                                            double tolerance) noexcept {
+TEXGEN_RARE inline Coverage coverage_apart(const Corners& at, const Double2& min, const Double2& max,
+                                           double tolerance) noexcept {
     return at.all_behind() ? Coverage::outside : coverage_of(at, min, max, tolerance);
 }
 
@@ -249,7 +249,7 @@ inline Coverage r_coverage(const Corners& at, const LitTest& lit, double toleran
     constexpr double none = 0x1p500, infinite = 0x1p128;
     const double min = larger(-none, smaller(infinite, widened(lit.r_min())));
     const double max = larger(-infinite, smaller(none, widened(lit.r_max())));
-    return coverage_apart(at, double2_of(min, min), double2_of(max, max), tolerance);
+    return coverage_of(at, double2_of(min, min), double2_of(max, max), tolerance);
 }
 
 }  // namespace TEXGEN_BUILD
