@@ -127,37 +127,6 @@ private:
     bool is_whole_ = true;
 };
 
-// The floats nearest to two numerators over q at a point, of which the quotients are within error <= 2^-44 of themselves. Beside
-// a tie |s - middle q| is at most 2.0001 q error: with a middle of 25 digits times 2^f and q below 2^(e + 1) less than
-// 2^(e - 16 + f). False where residues do not tell its sign. A template, as files of one program may differ in the widest
-// integer.
-template <class Integer>
-TEXGEN_APART bool divide_beside_ties(const FormPair& numerators, const PointForm& q_form, const glm::dvec3& v, double q,
-                                     const Double2& quotient, const Double2& error, float (&value)[2]) noexcept {
-    const Digits at[] = {Digits(v.x, 24), Digits(v.y, 24), Digits(v.z, 24)};
-    const auto residue_of = [&at](const PointForm& form, int unit) {
-        Residue<Integer> sum(unit);
-        sum.add_product(Digits(form.x), at[0]);
-        sum.add_product(Digits(form.y), at[1]);
-        sum.add_product(Digits(form.z), at[2]);
-        sum.add(Digits(form.w));
-        return sum;
-    };
-    const int unit = static_cast<int>(bit_cast<std::uint64_t>(q) >> 52) - 1023 - 15 - Residue<Integer>::size;
-    const Residue<Integer> of_q = residue_of(q_form, unit);
-    bool are_whole = true;
-    for (std::size_t k = 0; k < 2; ++k) {
-        value[k] = nearest_to(quotient[k], error[k], [&](double middle) {
-            const Digits factor(-middle, 25);
-            Residue<Integer> remainder = residue_of(numerators.form(k), unit + factor.exponent);
-            remainder.add_scaled(of_q, factor);
-            are_whole = are_whole && remainder.is_whole();
-            return remainder.sign();
-        });
-    }
-    return are_whole;
-}
-
 // The floats nearest to two numerators over q at a point of floats, every decision exact, in two doubles where they suffice.
 // False where q is not positive, or is no number.
 inline bool divide_closely(const FormPair& numerators, const PointForm& q_form, const glm::dvec3& v,
@@ -210,31 +179,73 @@ inline void project_one(const PointJob& job, std::size_t i) noexcept {
     if (job.lit != nullptr) job.lit[i] = in_front && is_inside(value[0], value[1], job.min, job.max) ? 1.0f : 0.0f;
 }
 
+// s/q and t/q of a point, where q is well above 0. Their errors are that of certain_quotient().
+struct PointQuotients {
+    Double2 value, error;
+
+    TEXGEN_INLINE PointQuotients(const FormPair& forms, const glm::dvec3& v, const Bounded& q) noexcept {
+        const double reciprocal = 1.0 / q.value;
+        const double relative_error = reciprocal * (q.error * 1.001) + 4.0 * unit_roundoff_double;
+        const Double2 x = forms.x * v.x, y = forms.y * v.y, z = forms.z * v.z;
+        const Double2 terms = magnitude(x) + magnitude(y) + magnitude(z) + magnitude(forms.w);
+        value = (x + y + z + forms.w) * reciprocal;
+        error = magnitude(value) * relative_error + terms * (reciprocal * (gamma(5) * 1.001));
+    }
+};
+inline bool is_well_above_0(const Bounded& q) noexcept { return q.value > 0x1p20 * q.error; }
+
+// The same beside a tie, from quotients within error of their values: |s - middle q| is at most 2.0001 q error, so where that is
+// 2^-44 of the quotient, with a middle of 25 digits times 2^f and q below 2^(e + 1), less than 2^(e - 16 + f). A template, as
+// files of one program may differ in the widest integer. (Beside a q below 2^-600 elements of the matrix may be subnormal,
+// which are no digits.)
+template <class Integer>
+TEXGEN_APART bool divide_beside_ties(const FormPair& numerators, const PointForm& q_form, const glm::dvec3& v,
+                                     float (&value)[2]) noexcept {
+    const Bounded q = value_at(q_form, v);
+    if (!is_well_above_0(q) || !(q.value > 0x1p-600)) return false;
+    const PointQuotients quotient(numerators, v, q);
+    if (any_less(magnitude(quotient.value) * 0x1p-44, quotient.error)) return false;
+    const Digits at[] = {Digits(v.x, 24), Digits(v.y, 24), Digits(v.z, 24)};
+    const auto residue_of = [&at](const PointForm& form, int unit) {
+        Residue<Integer> sum(unit);
+        sum.add_product(Digits(form.x), at[0]);
+        sum.add_product(Digits(form.y), at[1]);
+        sum.add_product(Digits(form.z), at[2]);
+        sum.add(Digits(form.w));
+        return sum;
+    };
+    const int unit = static_cast<int>(bit_cast<std::uint64_t>(q.value) >> 52) - 1023 - 15 - Residue<Integer>::size;
+    const Residue<Integer> of_q = residue_of(q_form, unit);
+    bool are_whole = true;
+    for (std::size_t k = 0; k < 2; ++k) {
+        value[k] = nearest_to(quotient.value[k] + 0.0, quotient.error[k], [&](double middle) {
+            const Digits factor(-middle, 25);
+            Residue<Integer> remainder = residue_of(numerators.form(k), unit + factor.exponent);
+            remainder.add_scaled(of_q, factor);
+            are_whole = are_whole && remainder.is_whole();
+            return remainder.sign();
+        });
+    }
+    return are_whole;
+}
+
 // What project_point() leaves.
 inline std::optional<glm::vec2> project_closely(const glm::dmat4& matrix, const glm::dvec3& v) noexcept {
+    const FormPair numerators(form(matrix, 0), form(matrix, 1));
+    const PointForm q = form(matrix, 3);
     float value[2];
-    if (!divide_closely({form(matrix, 0), form(matrix, 1)}, form(matrix, 3), v, value)) return std::nullopt;
+    if (!divide_beside_ties<WideInteger>(numerators, q, v, value) && !divide_closely(numerators, q, v, value))
+        return std::nullopt;
     return glm::vec2(value[0], value[1]);
 }
 
-// (s/q, t/q) of a point, empty behind. The error of a quotient is that of certain_quotient(), where q's is small beside q.
+// (s/q, t/q) of a point, empty behind.
 inline std::optional<glm::vec2> project_point(const glm::dmat4& matrix, const glm::dvec3& v) noexcept {
     const Bounded q = value_at(form(matrix, 3), v);
-    if (q.value > 0x1p20 * q.error) {
-        const double reciprocal = 1.0 / q.value;
-        const double relative_error = reciprocal * (q.error * 1.001) + 4.0 * unit_roundoff_double;
-        const FormPair forms(form(matrix, 0), form(matrix, 1));
-        const Double2 x = forms.x * v.x, y = forms.y * v.y, z = forms.z * v.z;
-        const Double2 quotient = (x + y + z + forms.w) * reciprocal;
-        const Double2 terms = magnitude(x) + magnitude(y) + magnitude(z) + magnitude(forms.w);
-        const Double2 error = magnitude(quotient) * relative_error + terms * (reciprocal * (gamma(5) * 1.001));
-        if (rounds_alone(quotient[0], error[0]) && rounds_alone(quotient[1], error[1]))
-            return glm::vec2(static_cast<float>(quotient[0]), static_cast<float>(quotient[1]));
-        float value[2];
-        // Beside a q that is so small elements of the matrix may be subnormal, which are no digits.
-        if (q.value > 0x1p-600 && !any_less(magnitude(quotient) * 0x1p-44, error) &&
-            divide_beside_ties<WideInteger>(forms, form(matrix, 3), v, q.value, quotient + 0.0, error, value))
-            return glm::vec2(value[0], value[1]);
+    if (is_well_above_0(q)) {
+        const PointQuotients quotient(FormPair(form(matrix, 0), form(matrix, 1)), v, q);
+        if (rounds_alone(quotient.value[0], quotient.error[0]) && rounds_alone(quotient.value[1], quotient.error[1]))
+            return glm::vec2(static_cast<float>(quotient.value[0]), static_cast<float>(quotient.value[1]));
     }
     if (q.value < -q.error) return std::nullopt;
     return project_closely(matrix, v);
