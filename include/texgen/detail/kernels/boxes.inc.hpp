@@ -78,9 +78,8 @@ void classify_spheres(const FloatForms& original, const float* spheres, std::siz
 using BoxRows = Doubles[8];
 
 // A form whose signs are right: an infinite value has the right one, and no size of a row is infinite. In double a
-// coefficient, a product and three sums are rounded, half of what gamma(8) has room for; the rest is for what is asked of the
-// bound. Where that leaves the sign open, and it is asked, the exact terms tell, whose magnitudes are 2^49 times that error
-// together.
+// coefficient, a product and three sums are rounded, less than half of what gamma(8) has room for. Where that leaves the sign
+// open, and it is asked, the exact terms tell, whose magnitudes are 2^49 times that error together, as gamma(8) is 2^-49.
 TEXGEN_INLINE Doubles signed_form(const FormAtVertex& form, const BoxRows& row, const BoxRows& size,
                                   const LongWords& asked) noexcept {
     Doubles value = Doubles{} + form.coefficient[3];

@@ -117,16 +117,15 @@ private:
         fill_some(tile, unit, doubtful);
     }
 
-    // A part of a tile of which only the mask is asked for, where all of it is lit or dark.
     bool is_mask_alone() const noexcept { return output_[0].empty() && output_[1].empty(); }
+    // Writes the mask of a part of a tile if all of it is lit or dark.
     TEXGEN_RARE bool lights_at_once(const Tile& part) noexcept {
         const Coverage sides = st_coverage_apart(corners_at(part), triangle_.lit, triangle_.tolerance);
         if (sides != Coverage::partial) fill_rows(lit_, rect_, part, sides == Coverage::inside ? 1.0f : 0.0f);
         return sides != Coverage::partial;
     }
 
-    // A tile behind is cleared. Of one in doubt what is next to q = 0 is divided closely, if those are few; else it is halved. For the
-    // mask alone of nearest floats that is less, and by residues at once where two doubles are known.
+    // A tile behind is cleared. Of one in doubt what is next to q = 0 is divided closely, if those are few (fewer for a mask); else it is halved.
     TEXGEN_APART void split(const Tile& tile, const Corners& at) noexcept {
         if (at.all_behind()) return clear(tile);
         if (tile.count() <= TileJob::unit_size) return fill_closely(tile);
@@ -187,6 +186,7 @@ private:
         if (!doubtful_) {
             doubtful_.make(DoubtfulJob{make_job(whole_, *whole_at_), functions_of(whole_, *whole_at_)});
             doubtful_->job.is_contiguous = false;
+            // The sign of q is in doubt at once; where two doubles are not known, planes often tell as much as residues.
             if (is_mask_alone() && doubtful_->functions.are_close) add_residues(whole_, doubtful_->functions);
         }
         fill_closely(whole_, doubtful_->job, doubtful_->functions, {x, x + tile.width, y, y + tile.height});
