@@ -125,7 +125,7 @@ private:
         return sides != Coverage::partial;
     }
 
-    // A tile behind is cleared. Of one in doubt what is next to q = 0 is divided closely, if those are few (fewer for a mask); else it is halved.
+    // A tile behind is cleared. Of one in doubt what is next to q = 0 is divided closely, if those are few; else it is halved.
     TEXGEN_APART void split(const Tile& tile, const Corners& at) noexcept {
         if (at.all_behind()) return clear(tile);
         if (tile.count() <= TileJob::unit_size) return fill_closely(tile);
