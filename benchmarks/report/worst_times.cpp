@@ -42,7 +42,8 @@ std::string html_of(const std::vector<WorstTime>& times) {
     std::string html =
         "<p>A call with an ordinary input, the average of some; with the "
         "worst one that a search for slow inputs has found, or of those that it begins with; and the limit of worst "
-        "over ordinary. The least of several times each, taken in turns, with -O2. " +
+        "over ordinary. The least of several times each, taken in turns, with -O2; on a machine that interrupts itself "
+        "for subnormal numbers with these as 0. " +
         formatted("%d of %d are within their limits.", static_cast<int>(met), static_cast<int>(times.size())) +
         "</p>\n<div class=\"wide\"><table>\n<tr><th>function</th><th>ordinary ns</th><th>worst "
         "ns</th><th>ratio</th><th>limit</th>"

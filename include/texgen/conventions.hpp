@@ -10,8 +10,8 @@
 
 #include "detail/matrices/required.hpp"
 
-// 0.4.1: 10000 major + 100 minor + patch.
-#define TEXGEN_VERSION 401
+// 0.4.2: 10000 major + 100 minor + patch.
+#define TEXGEN_VERSION 402
 
 namespace TEXGEN_NAMESPACE {
 
