@@ -969,7 +969,7 @@ Calls clip_calls(const Numbers& n) {
 inline Calls to_window_calls(const Numbers& n) {
     Reader reader(n);
     const glm::vec4 position = reader.vec4(), strq = reader.vec4();
-    if (!(position.w > 0.0f)) return {};
+    if (!(position.w >= std::numeric_limits<float>::min())) return {};  // in every state of subnormal numbers
     return calls_of([position, strq] { keep(texgen::to_window({position, strq}, {0, 0, 1024, 768})); });
 }
 
