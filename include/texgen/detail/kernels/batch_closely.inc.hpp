@@ -215,18 +215,20 @@ struct ResidueLanes {
         const Doubles w[3] = {number(0, 2), number(1, 2), number(2, 2)};
         const IntegerLanes weight(with_sign_of(w[1] * w[2], given.area), with_sign_of(w[2] * w[0], given.area),
                                   with_sign_of(w[0] * w[1], given.area), 0x1p500);
-        const Doubles first_x = at_x * x.per_unit, first_y = at_y * y.per_unit;
-        const Doubles largest = maximum(maximum(x.largest, maximum(y.largest, weight.largest)),
-                                        maximum(magnitude(first_x), magnitude(first_y)));
+        const Doubles largest =
+            maximum(maximum(x.largest, maximum(y.largest, weight.largest)), maximum(x.per_unit, y.per_unit));
         is_known = given.has_area & greater(Doubles{} + 0x1p62, largest);
         one_x_ = known(x.per_unit);
         one_y_ = known(y.per_unit);
         unit_ = x.unit * y.unit * weight.unit;
+        // Integers, of which a fragment far away has a product that is none of 63 bits.
+        const Residues first_x = to_residues(at_x * 2.0) * known(x.per_unit * 0.5);
+        const Residues first_y = to_residues(at_y * 2.0) * known(y.per_unit * 0.5);
         TEXGEN_UNROLL
         for (std::size_t i = 0; i < 3; ++i) {
             scale_[i] = known(weight.value[i]);
-            to_x_[i] = known(x.value[i]) - known(first_x);
-            to_y_[i] = known(y.value[i]) - known(first_y);
+            to_x_[i] = known(x.value[i]) - first_x;
+            to_y_[i] = known(y.value[i]) - first_y;
         }
         TEXGEN_UNROLL
         for (std::size_t i = 0; i < 3; ++i) {
