@@ -138,8 +138,8 @@ TEXGEN_INLINE LongWords prepare_in_float(const BatchJob& job, const BatchPlanes*
     return is_float & is_inside;
 }
 
-// The bounds are those of triangle/corners.hpp: the roundings of a quotient's division and product, two more than there, and of
-// its bound are below 8 u.
+// The bounds are those of triangle/corners.hpp: the roundings of a quotient, four more than there where two share a division,
+// and of its bound are below 10 u.
 template <std::size_t Numerators>
 TEXGEN_APART void prepare(const BatchJob& job, const BatchPlanes* of_tiles, const int (*block)[4], std::size_t first,
                           BatchTiles& tiles) noexcept {
@@ -153,13 +153,14 @@ TEXGEN_APART void prepare(const BatchJob& job, const BatchPlanes* of_tiles, cons
     const LongWords is_exact = well_in_front & greater(q.least, q.largest * 0x1p-12);
     LongWords is_dark = greater(q.largest * -1.0, q.error);
     Doubles ulps = Doubles{} + 4.0;
-    LongWords have_middles = is_exact;
+    // The product of two, and its reciprocal, are normal numbers.
+    LongWords have_middles = is_exact & greater(q.least, 0x1p-500) & greater(Doubles{} + 0x1p500, q.largest);
     TEXGEN_UNROLL
     for (std::size_t k = 0; k < Numerators; ++k) {
         const TileFunction f(&value[BatchPlanes::of_numerator[k]], tile);
         const Doubles largest = (f.size + f.error) * reciprocal;
         const Doubles error =
-            (f.error + largest * q.error) * (reciprocal * 1.0001) + largest * (8.0 * unit_roundoff_double);
+            (f.error + largest * q.error) * (reciprocal * 1.0001) + largest * (10.0 * unit_roundoff_double);
         store(&tiles.base[k][first], f.at[0]);
         store(&tiles.error[k][first], error);
         // Where numerators have one sign, a lower bound on what is above 2^-125 of the quotients, times q: they are normal floats,

@@ -118,31 +118,22 @@ TEXGEN_APART bool divide_tile(const BatchPlanes& planes, const BatchTiles& tiles
 template <std::size_t Numerators>
 struct TileColumn {
     Doubles value[Numerators + 1], step[Numerators + 1];
-    long long ulps;
 
-    // The next `Count` vectors; returns the lanes in doubt. Divisions first: what needs them does not hold them up.
-    template <std::size_t Count>
-    TEXGEN_INLINE LongWords divide(std::size_t n, std::size_t pitch, const TileOutputs<Numerators>& out) noexcept {
-        Doubles reciprocal[Count];
+    TEXGEN_INLINE void divide(const Doubles& reciprocal, Doubles (&quotient)[Numerators]) noexcept {
         TEXGEN_UNROLL
-        for (std::size_t i = 0; i < Count; ++i) {
-            reciprocal[i] = 1.0 / value[Numerators];
-            value[Numerators] = value[Numerators] + step[Numerators];
+        for (std::size_t k = 0; k < Numerators; ++k) {
+            quotient[k] = value[k] * reciprocal;
+            value[k] = value[k] + step[k];
         }
-        LongWords doubtful{};
-        TEXGEN_UNROLL
-        for (std::size_t i = 0; i < Count; ++i) {
-            Floats quotient[Numerators];
-            TEXGEN_UNROLL
-            for (std::size_t k = 0; k < Numerators; ++k) {
-                const Doubles exact = value[k] * reciprocal[i];
-                doubtful |= are_near_middles(exact, ulps);
-                quotient[k] = to_floats(exact);
-                value[k] = value[k] + step[k];
-            }
-            out.put(n + i * pitch, quotient);
-        }
-        return doubtful;
+    }
+    // Two vectors by one division.
+    TEXGEN_INLINE void divide(Doubles (&first)[Numerators], Doubles (&second)[Numerators]) noexcept {
+        const Doubles q = value[Numerators];
+        const Doubles next_q = q + step[Numerators];
+        const Doubles reciprocal = 1.0 / (q * next_q);
+        value[Numerators] = next_q + step[Numerators];
+        divide(reciprocal * next_q, first);
+        divide(reciprocal * q, second);
     }
 };
 
@@ -156,23 +147,40 @@ TEXGEN_APART bool divide_whole_tile(const BatchPlanes& planes, const BatchTiles&
     const std::size_t end = shape.count;
     const std::size_t pitch = HasWholeRows ? size : static_cast<std::size_t>(shape.width);
     const double rows = shape.rows;
+    const int ulps = static_cast<int>(tiles.ulps[i]) - 1;
     Doubles x = shape.x;
-    TileColumn<Numerators> column;
-    column.ulps = static_cast<long long>(tiles.ulps[i]) - 1;
-    LongWords doubtful{};
+    WideWords least = WideWords{} + 1;
     for (std::size_t begin = 0; begin < pitch; begin += size) {
+        TileColumn<Numerators> column;
         TEXGEN_UNROLL
         for (std::size_t k = 0; k <= Numerators; ++k) {
             column.value[k] = f.at(k, x, shape.y);
             column.step[k] = Doubles{} + f.down[k] * rows;
         }
-        std::size_t n = begin;
-        for (; n + (size - 1) * pitch < end; n += size * pitch) doubtful |= column.template divide<size>(n, pitch, out);
-        for (; n < end; n += pitch) doubtful |= column.template divide<1>(n, pitch, out);
+        std::size_t to_next = pitch;
+        for (std::size_t n = begin; n < end; n += 2 * pitch) {
+            if (n + pitch >= end) {  // one alone, twice
+                to_next = 0;
+                TEXGEN_UNROLL
+                for (Doubles& step : column.step) step = Doubles{};
+            }
+            Doubles quotient[2][Numerators];
+            column.divide(quotient[0], quotient[1]);
+            TEXGEN_UNROLL
+            for (std::size_t k = 0; k < Numerators; ++k)
+                least = minimum(least, distances_from_middles(quotient[0][k], quotient[1][k], ulps));
+            TEXGEN_UNROLL
+            for (std::size_t j = 0; j < 2; ++j) {
+                Floats rounded[Numerators];
+                TEXGEN_UNROLL
+                for (std::size_t k = 0; k < Numerators; ++k) rounded[k] = to_floats(quotient[j][k]);
+                out.put(n + j * to_next, rounded);
+            }
+        }
         if (HasWholeRows) break;
         x = x + static_cast<double>(size);
     }
-    return !any(doubtful);
+    return !any_zero(least);
 }
 
 // 1 / (1 + x), see chunks.inc.hpp.
