@@ -4,27 +4,25 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// The vertices of the triangle in each lane: x, y, w, s, t, r, q.
+// The vertices of the triangle in each lane; of its numbers x, y, w, s, t, r, q.
 struct VertexLanes {
-    Floats value[3][7];
+    Doubles vertex[3][8];
     Doubles area;        // nearly, doubled
     LongWords has_area;  // its sign is known
 
     TEXGEN_INLINE explicit VertexLanes(const float* const (&triangle)[lanes]) noexcept {
         TEXGEN_UNROLL
-        for (std::size_t i = 0; i < 3; ++i) {
-            Floats given[8];
-            load_columns(given, 8, [&](std::size_t j) { return triangle[j] + i * BatchVertex::size; });
-            TEXGEN_UNROLL
-            for (std::size_t k = 0; k < 7; ++k) value[i][k] = given[k < 3 ? k : BatchVertex::strq + (k - 3)];
-        }
+        for (std::size_t i = 0; i < 3; ++i)
+            load_columns(vertex[i], 8, [&](std::size_t j) { return triangle[j] + i * BatchVertex::size; });
         const Doubles left = (number(1, 0) - number(0, 0)) * (number(2, 1) - number(0, 1));
         const Doubles right = (number(1, 1) - number(0, 1)) * (number(2, 0) - number(0, 0));
         area = left - right;
         has_area = greater(magnitude(area), (magnitude(left) + magnitude(right)) * gamma(4));
     }
 
-    TEXGEN_INLINE Doubles number(std::size_t i, std::size_t k) const noexcept { return to_doubles(value[i][k]); }
+    TEXGEN_INLINE const Doubles& number(std::size_t i, std::size_t k) const noexcept {
+        return vertex[i][k < 3 ? k : BatchVertex::strq + (k - 3)];
+    }
 };
 
 // A difference: the leading 26 bits of the double next to it, the others, and what that lacks. Of two such products all but that of

@@ -2,45 +2,47 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
+TEXGEN_INLINE Doubles load_doubles(const double* from) noexcept { return load<Doubles>(from); }
+TEXGEN_INLINE Doubles load_doubles(const float* from) noexcept { return to_doubles(load<Floats>(from)); }
+
 // The first `count` numbers, in whole vectors, that stand at from(j) for lane j.
-template <class Vector, std::size_t Size, class From>
-TEXGEN_INLINE void load_columns(Vector (&columns)[Size], std::size_t count, const From& from) noexcept {
+template <std::size_t Size, class From>
+TEXGEN_INLINE void load_columns(Doubles (&columns)[Size], std::size_t count, const From& from) noexcept {
     TEXGEN_UNROLL
     for (std::size_t first = 0; first < Size; first += static_cast<std::size_t>(lanes)) {
         if (first >= count) break;
-        Vector row[lanes];
+        Doubles row[lanes];
         TEXGEN_UNROLL
-        for (std::size_t j = 0; j < static_cast<std::size_t>(lanes); ++j) row[j] = load<Vector>(from(j) + first);
+        for (std::size_t j = 0; j < static_cast<std::size_t>(lanes); ++j) row[j] = load_doubles(from(j) + first);
         transpose(row);
         TEXGEN_UNROLL
         for (std::size_t j = 0; j < static_cast<std::size_t>(lanes); ++j) columns[first + j] = row[j];
     }
 }
 
-// A triangle in each lane: x, y, w, s, t, r, q of its vertices, the one of the largest w first, as TrianglePlanes has them.
+// A triangle in each lane: its vertices, the one of the largest w first, as TrianglePlanes has them.
 struct TriangleLanes {
-    Doubles vertex[3][7];
+    Doubles vertex[3][8];
 
+    // Numbers that are positive are in the order of their bits; others are refused in any order. No branch: it would be random.
     TEXGEN_INLINE explicit TriangleLanes(const float* triangles) noexcept {
-        Floats given[3][8];
+        const float* first[lanes];
+        std::size_t turns[lanes];
+        TEXGEN_UNROLL
+        for (std::size_t j = 0; j < static_cast<std::size_t>(lanes); ++j) {
+            first[j] = triangles + 3 * BatchVertex::size * j;
+            const auto w = [&](std::size_t i) { return bit_cast<int>(first[j][i * BatchVertex::size + 2]); };
+            const auto is_b = static_cast<unsigned>(w(1) > w(0)) & static_cast<unsigned>(w(2) <= w(1));
+            const auto is_c = static_cast<unsigned>(w(2) > w(0)) & ~is_b;
+            turns[j] = is_b + 2 * is_c;
+        }
         TEXGEN_UNROLL
         for (std::size_t i = 0; i < 3; ++i)
-            load_columns(given[i], 8, [&](std::size_t j) { return triangles + (3 * j + i) * BatchVertex::size; });
-        const Doubles a = to_doubles(given[0][2]);
-        const Doubles b = to_doubles(given[1][2]);
-        const Doubles c = to_doubles(given[2][2]);
-        const LongWords is_b = greater(b, a) & at_most(c, b);
-        const Words b_first = narrow(is_b);
-        const Words c_first = narrow(~is_b & greater(c, a));
-        TEXGEN_UNROLL
-        for (std::size_t k = 0; k < 7; ++k) {
-            const std::size_t from = k < 3 ? k : BatchVertex::strq + (k - 3);
-            TEXGEN_UNROLL
-            for (std::size_t i = 0; i < 3; ++i)
-                vertex[i][k] = to_doubles(select(b_first, given[(i + 1) % 3][from],
-                                                 select(c_first, given[(i + 2) % 3][from], given[i][from])));
-        }
+            load_columns(vertex[i], 8, [&](std::size_t j) { return first[j] + of_turned[i + turns[j]]; });
     }
+
+private:
+    static constexpr std::size_t of_turned[5] = {0, BatchVertex::size, 2 * BatchVertex::size, 0, BatchVertex::size};
 };
 
 // The functions of a triangle in each lane, to as many that follow one another.
@@ -75,8 +77,8 @@ TEXGEN_INLINE Words set_up_lanes(const float* triangles, BatchPlanes* planes) no
     const Doubles w_bc = b[2] * c[2];
     const Doubles w_ac = a[2] * c[2];
     const Doubles w_ab = a[2] * b[2];
-    const Doubles factor =
-        with_sign_of(1.0 / power_of_two_below(area_terms * maximum(maximum(w_bc, w_ac), w_ab)), area);
+    const Doubles largest = area_terms * maximum(maximum(w_bc, w_ac), w_ab);
+    const Doubles factor = with_sign_of(reciprocals_of_powers(power_of_two_below(largest)), area);
     const Doubles weight_a = w_bc * factor;
     const Doubles weight_b = w_ac * factor;
     const Doubles weight_c = w_ab * factor;
@@ -95,14 +97,14 @@ TEXGEN_INLINE Words set_up_lanes(const float* triangles, BatchPlanes* planes) no
     const Doubles c_dy_terms = size_b_x * reach_y * batch_plane_error;
 
     Doubles value[BatchPlanes::count]{};
-    Doubles all_errors{};
+    Doubles all_slopes{};
     TEXGEN_UNROLL
     for (std::size_t k = 0; k < 4; ++k) {
         constexpr std::size_t place[4] = {BatchPlanes::s, BatchPlanes::t, BatchPlanes::r, BatchPlanes::q};
         Doubles* const function = &value[place[k]];
-        const Doubles at_a = a[3 + k] * weight_a;
-        const Doubles at_b = b[3 + k] * weight_b;
-        const Doubles at_c = c[3 + k] * weight_c;
+        const Doubles at_a = a[BatchVertex::strq + k] * weight_a;
+        const Doubles at_b = b[BatchVertex::strq + k] * weight_b;
+        const Doubles at_c = c[BatchVertex::strq + k] * weight_c;
         const Doubles b_minus_a = at_b - at_a;
         const Doubles c_minus_a = at_c - at_a;
         function[0] = at_a * area;
@@ -113,12 +115,12 @@ TEXGEN_INLINE Words set_up_lanes(const float* triangles, BatchPlanes* planes) no
         const Doubles c_and_a = magnitude(at_c) + size_a;
         function[3] = maximum(size_a * base_terms, maximum(b_and_a * b_dx_terms + c_and_a * c_dx_terms,
                                                            b_and_a * b_dy_terms + c_and_a * c_dy_terms));
-        all_errors = all_errors + (size_a + b_and_a + c_and_a);
+        all_slopes = all_slopes + function[1];
     }
-    // What is not finite is in that sum, or makes a NaN of it.
+    // What is not finite of a weight or of strq is in that sum, or makes a NaN of it; what is not of the window in the area.
     const LongWords is_known = greater(magnitude(area), area_terms * gamma(4)) & greater(a[2], 0.0) &
                                greater(b[2], 0.0) & greater(c[2], 0.0) &
-                               at_most(all_errors * area_terms * (reach_x + reach_y), Doubles{} + 0x1p1000);
+                               at_most(magnitude(all_slopes), Doubles{} + 0x1p1000);
     constexpr double infinity = std::numeric_limits<double>::infinity();
     value[BatchPlanes::q + 3] = where(is_known, value[BatchPlanes::q + 3]) + where(~is_known, Doubles{} + infinity);
     value[BatchPlanes::origin] = a[0];
