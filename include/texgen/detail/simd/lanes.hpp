@@ -76,6 +76,12 @@ inline Double2 larger(const Double2& a, const Double2& b) noexcept {
 }
 inline bool any_less(const Double2& a, const Double2& b) noexcept { return a[0] < b[0] || a[1] < b[1]; }
 inline bool all_less(const Double2& a, const Double2& b) noexcept { return a[0] < b[0] && a[1] < b[1]; }
+inline bool any_less(const Double2& a, const Double2& b, const Double2& c, const Double2& d) noexcept {
+    return any_less(a, b) || any_less(c, d);
+}
+inline bool all_less(const Double2& a, const Double2& b, const Double2& c, const Double2& d) noexcept {
+    return all_less(a, b) && all_less(c, d);
+}
 
 }  // namespace TEXGEN_DETAIL
 
@@ -165,6 +171,14 @@ TEXGEN_INLINE bool any_less(const Double2& a, const Double2& b) noexcept {
 }
 TEXGEN_INLINE bool all_less(const Double2& a, const Double2& b) noexcept {
     const Bits2 less = a < b;
+    return (less[0] & less[1]) != 0;
+}
+TEXGEN_INLINE bool any_less(const Double2& a, const Double2& b, const Double2& c, const Double2& d) noexcept {
+    const Bits2 less = (a < b) | (c < d);
+    return (less[0] | less[1]) != 0;
+}
+TEXGEN_INLINE bool all_less(const Double2& a, const Double2& b, const Double2& c, const Double2& d) noexcept {
+    const Bits2 less = (a < b) & (c < d);
     return (less[0] & less[1]) != 0;
 }
 TEXGEN_INLINE Double2 magnitude(const Double2& a) noexcept {

@@ -43,6 +43,7 @@ struct Corners {
     double q[4];
     Double2 numerator_error;
     double q_error;
+    Double2 largest_numerator;  // the largest |F|
     double least_q, largest_q;
     double reciprocal;  // the largest 1 / q, for a tile in front
 
@@ -53,10 +54,7 @@ struct Corners {
     bool cancel() const noexcept {
         constexpr double share = 0x1p-36;
         const double size = least_q > q_error ? least_q : larger(-least_q, largest_q);
-        const Double2 largest = larger(larger(magnitude(numerator[0]), magnitude(numerator[1])),
-                                       larger(magnitude(numerator[2]), magnitude(numerator[3])));
-        return q_error > share * size || numerator_error[0] > share * largest[0] ||
-               numerator_error[1] > share * largest[1];
+        return q_error > share * size || any_less(largest_numerator * share, numerator_error);
     }
     // Far enough in front that the relative error of q is below 2^-24.
     bool well_in_front() const noexcept { return least_q > 0x1p24 * q_error; }
@@ -89,13 +87,11 @@ struct Corners {
     // The largest |F/Q| of a tile in front. Where Q varies little the quotient of the bounds will do; else the corners have
     // it, u = F/Q being monotone along every line.
     Double2 largest_quotient() const noexcept {
+        if (largest_q < 1.25 * least_q) return (largest_numerator + numerator_error) * reciprocal;
         Double2 size[4];
         TEXGEN_UNROLL
-        for (std::size_t i = 0; i < 4; ++i) size[i] = magnitude(numerator[i]) + numerator_error;
-        if (!(largest_q < 1.25 * least_q)) {
-            TEXGEN_UNROLL
-            for (std::size_t i = 0; i < 4; ++i) size[i] = size[i] / ((q[i] - q_error) * reciprocal);
-        }
+        for (std::size_t i = 0; i < 4; ++i)
+            size[i] = (magnitude(numerator[i]) + numerator_error) / ((q[i] - q_error) * reciprocal);
         return larger(larger(size[0], size[1]), larger(size[2], size[3])) * reciprocal;
     }
 
@@ -144,13 +140,16 @@ inline void take_corners(Corners& corners, const Tile& tile) noexcept {
     };
     fill(corners.numerator_ramp, corners.numerator);
     fill(corners.q_ramp, corners.q);
+    const auto& f = corners.numerator;
+    corners.largest_numerator =
+        larger(larger(magnitude(f[0]), magnitude(f[1])), larger(magnitude(f[2]), magnitude(f[3])));
     corners.least_q = smaller(smaller(corners.q[0], corners.q[1]), smaller(corners.q[2], corners.q[3]));
     corners.largest_q = larger(larger(corners.q[0], corners.q[1]), larger(corners.q[2], corners.q[3]));
     corners.reciprocal = 1.0 / (corners.least_q - corners.q_error);
 }
 
-inline Corners corners_of(const TrianglePlanes& planes, const PlaneOf<Double2>& numerator, const Plane& q,
-                          const Tile& tile) noexcept {
+TEXGEN_APART inline Corners corners_of(const TrianglePlanes& planes, const PlaneOf<Double2>& numerator, const Plane& q,
+                                       const Tile& tile) noexcept {
     Corners corners;
     corners.numerator_ramp = planes.ramp(numerator, tile);
     corners.q_ramp = planes.ramp(q, tile);
@@ -162,7 +161,7 @@ inline Corners corners_of(const TrianglePlanes& planes, const PlaneOf<Double2>& 
 
 // Each coefficient is rounded to double; its product with an index, which is less than the width or the height, and two sums are
 // rounded once each.
-inline Corners corners_of(const CloseRamps& close) noexcept {
+TEXGEN_RARE inline Corners corners_of(const CloseRamps& close) noexcept {
     const auto& [s, t, q] = close.function;
     const auto high = [](const DoubleDouble& of_s, const DoubleDouble& of_t) {
         return double2_of(of_s.high, of_t.high);
@@ -190,41 +189,30 @@ TEXGEN_RARE inline void take_planes(const Corners& at, CloseFunctions& functions
     functions.q_unit = 0x1.8p28 / reciprocal_power_of_two(larger(larger(-at.least_q, at.largest_q), at.q_error));
 }
 
-// The least and the largest G = F - bound Q at the corners, which is positive above a side of the region and negative below
-// it, and how far from 0 they must be.
-struct SideOfBound {
-    Double2 least, largest, margin;
-
-    bool any_below() const noexcept { return any_less(largest, -margin); }
-    bool any_above() const noexcept { return any_less(margin, least); }
-    bool all_below() const noexcept { return all_less(largest, -margin); }
-    bool all_above() const noexcept { return all_less(margin, least); }
-};
-
-// The float that is written may be on the other side of the bound than the exact value, by an ulp, by the tolerance
-// (twice that leaves room), or as a 0 that was subnormal: so the answer must hold with that much slack.
-inline SideOfBound side_of(const Corners& at, const Double2& bound, double tolerance) noexcept {
-    Double2 g[4];
-    TEXGEN_UNROLL
-    for (std::size_t i = 0; i < 4; ++i) g[i] = at.numerator[i] - bound * at.q[i];
-    const double slightly_less = 1.0 - gamma(4);
-    const Double2 least = smaller(smaller(g[0], g[1]), smaller(g[2], g[3])) * slightly_less;
-    const Double2 largest = larger(larger(g[0], g[1]), larger(g[2], g[3])) * slightly_less;
-    const Double2 size = magnitude(bound);
-    const Double2 slack = size * 0x1p-22 + (0x1p-125 + 2.0 * tolerance);
-    const double q = larger(std::fabs(at.least_q), std::fabs(at.largest_q));
-    const Double2 margin =
-        (at.numerator_error + (size + slack) * at.q_error + slack * q + size * (gamma(4) * q)) * 1.0001;
-    return {least, largest, margin};
-}
-
-// How much of all fragments in front, if there are any, is between two bounds of the one numerator and two of the other.
+// How much of all fragments in front, if there are any, is between two bounds of the one numerator and two of the other: G = F -
+// bound Q is positive above a bound and negative below it, and the corners have the least and the largest. The float that is
+// written may be on the other side than the exact value, by an ulp, by the tolerance (twice that leaves room), or as a 0 that
+// was subnormal: so the answer must hold with that much slack, and with room for what F, Q and G are rounded by.
 inline Coverage coverage_of(const Corners& at, const Double2& min, const Double2& max, double tolerance) noexcept {
-    const SideOfBound of_min = side_of(at, min, tolerance);
-    if (of_min.any_below()) return Coverage::outside;
-    const SideOfBound of_max = side_of(at, max, tolerance);
-    if (of_max.any_above()) return Coverage::outside;
-    return of_min.all_above() && of_max.all_below() && at.all_in_front() ? Coverage::inside : Coverage::partial;
+    struct Side {
+        Double2 least, largest, margin;
+    };
+    const double q = larger(std::fabs(at.least_q), std::fabs(at.largest_q)) + at.q_error;
+    const double slack = 0x1p-125 + 2.0 * tolerance;
+    const Double2 margin = (at.numerator_error + slack * q) * 1.0001;
+    const double margin_of_bound = (at.q_error + 0x1.001p-22 * q) * 1.0001;
+    const auto side_of = [&](const Double2& bound) {
+        Double2 g[4];
+        TEXGEN_UNROLL
+        for (std::size_t i = 0; i < 4; ++i) g[i] = at.numerator[i] - bound * at.q[i];
+        return Side{smaller(smaller(g[0], g[1]), smaller(g[2], g[3])), larger(larger(g[0], g[1]), larger(g[2], g[3])),
+                    margin + magnitude(bound) * margin_of_bound};
+    };
+    const Side of_min = side_of(min);
+    const Side of_max = side_of(max);
+    if (any_less(of_min.largest, -of_min.margin, of_max.margin, of_max.least)) return Coverage::outside;
+    const bool all_inside = all_less(of_min.margin, of_min.least, of_max.largest, -of_max.margin);
+    return all_inside && at.all_in_front() ? Coverage::inside : Coverage::partial;
 }
 
 // The same of any tile, where that is rare.
