@@ -4,7 +4,8 @@
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
 // A tile of no more than a unit whose rows follow one another: a column of vectors at a time, of which the last ends with the rows.
-// Where those are shorter, what a vector writes beyond its row is written again by those that follow.
+// Where those are shorter, what a vector writes beyond its row is written again by those that follow. Two rows share a division of
+// doubles, which adds two roundings to a quotient; a last row stands for both.
 template <class CompiledWhereCalled = void>
 bool fill_tile_unit(const TileJob& job) noexcept {
     const int width = job.width;
@@ -17,17 +18,26 @@ bool fill_tile_unit(const TileJob& job) noexcept {
         const Doubles first_q = first_of(job.q);
         const Doubles first[2] = {first_of(job.numerator[0]), first_of(job.numerator[1])};
         Doubles y{};
-        for (int n = begin; n < count; n += width, y = y + 1.0) {
-            const Doubles reciprocal = 1.0 / (y * job.q.dy + first_q);
-            Floats quotient[2];
+        for (int n = begin; n < count; n += 2 * width, y = y + 2.0) {
+            const int next = n + width < count ? n + width : n;
+            const Doubles row[2] = {y, y + (next == n ? 0.0 : 1.0)};
+            const Doubles q[2] = {row[0] * job.q.dy + first_q, row[1] * job.q.dy + first_q};
+            const Doubles of_both = 1.0 / (q[0] * q[1]);
+            Floats quotient[4];
             TEXGEN_UNROLL
-            for (std::size_t k = 0; k < 2; ++k) {
-                const Doubles value = (y * job.numerator[k].dy + first[k]) * reciprocal;
-                quotient[k] = to_floats(value - job.quotient_error[k]);
-                doubtful |= bits(quotient[k]) ^ bits(to_floats(value + job.quotient_error[k]));
+            for (std::size_t i = 0; i < 4; ++i) {
+                const std::size_t k = i % 2;
+                const Doubles value = (row[i / 2] * job.numerator[k].dy + first[k]) * (of_both * (i < 2 ? q[1] : q[0]));
+                quotient[i] = to_floats(value - job.quotient_error[k]);
+                doubtful |= bits(quotient[i]) ^ bits(to_floats(value + job.quotient_error[k]));
             }
-            TEXGEN_UNROLL
-            for (std::size_t k = 0; k < 2; ++k) store_from(out[k], n, count, count, quotient[k]);
+            if (next + lanes <= count) {
+                TEXGEN_UNROLL
+                for (std::size_t i = 0; i < 4; ++i) store(out[i % 2] + (i < 2 ? n : next), quotient[i]);
+            } else {
+                const Floats last[4] = {quotient[0], quotient[1], quotient[2], quotient[3]};
+                for (std::size_t i = 0; i < 4; ++i) store_from(out[i % 2], i < 2 ? n : next, count, count, last[i]);
+            }
         }
         if (begin + lanes >= width) break;
         begin = begin + 2 * lanes <= width ? begin + lanes : width - lanes;

@@ -59,6 +59,12 @@ struct Corners {
     // Far enough in front that the relative error of q is below 2^-24.
     bool well_in_front() const noexcept { return least_q > 0x1p24 * q_error; }
 
+    // Whether one error bound serves all quotients: beyond a ratio of 2^12 that of the largest would make the smallest ones
+    // doubtful. And whether two q have a product, as they share a division.
+    bool has_one_error() const noexcept {
+        return well_in_front() && least_q > 0x1p-12 * largest_q && least_q > 0x1p-500 && largest_q < 0x1p500;
+    }
+
     // What of a tile is next to q = 0, along the side by which q varies more: before and after that it is behind, or q is no less
     // than a share of its largest. All, if that is nothing; but where it is not few fragments, nothing in the middle of the
     // longer side.
@@ -95,9 +101,10 @@ struct Corners {
         return larger(larger(size[0], size[1]), larger(size[2], size[3])) * reciprocal;
     }
 
-    // The error of F/Q in double for a tile well in front: as in certain_quotient(), where it is worst.
+    // The error of F/Q in double for a tile well in front: as in certain_quotient(), where it is worst. A division for two q has
+    // two more roundings: their product, its reciprocal, that times the other q, and the quotient, before it is moved by its error.
     Double2 quotient_error(const Double2& largest) const noexcept {
-        return (numerator_error + largest * q_error) * (1.0001 * reciprocal) + largest * (4.0 * unit_roundoff_double);
+        return (numerator_error + largest * q_error) * (1.0001 * reciprocal) + largest * (6.0 * unit_roundoff_double);
     }
 
     // The error of F/Q with F and Q rounded to float, then the reciprocal and the product. With 2^-21 <= Q <= 2 a float of
@@ -109,9 +116,9 @@ struct Corners {
 
     // How many of its own ulps the error of a quotient in double is at most, two more roundings included, as 1 less than a power
     // of two: the middles of floats are doubles whose last 29 bits are 2^28, so of a quotient that is farther from those the
-    // nearest float is certain. 0 where that is too many, or a quotient may be no normal float, or two q have no product. Of a
-    // tile well in front, where no numerator changes its sign, so that the corners have the least |F|: F/Q errs by e_F / |F| +
-    // e_Q / Q of itself and six roundings, and an ulp of it is at least 2^-53 of it.
+    // nearest float is certain. 0 where that is too many, or a quotient may be no normal float. Of a tile well in front, where no
+    // numerator changes its sign, so that the corners have the least |F|: F/Q errs by e_F / |F| + e_Q / Q of itself and six
+    // roundings, and an ulp of it is at least 2^-53 of it.
     std::int32_t ulps_of_quotients() const noexcept {
         const auto& f = numerator;
         const Double2 least =
@@ -121,7 +128,7 @@ struct Corners {
         const double share =
             larger(numerator_error[0] / least[0], numerator_error[1] / least[1]) + q_error * reciprocal;
         const double ulps = share * 0x1.01p53 + 6.0;
-        if (!(ulps < 0x1p15 && least_q > 0x1p-500 && largest_q < 0x1p500)) return 0;
+        if (!(ulps < 0x1p15)) return 0;
         std::int32_t result = 7;
         while (result <= static_cast<std::int32_t>(ulps)) result = 2 * result + 1;
         return result;

@@ -141,8 +141,7 @@ private:
     }
 
     void fill_exact(const Tile& tile, const Corners& at) noexcept {
-        // Beyond a ratio of 2^12 the error bound of the largest quotient would make the smallest ones doubtful.
-        if (!at.well_in_front() || !(at.least_q > 0x1p-12 * at.largest_q)) return split(tile, at);
+        if (!at.has_one_error()) return split(tile, at);
         TileJob job = make_job(tile, at);
         const Double2 error = at.quotient_error(at.largest_quotient());
         TEXGEN_UNROLL
