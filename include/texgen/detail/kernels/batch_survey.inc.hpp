@@ -5,7 +5,6 @@ namespace TEXGEN_DETAIL::TEXGEN_ISA {
 // Of a block of tiles what their kernels need: numerators, q and bounds for the quotients in double; in float, about the middle
 // of the tile, u + (dx x + dy y) / (1 + bend_x x + bend_y y).
 struct BatchTiles {
-    double per_width[batch_block];
     double base[3][batch_block], q[batch_block], error[3][batch_block];
     double ulps[batch_block];  // what quotients are within, of their own, a power of two
     float middle[3][batch_block], dx[3][batch_block], dy[3][batch_block], bend_x[batch_block], bend_y[batch_block];
@@ -25,12 +24,11 @@ struct BatchTiles {
 struct TileLanes {
     Doubles x, y, right, bottom, stretch, sums;
 
-    TEXGEN_INLINE TileLanes(const int (*tile)[4], const BatchLanes& planes, double* per_width) noexcept {
+    TEXGEN_INLINE TileLanes(const int (*tile)[4], const BatchLanes& planes) noexcept {
         Words given[4];
         load_fours(*tile, given);
         const Doubles width = to_doubles(given[2]);
         const Doubles height = to_doubles(given[3]);
-        store(per_width, 1.0 / width);
         x = to_doubles(given[0]) + 0.5 - planes[BatchPlanes::origin];
         y = to_doubles(given[1]) + 0.5 - planes[BatchPlanes::origin + 1];
         right = width - 1.0;
@@ -86,7 +84,7 @@ template <std::size_t Numerators>
 TEXGEN_INLINE LongWords prepare_in_float(const BatchJob& job, const BatchPlanes* of_tiles, const int (*block)[4],
                                          std::size_t first, BatchTiles& tiles) noexcept {
     const BatchLanes planes(of_tiles, Numerators == 3);
-    const TileLanes tile(block, planes, &tiles.per_width[first]);
+    const TileLanes tile(block, planes);
     // Steps along a single column or row say nothing, and might be infinite.
     const LongWords has_columns = greater(tile.right, 0.0);
     const LongWords has_rows = greater(tile.bottom, 0.0);
@@ -144,7 +142,7 @@ template <std::size_t Numerators>
 TEXGEN_APART void prepare(const BatchJob& job, const BatchPlanes* of_tiles, const int (*block)[4], std::size_t first,
                           BatchTiles& tiles) noexcept {
     const BatchLanes planes(of_tiles, Numerators == 3);
-    const TileLanes tile(block, planes, &tiles.per_width[first]);
+    const TileLanes tile(block, planes);
     const Doubles* const value = planes.value;
     const TileFunction q(&value[BatchPlanes::q], tile);
     const Doubles reciprocal = 1.0 / (q.least - q.error);

@@ -24,13 +24,13 @@ struct TileShape {
     TEXGEN_INLINE bool is_of(int tile_width, int tile_height) const noexcept {
         return given_[0] == tile_width && given_[1] == tile_height;
     }
-    TEXGEN_INLINE void take(int tile_width, int tile_height, double per_tile_width) noexcept {
+    TEXGEN_INLINE void take(int tile_width, int tile_height) noexcept {
         given_[0] = tile_width;
         given_[1] = tile_height;
         is_turned = tile_height == 1;
         width = is_turned ? 1 : tile_width;
         count = static_cast<std::size_t>(tile_width) * static_cast<std::size_t>(tile_height);
-        per_width = is_turned ? 1.0 : per_tile_width;
+        per_width = 1.0 / width;
         last_row = (is_turned ? tile_width : tile_height) - 1;
         const bool is_narrow = divides(width, lanes);
         is_whole = is_narrow ? count % static_cast<std::size_t>(lanes) == 0 : width % lanes == 0;
@@ -303,7 +303,7 @@ TEXGEN_APART std::uint64_t decide_tiles(const TilesJob& job, const FragmentOutpu
     for (std::size_t i = 0; i < batch_block; ++i) {
         if (block[i][2] <= 0 || block[i][3] <= 0) continue;
         TileShape shape;
-        shape.take(block[i][2], block[i][3], 1.0 / block[i][2]);
+        shape.take(block[i][2], block[i][3]);
         const std::size_t begin = done;
         done += shape.count;
         if (((doubtful & ~unknown) >> i & 1u) == 0) continue;
@@ -355,7 +355,7 @@ TEXGEN_INLINE Undecided divide_all_tiles(const TilesJob& job, std::size_t first,
             const int width = job.tiles[first + i][2];
             const int height = job.tiles[first + i][3];
             if (width <= 0 || height <= 0) continue;
-            if (!shape.is_of(width, height)) shape.take(width, height, tiles.per_width[i]);
+            if (!shape.is_of(width, height)) shape.take(width, height);
             const std::size_t begin = done;
             done += shape.count;
             if (tiles.has(BatchTiles::is_dark, i)) {
