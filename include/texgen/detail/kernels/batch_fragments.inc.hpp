@@ -8,6 +8,8 @@ struct OneTriangle {
     TEXGEN_INLINE Doubles operator[](std::size_t k) const noexcept { return value[k] - Doubles{}; }
 };
 
+TEXGEN_INLINE bool all(const LongWords& mask) noexcept { return lane_bits(mask) == (std::uint64_t{1} << lanes) - 1; }
+
 // A vector of fragments at (x, y): quotients, where they are in front, and the lanes in doubt, of their side or their value.
 template <std::size_t Numerators>
 struct FragmentLanes {
@@ -26,11 +28,7 @@ struct FragmentLanes {
             functions[BatchPlanes::q] + (functions[BatchPlanes::q + 1] * p_x + functions[BatchPlanes::q + 2] * p_y);
         const Doubles q_error = functions[BatchPlanes::q + 3] * stretch;
         front = greater(q, q_error * 0x1p24);
-        const LongWords is_beside = ~(front | greater(q * -1.0, q_error));
-        doubtful = Words{};
-        if (any(is_beside)) doubtful = narrow(is_beside);
         const Doubles reciprocal = where(front, 1.0 / q);
-        const Doubles relative_error = q_error * (reciprocal * 1.0001) + 8.0 * unit_roundoff_double;
         const Doubles stretched = stretch * (reciprocal * 1.0001);
         Doubles u[Numerators], largest{}, largest_error{};
         TEXGEN_UNROLL
@@ -42,15 +40,18 @@ struct FragmentLanes {
             largest_error = k == 0 ? functions[place + 3] : maximum(largest_error, functions[place + 3]);
             quotient[k] = to_floats(u[k]);
         }
+        doubtful = Words{};
         Words can_be_doubtful = ~Words{};
         if (tolerance > 0.0) {
-            // Whichever float is taken.
-            const Doubles written = (largest_error * stretched + largest * relative_error) * 2.0 +
-                                    (largest * (1.0001 * unit_roundoff_float) + 0x1p-149);
-            const LongWords is_within = at_most(written, Doubles{} + tolerance);
-            if (!any(~is_within)) return;
-            can_be_doubtful = ~narrow(is_within & front);
+            // Whichever float is taken; what doubles are rounded by is within 1.0002.
+            const Doubles written = (largest * functions[BatchPlanes::q + 3] + largest_error) * (stretched * 2.0) +
+                                    (largest * (1.0002 * unit_roundoff_float) + 0x1p-149);
+            const LongWords is_certain = front & at_most(written, Doubles{} + tolerance);
+            if (all(is_certain)) return;
+            can_be_doubtful = ~narrow(is_certain);
         }
+        if (!all(front)) doubtful = narrow(~(front | greater(q * -1.0, q_error)));
+        const Doubles relative_error = functions[BatchPlanes::q + 3] * stretched + 8.0 * unit_roundoff_double;
         TEXGEN_UNROLL
         for (std::size_t k = 0; k < Numerators; ++k) {
             const Doubles error =
