@@ -5,12 +5,13 @@ namespace TEXGEN_DETAIL::TEXGEN_ISA {
 TEXGEN_INLINE Doubles load_doubles(const double* from) noexcept { return load<Doubles>(from); }
 TEXGEN_INLINE Doubles load_doubles(const float* from) noexcept { return to_doubles(load<Floats>(from)); }
 
-// The first `count` numbers, in whole vectors, that stand at from(j) for lane j.
+// The first `count` numbers, in whole vectors, that stand at from(j) for lane j. The last first: with q a division begins.
 template <std::size_t Size, class From>
 TEXGEN_INLINE void load_columns(Doubles (&columns)[Size], std::size_t count, const From& from) noexcept {
     TEXGEN_UNROLL
-    for (std::size_t first = 0; first < Size; first += static_cast<std::size_t>(lanes)) {
-        if (first >= count) break;
+    for (std::size_t end = Size; end > 0; end -= static_cast<std::size_t>(lanes)) {
+        const std::size_t first = end - static_cast<std::size_t>(lanes);
+        if (first >= count) continue;
         Doubles row[lanes];
         TEXGEN_UNROLL
         for (std::size_t j = 0; j < static_cast<std::size_t>(lanes); ++j) row[j] = load_doubles(from(j) + first);
