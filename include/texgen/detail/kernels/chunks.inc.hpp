@@ -91,23 +91,14 @@ TEXGEN_INLINE WideFloats bent(const WideFloats& i, const WideFloats& bend) noexc
     return result;
 }
 
-// `count` fragments of a chunk, in whole vectors. The indices are loaded, as that is what arithmetic leaves idle; so are products
-// and sums by themselves, where a step needs few.
+// `count` fragments of a chunk, in whole vectors. The indices are loaded, as that is what arithmetic leaves idle.
 template <StepRule Rule>
 TEXGEN_INLINE void fill_vectors(const WideFloats& bend, const WideFloats (&middle)[2], const WideFloats (&slope)[2],
                                 const float* index, float* s, float* t, int count) noexcept {
-    constexpr bool needs_few = Rule == StepRule::degree2 || (Rule == StepRule::degree4 && wide_lanes == 16);
     for (std::ptrdiff_t x = 0; x < count; x += wide_lanes) {
         const WideFloats step = bent<Rule>(load<WideFloats>(index + x), bend);
-        if constexpr (needs_few) {
-            WideFloats product[2] = {step * slope[0], step * slope[1]};
-            TEXGEN_LEAVE_UNFUSED(product);
-            store(s + x, product[0] + middle[0]);
-            store(t + x, product[1] + middle[1]);
-        } else {
-            store(s + x, step * slope[0] + middle[0]);
-            store(t + x, step * slope[1] + middle[1]);
-        }
+        store(s + x, step * slope[0] + middle[0]);
+        store(t + x, step * slope[1] + middle[1]);
     }
 }
 

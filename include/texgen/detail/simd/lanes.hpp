@@ -41,7 +41,6 @@
 #define TEXGEN_APART
 #define TEXGEN_RARE
 #define TEXGEN_UNROLL
-#define TEXGEN_LEAVE_UNFUSED(products) static_cast<void>(products)
 
 namespace TEXGEN_DETAIL {
 
@@ -126,14 +125,6 @@ inline bool all_less(const Double2& a, const Double2& b, const Double2& c, const
 #define TEXGEN_UNROLL
 #else
 #define TEXGEN_UNROLL _Pragma("GCC unroll 32")
-#endif
-
-// Two products that no sum is fused with, as Zen 5 stores 512 bits of a fused sum in half as many cycles again. Clang fuses those of
-// one expression alone.
-#if defined(__x86_64__) && !defined(__clang__)
-#define TEXGEN_LEAVE_UNFUSED(products) __asm__("" : "+x"(products[0]), "+x"(products[1]))
-#else
-#define TEXGEN_LEAVE_UNFUSED(products) static_cast<void>(products)
 #endif
 
 // GCC 12 converts eight floats the generic way in two halves.
