@@ -320,14 +320,14 @@ TEXGEN_RARE void decide_vector(const CloseRow (&rows)[3], double q_unit, std::in
         doubt |= divide_closely(rows[k], rows[2].grain, q, rows[2].error * 0.5, index, x, value[k]);
 }
 
-// A vector is asked more only where it has a lane in doubt, and only if more is known; at once if residues are. One numerator
-// stands in both places.
+// A vector is asked more only where it has a lane in doubt, and only if more is known; at once if residues are, but of a mask
+// alone, whose doubt about q = 0 has no company. One numerator stands in both places.
 template <class CompiledWhereCalled = void>
 std::uint64_t fill_tile_closely(const TileJob& job, const CloseFunctions& functions, TileJob::Unit unit) noexcept {
     const CloseFunction* const function[] = {&functions.numerator[0], &functions.numerator[1], &functions.q};
     CloseRow rows[3];
     for (std::size_t k = 0; k < 3; ++k) rows[k].take(*function[k]);
-    const bool at_once = functions.have_residues;
+    const bool at_once = functions.have_residues && !(job.is_scratch[0] && job.is_scratch[1]);
     const bool q_is_constant =
         is_constant(functions.q.high) && is_constant(functions.q.low) && is_constant(functions.q.residue);
     bool q_is_known = false;
@@ -357,7 +357,7 @@ std::uint64_t fill_tile_closely(const TileJob& job, const CloseFunctions& functi
                 }
             }
             if (at_once || any(doubt)) {
-                if (at_once || functions.are_close) {
+                if (at_once || functions.have_residues || functions.are_close) {
                     Floats decided[2];  // in memory: the values are in registers
                     Words open;
                     decide_vector(rows, functions.q_unit, x, q_is_known, close_q, decided, open);

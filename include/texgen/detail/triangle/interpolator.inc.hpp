@@ -185,8 +185,6 @@ private:
         if (!doubtful_) {
             doubtful_.make(DoubtfulJob{make_job(whole_, *whole_at_), functions_of(whole_, *whole_at_)});
             doubtful_->job.is_contiguous = false;
-            // The sign of q is in doubt at once; where two doubles are not known, planes often tell as much as residues.
-            if (is_mask_alone() && doubtful_->functions.are_close) add_residues(whole_, doubtful_->functions);
         }
         fill_closely(whole_, doubtful_->job, doubtful_->functions, {x, x + tile.width, y, y + tile.height});
     }
