@@ -33,6 +33,7 @@ struct Report {
     std::vector<PictureOfScene> room_pictures;
     std::vector<Series> times_by_size, errors_by_distance;
     std::vector<Timings> timings;  // these may be empty
+    std::vector<Timings> other_timings;
     std::vector<WorstTime> worst;
     std::vector<Cost> costs;
 };

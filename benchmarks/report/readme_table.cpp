@@ -18,28 +18,24 @@ struct Row {
 };
 
 using namespace way;
-constexpr const char* planes_looked_up = "GLM, plane equations looked up";
 constexpr const char* arrays = "Eigen, plane equations in arrays";
 constexpr const char* blocks = "Eigen, array blocks";
 
 constexpr Row rows[] = {
-    {"8 x 8 fragments each of many triangles, by a `TriangleBatch`", "rows, triangles of 8x8 with set-up",
-     "texgen, exact, in a batch", "texgen, 1/512 texel of 4096, in a batch", planes, arrays},
+    {"8 x 8 fragments each of many triangles, by a `TriangleBatch`", "rows, triangles of 8x8 with set-up", exact_batch,
+     fine_batch, planes, arrays},
     {"the same by a `TriangleSetup` each", "rows, triangles of 8x8 with set-up", exact, fine, planes, arrays},
     {"8 x 8 fragments of a triangle that is ready", "rows, 8x8 of a large triangle", exact, fine, planes, arrays},
     {"a visibility buffer, runs of 8", "visibility buffer, 128x64, runs of 8", exact, fine, planes_looked_up, ""},
     {"the same, ids in any order", "visibility buffer, 128x64, ids in any order", exact, fine, planes_looked_up, ""},
-    {"boxes against a projector, one by one", "Coverage, 4096 boxes, scattered", "texgen, one box at a time", "",
-     five_planes, ""},
+    {"boxes against a projector, one by one", "Coverage, 4096 boxes, scattered", one_box, "", five_planes, ""},
     {"the same, 4096 at once", "Coverage, 4096 boxes, scattered", batch, "", five_planes, ""},
-    {"points, one by one", "project interleaved, 1024", "texgen, exact, one by one", "", "GLM, mat4 * vec4, one by one",
-     ""},
+    {"points, one by one", "project interleaved, 1024", one_point, "", one_product, ""},
     {"points, planar", "project planar, 1024", exact, coarse, product, blocks},
-    {"the same, `within` a box", "project planar, 1024", "texgen, exact, within a box",
-     "texgen, 1/16 texel of 1024, within a box", product, blocks},
+    {"the same, `within` a box", "project planar, 1024", exact_within, coarse_within, product, blocks},
     {"a segment", "segment, 1024", exact, coarse, mix, blocks},
-    {"rows of 1024 x 16, q/w by 1.3", "rows, 1024x16, q/w by 1.3", exact, fine, planes, arrays},
-    {"the same, q/w by 30", "rows, 1024x16, q/w by 30", exact, fine, planes, arrays},
+    {"rows of 1024 x 4, q/w by 1.3", "rows, 1024x4, q/w by 1.3", exact, fine, planes, arrays},
+    {"the same, q/w by 30", "rows, 1024x4, q/w by 30", exact, fine, planes, arrays},
 };
 
 std::string time_of(double nanoseconds) {

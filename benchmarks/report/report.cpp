@@ -59,6 +59,8 @@ constexpr const char* usage =
     "  --timings FILE  what texgen_bench_o2, then what texgen_bench_native wrote with --benchmark_out; may be "
     "repeated;\n"
     "                  of two the rows of the README's table become times.md\n"
+    "  --others FILE   what texgen_bench_avx2 or texgen_bench_clang wrote, for the table of speeds promised; may be "
+    "repeated\n"
     "  --worst FILE    what texgen_worst wrote: the worst input found for each function\n"
     "  --costs FILE    what costs.cmake wrote: what it costs to compile the headers and calls\n"
     "  --help          this text\n"
@@ -77,7 +79,7 @@ struct Options {
     int rounds = most_rounds;
     fs::path out = "report";
     std::optional<std::string> costs, worst;
-    std::vector<std::string> timings;
+    std::vector<std::string> timings, others;
     bool help = false;
 };
 
@@ -123,7 +125,7 @@ Options parse(const std::vector<std::string_view>& arguments) {
         }
         if (option != "--mesh" && option != "--slide" && option != "--lens" && option != "--size" &&
             option != "--rounds" && option != "--out" && option != "--costs" && option != "--worst" &&
-            option != "--timings")
+            option != "--timings" && option != "--others")
             throw Failure{"unknown option '" + std::string(option) + "'; --help lists them"};
         if (++i == arguments.size() || arguments[i].empty()) throw Failure{std::string(option) + " needs a value"};
         const std::string_view value = arguments[i];
@@ -135,6 +137,7 @@ Options parse(const std::vector<std::string_view>& arguments) {
         if (option == "--costs") options.costs = value;
         if (option == "--worst") options.worst = value;
         if (option == "--timings") options.timings.emplace_back(value);
+        if (option == "--others") options.others.emplace_back(value);
         if (option == "--size") {
             const std::size_t x = value.find('x');
             options.width = parse_side(value.substr(0, x), value);
@@ -248,6 +251,7 @@ Report make_report(const Options& options, const Setting& setting) {
                   .times_by_size = {},
                   .errors_by_distance = {},
                   .timings = {},
+                  .other_timings = {},
                   .worst = {},
                   .costs = {}};
     for (const Scene& scene : scenes) {
@@ -302,8 +306,9 @@ int run(const Options& options) {
         .slide = std::make_shared<const Picture>(options.slide ? load_picture(*options.slide) : built_in_slide()),
         .lens = options.lens,
         .aspect = static_cast<double>(options.width) / options.height};
-    std::vector<Timings> timings;
+    std::vector<Timings> timings, others;
     for (const std::string& file : options.timings) timings.push_back(read_timings(file));
+    for (const std::string& file : options.others) others.push_back(read_timings(file));
     std::vector<Cost> costs;
     if (options.costs) costs = read_costs(*options.costs);
     std::vector<WorstTime> worst;
@@ -312,6 +317,7 @@ int run(const Options& options) {
 
     Report report = make_report(options, setting);
     report.timings = std::move(timings);
+    report.other_timings = std::move(others);
     report.worst = std::move(worst);
     report.costs = std::move(costs);
 

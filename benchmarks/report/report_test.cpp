@@ -101,8 +101,8 @@ TEST_CASE("a bad option is refused in one line") {
     const Workplace place;
     place.check_refusal("--colour red", "--colour");
     place.check_refusal("teapot.obj", "teapot.obj");
-    for (const char* option :
-         {"--mesh", "--slide", "--lens", "--size", "--rounds", "--out", "--costs", "--worst", "--timings"}) {
+    for (const char* option : {"--mesh", "--slide", "--lens", "--size", "--rounds", "--out", "--costs", "--worst",
+                               "--timings", "--others"}) {
         place.check_refusal(option, option);
         place.check_refusal(option + std::string(" ''"), option);
     }
@@ -175,6 +175,7 @@ TEST_CASE("timings that are none are refused in one line") {
                              "\"\": \": \"", "\n}\n{\n\"cpu_time\": nan,\n}"}) {
         write("timings.json", text);
         place.check_refusal("--timings timings.json", "timings.json");
+        place.check_refusal("--others timings.json", "timings.json");
     }
 }
 
@@ -199,6 +200,38 @@ TEST_CASE("timings become the page's tables and charts, which say where others a
     const std::string table = contents("report/times.md");
     CHECK(table.find("| points, planar | 0.75 / 0.75, 1.0e-3 | | 16.2 / 16.2, 1.0e-3 | |\n") != std::string::npos);
     CHECK(table.find("| a segment | | | | |\n") != std::string::npos);
+}
+
+TEST_CASE("a speed that was promised of a build is judged by that build, the first two of all rows or another") {
+    const Workplace place;
+    const char* scene = "rows, 1024x4, q/w by 30";
+    const auto rows_of = [&](const std::string& compiler, const std::string& flags, const char* nanoseconds) {
+        return "\"compiler\": \"" + compiler + "\",\n\"flags\": \"" + flags + "\",\n" +
+               timing_of(scene, "texgen, 1/512 texel of 4096", nanoseconds) +
+               timing_of(scene, "GLM, plane equations", "1") + timing_of(scene, "GLM, barycentric", "4");
+    };
+    write("o2.json", rows_of("GNU 12", "-O2", "0.1"));
+    write("native.json", rows_of("GNU 12", "-O3 -march=native", "0.5"));
+    write("avx2.json", rows_of("GNU 12", "-O3 -mavx2 -mfma", "0.25"));
+    write("clang.json", rows_of("Clang 14", "-O3 -march=native", "0.8"));
+    const std::string two = "--rounds 1 --size 16x16 --timings o2.json --timings native.json";
+    const auto judges = [](const std::string& page, const std::string& flags, const char* asked, const char* measured,
+                           const char* answer) {
+        return page.find("<td>" + flags + "</td><td>" + asked + "x</td><td>" + measured + "x</td><td></td><td>" +
+                         answer + "</td>") != std::string::npos;
+    };
+    REQUIRE(place.run(two + " --others clang.json --others avx2.json").status == 0);
+    std::string page = contents("report/index.html");
+    CHECK(judges(page, "-O2", "42", "40", "no"));
+    CHECK(judges(page, "-O3 -march=native", "3", "2", "no"));
+    CHECK(judges(page, "-O3 -mavx2 -mfma", "2", "4", "yes"));
+    CHECK(judges(page, "clang++ -O3 -march=native", "2.4", "1.25", "no"));
+
+    REQUIRE(place.run(two).status == 0);
+    page = contents("report/index.html");
+    CHECK(judges(page, "-O3 -march=native", "3", "2", "no"));
+    CHECK(page.find("clang++") == std::string::npos);
+    CHECK(page.find("-mavx2") == std::string::npos);
 }
 
 TEST_CASE("without gnuplot, and with one that fails, the page says so in the place of its charts and is complete") {
@@ -434,7 +467,7 @@ TEST_CASE("in a browser the page fits a desk and a telephone, folded or not") {
         return;
     }
     std::string timings = "\"flags\": \"-O3 -march=native\",\n";
-    for (const char* scene : {"project planar, 1024", "rows, 1024x16, q/w by 1.3"})
+    for (const char* scene : {"project planar, 1024", "rows, 1024x4, q/w by 1.3"})
         timings +=
             timing_of(scene, "texgen, 1/512 texel of 4096", "0.25") + timing_of(scene, "GLM, mat4 * vec4", "0.125");
     write("timings.json", timings);
@@ -484,7 +517,7 @@ TEST_CASE("--help says how, and writes nothing") {
     CHECK(outcome.status == 0);
     CHECK(outcome.error == "");
     for (const char* option :
-         {"--mesh", "--slide", "--lens", "--size", "--rounds", "--out", "--costs", "--worst", "--timings"})
+         {"--mesh", "--slide", "--lens", "--size", "--rounds", "--out", "--costs", "--worst", "--timings", "--others"})
         CHECK(outcome.output.find(option) != std::string::npos);
     CHECK(place.files().empty());
 }

@@ -13,9 +13,18 @@ namespace way {
 inline constexpr const char* exact = "texgen, exact";
 inline constexpr const char* fine = "texgen, 1/512 texel of 4096";
 inline constexpr const char* coarse = "texgen, 1/16 texel of 1024";
+inline constexpr const char* exact_within = "texgen, exact, within a box";
+inline constexpr const char* coarse_within = "texgen, 1/16 texel of 1024, within a box";
+inline constexpr const char* exact_batch = "texgen, exact, in a batch";
+inline constexpr const char* fine_batch = "texgen, 1/512 texel of 4096, in a batch";
+inline constexpr const char* one_point = "texgen, exact, one by one";
 inline constexpr const char* batch = "texgen, a batch";
+inline constexpr const char* one_box = "texgen, one box at a time";
+inline constexpr const char* one_question = "texgen, one question";
 inline constexpr const char* planes = "GLM, plane equations";
+inline constexpr const char* planes_looked_up = "GLM, plane equations looked up";
 inline constexpr const char* product = "GLM, mat4 * vec4";
+inline constexpr const char* one_product = "GLM, mat4 * vec4, one by one";
 inline constexpr const char* mix = "GLM, mix";
 inline constexpr const char* five_planes = "GLM, five planes";
 }  // namespace way
@@ -51,11 +60,11 @@ struct Contest {
 std::vector<Contest> contests_of(const std::vector<Timings>& builds, const std::string& scene, const std::string& ours,
                                  const std::string& theirs = {});
 
-// Promised against measured for a terminal.
-std::string text_of(const std::vector<Timings>& builds);
+// Promised against measured for a terminal; the others are further builds, of a few rows.
+std::string text_of(const std::vector<Timings>& builds, const std::vector<Timings>& others);
 
 // Parts of the page, nothing without builds: every row, and what was promised of some.
 std::string workloads_of(const std::vector<Timings>& builds);
-std::string promises_of(const std::vector<Timings>& builds);
+std::string promises_of(const std::vector<Timings>& builds, const std::vector<Timings>& others);
 
 }  // namespace report

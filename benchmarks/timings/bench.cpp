@@ -151,6 +151,9 @@ int main(int count, char** arguments) {
     benchmark::AddCustomContext("flags", TEXGEN_REPORT_FLAGS);
     benchmark::Initialize(&all_count, all.data());
     if (benchmark::ReportUnrecognizedArguments(all_count, all.data())) return 2;
+#ifdef TEXGEN_BENCH_ROWS_ALONE
+    bench::add_rows();
+#else
     bench::add_matrices();
     bench::add_generate();
     bench::add_project();
@@ -161,6 +164,7 @@ int main(int count, char** arguments) {
     bench::add_coverage();
     bench::add_scenes();
     bench::add_footprints();
+#endif
     bench::Reporter reporter;
     const bool has_run = benchmark::RunSpecifiedBenchmarks(&reporter) != 0;
     if (has_run && is_printed()) return 0;

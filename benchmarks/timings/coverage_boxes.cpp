@@ -177,6 +177,10 @@ void add_boxes(const std::string& name, std::size_t count, double spread, double
         for (std::size_t k = 0; k < work->boxes().size(); ++k)
             work->out()[k] = work->volume(i).coverage(work->boxes()[k]);
     });
+    add("texgen, one question", [=](std::size_t i) {
+        for (std::size_t k = 0; k < work->boxes().size(); ++k)
+            work->out()[k] = texgen::coverage(work->transform(i), texgen::whole_texture(), work->boxes()[k]);
+    });
     // Floats decide without a bound here, so nothing is promised.
     add_unchecked(work->scene(), "GLM, five planes", [=](std::size_t i) { glm_boxes(*work, i); });
 }

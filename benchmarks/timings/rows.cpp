@@ -308,9 +308,9 @@ void add_rows() {
         }
     };
     add_ratios("1024x1, q/w by 1.3", "1024x1, q/w by 30", "1024x1, parallel");
-    row.height = 16;
+    row.height = 4;
     row.inputs = 8;
-    add_ratios("1024x16, q/w by 1.3", "1024x16, q/w by 30", "1024x16, parallel");
+    add_ratios("1024x4, q/w by 1.3", "1024x4, q/w by 30", "1024x4, parallel");
 
     Shape small{.name = "triangles of 64x1 with set-up",
                 .width = 64,
