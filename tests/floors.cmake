@@ -199,7 +199,7 @@ foreach(header IN LISTS headers)
         continue()
     endif()
 
-    if(text MATCHES "\nnamespace detail")
+    if(text MATCHES "namespace [A-Za-z_:]*(detail|TEXGEN_DETAIL)")
         complain("${header} interrupts its promises by details, which belong into detail/")
     endif()
     if(NOT text MATCHES "^[^#]*#pragma once[^#]*#include \"detail/language[.]hpp\"")
