@@ -2,9 +2,9 @@ cmake_minimum_required(VERSION 3.25)
 
 # No include runs up, and none in a circle. A public header's floor is the number in its first comment, "// Floor N: ...": it
 # includes only public headers of smaller numbers, whether directly or through detail/. A detail header stands on the lowest
-# floor of the public headers that reach it, and so includes public headers only below that; those of arithmetic/, simd/ and
-# kernels/ include none. A body (*.inc.hpp) is part of the one header that includes it; only what compiles kernels for every
-# instruction set serves several, each with its TEXGEN_KERNELS.
+# floor of the public headers that reach it, and so includes public headers only below that; arithmetic/, simd/ and
+# kernels/ include none, and no other room than these: arithmetic/ none at all. A body (*.inc.hpp) is part of the one header that
+# includes it; only what compiles kernels for every instruction set serves several, each with its TEXGEN_KERNELS.
 # Outside the library a header includes the standard library and single GLM headers only; the two at Eigen's border include
 # more. What refuses an older language stands before all of it.
 # Instruction sets are told apart in one place only and compilers in one more, and extensions of the language stay with the vectors.
@@ -122,9 +122,13 @@ foreach(header IN LISTS headers)
         complain("${header} is included by none")
     endif()
     if(header MATCHES "^detail/(arithmetic|simd|kernels)/")
-        set(public ${includes_${header}})
-        list(FILTER public EXCLUDE REGEX "^detail/")
-        foreach(include IN LISTS public)
+        set(rooms ${CMAKE_MATCH_1})
+        if(NOT rooms STREQUAL arithmetic)
+            set(rooms "arithmetic|simd|kernels")
+        endif()
+        set(above ${includes_${header}})
+        list(FILTER above EXCLUDE REGEX "^detail/((${rooms})/|(language|assert|on_demand)[.])")
+        foreach(include IN LISTS above)
             complain("${header} includes ${include}, which stands above it")
         endforeach()
     endif()
@@ -164,7 +168,7 @@ foreach(header IN LISTS headers)
         complain("${header}: ${CMAKE_MATCH_0} is an extension")
     endif()
     # GCC 12 loses stores through the pointer of a span that a function or a lambda took by value out of an aggregate and
-    # gave back (its bug 115033; see array_of() in texcoord.hpp). What writes takes it by reference.
+    # gave back (its bug 115033; see array_of() in outputs.inc.hpp). What writes takes it by reference.
     if(text MATCHES "[(,][ \n]*std::span<float> +[a-z_]+ *[,)]" OR
        text MATCHES "\\][ \n]*\\(([^()]*,)?[ \n]*std::span<[^<>]+> +[a-z_]+ *[,)]")
         complain("${header}: a span by value in ${CMAKE_MATCH_0}")
