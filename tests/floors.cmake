@@ -225,6 +225,15 @@ foreach(header IN LISTS headers)
     endif()
 endforeach()
 
+# So that it is read.
+set(lines_for_contributors 120)
+file(READ ${INCLUDE_DIR}/../.github/CONTRIBUTING.md text)
+string(REGEX MATCHALL "\n" lines "${text}")
+list(LENGTH lines lines)
+if(lines GREATER lines_for_contributors)
+    complain("CONTRIBUTING.md has ${lines} lines, more than ${lines_for_contributors}")
+endif()
+
 if(complaints)
     message(FATAL_ERROR "${count} headers:${complaints}")
 endif()

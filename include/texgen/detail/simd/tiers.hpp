@@ -5,14 +5,14 @@
 //
 //   exact           in double, with a certificate: the nearest float. What that leaves in doubt is decided closely, in two
 //                   doubles; and what those leave, one by one, by exact sums
-//   double_rounded  numerators and quotient in double, rounded once
+//   in_double       numerators and quotient in double, rounded once
 //   float_divided   numerators and q in double, rounded; the quotient in float
 //   all_float       numerators, q and quotient in float
 //   polynomial      in float about the middle of a chunk, with a polynomial instead of a division
 //
-// exact, float_divided and all_float serve points, exact, double_rounded and all_float segments, exact, float_divided and
-// polynomial triangles, double_rounded and all_float footprints. double_rounded serves the doubt of points, too, where their
-// tolerance holds both floats.
+// exact, float_divided and all_float serve points, exact, in_double and all_float segments, exact, float_divided and
+// polynomial triangles, in_double and all_float footprints. in_double serves the doubt of points, too, where their tolerance
+// holds both floats.
 
 #include <limits>
 
