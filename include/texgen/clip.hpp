@@ -26,7 +26,8 @@
 
 namespace TEXGEN_NAMESPACE {
 
-// position: the camera's clip space. strq: homogeneous texture coordinates, which belong to it linearly.
+// A corner of a polygon that is not divided yet. position: the camera's clip space. strq: homogeneous texture coordinates,
+// which belong to it linearly.
 struct ClipVertex {
     glm::vec4 position;
     glm::vec4 strq;

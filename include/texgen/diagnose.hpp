@@ -81,7 +81,7 @@ enum class Defect {
     smaller_than_texel,
 };
 
-// Of the defects above.
+// How many there are.
 inline constexpr std::size_t defect_count = static_cast<std::size_t>(Defect::smaller_than_texel) + 1;
 
 // A defect, what is wrong and what to do, a sentence each.

@@ -84,6 +84,7 @@ inline Footprint footprint_of(const glm::dvec2& dx, const glm::dvec2& dy, const 
 // A triangle made ready for footprints, beside the set-up for its coordinates.
 class FootprintSetup {
 public:
+    // Makes footprints of a triangle ready.
     // Guarantee: in double, about the vertex with the largest clip_w; no allocation, noexcept.
     FootprintSetup(const TriangleSetup& triangle, TexelsPerUnit texels) noexcept;
 

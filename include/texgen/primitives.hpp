@@ -10,19 +10,20 @@
 
 namespace TEXGEN_NAMESPACE {
 
-// (s, t, r, q) at alpha = 0 and at alpha = 1.
+// A segment by its ends: (s, t, r, q) at alpha = 0 and at alpha = 1.
 struct Segment {
     glm::vec4 a, b;
 };
 
-// window: pixels, with pixel centres at +0.5. clip_w: the camera's w, > 0. strq: homogeneous texture coordinates.
+// A corner of a triangle in the window. window: pixels, with pixel centres at +0.5. clip_w: the camera's w, > 0.
+// strq: homogeneous texture coordinates.
 struct WindowVertex {
     glm::vec2 window;
     float clip_w;
     glm::vec4 strq;
 };
 
-// In either winding.
+// A triangle of the window, in either winding.
 struct Triangle {
     WindowVertex a, b, c;
 };

@@ -48,7 +48,7 @@ struct HomogeneousTexcoords {
 template <class Space>
 class Positions {
 public:
-    // Precondition: each pointer addresses `count` floats, `stride_bytes` apart.
+    // Three pointers, each to `count` floats that are `stride_bytes` apart (a precondition).
     Positions(const float* x, const float* y, const float* z, std::size_t count, std::size_t stride_bytes) noexcept
         : x_(x), y_(y), z_(z), count_(count), stride_bytes_(stride_bytes) {}
 

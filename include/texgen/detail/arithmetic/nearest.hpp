@@ -59,8 +59,8 @@ float nearest_quotient(const Expansion<N>& numerator, const Expansion<D>& denomi
     });
 }
 
-// -1, 0 or 1: the sign of the number that `bounded` stands for, from exact() where the bound leaves it open.
-// What is not finite is in front of nothing: -1.
+// The sign (-1, 0 or 1) of the number that `bounded` stands for, from exact() where the bound leaves it open.
+// Returns -1 for what is not finite, which counts as behind.
 template <class Exact>
 int certain_sign(const Bounded& bounded, const Exact& exact) noexcept {
     if (bounded.value > bounded.error) return 1;
