@@ -24,6 +24,7 @@
 #include "detail/arithmetic/inverse.hpp"
 #include "detail/arithmetic/rounding.hpp"
 #include "detail/arithmetic/widen.hpp"
+#include "detail/culling/slide_planes.hpp"
 #include "detail/diagnosis/composition.hpp"
 #include "detail/diagnosis/matrix_signs.hpp"
 #include "detail/diagnosis/seen_lens.hpp"

@@ -51,12 +51,9 @@ public:
           texgen_(rows(examined.texgen)),
           right_(rows(examined.right)),
           lost_(rows(examined.lost)),
-          picture_(picture) {
-        const glm::dvec2& min = (picture.region.min)();
-        const glm::dvec2& max = (picture.region.max)();
-        sides_ = {{{min.x, max.x}, {min.y, max.y}, picture.region.depth().value_or(glm::dvec2())}};
-        side_count_ = picture.region.depth() ? 6 : 4;
-        for (std::size_t side = 0; side < outside_.size(); ++side) outside_[side] = side < side_count_;
+          picture_(picture),
+          planes_(picture.region) {
+        for (std::size_t k = 0; k < outside_.size(); ++k) outside_[k] = k < planes_.size();
         if (has_texgen_) error_in_texels_ = least_error_in_texels(examined, picture, depth);
     }
 
@@ -70,13 +67,12 @@ public:
         const Bounded& q = strq[3];
         ++count_;
         behind_ = behind_ && q.value <= -q.error;
-        for (std::size_t side = 0; side < side_count_; ++side) {
-            const Bounded& u = strq[side / 2];
-            const double end = side % 2 == 0 ? sides_[side / 2].x : sides_[side / 2].y;
-            const double distance = side % 2 == 0 ? u.value - end * q.value : end * q.value - u.value;
+        for (std::size_t k = 1; k < planes_.size(); ++k) {
+            const Bounded& u = strq[planes_[k].coordinate];
+            const double bound = planes_[k].bound;
             const double error =
-                u.error + std::fabs(end) * q.error + gamma(3) * (std::fabs(u.value) + std::fabs(end * q.value));
-            outside_[side] = outside_[side] && distance < -error;
+                u.error + std::fabs(bound) * q.error + gamma(3) * (std::fabs(u.value) + std::fabs(bound * q.value));
+            outside_[k] = outside_[k] && planes_[k].at(u.value, q.value) < -error;
         }
         const glm::dvec3 str = glm::dvec3(strq[0].value, strq[1].value, strq[2].value) / q.value;
         const glm::dvec2 st(str.x, str.y);
@@ -109,10 +105,10 @@ public:
         if (error_in_texels_ > accepted_error_in_texels) diagnosis.add(Defect::precision_lost, error_in_texels_);
         if (count_ == 0 || !has_texgen_) return;
         if (behind_) diagnosis.add(Defect::everything_behind);
-        if (!behind_ && outside_[4]) diagnosis.add(Defect::everything_below_depth);
-        if (!behind_ && outside_[5]) diagnosis.add(Defect::everything_above_depth);
-        for (std::size_t side = 0; side < 4; ++side)
-            if (outside_[side]) diagnosis.add(Defect::region_never_hit);
+        if (!behind_ && outside_[5]) diagnosis.add(Defect::everything_below_depth);
+        if (!behind_ && outside_[6]) diagnosis.add(Defect::everything_above_depth);
+        for (std::size_t k = 1; k < SlidePlanes::without_depth; ++k)
+            if (outside_[k]) diagnosis.add(Defect::region_never_hit);
         const glm::dvec2 texels = picture_.texels();
         const double size = larger((most_.x - least_.x) * texels.x, (most_.y - least_.y) * texels.y);
         if (all_in_front_ && distinct_ && texels.x > 0.0 && texels.y > 0.0 && size < 1.0)
@@ -127,9 +123,9 @@ private:
     }
 
     bool is_lit(const glm::dvec3& str) const noexcept {
-        for (std::size_t k = 0; k < side_count_ / 2; ++k) {
-            const double u = str[static_cast<glm::length_t>(k)];
-            if (!(u >= sides_[k].x && u <= sides_[k].y)) return false;
+        for (std::size_t k = 1; k < planes_.size(); ++k) {
+            const auto& [coordinate, sign, bound] = planes_[k];
+            if (!(sign * str[coordinate] >= sign * bound)) return false;
         }
         return true;
     }
@@ -148,11 +144,10 @@ private:
     bool has_texgen_, has_right_;
     std::array<PointForm, 4> texgen_, right_, lost_;  // rows s, t, r and q
     Picture picture_;
-    std::array<glm::dvec2, 3> sides_;  // of s, t and r
-    std::size_t side_count_;           // 6 where there is a depth
+    SlidePlanes planes_;
     std::size_t count_ = 0, in_front_ = 0;
     bool all_finite_ = true, behind_ = true, all_in_front_ = true, distinct_ = false;
-    std::array<bool, 6> outside_;  // of the sides
+    std::array<bool, SlidePlanes::max_size> outside_;  // of the planes behind q's
     glm::dvec3 first_{0.0};
     glm::dvec2 least_{0.0}, most_{0.0};
     double error_in_texels_ = 0.0;
