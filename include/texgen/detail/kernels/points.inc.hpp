@@ -36,14 +36,17 @@ struct Doubt {
     TEXGEN_INLINE bool any_lane() const noexcept { return any(rounding | narrow(side)); }
 };
 
-// numerator[k] / q with these errors, of all or of each lane; the error of the quotient is that of certain_quotient(). With
-// Signed, q has either sign, and lanes that are certainly behind give 0; else they are in doubt too; and in none where both
-// floats are inside the tolerance. Returns the mask of the lanes in front.
-template <bool Signed, class Error>
+// numerator[k] / q with these errors, of all or of each lane. With Signed, q has either sign, and lanes that are certainly
+// behind give 0; else they are in doubt too; and in none where both floats are inside the tolerance. Returns the mask of the
+// lanes in front.
+// With u = 2^-53, r = 1/q, and S and Q the sums of terms, numerator and q err by 4.01 u S and 4.01 u Q, and their errors are
+// given as 9.9 u S and 9.9 u Q at least. So in front the quotient errs by r (4.01 u S + |quotient| 4.01 u Q); its two
+// roundings, as it is less than r S, and the one of what becomes a float add 3.03 u r S.
+template <bool Signed>
 TEXGEN_INLINE LongWords divide_certainly(std::size_t numerators, const Doubles (&numerator)[2],
-                                         const Error (&numerator_error)[2], const Doubles& q, const Error& q_error,
+                                         const Doubles (&numerator_error)[2], const Doubles& q, const Doubles& q_error,
                                          double tolerance, Floats (&value)[2], Doubt& doubt) noexcept {
-    const LongWords in_front = greater(q - 0x1p20 * q_error, 0.0);
+    const LongWords in_front = greater(q, q_error * 0x1p20);
     Doubles reciprocal = 1.0 / q;
     if constexpr (Signed) {
         doubt.behind |= ~in_front;
@@ -52,14 +55,13 @@ TEXGEN_INLINE LongWords divide_certainly(std::size_t numerators, const Doubles (
     } else {
         doubt.side |= ~in_front;
     }
-    const Doubles relative_error = reciprocal * (q_error * 1.001) + 4.0 * unit_roundoff_double;
     for (std::size_t k = 0; k < numerators; ++k) {
         Doubles quotient = numerator[k] * reciprocal;
         if constexpr (Signed) quotient = where(in_front, quotient);
-        Doubles error = magnitude(quotient) * relative_error + reciprocal * (numerator_error[k] * 1.001);
-        if constexpr (Signed) error = where(in_front, error);  // of a numerator that is no number
-        value[k] = to_floats(quotient - error);
-        const Floats other = to_floats(quotient + error);
+        Doubles error = numerator_error[k] + magnitude(quotient) * q_error;  // times q
+        if constexpr (Signed) error = where(in_front, error);                // of a numerator that is no number
+        value[k] = to_floats(quotient - reciprocal * error);
+        const Floats other = to_floats(quotient + reciprocal * error);
         Words differ = bits(value[k]) ^ bits(other);
         if constexpr (Signed) {
             if (tolerance > 0.0 && any(differ)) {
