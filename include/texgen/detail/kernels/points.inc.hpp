@@ -36,6 +36,11 @@ struct Doubt {
     TEXGEN_INLINE bool any_lane() const noexcept { return any(rounding | narrow(side)); }
 };
 
+// What is divided at a vector of points.
+struct PointDivision {
+    Doubles numerator[2], q, reciprocal;
+};
+
 // numerator[k] / q with these errors, of all or of each lane. With Signed, q has either sign, and lanes that are certainly
 // behind give 0; else they are in doubt too; and in none where both floats are inside the tolerance. Returns the mask of the
 // lanes in front.
@@ -43,20 +48,20 @@ struct Doubt {
 // given as 9.9 u S and 9.9 u Q at least. So in front the quotient errs by r (4.01 u S + |quotient| 4.01 u Q); its two
 // roundings, as it is less than r S, and the one of what becomes a float add 3.03 u r S.
 template <bool Signed>
-TEXGEN_INLINE LongWords divide_certainly(std::size_t numerators, const Doubles (&numerator)[2],
-                                         const Doubles (&numerator_error)[2], const Doubles& q, const Doubles& q_error,
-                                         double tolerance, Floats (&value)[2], Doubt& doubt) noexcept {
-    const LongWords in_front = greater(q, q_error * 0x1p20);
-    Doubles reciprocal = 1.0 / q;
+TEXGEN_INLINE LongWords divide_certainly(std::size_t numerators, const PointDivision& of,
+                                         const Doubles (&numerator_error)[2], const Doubles& q_error, double tolerance,
+                                         Floats (&value)[2], Doubt& doubt) noexcept {
+    const LongWords in_front = greater(of.q, q_error * 0x1p20);
+    Doubles reciprocal = of.reciprocal;
     if constexpr (Signed) {
         doubt.behind |= ~in_front;
-        doubt.side |= ~(in_front | greater(-1.0 * q - q_error, 0.0));
+        doubt.side |= ~(in_front | greater(-1.0 * of.q - q_error, 0.0));
         reciprocal = where(in_front, reciprocal);
     } else {
         doubt.side |= ~in_front;
     }
     for (std::size_t k = 0; k < numerators; ++k) {
-        Doubles quotient = numerator[k] * reciprocal;
+        Doubles quotient = of.numerator[k] * reciprocal;
         if constexpr (Signed) quotient = where(in_front, quotient);
         Doubles error = numerator_error[k] + magnitude(quotient) * q_error;  // times q
         if constexpr (Signed) error = where(in_front, error);                // of a numerator that is no number
@@ -106,51 +111,6 @@ struct PointExtent {
     }
 };
 
-// A block of points in three arrays, of which those of triples are copies, and what bounds the errors of its forms in each
-// lane of doubles.
-struct PointBlock {
-    Doubles x_size, y_size, z_size;
-    const float* x;
-    const float* y;
-    const float* z;
-    float copy[3][exact_block];
-
-    TEXGEN_INLINE PointBlock(const PointJob& job, bool is_bounded, std::size_t begin, std::size_t end) noexcept
-        : x(job.x + begin), y(job.y + begin), z(job.z + begin) {
-        if (is_bounded && !job.interleaved_xyz) {
-            x_size = Doubles{} + job.bound[0];
-            y_size = Doubles{} + job.bound[1];
-            z_size = Doubles{} + job.bound[2];
-            return;
-        }
-        PointExtent extent;
-        for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(wide_lanes)) {
-            WideFloats v[3];
-            TEXGEN_ISA::load_points(job, i, v[0], v[1], v[2]);
-            extent.add(v[0], v[1], v[2]);
-            if (job.interleaved_xyz)
-                for (std::size_t j = 0; j < 3; ++j) store(copy[j] + (i - begin), v[j]);
-        }
-        if (job.interleaved_xyz) {
-            x = copy[0];
-            y = copy[1];
-            z = copy[2];
-        }
-        x_size = folded(extent.x);
-        y_size = folded(extent.y);
-        z_size = folded(extent.z);
-    }
-
-    TEXGEN_INLINE Doubles error_of(const PointForm& form) const noexcept {
-        return (x_size * std::fabs(form.x) +
-                (y_size * std::fabs(form.y) + (z_size * std::fabs(form.z) + std::fabs(form.w)))) *
-               gamma(5);
-    }
-    TEXGEN_INLINE PointLanes load_points(std::size_t i) const noexcept {
-        return {{to_doubles(load<Floats>(x + i)), to_doubles(load<Floats>(y + i)), to_doubles(load<Floats>(z + i))}};
-    }
-};
-
 TEXGEN_INLINE PointLanes load_points(const PointInput& job, std::size_t i) noexcept {
     Floats x, y, z;
     load_points(job, i, x, y, z);
@@ -162,20 +122,44 @@ TEXGEN_INLINE Doubles at(const PointForm& form, const PointLanes& point) noexcep
 }
 
 // A block of points, with errors that hold for all of it. Returns what is in doubt (it is written all the same).
+// All divisions are begun before the first result is asked for: instructions that wait for one keep others from being begun.
 template <bool Signed, std::size_t Numerators>
 TEXGEN_INLINE Doubt fill_points_block(const PointJob& job, std::size_t begin, std::size_t end) noexcept {
-    const PointBlock block(job, !Signed && job.is_bounded, begin, end);
+    const bool is_bounded = !Signed && job.is_bounded;
+    PointExtent extent;
+    PointDivision division[(Signed ? exact_block : float_block) / static_cast<std::size_t>(lanes)];
+    PointDivision* next = division;
+    for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(wide_lanes)) {
+        WideFloats x, y, z;
+        load_points(job, i, x, y, z);
+        if (!is_bounded) extent.add(x, y, z);
+        for_halves(
+            [&](const Doubles& of_x, const Doubles& of_y, const Doubles& of_z) {
+                const PointLanes point{{of_x, of_y, of_z}};
+                next->q = at(job.q, point);
+                next->reciprocal = 1.0 / next->q;
+                for (std::size_t k = 0; k < Numerators; ++k) next->numerator[k] = at(job.numerator[k], point);
+                ++next;
+            },
+            x, y, z);
+    }
+    const Doubles x_size = is_bounded ? Doubles{} + job.bound[0] : folded(extent.x);
+    const Doubles y_size = is_bounded ? Doubles{} + job.bound[1] : folded(extent.y);
+    const Doubles z_size = is_bounded ? Doubles{} + job.bound[2] : folded(extent.z);
+    const auto error_of = [&](const PointForm& form) {
+        return (x_size * std::fabs(form.x) +
+                (y_size * std::fabs(form.y) + (z_size * std::fabs(form.z) + std::fabs(form.w)))) *
+               gamma(5);
+    };
     Doubles numerator_error[2];
-    for (std::size_t k = 0; k < Numerators; ++k) numerator_error[k] = block.error_of(job.numerator[k]);
-    const Doubles q_error = block.error_of(job.q);
+    for (std::size_t k = 0; k < Numerators; ++k) numerator_error[k] = error_of(job.numerator[k]);
+    const Doubles q_error = error_of(job.q);
     Doubt doubt;
+    next = division;
     for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(lanes)) {
-        const PointLanes point = block.load_points(i - begin);
-        Doubles numerator[2];
-        for (std::size_t k = 0; k < Numerators; ++k) numerator[k] = at(job.numerator[k], point);
         Floats value[2];
-        const LongWords in_front = divide_certainly<Signed>(Numerators, numerator, numerator_error, at(job.q, point),
-                                                            q_error, job.tolerance, value, doubt);
+        const LongWords in_front =
+            divide_certainly<Signed>(Numerators, *next++, numerator_error, q_error, job.tolerance, value, doubt);
         store_points(job, i, Numerators, value, narrow(in_front));
     }
     return doubt;
@@ -210,26 +194,25 @@ TEXGEN_INLINE std::uint64_t fill_block_again(const PointJob& job, const PointTer
         const PointSizes sizes(at);
         const LongWords are_dark = terms.are_dark(at);
         Floats value[2];
+        LongWords in_front{}, is_known = ~in_front;
+        bool is_decided = false;
         if (effort.rung <= Rung::each_lane || i / static_cast<std::size_t>(lanes) % 16 == 0) {
-            Doubles numerator[2], numerator_error[2];
+            PointDivision division;
+            Doubles numerator_error[2];
+            division.q = terms.q.nearly_at(at);
+            division.reciprocal = 1.0 / division.q;
             for (std::size_t k = 0; k < numerators; ++k) {
-                numerator[k] = terms.numerator[k].nearly_at(at);
+                division.numerator[k] = terms.numerator[k].nearly_at(at);
                 numerator_error[k] = terms.numerator[k].error_at(at);
             }
             Doubt doubt;
-            const LongWords in_front =
-                divide_certainly<true>(numerators, numerator, numerator_error, terms.q.nearly_at(at),
-                                       terms.q.error_at(at), job.tolerance, value, doubt);
-            const bool is_decided = !any(doubt.rounding | narrow(doubt.side & ~are_dark));
+            in_front = divide_certainly<true>(numerators, division, numerator_error, terms.q.error_at(at),
+                                              job.tolerance, value, doubt);
+            is_decided = !any(doubt.rounding | narrow(doubt.side & ~are_dark));
             effort = {is_decided ? Rung::each_lane : Rung::closely, effort.are_ties && !is_decided,
                       effort.precisely && !is_decided};
-            if (is_decided) {
-                store_points(job, i, numerators, value, narrow(in_front));
-                continue;
-            }
         }
-        LongWords in_front, is_known;
-        for (;;) {
+        while (!is_decided) {
             TwofoldDivisor q(terms.q.at(at, sizes, effort.precisely));
             in_front = q.in_front &= ~are_dark;
             is_known = q.is_known | are_dark;
@@ -244,8 +227,8 @@ TEXGEN_INLINE std::uint64_t fill_block_again(const PointJob& job, const PointTer
                 else
                     value[k] = to_floats(where(in_front, numerator.nearly_at(at) * q.reciprocal));
             }
-            if (effort.precisely || !any(narrow(~is_known))) break;
-            effort.precisely = true;
+            is_decided = effort.precisely || !any(narrow(~is_known));
+            effort.precisely = effort.precisely || !is_decided;
         }
         store_points(job, i, numerators, value, narrow(in_front));
         if (any(~is_known)) doubtful |= lane_bits(~is_known) << (i - begin);
@@ -253,8 +236,8 @@ TEXGEN_INLINE std::uint64_t fill_block_again(const PointJob& job, const PointTer
     return doubtful;
 }
 
-TEXGEN_INLINE std::size_t end_of_block(const PointJob& job, std::size_t begin) noexcept {
-    const std::size_t next = (begin / exact_block + 1) * exact_block;
+TEXGEN_INLINE std::size_t end_of_block(const PointJob& job, std::size_t begin, std::size_t size) noexcept {
+    const std::size_t next = (begin / size + 1) * size;
     return next < job.count ? next : job.count;
 }
 
@@ -262,7 +245,7 @@ TEXGEN_INLINE std::size_t end_of_block(const PointJob& job, std::size_t begin) n
 // Returns where the next begins, or that with values which stay in doubt.
 template <class CompiledWhereCalled = void>
 TEXGEN_APART Undecided fill_points_again(const PointJob& original, std::size_t begin, Effort& effort) noexcept {
-    std::size_t end = end_of_block(original, begin);
+    std::size_t end = end_of_block(original, begin, exact_block);
     if (effort.rung <= Rung::either_side) {
         const PointJob job = original;
         const Doubt doubt = job.numerators == 2 ? fill_points_block<true, 2>(job, begin, end)
@@ -279,11 +262,12 @@ TEXGEN_APART Undecided fill_points_again(const PointJob& original, std::size_t b
         begin = end;
         const bool is_first_of_eight = begin / exact_block % 8 == 0;
         if (begin == original.count || (is_first_of_eight && effort.rung == Rung::each_lane)) return {begin, 0};
-        end = end_of_block(original, begin);
+        end = end_of_block(original, begin, exact_block);
     }
 }
 
-// Most blocks are all in front and in no doubt; those that follow one that is not are taken for what it was, seven of them.
+// Most points are all in front and in no doubt, four blocks at once; blocks of which one is not are done again one by one, and
+// those that follow are taken for what it was, seven of them.
 // The job is copied, here and below, so that the compiler knows that no store changes it: nothing that the loop reads may be
 // reached from elsewhere.
 template <std::size_t Numerators>
@@ -292,10 +276,12 @@ TEXGEN_INLINE Undecided fill_points_exact_of(const PointJob& original, std::size
     Effort effort;
     for (std::size_t begin = first; begin < job.count;) {
         if (begin / exact_block % 8 == 0 && effort.rung == Rung::each_lane) effort = {};
-        const std::size_t end = end_of_block(job, begin);
-        if (effort.rung == Rung::in_front && !fill_points_block<false, Numerators>(job, begin, end).any_lane()) {
-            begin = end;
-            continue;
+        if (effort.rung == Rung::in_front && begin % float_block == 0) {
+            const std::size_t end = end_of_block(job, begin, float_block);
+            if (!fill_points_block<false, Numerators>(job, begin, end).any_lane()) {
+                begin = end;
+                continue;
+            }
         }
         const Undecided left = fill_points_again(original, begin, effort);
         if (left.values != 0) return left;

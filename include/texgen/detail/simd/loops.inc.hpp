@@ -94,7 +94,10 @@ TEXGEN_INLINE Doubles to_doubles_as_rounded(const Floats& values) noexcept {
     return Doubles::of([&](int i) { return widened(values.lane[i]); });
 }
 
-// f(Doubles...), rounded to float.
+template <class Function, class... Vector>
+TEXGEN_INLINE void for_halves(const Function& f, const Vector&... values) noexcept {
+    f(to_doubles(values)...);
+}
 template <class Function, class... Vector>
 TEXGEN_INLINE WideFloats in_double(const Function& f, const Vector&... values) noexcept {
     return to_floats(f(to_doubles(values)...));

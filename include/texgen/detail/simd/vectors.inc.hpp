@@ -34,20 +34,27 @@ TEXGEN_INLINE Doubles to_doubles(const Floats& values) noexcept {
 
 TEXGEN_INLINE Doubles to_doubles_as_rounded(const Floats& values) noexcept { return to_doubles(values); }
 
-// f(Doubles...) of each half of the vectors, rounded to float.
-template <int First, int... Lane>
-TEXGEN_INLINE Doubles half(const WideFloats& values, std::integer_sequence<int, Lane...>) noexcept {
-    return to_doubles(__builtin_shufflevector(values, values, (First + Lane)...));
+template <int First, class Vector, int... Lane>
+TEXGEN_INLINE auto half(const Vector& values, std::integer_sequence<int, Lane...>) noexcept {
+    return __builtin_shufflevector(values, values, (First + Lane)...);
 }
 template <int... Lane>
 TEXGEN_INLINE WideFloats joined(const Floats& low, const Floats& high, std::integer_sequence<int, Lane...>) noexcept {
     return __builtin_shufflevector(low, high, Lane...);
 }
+// f(Doubles...) of each half of the vectors.
+template <class Function, class... Vector>
+TEXGEN_INLINE void for_halves(const Function& f, const Vector&... values) noexcept {
+    using Half = std::make_integer_sequence<int, lanes>;
+    f(to_doubles(half<0>(values, Half()))...);
+    f(to_doubles(half<lanes>(values, Half()))...);
+}
+// The same, rounded to float.
 template <class Function, class... Vector>
 TEXGEN_INLINE WideFloats in_double(const Function& f, const Vector&... values) noexcept {
-    using Half = std::make_integer_sequence<int, lanes>;
-    return joined(to_floats(f(half<0>(values, Half())...)), to_floats(f(half<lanes>(values, Half())...)),
-                  std::make_integer_sequence<int, wide_lanes>());
+    Floats of[2], *next = of;
+    for_halves([&](const auto&... doubles) { *next++ = to_floats(f(doubles...)); }, values...);
+    return joined(of[0], of[1], std::make_integer_sequence<int, wide_lanes>());
 }
 
 // Towards zero, of numbers that an int can hold.
@@ -175,13 +182,9 @@ TEXGEN_INLINE WideFloats select(const WideWords& mask, const WideFloats& a, cons
 }
 
 // The larger of lanes i and i + lanes, of the bits of magnitudes.
-template <int First, int... Lane>
-TEXGEN_INLINE Words half_of(const WideWords& words, std::integer_sequence<int, Lane...>) noexcept {
-    return __builtin_shufflevector(words, words, (First + Lane)...);
-}
 TEXGEN_INLINE Doubles folded(const WideWords& words) noexcept {
     using Half = std::make_integer_sequence<int, lanes>;
-    return to_doubles(__builtin_bit_cast(Floats, maximum(half_of<0>(words, Half()), half_of<lanes>(words, Half()))));
+    return to_doubles(__builtin_bit_cast(Floats, maximum(half<0>(words, Half()), half<lanes>(words, Half()))));
 }
 
 template <class Vector>
@@ -244,8 +247,7 @@ TEXGEN_INLINE Vector every_second(const Vector& a, const Vector& b, std::integer
 }
 // Two corners of three floats a box.
 TEXGEN_INLINE void load_boxes(const float* from, WideFloats (&min)[3], WideFloats (&max)[3]) noexcept {
-    WideFloats first[3];
-    WideFloats second[3];
+    WideFloats first[3], second[3];
     load_interleaved(from, first[0], first[1], first[2]);
     load_interleaved(from + 3 * wide_lanes, second[0], second[1], second[2]);
     TEXGEN_UNROLL
@@ -371,7 +373,7 @@ TEXGEN_INLINE bool any(const WideWords& mask) noexcept {
     return __builtin_ia32_cvtd2mask512(mask) != 0;
 #else
     using Half = std::make_integer_sequence<int, lanes>;
-    return any(half_of<0>(mask, Half()) | half_of<lanes>(mask, Half()));
+    return any(half<0>(mask, Half()) | half<lanes>(mask, Half()));
 #endif
 }
 // Whether a distance is 0. GCC 12 makes a vector of a mask that it asks.
