@@ -263,11 +263,7 @@ private:
     }
 
     static bool is_usable(const WindowVertex& vertex) noexcept {
-        constexpr float largest = (std::numeric_limits<float>::max)();
-        const auto is_finite = [](float value) { return std::fabs(value) <= largest; };
-        return is_finite(vertex.window.x) && is_finite(vertex.window.y) && vertex.clip_w > 0.0f &&
-               vertex.clip_w <= largest && is_finite(vertex.strq.x) && is_finite(vertex.strq.y) &&
-               is_finite(vertex.strq.z) && is_finite(vertex.strq.w);
+        return is_finite(vertex.window) && vertex.clip_w > 0.0f && is_finite(vertex.clip_w) && is_finite(vertex.strq);
     }
 
     // (b - a) x (c - a), every product of two floats being exact in double.
