@@ -4,6 +4,7 @@
 
 #include "detail/language.hpp"
 
+#include <numbers>
 #include <optional>
 
 #include <glm/vec2.hpp>
@@ -111,7 +112,7 @@ inline GLM_CONSTEXPR TextureRegion whole_texture() noexcept { return rectangle_t
 class Angle {
 public:
     constexpr double in_radians() const noexcept { return radians_; }
-    constexpr double in_degrees() const noexcept { return radians_ * (180.0 / 3.14159265358979323846); }
+    constexpr double in_degrees() const noexcept { return radians_ * (180.0 / std::numbers::pi); }
 
     friend constexpr bool operator==(const Angle& a, const Angle& b) noexcept { return a.radians_ == b.radians_; }
 
@@ -125,7 +126,7 @@ private:
 
 // The two ways to make one.
 constexpr Angle radians(double value) noexcept { return Angle(value); }
-constexpr Angle degrees(double value) noexcept { return radians(value * (3.14159265358979323846 / 180.0)); }
+constexpr Angle degrees(double value) noexcept { return radians(value * (std::numbers::pi / 180.0)); }
 
 // The dial: the largest |error| that the caller accepts in s and in t, in the units of the region; in r the same
 // relative to max(1, |r|). The rounding of the nearest float is always allowed: |error| <= max(value, 1/2 ulp).

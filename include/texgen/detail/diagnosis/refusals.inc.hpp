@@ -33,10 +33,9 @@ void examine_rectangle(const RectangularLens& lens, Diagnosis& diagnosis) noexce
 inline void examine(const PerspectiveLens& lens, Diagnosis& diagnosis) noexcept {
     const double angle = lens.fovy.in_radians();
     require_finite({angle, lens.aspect}, diagnosis);
-    constexpr double half_turn = 3.14159265358979323846;
-    const bool opens = 0.5 * angle > 0.0 && 0.5 * angle < 0.5 * half_turn;
-    const bool has_turns = std::fabs(angle) > 2.0 * half_turn;
-    require(opens, {angle}, has_turns ? Defect::angle_unit_mistaken : Defect::angle_out_of_range, diagnosis);
+    const bool has_turns = std::fabs(angle) > 2.0 * std::numbers::pi;
+    require(is_half_angle(0.5 * angle), {angle}, has_turns ? Defect::angle_unit_mistaken : Defect::angle_out_of_range,
+            diagnosis);
     require(lens.aspect > 0.0, {lens.aspect}, Defect::aspect_not_positive, diagnosis);
     examine_planes(lens.z_near, lens.z_far, diagnosis);
 }
@@ -67,7 +66,7 @@ inline void examine(const Aim& aim, Diagnosis& diagnosis) noexcept {
     const bool looks_somewhere = has_both && length(view.high) > 0.0, points_somewhere = has_up && length(up) > 0.0;
     if (has_both && !looks_somewhere) diagnosis.add(Defect::target_at_position);
     if (has_up && !points_somewhere) diagnosis.add(Defect::up_is_zero);
-    if (looks_somewhere && points_somewhere && !(length(cross(view, up)) > 0x1p-98))
+    if (looks_somewhere && points_somewhere && !is_sideways(cross(view, up)))
         diagnosis.add(Defect::up_parallel_to_view);
 }
 

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include <glm/common.hpp>
@@ -141,7 +142,7 @@ inline bool is_of_round_angle(const Estimate& focal_length) noexcept {
 
 // The number of whole degrees that make that focal length, but for its sign, if they are taken for radians; 0 where none do.
 inline double degrees_as_radians(const Estimate& focal_length) noexcept {
-    constexpr double turn = 2.0 * 3.14159265358979323846;
+    constexpr double turn = 2.0 * std::numbers::pi;
     const double step = focal_length.error < 0x1p-30 ? 1.0 : 5.0;
     const double angle = 2.0 * std::atan2(1.0, focal_length.value);
     const double accepted = focal_length.error * std::sin(angle) + 0x1p-44;

@@ -61,6 +61,9 @@ inline glm::dvec3 cross(const Difference& a, const glm::dvec3& b) noexcept {
     return result;
 }
 
+// Of view x up, both near 1: whether it is more than rounding, so that up is not parallel.
+inline bool is_sideways(const glm::dvec3& v) noexcept { return length(v) > 0x1p-98; }
+
 inline std::optional<Projector> assemble(const std::optional<ProjectorProjection>& projection,
                                          const std::optional<ProjectorView>& view, Conventions conventions) noexcept {
     if (!projection || !view) return std::nullopt;
@@ -78,7 +81,7 @@ inline std::optional<ProjectorView> look_at(const Aim& aim, Handedness handednes
     const glm::dvec3 up = detail::scaled_near_one(aim.up);
     if (!(detail::length(forward) > 0.0 && detail::length(up) > 0.0)) return std::nullopt;
     const glm::dvec3 sideways = detail::cross(view, up);
-    if (!(detail::length(sideways) > 0x1p-98)) return std::nullopt;
+    if (!detail::is_sideways(sideways)) return std::nullopt;
     const glm::dvec3 side_direction = detail::scaled_near_one(sideways);
     if (!(detail::length(side_direction) > 0.0)) return std::nullopt;
 

@@ -2,6 +2,8 @@
 
 namespace TEXGEN_DETAIL {
 
+// Half of an angle that a lens opens by.
+inline bool is_half_angle(double radians) noexcept { return radians > 0.0 && radians < 0.5 * std::numbers::pi; }
 inline bool is_aspect(double aspect) noexcept { return aspect > 0.0 && is_finite(aspect); }
 
 // In halves: no difference leaves the range.
@@ -54,7 +56,7 @@ inline PerspectiveLens contain(const PerspectiveLens& lens, double aspect) noexc
     const double half_angle = 0.5 * lens.fovy.in_radians();
     if (!detail::is_aspect(lens.aspect)) result.aspect = lens.aspect;
     // An angle that is none keeps its number: its tangent could be that of another.
-    if (aspect > lens.aspect && half_angle > 0.0 && half_angle < 0.5 * 3.14159265358979323846)
+    if (aspect > lens.aspect && detail::is_half_angle(half_angle))
         result.fovy = radians(2.0 * std::atan(std::tan(half_angle) * (lens.aspect / aspect)));
     return result;
 }
