@@ -22,6 +22,7 @@
 
 #include "support/hex.hpp"
 #include "support/random.hpp"
+#include "support/windows.hpp"
 #include "texgen/diagnose.hpp"
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
@@ -29,6 +30,7 @@
 
 namespace {
 
+using support::any_conventions;
 using support::hex;
 using support::Random;
 using texgen::Conventions;
@@ -195,12 +197,6 @@ glm::dmat4 made(const Meant& m, Mistake mistake, Random& random) {
         default:
             return product(s, p, v, x);
     }
-}
-
-Conventions any_conventions(Random& random) {
-    return {random.coin() ? DepthRange::negative_one_to_one : DepthRange::zero_to_one,
-            random.coin() ? NdcY::up : NdcY::down, random.coin() ? TextureOrigin::bottom_left : TextureOrigin::top_left,
-            random.coin() ? Handedness::right : Handedness::left};
 }
 
 Meant any_meant(Mistake mistake, Random& random) {

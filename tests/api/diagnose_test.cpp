@@ -17,12 +17,14 @@
 #include "support/allocations.hpp"
 #include "support/hex.hpp"
 #include "support/random.hpp"
+#include "support/windows.hpp"
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
 
 namespace {
 
 using support::allocations;
+using support::any_conventions;
 using support::hex;
 using support::Random;
 using texgen::Conventions;
@@ -191,12 +193,6 @@ glm::vec3 in_space(const Rig& rig, const glm::dvec3& from_projector) {
 
 glm::dvec3 somewhere_lit(const Rig& rig, const glm::dmat4& p, Random& random) {
     return in_the_light(rig, p, random.uniform(-0.95, 0.95), random.uniform(-0.95, 0.95), depth_in(rig, random));
-}
-
-Conventions any_conventions(Random& random) {
-    return {random.coin() ? DepthRange::negative_one_to_one : DepthRange::zero_to_one,
-            random.coin() ? NdcY::up : NdcY::down, random.coin() ? TextureOrigin::bottom_left : TextureOrigin::top_left,
-            random.coin() ? Handedness::right : Handedness::left};
 }
 
 // How far out of the ordinary a rig may be.

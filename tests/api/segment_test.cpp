@@ -70,13 +70,6 @@ glm::vec4 friendly(Random& random) {
     return {static_cast<float>(s * q), static_cast<float>(t * q), static_cast<float>(r * q), static_cast<float>(q)};
 }
 
-float any_finite(Random& random) {
-    for (;;) {
-        const float value = random.any_float();
-        if (std::isfinite(value)) return value;
-    }
-}
-
 // The root of q, where it is in (0, 1), and its neighbours.
 std::vector<float> alphas_at_root(const Segment& segment, Random& random, std::size_t count) {
     std::vector<float> alphas = any_alphas(random, count);
@@ -238,8 +231,8 @@ const std::array families{
                   [](Random& random, std::size_t count) -> Case {
                       Segment segment{};
                       for (int k = 0; k < 4; ++k) {
-                          segment.a[k] = any_finite(random);
-                          segment.b[k] = any_finite(random);
+                          segment.a[k] = random.any_finite();
+                          segment.b[k] = random.any_finite();
                       }
                       return {segment, alphas_at_root(segment, random, count)};
                   },
@@ -308,8 +301,8 @@ TEST_CASE("the ends of a segment are the quotients of its ends") {
     for (int i = 0; i < 20000; ++i) {
         Segment segment{};
         for (int k = 0; k < 4; ++k) {
-            segment.a[k] = any_finite(random);
-            segment.b[k] = any_finite(random);
+            segment.a[k] = random.any_finite();
+            segment.b[k] = random.any_finite();
         }
         segment.a.w = std::fabs(segment.a.w);
         segment.b.w = std::fabs(segment.b.w);

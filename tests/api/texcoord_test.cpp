@@ -74,13 +74,6 @@ Batch slide(Random& random, std::size_t count) {
     return batch;
 }
 
-float any_finite(Random& random) {
-    for (;;) {
-        const float value = random.any_float();
-        if (std::isfinite(value)) return value;
-    }
-}
-
 struct PointFamily {
     const char* name;
     Batch (*make)(Random&, std::size_t count);
@@ -225,7 +218,7 @@ const std::array families{
                 [](Random& random, std::size_t count) {
                     Batch batch{glm::dmat4(0.0), Points(count)};
                     const bool all_bits = random.coin();
-                    const auto any = [&] { return all_bits ? any_finite(random) : random.uniform_float(-2.0, 2.0); };
+                    const auto any = [&] { return all_bits ? random.any_finite() : random.uniform_float(-2.0, 2.0); };
                     for (int column = 0; column < 4; ++column)
                         for (int k = 0; k < 4; ++k) batch.matrix[column][k] = static_cast<double>(any());
                     for (glm::vec3& point : batch.points)

@@ -58,6 +58,10 @@ public:
 
     // Any float: infinities, NaN and subnormals come up.
     float any_float() { return std::bit_cast<float>(static_cast<std::uint32_t>(bits() >> 32)); }
+    float any_finite() {
+        for (;;)
+            if (const float value = any_float(); std::isfinite(value)) return value;
+    }
 
     glm::dvec3 direction() {
         for (;;) {
