@@ -28,7 +28,7 @@ public:
 
     float* coordinate(std::size_t k) const { return output(size(), k); }
     // Four outputs long.
-    glm::vec4* quads() const { return reinterpret_cast<glm::vec4*>(output(size())); }
+    glm::vec4* strq() const { return reinterpret_cast<glm::vec4*>(output(size())); }
 
     // In texels: the error of the quotients that a shader would make of the values.
     void check(std::size_t i, Errors& errors, bool has_promise) const {
@@ -36,7 +36,7 @@ public:
             const Points::Exact exact = points_.exact(i, k);
             glm::vec4 computed;
             for (int row = 0; row < 4; ++row) {
-                computed[row] = points_.is_planar() ? coordinate(static_cast<std::size_t>(row))[k] : quads()[k][row];
+                computed[row] = points_.is_planar() ? coordinate(static_cast<std::size_t>(row))[k] : strq()[k][row];
                 const auto wanted = static_cast<double>(exact.value[row]);
                 errors.add_ulp(computed[row], wanted);
                 if (has_promise)
@@ -58,7 +58,7 @@ void ours(const Generate& work, std::size_t i) {
     if (points.is_planar())
         texgen::generate(points.transform(i), points.positions(), {span(0), span(1), span(2), span(3)});
     else
-        texgen::generate(points.transform(i), points.positions(), std::span(work.quads(), work.size()));
+        texgen::generate(points.transform(i), points.positions(), std::span(work.strq(), work.size()));
 }
 
 void glm_planar(const Generate& work, std::size_t i) {
@@ -76,9 +76,9 @@ void glm_planar(const Generate& work, std::size_t i) {
 
 void glm_interleaved(const Generate& work, std::size_t i) {
     const glm::mat4 matrix = work.points().matrix(i);
-    const glm::vec3* triples = work.points().triples();
-    glm::vec4* quads = work.quads();
-    for (std::size_t k = 0; k < work.size(); ++k) quads[k] = matrix * glm::vec4(triples[k], 1.0f);
+    const glm::vec3* vectors = work.points().vectors();
+    glm::vec4* strq = work.strq();
+    for (std::size_t k = 0; k < work.size(); ++k) strq[k] = matrix * glm::vec4(vectors[k], 1.0f);
 }
 
 Eigen::Map<const Eigen::Matrix4f> eigen_matrix(const Generate& work, std::size_t i) {
@@ -99,11 +99,11 @@ void eigen_planar(const Generate& work, std::size_t i) {
 
 void eigen_interleaved(const Generate& work, std::size_t i) {
     const auto count = static_cast<Eigen::Index>(work.size());
-    const Eigen::Map<const Eigen::Matrix3Xf> points(&work.points().triples()->x, 3, count);
+    const Eigen::Map<const Eigen::Matrix3Xf> points(&work.points().vectors()->x, 3, count);
     const Eigen::Matrix4f matrix = eigen_matrix(work, i);
-    Eigen::Map<Eigen::Matrix4Xf> quads(&work.quads()->x, 4, count);
+    Eigen::Map<Eigen::Matrix4Xf> strq(&work.strq()->x, 4, count);
     for (Eigen::Index k = 0; k < count; k += block)
-        quads.middleCols<block>(k).noalias() = matrix * points.middleCols<block>(k).colwise().homogeneous();
+        strq.middleCols<block>(k).noalias() = matrix * points.middleCols<block>(k).colwise().homogeneous();
 }
 
 void add_scene(std::size_t count, Layout layout) {

@@ -42,13 +42,13 @@ public:
     }
 
     const float* axis(std::size_t k) const { return input(count_, k); }
-    const glm::vec3* triples() const {
+    const glm::vec3* vectors() const {
         input(count_, 2);
         return reinterpret_cast<const glm::vec3*>(input(count_));
     }
     texgen::Positions<texgen::World> positions() const {
         if (is_planar()) return texgen::world_space({axis(0), count_}, {axis(1), count_}, {axis(2), count_});
-        return texgen::world_space(std::span(triples(), count_));
+        return texgen::world_space(std::span(vectors(), count_));
     }
 
     struct Exact {

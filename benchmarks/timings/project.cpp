@@ -70,18 +70,18 @@ void ours_within(const Project& work, std::size_t i, texgen::Tolerance tolerance
 // One at a time, of which the compiler makes no batch.
 void ours_one_by_one(const Project& work, std::size_t i) {
     const auto transform = work.points().transform(i);
-    const glm::vec3* triples = work.points().triples();
+    const glm::vec3* vectors = work.points().vectors();
     for (std::size_t k = 0; k < work.size(); ++k) {
-        work.pairs()[k] = texgen::project(transform, texgen::world_space(triples[k])).value_or(glm::vec2(0.0f));
+        work.pairs()[k] = texgen::project(transform, texgen::world_space(vectors[k])).value_or(glm::vec2(0.0f));
         benchmark::ClobberMemory();
     }
 }
 
 void glm_one_by_one(const Project& work, std::size_t i) {
     const glm::mat4 matrix = work.points().matrix(i);
-    const glm::vec3* triples = work.points().triples();
+    const glm::vec3* vectors = work.points().vectors();
     for (std::size_t k = 0; k < work.size(); ++k) {
-        const glm::vec4 strq = matrix * glm::vec4(triples[k], 1.0f);
+        const glm::vec4 strq = matrix * glm::vec4(vectors[k], 1.0f);
         work.pairs()[k] = glm::vec2(strq) / strq.w;
         benchmark::ClobberMemory();
     }
@@ -100,10 +100,10 @@ void glm_planar(const Project& work, std::size_t i) {
 
 void glm_interleaved(const Project& work, std::size_t i) {
     const glm::mat4 matrix = work.points().matrix(i);
-    const glm::vec3* triples = work.points().triples();
+    const glm::vec3* vectors = work.points().vectors();
     glm::vec2* pairs = work.pairs();
     for (std::size_t k = 0; k < work.size(); ++k) {
-        const glm::vec4 strq = matrix * glm::vec4(triples[k], 1.0f);
+        const glm::vec4 strq = matrix * glm::vec4(vectors[k], 1.0f);
         pairs[k] = glm::vec2(strq) / strq.w;
     }
 }
@@ -126,7 +126,7 @@ void eigen_planar(const Project& work, std::size_t i) {
 
 void eigen_interleaved(const Project& work, std::size_t i) {
     const auto count = static_cast<Eigen::Index>(work.size());
-    const Eigen::Map<const Eigen::Matrix3Xf> points(&work.points().triples()->x, 3, count);
+    const Eigen::Map<const Eigen::Matrix3Xf> points(&work.points().vectors()->x, 3, count);
     Eigen::Matrix<float, 3, 4> rows;
     rows << eigen_matrix(work, i).topRows<2>(), eigen_matrix(work, i).bottomRows<1>();
     Eigen::Map<Eigen::Matrix2Xf> pairs(&work.pairs()->x, 2, count);
