@@ -514,7 +514,7 @@ MUTANTS = [
     *_of("detail/diagnosis/see_through.inc.hpp",
          ("what is seen through a product is not rounded", "composed_in_float.of_magnitude * terms", "0.0 * terms",
           "diagnose_product_test"),
-         ("near is far", "distance_of(low, p, conventions.handedness)", "distance_of(1.0, p, conventions.handedness)",
+         ("near is far", "distance_of(low_end(conventions.depth), p, conventions.handedness)", "distance_of(1.0, p, conventions.handedness)",
           "diagnose_product_test")),
     *_of("detail/diagnosis/seen_lens.hpp",
          ("every number is round", "if (std::fabs(scaled - round) > 4.0 * number.error * scaled) continue;", "",

@@ -132,19 +132,26 @@ inline bool mistakes_handedness(const glm::dmat4& p, Handedness handedness, doub
     return is_perspective(p) && is_left != (handedness == Handedness::left) && (width > 0.0 || height > 0.0);
 }
 
+// NDC's depth of the near plane, or reversed of the far one; at the other it is 1.
+constexpr double low_end(DepthRange range) noexcept { return range == DepthRange::negative_one_to_one ? -1.0 : 0.0; }
+
+// 1 where a lens looks along z, else -1. Parallel light does not say it: its eye does.
+inline double ahead_of(const glm::dmat4& p, Handedness handedness) noexcept {
+    return (is_perspective(p) ? p[2].w > 0.0 : handedness == Handedness::left) ? 1.0 : -1.0;
+}
+
 // near and far land on the ends of the range, and infinity beyond the far end: at 1 or more, or reversed at the low end
 // or less. So nothing valid has infinity between the ends, or a plane at the low end of the other range.
 inline bool mistakes_depth(const glm::dmat4& p, DepthRange range, Handedness handedness,
                            const std::optional<double>& z_near, const std::optional<double>& z_far) noexcept {
     constexpr double rounding = 0x1p-12;
-    const double low = range == DepthRange::negative_one_to_one ? -1.0 : 0.0;
+    const double low = low_end(range);
     const double other_low = -1.0 - low;
     const double at_infinity = p[2].z / p[2].w;
     if (is_perspective(p) && at_infinity > low + rounding && at_infinity < 1.0 - rounding) return true;
     const auto lands_on_other = [&](const std::optional<double>& distance) {
         if (!distance) return false;
-        const bool is_ahead = is_perspective(p) ? p[2].w > 0.0 : handedness == Handedness::left;
-        const double z = is_ahead ? *distance : -*distance;
+        const double z = ahead_of(p, handedness) * *distance;
         const double depth = is_finite(z) ? (p[2].z * z + p[3].z) / (p[2].w * z + p[3].w) : at_infinity;
         return std::fabs(depth - other_low) < rounding;
     };

@@ -65,9 +65,7 @@ inline std::optional<glm::dmat4> lens_within(const glm::dmat4& texgen, const Fac
 // The distance at which a lens has that depth; infinite where it has it nowhere in front.
 inline double distance_of(double depth, const glm::dmat4& p, Handedness handedness) noexcept {
     const double per_z = depth * p[2].w - p[2].z;
-    const bool is_ahead = is_perspective(p) ? p[2].w > 0.0 : handedness == Handedness::left;
-    const double z = (p[3].z - depth * p[3].w) / per_z;
-    const double distance = is_ahead ? z : -z;
+    const double distance = ahead_of(p, handedness) * ((p[3].z - depth * p[3].w) / per_z);
     return is_finite(distance) && (distance > 0.0 || !is_perspective(p)) ? distance
                                                                          : std::numeric_limits<double>::infinity();
 }
@@ -77,8 +75,7 @@ inline LensFacts meant_by(const glm::dmat4& p, Conventions conventions, LensFact
     if (!facts.fovy && is_perspective(p) && p[2].x == 0.0 && p[2].y == 0.0)
         facts.fovy = radians(2.0 * std::atan2(std::fabs(p[2].w), std::fabs(p[1].y)));
     if (!facts.aspect) facts.aspect = std::fabs(p[1].y / p[0].x);
-    const double low = conventions.depth == DepthRange::negative_one_to_one ? -1.0 : 0.0;
-    if (!facts.z_near) facts.z_near = distance_of(low, p, conventions.handedness);
+    if (!facts.z_near) facts.z_near = distance_of(low_end(conventions.depth), p, conventions.handedness);
     if (!facts.z_far) facts.z_far = distance_of(1.0, p, conventions.handedness);
     facts.mirrored = false;
     return facts;
