@@ -193,7 +193,7 @@ public:
     const Least& least_between(std::size_t i) const noexcept { return least_[i]; }
 
     // Takes a sample at n behind sample i; false where n is no number between both.
-    bool split(std::size_t i, double n) noexcept {
+    bool add(std::size_t i, double n) noexcept {
         if (!(n > samples_[i].n && n < samples_[i + 1].n)) return false;
         insert(i + 1, n);
         // The lines of what is between two samples go through the next ones.
@@ -287,7 +287,7 @@ inline double least_square_of_rho(const FootprintField& field, const WindowPolyg
             least = here;
             lowest = i;
         }
-        if (least.bound >= 0.99 * largest_q.attained() || largest_q.is_full() || !largest_q.split(lowest, least.n))
+        if (least.bound >= 0.99 * largest_q.attained() || largest_q.is_full() || !largest_q.add(lowest, least.n))
             return smaller(least.bound, largest_q.attained());
     }
 }
