@@ -542,6 +542,32 @@ TEST_CASE("the sides of an object that is stretched by an unknown pose are not t
     }
 }
 
+TEST_CASE("through a pose far away a lens shows no more than the rounding of the matrix leaves of it there") {
+    Random random(645);
+    for (int i = 0; i < 20000; ++i) {
+        const auto place = [&](double reach) {
+            const double x = random.uniform(-reach, reach), y = random.uniform(-reach, reach);
+            return glm::dvec3(x, y, random.uniform(-reach, reach));
+        };
+        Meant m;
+        m.conventions = texgen::direct3d;
+        m.depth = DepthMapping::unit;
+        m.aim = {place(20.0), {3.0, 5.5, 1.25}, {0.0, 1.0, 0.0}};
+        m.pose = glm::dmat4(glm::dvec4(0.0, 1.0, 0.0, 0.0), glm::dvec4(-1.0, 0.0, 0.0, 0.0),
+                            glm::dvec4(0.0, 0.0, 1.0, 0.0), glm::dvec4(place(1e7), 1.0));
+        m.z_near = i % 2 == 0 ? 10.0 : 0.05;
+        m.z_far = i % 2 == 0 ? 30.0 : 5000.0;
+        const texgen::ObjectTexgen texgen = object_linear(*right_projector(m), texgen::ModelMatrix(m.pose));
+        // The numbers that people write are looked for in double, the planes that are known in float as well.
+        const bool in_float = i % 2 != 0;
+        const texgen::ObjectTexgen given = in_float ? texgen::ObjectTexgen(texgen.rounded()) : texgen;
+        texgen::ProjectionSetup<Object> setup{.world_from_space = texgen::ModelMatrix(m.pose),
+                                              .conventions = m.conventions};
+        if (in_float) setup.lens.z_near = m.z_near;
+        require_valid(m, given.matrix(), diagnose(given, setup));
+    }
+}
+
 TEST_CASE("factors that commute are not taken for a wrong order, where floats fit it no worse") {
     Random random(643);
     for (int i = 0; i < 20000; ++i) {

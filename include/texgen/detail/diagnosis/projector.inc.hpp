@@ -13,7 +13,7 @@ inline bool is_usable(const glm::dmat4& m, Diagnosis& diagnosis) noexcept {
 // Of a lens of which nothing is known its round numbers may speak.
 inline void examine_numbers(const glm::dmat4& p, bool is_upright, Conventions conventions, const LensFacts& facts,
                             Diagnosis& diagnosis) noexcept {
-    const SeenLens seen(p, rounding_of(p));
+    const SeenLens seen(lens_factor(p), rounding_of(p));
     if (!seen.is_lens()) return;
     const double focal_length = seen.focal_length().y;
     if (!facts.fovy && is_upright && seen.is_centred_on(glm::dvec2(0.0)) &&

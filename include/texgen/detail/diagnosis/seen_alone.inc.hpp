@@ -25,10 +25,11 @@ inline bool is_of_other_range(const SeenLens& lens, const DepthEnds& ends, const
 }
 
 // The matrix in the world, as far as it is known: without the pose.
-inline glm::dmat4 in_the_world(const glm::dmat4& texgen, const glm::dmat4* pose) noexcept {
-    if (pose == nullptr) return texgen;
+inline Product in_the_world(const glm::dmat4& texgen, const glm::dmat4* pose) noexcept {
+    const Product given = lens_factor(texgen);
+    if (pose == nullptr) return given;
     const CertifiedInverse inverse(*pose);
-    return inverse.regular() ? texgen * inverse.matrix() : texgen;
+    return inverse.regular() ? given * lens_factor(inverse.matrix()) : given;
 }
 
 // S as it should be, and whether the axis of the lens goes to the corner that no bias leaves there.

@@ -19,6 +19,7 @@
 #include "../arithmetic/rounding.hpp"
 #include "../language.hpp"
 #include "matrix_signs.hpp"
+#include "products.hpp"
 
 namespace TEXGEN_DETAIL {
 
@@ -47,17 +48,17 @@ inline double roundness(const Estimate& number, int most_digits = 2) noexcept {
 // The lens that is seen in a texgen matrix, of a space that is the world but for a scale.
 class SeenLens {
 public:
-    SeenLens(const glm::dmat4& texgen, double rounding) noexcept
-        : q_(axis(texgen, 3)), rows_(depth_rows(texgen)), rounding_(rounding) {
+    SeenLens(const Product& texgen, double rounding) noexcept
+        : q_(axis(texgen.value, 3)), rows_(depth_rows(texgen.value)), rounding_(rounding) {
         per_distance_ = glm::length(q_);
         for (glm::length_t row = 0; row < 2; ++row) {
-            const glm::dvec3 axis_of_row = axis(texgen, row);
+            const glm::dvec3 axis_of_row = axis(texgen.value, row);
             centre_[row] = glm::dot(axis_of_row, q_) / (per_distance_ * per_distance_);
             across_[static_cast<std::size_t>(row)] = axis_of_row - centre_[row] * q_;
             focal_length_[row] = glm::length(across(row)) / per_distance_;
         }
-        offset_ = texgen[3].z - rows_.limit * texgen[3].w;
-        offset_error_ = rounding * (std::fabs(texgen[3].z) + std::fabs(rows_.limit * texgen[3].w));
+        offset_ = texgen.value[3].z - rows_.limit * texgen.value[3].w;
+        offset_error_ = rounding * (texgen.magnitude[3].z + std::fabs(rows_.limit) * texgen.magnitude[3].w);
     }
 
     // Whether it is a perspective that neither skews nor was skewed.
