@@ -621,6 +621,7 @@ MUTANTS = [
           "texcoord_test doubt_test"),
          ("a point in doubt is in front", "doubt.side |= ~(in_front | greater(-1.0 * of.q - q_error, 0.0));", "",
           "texcoord_test segment_test"),
+         ("a point spoils the one that shares its division", "sum = sum + next->reciprocal;", "", "within_test"),
          ("a form's w is added twice", "(point.v[2] * form.z + form.w));", "(point.v[2] * form.z + form.w + form.w));", "texcoord_test"),
          ("generate stores r in q", "to_floats(at(job.form[3], point)));", "to_floats(at(job.form[2], point)));",
           "texcoord_test")),

@@ -42,23 +42,23 @@ struct PointDivision {
 };
 
 // numerator[k] / q with these errors, of all or of each lane. With Signed, q has either sign, and lanes that are certainly
-// behind give 0; else they are in doubt too; and in none where both floats are inside the tolerance. Returns the mask of the
+// behind give 0; else all are in front; and in no doubt where both floats are inside the tolerance. Returns the mask of the
 // lanes in front.
 // With u = 2^-53, r = 1/q, and S and Q the sums of terms, numerator and q err by 4.01 u S and 4.01 u Q, and their errors are
-// given as 9.9 u S and 9.9 u Q at least. So in front the quotient errs by r (4.01 u S + |quotient| 4.01 u Q); its two
-// roundings, as it is less than r S, and the one of what becomes a float add 3.03 u r S.
+// given as 9.9 u S and 9.9 u Q at least. So in front the quotient errs by r (4.01 u S + |quotient| 4.01 u Q); its roundings,
+// as it is less than r S, by u r S each: one of the product, three of r where two q share a division, and one of what becomes
+// a float.
 template <bool Signed>
 TEXGEN_INLINE LongWords divide_certainly(std::size_t numerators, const PointDivision& of,
                                          const Doubles (&numerator_error)[2], const Doubles& q_error, double tolerance,
                                          Floats (&value)[2], Doubt& doubt) noexcept {
-    const LongWords in_front = greater(of.q, q_error * 0x1p20);
+    LongWords in_front = ~LongWords{};
     Doubles reciprocal = of.reciprocal;
     if constexpr (Signed) {
+        in_front = greater(of.q, q_error * 0x1p20);
         doubt.behind |= ~in_front;
         doubt.side |= ~(in_front | greater(-1.0 * of.q - q_error, 0.0));
         reciprocal = where(in_front, reciprocal);
-    } else {
-        doubt.side |= ~in_front;
     }
     for (std::size_t k = 0; k < numerators; ++k) {
         Doubles quotient = of.numerator[k] * reciprocal;
@@ -126,6 +126,8 @@ TEXGEN_INLINE Doubles at(const PointForm& form, const PointLanes& point) noexcep
 template <bool Signed, std::size_t Numerators>
 TEXGEN_INLINE Doubt fill_points_block(const PointJob& job, std::size_t begin, std::size_t end) noexcept {
     const bool is_bounded = !Signed && job.is_bounded;
+    // Of eight doubles a division takes longer than all else, so two vectors share one: 1/q = q' (1 / (q q')).
+    constexpr bool shares = !Signed && lanes == 8 && wide_lanes == 16;
     PointExtent extent;
     PointDivision division[(Signed ? exact_block : float_block) / static_cast<std::size_t>(lanes)];
     PointDivision* next = division;
@@ -137,11 +139,18 @@ TEXGEN_INLINE Doubt fill_points_block(const PointJob& job, std::size_t begin, st
             [&](const Doubles& of_x, const Doubles& of_y, const Doubles& of_z) {
                 const PointLanes point{{of_x, of_y, of_z}};
                 next->q = at(job.q, point);
-                next->reciprocal = 1.0 / next->q;
+                if constexpr (!shares) next->reciprocal = 1.0 / next->q;
                 for (std::size_t k = 0; k < Numerators; ++k) next->numerator[k] = at(job.numerator[k], point);
                 ++next;
             },
             x, y, z);
+        if constexpr (shares) {
+            PointDivision& first = *(next - 2);
+            PointDivision& second = *(next - 1);
+            const Doubles of_both = 1.0 / (first.q * second.q);
+            first.reciprocal = of_both * second.q;
+            second.reciprocal = of_both * first.q;
+        }
     }
     const Doubles x_size = is_bounded ? Doubles{} + job.bound[0] : folded(extent.x);
     const Doubles y_size = is_bounded ? Doubles{} + job.bound[1] : folded(extent.y);
@@ -155,13 +164,23 @@ TEXGEN_INLINE Doubt fill_points_block(const PointJob& job, std::size_t begin, st
     for (std::size_t k = 0; k < Numerators; ++k) numerator_error[k] = error_of(job.numerator[k]);
     const Doubles q_error = error_of(job.q);
     Doubt doubt;
+    // Of 1/q. The sum tells of what the least of them forgets, a NaN, and is no less than the largest.
+    Doubles least = Doubles{} + 1.0, sum{};
     next = division;
     for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(lanes)) {
+        if constexpr (!Signed) {
+            least = minimum(next->reciprocal, least);
+            sum = sum + next->reciprocal;
+        }
         Floats value[2];
         const LongWords in_front =
             divide_certainly<Signed>(Numerators, *next++, numerator_error, q_error, job.tolerance, value, doubt);
         store_points(job, i, Numerators, value, narrow(in_front));
     }
+    // Between 2^-500 and 2^500 the reciprocals are products of numbers in range: 1 / (q q') is about their product.
+    if constexpr (!Signed)
+        doubt.side = ~(greater(least, 0x1p-500) & greater(Doubles{} + 0x1p500, sum) &
+                       greater(Doubles{} + 0x1p-13, sum * q_error));
     return doubt;
 }
 
