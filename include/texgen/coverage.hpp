@@ -54,6 +54,7 @@ public:
 private:
     detail::LitForms forms_;
     detail::FloatForms float_forms_;
+    detail::UnitForms unit_forms_;
     detail::SeparatingForms separating_;
 };
 

@@ -2,20 +2,25 @@
 
 namespace TEXGEN_DETAIL {
 
-// What the planes say of a box, exactly: of those that are in doubt. For a NaN, and for forms of which nothing is known:
-// partial.
-inline Coverage exact_coverage(const LitForms& forms, const Box& box, const FormsInDoubt& doubt = {}) noexcept {
-    constexpr float infinity = std::numeric_limits<float>::infinity();
+// What is said of a box of which no form is asked.
+inline Coverage coverage_without_forms(const LitForms& forms, const Box& box) noexcept {
     bool is_empty = false;
     for (glm::length_t j = 0; j < 3; ++j) {
-        if (!(box.min[j] <= box.max[j]) && !(box.min[j] > box.max[j])) return Coverage::partial;
+        if (std::isnan(box.min[j]) || std::isnan(box.max[j])) return Coverage::partial;
         is_empty = is_empty || box.min[j] > box.max[j];
     }
-    if (is_empty || forms.light_nothing()) return Coverage::outside;
-    if (!forms.are_usable()) return Coverage::partial;
-    for (glm::length_t j = 0; j < 3; ++j)
-        if (box.min[j] == infinity || box.max[j] == -infinity) return Coverage::partial;  // beyond all numbers
+    return is_empty || forms.light_nothing() ? Coverage::outside : Coverage::partial;
+}
 
+// Whether a box holds a point that is a number: of a NaN and beyond all numbers, inf - inf, an extent is a NaN.
+inline bool has_points(const Box& box) noexcept {
+    bool result = true;
+    for (glm::length_t j = 0; j < 3; ++j) result = result && widened(box.max[j]) - widened(box.min[j]) >= 0.0;
+    return result;
+}
+
+// What the planes say of a box that has points, exactly: of those that are in doubt.
+inline Coverage exact_coverage(const LitForms& forms, const Box& box, const FormsInDoubt& doubt) noexcept {
     // The vertex where a form is largest, or least; false where it is infinite there.
     const glm::dvec3 min = widened(box.min);
     const glm::dvec3 max = widened(box.max);
@@ -54,14 +59,6 @@ inline Coverage exact_coverage(const LitForms& forms, const Box& box, const Form
 
 inline namespace TEXGEN_BUILD {
 
-// Whether a box holds a point that is a number: of a NaN and beyond all numbers, inf - inf, an extent is a NaN.
-inline bool has_points(const Box& box) noexcept {
-    // Without a branch for each.
-    bool result = true;
-    for (glm::length_t j = 0; j < 3; ++j) result &= widened(box.max[j]) - widened(box.min[j]) >= 0.0;
-    return result;
-}
-
 template <class CompiledWhereCalled = void>
 void cover(const LitForms& forms, const FloatForms& float_forms, const SeparatingForms& separating,
            std::span<const Box> boxes, const std::span<Coverage>& out) noexcept {
@@ -81,14 +78,14 @@ Coverage coverage_of(const BoxKernels& kernels, const LitForms& forms, const Box
     FormsInDoubt doubt;
     const int answer = forms.can_say() ? kernels.classify(forms.lanes(), &box.min.x, &box.max.x, doubt) : body_in_doubt;
     if (answer < open_body) return static_cast<Coverage>(answer);
-    if (answer == body_in_doubt && doubt.is_finite &&
-        kernels.sharpen(forms.matrix(), forms.weights(), &box.min.x, &box.max.x, doubt))
-        return Coverage::outside;
-    const Coverage result = answer == body_in_doubt ? exact_coverage(forms, box, doubt) : Coverage::partial;
-    if (result != Coverage::partial) return result;
-    return forms.can_say() && has_points(box) && kernels.is_separated(separating(), &box.min.x, &box.max.x)
-               ? Coverage::outside
-               : result;
+    if (answer == body_in_doubt) {
+        if (!forms.can_say() || (!doubt.is_finite && !has_points(box))) return coverage_without_forms(forms, box);
+        if (doubt.is_finite && kernels.sharpen(forms.matrix(), forms.weights(), &box.min.x, &box.max.x, doubt))
+            return Coverage::outside;
+        const Coverage result = exact_coverage(forms, box, doubt);
+        if (result != Coverage::partial) return result;
+    }
+    return kernels.is_separated(separating(), &box.min.x, &box.max.x) ? Coverage::outside : Coverage::partial;
 }
 
 }  // namespace TEXGEN_BUILD
@@ -101,6 +98,7 @@ template <class Space>
 LitVolume<Space>::LitVolume(const Transform<Texture, Space>& texture_from_space, const TextureRegion& region) noexcept
     : forms_(texture_from_space.matrix(), region, detail::chosen<detail::FormKernels>()),
       float_forms_(forms_.in_float(detail::chosen<detail::FloatFormKernels>())),
+      unit_forms_(forms_.unit(detail::chosen<detail::UnitFormKernels>())),
       separating_(forms_.separating(detail::chosen<detail::SeparatingFormKernels>())) {}
 
 template <class Space>
@@ -110,7 +108,9 @@ Coverage LitVolume<Space>::coverage(const Box& box) const noexcept {
 }
 template <class Space>
 Coverage LitVolume<Space>::coverage(const Sphere& sphere) const noexcept {
-    return detail::exact_coverage(forms_, sphere);
+    return detail::coverage_of(
+        forms_, unit_forms_, [](std::size_t) { return 1.0; },
+        [this]() -> const detail::UnitForms& { return unit_forms_; }, sphere);
 }
 
 template <class Space>
@@ -121,7 +121,7 @@ void LitVolume<Space>::coverage(std::span<const Box> boxes, std::span<Coverage> 
 template <class Space>
 void LitVolume<Space>::coverage(std::span<const Sphere> spheres, std::span<Coverage> out) const noexcept {
     TEXGEN_ASSERT(spheres.size() == out.size());
-    detail::cover(forms_, float_forms_, spheres, out);
+    detail::cover(forms_, float_forms_, unit_forms_, spheres, out);
 }
 
 // One body needs no forms in float.
@@ -136,7 +136,9 @@ template <class Space>
 Coverage coverage(const Transform<Texture, Space>& texture_from_space, const TextureRegion& region,
                   const Sphere& sphere) noexcept {
     const detail::LitForms forms(texture_from_space.matrix(), region, detail::chosen<detail::FormKernels>());
-    return detail::exact_coverage(forms, sphere);
+    return detail::coverage_of(
+        forms, forms.lanes(), [&](std::size_t k) { return forms.slope(k); },
+        [&] { return forms.unit(detail::chosen<detail::UnitFormKernels>()); }, sphere);
 }
 template <class Space>
 void coverage(const Transform<Texture, Space>& texture_from_space, const TextureRegion& region,
@@ -148,7 +150,8 @@ void coverage(const Transform<Texture, Space>& texture_from_space, const Texture
               std::span<const Sphere> spheres, std::span<Coverage> out) noexcept {
     TEXGEN_ASSERT(spheres.size() == out.size());
     const detail::LitForms forms(texture_from_space.matrix(), region, detail::chosen<detail::FormKernels>());
-    detail::cover(forms, forms.in_float(detail::chosen<detail::FloatFormKernels>()), spheres, out);
+    detail::cover(forms, forms.in_float(detail::chosen<detail::FloatFormKernels>()),
+                  forms.unit(detail::chosen<detail::UnitFormKernels>()), spheres, out);
 }
 
 }  // namespace TEXGEN_BUILD

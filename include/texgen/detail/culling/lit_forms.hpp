@@ -50,10 +50,6 @@ public:
             is_matrix_finite && (is_empty(region) || (is_usable_ && lanes_.largest_q == 0.0 && lanes_.last_q == 0.0));
         if (!can_say()) return;
         kernels.weigh(matrix_, weights_, lanes_);
-        for (std::size_t k = 0; k < count_; ++k) {
-            const Point of = a(k);
-            lanes_.slope[k] = (1.0 + gamma(8)) * std::sqrt(of[0] * of[0] + of[1] * of[1] + of[2] * of[2]);
-        }
     }
 
     // Five forms, or seven with a depth.
@@ -80,11 +76,6 @@ public:
     Point a(std::size_t k) const noexcept { return {lanes_.a[0][k], lanes_.a[1][k], lanes_.a[2][k]}; }
     const glm::dmat4& matrix() const noexcept { return matrix_; }
     const FormWeights& weights() const noexcept { return weights_; }
-    LinearForm operator[](std::size_t k) const noexcept {
-        return {a(k), lanes_.d[k], lanes_.error_a[k], lanes_.error_d[k]};
-    }
-
-    double slope(std::size_t k) const noexcept { return lanes_.slope[k]; }
 
     // How much less form k may be for its inner side at points of this size, or more: (side - inner side) T_q.
     double narrowing(std::size_t k, double size) const noexcept {
@@ -120,9 +111,24 @@ public:
         return result;
     }
 
+    // |a| of a form, or up to 12 u of it more.
+    double slope(std::size_t k) const noexcept {
+        const Point of = a(k);
+        return (1.0 + gamma(4)) * std::sqrt(of[0] * of[0] + of[1] * of[1] + of[2] * of[2]);
+    }
+
+    // For spheres.
+    UnitForms unit(const UnitFormKernels& kernels) const noexcept {
+        UnitForms result;
+        double slopes[form_lanes];
+        for (std::size_t k = 0; k < form_lanes; ++k) slopes[k] = slope(k);
+        kernels.make(lanes_, slopes, result);
+        return result;
+    }
+
     SeparatingForms separating(const SeparatingFormKernels& kernels) const noexcept {
         SeparatingForms result;
-        kernels.make(lanes_, matrix_, side_.data(), count_ == max_forms, result);
+        kernels.make(lanes_, matrix_, side_.data(), count_, result);
         return result;
     }
 

@@ -28,7 +28,7 @@ void classify_many(const LitForms& forms, const FloatForms& float_forms, std::sp
     constexpr bool is_dense = sizeof(Body) == Floats * sizeof(float);
     constexpr std::size_t copied = is_dense ? body_quantum : chunk;
     if (!forms.can_say()) {
-        for (std::size_t i = 0; i < bodies.size(); ++i) out[i] = exact_coverage(forms, bodies[i]);
+        for (std::size_t i = 0; i < bodies.size(); ++i) out[i] = coverage_without_forms(forms, bodies[i]);
         return;
     }
     int classes[chunk];
@@ -46,7 +46,8 @@ void classify_many(const LitForms& forms, const FloatForms& float_forms, std::sp
         decide(rows, count, is_any_in_doubt, classes);
         for (std::size_t k = 0; k < count; ++k) {
             const std::size_t i = open[open_count + k];
-            out[i] = classes[k] == body_in_doubt ? exact_coverage(forms, bodies[i]) : static_cast<Coverage>(classes[k]);
+            out[i] = classes[k] == body_in_doubt ? coverage_without_forms(forms, bodies[i])
+                                                 : static_cast<Coverage>(classes[k]);
         }
     };
     for (std::size_t begin = 0; begin < bodies.size();) {
@@ -74,65 +75,54 @@ void classify_many(const LitForms& forms, const FloatForms& float_forms, std::sp
     if (open_count > 0) decide_last(open_count);
 }
 
-// The extremes of a form over a sphere are its value at the centre +- |a| radius. Beside an edge of the pyramid a sphere
-// may be outside none of the five planes: there the plane through the edge that faces the centre separates them. With
-// the products of normals G it is w_f f + w_g g, w = -G^-1 (f, g) at the centre, up to a positive factor, where both
-// weights are positive; rounded weights serve as well.
-inline Coverage exact_coverage(const LitForms& forms, const Sphere& sphere) noexcept {
-    const Point centre{widened(sphere.centre.x), widened(sphere.centre.y), widened(sphere.centre.z)};
-    const double radius = widened(sphere.radius);
-    const double size = std::fabs(centre[0]) + std::fabs(centre[1]) + std::fabs(centre[2]);
-    if (!(size >= 0.0) || std::isnan(radius)) return Coverage::partial;  // a NaN
-    if (radius < 0.0 || forms.light_nothing()) return Coverage::outside;
-    if (!forms.are_usable() || !is_finite(size + radius)) return Coverage::partial;
-    const auto dot = [](const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
-    double value[max_forms];
-    double error[max_forms];
-    bool is_inside = true;
-    for (std::size_t k = 0; k < forms.count(); ++k) {
-        const LinearForm form = forms[k];
-        value[k] = dot(form.a, centre) + form.d;
-        error[k] = form.error_a * size + form.error_d;
-        const double change = forms.slope(k) * radius;
-        if (value[k] + change + (error[k] + gamma(4) * change) < 0.0) return Coverage::outside;
-        const double narrowing = 1.1 * forms.narrowing(k, size + 2.0 * radius);
-        is_inside = is_inside && value[k] - change - (error[k] + gamma(4) * change) > narrowing;
-    }
-    if (is_inside) return Coverage::inside;
-    const auto is_beside_edge = [&](std::size_t f, std::size_t g) {
-        if (value[f] >= 0.0 && value[g] >= 0.0) return false;
-        const double across = dot(forms[f].a, forms[g].a);
-        double of_f = across * value[g] - forms.slope(g) * forms.slope(g) * value[f];
-        double of_g = across * value[f] - forms.slope(f) * forms.slope(f) * value[g];
-        if (!(of_f > 0.0 && of_g > 0.0)) return false;
-        const double both = of_f + of_g;  // or their squares could be too small for a double
-        of_f /= both;
-        of_g /= both;
-        const double longest = of_f * forms.slope(f) + of_g * forms.slope(g);
-        const double squared = of_f * of_f * (forms.slope(f) * forms.slope(f)) + 2.0 * of_f * of_g * across +
-                               of_g * of_g * (forms.slope(g) * forms.slope(g)) + gamma(32) * longest * longest;
-        const double change = std::sqrt(squared) * radius;
-        const double rounding = gamma(8) * (of_f * std::fabs(value[f]) + of_g * std::fabs(value[g]) + change);
-        return of_f * value[f] + of_g * value[g] + change + (of_f * error[f] + of_g * error[g]) + rounding < 0.0;
-    };
-    for (std::size_t f = 0; f < 2; ++f)
-        for (std::size_t g = 2; g < LitForms::q; ++g)
-            if (is_beside_edge(f, g)) return Coverage::outside;
-    for (std::size_t f = 0; f < LitForms::q; ++f)
-        for (std::size_t g = LitForms::q + 1; g < forms.count(); ++g)
-            if (is_beside_edge(f, g)) return Coverage::outside;
-    return Coverage::partial;
+// What is said of a sphere of which no form is asked.
+inline Coverage coverage_without_forms(const LitForms& forms, const Sphere& sphere) noexcept {
+    const glm::vec3& centre = sphere.centre;
+    if (std::isnan(centre.x) || std::isnan(centre.y) || std::isnan(centre.z) || std::isnan(sphere.radius))
+        return Coverage::partial;
+    return sphere.radius < 0.0f || forms.light_nothing() ? Coverage::outside : Coverage::partial;
 }
 
 inline namespace TEXGEN_BUILD {
 
+// One sphere. What is clear of all bounds by twice as much the kernel says as well, where roundings differ by less than one;
+// where the centre is in front of all forms, no edge is asked. slope_of() says how long the lanes' |a| are.
+template <class SlopeOf, class MakeUnit>
+Coverage coverage_of(const LitForms& forms, const FormLanes& lanes, const SlopeOf& slope_of, const MakeUnit& make_unit,
+                     const Sphere& sphere) noexcept {
+    const Point centre{widened(sphere.centre.x), widened(sphere.centre.y), widened(sphere.centre.z)};
+    const double radius = widened(sphere.radius);
+    const double size = std::fabs(centre[0]) + std::fabs(centre[1]) + std::fabs(centre[2]);
+    if (!forms.can_say() || !(radius >= 0.0) || !is_finite(size + radius)) return coverage_without_forms(forms, sphere);
+    const double of_q = (size + 2.0 * radius) * lanes.largest_q + lanes.last_q;
+    bool is_inside = true, is_partial = false, is_lit = true;
+    for (std::size_t k = 0; k < forms.count(); ++k) {
+        const double value =
+            lanes.a[0][k] * centre[0] + lanes.a[1][k] * centre[1] + lanes.a[2][k] * centre[2] + lanes.d[k];
+        const double change = slope_of(k) * radius;
+        const double bound = 2.0 * (lanes.error_a[k] * size + lanes.error_d[k] + gamma(4) * change);
+        if (value + change < -bound) return Coverage::outside;
+        const double narrowing = lanes.narrowing[k] * of_q;
+        is_inside &= value - change > 1.2 * narrowing + bound;
+        is_partial |= value - change < narrowing;
+        is_lit &= value > bound;
+    }
+    if (is_inside) return Coverage::inside;
+    if (is_partial && is_lit) return Coverage::partial;
+    OpenRow rows[4];
+    copy_floats(sphere, rows[0], body_quantum);
+    int classes[body_quantum];
+    chosen<SphereKernels>().decide(make_unit(), forms.count(), rows, 1, classes);
+    return static_cast<Coverage>(classes[0]);
+}
+
 template <class CompiledWhereCalled = void>
-void cover(const LitForms& forms, const FloatForms& float_forms, std::span<const Sphere> spheres,
+void cover(const LitForms& forms, const FloatForms& float_forms, const UnitForms& unit, std::span<const Sphere> spheres,
            const std::span<Coverage>& out) noexcept {
-    const SphereBatchKernels& kernels = chosen<SphereBatchKernels>();
+    const SphereKernels& kernels = chosen<SphereKernels>();
     classify_many<4>(forms, float_forms, spheres, out, kernels.classify,
                      [&](const OpenRow* open, std::size_t count, bool, int* classes) {
-                         kernels.decide(forms.lanes(), forms.count(), open, count, classes);
+                         kernels.decide(unit, forms.count(), open, count, classes);
                      });
 }
 

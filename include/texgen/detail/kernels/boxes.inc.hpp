@@ -141,98 +141,53 @@ void decide_boxes(const DoubleForms* forms, const SeparatingForms& planes, const
     }
 }
 
-// As exact_coverage() of a sphere, where every rounding here and there together could not change what it says: its bounds are
-// twice what is rounded, so half of one more or less decides. A root is a square here.
+// The extremes of a form over a sphere are its value at the centre +- the radius, as |a| = 1. Beside an edge, where forms f and g
+// meet, a sphere may be outside neither: where w_f = c g - f and w_g = c f - g, c = a_f.a_g, are positive at the centre, the edge
+// is what is nearest, at the squared distance -(w_f f + w_g g) / (1 - c^2).
+// With E = error_f + error_g and M = E + |f| + |g|: a value errs by at most 3/8 of its error, of which 16 u of it are no more, and
+// a squared length |a|^2 by 28 u. So weights err by 2.2 E at most, and the sum by 2.8 M E: above 16 M E one weight at most is
+// negative, w_f say. Then g is so as well, and the sphere nearer, to g's side, by w_f^2 of the numerator, 5 E^2.
 template <class CompiledWhereCalled = void>
-void decide_spheres(const FormLanes& forms, std::size_t form_count, const OpenRow* spheres, std::size_t count,
+void decide_spheres(const UnitForms& forms, std::size_t form_count, const OpenRow* spheres, std::size_t count,
                     int* classes) noexcept {
     for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(lanes)) {
         Doubles sphere[4];
         TEXGEN_UNROLL
-        for (std::size_t j = 0; j < 4; ++j) sphere[j] = to_doubles(load<Floats>(spheres[j] + i));
+        for (std::size_t j = 0; j < 4; ++j)
+            sphere[j] = count == 1 ? Doubles{} + widened(*spheres[j]) : to_doubles(load<Floats>(spheres[j] + i));
         const Doubles(&centre)[4] = sphere;
         const Doubles& radius = sphere[3];
         const Doubles size = magnitude(centre[0]) + magnitude(centre[1]) + magnitude(centre[2]);
         const LongWords is_sphere =
             greater(Doubles{} + std::numeric_limits<double>::infinity(), size + radius) & at_most(Doubles{}, radius);
         const Doubles of_q = ((size + radius * 2.0) * forms.largest_q + forms.last_q) * 1.1;
-        Doubles value[max_forms], error[max_forms];
-        LongWords outside = ~is_sphere, perhaps_outside{}, dark{}, not_inside{}, perhaps_inside = is_sphere;
+        const Doubles squared_radius = radius * radius;
+        Doubles value[max_forms], margin[max_forms], reach[max_forms];
+        LongWords outside = ~is_sphere, dark{}, inside = is_sphere;
         for (std::size_t k = 0; k < form_count; ++k) {
             value[k] =
                 centre[0] * forms.a[0][k] + (centre[1] * forms.a[1][k] + (centre[2] * forms.a[2][k] + forms.d[k]));
-            error[k] = size * forms.error_a[k] + forms.error_d[k];
-            const Doubles change = radius * forms.slope[k];
-            const Doubles rounding = error[k] + change * gamma(4);
-            const Doubles least = value[k] - change - of_q * forms.narrowing[k];
-            outside = outside | greater(rounding * -1.5, value[k] + change);
-            perhaps_outside = perhaps_outside | greater(rounding * -0.5, value[k] + change);
-            not_inside = not_inside | ~greater(least, rounding * 1.5);
-            perhaps_inside = perhaps_inside & greater(least, rounding * 0.5);
+            const Doubles error = size * forms.error_a[k] + forms.error_d[k];
+            margin[k] = error * 16.0;
+            reach[k] = magnitude(value[k]) + margin[k];
+            const Doubles rounding = error + radius * gamma(4);
+            outside = outside | greater(0.0 - rounding, value[k] + radius);
+            inside = inside & greater(value[k] - radius - of_q * forms.narrowing[k], rounding);
             dark = dark | greater(0.0 - value[k], 0.0);
         }
-        const auto try_edge = [&](std::size_t f, std::size_t g) {
-            LongWords asked = (greater(0.0 - value[f], 0.0) | greater(0.0 - value[g], 0.0)) & ~outside;
-            if (!any(asked)) return;
+        const std::size_t edges = any(dark & ~outside) ? edge_count(form_count) : 0;
+        for (std::size_t edge = 0; edge < edges; ++edge) {
+            const std::size_t f = first_of_edge[edge], g = second_of_edge[edge];
             const auto& a = forms.a;
             const double across = a[0][f] * a[0][g] + a[1][f] * a[1][g] + a[2][f] * a[2][g];
-            const double slope_f = forms.slope[f], slope_g = forms.slope[g];
-            const double squared_f = slope_f * slope_f, squared_g = slope_g * slope_g;
-            // No sum separates a sphere that reaches the edge: with the products of normals G, where (f, g) G^-1 (f, g) at the
-            // centre is at most the squared radius; here times the determinant of G. Slopes are up to 20 u more than they are,
-            // and 16 u of a value are at most its error.
-            const Doubles at_f = value[f] * slope_g, at_g = value[g] * slope_f;
-            const Doubles both_errors = error[f] * slope_g + error[g] * slope_f;
-            const Doubles squared_distance = at_f * at_f + at_g * at_g - (value[f] * value[g]) * (2.0 * across) +
-                                             (magnitude(at_f) + magnitude(at_g) + both_errors) * both_errors * 4.0;
-            const double determinant = squared_f * squared_g * (1.0 - gamma(64)) - across * across;
-            asked = asked & greater(squared_distance, radius * radius * determinant);
-            if (!any(asked)) return;
-            // Of planes that are nearly one the weights may be what rounding leaves, but a sum of theirs is as steep as they are,
-            // but for 2^-23, an eighth of the squared angle: negative nowhere but beside one of them.
-            if (across > 0.0 && !(across * across < (1.0 - 0x1p-20) * (squared_f * squared_g))) {
-                const auto is_beside = [&](std::size_t k) {
-                    return greater(error[k], value[k] + radius * ((1.0 - 0x1p-22) * forms.slope[k]));
-                };
-                asked = asked & (is_beside(f) | is_beside(g));
-            }
-            // What a weight may differ by, here and there: by two errors of each value, and 3 u in each product. One that may have
-            // either sign is 0, within that. The sum then differs by no more than 3 times it, beside the errors of values; of 4
-            // nothing is decided where the weights are all doubt.
-            const double slopes = slope_f + slope_g;
-            const Doubles slack = both_errors * (4.0 * slopes);
-            Doubles of_f = value[g] * across - value[f] * squared_g;
-            Doubles of_g = value[f] * across - value[g] * squared_f;
-            const LongWords faces = greater(of_f + slack, 0.0) & greater(of_g + slack, 0.0) & asked;
-            if (!any(faces)) return;
-            of_f = maximum(of_f, Doubles{});
-            of_g = maximum(of_g, Doubles{});
-            const Doubles both = 1.0 / maximum(of_f + of_g, slack);
-            of_f = of_f * both;
-            of_g = of_g * both;
-            const Doubles longest = (of_f * slope_f + of_g * slope_g) * radius;
-            const Doubles squared =
-                (of_f * of_f * squared_f + of_f * of_g * (2.0 * across) + of_g * of_g * squared_g) * (radius * radius);
-            const Doubles sum = of_f * value[f] + of_g * value[g];
-            const Doubles rounding = (of_f * error[f] + of_g * error[g]) * 8.0 + longest * gamma(16) +
-                                     slack * both * 4.0 * (magnitude(value[f]) + magnitude(value[g]) + radius * slopes);
-            const Doubles reach = sum + rounding;
-            const Doubles perhaps = sum - rounding;
-            const Doubles noise = longest * longest;
-            outside =
-                outside | (faces & greater(0.0 - reach, 0.0) & greater(reach * reach, squared + noise * gamma(48)));
-            perhaps_outside = perhaps_outside | (faces & greater(0.0 - perhaps, 0.0) &
-                                                 greater(perhaps * perhaps, squared + noise * gamma(16)));
-        };
-        if (any(dark & ~outside)) {
-            for (std::size_t f = 0; f < 2; ++f)
-                for (std::size_t g = 2; g < form_of_q; ++g) try_edge(f, g);
-            for (std::size_t f = 0; f < form_of_q; ++f)
-                for (std::size_t g = form_of_q + 1; g < form_count; ++g) try_edge(f, g);
+            const Doubles against_f = value[f] - value[g] * across, against_g = value[g] - value[f] * across;
+            const LongWords faces = greater(Doubles{}, against_f) & greater(Doubles{}, against_g);
+            if (!any(faces)) continue;
+            const Doubles errors = (margin[f] + margin[g]) * (reach[f] + reach[g]);
+            outside = outside | (faces & greater(against_f * value[f] + against_g * value[g],
+                                                 squared_radius * (1.0 + gamma(16) - across * across) + errors));
         }
-        outside = outside & is_sphere;
-        const LongWords in_doubt = ((perhaps_outside | (perhaps_inside & not_inside)) & ~outside) | ~is_sphere;
-        store_classes(classes + i, outside, ~(not_inside | outside | in_doubt), in_doubt);
+        store_classes(classes + i, outside & is_sphere, inside, ~is_sphere);
     }
 }
 

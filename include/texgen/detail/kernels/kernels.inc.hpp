@@ -74,6 +74,10 @@ inline constexpr FloatFormKernels kernel_table<FloatFormKernels, CompiledWhereCa
     .round = round_forms<CompiledWhereCalled>};
 
 template <class CompiledWhereCalled>
+inline constexpr UnitFormKernels kernel_table<UnitFormKernels, CompiledWhereCalled>{
+    .make = make_unit_forms<CompiledWhereCalled>};
+
+template <class CompiledWhereCalled>
 inline constexpr BoxKernels kernel_table<BoxKernels, CompiledWhereCalled>{
     .classify = classify_box<CompiledWhereCalled>,
     .sharpen = sharpen<CompiledWhereCalled>,
@@ -84,7 +88,7 @@ inline constexpr BoxBatchKernels kernel_table<BoxBatchKernels, CompiledWhereCall
     .classify = classify_boxes<CompiledWhereCalled>, .decide = decide_boxes<CompiledWhereCalled>};
 
 template <class CompiledWhereCalled>
-inline constexpr SphereBatchKernels kernel_table<SphereBatchKernels, CompiledWhereCalled>{
+inline constexpr SphereKernels kernel_table<SphereKernels, CompiledWhereCalled>{
     .classify = classify_spheres<CompiledWhereCalled>, .decide = decide_spheres<CompiledWhereCalled>};
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA

@@ -51,17 +51,15 @@ TEXGEN_INLINE void add_plane(SeparatingForms& planes, const FormColumns* const (
 // The planes through an edge, where forms f and g of two coordinates meet, and parallel to an axis of the space: with
 // coefficients f_k and g_k of that axis, |g_k| f + |f_k| g has none where f_k and g_k have opposite signs.
 template <class CompiledWhereCalled = void>
-TEXGEN_INLINE void add_edges(SeparatingForms& planes, const FormLanes& forms, bool has_depth) noexcept {
-    constexpr std::size_t of_f[] = {0, 0, 1, 1, 0, 0, 1, 1, 2, 2, 3, 3};
-    constexpr std::size_t of_g[] = {2, 3, 2, 3, 5, 6, 5, 6, 5, 6, 5, 6};
-    const std::size_t pairs = has_depth ? 12 : 4;
+TEXGEN_INLINE void add_edges(SeparatingForms& planes, const FormLanes& forms, std::size_t form_count) noexcept {
+    const std::size_t edges = edge_count(form_count);
     FormColumns f{}, g{};  // what fills a vector is 0, and no plane
-    for (std::size_t i = 0; i < pairs; ++i) {
-        f.put(forms, of_f[i], i);
-        g.put(forms, of_g[i], i);
+    for (std::size_t i = 0; i < edges; ++i) {
+        f.put(forms, first_of_edge[i], i);
+        g.put(forms, second_of_edge[i], i);
     }
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        for (std::size_t i = 0; i < pairs; i += static_cast<std::size_t>(lanes)) {
+        for (std::size_t i = 0; i < edges; i += static_cast<std::size_t>(lanes)) {
             const auto a = load<Doubles>(f.a[axis] + i), b = load<Doubles>(g.a[axis] + i);
             const LongWords are_opposite =
                 (greater(a, 0.0) & greater(0.0 - b, 0.0)) | (greater(0.0 - a, 0.0) & greater(b, 0.0));
@@ -154,12 +152,12 @@ TEXGEN_INLINE void add_axes(SeparatingForms& planes, const glm::dmat4& matrix, c
 }
 
 template <class CompiledWhereCalled = void>
-void make_planes(const FormLanes& forms, const glm::dmat4& matrix, const double* side, bool has_depth,
+void make_planes(const FormLanes& forms, const glm::dmat4& matrix, const double* side, std::size_t form_count,
                  SeparatingForms& planes) noexcept {
     planes.count = 0;
-    add_edges(planes, forms, has_depth);
+    add_edges(planes, forms, form_count);
     add_axes(planes, matrix, side);
-    if (has_depth) add_vertices(planes, forms);
+    if (form_count == max_forms) add_vertices(planes, forms);
 }
 
 // Whether a plane separates a box. Of a plane that uses a coordinate which is infinite nothing is certain. As below.

@@ -25,6 +25,12 @@ inline constexpr std::size_t form_of_q = 4;
 inline constexpr std::size_t forms_without_depth = 5;
 inline constexpr std::size_t max_forms = 7;
 
+// The edges where two of them meet; those behind the fourth are of a depth.
+inline constexpr std::size_t max_edges = 12;
+inline constexpr std::size_t first_of_edge[max_edges] = {0, 0, 1, 1, 0, 0, 1, 1, 2, 2, 3, 3};
+inline constexpr std::size_t second_of_edge[max_edges] = {2, 3, 2, 3, 5, 6, 5, 6, 5, 6, 5, 6};
+constexpr std::size_t edge_count(std::size_t form_count) noexcept { return form_count < max_forms ? 4 : max_edges; }
+
 // A lane a form; those behind the last form are q's. Form k is of[0] T_s + of[1] T_t + of[2] T_r + of_q T_q, where one of the
 // three weights at most is not 0, but 1 or -1, and of_q is a float; its inner side has another of_q, which may be infinite, and
 // is `width` away.
@@ -38,9 +44,12 @@ struct FormWeights {
 // narrowing * T_q, and T_q at points of a size, the sum of their magnitudes, is at most largest_q * size + last_q.
 struct FormLanes {
     double a[3][form_lanes], d[form_lanes], narrowing[form_lanes], error_a[form_lanes], error_d[form_lanes];
-    double slope[form_lanes];  // |a|, or up to 2^-49 of it more
     double largest_q, last_q;
 };
+
+// The same, times numbers that bring |a| to 1, or up to 14 u below it; a constant
+// form is far above any radius.
+struct UnitForms : FormLanes {};
 
 // A bit for each form of which a double does not say the sign: where it is largest over a box, and where it is least.
 struct FormsInDoubt {
@@ -114,10 +123,15 @@ struct FloatFormKernels {
     void (*round)(const FormLanes& forms, std::size_t count, FloatForms& result) noexcept;
 };
 
+// Forms for spheres.
+struct UnitFormKernels {
+    void (*make)(const FormLanes& forms, const double* slopes, UnitForms& result) noexcept;
+};
+
 // Further forms that are >= 0 wherever all of a slide's are, each a combination of those with weights that are exactly >= 0.
 // Where one of them is negative over all of a convex body, nothing of the body is lit.
 struct SeparatingFormKernels {
-    void (*make)(const FormLanes& forms, const glm::dmat4& matrix, const double* side, bool has_depth,
+    void (*make)(const FormLanes& forms, const glm::dmat4& matrix, const double* side, std::size_t form_count,
                  SeparatingForms& planes) noexcept;
 };
 
@@ -144,10 +158,10 @@ struct BoxBatchKernels {
     void (*decide)(const DoubleForms* forms, const SeparatingForms& planes, const OpenRow* boxes, std::size_t count,
                    int* classes) noexcept;
 };
-struct SphereBatchKernels {
+struct SphereKernels {
     Classify classify;
-    // What exact_coverage() says of spheres, but where it is next to another answer: that is doubt, as what is infinite is.
-    void (*decide)(const FormLanes& forms, std::size_t form_count, const OpenRow* spheres, std::size_t count,
+    // The last word, but for what is infinite and what is no sphere: that is in doubt.
+    void (*decide)(const UnitForms& forms, std::size_t form_count, const OpenRow* spheres, std::size_t count,
                    int* classes) noexcept;
 };
 

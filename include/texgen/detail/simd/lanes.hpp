@@ -243,10 +243,11 @@ TEXGEN_EXTERN template const MaskKernels& chosen<MaskKernels>() noexcept;
 TEXGEN_EXTERN template const FootprintKernels& chosen<FootprintKernels>() noexcept;
 TEXGEN_EXTERN template const FormKernels& chosen<FormKernels>() noexcept;
 TEXGEN_EXTERN template const FloatFormKernels& chosen<FloatFormKernels>() noexcept;
+TEXGEN_EXTERN template const UnitFormKernels& chosen<UnitFormKernels>() noexcept;
 TEXGEN_EXTERN template const SeparatingFormKernels& chosen<SeparatingFormKernels>() noexcept;
 TEXGEN_EXTERN template const BoxKernels& chosen<BoxKernels>() noexcept;
 TEXGEN_EXTERN template const BoxBatchKernels& chosen<BoxBatchKernels>() noexcept;
-TEXGEN_EXTERN template const SphereBatchKernels& chosen<SphereBatchKernels>() noexcept;
+TEXGEN_EXTERN template const SphereKernels& chosen<SphereKernels>() noexcept;
 }  // namespace TEXGEN_BUILD
 }  // namespace TEXGEN_DETAIL
 #endif
