@@ -139,7 +139,7 @@ int classify_box(const FormLanes& forms, const float* box_min, const float* box_
 
     constexpr std::size_t count = form_lanes / static_cast<std::size_t>(lanes);
     Doubles value[count], change[count], error[count];
-    LongWords outside{}, open_largest{}, negative{}, open_least{}, dark{};
+    LongWords outside{}, negative{}, dark{};
     TEXGEN_UNROLL
     for (std::size_t i = 0; i < count; ++i) {
         const std::size_t first = i * static_cast<std::size_t>(lanes);
@@ -156,7 +156,7 @@ int classify_box(const FormLanes& forms, const float* box_min, const float* box_
         outside = outside | greater(0.0 - error[i], value[i] + change[i]);
     }
     if (any(outside)) return 0;
-    int largest_in_doubt[form_lanes], least_in_doubt[form_lanes];
+    doubt.largest = doubt.least = 0;
     TEXGEN_UNROLL
     for (std::size_t i = 0; i < count; ++i) {
         const std::size_t first = i * static_cast<std::size_t>(lanes);
@@ -165,22 +165,15 @@ int classify_box(const FormLanes& forms, const float* box_min, const float* box_
         const LongWords is_negative = greater(0.0 - error[i], least);
         const LongWords is_inside = greater(least - error[i], load<Doubles>(forms.narrowing + first) * narrowed);
         const LongWords least_is_open = ~(is_inside | is_negative);
-        open_largest = open_largest | largest_is_open;
         negative = negative | is_negative;
-        open_least = open_least | least_is_open;
         dark = dark | ~greater(value[i], error[i]);
-        store(largest_in_doubt + first, narrow(largest_is_open));
-        store(least_in_doubt + first, narrow(least_is_open));
+        doubt.largest |= static_cast<std::uint32_t>(lane_bits(largest_is_open)) << first;
+        doubt.least |= static_cast<std::uint32_t>(lane_bits(least_is_open)) << first;
     }
     doubt.is_any_negative = any(negative);
-    if (!any(open_largest)) {
+    if (doubt.largest == 0) {
         if (doubt.is_any_negative) return any(dark) ? open_body + 1 : 1;
-        if (!any(open_least)) return 2;
-    }
-    doubt.largest = doubt.least = 0;
-    for (std::size_t k = 0; k < max_forms; ++k) {
-        doubt.largest |= (static_cast<std::uint32_t>(largest_in_doubt[k]) & 1u) << k;
-        doubt.least |= (static_cast<std::uint32_t>(least_in_doubt[k]) & 1u) << k;
+        if (doubt.least == 0) return 2;
     }
     return body_in_doubt;
 }
@@ -204,14 +197,15 @@ struct CloseForms {
             rest = rest + of_q * (column.w - half);
             const Doubles x = select(greater(sum + rest, 0.0), Doubles{} + at_positive[j], Doubles{} + at_negative[j]);
             const Doubles first = leading_bits<27>(sum);
-            for (const Doubles& part : {first, sum - first}) {
-                Doubles left;
-                high = two_sum(high, part * x, left);
-                low = low + left;
-                size_of_low = size_of_low + magnitude(left);
+            Doubles left[3];
+            high = two_sum(high, first * x, left[0]);
+            high = two_sum(high, (sum - first) * x, left[1]);
+            left[2] = rest * x;
+            TEXGEN_UNROLL
+            for (const Doubles& part : left) {
+                low = low + part;
+                size_of_low = size_of_low + magnitude(part);
             }
-            low = low + rest * x;
-            size_of_low = size_of_low + magnitude(rest * x);
         }
         value = high + low;
         is_known = at_most(size_of_low, Doubles{}) | greater(magnitude(value), size_of_low * gamma(24) + 0x1p-1000);
@@ -229,23 +223,18 @@ bool sharpen(const glm::dmat4& matrix, const FormWeights& weights, const float* 
     for (std::size_t i = 0; i < form_lanes; i += static_cast<std::size_t>(lanes)) {
         const Doubles of[3] = {load<Doubles>(weights.of[0] + i), load<Doubles>(weights.of[1] + i),
                                load<Doubles>(weights.of[2] + i)};
-        int is_known[lanes];
-        double value[lanes];
+        const auto bits_of = [i](const LongWords& mask) { return static_cast<std::uint32_t>(lane_bits(mask)) << i; };
         // Where they are largest, and then where they are least.
         for (int end = 0; end < 2; ++end) {
             std::uint32_t& in_doubt = end == 0 ? doubt.largest : doubt.least;
-            if ((in_doubt >> i & ((1u << lanes) - 1)) == 0 || (end == 1 && doubt.is_any_negative)) continue;
+            if ((in_doubt & bits_of(~LongWords{})) == 0 || (end == 1 && doubt.is_any_negative)) continue;
             const CloseForms close(matrix, of, load<Doubles>((end == 0 ? weights.of_q : weights.inner_of_q) + i),
                                    end == 0 ? max : min, end == 0 ? min : max);
-            store(is_known, narrow(close.is_known));
-            store(value, close.value);
-            bool any_is_negative = false;
-            for (std::size_t lane = 0; lane < static_cast<std::size_t>(lanes); ++lane) {
-                const std::uint32_t bit = std::uint32_t{1} << (i + lane);
-                if ((in_doubt & bit) == 0 || is_known[lane] == 0) continue;
-                in_doubt &= ~bit;
-                any_is_negative |= value[lane] < 0.0 || (i + lane == form_of_q && value[lane] == 0.0);
-            }
+            const std::uint32_t settled = in_doubt & bits_of(close.is_known);
+            constexpr std::uint32_t bit_of_q = 1u << form_of_q;
+            const bool any_is_negative = (settled & (bits_of(greater(Doubles{}, close.value)) |
+                                                     (bits_of(~greater(close.value, 0.0)) & bit_of_q))) != 0;
+            in_doubt &= ~settled;
             if (end == 0 && any_is_negative) return true;
             doubt.is_any_negative |= any_is_negative;
         }
