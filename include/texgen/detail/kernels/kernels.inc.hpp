@@ -9,6 +9,7 @@
 #endif
 
 #include "stores.inc.hpp"
+#include "small_tiles.inc.hpp"
 #include "tiles.inc.hpp"
 
 #include "../simd/twofold.inc.hpp"
@@ -33,10 +34,9 @@ inline constexpr Table kernel_table;
 
 template <class CompiledWhereCalled>
 inline constexpr TileKernels kernel_table<TileKernels, CompiledWhereCalled>{
-    .fill_unit = fill_tile_unit<CompiledWhereCalled>,
+    .fill_small = fill_small_tile<CompiledWhereCalled>,
     .divide = divide_tile<CompiledWhereCalled>,
     .divide_in_pairs = divide_in_pairs<CompiledWhereCalled>,
-    .fill_float_divided = fill_tile_float_divided<CompiledWhereCalled>,
     .weigh_chunks = weigh_chunks<CompiledWhereCalled>,
     .fill_chunks = fill_chunks<CompiledWhereCalled>,
     .fill_closely = fill_tile_closely<CompiledWhereCalled>};

@@ -3,49 +3,6 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// A tile of no more than a unit whose rows follow one another: a column of vectors at a time, of which the last ends with the rows.
-// Where those are shorter, what a vector writes beyond its row is written again by those that follow. Two rows share a division of
-// doubles, which adds two roundings to a quotient; a last row stands for both.
-template <class CompiledWhereCalled = void>
-bool fill_tile_unit(const TileJob& job) noexcept {
-    const int width = job.width;
-    const int count = width * job.height;
-    float* const out[2] = {job.out[0], job.out[1]};
-    Words doubtful{};
-    for (int begin = 0;;) {
-        const Doubles x = minimum(indices<Doubles>() + static_cast<double>(begin), Doubles{} + (width - 1.0));
-        const auto first_of = [&](const Ramp& ramp) { return x * ramp.dx + ramp.base; };
-        const Doubles first_q = first_of(job.q);
-        const Doubles first[2] = {first_of(job.numerator[0]), first_of(job.numerator[1])};
-        Doubles y{};
-        for (int n = begin; n < count; n += 2 * width, y = y + 2.0) {
-            const int next = n + width < count ? n + width : n;
-            const Doubles row[2] = {y, y + (next == n ? 0.0 : 1.0)};
-            const Doubles q[2] = {row[0] * job.q.dy + first_q, row[1] * job.q.dy + first_q};
-            const Doubles of_both = 1.0 / (q[0] * q[1]);
-            Floats quotient[4];
-            TEXGEN_UNROLL
-            for (std::size_t i = 0; i < 4; ++i) {
-                const std::size_t k = i % 2;
-                const Doubles value = (row[i / 2] * job.numerator[k].dy + first[k]) * (of_both * (i < 2 ? q[1] : q[0]));
-                quotient[i] = to_floats(value - job.quotient_error[k]);
-                doubtful |= bits(quotient[i]) ^ bits(to_floats(value + job.quotient_error[k]));
-            }
-            if (next + lanes <= count) {
-                TEXGEN_UNROLL
-                for (std::size_t i = 0; i < 4; ++i) store(out[i % 2] + (i < 2 ? n : next), quotient[i]);
-            } else {
-                const Floats last[4] = {quotient[0], quotient[1], quotient[2], quotient[3]};
-                for (std::size_t i = 0; i < 4; ++i) store_from(out[i % 2], i < 2 ? n : next, count, count, last[i]);
-            }
-        }
-        if (begin + lanes >= width) break;
-        begin = begin + 2 * lanes <= width ? begin + lanes : width - lanes;
-    }
-    if (job.lit != nullptr) light_apart(job, out[0], out[1], job.lit, count);
-    return any(doubtful);
-}
-
 // The functions of a row's index.
 struct TileRow {
     double base[2], q;
@@ -60,28 +17,27 @@ struct TileRow {
     }
 };
 
-// One vector of quotients. With Exact, marks in `doubtful` where value - error and value + error do not round to one float; else
-// numerators and q are rounded to float and divided there.
-template <bool Exact>
+// One vector of quotients: marks in `doubtful` where value - error and value + error do not round to one float.
 TEXGEN_INLINE void divide_vector(const TileJob& job, const TileRow& row, const Doubles& index, Doubles& reciprocal,
                                  Floats (&quotient)[2], Words& doubtful) noexcept {
-    if constexpr (Exact) {
-        if (!job.q_is_constant) reciprocal = 1.0 / row.q_at(job, index);
-        for (std::size_t k = 0; k < 2; ++k) {
-            const Doubles value = row.numerator_at(job, k, index) * reciprocal;
-            quotient[k] = to_floats(value - job.quotient_error[k]);
-            doubtful |= bits(quotient[k]) ^ bits(to_floats(value + job.quotient_error[k]));
-        }
-    } else {
-        const Floats float_reciprocal = 1.0f / to_floats(row.q_at(job, index));
-        for (std::size_t k = 0; k < 2; ++k) quotient[k] = to_floats(row.numerator_at(job, k, index)) * float_reciprocal;
+    if (!job.q_is_constant) reciprocal = 1.0 / row.q_at(job, index);
+    for (std::size_t k = 0; k < 2; ++k) {
+        const Doubles value = row.numerator_at(job, k, index) * reciprocal;
+        quotient[k] = to_floats(value - job.quotient_error[k]);
+        doubtful |= bits(quotient[k]) ^ bits(to_floats(value + job.quotient_error[k]));
     }
+}
+// The same of numerators and q that are rounded to float and divided there, with no doubt.
+TEXGEN_INLINE void divide_in_float(const TileJob& job, const TileRow& row, const Doubles& index,
+                                   Floats (&quotient)[2]) noexcept {
+    const Floats reciprocal = 1.0f / to_floats(row.q_at(job, index));
+    for (std::size_t k = 0; k < 2; ++k) quotient[k] = to_floats(row.numerator_at(job, k, index)) * reciprocal;
 }
 
 // Divides a part of a row, or whole rows. Whether a value is in doubt (it is written all the same). What a last vector writes
 // beyond its row is written again by those that follow, and may only cause a doubt too many.
-template <bool Exact>
-TEXGEN_INLINE bool divide_part(const TileJob& job, const TileJob::Unit& part) noexcept {
+template <class CompiledWhereCalled = void>
+bool divide_tile(const TileJob& job, const TileJob::Unit& part) noexcept {
     const auto [x_begin, x_end, y_begin, y_end] = part;
     Doubles reciprocal = Doubles{} + 1.0 / job.q.base;
     Words doubtful{};
@@ -94,7 +50,10 @@ TEXGEN_INLINE bool divide_part(const TileJob& job, const TileJob::Unit& part) no
         std::int64_t x = x_begin;  // what follows the last vector may be no int
         const std::int64_t last = row.writable - lanes;
         for (; x < x_end; x += lanes, index += static_cast<double>(lanes)) {
-            divide_vector<Exact>(job, tile_row, index, reciprocal, quotient, doubtful);
+            if (job.is_in_float)
+                divide_in_float(job, tile_row, index, quotient);
+            else
+                divide_vector(job, tile_row, index, reciprocal, quotient, doubtful);
             if (x > last) break;
             for (std::size_t k = 0; k < 2; ++k) store(row.out[k] + x, quotient[k]);
         }
@@ -102,16 +61,7 @@ TEXGEN_INLINE bool divide_part(const TileJob& job, const TileJob::Unit& part) no
             for (std::size_t k = 0; k < 2; ++k) store_some(row.out[k] + x, static_cast<int>(x_end - x), quotient[k]);
         light(job, row, x_begin, x_end);
     }
-    return Exact && any(doubtful);
-}
-
-template <class CompiledWhereCalled = void>
-bool divide_tile(const TileJob& job, const TileJob::Unit& part) noexcept {
-    return divide_part<true>(job, part);
-}
-template <class CompiledWhereCalled = void>
-void fill_tile_float_divided(const TileJob& job) noexcept {
-    divide_part<false>(job, {0, job.width, 0, job.height});
+    return any(doubtful);
 }
 
 // The same of a job that knows its ulps, unit by unit of its rows: pairs of vectors share a division, which adds two roundings to a

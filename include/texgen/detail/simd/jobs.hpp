@@ -23,6 +23,16 @@ bool is_constant(const RampOf<Number>& ramp) noexcept {
     return ramp.dx == 0 && ramp.dy == 0;
 }
 
+// F(p) = base + (p - a) . (dx, dy), about the first vertex, which has the largest w: nothing cancels there that does
+// not cancel in the triangle itself. `magnitude` is the same with the absolute values of all terms: it bounds the
+// rounding errors.
+template <class Number>
+struct PlaneOf {
+    RampOf<Number> value;
+    RampOf<Number> magnitude;
+};
+using Plane = PlaneOf<double>;
+
 inline constexpr int longest_chunk = 256;
 
 // numerator[k] / q over a rectangle; out[k], and lit (or null) from the closed region. One numerator alone is in both
@@ -34,6 +44,7 @@ struct TileJob {
     Ramp numerator[2];
     Ramp q;
     bool q_is_constant;
+    bool is_in_float = false;        // numerators and q are rounded to float and divided there
     double quotient_error[2] = {};   // for fill_exact
     std::int32_t ulps = 0;           // see Corners::ulps_of_quotients
     double numerator_error[2] = {};  // for fill_polynomial, as what follows
@@ -60,10 +71,6 @@ struct TileJob {
 
     int length_of_chunk(int begin) const noexcept { return chunk < width - begin ? chunk : width - begin; }
 
-    // Whether it is one unit, of short rows that follow one another.
-    bool is_unit() const noexcept {
-        return is_contiguous && width <= unit_size / 4 && std::int64_t{width} * height <= unit_size;
-    }
     Unit unit_at(int x, int y, int size = unit_size) const noexcept {
         const int rows = x != 0 || width >= size ? 1 : size / width;
         return {x, size < width - x ? x + size : width, y, rows < height - y ? y + rows : height};
@@ -254,14 +261,15 @@ struct FootprintJob {
     float* row(float* output, int y) const noexcept { return output == nullptr ? nullptr : output + y * pitch; }
 };
 
+struct SmallTile;  // lanes.hpp
+
 // A kernel is called by its tier, see tiers.hpp.
 struct TileKernels {
-    // A job that is_unit(). Whether a value is in doubt.
-    bool (*fill_unit)(const TileJob&) noexcept;
+    // Whether it is filled: one certificate serves all of it, and no value is in doubt.
+    bool (*fill_small)(const SmallTile&) noexcept;
     // Whether a value of a part is in doubt; and the first unit from `first` on that is, of a job that knows its ulps.
     bool (*divide)(const TileJob&, const TileJob::Unit& part) noexcept;
     TileJob::Unit (*divide_in_pairs)(const TileJob&, const TileJob::Unit& first) noexcept;
-    void (*fill_float_divided)(const TileJob&) noexcept;
     // Makes a group of `count` chunks from one of row y on; and fills some of it that have one rule, from x of a row on.
     void (*weigh_chunks)(const TileJob&, ChunkGroup&, int chunks_of_row, int y, int chunk, int count) noexcept;
     void (*fill_chunks)(const TileJob&, const RowOutputs&, ChunkGroup&, int first, int end, int x) noexcept;

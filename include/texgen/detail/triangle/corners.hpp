@@ -3,6 +3,7 @@
 // What is known of a tile by its corner fragments: in front or behind, where its coordinates lie in the region, and how large
 // they and their errors are.
 
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -128,10 +129,7 @@ struct Corners {
         const double share =
             larger(numerator_error[0] / least[0], numerator_error[1] / least[1]) + q_error * reciprocal;
         const double ulps = share * 0x1.01p53 + 6.0;
-        if (!(ulps < 0x1p15)) return 0;
-        std::int32_t result = 7;
-        while (result <= static_cast<std::int32_t>(ulps)) result = 2 * result + 1;
-        return result;
+        return ulps < 0x1p15 ? (1 << std::bit_width(static_cast<unsigned>(ulps) + 1)) - 1 : 0;
     }
 };
 

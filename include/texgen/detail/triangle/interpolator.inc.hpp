@@ -44,7 +44,7 @@ public:
         interpolate(tile, at, plan != nullptr ? *plan : plan_without_survey(tile, at));
     }
 
-    void interpolate(const Tile& tile, const Corners& at, const Plan& plan) noexcept {
+    TEXGEN_APART void interpolate(const Tile& tile, const Corners& at, const Plan& plan) noexcept {
         whole_ = tile;
         whole_at_ = &at;
         doubtful_.drop();
@@ -148,10 +148,6 @@ private:
         for (std::size_t k = 0; k < 2; ++k) job.quotient_error[k] = error[k];
         // A small tile does not repay the search for its least quotient.
         job.ulps = tile.count() < 1024 ? 0 : at.ulps_of_quotients();
-        if (job.is_unit()) {
-            if (kernels_.fill_unit(job)) fill_from_doubt(tile, at, job, job.unit_at(0, 0));
-            return;
-        }
         const TileJob::Unit unit = detail::fill_exact(kernels_, job, job.unit_at(0, 0));
         if (!job.is_done(unit)) fill_from_doubt(tile, at, job, unit);
     }
@@ -226,12 +222,14 @@ private:
         fill(rest, job.chunk - 1);
     }
 
-    void fill_float_divided(const Tile& tile, const Corners& at) noexcept {
+    TEXGEN_APART void fill_float_divided(const Tile& tile, const Corners& at) noexcept {
         const Double2 error = at.float_divided_error();
         const bool fits = at.well_in_front() && at.least_q > 0x1p-20 * at.largest_q &&
                           error[0] <= triangle_.tolerance && error[1] <= triangle_.tolerance;
         if (!fits) return fill_exact(tile, at);
-        kernels_.fill_float_divided(make_job(tile, at, reciprocal_power_of_two(at.largest_q)));
+        TileJob job = make_job(tile, at, reciprocal_power_of_two(at.largest_q));
+        job.is_in_float = true;
+        kernels_.divide(job, {0, tile.width, 0, tile.height});
     }
 
     // One fragment, every decision exact.
@@ -386,9 +384,12 @@ namespace TEXGEN_NAMESPACE {
 inline namespace TEXGEN_BUILD {
 
 template <class CompiledWhereCalled>
-Work interpolate(const TriangleSetup& setup, FragmentRect rect, Texcoords out) noexcept {
+TEXGEN_INLINE Work interpolate(const TriangleSetup& setup, FragmentRect rect, Texcoords out) noexcept {
     const std::size_t count = detail::count_of(rect);
     if (count == 0) return Work::nothing;
+    if (rect.width == detail::SmallTile::width && count <= detail::TileJob::unit_size &&
+        detail::fill_small(setup.functions(), rect, out))
+        return detail::is_constant(setup.functions().q.value) ? Work::affine : Work::divide;
     detail::take_computed(out, count);
     return detail::interpolate_tile(setup, detail::tile_of(rect), out);
 }

@@ -83,16 +83,6 @@ TEXGEN_APART inline void fill_rows(const std::span<float>& output, const Tile& r
     }
 }
 
-// F(p) = base + (p - a) . (dx, dy), about the first vertex, which has the largest w: nothing cancels there that does
-// not cancel in the triangle itself. `magnitude` is the same with the absolute values of all terms: it bounds the
-// rounding errors.
-template <class Number>
-struct PlaneOf {
-    RampOf<Number> value;
-    RampOf<Number> magnitude;
-};
-using Plane = PlaneOf<double>;
-
 // The derivatives of f/q by x and y, times Q^2, as functions of p - a. With mu_ij = (f_i q_j - f_j q_i) times the weights
 // of i and j, and twice the signed area,
 //   d(f/q)/dx Q^2 = F_x Q - F Q_x = -area (mu_ab (c - p).y + mu_bc (a - p).y + mu_ca (b - p).y)
