@@ -57,8 +57,8 @@ public:
     float operator()(float s, float t) const noexcept { return is_inside(s, t, min_, max_) ? 1.0f : 0.0f; }
 
     // The bounds of s (0) and of t (1).
-    double least(std::size_t coordinate) const noexcept { return widened(min_[coordinate]); }
-    double greatest(std::size_t coordinate) const noexcept { return widened(max_[coordinate]); }
+    double least(std::size_t coordinate) const noexcept { return widened(read_alone(min_[coordinate])); }
+    double greatest(std::size_t coordinate) const noexcept { return widened(read_alone(max_[coordinate])); }
 
     bool has_depth() const noexcept { return has_depth_; }
     float r_min() const noexcept { return r_min_; }

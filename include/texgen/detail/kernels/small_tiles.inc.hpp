@@ -35,8 +35,7 @@ TEXGEN_INLINE bool is_certain(const SmallTile& tile, const SmallFunction<Double2
                               const SmallFunction<double>& q) noexcept {
     const double least_q = least_of(q.base, q.right, q.bottom);
     const double largest_q = -least_of(-q.base, -q.right, -q.bottom);
-    const Double2 min = double2_of(widened(tile.min[0]), widened(tile.min[1]));
-    const Double2 max = double2_of(widened(tile.max[0]), widened(tile.max[1]));
+    const Double2 min = tile.min, max = tile.max;
     const Double2 above = least_of<Double2>(f.base - min * q.base, f.right - min * q.right, f.bottom - min * q.bottom);
     const Double2 below = least_of<Double2>(max * q.base - f.base, max * q.right - f.right, max * q.bottom - f.bottom);
     const Double2 error = f.error + max * q.error;

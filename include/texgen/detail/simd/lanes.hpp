@@ -206,7 +206,7 @@ struct SmallTile {
     double tolerance;
     int height;
     float* out[2];
-    float min[2], max[2];  // the region, not below 0
+    Double2 min, max;  // the region, not below 0
 };
 
 }  // namespace TEXGEN_DETAIL

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <span>
 
@@ -121,7 +122,10 @@ public:
     // False where a number is not finite, a clip_w is not positive, or the area is zero (decided exactly): then nothing
     // that follows means anything.
     bool is_usable() const noexcept {
-        return is_usable(triangle_.a) && is_usable(triangle_.b) && is_usable(triangle_.c) && orientation_ != 0;
+        constexpr float largest = (std::numeric_limits<float>::max)();
+        for (const WindowVertex* vertex : {&triangle_.a, &triangle_.b, &triangle_.c})
+            if (!(vertex->clip_w > 0.0f && vertex->clip_w <= largest)) return false;
+        return orientation_ != 0 && are_finite();
     }
 
     // The plane of one coordinate, 0 to 3 for s, t, r, q, and of two.
@@ -185,7 +189,8 @@ public:
 
     // The window, seen from the first vertex: the centre of a fragment, and the other vertices.
     glm::dvec2 from_a(const Tile& tile) const noexcept {
-        return {(static_cast<double>(tile.x) + 0.5) - a_.x, (static_cast<double>(tile.y) + 0.5) - a_.y};  // integers
+        const glm::dvec2 first(static_cast<double>(tile.x), static_cast<double>(tile.y));  // integers
+        return {(first.x + 0.5) - read_alone(a_.x), (first.y + 0.5) - read_alone(a_.y)};
     }
     const glm::dvec2& to_b() const noexcept { return to_b_; }
     const glm::dvec2& to_c() const noexcept { return to_c_; }
@@ -252,8 +257,16 @@ private:
         return {widened(vertex.window.x), widened(vertex.window.y)};
     }
 
-    static bool is_usable(const WindowVertex& vertex) noexcept {
-        return is_finite(vertex.window) && vertex.clip_w > 0.0f && is_finite(vertex.clip_w) && is_finite(vertex.strq);
+    // Two floats at a time: only the exponent of one that is not finite is all ones, so that 1 more carries to the sign.
+    bool are_finite() const noexcept {
+        std::uint64_t sum = 0;
+        for (const WindowVertex* vertex : {&triangle_.a, &triangle_.b, &triangle_.c}) {
+            std::uint64_t words[3];
+            std::memcpy(words, &vertex->window, sizeof vertex->window);
+            std::memcpy(words + 1, &vertex->strq, sizeof vertex->strq);
+            for (const std::uint64_t word : words) sum |= (word & 0x7fffffff7fffffff) + 0x0080000000800000;
+        }
+        return (sum & 0x8000000080000000) == 0;
     }
 
     // (b - a) x (c - a), every product of two floats being exact in double.

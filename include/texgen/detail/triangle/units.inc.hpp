@@ -8,22 +8,23 @@ TEXGEN_APART inline bool fill_small(const TriangleFunctions& triangle, const Fra
                                     const Texcoords& out) noexcept {
     const auto count = static_cast<std::size_t>(rect.width * rect.height);
     if (rect.height % 2 != 0 || out.s.size() != count || out.t.size() != count || !out.r.empty() || !out.lit.empty() ||
-        triangle.lit.has_depth() || !(triangle.lit.least(0) >= 0.0 && triangle.lit.least(1) >= 0.0))
+        triangle.lit.has_depth())
         return false;
+    const Double2 min = double2_of(triangle.lit.least(0), triangle.lit.least(1));
+    if (!(min[0] >= 0.0 && min[1] >= 0.0)) return false;
     const glm::dvec2 p = triangle.planes.from_a(tile_of(rect));
-    SmallTile tile{.st = &triangle.st,
-                   .q = &triangle.q,
-                   .x = p.x,
-                   .y = p.y,
-                   .reach_x = std::fabs(p.x) + rect.width,
-                   .reach_y = std::fabs(p.y) + rect.height,
-                   .bottom = rect.height - 1.0,
-                   .tolerance = triangle.tolerance,
-                   .height = rect.height,
-                   .out = {out.s.data(), out.t.data()},
-                   .min = {},
-                   .max = {}};
-    triangle.lit.copy_to(tile.min, tile.max);
+    const SmallTile tile{.st = &triangle.st,
+                         .q = &triangle.q,
+                         .x = p.x,
+                         .y = p.y,
+                         .reach_x = std::fabs(p.x) + rect.width,
+                         .reach_y = std::fabs(p.y) + rect.height,
+                         .bottom = rect.height - 1.0,
+                         .tolerance = triangle.tolerance,
+                         .height = rect.height,
+                         .out = {out.s.data(), out.t.data()},
+                         .min = min,
+                         .max = double2_of(triangle.lit.greatest(0), triangle.lit.greatest(1))};
     return chosen<TileKernels>().fill_small(tile);
 }
 
