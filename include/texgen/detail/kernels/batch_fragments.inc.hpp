@@ -93,10 +93,13 @@ struct DoubtfulRuns {
         std::uint64_t undecided = 0;
         for (std::size_t i = 0; i < count; ++i) {
             CloseFragments<Numerators> fragments;
-            fragments.divide(functions, i, indices<Doubles>(), none, tolerance);
+            const BatchFunctionsAt at{functions, i, indices<Doubles>(), none};
+            CloseDivisor q;
+            q.take(at.values(Numerators));
+            fragments.divide(at, q, Numerators, tolerance, true);
             const bool is_unknown = (unknown >> i & 1u) != 0;
             const Words left = is_unknown ? doubtful[i] : doubtful[i] & fragments.doubtful;
-            out[i]->put_where(doubtful[i], n[i], fragments.quotient, fragments.front);
+            out[i]->put_where(doubtful[i], n[i], fragments.quotient, q.front);
             undecided |= std::uint64_t{bits_of(left)} << place[i];
         }
         count = 0;

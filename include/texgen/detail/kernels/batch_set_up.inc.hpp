@@ -62,7 +62,7 @@ TEXGEN_INLINE void store_planes(const Doubles (&value)[BatchPlanes::count], Batc
 
 // As TrianglePlanes, with the same operations in the same order: what they err by is said there. Where the sign of the area is
 // in doubt, or a number is not one, the error of q is infinite: those lanes are returned.
-TEXGEN_INLINE Words set_up_lanes(const float* triangles, BatchPlanes* planes) noexcept {
+TEXGEN_INLINE LongWords set_up_lanes(const float* triangles, BatchPlanes* planes) noexcept {
     const TriangleLanes given(triangles);
     const Doubles* const a = given.vertex[0];
     const Doubles* const b = given.vertex[1];
@@ -129,22 +129,15 @@ TEXGEN_INLINE Words set_up_lanes(const float* triangles, BatchPlanes* planes) no
     value[BatchPlanes::per_reach] = 1.0 / reach_x;
     value[BatchPlanes::per_reach + 1] = 1.0 / reach_y;
     store_planes(value, planes);
-    return narrow(~is_known);
-}
-
-// A bit for each lane that is set.
-TEXGEN_INLINE unsigned bits_of(const Words& mask) noexcept {
-    unsigned result = 0;
-    if (any(mask))
-        for (int i = 0; i < lanes; ++i) result |= lane(mask, i) != 0 ? 1u << i : 0u;
-    return result;
+    return ~is_known;
 }
 
 template <class = void>
 unsigned set_up_batch(const float* triangles, BatchPlanes* planes) noexcept {
     unsigned unknown = 0;
     for (std::size_t i = 0; i < batch_block; i += static_cast<std::size_t>(lanes))
-        unknown |= bits_of(set_up_lanes(triangles + 3 * BatchVertex::size * i, planes + i)) << i;
+        unknown |=
+            static_cast<unsigned>(lane_bits(set_up_lanes(triangles + 3 * BatchVertex::size * i, planes + i)) << i);
     return unknown;
 }
 

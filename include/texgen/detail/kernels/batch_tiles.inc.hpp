@@ -315,9 +315,11 @@ TEXGEN_APART std::uint64_t decide_tiles(const TilesJob& job, const FragmentOutpu
         for (std::size_t n = 0; n < shape.count; n += static_cast<std::size_t>(lanes), walk.advance()) {
             const Doubles row = minimum(walk.y, Doubles{} + shape.last_row);
             CloseFragments<Numerators> fragments;
-            fragments.divide(functions, i, shape.is_turned ? row : walk.x, shape.is_turned ? walk.x : row,
-                             job.tolerance);
-            here.put(in_scratch ? n : begin + n, fragments.quotient, fragments.front);
+            const BatchFunctionsAt at{functions, i, shape.is_turned ? row : walk.x, shape.is_turned ? walk.x : row};
+            CloseDivisor q;
+            q.take(at.values(Numerators));
+            fragments.divide(at, q, Numerators, job.tolerance, true);
+            here.put(in_scratch ? n : begin + n, fragments.quotient, q.front);
             left |= fragments.doubtful;
         }
         if (in_scratch) scratch.copy_to(out, begin, shape.count);

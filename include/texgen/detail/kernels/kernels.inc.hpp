@@ -9,11 +9,14 @@
 #endif
 
 #include "stores.inc.hpp"
-#include "small_tiles.inc.hpp"
-#include "tiles.inc.hpp"
 
 #include "../simd/twofold.inc.hpp"
+
+#include "doubt.inc.hpp"
+
 #include "chunks.inc.hpp"
+#include "small_tiles.inc.hpp"
+#include "tiles.inc.hpp"
 
 #include "points.inc.hpp"
 #include "points_in_float.inc.hpp"

@@ -134,9 +134,10 @@ struct CloseFunction {
     RampOf<std::uint64_t> residue;
 };
 struct CloseFunctions {
-    CloseFunction numerator[2];
-    CloseFunction q;
-    double q_unit;                  // adding and taking it rounds high of q to 26 bits
+    static constexpr std::size_t q = 2;
+
+    CloseFunction function[3];      // two numerators, and q
+    double tolerance;               // within which whatever is nearest to a double will do
     bool are_close, have_residues;  // or they are of the planes as they are, without low parts, and without residues
 };
 
@@ -273,8 +274,9 @@ struct TileKernels {
     // Makes a group of `count` chunks from one of row y on; and fills some of it that have one rule, from x of a row on.
     void (*weigh_chunks)(const TileJob&, ChunkGroup&, int chunks_of_row, int y, int chunk, int count) noexcept;
     void (*fill_chunks)(const TileJob&, const RowOutputs&, ChunkGroup&, int first, int end, int x) noexcept;
-    // A unit on either side of the projector. A bit for each fragment that stays in doubt, row by row.
-    std::uint64_t (*fill_closely)(const TileJob&, const CloseFunctions&, TileJob::Unit unit) noexcept;
+    // What is asked of a unit on either side of the projector: a bit for each fragment, row by row, as for those that stay in doubt.
+    std::uint64_t (*fill_closely)(const TileJob&, const CloseFunctions&, TileJob::Unit unit,
+                                  std::uint64_t asked) noexcept;
 };
 
 // Where a kernel stops: at the first block with values that it cannot decide (bit i: value begin + i), or at the count.

@@ -85,9 +85,7 @@ struct CloseRamps {
 
     // Residues stay.
     void split(CloseFunctions& result) const noexcept {
-        for (std::size_t k = 0; k < 2; ++k) function[k].split(tile, result.numerator[k]);
-        function[q].split(tile, result.q);
-        result.q_unit = 0x1.8p78 * function[q].unit_for(tile);
+        for (std::size_t k = 0; k < 3; ++k) function[k].split(tile, result.function[k]);
     }
 };
 
@@ -165,11 +163,10 @@ struct DoubtfulJob {
 // Whether quotients of a tile well in front are decided by residues, of numerators as large as their errors let expect. Planes that
 // are multiples of their grains become exact: the error that is left is of what is computed of them, 2^-98 of the values.
 TEXGEN_RARE inline bool are_decided_by_residues(CloseFunctions& functions) noexcept {
-    for (CloseFunction* const f : {&functions.numerator[0], &functions.numerator[1], &functions.q})
-        if (take_multiples(f->high, f->error, f->grain)) f->error *= 0x1p-50;
-    const auto& [first, second] = functions.numerator;
-    return functions.q.error < 0x1p33 * functions.q.grain &&
-           (first.error < 0x1p58 * first.grain || second.error < 0x1p58 * second.grain);
+    for (CloseFunction& f : functions.function)
+        if (take_multiples(f.high, f.error, f.grain)) f.error *= 0x1p-50;
+    const auto& [first, second, q] = functions.function;
+    return q.error < 0x1p33 * q.grain && first.error < 0x1p58 * first.grain && second.error < 0x1p58 * second.grain;
 }
 
 // Whether a coefficient of a function is u times q, which is constant: exactly.
@@ -190,12 +187,12 @@ TEXGEN_RARE inline bool is_multiple(const CloseFunction& f, std::size_t j, doubl
 
 // Where q is constant the quotients are linear; of one that doubles hold exactly rounding to float decides every tie.
 inline bool take_exact_quotients(const CloseFunctions& functions, TileJob& job) noexcept {
-    const CloseFunction& q = functions.q;
+    const CloseFunction& q = functions.function[CloseFunctions::q];
     if (!is_multiple(q, 1, 0.0, q) || !is_multiple(q, 2, 0.0, q)) return false;
     const double reciprocal = 1.0 / (q.high.base + q.low.base);
     bool is_any_exact = false;
     for (std::size_t k = 0; k < 2; ++k) {
-        const CloseFunction& f = functions.numerator[k];
+        const CloseFunction& f = functions.function[k];
         Ramp& ramp = job.numerator[k];
         ramp = {(f.high.base + f.low.base) * reciprocal, (f.high.dx + f.low.dx) * reciprocal,
                 (f.high.dy + f.low.dy) * reciprocal};

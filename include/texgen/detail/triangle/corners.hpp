@@ -48,7 +48,7 @@ struct Corners {
     double least_q, largest_q;
     double reciprocal;  // the largest 1 / q, for a tile in front
 
-    bool all_behind() const noexcept { return largest_q < -q_error; }
+    bool all_behind() const noexcept { return largest_q <= -q_error; }
     bool all_in_front() const noexcept { return least_q > q_error; }
     // Whether so little is left of the functions' terms that many quotients would be in doubt: the planes are about a corner.
     // Where q has both signs there is doubt beside q = 0 in any case.
@@ -182,16 +182,15 @@ TEXGEN_RARE inline Corners corners_of(const CloseRamps& close) noexcept {
     return corners;
 }
 
-// The planes of these corners, as they are: what is lost below the unit of q is far less than their errors.
+// The planes of these corners, as they are.
 TEXGEN_RARE inline void take_planes(const Corners& at, CloseFunctions& functions) noexcept {
     const auto& [base, dx, dy] = at.numerator_ramp;
     for (std::size_t k = 0; k < 2; ++k) {
-        functions.numerator[k].high = {base[k], dx[k], dy[k]};
-        functions.numerator[k].error = at.numerator_error[k];
+        functions.function[k].high = {base[k], dx[k], dy[k]};
+        functions.function[k].error = at.numerator_error[k];
     }
-    functions.q.high = at.q_ramp;
-    functions.q.error = at.q_error;
-    functions.q_unit = 0x1.8p28 / reciprocal_power_of_two(larger(larger(-at.least_q, at.largest_q), at.q_error));
+    functions.function[CloseFunctions::q].high = at.q_ramp;
+    functions.function[CloseFunctions::q].error = at.q_error;
 }
 
 // How much of all fragments in front, if there are any, is between two bounds of the one numerator and two of the other: G = F -

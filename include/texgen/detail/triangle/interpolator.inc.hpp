@@ -86,6 +86,7 @@ private:
     // What is known of the functions of a tile at first: what corners say, or two doubles where those are made already.
     TEXGEN_RARE DoubtfulFunctions functions_of(const Tile& tile, const Corners& at) noexcept {
         DoubtfulFunctions result{};
+        result.tolerance = triangle_.tolerance;
         result.are_close = static_cast<bool>(close_);
         result.are_close ? close_ramps(tile).split(result) : take_planes(at, result);
         return result;
@@ -93,27 +94,28 @@ private:
 
     TEXGEN_RARE void add_residues(const Tile& tile, DoubtfulFunctions& functions) noexcept {
         if (!residues_) residues_.make(triangle_.planes, rect_);
-        for (std::size_t k = 0; k < 2; ++k) residues_->add_to(functions.numerator[k], coordinate_of(k), tile);
-        residues_->add_to(functions.q, 3, tile);
+        for (std::size_t k = 0; k < 3; ++k)
+            residues_->add_to(functions.function[k], k == CloseFunctions::q ? 3 : coordinate_of(k), tile);
         functions.have_residues = true;
     }
 
     // More of them, if there is more.
     TEXGEN_RARE bool sharpen(const Tile& tile, DoubtfulFunctions& functions) noexcept {
-        if (!functions.have_residues && (functions.are_close || functions.residues_first)) {
+        if (functions.are_close && functions.have_residues) return false;
+        if (!functions.have_residues) {
             add_residues(tile, functions);
-            if (functions.are_close || are_decided_by_residues(functions)) return true;
+            if (functions.residues_first && !functions.are_close && are_decided_by_residues(functions)) return true;
         }
-        if (functions.are_close) return false;
-        close_ramps(tile).split(functions);
+        if (!functions.are_close) close_ramps(tile).split(functions);
         return functions.are_close = true;
     }
 
     // A unit with what is known of the functions, and with more while that leaves doubt; the rest one by one.
     TEXGEN_APART void fill_closely(const Tile& tile, const TileJob& job, DoubtfulFunctions& functions,
                                    const TileJob::Unit& unit) noexcept {
-        std::uint64_t doubtful = kernels_.fill_closely(job, functions, unit);
-        while (doubtful != 0 && sharpen(tile, functions)) doubtful = kernels_.fill_closely(job, functions, unit);
+        std::uint64_t doubtful = kernels_.fill_closely(job, functions, unit, ~std::uint64_t{0});
+        while (doubtful != 0 && sharpen(tile, functions))
+            doubtful = kernels_.fill_closely(job, functions, unit, doubtful);
         fill_some(tile, unit, doubtful);
     }
 
@@ -156,15 +158,15 @@ private:
         DoubtfulFunctions functions = functions_of(tile, at);
         functions.residues_first = true;
         // What residues decide of a few fragments they decide sooner than their quotients are seen to be exact.
-        if (is_constant(functions.q.high) && sharpen(tile, functions) &&
-            (functions.are_close || tile.width + tile.height > 4) && take_exact_quotients(functions, job))
+        if (is_constant(functions.function[CloseFunctions::q].high) && sharpen(tile, functions) &&
+            tile.width + tile.height > 4 && take_exact_quotients(functions, job))
             unit = detail::fill_exact(kernels_, job, unit);
         // Doubt has company: twice as many units after each failure that follows another.
-        for (int many = 1; !job.is_done(unit);) {
+        for (int many = 4; !job.is_done(unit);) {
             for (int i = 0; i < many && !job.is_done(unit); ++i, unit = job.unit_after(unit))
                 fill_closely(tile, job, functions, unit);
             const TileJob::Unit next = detail::fill_exact(kernels_, job, unit);
-            many = next.x_begin == unit.x_begin && next.y_begin == unit.y_begin ? 2 * many : 1;
+            many = next.x_begin == unit.x_begin && next.y_begin == unit.y_begin ? 2 * many : 4;
             unit = next;
         }
     }
