@@ -181,7 +181,7 @@ TEXGEN_INLINE std::size_t fill_in_front(std::size_t (*fill)(const SegmentJob&, s
     for (std::size_t begin = first; begin < job.count;) {
         const std::size_t end = end_of_block(job.count, begin, float_block);
         if (fill(job, begin, end) != end) return begin;
-        light_apart(job, job.out[0] + begin, job.out[1] + begin, job.lit + begin,
+        light_apart(job.min, job.max, job.out[0] + begin, job.out[1] + begin, job.lit + begin,
                     static_cast<std::int64_t>(end - begin));
         begin = end;
     }

@@ -43,29 +43,31 @@ TEXGEN_INLINE void store_from(float* to, std::int64_t x, std::int64_t end, std::
 
 // The mask of `count` fragments or values in front, from the coordinates that stand there: so the loops that compute them ask for no mask.
 // A last vector is one that ends with them.
-template <class Vector, class Job>
-TEXGEN_INLINE bool light_in(const Job& job, const float* s, const float* t, float* lit, std::int64_t count) noexcept {
+template <class Vector>
+TEXGEN_INLINE bool light_in(const float (&min)[2], const float (&max)[2], const float* s, const float* t, float* lit,
+                            std::int64_t count) noexcept {
     constexpr auto size = static_cast<std::int64_t>(sizeof(Vector) / sizeof(float));
     if (count < size) return false;
     for (std::int64_t x = 0; x < count; x += size) {
         const std::int64_t at = x < count - size ? x : count - size;
         const Vector value[2] = {load<Vector>(s + at), load<Vector>(t + at)};
-        store(lit + at, one_where(inside(value[0], job.min[0], job.max[0]) & inside(value[1], job.min[1], job.max[1])));
+        store(lit + at, one_where(inside(value[0], min[0], max[0]) & inside(value[1], min[1], max[1])));
     }
     return true;
 }
-template <class Job>
-TEXGEN_APART void light_apart(const Job& job, const float* s, const float* t, float* lit, std::int64_t count) noexcept {
-    if (light_in<WideFloats>(job, s, t, lit, count) || light_in<Floats>(job, s, t, lit, count)) return;
+template <class CompiledWhereCalled = void>
+TEXGEN_APART void light_apart(const float (&min)[2], const float (&max)[2], const float* s, const float* t, float* lit,
+                              std::int64_t count) noexcept {
+    if (light_in<WideFloats>(min, max, s, t, lit, count) || light_in<Floats>(min, max, s, t, lit, count)) return;
     for (std::int64_t x = 0; x < count; ++x) {
-        const bool is_lit = s[x] >= job.min[0] && s[x] <= job.max[0] && t[x] >= job.min[1] && t[x] <= job.max[1];
+        const bool is_lit = s[x] >= min[0] && s[x] <= max[0] && t[x] >= min[1] && t[x] <= max[1];
         lit[x] = is_lit ? 1.0f : 0.0f;
     }
 }
 // Of a part of a row, where a mask is asked for.
 template <class CompiledWhereCalled = void>
 TEXGEN_INLINE void light(const TileJob& job, const RowOutputs& row, std::int64_t x, std::int64_t end) noexcept {
-    if (row.lit != nullptr) light_apart(job, row.out[0] + x, row.out[1] + x, row.lit + x, end - x);
+    if (row.lit != nullptr) light_apart(job.min, job.max, row.out[0] + x, row.out[1] + x, row.lit + x, end - x);
 }
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA

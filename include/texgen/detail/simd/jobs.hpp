@@ -81,6 +81,21 @@ struct TileJob {
     bool is_done(const Unit& unit) const noexcept { return unit.y_begin >= height; }
 };
 
+// A tile of no more than a unit of which one certificate holds: see small_tile.inc.hpp.
+struct SmallTile {
+    int width, height;
+    Ramp numerator[2];
+    Ramp q;
+    bool
+        is_in_float;  // rounded and divided in float, in which no value is in doubt; eight columns, an even number of rows
+    float* out[2];
+    float* lit;            // or null
+    float min[2], max[2];  // the region
+
+    // Of doubles, within this of half-way between two floats is in doubt.
+    static constexpr int ulps = 0xfff;
+};
+
 // Where a row of a TileJob goes. A copy, so that the compiler knows that no store changes it.
 struct RowOutputs {
     float* out[2];
@@ -262,11 +277,9 @@ struct FootprintJob {
     float* row(float* output, int y) const noexcept { return output == nullptr ? nullptr : output + y * pitch; }
 };
 
-struct SmallTile;  // lanes.hpp
-
 // A kernel is called by its tier, see tiers.hpp.
 struct TileKernels {
-    // Whether it is filled: one certificate serves all of it, and no value is in doubt.
+    // Whether no value is in doubt.
     bool (*fill_small)(const SmallTile&) noexcept;
     // Whether a value of a part is in doubt; and the first unit from `first` on that is, of a job that knows its ulps.
     bool (*divide)(const TileJob&, const TileJob::Unit& part) noexcept;

@@ -192,25 +192,6 @@ TEXGEN_INLINE Double2 leading_27_bits(const Double2& a) noexcept {
 
 #endif
 
-namespace TEXGEN_DETAIL {
-
-// s and t of a tile of eight columns and an even number of rows, no more than a unit.
-struct SmallTile {
-    static constexpr int width = 8;
-
-    const PlaneOf<Double2>* st;
-    const Plane* q;
-    double x, y;              // its first fragment, from the vertex that the planes are about
-    double reach_x, reach_y;  // and how far it reaches from there, at least
-    double bottom;            // its last row
-    double tolerance;
-    int height;
-    float* out[2];
-    Double2 min, max;  // the region, not below 0
-};
-
-}  // namespace TEXGEN_DETAIL
-
 #define TEXGEN_KERNELS "../kernels/kernels.inc.hpp"
 #include "instruction_sets.inc.hpp"
 #undef TEXGEN_KERNELS

@@ -350,7 +350,6 @@ inline Work interpolate_tile(const TriangleSetup& setup, const Tile& tile, const
     }
 
     const TileKernels& kernels = chosen<TileKernels>();
-
     // What is certainly inside is lit, and s and t need not be compared.
     const bool is_inside = plan.sides == Coverage::inside;
     if (is_inside && !out.lit.empty()) chosen<MaskKernels>().light_all(out.lit.data(), out.lit.size());
@@ -389,11 +388,12 @@ template <class CompiledWhereCalled>
 TEXGEN_INLINE Work interpolate(const TriangleSetup& setup, FragmentRect rect, Texcoords out) noexcept {
     const std::size_t count = detail::count_of(rect);
     if (count == 0) return Work::nothing;
-    if (rect.width == detail::SmallTile::width && count <= detail::TileJob::unit_size &&
-        detail::fill_small(setup.functions(), rect, out))
-        return detail::is_constant(setup.functions().q.value) ? Work::affine : Work::divide;
     detail::take_computed(out, count);
-    return detail::interpolate_tile(setup, detail::tile_of(rect), out);
+    const detail::Tile tile = detail::tile_of(rect);
+    const detail::SmallAnswer answer = detail::fill_small(setup.functions(), tile, out);
+    if (answer == detail::SmallAnswer::doubt) return detail::interpolate_tile(setup, tile, out);
+    detail::interpolate_alone(detail::chosen<detail::TileKernels>(), setup.functions(), tile, 2, out.r, nullptr);
+    return detail::work_of(setup.functions(), answer);
 }
 
 }  // namespace TEXGEN_BUILD

@@ -1,32 +1,7 @@
-// A small tile, and a job unit by unit and chunk by chunk, by the kernels of any instruction set. Included by interpolate.hpp.
+// A job unit by unit, and chunk by chunk, by the kernels of any instruction set. Included by interpolate.hpp.
 
 namespace TEXGEN_DETAIL {
 inline namespace TEXGEN_BUILD {
-
-// s and t of a small tile, if one certificate serves all of it, without what other tiles need before they are divided.
-TEXGEN_APART inline bool fill_small(const TriangleFunctions& triangle, const FragmentRect& rect,
-                                    const Texcoords& out) noexcept {
-    const auto count = static_cast<std::size_t>(rect.width * rect.height);
-    if (rect.height % 2 != 0 || out.s.size() != count || out.t.size() != count || !out.r.empty() || !out.lit.empty() ||
-        triangle.lit.has_depth())
-        return false;
-    const Double2 min = double2_of(triangle.lit.least(0), triangle.lit.least(1));
-    if (!(min[0] >= 0.0 && min[1] >= 0.0)) return false;
-    const glm::dvec2 p = triangle.planes.from_a(tile_of(rect));
-    const SmallTile tile{.st = &triangle.st,
-                         .q = &triangle.q,
-                         .x = p.x,
-                         .y = p.y,
-                         .reach_x = std::fabs(p.x) + rect.width,
-                         .reach_y = std::fabs(p.y) + rect.height,
-                         .bottom = rect.height - 1.0,
-                         .tolerance = triangle.tolerance,
-                         .height = rect.height,
-                         .out = {out.s.data(), out.t.data()},
-                         .min = min,
-                         .max = double2_of(triangle.lit.greatest(0), triangle.lit.greatest(1))};
-    return chosen<TileKernels>().fill_small(tile);
-}
 
 // Does the units from `first` on up to the first one that is in doubt. Where none is, more and more of them are done at once, and
 // what is in doubt then is done again by less; or all are done in pairs, but those that are in doubt then.

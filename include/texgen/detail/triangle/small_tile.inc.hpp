@@ -1,0 +1,114 @@
+// Small tiles that need no more than one certificate from their corners: no plan, no chunks, no job of many fields. Included by
+// interpolate.hpp.
+
+namespace TEXGEN_DETAIL {
+inline namespace TEXGEN_BUILD {
+
+// Where a tile begins from the vertex that the planes are about, how far it reaches from there at least, and its last column and row.
+struct SmallPlace {
+    double x, y, reach_x, reach_y, right, bottom;
+
+    SmallPlace(const glm::dvec2& from_a, const Tile& rect) noexcept
+        : x(from_a.x),
+          y(from_a.y),
+          reach_x(std::fabs(x) + rect.width),
+          reach_y(std::fabs(y) + rect.height),
+          right(rect.width - 1.0),
+          bottom(rect.height - 1.0) {}
+};
+
+// A linear function over the tile: at its first fragment, its steps to the last column and row, and a bound on its error, see
+// TrianglePlanes::ramp() and error(). A row's product and sums add less than 6 u to its 20 u of the magnitude, for which gamma has room.
+template <class Number>
+struct SmallFunction {
+    Number base, right, bottom, error;
+
+    SmallFunction(const PlaneOf<Number>& plane, const SmallPlace& place) noexcept
+        : base(plane.value.base + (plane.value.dx * place.x + plane.value.dy * place.y)),
+          right(plane.value.dx * place.right),
+          bottom(plane.value.dy * place.bottom),
+          error((plane.magnitude.base + plane.magnitude.dx * place.reach_x + plane.magnitude.dy * place.reach_y) *
+                gamma(20)) {}
+};
+
+// At the corner where a function is least.
+template <class Number>
+Number least_of(const Number& base, const Number& right, const Number& bottom) noexcept {
+    const Number of_row = smaller(base, base + right);
+    return smaller(of_row, of_row + bottom);
+}
+
+// Whether all of it is lit, or certainly a part, and far enough from q = 0 and from 0 that one bound serves all quotients. The
+// sides are those of coverage_of() with twice its margins, so that nothing is said of a tile of which that says something else.
+// Exact: F errs by less than 2^-41.5 of itself and q by 2^-44, and four roundings follow: within SmallTile::ulps; F is above 2^-124 q,
+// so the floats are normal.
+// In float, with u = 2^-24 and b the steps to the last row, of which y is at most half: F is rounded with its column, its step,
+// the product with y, and the sum, by u (2 F + 1.5 b), as is q, and the reciprocal and the product round by 2 u. Of a quotient that
+// is at most `greatest` this is 6 u greatest + 1.5 u (b_F + greatest b_q) / q, and what floats below 2^-126 lose is less than
+// 2^-100.
+enum class SmallAnswer { doubt, lit, partly_lit };
+inline SmallAnswer ask(const LitTest& lit, double tolerance, const SmallFunction<Double2>& f,
+                       const SmallFunction<double>& q, SmallTile& tile) noexcept {
+    const double least_q = least_of(q.base, q.right, q.bottom);
+    const double largest_q = -least_of(-q.base, -q.right, -q.bottom);
+    const Double2 min = double2_of(lit.least(0), lit.least(1));
+    if (!(least_q > larger(0x1p44 * q.error, 0x1p-100) && largest_q < 0x1p60 && min[0] >= 0.0 && min[1] >= 0.0))
+        return SmallAnswer::doubt;
+    const Double2 max = double2_of(lit.greatest(0), lit.greatest(1));
+    const Double2 above[3] = {f.base - min * q.base, f.right - min * q.right, f.bottom - min * q.bottom};
+    const Double2 below[3] = {max * q.base - f.base, max * q.right - f.right, max * q.bottom - f.bottom};
+    const Double2 least_above = least_of<Double2>(above[0], above[1], above[2]);
+    const Double2 least_below = least_of<Double2>(below[0], below[1], below[2]);
+    const Double2 error = f.error + max * q.error;
+    const Double2 margin = error * 2.0 + (max * 0x1p-21 + (0x1.1p-124 + 4.1 * tolerance)) * largest_q;
+    const bool is_lit = all_less(margin, least_above, margin, least_below);
+    tile.is_in_float = false;
+    if (is_lit && tolerance != 0.0 && tile.width == 8 && tile.height % 2 == 0) {
+        const double allowed = (tolerance - 0x1p-100) * (least_q - q.error);
+        const Double2 rounded = larger(f.bottom, -f.bottom) + max * (4.02 * least_q + std::fabs(q.bottom));
+        tile.is_in_float =
+            all_less(error * 1.01 + rounded * (1.52 * unit_roundoff_float), double2_of(allowed, allowed)) &&
+            least_q > larger(0x1p-10 * largest_q, 0x1p-21) && tolerance < 0x1p40;
+        if (tile.is_in_float) return SmallAnswer::lit;
+    }
+    if (!all_less(f.error * 0x1.8p41 + 0x1.1p-124 * largest_q, least_of<Double2>(f.base, f.right, f.bottom)))
+        return SmallAnswer::doubt;
+    if (is_lit) return SmallAnswer::lit;
+    const bool is_partly_dark = any_less(least_above, -margin, least_below, -margin);
+    const bool may_be_dark = any_less(-least_of<Double2>(-above[0], -above[1], -above[2]), margin,
+                                      -least_of<Double2>(-below[0], -below[1], -below[2]), margin);
+    return is_partly_dark && !may_be_dark ? SmallAnswer::partly_lit : SmallAnswer::doubt;
+}
+
+// s, t and the mask of a small tile, if one certificate serves all of it and no value is in doubt.
+TEXGEN_APART inline SmallAnswer fill_small(const TriangleFunctions& triangle, const Tile& rect,
+                                           const Texcoords& out) noexcept {
+    if (rect.width > TileJob::unit_size / 4 || rect.count() > TileJob::unit_size || out.s.empty() || out.t.empty() ||
+        triangle.lit.has_depth())
+        return SmallAnswer::doubt;
+    const SmallPlace place(triangle.planes.from_a(rect), rect);
+    const SmallFunction<Double2> f(triangle.st, place);
+    const SmallFunction<double> q(triangle.q, place);
+    SmallTile tile;
+    tile.width = rect.width;
+    tile.height = rect.height;
+    const SmallAnswer answer = ask(triangle.lit, triangle.tolerance, f, q, tile);
+    if (answer == SmallAnswer::doubt) return answer;
+    const RampOf<Double2>& st = triangle.st.value;
+    TEXGEN_UNROLL
+    for (std::size_t k = 0; k < 2; ++k) tile.numerator[k] = {f.base[k], st.dx[k], st.dy[k]};
+    tile.q = {q.base, triangle.q.value.dx, triangle.q.value.dy};
+    tile.out[0] = out.s.data();
+    tile.out[1] = out.t.data();
+    tile.lit = out.lit.empty() ? nullptr : out.lit.data();
+    triangle.lit.copy_to(tile.min, tile.max);
+    return chosen<TileKernels>().fill_small(tile) ? answer : SmallAnswer::doubt;
+}
+
+inline Work work_of(const TriangleFunctions& triangle, SmallAnswer answer) noexcept {
+    if (is_constant(triangle.q.value)) return Work::affine;
+    return answer == SmallAnswer::lit ? Work::divide : Work::divide_and_test;
+}
+
+}  // namespace TEXGEN_BUILD
+}  // namespace TEXGEN_DETAIL
