@@ -94,20 +94,19 @@ struct Effort {
     bool precisely = false;  // all of the sums, or their leading part
 };
 
-// The largest |x|, |y|, |z| in each lane. A NaN is the largest.
+// The largest |x|, |y|, |z| in each lane, of those that are numbers: where one is none, so is q, whatever its form.
 struct PointExtent {
-    WideWords x{}, y{}, z{};
+    WideFloats x{}, y{}, z{};
 
     TEXGEN_INLINE void add(const WideFloats& of_x, const WideFloats& of_y, const WideFloats& of_z) noexcept {
-        x = maximum(magnitude_bits(of_x), x);
-        y = maximum(magnitude_bits(of_y), y);
-        z = maximum(magnitude_bits(of_z), z);
+        x = larger_magnitude(of_x, x);
+        y = larger_magnitude(of_y, y);
+        z = larger_magnitude(of_z, z);
     }
     // At least the sum of a form's terms, but for a rounding each.
     TEXGEN_INLINE WideFloats terms_of(const PointForm& form) const noexcept {
         const auto factor = [](double coefficient) { return static_cast<float>(std::fabs(coefficient)); };
-        return from_bits(x) * factor(form.x) +
-               (from_bits(y) * factor(form.y) + (from_bits(z) * factor(form.z) + factor(form.w)));
+        return x * factor(form.x) + (y * factor(form.y) + (z * factor(form.z) + factor(form.w)));
     }
 };
 

@@ -53,8 +53,7 @@ TEXGEN_INLINE bool are_within(const FloatDivision& division, const PointForm& nu
     const WideFloats s_terms = extent.terms_of(numerator);
     const WideFloats q_terms = extent.terms_of(q_form);
     const WideFloats quotient = from_bits(largest);
-    const WideFloats underflow =
-        (from_bits(extent.x) + from_bits(extent.y) + from_bits(extent.z) + 1.0f) * 0x1.01p-124f;
+    const WideFloats underflow = (extent.x + extent.y + extent.z + 1.0f) * 0x1.01p-124f;
     const WideFloats q_error = q_terms * form_error + underflow;
     const WideFloats q = from_bits(least_q) * (1.0f - (roundings + 0x1p-20f)) - q_error;
     const WideFloats error =

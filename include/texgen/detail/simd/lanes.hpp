@@ -134,6 +134,13 @@ inline bool all_less(const Double2& a, const Double2& b, const Double2& c, const
 #define TEXGEN_EIGHT_DOUBLES(values) __builtin_ia32_cvtps2pd512_mask(values, Doubles{}, static_cast<char>(-1), 4)
 #endif
 
+// All of sixteen lanes: a mask has a sign to GCC.
+#ifdef __clang__
+#define TEXGEN_SIXTEEN_LANES 0xffff
+#else
+#define TEXGEN_SIXTEEN_LANES (-1)
+#endif
+
 // Of 512 bits GCC 12 makes two instructions.
 #ifdef __clang__
 #define TEXGEN_MASKED_OR(a, bits, b) (((a) & (bits)) | (b))

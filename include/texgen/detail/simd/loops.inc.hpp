@@ -187,9 +187,6 @@ TEXGEN_INLINE WideWords magnitude_bits(const WideFloats& a) noexcept {
 TEXGEN_INLINE WideWords signed_bits(const WideFloats& a) noexcept {
     return WideWords::of([&](int i) { return bit_cast<int>(a.lane[i]); });
 }
-TEXGEN_INLINE Doubles folded(const WideWords& words) noexcept {
-    return Doubles::of([&](int i) { return static_cast<double>(bit_cast<float>(words.lane[i])); });
-}
 TEXGEN_INLINE WideFloats from_bits(const WideWords& words) noexcept {
     return WideFloats::of([&](int i) { return bit_cast<float>(words.lane[i]); });
 }
@@ -200,6 +197,7 @@ TEXGEN_INLINE WideWords halved(const WideWords& words) noexcept {
     return WideWords::of([&](int i) { return words.lane[i] >> 1; });
 }
 TEXGEN_INLINE WideFloats magnitude(const WideFloats& a) noexcept { return from_bits(magnitude_bits(a)); }
+TEXGEN_INLINE Doubles folded(const WideFloats& values) noexcept { return to_doubles(values); }
 TEXGEN_INLINE WideWords is_negative(const WideFloats& a) noexcept {
     return WideWords::of([&](int i) { return a.lane[i] < 0.0f ? -1 : 0; });
 }
@@ -213,6 +211,9 @@ TEXGEN_INLINE Vector minimum(const Vector& a, const Vector& b) noexcept {
 template <class Vector>
 TEXGEN_INLINE Vector maximum(const Vector& a, const Vector& b) noexcept {
     return Vector::of([&](int i) { return a.lane[i] > b.lane[i] ? a.lane[i] : b.lane[i]; });
+}
+TEXGEN_INLINE WideFloats larger_magnitude(const WideFloats& a, const WideFloats& b) noexcept {
+    return maximum(magnitude(a), b);
 }
 template <class Vector>
 TEXGEN_INLINE WideWords less(const Vector& a, const Vector& b) noexcept {

@@ -23,7 +23,6 @@ TEXGEN_INLINE Vector indices() noexcept {
 TEXGEN_INLINE Doubles to_doubles(const Words& values) noexcept { return __builtin_convertvector(values, Doubles); }
 TEXGEN_INLINE Floats to_floats(const Doubles& values) noexcept { return __builtin_convertvector(values, Floats); }
 TEXGEN_INLINE Words bits(const Floats& values) noexcept { return __builtin_bit_cast(Words, values); }
-
 TEXGEN_INLINE Doubles to_doubles(const Floats& values) noexcept {
 #if TEXGEN_LANE_BYTES == 64
     return TEXGEN_EIGHT_DOUBLES(values);
@@ -31,7 +30,6 @@ TEXGEN_INLINE Doubles to_doubles(const Floats& values) noexcept {
     return __builtin_convertvector(values, Doubles);
 #endif
 }
-
 TEXGEN_INLINE Doubles to_doubles_as_rounded(const Floats& values) noexcept { return to_doubles(values); }
 
 template <int First, class Vector, int... Lane>
@@ -181,10 +179,18 @@ TEXGEN_INLINE WideFloats select(const WideWords& mask, const WideFloats& a, cons
     return from_bits((mask & signed_bits(a)) | (~mask & signed_bits(b)));
 }
 
-// The larger of lanes i and i + lanes, of the bits of magnitudes.
-TEXGEN_INLINE Doubles folded(const WideWords& words) noexcept {
+// The larger of |a| and b, or b where a is no number.
+TEXGEN_INLINE WideFloats larger_magnitude(const WideFloats& a, const WideFloats& b) noexcept {
+#if TEXGEN_LANE_BYTES == 64
+    return __builtin_ia32_rangeps512_mask(a, b, 0xb, a, TEXGEN_SIXTEEN_LANES, 4);
+#else
+    return maximum(magnitude(a), b);
+#endif
+}
+// The larger of lanes i and i + lanes.
+TEXGEN_INLINE Doubles folded(const WideFloats& values) noexcept {
     using Half = std::make_integer_sequence<int, lanes>;
-    return to_doubles(__builtin_bit_cast(Floats, maximum(half<0>(words, Half()), half<lanes>(words, Half()))));
+    return to_doubles(maximum(half<0>(values, Half()), half<lanes>(values, Half())));
 }
 
 template <class Vector>
@@ -232,9 +238,7 @@ TEXGEN_INLINE Vector every_third(const Vector& a, const Vector& b, const Vector&
 template <class Vector>
 TEXGEN_INLINE void load_interleaved(const float* from, Vector& x, Vector& y, Vector& z) noexcept {
     constexpr int n = static_cast<int>(sizeof(Vector) / sizeof(float));
-    const auto a = load<Vector>(from);
-    const auto b = load<Vector>(from + n);
-    const auto c = load<Vector>(from + 2 * n);
+    const auto a = load<Vector>(from), b = load<Vector>(from + n), c = load<Vector>(from + 2 * n);
     x = every_third<0>(a, b, c, std::make_integer_sequence<int, n>());
     y = every_third<1>(a, b, c, std::make_integer_sequence<int, n>());
     z = every_third<2>(a, b, c, std::make_integer_sequence<int, n>());
@@ -292,12 +296,8 @@ TEXGEN_INLINE void store_interleaved(float* to, const Vector& a, const Vector& b
                                      const Vector& d) noexcept {
     constexpr int n = static_cast<int>(sizeof(Vector) / sizeof(float));
     using Lanes = std::make_integer_sequence<int, n>;
-    const Vector ac_low = zipped<0>(a, c, Lanes());
-    const Vector ac_high = zipped<n / 2>(a, c, Lanes());
-    const Vector bd_low = zipped<0>(b, d, Lanes());
-    const Vector bd_high = zipped<n / 2>(b, d, Lanes());
-    store_interleaved(to, ac_low, bd_low);
-    store_interleaved(to + 2 * n, ac_high, bd_high);
+    store_interleaved(to, zipped<0>(a, c, Lanes()), zipped<0>(b, d, Lanes()));
+    store_interleaved(to + 2 * n, zipped<n / 2>(a, c, Lanes()), zipped<n / 2>(b, d, Lanes()));
 }
 
 // Lane i of vector k becomes lane k of vector i: in blocks of 16 bytes, then block by block, since what crosses them is dear.
