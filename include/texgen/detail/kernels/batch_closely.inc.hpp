@@ -108,10 +108,12 @@ struct CloseTerms {
     }
 };
 
-// At a fragment: all are within 2^-98 of their size.
+// At a fragment: all are within 2^-98 of their size. Of one far away what corner k is off corner j takes the place of what it is off
+// the fragment: E_i is the same, of terms that are less.
 struct CloseLanes : CloseTerms {
     TEXGEN_INLINE CloseLanes(const VertexLanes& given, const Doubles& x, const Doubles& y) noexcept {
-        DifferenceLanes to_x[3], to_y[3];
+        // Of side i from here to its corner j, and from there or here to k.
+        DifferenceLanes to_x[3], to_y[3], from_x[3], from_y[3];
         Doubles lost{}, below{};
         TEXGEN_UNROLL
         for (std::size_t i = 0; i < 3; ++i) {
@@ -119,30 +121,46 @@ struct CloseLanes : CloseTerms {
             to_y[i].set(given.number(i, 1), y);
             lost = lost + (magnitude(to_x[i].lost) + magnitude(to_y[i].lost));
             below = below + (magnitude(to_x[i].low) + magnitude(to_y[i].low));
+            from_x[(i + 1) % 3] = to_x[i];
+            from_y[(i + 1) % 3] = to_y[i];
         }
         const bool is_lost = any(greater(lost, 0.0));
+        if (is_lost) {
+            Doubles spread{};
+            for (std::size_t i = 1; i < 3; ++i)
+                spread = spread + (magnitude(given.number(i, 0) - given.number(0, 0)) +
+                                   magnitude(given.number(i, 1) - given.number(0, 1)));
+            const LongWords is_far = greater(magnitude(to_x[0].high) + magnitude(to_y[0].high), spread * 0x1p10);
+            for (std::size_t i = 0; i < 3; ++i) {
+                const std::size_t j = (i + 1) % 3;
+                const std::size_t k = (i + 2) % 3;
+                from_x[i].set(given.number(k, 0), select(is_far, given.number(j, 0), x));
+                from_y[i].set(given.number(k, 1), select(is_far, given.number(j, 1), y));
+                lost = lost + (magnitude(from_x[i].lost) + magnitude(from_y[i].lost));
+            }
+        }
         const bool is_short = !is_lost && !any(greater(below, 0.0));
         EdgeLanes edge[3];
         Doubles edge_size[3];
         TEXGEN_UNROLL
         for (std::size_t i = 0; i < 3; ++i) {
             const std::size_t j = (i + 1) % 3;
-            const std::size_t k = (i + 2) % 3;
-            const Doubles left = to_x[j].high * to_y[k].high;
-            const Doubles right = to_y[j].high * to_x[k].high;
+            const Doubles left = to_x[j].high * from_y[i].high;
+            const Doubles right = to_y[j].high * from_x[i].high;
             edge_size[i] = magnitude(left) + magnitude(right);
             edge[i].high = two_sum(left, right * -1.0, edge[i].low);
             if (is_short) continue;
             Doubles error[4];
-            const Doubles left_middle = two_sum(to_x[j].high * to_y[k].low, to_x[j].low * to_y[k].high, error[0]);
-            const Doubles right_middle = two_sum(to_y[j].high * to_x[k].low, to_y[j].low * to_x[k].high, error[1]);
+            const Doubles left_middle = two_sum(to_x[j].high * from_y[i].low, to_x[j].low * from_y[i].high, error[0]);
+            const Doubles right_middle = two_sum(to_y[j].high * from_x[i].low, to_y[j].low * from_x[i].high, error[1]);
             const Doubles middle = two_sum(left_middle, right_middle * -1.0, error[2]);
             const Doubles sum = two_sum(edge[i].high, middle, error[3]);
-            Doubles last = to_x[j].low * to_y[k].low - to_y[j].low * to_x[k].low;
+            Doubles last = to_x[j].low * from_y[i].low - to_y[j].low * from_x[i].low;
             if (is_lost)
-                last = last +
-                       (((to_x[j].high + to_x[j].low) * to_y[k].lost + to_x[j].lost * (to_y[k].high + to_y[k].low)) -
-                        ((to_y[j].high + to_y[j].low) * to_x[k].lost + to_y[j].lost * (to_x[k].high + to_x[k].low)));
+                last =
+                    last +
+                    (((to_x[j].high + to_x[j].low) * from_y[i].lost + to_x[j].lost * (from_y[i].high + from_y[i].low)) -
+                     ((to_y[j].high + to_y[j].low) * from_x[i].lost + to_y[j].lost * (from_x[i].high + from_x[i].low)));
             const Doubles rest = ((edge[i].low + error[3]) + (error[2] + (error[0] - error[1]))) + last;
             edge[i].high = two_sum(sum, rest, edge[i].low);
         }
@@ -262,47 +280,6 @@ private:
     Residues scale_[3], to_x_[3], to_y_[3], one_x_, one_y_;
     Doubles unit_;
 };
-
-// The nearer of `below` and `above`, next to one another, by the sign of the remainder that a quotient leaves beyond their
-// middle (`middle` is twice that, `unit` the power of two below it). Returns the lanes that this decides.
-TEXGEN_INLINE Words decide_between(const Floats& below, const Floats& above, const Doubles& middle, const Doubles& unit,
-                                   const Doubles& remainder, const LongWords& is_open, const LongWords& is_tie,
-                                   Floats& value) noexcept {
-    // A step from the middle that is less than half of what the floats are away.
-    const Doubles step = where(is_open, with_sign_of(unit * 0x1p-26, remainder));
-    const Floats nearest = to_floats((middle + step) * 0.5);
-    const LongWords are_neighbours =
-        at_most(to_doubles_as_rounded(above) - to_doubles_as_rounded(below), unit * 0x1p-24);
-    const Words decided =
-        narrow((is_open | is_tie) & are_neighbours) & ~equal(bits(below) & bits(above) & 0x7f800000, 0);
-    value = select(decided, nearest, below);
-    return decided;
-}
-
-// What F - m Q is of a vector, or nearly: m the middle of the floats below and above a quotient.
-struct CloseRemainder {
-    Floats below, above;
-    Doubles middle, unit, value, error;  // middle is twice m, and unit the power of two below it
-};
-
-// The sign of F - m Q by its residue: the finer one of its terms' grains times an integer. Returns the lanes of `doubt` that
-// this does not decide.
-template <class Grain>
-TEXGEN_INLINE Words decide_by_residues(const Residues& f, const Grain& f_grain, const Residues& q, const Grain& q_grain,
-                                       const CloseRemainder& remainder, const Words& doubt, Floats& value) noexcept {
-    const Doubles finer = minimum(remainder.unit * (0x1p-25 * q_grain), Doubles{} + f_grain);
-    const Doubles per_finer = reciprocals_of_powers(finer);
-    const Doubles of_f = per_finer * f_grain;
-    const Doubles of_q = remainder.middle * (0.5 * q_grain) * per_finer;
-    const LongWords is_known = greater(finer * 0x1p62, magnitude(remainder.value) + remainder.error) &
-                               greater(Doubles{} + 0x1p62, maximum(of_f, magnitude(of_q)));
-    const Residues residues = f * to_residues(where(is_known, of_f)) - q * to_residues(where(is_known, of_q));
-    Floats nearest;
-    const Words decided = doubt & decide_between(remainder.below, remainder.above, remainder.middle, remainder.unit,
-                                                 signs_of(residues), is_known & ~are_zero(residues), is_known, nearest);
-    value = select(decided, nearest, value);
-    return doubt & ~decided;
-}
 
 // What two doubles leave in doubt of a vector of fragments.
 template <std::size_t Numerators>
