@@ -181,8 +181,8 @@ void decide_spheres(const UnitForms& forms, std::size_t form_count, const OpenRo
             const auto& a = forms.a;
             const double across = a[0][f] * a[0][g] + a[1][f] * a[1][g] + a[2][f] * a[2][g];
             const Doubles against_f = value[f] - value[g] * across, against_g = value[g] - value[f] * across;
-            const LongWords faces = greater(Doubles{}, against_f) & greater(Doubles{}, against_g);
-            if (!any(faces)) continue;
+            const LongWords faces = greater(Doubles{}, maximum(against_f, against_g));
+            if (count > 1 && !any(faces)) continue;  // for one sphere that takes longer than the rest
             const Doubles errors = (margin[f] + margin[g]) * (reach[f] + reach[g]);
             outside = outside | (faces & greater(against_f * value[f] + against_g * value[g],
                                                  squared_radius * (1.0 + gamma(16) - across * across) + errors));
