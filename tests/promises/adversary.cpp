@@ -6,8 +6,8 @@
 //
 // Towards time it climbs to the inputs that a function takes longest for, as a multiple of what ordinary ones take, and
 // fails where that is above its limit (support/workloads.hpp). What it prints is a line of worst_inputs.txt, behind what it
-// measured; it begins with those, and with 0 seconds they are all. Functions of which the name begins with one of the names
-// behind --but, which a | separates, are searched, and never fail.
+// measured; it begins with those, and with 0 seconds they are all. Functions whose names stand behind --but, which a | separates,
+// are searched, and never fail.
 //
 //   adversary --towards time [--seconds N] [--seed N] [--only WORD] [--but NAME|NAME...]
 
@@ -1048,11 +1048,11 @@ bool near_cuts_keep_limits(const support::Workload& workload) {
     }
 }
 
-bool begins_with_one_of(std::string_view name, std::string_view beginnings) {
-    while (!beginnings.empty()) {
-        const std::string_view beginning = beginnings.substr(0, beginnings.find('|'));
-        if (!beginning.empty() && name.starts_with(beginning)) return true;
-        beginnings.remove_prefix(std::min(beginnings.size(), beginning.size() + 1));
+bool is_one_of(std::string_view name, std::string_view names) {
+    while (!names.empty()) {
+        const std::string_view first = names.substr(0, names.find('|'));
+        if (name == first) return true;
+        names.remove_prefix(std::min(names.size(), first.size() + 1));
     }
     return false;
 }
@@ -1067,7 +1067,7 @@ bool search_towards_time(double seconds, std::uint64_t seed, std::string_view on
     bool all_kept = true;
     for (const support::Workload& workload : support::workloads) {
         if (!is_asked_for(workload)) continue;
-        const bool is_excepted = begins_with_one_of(workload.function, excepted);
+        const bool is_excepted = is_one_of(workload.function, excepted);
         if (workload.takes_near_cuts() && !near_cuts_keep_limits(workload) && !is_excepted) all_kept = false;
         for (const support::SlowInput& input : search(workload, recorded, seconds / static_cast<double>(count), seed)) {
             const bool is_above = is_above_limit(workload, input);
