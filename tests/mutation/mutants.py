@@ -713,7 +713,7 @@ MUTANTS = [
          ("the error of q is not subtracted", "* (1.0 - roundings) - q_error;", "* (1.0 - roundings);", "texcoord_test"),
          ("the underflow of floats is forgotten", "0x1p-124 * size;", "0.0 * size;", "texcoord_test")),
     *_of("detail/culling/lit_forms.hpp",
-         ("the inner side is taken for the outer", "> 1.1 * narrowing(k, size);", "> 0.0;", "coverage_test"),
+         ("the inner side is taken for the outer", "> 1.1 * narrowing;", "> 0.0;", "coverage_test"),
          ("the sign of a side's weight", "is_finite ? -bound : bound", "is_finite ? bound : bound", "coverage_test"),
          ("an infinite side is at zero", "is_finite ? sign : 0.0", "sign", "coverage_test"),
          ("the far limit of depth is the near one", "take(q + 1, *region.depth())",

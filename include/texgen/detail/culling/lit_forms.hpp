@@ -64,11 +64,8 @@ public:
     // Whether every point is dark: the region is empty or q is 0 everywhere.
     bool light_nothing() const noexcept { return lights_nothing_; }
 
-    // Whether anything can be said: false for numbers that are not finite, and for exponents so far apart that an exact
-    // sum could leave the range of double.
-    bool are_usable() const noexcept { return is_usable_; }
-
-    // Whether both are so that bodies have to be asked about.
+    // Whether bodies have to be asked about: not where every point is dark, nor for numbers that are not finite or exponents so
+    // far apart that an exact sum could leave the range of double.
     bool can_say() const noexcept { return is_usable_ && !lights_nothing_; }
 
     // The forms, each times a positive number that brings its largest a near to 1.
@@ -76,11 +73,6 @@ public:
     Point a(std::size_t k) const noexcept { return {lanes_.a[0][k], lanes_.a[1][k], lanes_.a[2][k]}; }
     const glm::dmat4& matrix() const noexcept { return matrix_; }
     const FormWeights& weights() const noexcept { return weights_; }
-
-    // How much less form k may be for its inner side at points of this size, or more: (side - inner side) T_q.
-    double narrowing(std::size_t k, double size) const noexcept {
-        return lanes_.narrowing[k] * (lanes_.largest_q * size + lanes_.last_q);
-    }
 
     // -1, 0, 1: the sign of form k at a finite point, exactly.
     int sign_at(std::size_t k, const Point& point, CloseRows& close) const noexcept {
@@ -92,7 +84,8 @@ public:
     // Whether form k is so large at a finite point that its inner side is above 0 at every point of that size.
     bool is_inside_at(std::size_t k, const Point& point, double size) const noexcept {
         const Bounded value = value_at(k, point);
-        return value.value - value.error > 1.1 * narrowing(k, size);
+        const double narrowing = lanes_.narrowing[k] * (lanes_.largest_q * size + lanes_.last_q);
+        return value.value - value.error > 1.1 * narrowing;
     }
 
     // Side k, the inner one: its coefficients, each rounded once, and its sign at a finite point, exactly.

@@ -46,6 +46,14 @@ inline constexpr double object_range = 0x1p240;
 inline constexpr double projector_range = 0x1p190;
 static_assert(object_range * projector_range * 0x1p165 < 0x1p600);  // three times 53 bits, two sums of four, and 2
 
+// a . (x, y, z) + d, known to within error_a size + error_d when it is computed in double in any order, where the size of a
+// point is |x| + |y| + |z|.
+struct LinearForm {
+    std::array<double, 3> a;
+    double d;
+    double error_a, error_d;
+};
+
 // Where M v is for the points v of an object's box. All numbers are finite.
 struct WorldBounds {
     std::array<double, 3> min, max;

@@ -12,14 +12,6 @@
 
 namespace TEXGEN_DETAIL {
 
-// a . (x, y, z) + d, known to within error_a size + error_d when it is computed in double in any order, where the size of a
-// point is |x| + |y| + |z|.
-struct LinearForm {
-    std::array<double, 3> a;
-    double d;
-    double error_a, error_d;
-};
-
 // The forms of a slide: its sides s_min, s_max, t_min, t_max, then q, and r_min, r_max where it has a depth.
 inline constexpr std::size_t form_of_q = 4;
 inline constexpr std::size_t forms_without_depth = 5;
