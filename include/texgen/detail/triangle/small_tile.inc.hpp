@@ -51,9 +51,8 @@ inline SmallAnswer ask(const LitTest& lit, double tolerance, const SmallFunction
                        const SmallFunction<double>& q, SmallTile& tile) noexcept {
     const double least_q = least_of(q.base, q.right, q.bottom);
     const double largest_q = -least_of(-q.base, -q.right, -q.bottom);
+    if (!(least_q > larger(0x1p44 * q.error, 0x1p-100) && largest_q < 0x1p60)) return SmallAnswer::doubt;
     const Double2 min = double2_of(lit.least(0), lit.least(1));
-    if (!(least_q > larger(0x1p44 * q.error, 0x1p-100) && largest_q < 0x1p60 && min[0] >= 0.0 && min[1] >= 0.0))
-        return SmallAnswer::doubt;
     const Double2 max = double2_of(lit.greatest(0), lit.greatest(1));
     const Double2 above[3] = {f.base - min * q.base, f.right - min * q.right, f.bottom - min * q.bottom};
     const Double2 below[3] = {max * q.base - f.base, max * q.right - f.right, max * q.bottom - f.bottom};
@@ -83,8 +82,9 @@ inline SmallAnswer ask(const LitTest& lit, double tolerance, const SmallFunction
 // s, t and the mask of a small tile, if one certificate serves all of it and no value is in doubt.
 TEXGEN_APART inline SmallAnswer fill_small(const TriangleFunctions& triangle, const Tile& rect,
                                            const Texcoords& out) noexcept {
-    if (rect.width > TileJob::unit_size / 4 || rect.count() > TileJob::unit_size || out.s.empty() || out.t.empty() ||
-        triangle.lit.has_depth())
+    const Double2 least = double2_of(triangle.lit.least(0), triangle.lit.least(1));
+    if (!(least[0] >= 0.0 && least[1] >= 0.0) || rect.width > TileJob::unit_size / 4 ||
+        rect.count() > TileJob::unit_size || out.s.empty() || out.t.empty() || triangle.lit.has_depth())
         return SmallAnswer::doubt;
     const SmallPlace place(triangle.planes.from_a(rect), rect);
     const SmallFunction<Double2> f(triangle.st, place);
