@@ -102,3 +102,5 @@ Work interpolate(const TriangleSetup& setup, FragmentRect rect, Texcoords out) n
 #include "detail/triangle/units.inc.hpp"
 
 #include "detail/triangle/interpolator.inc.hpp"
+
+#include "detail/triangle/interpolate.inc.hpp"

@@ -79,13 +79,12 @@ inline SmallAnswer ask(const LitTest& lit, double tolerance, const SmallFunction
     return is_partly_dark && !may_be_dark ? SmallAnswer::partly_lit : SmallAnswer::doubt;
 }
 
-// s, t and the mask of a small tile, if one certificate serves all of it and no value is in doubt.
+// s, t and their mask of a small tile, if one certificate serves all of it and no value is
+// in doubt.
 TEXGEN_APART inline SmallAnswer fill_small(const TriangleFunctions& triangle, const Tile& rect,
                                            const Texcoords& out) noexcept {
     const Double2 least = double2_of(triangle.lit.least(0), triangle.lit.least(1));
-    if (!(least[0] >= 0.0 && least[1] >= 0.0) || rect.width > TileJob::unit_size / 4 ||
-        rect.count() > TileJob::unit_size || out.s.empty() || out.t.empty() || triangle.lit.has_depth())
-        return SmallAnswer::doubt;
+    if (!(least[0] >= 0.0 && least[1] >= 0.0) || out.s.empty() || out.t.empty()) return SmallAnswer::doubt;
     const SmallPlace place(triangle.planes.from_a(rect), rect);
     const SmallFunction<Double2> f(triangle.st, place);
     const SmallFunction<double> q(triangle.q, place);
@@ -105,9 +104,8 @@ TEXGEN_APART inline SmallAnswer fill_small(const TriangleFunctions& triangle, co
     return chosen<TileKernels>().fill_small(tile) ? answer : SmallAnswer::doubt;
 }
 
-inline Work work_of(const TriangleFunctions& triangle, SmallAnswer answer) noexcept {
-    if (is_constant(triangle.q.value)) return Work::affine;
-    return answer == SmallAnswer::lit ? Work::divide : Work::divide_and_test;
+inline Work work_of(const TriangleFunctions& triangle, bool is_lit) noexcept {
+    return is_constant(triangle.q.value) ? Work::affine : is_lit ? Work::divide : Work::divide_and_test;
 }
 
 }  // namespace TEXGEN_BUILD

@@ -1,0 +1,116 @@
+// The outputs of a triangle, one after another, and the body of interpolate(). Included by interpolate.hpp.
+
+namespace TEXGEN_DETAIL {
+inline namespace TEXGEN_BUILD {
+
+// One coordinate of a rectangle; without a plan nothing is known of it.
+template <class CompiledWhereCalled = void>
+inline void interpolate_alone(const TileKernels& kernels, const TriangleFunctions& triangle, const Tile& rect,
+                              glm::length_t coordinate, const std::span<float>& output, const Plan* plan) noexcept {
+    if (output.empty()) return;
+    OnDemand<CloseRamps> close;
+    TileInterpolator<> interpolator(kernels, triangle, rect, close);
+    interpolator.add(coordinate, output);
+    interpolator.interpolate(rect, plan);
+}
+
+// Takes the light of a tile's fragments whose r, which nobody asked for, is beyond the depth, which cuts it. It is halved until
+// the buffer holds it; of a half where nothing is lit, or all is in the depth, r is not computed.
+template <class CompiledWhereCalled = void>
+inline void darken_beyond_depth(const TileKernels& kernels, const TriangleFunctions& triangle, const Tile& rect,
+                                const Tile& tile, const std::span<float>& buffer,
+                                const std::span<float>& lit) noexcept {
+    const auto count = static_cast<std::size_t>(tile.count());
+    if (count > buffer.size()) {
+        for (const Tile& half : tile.halves()) {
+            const Plan plan = survey(triangle, half).plan;
+            if (plan.work == Work::nothing)
+                fill_rows(lit, rect, half, 0.0f);
+            else if (plan.depth != Coverage::inside)
+                darken_beyond_depth(kernels, triangle, rect, half, buffer, lit);
+        }
+        return;
+    }
+    interpolate_alone(kernels, triangle, tile, 2, buffer.first(count), nullptr);
+    // Rows that follow one another are one.
+    const std::size_t rows = tile.width == rect.width ? 1 : static_cast<std::size_t>(tile.height);
+    const std::size_t length = count / rows;
+    float* const first = lit.data() + offset_in(rect, tile.x, tile.y);
+    for (std::size_t y = 0; y < rows; ++y)
+        chosen<MaskKernels>().darken(first + y * static_cast<std::size_t>(rect.width), buffer.data() + y * length,
+                                     length, triangle.lit.r_min(), triangle.lit.r_max());
+}
+
+// r, and what the depth takes of a mask that s and t have made.
+template <class CompiledWhereCalled = void>
+TEXGEN_APART void finish_depth(const TileKernels& kernels, const TriangleFunctions& triangle, const Tile& tile,
+                               const Texcoords& out, Coverage depth) noexcept {
+    interpolate_alone(kernels, triangle, tile, 2, out.r, nullptr);
+    if (depth == Coverage::inside || out.lit.empty()) return;
+    if (out.r.empty()) {
+        float buffer[1024];
+        darken_beyond_depth(kernels, triangle, tile, tile, buffer, out.lit);
+    } else {
+        chosen<MaskKernels>().darken(out.lit.data(), out.r.data(), out.lit.size(), triangle.lit.r_min(),
+                                     triangle.lit.r_max());
+    }
+}
+
+// The fragments of a rectangle, for outputs that are computed.
+template <class CompiledWhereCalled = void>
+inline Work interpolate_tile(const TriangleSetup& setup, const Tile& tile, const Texcoords& out) noexcept {
+    const TriangleFunctions& triangle = setup.functions();
+    TileSurvey found = survey(triangle, tile);
+    const Plan& plan = found.plan;
+    if (plan.work == Work::nothing) {
+        for (float& lit : out.lit) lit = 0.0f;
+        return plan.work;
+    }
+
+    const TileKernels& kernels = chosen<TileKernels>();
+    // What is certainly inside is lit, and s and t need not be compared.
+    const bool is_inside = plan.sides == Coverage::inside;
+    if (is_inside && !out.lit.empty()) chosen<MaskKernels>().light_all(out.lit.data(), out.lit.size());
+    const bool both = !out.s.empty() && !out.t.empty();
+    if (both || (!is_inside && !out.lit.empty())) {
+        TileInterpolator<> interpolator(kernels, triangle, tile, found.close);
+        interpolator.add(out.s, out.t, out.lit);
+        if (is_inside) interpolator.leave_mask();
+        if (both)
+            interpolator.interpolate(tile, found.at, plan);
+        else
+            interpolator.interpolate_in_strips(tile, plan);
+    } else {
+        interpolate_alone(kernels, triangle, tile, 0, out.s, &plan);
+        interpolate_alone(kernels, triangle, tile, 1, out.t, &plan);
+    }
+    finish_depth(kernels, triangle, tile, out, plan.depth);
+    return plan.work;
+}
+
+}  // namespace TEXGEN_BUILD
+}  // namespace TEXGEN_DETAIL
+
+namespace TEXGEN_NAMESPACE {
+inline namespace TEXGEN_BUILD {
+
+template <class CompiledWhereCalled>
+TEXGEN_INLINE Work interpolate(const TriangleSetup& setup, FragmentRect rect, Texcoords out) noexcept {
+    const std::size_t count = detail::count_of(rect);
+    if (count == 0) return Work::nothing;
+    detail::take_computed(out, count);
+    const detail::Tile tile = detail::tile_of(rect);
+    const detail::TriangleFunctions& triangle = setup.functions();
+    Coverage depth = Coverage::inside;
+    detail::SmallAnswer answer = detail::SmallAnswer::doubt;
+    if (tile.width <= detail::TileJob::unit_size / 4 && tile.count() <= detail::TileJob::unit_size) {
+        if (triangle.lit.has_depth()) depth = detail::depth_coverage(triangle, tile);
+        if (depth != Coverage::outside) answer = detail::fill_small(triangle, tile, out);
+    }
+    if (answer == detail::SmallAnswer::doubt) return detail::interpolate_tile(setup, tile, out);
+    detail::finish_depth(detail::chosen<detail::TileKernels>(), triangle, tile, out, depth);
+    return detail::work_of(triangle, answer == detail::SmallAnswer::lit && depth == Coverage::inside);
+}
+
+}  // namespace TEXGEN_BUILD
+}  // namespace TEXGEN_NAMESPACE
