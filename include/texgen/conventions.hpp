@@ -11,8 +11,8 @@
 
 #include "detail/matrices/required.hpp"
 
-// 0.4.2: 10000 major + 100 minor + patch.
-#define TEXGEN_VERSION 402
+// 0.4.3: 10000 major + 100 minor + patch.
+#define TEXGEN_VERSION 403
 
 namespace TEXGEN_NAMESPACE {
 
