@@ -1,9 +1,10 @@
 cmake_minimum_required(VERSION 3.25)
 
 # Compiles PROGRAM by COMPILER with FLAGS, in DIRECTORY, and runs it, by RUNNER (a command) where that is said; it must
-# return 0. It is skipped where a tool, or one of the files NEEDS, is not there.
+# return 0. It is skipped where a tool, libc++ that it asks for, or one of the files NEEDS, is not there.
 # With REFUSED_WITH it must not compile, with a message that matches. What it prints goes to PRINT_TO, or must be in PRINTS.
 # With ASSEMBLY_WITHOUT it is not run, but its assembly must not match.
+include(${CMAKE_CURRENT_LIST_DIR}/../standard_library.cmake)
 function(skip reason)
     message(STATUS "Skipped: ${reason}")
 endfunction()
@@ -20,6 +21,13 @@ foreach(file IN LISTS needs)
         return()
     endif()
 endforeach()
+if(FLAGS MATCHES "^-stdlib=libc\\+\\+" AND NOT NEEDS)
+    find_standard_library(has_library ${compiler} -stdlib=libc++)
+    if(NOT has_library)
+        skip("no libc++")
+        return()
+    endif()
+endif()
 separate_arguments(runner UNIX_COMMAND "${RUNNER}")
 if(runner)
     list(POP_FRONT runner name)
