@@ -277,13 +277,14 @@ struct PointBatch {
     texgen::WorldTexgen texgen;
     std::vector<float> out[4];
     std::vector<glm::vec4> strq;
+    std::vector<float> xyz[3];
 };
 template <std::size_t Count>
 std::shared_ptr<PointBatch> batch_of(const Numbers& n) {
     Reader reader(n);
     std::vector<glm::vec3> points = points_of<Count>(reader);
     auto batch =
-        std::make_shared<PointBatch>(PointBatch{std::move(points), texgen::WorldTexgen(reader.dmat4()), {}, {}});
+        std::make_shared<PointBatch>(PointBatch{std::move(points), texgen::WorldTexgen(reader.dmat4()), {}, {}, {}});
     for (std::vector<float>& out : batch->out) out.resize(Count);
     batch->strq.resize(Count);
     return batch;
@@ -299,51 +300,44 @@ inline texgen::TextureRegion wide_open() { return texgen::atlas_tile({-1e30, -1e
 // Whose depth begins at the r of ordinary coordinates, so that r alone can tell.
 inline texgen::TextureRegion wide_open_from_half() { return wide_open().with_depth(0.5, 1.0); }
 
-template <std::size_t Count, bool IsExact>
+// What is asked of points and segments.
+enum class Outputs { all, lit, r, pairs };
+struct Asked {
+    bool is_exact = true, has_depth = false, is_within = false, is_planar = false;
+    Outputs outputs = Outputs::all;
+
+    constexpr texgen::Tolerance tolerance() const { return is_exact ? texgen::exact : detail::tolerance; }
+    texgen::TextureRegion region() const { return has_depth ? wide_open_from_half() : texgen::whole_texture(); }
+    texgen::Texcoords texcoords(std::vector<float> (&out)[4]) const {
+        const auto span = [&](std::size_t i, Outputs alone) {
+            return outputs == Outputs::all || outputs == alone ? std::span<float>(out[i]) : std::span<float>();
+        };
+        return {span(0, Outputs::all), span(1, Outputs::all), span(2, Outputs::r), span(3, Outputs::lit)};
+    }
+};
+
+template <std::size_t Count, Asked Asks = Asked{}>
 Calls project_calls(const Numbers& n) {
     const auto batch = batch_of<Count>(n);
     if (!is_of_a_scene(*batch)) return {};
-    return calls_of([batch] {
-        texgen::project(batch->texgen, texgen::world_space(batch->points), texgen::whole_texture(),
-                        {.s = batch->out[0], .t = batch->out[1], .r = batch->out[2], .lit = batch->out[3]},
-                        IsExact ? texgen::exact : tolerance);
-    });
-}
-// The mask alone, with a depth.
-template <std::size_t Count>
-Calls project_mask_calls(const Numbers& n) {
-    const auto batch = batch_of<Count>(n);
-    if (!is_of_a_scene(*batch)) return {};
-    return calls_of([batch] {
-        texgen::project(batch->texgen, texgen::world_space(batch->points), wide_open_from_half(),
-                        {.s = {}, .t = {}, .r = {}, .lit = batch->out[3]});
-    });
-}
-template <std::size_t Count>
-Calls project_pairs_calls(const Numbers& n) {
-    const auto batch = batch_of<Count>(n);
-    if (!is_of_a_scene(*batch)) return {};
-    return calls_of([batch, st = std::vector<glm::vec2>(Count)]() mutable {
-        texgen::project(batch->texgen, texgen::world_space(batch->points), st);
-        keep(st[0]);
-    });
-}
-template <bool IsExact>
-Calls project_within_calls(const Numbers& n) {
-    const auto batch = batch_of<1024>(n);
-    if (!is_of_a_scene(*batch)) return {};
-    texgen::Box box{batch->points[0], batch->points[0]};
-    for (const glm::vec3& point : batch->points) {
+    const std::vector<glm::vec3>& points = batch->points;
+    texgen::Box box{points[0], points[0]};
+    for (std::size_t i = 0; i < Count; ++i) {
         for (int k = 0; k < 3; ++k) {
-            if (std::isnan(point[k])) return {};
-            box.min[k] = std::min(box.min[k], point[k]);
-            box.max[k] = std::max(box.max[k], point[k]);
+            if (Asks.is_within && std::isnan(points[i][k])) return {};
+            box.min[k] = std::min(box.min[k], points[i][k]);
+            box.max[k] = std::max(box.max[k], points[i][k]);
+            batch->xyz[k].push_back(points[i][k]);
         }
     }
-    return calls_of([batch, positions = texgen::world_space(batch->points).within(box)] {
-        texgen::project(batch->texgen, positions, texgen::whole_texture(),
-                        {.s = batch->out[0], .t = batch->out[1], .r = batch->out[2], .lit = batch->out[3]},
-                        IsExact ? texgen::exact : tolerance);
+    auto positions =
+        Asks.is_planar ? texgen::world_space(batch->xyz[0], batch->xyz[1], batch->xyz[2]) : texgen::world_space(points);
+    if (Asks.is_within) positions = positions.within(box);
+    return calls_of([batch, positions, st = std::vector<glm::vec2>(Count)]() mutable {
+        if constexpr (Asks.outputs == Outputs::pairs)
+            texgen::project(batch->texgen, positions, st, Asks.tolerance());
+        else
+            texgen::project(batch->texgen, positions, Asks.region(), Asks.texcoords(batch->out), Asks.tolerance());
     });
 }
 inline Calls project_point_calls(const Numbers& n) {
@@ -408,7 +402,7 @@ inline Numbers draw_segment(Random& random) {
 inline constexpr Hostile hostile_segment{draw_segment,
                                          "drawn: halves between floats, alphas next to the root of q, or any numbers"};
 
-template <std::size_t Count, bool IsExact, bool HasDepth = false>
+template <std::size_t Count, Asked Asks = Asked{}>
 Calls segment_calls(const Numbers& n) {
     struct Job {
         texgen::Segment segment;
@@ -426,9 +420,7 @@ Calls segment_calls(const Numbers& n) {
     if (!is_of_a_scene(job->segment.a) || !is_of_a_scene(job->segment.b)) return {};
     for (std::vector<float>& out : job->out) out.resize(Count);
     return calls_of([job] {
-        texgen::interpolate(job->segment, job->alpha, HasDepth ? wide_open_from_half() : texgen::whole_texture(),
-                            {.s = job->out[0], .t = job->out[1], .r = job->out[2], .lit = job->out[3]},
-                            IsExact ? texgen::exact : tolerance);
+        texgen::interpolate(job->segment, job->alpha, Asks.region(), Asks.texcoords(job->out), Asks.tolerance());
     });
 }
 inline texgen::Segment segment_of(const Numbers& n) {
@@ -907,6 +899,40 @@ Calls one_question_calls(const Numbers& n) {
             keep(texgen::coverage(texgen, Region(), texgen::Sphere{a, b.x}));
     });
 }
+// A frame in which all of 64 objects change, about 4 projectors that have a depth and are one.
+inline Calls scene_calls(const Numbers& n) {
+    if (!are_of_a_scene(n)) return {};
+    struct Engine {
+        std::vector<texgen::ModelMatrix> models;
+        std::vector<texgen::Box> bounds;
+        std::vector<texgen::Projector> projectors;
+        std::vector<texgen::TextureRegion> regions;
+        std::vector<std::uint32_t> all;
+        texgen::Scene scene;
+    };
+    const auto engine = std::make_shared<Engine>();
+    Reader reader(n);
+    for (std::uint32_t i = 0; i < 64; ++i) {
+        if (i < body_pattern) {
+            const glm::vec3 min = reader.vec3(), max = reader.vec3();
+            engine->bounds.push_back({min, max});
+        } else {
+            engine->bounds.push_back(engine->bounds[i - body_pattern]);
+        }
+        engine->models.emplace_back(glm::dmat4(1.0));
+        engine->all.push_back(i);
+    }
+    glm::dmat4 projection = reader.dmat4();
+    for (int k = 0; k < 4; ++k)
+        projection[k] = glm::dvec4(2.0 * glm::dvec3(projection[k]) - projection[k].w, projection[k].w);
+    engine->projectors.assign(
+        4, {texgen::ProjectorProjection(projection), texgen::ProjectorView(glm::dmat4(1.0)), texgen::opengl});
+    engine->regions.assign(4, whole_volume());
+    return calls_of([engine] {
+        keep(engine->scene.update({engine->models, engine->bounds, engine->projectors, engine->regions},
+                                  {engine->all, {}}));
+    });
+}
 inline Numbers ordinary_volume(Random& random) {
     return numbers(ordinary_texgen(random), glm::dvec4(0.0, 0.0, 1.0, 1.0));
 }
@@ -1326,15 +1352,27 @@ Calls diagnose_calls(const Numbers& n) {
 
 inline const std::array workloads{
     Workload{"project, exact, 1024 points", 24, detail::ordinary_points, detail::hostile_points,
-             detail::project_calls<1024, true>, detail::always},
+             detail::project_calls<1024>, detail::always},
     Workload{"project, tolerance, 1024 points", 24, detail::ordinary_points, detail::hostile_points,
-             detail::project_calls<1024, false>, detail::always},
+             detail::project_calls<1024, detail::Asked{.is_exact = false}>, detail::always},
     Workload{"project, exact, 1 point", 24, detail::ordinary_points, detail::hostile_points,
-             detail::project_calls<1, true>, detail::always},
+             detail::project_calls<1>, detail::always},
     Workload{"project, exact, lit alone with a depth, 1024 points", 24, detail::ordinary_points, detail::hostile_points,
-             detail::project_mask_calls<1024>, detail::always},
+             detail::project_calls<1024, detail::Asked{.has_depth = true, .outputs = detail::Outputs::lit}>, detail::always},
     Workload{"project to pairs, 1024 points", 24, detail::ordinary_points, detail::hostile_points,
-             detail::project_pairs_calls<1024>, detail::always},
+             detail::project_calls<1024, detail::Asked{.outputs = detail::Outputs::pairs}>, detail::always},
+    Workload{"project, tolerance, 1 point", 24, detail::ordinary_points, detail::hostile_points, detail::project_calls<1, detail::Asked{.is_exact = false}>, detail::always},
+    Workload{"project, exact, with a depth, 1024 points", 24, detail::ordinary_points, detail::hostile_points, detail::project_calls<1024, detail::Asked{.has_depth = true}>, detail::always},
+    Workload{"project, tolerance, with a depth, 1024 points", 24, detail::ordinary_points, detail::hostile_points, detail::project_calls<1024, detail::Asked{.is_exact = false, .has_depth = true}>, detail::always},
+    Workload{"project, exact, lit alone, 1024 points", 24, detail::ordinary_points, detail::hostile_points, detail::project_calls<1024, detail::Asked{.outputs = detail::Outputs::lit}>, detail::always},
+    Workload{"project, tolerance, lit alone, 1024 points", 24, detail::ordinary_points, detail::hostile_points, detail::project_calls<1024, detail::Asked{.is_exact = false, .outputs = detail::Outputs::lit}>, detail::always},
+    Workload{"project, exact, planar, 1024 points", 24, detail::ordinary_points, detail::hostile_points, detail::project_calls<1024, detail::Asked{.is_planar = true}>, detail::always},
+    Workload{"project, tolerance, planar, 1024 points", 24, detail::ordinary_points, detail::hostile_points, detail::project_calls<1024, detail::Asked{.is_exact = false, .is_planar = true}>, detail::always},
+    Workload{"project within a box, exact, planar, 1024 points", 24, detail::ordinary_points, detail::hostile_points, detail::project_calls<1024, detail::Asked{.is_within = true, .is_planar = true}>, detail::always},
+    Workload{"project within a box, tolerance, planar, 1024 points", 24, detail::ordinary_points, detail::hostile_points, detail::project_calls<1024, detail::Asked{.is_exact = false, .is_within = true, .is_planar = true}>, detail::always},
+    Workload{"project to pairs, tolerance, 1024 points", 24, detail::ordinary_points, detail::hostile_points, detail::project_calls<1024, detail::Asked{.is_exact = false, .outputs = detail::Outputs::pairs}>, detail::always},
+    Workload{"project to pairs within a box, exact, 1024 points", 24, detail::ordinary_points, detail::hostile_points, detail::project_calls<1024, detail::Asked{.is_within = true, .outputs = detail::Outputs::pairs}>, detail::always},
+    Workload{"project to pairs within a box, tolerance, 1024 points", 24, detail::ordinary_points, detail::hostile_points, detail::project_calls<1024, detail::Asked{.is_exact = false, .is_within = true, .outputs = detail::Outputs::pairs}>, detail::always},
     Workload{"generate, 1024 points", 24, detail::ordinary_points, detail::hostile_points, detail::generate_calls<1024>,
              detail::always},
     Workload{"generate, 1 point", 24, detail::ordinary_points, detail::hostile_points, detail::generate_calls<1>,
@@ -1342,9 +1380,9 @@ inline const std::array workloads{
     Workload{"generate to four arrays, 1024 points", 24, detail::ordinary_points, detail::hostile_points,
              detail::generate_planar_calls<1024>, detail::always},
     Workload{"project within a box, exact, 1024 points", 24, detail::ordinary_points, detail::hostile_points,
-             detail::project_within_calls<true>, detail::always},
+             detail::project_calls<1024, detail::Asked{.is_within = true}>, detail::always},
     Workload{"project within a box, tolerance, 1024 points", 24, detail::ordinary_points, detail::hostile_points,
-             detail::project_within_calls<false>, detail::always},
+             detail::project_calls<1024, detail::Asked{.is_exact = false, .is_within = true}>, detail::always},
     Workload{"project a point", 24, detail::ordinary_points, detail::hostile_points, detail::project_point_calls,
              detail::always},
     Workload{"project_error_bound, 1024 points", 24, detail::ordinary_points, detail::hostile_points,
@@ -1353,13 +1391,18 @@ inline const std::array workloads{
              detail::generate_bound_calls, detail::always},
     Workload{"divide", 4, detail::ordinary_strq, detail::hostile_numbers<4>, detail::divide_calls, detail::always},
     Workload{"interpolate a segment, exact, 1024", 16, detail::ordinary_segment, detail::hostile_segment,
-             detail::segment_calls<1024, true>, detail::always},
+             detail::segment_calls<1024>, detail::always},
     Workload{"interpolate a segment, tolerance, 1024", 16, detail::ordinary_segment, detail::hostile_segment,
-             detail::segment_calls<1024, false>, detail::always},
+             detail::segment_calls<1024, detail::Asked{.is_exact = false}>, detail::always},
     Workload{"interpolate a segment, exact, with a depth, 1024", 16, detail::ordinary_segment, detail::hostile_segment,
-             detail::segment_calls<1024, true, true>, detail::always},
+             detail::segment_calls<1024, detail::Asked{.has_depth = true}>, detail::always},
     Workload{"interpolate a segment, exact, 1", 16, detail::ordinary_segment, detail::hostile_segment,
-             detail::segment_calls<1, true>, detail::always},
+             detail::segment_calls<1>, detail::always},
+    Workload{"interpolate a segment, exact, lit alone, 1024", 16, detail::ordinary_segment, detail::hostile_segment, detail::segment_calls<1024, detail::Asked{.outputs = detail::Outputs::lit}>, detail::always},
+    Workload{"interpolate a segment, tolerance, lit alone, 1024", 16, detail::ordinary_segment, detail::hostile_segment, detail::segment_calls<1024, detail::Asked{.is_exact = false, .outputs = detail::Outputs::lit}>, detail::always},
+    Workload{"interpolate a segment, exact, r alone, 1024", 16, detail::ordinary_segment, detail::hostile_segment, detail::segment_calls<1024, detail::Asked{.outputs = detail::Outputs::r}>, detail::always},
+    Workload{"interpolate a segment, tolerance, with a depth, 1024", 16, detail::ordinary_segment, detail::hostile_segment, detail::segment_calls<1024, detail::Asked{.is_exact = false, .has_depth = true}>, detail::always},
+    Workload{"interpolate a segment, tolerance, 1", 16, detail::ordinary_segment, detail::hostile_segment, detail::segment_calls<1, detail::Asked{.is_exact = false}>, detail::always},
     Workload{"work of a segment", 16, detail::ordinary_segment, detail::hostile_segment, detail::segment_work_calls,
              detail::always},
     Workload{"error_bound of a segment", 16, detail::ordinary_segment, detail::hostile_segment,
@@ -1457,6 +1500,8 @@ inline const std::array workloads{
              detail::coverage_calls<texgen::Sphere, detail::bodies>, detail::of_touching},
     Workload{"coverage of a box, asked once", 24, detail::ordinary_boxes, detail::hostile_boxes,
              detail::one_question_calls<texgen::Box>, detail::of_touching},
+    Workload{"coverage of a sphere, asked once, with a depth", 16, detail::ordinary_spheres, detail::hostile_spheres, detail::one_question_calls<texgen::Sphere, detail::whole_volume>, detail::of_touching},
+    Workload{"Scene::update with a depth, 64 objects, 4 projectors", 24, detail::ordinary_boxes, detail::hostile_boxes, detail::scene_calls, detail::always},
     Workload{"coverage of a sphere, asked once", 16, detail::ordinary_spheres, detail::hostile_spheres,
              detail::one_question_calls<texgen::Sphere>, detail::of_touching},
     Workload{"clip_planes", 0, detail::ordinary_volume, detail::hostile_volume, detail::planes_calls<false>,
