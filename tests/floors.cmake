@@ -163,7 +163,7 @@ foreach(header IN LISTS headers)
     if(text MATCHES "std::bit_cast")
         complain("${header}: std::bit_cast is not in every library; detail::bit_cast is")
     endif()
-    if(NOT header MATCHES "^detail/simd/(vectors|instruction_sets)[.]inc[.]hpp$" AND text MATCHES
+    if(NOT header MATCHES "^detail/simd/(vectors|middles|instruction_sets)[.]inc[.]hpp$" AND text MATCHES
        "__(builtin|attribute|extension|restrict|int128|asm|typeof|declspec|vector)[a-z_]*|\\[\\[(gnu|clang|msvc)::|# *pragma (GCC|clang)|_Pragma")
         complain("${header}: ${CMAKE_MATCH_0} is an extension")
     endif()

@@ -149,7 +149,7 @@ TEXGEN_APART bool divide_whole_tile(const BatchPlanes& planes, const BatchTiles&
     const double rows = shape.rows;
     const int ulps = static_cast<int>(tiles.ulps[i]) - 1;
     Doubles x = shape.x;
-    WideWords least = WideWords{} + 1;
+    Distances least = far_from_middles();
     for (std::size_t begin = 0; begin < pitch; begin += size) {
         TileColumn<Numerators> column;
         TEXGEN_UNROLL
@@ -167,8 +167,7 @@ TEXGEN_APART bool divide_whole_tile(const BatchPlanes& planes, const BatchTiles&
             Doubles quotient[2][Numerators];
             column.divide(quotient[0], quotient[1]);
             TEXGEN_UNROLL
-            for (std::size_t k = 0; k < Numerators; ++k)
-                least = minimum(least, distances_from_middles(quotient[0][k], quotient[1][k], ulps));
+            for (std::size_t k = 0; k < Numerators; ++k) least = nearer(least, quotient[0][k], quotient[1][k], ulps);
             TEXGEN_UNROLL
             for (std::size_t j = 0; j < 2; ++j) {
                 Floats rounded[Numerators];

@@ -4,6 +4,8 @@
 
 #ifdef TEXGEN_HAS_VECTORS
 #include "../simd/vectors.inc.hpp"
+
+#include "../simd/middles.inc.hpp"
 #else
 #include "../simd/loops.inc.hpp"
 #endif

@@ -112,7 +112,7 @@ Undecided fill_segment_closely(const SegmentJob& job, std::size_t first) noexcep
             Floats value[2];
             TEXGEN_UNROLL
             for (std::size_t k = 0; k < Numerators; ++k) quotient[k] = s[k].high * reciprocal + 0x1p-900;
-            const WideWords distance = distances_from_middles(quotient[0], quotient[Numerators - 1], 7);
+            const Distances distance = nearer(far_from_middles(), quotient[0], quotient[Numerators - 1], 7);
             const bool are_near = any_zero(distance);
             const auto may_be_subnormal = [&](std::size_t k) {
                 const Doubles size = magnitude(quotient[k]);
@@ -203,7 +203,7 @@ std::size_t fill_segment_in_double_of(const SegmentJob& job, std::size_t first, 
     for (std::size_t begin = first; begin < count;) {
         const std::size_t end = end_of_block(count, begin, float_block);
         if (has_small_alpha(job, begin, end, job.small_alpha)) return begin;
-        WideWords distance = WideWords{} + 0x7fffffff;
+        Distances distance = far_from_middles();
         Doubles sum{};
         Doubles* next = reciprocal;
         for (std::size_t i = begin; i < end; i += 2 * width) {
@@ -230,7 +230,7 @@ std::size_t fill_segment_in_double_of(const SegmentJob& job, std::size_t first, 
                 quotient[k] = IsAsymptotic ? of_q * slope[k] + base[k] : (alpha * slope[k] + base[k]) * of_q;
                 value[k] = to_floats(quotient[k]);
             }
-            distance = minimum(distance, distances_from_middles(quotient[0], quotient[Numerators - 1], ulps));
+            distance = nearer(distance, quotient[0], quotient[Numerators - 1], ulps);
             TEXGEN_UNROLL
             for (std::size_t k = 0; k < Numerators; ++k) store(out[k] + i, value[k]);
         }

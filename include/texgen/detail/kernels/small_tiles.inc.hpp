@@ -15,7 +15,7 @@ TEXGEN_INLINE bool divide_small(const SmallTile& tile) noexcept {
     float buffer[2][TileJob::unit_size + lanes];
     const bool has_room = width >= lanes;
     float* const out[2] = {has_room ? tile.out[0] : buffer[0], has_room ? tile.out[1] : buffer[1]};
-    WideWords least = WideWords{} + 1;
+    Distances least = far_from_middles();
     for (int begin = 0;;) {
         const Doubles x = indices<Doubles>() + static_cast<double>(begin);
         const auto first_of = [&](const Ramp& ramp) { return x * ramp.dx + ramp.base; };
@@ -25,18 +25,19 @@ TEXGEN_INLINE bool divide_small(const SmallTile& tile) noexcept {
         for (int n = begin;;) {
             const Doubles q = y * q_dy + first_q, second_q = q + q_dy;
             const Doubles of_both = 1.0 / (q * second_q);
+            const Doubles reciprocal[2] = {of_both * second_q, of_both * q};
             Doubles quotient[2][2];
             TEXGEN_UNROLL
             for (std::size_t k = 0; k < 2; ++k) {
                 const Doubles value = y * dy[k] + first[k];
-                quotient[0][k] = value * second_q * of_both;
-                quotient[1][k] = (value + dy[k]) * q * of_both;
+                quotient[0][k] = value * reciprocal[0];
+                quotient[1][k] = (value + dy[k]) * reciprocal[1];
             }
             TEXGEN_UNROLL
             for (int i = 0; i < 2; ++i) {
                 TEXGEN_UNROLL
                 for (std::size_t k = 0; k < 2; ++k) store(out[k] + (n + i * stride), to_floats(quotient[i][k]));
-                least = minimum(least, distances_from_middles(quotient[i][0], quotient[i][1], SmallTile::ulps));
+                least = nearer(least, quotient[i][0], quotient[i][1], SmallTile::ulps);
             }
             if (n == last) break;
             n += 2 * width;

@@ -82,7 +82,7 @@ TileJob::Unit divide_in_pairs(const TileJob& job, const TileJob::Unit& first) no
         int certain = begin;
         while (certain < width) {
             const int end = width - certain < TileJob::unit_size ? width : certain + TileJob::unit_size;
-            WideWords least = ~WideWords{} & 0x7fffffff;
+            Distances least = far_from_middles();
             for (int x = certain; x < end; x += pair, index = index + static_cast<double>(pair)) {
                 if (x > end - pair) {
                     index = index - static_cast<double>(x - (end - pair));
@@ -99,8 +99,8 @@ TileJob::Unit divide_in_pairs(const TileJob& job, const TileJob::Unit& first) no
                     store(out[k] + x, to_floats(value[k]));
                     store(out[k] + x + lanes, to_floats(next_value[k]));
                 }
-                least = minimum(least, minimum(distances_from_middles(value[0], value[1], ulps),
-                                               distances_from_middles(next_value[0], next_value[1], ulps)));
+                least = nearer(least, value[0], value[1], ulps);
+                least = nearer(least, next_value[0], next_value[1], ulps);
             }
             if (any_zero(least)) break;
             certain = end;

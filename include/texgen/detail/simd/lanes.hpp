@@ -148,6 +148,13 @@ inline bool all_less(const Double2& a, const Double2& b, const Double2& c, const
 #define TEXGEN_MASKED_OR(a, bits, b) __builtin_ia32_pternlogq512_mask(a, bits, b, 0xea, 0xff)
 #endif
 
+// Which of sixteen lanes of a mask have any of these bits.
+#ifdef __clang__
+#define TEXGEN_ANY_BITS(a, bits, mask) __builtin_ia32_cmpd512_mask((a) & (bits), WideWords{}, 4, mask)
+#else
+#define TEXGEN_ANY_BITS(a, bits, mask) __builtin_ia32_ptestmd512(a, bits, mask)
+#endif
+
 namespace TEXGEN_DETAIL {
 
 // The widest integer without a sign.

@@ -135,9 +135,6 @@ TEXGEN_INLINE LongWords are_near_middles(const Doubles& a, std::int64_t ulps) no
     const auto mask = static_cast<std::uint64_t>(0x1ffffffe - 2 * ulps);
     return LongWords::of([&](int i) { return ((bit_cast<std::uint64_t>(a.lane[i]) + offset) & mask) == 0 ? -1 : 0; });
 }
-TEXGEN_INLINE Words distances_from_middles(const Doubles& a, const Doubles& b, int ulps) noexcept {
-    return ~(are_near_middles(a, ulps) | are_near_middles(b, ulps)) & 1;
-}
 TEXGEN_INLINE Doubles middle_near(const Doubles& a) noexcept {
     return Doubles::of([&](int i) {
         return bit_cast<double>((bit_cast<std::uint64_t>(a.lane[i]) & ~std::uint64_t{0x1fffffff}) | 0x10000000);
@@ -291,9 +288,14 @@ TEXGEN_INLINE bool any(const Words& mask) noexcept {
     for (int i = 0; i < lanes; ++i) all |= mask.lane[i];
     return all != 0;
 }
-TEXGEN_INLINE bool any_zero(const Words& distance) noexcept { return any(equal(distance, 0)); }
-TEXGEN_INLINE bool any_nonzero_near(const Words& distance, const Doubles& a) noexcept {
-    return any(equal(distance, 0) & are_nonzero(a));
+using Distances = Words;
+TEXGEN_INLINE Distances far_from_middles() noexcept { return Distances{} + 1; }
+TEXGEN_INLINE Distances nearer(const Distances& others, const Doubles& a, const Doubles& b, int ulps) noexcept {
+    return others & ~(are_near_middles(a, ulps) | are_near_middles(b, ulps));
+}
+TEXGEN_INLINE bool any_zero(const Distances& distances) noexcept { return any(equal(distances, 0)); }
+TEXGEN_INLINE bool any_nonzero_near(const Distances& distances, const Doubles& a) noexcept {
+    return any(equal(distances, 0) & are_nonzero(a));
 }
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA

@@ -90,31 +90,6 @@ TEXGEN_INLINE Doubles masked_or(const Doubles& a, long long bits, const Doubles&
 #endif
 }
 
-// Where a number lies within so many of its ulps, 1 less than a power of two, of the middle of two normal floats (or one
-// more beyond it), and that middle.
-TEXGEN_INLINE LongWords are_near_middles(const Doubles& a, std::int64_t ulps) noexcept {
-    return ((__builtin_bit_cast(Residues, a) + static_cast<std::uint64_t>(ulps - 0x10000000)) &
-            static_cast<std::uint64_t>(0x1ffffffe - 2 * ulps)) == 0;
-}
-// The low words of a and b, or the high ones, in whatever order. Shuffled as floats within 16 bytes: of words GCC takes what
-// crosses them.
-template <bool AreHigh, int... Lane>
-TEXGEN_INLINE WideResidues words_of(const Doubles& a, const Doubles& b, std::integer_sequence<int, Lane...>) noexcept {
-    constexpr int word = AreHigh == (std::endian::native == std::endian::little) ? 1 : 0;
-    return __builtin_bit_cast(
-        WideResidues, __builtin_shufflevector(__builtin_bit_cast(WideFloats, a), __builtin_bit_cast(WideFloats, b),
-                                              (Lane / 4 * 4 + Lane % 2 * 2 + Lane % 4 / 2 * wide_lanes + word)...));
-}
-// As many numbers as a and b have, none negative: 0 for each that is so near a middle. The low words decide.
-TEXGEN_INLINE WideWords distances_from_middles(const Doubles& a, const Doubles& b, int ulps) noexcept {
-    const WideResidues low = words_of<false>(a, b, std::make_integer_sequence<int, wide_lanes>());
-    return __builtin_bit_cast(WideWords, (low + static_cast<std::uint32_t>(ulps - 0x10000000)) &
-                                             static_cast<std::uint32_t>(0x1ffffffe - 2 * ulps));
-}
-TEXGEN_INLINE Doubles middle_near(const Doubles& a) noexcept {
-    return masked_or(a, ~0x1fffffffLL, __builtin_bit_cast(Doubles, LongWords{} + 0x10000000));
-}
-
 // A number that is an integer of less than 2^63, and what is asked of residues.
 TEXGEN_INLINE Residues to_residues(const Doubles& integers) noexcept {
     return __builtin_bit_cast(Residues, __builtin_convertvector(integers, LongWords));
@@ -374,26 +349,6 @@ TEXGEN_INLINE bool any(const WideWords& mask) noexcept {
 #else
     using Half = std::make_integer_sequence<int, lanes>;
     return any(half<0>(mask, Half()) | half<lanes>(mask, Half()));
-#endif
-}
-// Whether a distance is 0. GCC 12 makes a vector of a mask that it asks.
-TEXGEN_INLINE bool any_zero(const WideWords& distance) noexcept {
-#if TEXGEN_LANE_BYTES == 64
-    return __builtin_ia32_cmpd512_mask(distance, WideWords{}, 0, 0xffff) != 0;
-#else
-    const WideWords is_zero = distance == 0;
-    return any(is_zero);
-#endif
-}
-// Whether a number that is not subnormal is not 0 where either distance is.
-TEXGEN_INLINE bool any_nonzero_near(const WideWords& distance, const Doubles& a) noexcept {
-    const WideResidues high = words_of<true>(a, a, std::make_integer_sequence<int, wide_lanes>()) & 0x7fffffffu;
-#if TEXGEN_LANE_BYTES == 64
-    const auto is_near = __builtin_ia32_cmpd512_mask(distance, WideWords{}, 0, 0xffff);
-    return __builtin_ia32_cmpd512_mask(__builtin_bit_cast(WideWords, high), WideWords{}, 4, is_near) != 0;
-#else
-    const WideWords both = (distance == 0) & (high != 0);
-    return any(both);
 #endif
 }
 
