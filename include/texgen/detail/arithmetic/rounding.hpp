@@ -139,22 +139,6 @@ inline DoubleDouble add_product(DoubleDouble a, double b, double c) noexcept {
     return quick_two_sum(sum.high, sum.low + (a.low + product.low));
 }
 
-// A sum in two doubles, and twice what they leave out at most: nothing for numbers with few digits, however much they cancel.
-// Source: Ogita, Rump, Oishi, Accurate Sum and Dot Product, SIAM J. Sci. Comput. 26 (2005), Sum2.
-struct CloseSum {
-    double high, low, lost;
-
-    void add(double term) noexcept {
-        if (term == 0.0) return;
-        const DoubleDouble sum = two_sum(high, term);
-        high = sum.high;
-        if (sum.low == 0.0) return;
-        const DoubleDouble rest = two_sum(low, sum.low);
-        low = rest.high;
-        lost += 2.0 * std::fabs(rest.low);
-    }
-};
-
 // a b - c d within 1.5 double ulp. Source: Kahan; Jeannerod, Louvet, Muller, Math. Comp. 82 (2013).
 inline double difference_of_products(double a, double b, double c, double d) noexcept {
     const double cd = c * d;

@@ -19,44 +19,6 @@ inline bool has_points(const Box& box) noexcept {
     return result;
 }
 
-// What the planes say of a box that has points, exactly: of those that are in doubt.
-inline Coverage exact_coverage(const LitForms& forms, const Box& box, const FormsInDoubt& doubt) noexcept {
-    // The vertex where a form is largest, or least; false where it is infinite there.
-    const glm::dvec3 min = widened(box.min);
-    const glm::dvec3 max = widened(box.max);
-    const auto take_vertex = [&](const Point& a, bool largest, Point& vertex) {
-        for (std::size_t j = 0; j < 3; ++j) {
-            if (a[j] == 0.0) continue;
-            vertex[j] = ((a[j] > 0.0) == largest ? max : min)[static_cast<glm::length_t>(j)];
-            if (!is_finite(vertex[j])) return false;
-        }
-        return true;
-    };
-    CloseRows close;
-    const auto sign_at_vertex = [&](std::size_t k, bool largest) {
-        Point vertex{};
-        return take_vertex(forms.a(k), largest, vertex) ? forms.sign_at(k, vertex, close) : largest ? 1 : -1;
-    };
-    double size = 0.0;
-    for (glm::length_t j = 0; j < 3; ++j) size += larger(std::fabs(min[j]), std::fabs(max[j]));
-    // Almost always the outer side has room for the inner one.
-    const auto is_inside_side = [&](std::size_t k) {
-        Point vertex{}, inner_vertex{};
-        if (take_vertex(forms.a(k), false, vertex) && forms.is_inside_at(k, vertex, size)) return true;
-        const std::array<double, 4> inner = forms.inner_side(k);
-        return take_vertex({inner[0], inner[1], inner[2]}, false, inner_vertex) &&
-               forms.inner_sign_at(k, inner, inner_vertex, close) >= 0;
-    };
-    bool is_inside = !doubt.is_any_negative;
-    for (std::size_t k = forms.count(); k-- > 0;) {
-        if ((doubt.largest >> k & 1u) != 0 && sign_at_vertex(k, true) < (k == LitForms::q ? 1 : 0))
-            return Coverage::outside;
-        if (!is_inside || (doubt.least >> k & 1u) == 0) continue;
-        is_inside = k == LitForms::q ? sign_at_vertex(k, false) > 0 : is_inside_side(k);
-    }
-    return is_inside ? Coverage::inside : Coverage::partial;
-}
-
 inline namespace TEXGEN_BUILD {
 
 template <class CompiledWhereCalled = void>
@@ -75,17 +37,15 @@ void cover(const LitForms& forms, const FloatForms& float_forms, const Separatin
 template <class Separating>
 Coverage coverage_of(const BoxKernels& kernels, const LitForms& forms, const Box& box,
                      const Separating& separating) noexcept {
-    FormsInDoubt doubt;
-    const int answer = forms.can_say() ? kernels.classify(forms.lanes(), &box.min.x, &box.max.x, doubt) : body_in_doubt;
+    const float *const min = &box.min.x, *const max = &box.max.x;
+    const int answer = forms.can_say() ? kernels.classify(forms.lanes(), min, max) : body_in_doubt;
     if (answer < open_body) return static_cast<Coverage>(answer);
     if (answer == body_in_doubt) {
-        if (!forms.can_say() || (!doubt.is_finite && !has_points(box))) return coverage_without_forms(forms, box);
-        if (doubt.is_finite && kernels.sharpen(forms.matrix(), forms.weights(), &box.min.x, &box.max.x, doubt))
-            return Coverage::outside;
-        const Coverage result = exact_coverage(forms, box, doubt);
-        if (result != Coverage::partial) return result;
+        if (!forms.can_say() || !has_points(box)) return coverage_without_forms(forms, box);
+        const int decided = kernels.decide(forms.matrix(), forms.outer(), forms.inner(), min, max);
+        if (decided != static_cast<int>(Coverage::partial)) return static_cast<Coverage>(decided);
     }
-    return kernels.is_separated(separating(), &box.min.x, &box.max.x) ? Coverage::outside : Coverage::partial;
+    return kernels.is_separated(separating(), min, max) ? Coverage::outside : Coverage::partial;
 }
 
 }  // namespace TEXGEN_BUILD

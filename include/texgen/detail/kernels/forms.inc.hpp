@@ -2,30 +2,44 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// q is split so that its products with a float are exact. What they leave of the sum is far below it, or nothing.
+// The weights of forms, a lane each.
+struct WeightLanes {
+    Doubles of[3], of_q;
+
+    TEXGEN_INLINE WeightLanes(const FormWeights& weights, std::size_t i) noexcept
+        : of{load<Doubles>(weights.of[0] + i), load<Doubles>(weights.of[1] + i), load<Doubles>(weights.of[2] + i)},
+          of_q(load<Doubles>(weights.of_q + i)) {}
+};
+
+// A coefficient of each, from a column of the matrix: exactly, in parts far below one another, as q is split so that its products
+// with a float are exact; and rounded.
+struct CoefficientLanes {
+    Doubles part[3], rounded;
+
+    CoefficientLanes() = default;
+    TEXGEN_INLINE CoefficientLanes(const WeightLanes& weights, const glm::dvec4& column) noexcept {
+        const double half = leading_26_bits(column.w);
+        const Doubles row = weights.of[0] * column.x + (weights.of[1] * column.y + weights.of[2] * column.z);
+        Doubles rest;
+        part[0] = two_sum(row, weights.of_q * half, rest);
+        part[1] = two_sum(rest, weights.of_q * (column.w - half), part[2]);
+        rounded = part[0] + part[1];
+    }
+};
+
 template <class CompiledWhereCalled = void>
 void weigh_forms(const glm::dmat4& matrix, const FormWeights& weights, FormLanes& forms) noexcept {
     for (std::size_t i = 0; i < form_lanes; i += static_cast<std::size_t>(lanes)) {
-        const Doubles of[3] = {load<Doubles>(weights.of[0] + i), load<Doubles>(weights.of[1] + i),
-                               load<Doubles>(weights.of[2] + i)};
-        const auto of_q = load<Doubles>(weights.of_q + i);
+        const WeightLanes of(weights, i);
         Doubles form[4];
         TEXGEN_UNROLL
-        for (std::size_t j = 0; j < 4; ++j) {
-            const glm::dvec4& column = matrix[static_cast<glm::length_t>(j)];
-            const double high = leading_26_bits(column.w);
-            const double low = column.w - high;
-            const Doubles row = of[0] * column.x + (of[1] * column.y + of[2] * column.z);
-            Doubles rest;
-            const Doubles sum = two_sum(row, of_q * high, rest);
-            form[j] = sum + (rest + of_q * low);
-        }
+        for (int j = 0; j < 4; ++j) form[j] = CoefficientLanes(of, matrix[j]).rounded;
         const Doubles largest = maximum(maximum(magnitude(form[0]), magnitude(form[1])), magnitude(form[2]));
         const Doubles size = select(greater(largest, 0.0), largest, maximum(magnitude(form[3]), Doubles{} + 0x1p-900));
         const Doubles scale = 1.0 / power_of_two_below(size);
         for (std::size_t j = 0; j < 3; ++j) store(forms.a[j] + i, form[j] * scale);
         store(forms.d + i, form[3] * scale);
-        store(forms.narrowing + i, load<Doubles>(weights.width + i) * scale);
+        store(forms.narrowing + i, load<Doubles>(forms.narrowing + i) * scale);
         store(forms.error_a + i, largest * scale * gamma(8) * 1.001 + 0x1p-1000);
         store(forms.error_d + i, magnitude(form[3] * scale) * gamma(8) * 1.001 + 0x1p-1000);
     }
@@ -110,7 +124,7 @@ void round_forms(const FormLanes& forms, std::size_t count, FloatForms& result) 
 // of two corners is rounded, as are a coefficient, a product, three sums of them and the sum of the two: 8 u. Of a form that
 // uses a coordinate which is infinite nothing is certain here.
 template <class CompiledWhereCalled = void>
-int classify_box(const FormLanes& forms, const float* box_min, const float* box_max, FormsInDoubt& doubt) noexcept {
+int classify_box(const FormLanes& forms, const float* box_min, const float* box_max) noexcept {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     double sum[3], extent[3], size[3];
     bool is_proper = true;
@@ -123,7 +137,6 @@ int classify_box(const FormLanes& forms, const float* box_min, const float* box_
         is_proper &= extent[j] >= 0.0;
         is_proper &= size[j] < infinity;
     }
-    doubt = {.is_finite = is_proper};
     double narrowed = 2.2 * forms.last_q;
     bool is_unbounded[3] = {};
     if (!is_proper) {
@@ -139,7 +152,7 @@ int classify_box(const FormLanes& forms, const float* box_min, const float* box_
 
     constexpr std::size_t count = form_lanes / static_cast<std::size_t>(lanes);
     Doubles value[count], change[count], error[count];
-    LongWords outside{}, negative{}, dark{};
+    LongWords outside{}, negative{}, open{}, not_inside{}, dark{};
     TEXGEN_UNROLL
     for (std::size_t i = 0; i < count; ++i) {
         const std::size_t first = i * static_cast<std::size_t>(lanes);
@@ -156,90 +169,88 @@ int classify_box(const FormLanes& forms, const float* box_min, const float* box_
         outside = outside | greater(0.0 - error[i], value[i] + change[i]);
     }
     if (any(outside)) return 0;
-    doubt.largest = doubt.least = 0;
     TEXGEN_UNROLL
     for (std::size_t i = 0; i < count; ++i) {
-        const std::size_t first = i * static_cast<std::size_t>(lanes);
         const Doubles least = value[i] - change[i];
-        const LongWords largest_is_open = ~greater(value[i] + change[i], error[i]);
-        const LongWords is_negative = greater(0.0 - error[i], least);
-        const LongWords is_inside = greater(least - error[i], load<Doubles>(forms.narrowing + first) * narrowed);
-        const LongWords least_is_open = ~(is_inside | is_negative);
-        negative = negative | is_negative;
+        const auto narrowing = load<Doubles>(forms.narrowing + i * static_cast<std::size_t>(lanes));
+        open = open | ~greater(value[i] + change[i], error[i]);
+        negative = negative | greater(0.0 - error[i], least);
+        not_inside = not_inside | ~greater(least - error[i], narrowing * narrowed);
         dark = dark | ~greater(value[i], error[i]);
-        doubt.largest |= static_cast<std::uint32_t>(lane_bits(largest_is_open)) << first;
-        doubt.least |= static_cast<std::uint32_t>(lane_bits(least_is_open)) << first;
     }
-    doubt.is_any_negative = any(negative);
-    if (doubt.largest == 0) {
-        if (doubt.is_any_negative) return any(dark) ? open_body + 1 : 1;
-        if (doubt.least == 0) return 2;
-    }
-    return body_in_doubt;
+    if (any(open)) return body_in_doubt;
+    if (any(negative)) return any(dark) ? open_body + 1 : 1;
+    return any(not_inside) ? body_in_doubt : 2;
 }
 
-// Forms where they are largest over a finite box, or least: as sums of exact products with halves of the coefficients, and of
-// what those leave, each of its terms rounded. Where they leave nothing, as numbers with few digits do, the value is exact;
-// elsewhere its sign is known where it is larger than the roundings.
-struct CloseForms {
-    Doubles value;
-    LongWords is_known;
-
-    TEXGEN_INLINE CloseForms(const glm::dmat4& matrix, const Doubles (&of)[3], const Doubles& of_q,
-                             const double (&at_positive)[4], const double (&at_negative)[4]) noexcept {
-        Doubles high{}, low{}, size_of_low{};
-        for (std::size_t j = 0; j < 4; ++j) {
-            const glm::dvec4& column = matrix[static_cast<glm::length_t>(j)];
-            const double half = leading_26_bits(column.w);
-            const Doubles row = of[0] * column.x + (of[1] * column.y + of[2] * column.z);
-            Doubles rest;
-            const Doubles sum = two_sum(row, of_q * half, rest);
-            rest = rest + of_q * (column.w - half);
-            const Doubles x = select(greater(sum + rest, 0.0), Doubles{} + at_positive[j], Doubles{} + at_negative[j]);
-            const Doubles first = leading_bits<27>(sum);
-            Doubles left[3];
-            high = two_sum(high, first * x, left[0]);
-            high = two_sum(high, (sum - first) * x, left[1]);
-            left[2] = rest * x;
-            TEXGEN_UNROLL
-            for (const Doubles& part : left) {
-                low = low + part;
-                size_of_low = size_of_low + magnitude(part);
-            }
+// Numbers with the exact signs of forms where they are largest over a box that has points, or least. Two doubles tell them where
+// they leave nothing, as of numbers with few digits, or are larger than the roundings of what they leave; else exact sums of 21
+// numbers at most. A coordinate without a coefficient is not used, and of what is infinite the rounded coefficients tell.
+TEXGEN_INLINE Doubles signed_forms(const glm::dmat4& matrix, const WeightLanes& weights, const double (&at_positive)[3],
+                                   const double (&at_negative)[3]) noexcept {
+    const CoefficientLanes constant(weights, matrix[3]);
+    CoefficientLanes coefficient[3];
+    Doubles at[3], nearly = constant.rounded, high = constant.part[0], low = constant.part[1];
+    Doubles size_of_low = magnitude(low), last = magnitude(constant.part[2]);
+    TEXGEN_UNROLL
+    for (int j = 0; j < 3; ++j) {
+        coefficient[j] = CoefficientLanes(weights, matrix[j]);
+        const auto& [part, rounded] = coefficient[j];
+        at[j] = where(are_nonzero(rounded),
+                      select(greater(rounded, 0.0), Doubles{} + at_positive[j], Doubles{} + at_negative[j]));
+        nearly = nearly + rounded * at[j];
+        const Doubles first = leading_bits<27>(part[0]);
+        Doubles left[3];
+        high = two_sum(high, first * at[j], left[0]);
+        high = two_sum(high, (part[0] - first) * at[j], left[1]);
+        left[2] = part[1] * at[j];
+        TEXGEN_UNROLL
+        for (const Doubles& of_sum : left) {
+            low = low + of_sum;
+            size_of_low = size_of_low + magnitude(of_sum);
         }
-        value = high + low;
-        is_known = at_most(size_of_low, Doubles{}) | greater(magnitude(value), size_of_low * gamma(24) + 0x1p-1000);
+        last = last + magnitude(part[2]);
     }
-};
+    const Doubles sum = high + low;
+    const LongWords is_known =
+        at_most(size_of_low, Doubles{}) | greater(magnitude(sum), size_of_low * gamma(24) + 0x1p-1000);
+    const LongWords is_open = at_most(magnitude(nearly), Doubles{} + 0x1p1000) & ~is_known;
+    const Doubles value = select(is_known, sum, nearly);
+    if (!any(is_open)) return value;
+    const int parts = any(are_nonzero(last)) ? 3 : 2;
+    Doubles term[21], size = magnitude(constant.rounded);
+    Doubles* next = term;
+    for (int k = 0; k < parts; ++k) {
+        *next++ = constant.part[k];
+        TEXGEN_UNROLL
+        for (int j = 0; j < 3; ++j) {
+            const Doubles first = leading_bits<27>(coefficient[j].part[k]);
+            *next++ = first * at[j];
+            *next++ = (coefficient[j].part[k] - first) * at[j];
+        }
+    }
+    for (int j = 0; j < 3; ++j) size = size + magnitude(coefficient[j].rounded * at[j]);
+    const Doubles sigma = power_of_two_below(size) * 8.0;
+    return select(is_open, signed_sum(term, static_cast<std::size_t>(7 * parts), sigma, is_open), value);
+}
 
 template <class CompiledWhereCalled = void>
-bool sharpen(const glm::dmat4& matrix, const FormWeights& weights, const float* box_min, const float* box_max,
-             FormsInDoubt& doubt) noexcept {
-    double min[4] = {0.0, 0.0, 0.0, 1.0}, max[4] = {0.0, 0.0, 0.0, 1.0};
+int decide_box(const glm::dmat4& matrix, const FormWeights& outer, const FormWeights& inner, const float* box_min,
+               const float* box_max) noexcept {
+    constexpr double least[form_lanes] = {0.0, 0.0, 0.0, 0.0, 0x1p-1000};  // q is not 0
+    double min[3], max[3];
     for (std::size_t j = 0; j < 3; ++j) {
         min[j] = widened(box_min[j]);
         max[j] = widened(box_max[j]);
     }
-    for (std::size_t i = 0; i < form_lanes; i += static_cast<std::size_t>(lanes)) {
-        const Doubles of[3] = {load<Doubles>(weights.of[0] + i), load<Doubles>(weights.of[1] + i),
-                               load<Doubles>(weights.of[2] + i)};
-        const auto bits_of = [i](const LongWords& mask) { return static_cast<std::uint32_t>(lane_bits(mask)) << i; };
-        // Where they are largest, and then where they are least.
-        for (int end = 0; end < 2; ++end) {
-            std::uint32_t& in_doubt = end == 0 ? doubt.largest : doubt.least;
-            if ((in_doubt & bits_of(~LongWords{})) == 0 || (end == 1 && doubt.is_any_negative)) continue;
-            const CloseForms close(matrix, of, load<Doubles>((end == 0 ? weights.of_q : weights.inner_of_q) + i),
-                                   end == 0 ? max : min, end == 0 ? min : max);
-            const std::uint32_t settled = in_doubt & bits_of(close.is_known);
-            constexpr std::uint32_t bit_of_q = 1u << form_of_q;
-            const bool any_is_negative = (settled & (bits_of(greater(Doubles{}, close.value)) |
-                                                     (bits_of(~greater(close.value, 0.0)) & bit_of_q))) != 0;
-            in_doubt &= ~settled;
-            if (end == 0 && any_is_negative) return true;
-            doubt.is_any_negative |= any_is_negative;
+    for (const bool is_largest : {true, false}) {
+        for (std::size_t i = 0; i < form_lanes; i += static_cast<std::size_t>(lanes)) {
+            const Doubles value = signed_forms(matrix, WeightLanes(is_largest ? outer : inner, i),
+                                               is_largest ? max : min, is_largest ? min : max);
+            if (any(greater(load<Doubles>(least + i), value))) return is_largest ? 0 : 1;
         }
     }
-    return false;
+    return 2;
 }
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA

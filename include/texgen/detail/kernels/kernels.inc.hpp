@@ -85,7 +85,7 @@ inline constexpr UnitFormKernels kernel_table<UnitFormKernels, CompiledWhereCall
 template <class CompiledWhereCalled>
 inline constexpr BoxKernels kernel_table<BoxKernels, CompiledWhereCalled>{
     .classify = classify_box<CompiledWhereCalled>,
-    .sharpen = sharpen<CompiledWhereCalled>,
+    .decide = decide_box<CompiledWhereCalled>,
     .is_separated = is_separated<CompiledWhereCalled>};
 
 template <class CompiledWhereCalled>

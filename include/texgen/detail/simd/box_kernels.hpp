@@ -24,11 +24,10 @@ inline constexpr std::size_t second_of_edge[max_edges] = {2, 3, 2, 3, 5, 6, 5, 6
 constexpr std::size_t edge_count(std::size_t form_count) noexcept { return form_count < max_forms ? 4 : max_edges; }
 
 // A lane a form; those behind the last form are q's. Form k is of[0] T_s + of[1] T_t + of[2] T_r + of_q T_q, where one of the
-// three weights at most is not 0, but 1 or -1, and of_q is a float; its inner side has another of_q, which may be infinite, and
-// is `width` away.
+// three weights at most is not 0, but 1 or -1, and of_q is a float. Its inner side has others.
 inline constexpr std::size_t form_lanes = 8;
 struct FormWeights {
-    double of[3][form_lanes], of_q[form_lanes], inner_of_q[form_lanes], width[form_lanes];
+    double of[3][form_lanes], of_q[form_lanes];
 };
 
 // a . (x, y, z) + d, each coefficient rounded so that its sign is right and it is 0 only if it is 0, times a power of two that
@@ -42,13 +41,6 @@ struct FormLanes {
 // The same, times numbers that bring |a| to 1, or up to 14 u below it; a constant
 // form is far above any radius.
 struct UnitForms : FormLanes {};
-
-// A bit for each form of which a double does not say the sign: where it is largest over a box, and where it is least.
-struct FormsInDoubt {
-    std::uint32_t largest = ~0u, least = ~0u;
-    bool is_any_negative = false;  // of the least, for certain
-    bool is_finite = false;        // the box, which then has points
-};
 
 // The same in float, twice the value each, a lane a form, with one bound for all: over a body each errs by less than
 // error_per_size * size + error, where the size of a box is the sum of |min + max| and max - min of its coordinates, that of
@@ -109,6 +101,7 @@ using OpenRow = float[body_quantum];
 // Each table is compiled where it is asked for: a program has what its questions need. The forms are made in double and, for
 // many bodies, in float.
 struct FormKernels {
+    // `narrowing` is given as it is without a scale.
     void (*weigh)(const glm::dmat4& matrix, const FormWeights& weights, FormLanes& forms) noexcept;
 };
 struct FloatFormKernels {
@@ -129,12 +122,11 @@ struct SeparatingFormKernels {
 
 // One box.
 struct BoxKernels {
-    // What doubles are certain of. NaN, infinities and empty boxes are in doubt.
-    int (*classify)(const FormLanes& forms, const float* min, const float* max, FormsInDoubt& doubt) noexcept;
-    // Settles of the doubt about a finite box what two doubles can, and where it touches with few digits. Returns whether the
-    // box is outside.
-    bool (*sharpen)(const glm::dmat4& matrix, const FormWeights& weights, const float* min, const float* max,
-                    FormsInDoubt& doubt) noexcept;
+    // What doubles are certain of. Empty boxes are in doubt, as are those of which a coordinate in use is no finite number.
+    int (*classify)(const FormLanes& forms, const float* min, const float* max) noexcept;
+    // What the forms say of a box that has points, exactly.
+    int (*decide)(const glm::dmat4& matrix, const FormWeights& outer, const FormWeights& inner, const float* min,
+                  const float* max) noexcept;
     // Whether one of them is negative over all of a box that has points.
     bool (*is_separated)(const SeparatingForms& planes, const float* min, const float* max) noexcept;
 };
