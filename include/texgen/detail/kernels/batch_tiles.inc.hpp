@@ -346,8 +346,10 @@ TEXGEN_INLINE Undecided divide_all_tiles(const TilesJob& job, std::size_t first,
         }
         for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(lanes)) {
             const BatchPlanes* const planes = job.planes + first + i;
+            const std::uint64_t asked = (std::uint64_t{1} << (count - i)) - 1;
             const bool is_all_float =
-                job.tolerance > 0.0 && !any(~prepare_in_float<Numerators>(job, planes, block + i, i, tiles));
+                job.tolerance > 0.0 &&
+                (lane_bits(~prepare_in_float<Numerators>(job, planes, block + i, i, tiles)) & asked) == 0;
             if (!is_all_float) prepare<Numerators>(job, planes, block + i, i, tiles);
         }
         std::uint64_t doubtful = 0, in_doubt = 0;

@@ -124,7 +124,7 @@ void TriangleBatch::set_up() noexcept {
     const detail::BatchKernels& kernels = detail::chosen<detail::BatchKernels>();
     for (std::size_t first = 0; first < size_; first += batch_block) {
         unsigned unknown = kernels.set_up(&triangles_[first].a.window.x, &planes_[first]);
-        for (std::size_t i = first; unknown != 0; unknown >>= 1, ++i)
+        for (std::size_t i = first; unknown != 0 && i < size_; unknown >>= 1, ++i)
             if ((unknown & 1u) != 0) planes_[i] = detail::batch_planes(triangles_[i]);
     }
     planes_[size_] = detail::planes_behind();
