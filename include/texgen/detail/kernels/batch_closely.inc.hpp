@@ -221,7 +221,7 @@ struct ResidueValues {
 struct ResidueLanes {
     const VertexLanes& given;
     Residues side[3];    // with the weights
-    LongWords is_known;  // no number is too long, and the area is not next to 0
+    LongWords is_known;  // no number is too large, and the area is not next to 0
 
     TEXGEN_INLINE ResidueLanes(const VertexLanes& vertices, const Doubles& at_x, const Doubles& at_y) noexcept
         : given(vertices) {
@@ -233,7 +233,7 @@ struct ResidueLanes {
                                   with_sign_of(w[0] * w[1], given.area), 0x1p500);
         const Doubles largest =
             maximum(maximum(x.largest, maximum(y.largest, weight.largest)), maximum(x.per_unit, y.per_unit));
-        is_known = given.has_area & greater(Doubles{} + 0x1p62, largest);
+        take_known(given.has_area, largest);
         one_x_ = known(x.per_unit);
         one_y_ = known(y.per_unit);
         unit_ = x.unit * y.unit * weight.unit;
@@ -268,17 +268,28 @@ struct ResidueLanes {
     // Of coordinate k, 0 to 3 for s, t, r, q.
     TEXGEN_INLINE ResidueValues values(std::size_t k) noexcept {
         const IntegerLanes f(given.number(0, 3 + k), given.number(1, 3 + k), given.number(2, 3 + k), 0x1p500);
-        is_known &= greater(Doubles{} + 0x1p62, f.largest);
+        take_known(is_known, f.largest);
         return {{known(f.value[0]), known(f.value[1]), known(f.value[2])}, unit_ * f.unit};
     }
 
 private:
+    TEXGEN_INLINE void take_known(const LongWords& before, const Doubles& largest) noexcept {
+        is_known = before & greater(Doubles{} + 0x1p140, largest);
+        are_large_ = any(greater(largest, 0x1p62));
+    }
+    // Modulo 2^64, of at most 48 bits: so large numbers are multiples of what their sums here are rounded to.
     TEXGEN_INLINE Residues known(const Doubles& integer) const noexcept {
-        return to_residues(where(is_known, integer));
+        Doubles rest = where(is_known, integer);
+        if (are_large_) {
+            rest = rest - ((rest * 0x1p-64 + 0x1.8p52) - 0x1.8p52) * 0x1p64;
+            rest = rest - where(~greater(Doubles{} + 0x1p63, rest), Doubles{} + 0x1p64);
+        }
+        return to_residues(rest);
     }
 
     Residues scale_[3], to_x_[3], to_y_[3], one_x_, one_y_;
     Doubles unit_;
+    bool are_large_;  // some numbers are
 };
 
 // What two doubles leave in doubt of a vector of fragments.

@@ -39,7 +39,8 @@ struct BatchFunctions {
             store(&residue[n][0][first], value.times(corners.side));
             store(&residue[n][1][first], value.times(dx));
             store(&residue[n][2][first], value.times(dy));
-            store(&grain[n][first], where(corners.is_known, value.grain));
+            // Of what is 0 at all corners any grain.
+            store(&grain[n][first], where(corners.is_known | at_most(size, Doubles{}), value.grain));
         }
         return ~vertices.has_area;
     }
