@@ -577,24 +577,43 @@ Calls open_triangle_calls(const Numbers& n) {
         keep(texgen::interpolate(call->setup, call->rect, {.s = call->out[0], .t = call->out[1], .r = {}, .lit = {}}));
     });
 }
-// A batch of eight of them, made ready and divided.
-template <bool IsExact>
+// What is asked of a batch: s and t, r as well, or the mask alone, of a depth too.
+enum class Asked { s_t, s_t_r, mask, mask_of_depth };
+template <Asked Of>
+texgen::TextureRegion region_for() {
+    return Of == Asked::mask_of_depth ? wide_open_from_half() : wide_open();
+}
+template <Asked Of>
+texgen::Texcoords outputs_for(std::vector<float> (&out)[8]) {
+    if constexpr (Of == Asked::s_t) return {.s = out[0], .t = out[1], .r = {}, .lit = {}};
+    if constexpr (Of == Asked::s_t_r) return {.s = out[0], .t = out[1], .r = out[2], .lit = {}};
+    return {.s = {}, .t = {}, .r = {}, .lit = out[0]};
+}
+// A batch of `Count` of them, made ready and divided; or with others among them, of which one is dark and one is refused.
+template <int Width, int Height, std::size_t Count, bool IsExact, Asked Of = Asked::s_t, bool HasOthers = false>
 Calls batch_calls(const Numbers& n) {
-    const auto call = tile_call<8, 8, IsExact>(n, wide_open());
+    const auto call = tile_call<Width, Height, IsExact>(n, region_for<Of>());
     if (!call) return {};
     struct Batch {
-        texgen::TriangleBatch batch{wide_open(), IsExact ? texgen::exact : tolerance};
+        texgen::TriangleBatch batch{region_for<Of>(), IsExact ? texgen::exact : tolerance};
         std::vector<texgen::Triangle> triangles;
         std::vector<texgen::FragmentRect> rects;
-        std::vector<float> out[2];
+        std::vector<float> out[8];
     };
     auto all = std::make_shared<Batch>();
-    all->triangles.assign(8, triangle_of(n));
-    all->rects.assign(8, call->rect);
-    for (std::vector<float>& out : all->out) out.resize(512);
+    all->triangles.assign(Count, triangle_of(n));
+    if constexpr (HasOthers) {
+        Random random(1);
+        all->triangles[1] = all->triangles[3] = all->triangles[4] = triangle_of(ordinary_triangle(random));
+        for (texgen::WindowVertex* v : {&all->triangles[1].a, &all->triangles[1].b, &all->triangles[1].c})
+            v->strq.w *= -1.0f;
+        all->triangles[3].a.clip_w = 0.0f;
+    }
+    all->rects.assign(Count, call->rect);
+    for (std::vector<float>& out : all->out) out.resize(Count * Width * Height);
     return calls_of([all] {
         all->batch.assign(all->triangles);
-        interpolate(all->batch, all->rects, {.s = all->out[0], .t = all->out[1], .r = {}, .lit = {}});
+        interpolate(all->batch, all->rects, outputs_for<Of>(all->out));
         keep(all->out[0].data());
     });
 }
@@ -609,17 +628,31 @@ inline Calls batch_facing_calls(const Numbers& n) {
     });
 }
 // The fragments of one of eight triangles that are the same, in runs of `Run`.
-template <std::size_t Run>
-Calls visibility_calls(const Numbers& n) {
-    const auto call = tile_call<64, 4, true>(n, wide_open());
+template <std::size_t Run, class Ask>
+Calls ids_calls(const Numbers& n, bool is_exact, texgen::TextureRegion region, Ask ask) {
+    const auto call = tile_call<64, 4, true>(n, region);
     if (!call) return {};
-    auto batch = std::make_shared<texgen::TriangleBatch>(wide_open());
+    auto batch = std::make_shared<texgen::TriangleBatch>(region, is_exact ? texgen::exact : tolerance);
     batch->assign(std::vector<texgen::Triangle>(8, triangle_of(n)));
     std::vector<std::uint32_t> ids(256);
     for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = static_cast<std::uint32_t>(i / Run % 8);
-    return calls_of([call, batch, ids] {
-        interpolate(*batch, ids, call->rect, {.s = call->out[0], .t = call->out[1], .r = {}, .lit = {}});
+    return calls_of([call, batch, ids, ask] {
+        ask(*batch, ids, *call);
         keep(call->out[0].data());
+    });
+}
+template <std::size_t Run, bool IsExact, Asked Of = Asked::s_t>
+Calls visibility_calls(const Numbers& n) {
+    return ids_calls<Run>(n, IsExact, region_for<Of>(), [](const auto& batch, const auto& ids, TileCall& call) {
+        interpolate(batch, ids, call.rect, outputs_for<Of>(call.out));
+    });
+}
+template <std::size_t Run>
+Calls footprint_ids_calls(const Numbers& n) {
+    return ids_calls<Run>(n, true, wide_open(), [](const auto& batch, const auto& ids, TileCall& call) {
+        auto& out = call.out;
+        footprint(batch, ids, call.rect, {1024.0, 768.0},
+                  {out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7]});
     });
 }
 inline Calls setup_calls(const Numbers& n) {
@@ -1433,16 +1466,27 @@ inline const std::array workloads{
              detail::hostile_triangle, detail::one_output_calls<64, 4, true, true>, detail::triangle_limit<64, 4>},
     Workload{"TriangleSetup::work with a depth, 64 x 4", 23, detail::ordinary_triangle, detail::hostile_triangle,
              detail::volume_work_calls, detail::always},
-    Workload{"interpolate a batch, exact, 8 x 8", 23, detail::ordinary_triangle, detail::hostile_triangle,
-             detail::batch_calls<true>, detail::triangle_limit<8, 8>},
-    Workload{"interpolate a batch, tolerance, 8 x 8", 23, detail::ordinary_triangle, detail::hostile_triangle,
-             detail::batch_calls<false>, detail::triangle_limit<8, 8>},
+    Workload{"interpolate a batch, exact, 8 x 8", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::batch_calls<8, 8, 8, true>, detail::triangle_limit<8, 8>},
+    Workload{"interpolate a batch, tolerance, 8 x 8", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::batch_calls<8, 8, 8, false>, detail::triangle_limit<8, 8>},
+    Workload{"interpolate a batch, exact, r as well, 8 x 8", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::batch_calls<8, 8, 8, true, detail::Asked::s_t_r>, detail::triangle_limit<8, 8>},
+    Workload{"interpolate a batch, exact, lit alone, 8 x 8", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::batch_calls<8, 8, 8, true, detail::Asked::mask>, detail::triangle_limit<8, 8>},
+    Workload{"interpolate a batch, tolerance, lit alone with a depth, 8 x 8", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::batch_calls<8, 8, 8, false, detail::Asked::mask_of_depth>, detail::triangle_limit<8, 8>},
+    Workload{"interpolate a batch, exact, 64 x 1", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::batch_calls<64, 1, 8, true>, detail::triangle_limit<64, 1>},
+    Workload{"interpolate a batch, tolerance, 64 x 1", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::batch_calls<64, 1, 8, false>, detail::triangle_limit<64, 1>},
+    Workload{"interpolate a batch of 1, exact, 8 x 8", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::batch_calls<8, 8, 1, true>, detail::triangle_limit<8, 8>},
+    Workload{"interpolate a batch of 9, tolerance, 4 x 4", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::batch_calls<4, 4, 9, false>, detail::triangle_limit<4, 4>},
+    Workload{"interpolate a batch, some dark or refused, exact, 8 x 8", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::batch_calls<8, 8, 8, true, detail::Asked::s_t, true>, detail::triangle_limit<8, 8>},
     Workload{"TriangleBatch::assign_facing", 23, detail::ordinary_triangle, detail::hostile_triangle,
              detail::batch_facing_calls, detail::always},
-    Workload{"interpolate ids, exact, in runs", 23, detail::ordinary_triangle, detail::hostile_triangle,
-             detail::visibility_calls<8>, detail::triangle_limit<64, 4>},
-    Workload{"interpolate ids, exact, mixed", 23, detail::ordinary_triangle, detail::hostile_triangle,
-             detail::visibility_calls<1>, detail::triangle_limit<64, 4>},
+    Workload{"interpolate ids, exact, in runs", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::visibility_calls<8, true>, detail::triangle_limit<64, 4>},
+    Workload{"interpolate ids, exact, mixed", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::visibility_calls<1, true>, detail::triangle_limit<64, 4>},
+    Workload{"interpolate ids, tolerance, in runs", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::visibility_calls<8, false>, detail::triangle_limit<64, 4>},
+    Workload{"interpolate ids, tolerance, mixed", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::visibility_calls<1, false>, detail::triangle_limit<64, 4>},
+    Workload{"interpolate ids, exact, r as well, in runs", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::visibility_calls<8, true, detail::Asked::s_t_r>, detail::triangle_limit<64, 4>},
+    Workload{"interpolate ids, exact, lit alone, mixed", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::visibility_calls<1, true, detail::Asked::mask>, detail::triangle_limit<64, 4>},
+    Workload{"interpolate ids, tolerance, lit alone with a depth, in runs", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::visibility_calls<8, false, detail::Asked::mask_of_depth>, detail::triangle_limit<64, 4>},
+    Workload{"footprint of ids, in runs", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::footprint_ids_calls<8>, detail::triangle_limit<64, 4>},
+    Workload{"footprint of ids, mixed", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::footprint_ids_calls<1>, detail::triangle_limit<64, 4>},
     Workload{"FootprintSetup", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::footprint_setup_calls,
              detail::always},
     Workload{"FootprintSetup::at", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::footprint_at_calls,
