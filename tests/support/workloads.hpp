@@ -578,19 +578,19 @@ Calls open_triangle_calls(const Numbers& n) {
     });
 }
 // What is asked of a batch: s and t, r as well, or the mask alone, of a depth too.
-enum class Asked { s_t, s_t_r, mask, mask_of_depth };
-template <Asked Of>
+enum class OutputsOf { s_t, s_t_r, mask, mask_of_depth };
+template <OutputsOf Of>
 texgen::TextureRegion region_for() {
-    return Of == Asked::mask_of_depth ? wide_open_from_half() : wide_open();
+    return Of == OutputsOf::mask_of_depth ? wide_open_from_half() : wide_open();
 }
-template <Asked Of>
+template <OutputsOf Of>
 texgen::Texcoords outputs_for(std::vector<float> (&out)[8]) {
-    if constexpr (Of == Asked::s_t) return {.s = out[0], .t = out[1], .r = {}, .lit = {}};
-    if constexpr (Of == Asked::s_t_r) return {.s = out[0], .t = out[1], .r = out[2], .lit = {}};
+    if constexpr (Of == OutputsOf::s_t) return {.s = out[0], .t = out[1], .r = {}, .lit = {}};
+    if constexpr (Of == OutputsOf::s_t_r) return {.s = out[0], .t = out[1], .r = out[2], .lit = {}};
     return {.s = {}, .t = {}, .r = {}, .lit = out[0]};
 }
 // A batch of `Count` of them, made ready and divided; or with others among them, of which one is dark and one is refused.
-template <int Width, int Height, std::size_t Count, bool IsExact, Asked Of = Asked::s_t, bool HasOthers = false>
+template <int Width, int Height, std::size_t Count, bool IsExact, OutputsOf Of = OutputsOf::s_t, bool HasOthers = false>
 Calls batch_calls(const Numbers& n) {
     const auto call = tile_call<Width, Height, IsExact>(n, region_for<Of>());
     if (!call) return {};
@@ -641,7 +641,7 @@ Calls ids_calls(const Numbers& n, bool is_exact, texgen::TextureRegion region, A
         keep(call->out[0].data());
     });
 }
-template <std::size_t Run, bool IsExact, Asked Of = Asked::s_t>
+template <std::size_t Run, bool IsExact, OutputsOf Of = OutputsOf::s_t>
 Calls visibility_calls(const Numbers& n) {
     return ids_calls<Run>(n, IsExact, region_for<Of>(), [](const auto& batch, const auto& ids, TileCall& call) {
         interpolate(batch, ids, call.rect, outputs_for<Of>(call.out));
@@ -1468,23 +1468,23 @@ inline const std::array workloads{
              detail::volume_work_calls, detail::always},
     Workload{"interpolate a batch, exact, 8 x 8", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::batch_calls<8, 8, 8, true>, detail::triangle_limit<8, 8>},
     Workload{"interpolate a batch, tolerance, 8 x 8", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::batch_calls<8, 8, 8, false>, detail::triangle_limit<8, 8>},
-    Workload{"interpolate a batch, exact, r as well, 8 x 8", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::batch_calls<8, 8, 8, true, detail::Asked::s_t_r>, detail::triangle_limit<8, 8>},
-    Workload{"interpolate a batch, exact, lit alone, 8 x 8", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::batch_calls<8, 8, 8, true, detail::Asked::mask>, detail::triangle_limit<8, 8>},
-    Workload{"interpolate a batch, tolerance, lit alone with a depth, 8 x 8", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::batch_calls<8, 8, 8, false, detail::Asked::mask_of_depth>, detail::triangle_limit<8, 8>},
+    Workload{"interpolate a batch, exact, r as well, 8 x 8", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::batch_calls<8, 8, 8, true, detail::OutputsOf::s_t_r>, detail::triangle_limit<8, 8>},
+    Workload{"interpolate a batch, exact, lit alone, 8 x 8", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::batch_calls<8, 8, 8, true, detail::OutputsOf::mask>, detail::triangle_limit<8, 8>},
+    Workload{"interpolate a batch, tolerance, lit alone with a depth, 8 x 8", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::batch_calls<8, 8, 8, false, detail::OutputsOf::mask_of_depth>, detail::triangle_limit<8, 8>},
     Workload{"interpolate a batch, exact, 64 x 1", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::batch_calls<64, 1, 8, true>, detail::triangle_limit<64, 1>},
     Workload{"interpolate a batch, tolerance, 64 x 1", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::batch_calls<64, 1, 8, false>, detail::triangle_limit<64, 1>},
     Workload{"interpolate a batch of 1, exact, 8 x 8", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::batch_calls<8, 8, 1, true>, detail::triangle_limit<8, 8>},
     Workload{"interpolate a batch of 9, tolerance, 4 x 4", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::batch_calls<4, 4, 9, false>, detail::triangle_limit<4, 4>},
-    Workload{"interpolate a batch, some dark or refused, exact, 8 x 8", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::batch_calls<8, 8, 8, true, detail::Asked::s_t, true>, detail::triangle_limit<8, 8>},
+    Workload{"interpolate a batch, some dark or refused, exact, 8 x 8", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::batch_calls<8, 8, 8, true, detail::OutputsOf::s_t, true>, detail::triangle_limit<8, 8>},
     Workload{"TriangleBatch::assign_facing", 23, detail::ordinary_triangle, detail::hostile_triangle,
              detail::batch_facing_calls, detail::always},
     Workload{"interpolate ids, exact, in runs", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::visibility_calls<8, true>, detail::triangle_limit<64, 4>},
     Workload{"interpolate ids, exact, mixed", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::visibility_calls<1, true>, detail::triangle_limit<64, 4>},
     Workload{"interpolate ids, tolerance, in runs", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::visibility_calls<8, false>, detail::triangle_limit<64, 4>},
     Workload{"interpolate ids, tolerance, mixed", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::visibility_calls<1, false>, detail::triangle_limit<64, 4>},
-    Workload{"interpolate ids, exact, r as well, in runs", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::visibility_calls<8, true, detail::Asked::s_t_r>, detail::triangle_limit<64, 4>},
-    Workload{"interpolate ids, exact, lit alone, mixed", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::visibility_calls<1, true, detail::Asked::mask>, detail::triangle_limit<64, 4>},
-    Workload{"interpolate ids, tolerance, lit alone with a depth, in runs", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::visibility_calls<8, false, detail::Asked::mask_of_depth>, detail::triangle_limit<64, 4>},
+    Workload{"interpolate ids, exact, r as well, in runs", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::visibility_calls<8, true, detail::OutputsOf::s_t_r>, detail::triangle_limit<64, 4>},
+    Workload{"interpolate ids, exact, lit alone, mixed", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::visibility_calls<1, true, detail::OutputsOf::mask>, detail::triangle_limit<64, 4>},
+    Workload{"interpolate ids, tolerance, lit alone with a depth, in runs", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::visibility_calls<8, false, detail::OutputsOf::mask_of_depth>, detail::triangle_limit<64, 4>},
     Workload{"footprint of ids, in runs", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::footprint_ids_calls<8>, detail::triangle_limit<64, 4>},
     Workload{"footprint of ids, mixed", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::footprint_ids_calls<1>, detail::triangle_limit<64, 4>},
     Workload{"FootprintSetup", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::footprint_setup_calls,
