@@ -8,8 +8,10 @@
 #include <optional>
 
 #include <glm/geometric.hpp>
+#include <glm/mat2x4.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 
 #include "../arithmetic/inverse.hpp"
@@ -46,39 +48,27 @@ inline constexpr std::array<FactorOrder, 23> wrong_orders{
      {0, 2, 3, 1}, {0, 3, 2, 1}, {1, 0, 3, 2}, {1, 3, 0, 2}, {1, 3, 2, 0}, {2, 0, 1, 3}, {2, 0, 3, 1}, {2, 1, 0, 3},
      {2, 1, 3, 0}, {2, 3, 0, 1}, {2, 3, 1, 0}, {3, 0, 2, 1}, {3, 1, 0, 2}, {3, 1, 2, 0}, {3, 2, 0, 1}}};
 
-// A row of what stands on the left of a product, or columns of what stands on the right, and the magnitudes of their terms.
-struct ProductRow {
-    glm::dvec4 value, magnitude;
-};
-struct ProductColumns {
-    std::array<glm::dvec4, 2> value, magnitude;
-};
-
-inline ProductRow operator*(const ProductRow& row, const Product& m) noexcept {
-    return {row.value * m.value, row.magnitude * m.magnitude};
-}
-inline ProductColumns operator*(const Product& m, const ProductColumns& c) noexcept {
-    return {{m.value * c.value[0], m.value * c.value[1]}, {m.magnitude * c.magnitude[0], m.magnitude * c.magnitude[1]}};
-}
+// A row of what stands on the left of a product, and two columns of what stands on the right.
+using ProductRow = ProductOf<glm::dvec4>;
+using ProductColumns = ProductOf<glm::dmat2x4>;
 
 // What a matrix makes of two directions, seen along a row: few numbers, which tell products apart that are far from it. A
 // row or column that says nothing is not in them, and the others weigh about the same.
 class Glance {
 public:
     Glance(const glm::dmat4& given, bool was_transposed) noexcept
-        : row_{{0.6, -0.9, 0.7, 0.8}, {}}, columns_{{{{0.9, -0.4, 0.7, 0.0}, {-0.5, 0.8, 0.9, 0.0}}}, {}} {
+        : row_{{0.6, -0.9, 0.7, 0.8}, {}}, columns_{{0.9, -0.4, 0.7, 0.0, -0.5, 0.8, 0.9, 0.0}, {}} {
         for (glm::length_t i = 0; i < 4; ++i) {
             double largest = 0x1p-1000;
             for (glm::length_t k = 0; k < 4; ++k) largest = larger(largest, std::fabs(given[k][i]));
             row_.value[i] = is_zero_row(given, i) ? 0.0 : row_.value[i] / largest;
             row_.magnitude[i] = std::fabs(row_.value[i]);
-            for (std::size_t k = 0; k < 2; ++k) {
+            for (glm::length_t k = 0; k < 2; ++k) {
                 if (was_transposed && given[i] == glm::dvec4(0.0)) columns_.value[k][i] = 0.0;
                 columns_.magnitude[k][i] = std::fabs(columns_.value[k][i]);
             }
         }
-        const glm::dvec4 seen = row_.value * given;
-        for (std::size_t k = 0; k < 2; ++k) given_[k] = glm::dot(seen, columns_.value[k]);
+        given_ = row_.value * given * columns_.value;
     }
 
     const ProductRow& row() const noexcept { return row_; }
@@ -88,16 +78,16 @@ public:
     // each within its share of the magnitudes m, differ in g0 p1 - g1 p0 by no more than g0 m1 + g1 m0.
     bool may_give(const ProductRow& left, const ProductColumns& right) const noexcept {
         constexpr double share = 1.01 * composed_in_float.of_magnitude;
-        const auto value = [&](std::size_t k) { return glm::dot(left.value, right.value[k]); };
-        const auto error = [&](std::size_t k) { return share * glm::dot(left.magnitude, right.magnitude[k]); };
-        const double accepted = std::fabs(given_[0]) * error(1) + std::fabs(given_[1]) * error(0) + 0x1p-1000;
-        return std::fabs(given_[0] * value(1) - given_[1] * value(0)) <= accepted && is_finite(accepted);
+        const auto [value, magnitude] = left * right;
+        const glm::dvec2 error = share * magnitude;
+        const double accepted = std::fabs(given_.x) * error.y + std::fabs(given_.y) * error.x + 0x1p-1000;
+        return std::fabs(given_.x * value.y - given_.y * value.x) <= accepted && is_finite(accepted);
     }
 
 private:
     ProductRow row_;
     ProductColumns columns_;
-    std::array<double, 2> given_{};
+    glm::dvec2 given_{0.0};
 };
 
 // S, P, V and X as a mistake has them.

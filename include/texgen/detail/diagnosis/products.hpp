@@ -18,13 +18,15 @@
 namespace TEXGEN_DETAIL {
 
 // A product, and the sums of the magnitudes of its terms, which its rounding is relative to.
-struct Product {
-    glm::dmat4 value, magnitude;
+template <class Value>
+struct ProductOf {
+    Value value, magnitude;
 };
-
-inline Product operator*(const Product& a, const Product& b) noexcept {
-    return {a.value * b.value, a.magnitude * b.magnitude};
+template <class A, class B>
+auto operator*(const ProductOf<A>& a, const ProductOf<B>& b) noexcept {
+    return ProductOf<decltype(a.value * b.value)>{a.value * b.value, a.magnitude * b.magnitude};
 }
+using Product = ProductOf<glm::dmat4>;
 
 inline Product lens_factor(const glm::dmat4& m) noexcept { return {m, absolute(m)}; }
 
