@@ -101,33 +101,21 @@ requires detail::EigenDense<Vector> && detail::FloatOrDouble<typename Vector::Sc
 // Shapes: points as columns of a 3 x N (Matrix3Xf, Ref, Map, block; interleaved where its columns are dense, planar where
 // it is row-major), as rows of an N x 3, or as three vectors of coordinates of one size and one inner stride. Any strides.
 // Bad input: three vectors that disagree, and negative strides, are asserted; without assertions they are no points.
-template <detail::EigenPoints Points>
-Positions<Object> object_space(Points&& points) noexcept {
-    return detail::positions_of<Object>(points);
-}
-template <detail::EigenCoordinates X, detail::EigenCoordinates Y, detail::EigenCoordinates Z>
-Positions<Object> object_space(X&& x, Y&& y, Z&& z) noexcept {
-    return detail::positions_of<Object>(x, y, z);
+template <class... Floats>
+Positions<Object> object_space(Floats&&... values) noexcept requires detail::EigenPositions<Floats...> {
+    return detail::positions_of<Object>(values...);
 }
 
 // The same of points in the world.
-template <detail::EigenPoints Points>
-Positions<World> world_space(Points&& points) noexcept {
-    return detail::positions_of<World>(points);
-}
-template <detail::EigenCoordinates X, detail::EigenCoordinates Y, detail::EigenCoordinates Z>
-Positions<World> world_space(X&& x, Y&& y, Z&& z) noexcept {
-    return detail::positions_of<World>(x, y, z);
+template <class... Floats>
+Positions<World> world_space(Floats&&... values) noexcept requires detail::EigenPositions<Floats...> {
+    return detail::positions_of<World>(values...);
 }
 
 // The same of points in the eye's space.
-template <detail::EigenPoints Points>
-Positions<Eye> eye_space(Points&& points) noexcept {
-    return detail::positions_of<Eye>(points);
-}
-template <detail::EigenCoordinates X, detail::EigenCoordinates Y, detail::EigenCoordinates Z>
-Positions<Eye> eye_space(X&& x, Y&& y, Z&& z) noexcept {
-    return detail::positions_of<Eye>(x, y, z);
+template <class... Floats>
+Positions<Eye> eye_space(Floats&&... values) noexcept requires detail::EigenPositions<Floats...> {
+    return detail::positions_of<Eye>(values...);
 }
 
 // Views the floats of a vector without gaps (VectorXf, Ref<ArrayXf>, a column of a matrix), or of a row-major matrix or array

@@ -50,6 +50,10 @@ concept EigenPoints = EigenFloats<T> &&(std::remove_cvref_t<T>::RowsAtCompileTim
 template <class T>
 concept EigenCoordinates = EigenFloats<T> && bool(std::remove_cvref_t<T>::IsVectorAtCompileTime);
 
+template <class... Floats>
+concept EigenPositions = (sizeof...(Floats) == 1 && (EigenPoints<Floats> && ...)) ||
+                         (sizeof...(Floats) == 3 && (EigenCoordinates<Floats> && ...));
+
 // Floats that follow one another, in the order of row-major fragments.
 template <class T>
 concept EigenSpan = EigenFloats<T> &&

@@ -116,10 +116,6 @@ TEXGEN_INLINE PointLanes load_points(const PointInput& job, std::size_t i) noexc
     return {{to_doubles(x), to_doubles(y), to_doubles(z)}};
 }
 
-TEXGEN_INLINE Doubles at(const PointForm& form, const PointLanes& point) noexcept {
-    return point.v[0] * form.x + (point.v[1] * form.y + (point.v[2] * form.z + form.w));
-}
-
 // A block of points, with errors that hold for all of it. Returns what is in doubt (it is written all the same).
 // All divisions are begun before the first result is asked for: instructions that wait for one keep others from being begun.
 template <bool Signed, std::size_t Numerators>
@@ -137,9 +133,9 @@ TEXGEN_INLINE Doubt fill_points_block(const PointJob& job, std::size_t begin, st
         for_halves(
             [&](const Doubles& of_x, const Doubles& of_y, const Doubles& of_z) {
                 const PointLanes point{{of_x, of_y, of_z}};
-                next->q = at(job.q, point);
+                next->q = value_at(job.q, point);
                 if constexpr (!shares) next->reciprocal = 1.0 / next->q;
-                for (std::size_t k = 0; k < Numerators; ++k) next->numerator[k] = at(job.numerator[k], point);
+                for (std::size_t k = 0; k < Numerators; ++k) next->numerator[k] = value_at(job.numerator[k], point);
                 ++next;
             },
             x, y, z);
@@ -217,10 +213,10 @@ TEXGEN_INLINE std::uint64_t fill_block_again(const PointJob& job, const PointTer
         if (effort.rung <= Rung::each_lane || i / static_cast<std::size_t>(lanes) % 16 == 0) {
             PointDivision division;
             Doubles numerator_error[2];
-            division.q = terms.q.nearly_at(at);
+            division.q = value_at(terms.q.form, at);
             division.reciprocal = 1.0 / division.q;
             for (std::size_t k = 0; k < numerators; ++k) {
-                division.numerator[k] = terms.numerator[k].nearly_at(at);
+                division.numerator[k] = value_at(terms.numerator[k].form, at);
                 numerator_error[k] = terms.numerator[k].error_at(at);
             }
             Doubt doubt;
@@ -237,13 +233,13 @@ TEXGEN_INLINE std::uint64_t fill_block_again(const PointJob& job, const PointTer
             for (std::size_t k = 0; k < numerators; ++k) {
                 const auto& numerator = terms.numerator[k];
                 if (!effort.are_ties)
-                    effort.are_ties = !divide_nearly(numerator.nearly_at(at), numerator.error_at(at), q, value[k]);
+                    effort.are_ties = !divide_nearly(value_at(numerator.form, at), numerator.error_at(at), q, value[k]);
                 if (!effort.are_ties) continue;
                 if (numerator.is_finite)
                     value[k] = nearest_quotients(numerator.at(at, sizes, effort.precisely), q, within, effort.precisely,
                                                  is_known);
                 else
-                    value[k] = to_floats(where(in_front, numerator.nearly_at(at) * q.reciprocal));
+                    value[k] = to_floats(where(in_front, value_at(numerator.form, at) * q.reciprocal));
             }
             is_decided = effort.precisely || !any(narrow(~is_known));
             effort.precisely = effort.precisely || !is_decided;
@@ -254,16 +250,17 @@ TEXGEN_INLINE std::uint64_t fill_block_again(const PointJob& job, const PointTer
     return doubtful;
 }
 
-TEXGEN_INLINE std::size_t end_of_block(const PointJob& job, std::size_t begin, std::size_t size) noexcept {
+// Blocks end at multiples of their size.
+TEXGEN_INLINE std::size_t end_of_block(std::size_t count, std::size_t begin, std::size_t size) noexcept {
     const std::size_t next = (begin / size + 1) * size;
-    return next < job.count ? next : job.count;
+    return next < count ? next : count;
 }
 
 // Does blocks from `begin` on again, as long as they need what the first one did, and the first of eight sees whether it does.
 // Returns where the next begins, or that with values which stay in doubt.
 template <class CompiledWhereCalled = void>
 TEXGEN_APART Undecided fill_points_again(const PointJob& original, std::size_t begin, Effort& effort) noexcept {
-    std::size_t end = end_of_block(original, begin, exact_block);
+    std::size_t end = end_of_block(original.count, begin, exact_block);
     if (effort.rung <= Rung::either_side) {
         const PointJob job = original;
         const Doubt doubt = job.numerators == 2 ? fill_points_block<true, 2>(job, begin, end)
@@ -280,7 +277,7 @@ TEXGEN_APART Undecided fill_points_again(const PointJob& original, std::size_t b
         begin = end;
         const bool is_first_of_eight = begin / exact_block % 8 == 0;
         if (begin == original.count || (is_first_of_eight && effort.rung == Rung::each_lane)) return {begin, 0};
-        end = end_of_block(original, begin, exact_block);
+        end = end_of_block(original.count, begin, exact_block);
     }
 }
 
@@ -295,7 +292,7 @@ TEXGEN_INLINE Undecided fill_points_exact_of(const PointJob& original, std::size
     for (std::size_t begin = first; begin < job.count;) {
         if (begin / exact_block % 8 == 0 && effort.rung == Rung::each_lane) effort = {};
         if (effort.rung == Rung::in_front && begin % float_block == 0) {
-            const std::size_t end = end_of_block(job, begin, float_block);
+            const std::size_t end = end_of_block(job.count, begin, float_block);
             if (!fill_points_block<false, Numerators>(job, begin, end).any_lane()) {
                 begin = end;
                 continue;
@@ -320,11 +317,12 @@ void generate_points(const GenerateJob& original) noexcept {
     for (std::size_t i = 0; i < job.count; i += static_cast<std::size_t>(lanes)) {
         const PointLanes point = load_points(job, i);
         if (job.strq != nullptr) {
-            store_interleaved(job.strq + 4 * i, to_floats(at(job.form[0], point)), to_floats(at(job.form[1], point)),
-                              to_floats(at(job.form[2], point)), to_floats(at(job.form[3], point)));
+            store_interleaved(job.strq + 4 * i, to_floats(value_at(job.form[0], point)),
+                              to_floats(value_at(job.form[1], point)), to_floats(value_at(job.form[2], point)),
+                              to_floats(value_at(job.form[3], point)));
         } else {
             for (std::size_t k = 0; k < 4; ++k)
-                if (job.out[k] != nullptr) store(job.out[k] + i, to_floats(at(job.form[k], point)));
+                if (job.out[k] != nullptr) store(job.out[k] + i, to_floats(value_at(job.form[k], point)));
         }
     }
 }

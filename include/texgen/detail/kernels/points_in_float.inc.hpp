@@ -37,7 +37,7 @@ struct FormsInDouble {
     TEXGEN_INLINE WideFloats at(std::size_t k, const WideFloats& x, const WideFloats& y,
                                 const WideFloats& z) const noexcept {
         const auto value = [&](const Doubles& vx, const Doubles& vy, const Doubles& vz) {
-            return detail::TEXGEN_ISA::at(form[k], {{vx, vy, vz}});
+            return value_at(form[k], PointLanes{{vx, vy, vz}});
         };
         return in_double(value, x, y, z);
     }

@@ -71,12 +71,6 @@ TEXGEN_INLINE Doubles middle_of_floats(const Doubles& quotient) noexcept {
            to_doubles_as_rounded(to_floats(quotient + error)) * 0.5;
 }
 
-// Blocks end at multiples of their size.
-TEXGEN_INLINE std::size_t end_of_block(std::size_t count, std::size_t begin, std::size_t size) noexcept {
-    const std::size_t next = (begin / size + 1) * size;
-    return next < count ? next : count;
-}
-
 // Blocks, on both sides of the projector, up to the first with values that stay in doubt.
 template <std::size_t Numerators, bool AreShort>
 Undecided fill_segment_closely(const SegmentJob& job, std::size_t first) noexcept {

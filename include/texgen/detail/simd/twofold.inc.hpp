@@ -31,6 +31,10 @@ struct PointLanes {
     Doubles v[3];
 };
 
+TEXGEN_INLINE Doubles value_at(const PointForm& form, const PointLanes& point) noexcept {
+    return point.v[0] * form.x + (point.v[1] * form.y + (point.v[2] * form.z + form.w));
+}
+
 // The magnitudes of coordinates, and their last bits that are set: of what has one more in front, which 1 has, too.
 struct PointSizes {
     Doubles size[3], grain[3];
@@ -68,9 +72,6 @@ struct TwofoldForm {
         }
     }
 
-    TEXGEN_INLINE Doubles nearly_at(const PointLanes& at) const noexcept {
-        return at.v[0] * form.x + (at.v[1] * form.y + (at.v[2] * form.z + form.w));
-    }
     TEXGEN_INLINE Doubles error_at(const PointLanes& at) const noexcept {
         return (magnitude(at.v[0]) * std::fabs(form.x) + magnitude(at.v[1]) * std::fabs(form.y) +
                 magnitude(at.v[2]) * std::fabs(form.z) + std::fabs(form.w)) *
