@@ -1122,6 +1122,25 @@ TEST_CASE("a side is decided exactly where its terms have too many digits for tw
     }
 }
 
+TEST_CASE("a point on sides of the slide is lit where q is positive at all, and is not outside") {
+    Random random(1107);
+    int lit_ones = 0;
+    for (int i = 0; i < 1000; ++i) {
+        // s and t are 0, and q is what its last bits leave.
+        const glm::dvec2 of_q(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
+        const glm::vec3 point(0.0f, random.uniform_float(-1.0, 1.0), random.uniform_float(-1.0, 1.0));
+        glm::dmat4 matrix(0.0);
+        matrix[1] = {static_cast<double>(point.z), 0.0, 0.0, of_q.x};
+        matrix[2] = {-static_cast<double>(point.y), 0.0, 0.0, of_q.y};
+        matrix[3].w = -(of_q.x * static_cast<double>(point.y) + of_q.y * static_cast<double>(point.z));
+        const WorldTexgen transform(matrix);
+        const bool is_lit = texgen::project(transform, texgen::world_space(point)).has_value();
+        lit_ones += is_lit;
+        CHECK((coverage(transform, whole_texture(), Box{point, point}) == Coverage::outside) == !is_lit);
+    }
+    CHECK(lit_ones > 200);
+}
+
 TEST_CASE("what is no body, no slide or no number gets a safe answer") {
     const auto projector = texgen::make_projector(
         texgen::PerspectiveLens{.fovy = degrees(30), .aspect = 1, .z_near = 0.2, .z_far = 1000},
