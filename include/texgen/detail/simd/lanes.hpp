@@ -170,21 +170,21 @@ TEXGEN_INLINE Double2 double2_of(double first, double second) noexcept { return 
 TEXGEN_INLINE Double2 smaller(const Double2& a, const Double2& b) noexcept { return a < b ? a : b; }
 TEXGEN_INLINE Double2 larger(const Double2& a, const Double2& b) noexcept { return a > b ? a : b; }
 using Bits2 [[gnu::vector_size(16)]] = long long;
-TEXGEN_INLINE bool any_less(const Double2& a, const Double2& b) noexcept {
-    const Bits2 less = a < b;
-    return (less[0] | less[1]) != 0;
+// Bit i: lane i of a mask.
+TEXGEN_INLINE int bits_of(const Bits2& mask) noexcept {
+#ifdef __SSE2__
+    return __builtin_ia32_movmskpd(__builtin_bit_cast(Double2, mask));
+#else
+    return static_cast<int>((mask[0] & 1) | (mask[1] & 2));
+#endif
 }
-TEXGEN_INLINE bool all_less(const Double2& a, const Double2& b) noexcept {
-    const Bits2 less = a < b;
-    return (less[0] & less[1]) != 0;
-}
+TEXGEN_INLINE bool any_less(const Double2& a, const Double2& b) noexcept { return bits_of(a < b) != 0; }
+TEXGEN_INLINE bool all_less(const Double2& a, const Double2& b) noexcept { return bits_of(a < b) == 3; }
 TEXGEN_INLINE bool any_less(const Double2& a, const Double2& b, const Double2& c, const Double2& d) noexcept {
-    const Bits2 less = (a < b) | (c < d);
-    return (less[0] | less[1]) != 0;
+    return (bits_of(a < b) | bits_of(c < d)) != 0;
 }
 TEXGEN_INLINE bool all_less(const Double2& a, const Double2& b, const Double2& c, const Double2& d) noexcept {
-    const Bits2 less = (a < b) & (c < d);
-    return (less[0] & less[1]) != 0;
+    return (bits_of(a < b) & bits_of(c < d)) == 3;
 }
 TEXGEN_INLINE Double2 magnitude(const Double2& a) noexcept {
     return __builtin_bit_cast(Double2, __builtin_bit_cast(Bits2, a) & 0x7fffffffffffffffLL);
