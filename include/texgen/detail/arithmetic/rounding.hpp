@@ -56,8 +56,7 @@ constexpr int sign_of(double a) noexcept { return a > 0.0 ? 1 : a < 0.0 ? -1 : 0
 
 // A power of two within a factor 2 of 1 / value, for a value that is normal and below 2^1022.
 inline double reciprocal_power_of_two(double value) noexcept {
-    const std::uint64_t biased_exponent = bit_cast<std::uint64_t>(value) >> 52 & 0x7ff;
-    return bit_cast<double>((2046 - biased_exponent) << 52 & 0x7ff0000000000000);
+    return bit_cast<double>(0x7fe0000000000000 - (bit_cast<std::uint64_t>(value) & 0x7ff0000000000000));
 }
 
 // The last bit of a number that is set; infinity for 0.

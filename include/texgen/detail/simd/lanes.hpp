@@ -19,6 +19,8 @@
 #include <type_traits>
 #include <utility>
 
+#include <glm/vec4.hpp>
+
 #include "../arithmetic/rounding.hpp"
 #include "../arithmetic/widen.hpp"
 #include "../language.hpp"
@@ -134,6 +136,13 @@ inline bool all_less(const Double2& a, const Double2& b, const Double2& c, const
 #define TEXGEN_EIGHT_DOUBLES(values) __builtin_ia32_cvtps2pd512_mask(values, Doubles{}, static_cast<char>(-1), 4)
 #endif
 
+// As four floats.
+#ifdef __clang__
+#define TEXGEN_FOUR_DOUBLES(values) __builtin_convertvector(values, Double4)
+#else
+#define TEXGEN_FOUR_DOUBLES(values) __builtin_ia32_cvtps2pd256(values)
+#endif
+
 // All of sixteen lanes: a mask has a sign to GCC.
 #ifdef __clang__
 #define TEXGEN_SIXTEEN_LANES 0xffff
@@ -205,6 +214,39 @@ TEXGEN_INLINE Double2 leading_27_bits(const Double2& a) noexcept {
 #endif
 
 #endif
+
+namespace TEXGEN_DETAIL {
+
+// Four doubles at a time, for s, t, r and q: as one vector only where the flags have such, as no other functions may hand it on.
+#if defined(TEXGEN_HAS_VECTORS) && defined(__AVX__)
+using Double4 [[gnu::vector_size(32)]] = double;
+TEXGEN_INLINE Double4 magnitude(const Double4& a) noexcept {
+    using Bits4 [[gnu::vector_size(32)]] = long long;
+    return __builtin_bit_cast(Double4, __builtin_bit_cast(Bits4, a) & 0x7fffffffffffffffLL);
+}
+TEXGEN_INLINE Double4 four_widened(const glm::vec4& v) noexcept {
+    using Given [[gnu::vector_size(16), gnu::aligned(4), gnu::may_alias]] = float;
+    return TEXGEN_FOUR_DOUBLES(reinterpret_cast<const volatile Given&>(v));
+}
+TEXGEN_INLINE Double2 first_two(const Double4& a) noexcept { return __builtin_shufflevector(a, a, 0, 1); }
+TEXGEN_INLINE Double2 last_two(const Double4& a) noexcept { return __builtin_shufflevector(a, a, 2, 3); }
+#else
+struct Double4 {
+    Double2 two[2];
+
+    Double4 operator+(const Double4& b) const noexcept { return {{two[0] + b.two[0], two[1] + b.two[1]}}; }
+    Double4 operator-(const Double4& b) const noexcept { return {{two[0] - b.two[0], two[1] - b.two[1]}}; }
+    Double4 operator*(double b) const noexcept { return {{two[0] * b, two[1] * b}}; }
+};
+inline Double4 magnitude(const Double4& a) noexcept { return {{magnitude(a.two[0]), magnitude(a.two[1])}}; }
+inline Double4 four_widened(const glm::vec4& v) noexcept {
+    return {{double2_of(widened(v.x), widened(v.y)), double2_of(widened(v.z), widened(v.w))}};
+}
+inline Double2 first_two(const Double4& a) noexcept { return a.two[0]; }
+inline Double2 last_two(const Double4& a) noexcept { return a.two[1]; }
+#endif
+
+}  // namespace TEXGEN_DETAIL
 
 #define TEXGEN_KERNELS "../kernels/kernels.inc.hpp"
 #include "instruction_sets.inc.hpp"

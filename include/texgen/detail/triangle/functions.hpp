@@ -25,7 +25,9 @@ struct TriangleFunctions {
     double tolerance;
 
     TriangleFunctions(const Triangle& triangle, const TextureRegion& region, double accepted) noexcept
-        : planes(triangle), st(planes.planes(0, 1)), q(planes.plane(3)), lit(region), tolerance(accepted) {}
+        : planes(triangle), lit(region), tolerance(accepted) {
+        planes.planes_of_stq(st, q);
+    }
 };
 
 // The numerators of the derivatives of s (0) and t (1), see Slope.

@@ -5,8 +5,9 @@ inline namespace TEXGEN_BUILD {
 
 // One coordinate of a rectangle; without a plan nothing is known of it.
 template <class CompiledWhereCalled = void>
-inline void interpolate_alone(const TileKernels& kernels, const TriangleFunctions& triangle, const Tile& rect,
-                              glm::length_t coordinate, const std::span<float>& output, const Plan* plan) noexcept {
+TEXGEN_APART void interpolate_alone(const TileKernels& kernels, const TriangleFunctions& triangle, const Tile& rect,
+                                    glm::length_t coordinate, const std::span<float>& output,
+                                    const Plan* plan) noexcept {
     if (output.empty()) return;
     OnDemand<CloseRamps> close;
     TileInterpolator<> interpolator(kernels, triangle, rect, close);
@@ -108,7 +109,8 @@ TEXGEN_INLINE Work interpolate(const TriangleSetup& setup, FragmentRect rect, Te
         if (depth != Coverage::outside) answer = detail::fill_small(triangle, tile, out);
     }
     if (answer == detail::SmallAnswer::doubt) return detail::interpolate_tile(setup, tile, out);
-    detail::finish_depth(detail::chosen<detail::TileKernels>(), triangle, tile, out, depth);
+    if (!out.r.empty() || depth != Coverage::inside)
+        detail::finish_depth(detail::chosen<detail::TileKernels>(), triangle, tile, out, depth);
     return detail::work_of(triangle, answer == detail::SmallAnswer::lit && depth == Coverage::inside);
 }
 

@@ -27,7 +27,7 @@ public:
     void leave_mask() noexcept { lit_ = {}; }
     // One coordinate, 0 to 2 for s, t, r.
     void add(glm::length_t coordinate, const std::span<float>& output) noexcept {
-        alone_ = triangle_.planes.planes(coordinate, coordinate);
+        alone_ = triangle_.planes.plane_twice(coordinate);
         planes_ = &alone_;
         count_ = 1;
         coordinate_[0] = coordinate;

@@ -103,41 +103,51 @@ public:
           to_c_(window(triangle_.c) - a_) {
         const double left = to_b_.x * to_c_.y;
         const double right = to_b_.y * to_c_.x;
-        const Bounded area{left - right, gamma(4) * (std::fabs(left) + std::fabs(right))};
-        orientation_ = std::fabs(area.value) > area.error ? (area.value > 0.0 ? 1 : -1) : exact_area().sign();
-        area_ = area.value;
-        const double a = orientation_ * widened(triangle_.a.clip_w);
+        area_ = left - right;
+        area_terms_ = std::fabs(left) + std::fabs(right);
+        orientation_ = std::fabs(area_) > gamma(4) * area_terms_ ? (area_ > 0.0 ? 1 : -1) : exact_area().sign();
+        const double a = widened(triangle_.a.clip_w);
         const double b = widened(triangle_.b.clip_w);
         const double c = widened(triangle_.c.clip_w);
-        weight_[0] = orientation_ * (b * c);
+        weight_[0] = b * c;
         weight_[1] = a * c;
         weight_[2] = a * b;
         // The common factor is free: with this one F is about as large as its f, and products of several stay in range.
-        const double largest_weight =
-            larger(larger(std::fabs(weight_[0]), std::fabs(weight_[1])), std::fabs(weight_[2]));
-        const double factor = reciprocal_power_of_two((std::fabs(left) + std::fabs(right)) * largest_weight);
-        for (double& weight : weight_) weight *= factor;
+        factor_ = orientation_ * reciprocal_power_of_two(area_terms_ * (weight_[1] + weight_[2]));
     }
 
     // False where a number is not finite, a clip_w is not positive, or the area is zero (decided exactly): then nothing
     // that follows means anything.
     bool is_usable() const noexcept {
         constexpr float largest = (std::numeric_limits<float>::max)();
-        for (const WindowVertex* vertex : {&triangle_.a, &triangle_.b, &triangle_.c})
-            if (!(vertex->clip_w > 0.0f && vertex->clip_w <= largest)) return false;
-        return orientation_ != 0 && are_finite();
+        // The first one is the largest, if none is a NaN.
+        return triangle_.a.clip_w <= largest && triangle_.b.clip_w > 0.0f && triangle_.c.clip_w > 0.0f &&
+               orientation_ != 0 && are_finite();
     }
 
-    // The plane of one coordinate, 0 to 3 for s, t, r, q, and of two.
-    Plane plane(glm::length_t coordinate) const noexcept {
+    // The plane of one coordinate, 0 to 3 for s, t, r, q, and that twice.
+    TEXGEN_APART Plane plane(glm::length_t coordinate) const noexcept {
         const auto corner = [&](const WindowVertex& vertex) { return widened(vertex.strq[coordinate]); };
         return plane_through(corner(triangle_.a), corner(triangle_.b), corner(triangle_.c));
     }
-    PlaneOf<Double2> planes(glm::length_t first, glm::length_t second) const noexcept {
-        const auto corner = [&](const WindowVertex& vertex) {
-            return double2_of(widened(vertex.strq[first]), widened(vertex.strq[second]));
+    PlaneOf<Double2> plane_twice(glm::length_t coordinate) const noexcept {
+        const Plane once = plane(coordinate);
+        const auto twice = [](const Ramp& ramp) -> RampOf<Double2> {
+            return {double2_of(ramp.base, ramp.base), double2_of(ramp.dx, ramp.dx), double2_of(ramp.dy, ramp.dy)};
         };
-        return plane_through(corner(triangle_.a), corner(triangle_.b), corner(triangle_.c));
+        return {twice(once.value), twice(once.magnitude)};
+    }
+
+    // Of s and t, and of q.
+    void planes_of_stq(PlaneOf<Double2>& st, Plane& q) const noexcept {
+        const PlaneOf<Double4> all = plane_through(four_widened(triangle_.a.strq), four_widened(triangle_.b.strq),
+                                                   four_widened(triangle_.c.strq));
+        const auto take = [](const RampOf<Double4>& ramp, RampOf<Double2>& of_st, Ramp& of_q) {
+            of_st = {first_two(ramp.base), first_two(ramp.dx), first_two(ramp.dy)};
+            of_q = {last_two(ramp.base)[1], last_two(ramp.dx)[1], last_two(ramp.dy)[1]};
+        };
+        take(all.value, st.value, q.value);
+        take(all.magnitude, st.magnitude, q.magnitude);
     }
 
     // The slope of one coordinate, 0 to 2 for s, t, r. Each mu carries 3 u: products of two floats are exact, so s and t
@@ -149,11 +159,11 @@ public:
         const WindowVertex* const corner[] = {&triangle_.a, &triangle_.b, &triangle_.c};
         const double area = twice_area();
         double least = 0.0;
-        const auto mu = [&](int i, int j) {
+        const auto mu = [&](std::size_t i, std::size_t j) {
             const double difference = widened(corner[i]->strq[coordinate]) * widened(corner[j]->strq.w) -
                                       widened(corner[j]->strq[coordinate]) * widened(corner[i]->strq.w);
             if (difference != 0.0) least = 0x1p-1020;
-            return difference * weight_[j] * (weight_[i] * area);
+            return difference * weight(j) * (weight(i) * area);
         };
         const double ab = mu(0, 1);
         const double bc = mu(1, 2);
@@ -175,7 +185,7 @@ public:
         const FloatDeterminant determinant(row(triangle_.a), row(triangle_.b), row(triangle_.c));
         const auto [sum, size] = determinant.nearly();
         const double area = twice_area();
-        const double scale = (area * weight_[0]) * (area * weight_[1]) * weight_[2];
+        const double scale = (area * weight(0)) * (area * weight(1)) * weight(2);
         return (std::fabs(sum) > 0x1p-4 * size ? sum : determinant.exactly().estimate()) * scale;
     }
 
@@ -185,7 +195,7 @@ public:
     }
     glm::dvec2 corner(std::size_t i) const noexcept { return window(vertex(i)); }
     double value(std::size_t i, glm::length_t coordinate) const noexcept { return widened(vertex(i).strq[coordinate]); }
-    double weight(std::size_t i) const noexcept { return weight_[i]; }
+    double weight(std::size_t i) const noexcept { return weight_[i] * factor_; }
 
     // The window, seen from the first vertex: the centre of a fragment, and the other vertices.
     glm::dvec2 from_a(const Tile& tile) const noexcept {
@@ -220,13 +230,11 @@ public:
     }
 
     // w_j w_k of corner i, without the common factor, and that factor.
-    double unscaled_weight(std::size_t i) const noexcept {
-        return orientation_ * (widened(vertex((i + 1) % 3).clip_w) * widened(vertex((i + 2) % 3).clip_w));
-    }
-    double factor() const noexcept { return weight_[0] / unscaled_weight(0); }
+    double unscaled_weight(std::size_t i) const noexcept { return weight_[i] * orientation_; }
+    double factor() const noexcept { return factor_ * orientation_; }
 
 private:
-    // The plane through values at the corners.
+    // The plane through values at the corners. The common factor, which is known last, is the edges'.
     template <class Number>
     PlaneOf<Number> plane_through(const Number& at_a, const Number& at_b, const Number& at_c) const noexcept {
         const Number a = at_a * weight_[0];
@@ -236,12 +244,16 @@ private:
         const Number c_minus_a = c - a;
         const Number b_and_a = magnitude(b) + magnitude(a);
         const Number c_and_a = magnitude(c) + magnitude(a);
-        const double b_x = std::fabs(to_b_.x);
-        const double b_y = std::fabs(to_b_.y);
-        const double c_x = std::fabs(to_c_.x);
-        const double c_y = std::fabs(to_c_.y);
-        return {{a * area_, b_minus_a * to_c_.y - c_minus_a * to_b_.y, c_minus_a * to_b_.x - b_minus_a * to_c_.x},
-                {magnitude(a) * (b_x * c_y + b_y * c_x), b_and_a * c_y + c_and_a * b_y, c_and_a * b_x + b_and_a * c_x}};
+        const glm::dvec2 to_b = to_b_ * factor_;
+        const glm::dvec2 to_c = to_c_ * factor_;
+        const double b_x = std::fabs(to_b.x);
+        const double b_y = std::fabs(to_b.y);
+        const double c_x = std::fabs(to_c.x);
+        const double c_y = std::fabs(to_c.y);
+        return {
+            {a * (area_ * factor_), b_minus_a * to_c.y - c_minus_a * to_b.y, c_minus_a * to_b.x - b_minus_a * to_c.x},
+            {magnitude(a) * (area_terms_ * std::fabs(factor_)), b_and_a * c_y + c_and_a * b_y,
+             b_and_a * c_x + c_and_a * b_x}};
     }
 
     // A corner where the camera's w is small may be far outside of the window, where F is large: the planes stand about the
@@ -291,8 +303,9 @@ private:
     Triangle triangle_;
     glm::dvec2 a_, to_b_, to_c_;
     int orientation_;
-    double area_;       // twice the signed area
-    double weight_[3];  // w_j w_k times a common factor, with the sign of the orientation
+    double area_, area_terms_;  // twice the signed area, and the sizes of its terms
+    double weight_[3];          // w_j w_k
+    double factor_;             // common to all weights, with the sign of the orientation
 };
 
 // The functions at one fragment, exactly: F = sum G_i f_i with G_i = E_i w_j w_k, but for the planes' common factor, or for any

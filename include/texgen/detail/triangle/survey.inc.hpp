@@ -81,7 +81,7 @@ inline void choose_steps(Plan& plan, const Corners& at, double tolerance) noexce
 // How much of a tile is between the limits of the region's depth: by the planes as they are, as no more than their leading
 // digits are asked.
 TEXGEN_APART inline Coverage depth_coverage(const TriangleFunctions& triangle, const Tile& tile) noexcept {
-    const Corners at = corners_of(triangle.planes, triangle.planes.planes(2, 2), triangle.q, tile);
+    const Corners at = corners_of(triangle.planes, triangle.planes.plane_twice(2), triangle.q, tile);
     return r_coverage(at, triangle.lit, triangle.tolerance);
 }
 
