@@ -5,12 +5,12 @@ namespace TEXGEN_DETAIL::TEXGEN_ISA {
 // Two rows share a division of doubles, of an odd number of them the last two, and a single row is both; integers are asked whether
 // a value is in doubt. What a vector writes beyond its row is written again by those that follow.
 TEXGEN_INLINE bool divide_small(const SmallTile& tile) noexcept {
-    const Ramp(&f)[2] = tile.numerator;
+    const auto& [f_base, f_dx, f_dy] = tile.numerator;
     const Ramp& of_q = tile.q;
     const int width = tile.width, count = width * tile.height;
     const bool is_row = tile.height == 1;
     const int stride = is_row ? 0 : width;
-    const double q_dy = is_row ? 0.0 : of_q.dy, dy[2] = {is_row ? 0.0 : f[0].dy, is_row ? 0.0 : f[1].dy};
+    const double q_dy = is_row ? 0.0 : of_q.dy, dy[2] = {is_row ? 0.0 : f_dy[0], is_row ? 0.0 : f_dy[1]};
     // Shorter rows than vectors have no room for the last of them.
     float buffer[2][TileJob::unit_size + lanes];
     const bool has_room = width >= lanes;
@@ -18,8 +18,8 @@ TEXGEN_INLINE bool divide_small(const SmallTile& tile) noexcept {
     Distances least = far_from_middles();
     for (int begin = 0;;) {
         const Doubles x = indices<Doubles>() + static_cast<double>(begin);
-        const auto first_of = [&](const Ramp& ramp) { return x * ramp.dx + ramp.base; };
-        const Doubles first_q = first_of(of_q), first[2] = {first_of(f[0]), first_of(f[1])};
+        const Doubles first_q = x * of_q.dx + of_q.base;
+        const Doubles first[2] = {x * f_dx[0] + f_base[0], x * f_dx[1] + f_base[1]};
         const int last = begin + count - width - stride;
         Doubles y{};
         for (int n = begin;;) {
@@ -58,7 +58,7 @@ TEXGEN_INLINE bool divide_small(const SmallTile& tile) noexcept {
 
 // Of eight columns: a vector has whole rows, or a part of one. Rows are counted from the middle.
 TEXGEN_INLINE void divide_small_in_float(const SmallTile& tile) noexcept {
-    const Ramp(&f)[2] = tile.numerator;
+    const auto& [f_base, f_dx, f_dy] = tile.numerator;
     const Ramp& of_q = tile.q;
     constexpr int width = 8, columns = wide_lanes < width ? wide_lanes : width;
     const int count = width * tile.height;
@@ -72,9 +72,10 @@ TEXGEN_INLINE void divide_small_in_float(const SmallTile& tile) noexcept {
             const double base = ramp.base + middle * ramp.dy;
             return in_double([&](const Doubles& column) { return column * ramp.dx + base; }, x);
         };
-        const WideFloats first_q = first_of(of_q), first[2] = {first_of(f[0]), first_of(f[1])};
+        const WideFloats first_q = first_of(of_q);
+        const WideFloats first[2] = {first_of({f_base[0], f_dx[0], f_dy[0]}), first_of({f_base[1], f_dx[1], f_dy[1]})};
         const float q_dy = static_cast<float>(of_q.dy);
-        const float dy[2] = {static_cast<float>(f[0].dy), static_cast<float>(f[1].dy)};
+        const float dy[2] = {static_cast<float>(f_dy[0]), static_cast<float>(f_dy[1])};
         WideFloats y = row - static_cast<float>(middle);
         for (int n = begin; n < count; n += wide_lanes / columns * width) {
             const WideFloats reciprocal = 1.0f / (y * q_dy + first_q);

@@ -83,9 +83,9 @@ struct TileJob {
 
 // A tile of no more than a unit of which one certificate holds: see small_tile.inc.hpp.
 struct SmallTile {
-    int width, height;
-    Ramp numerator[2];
+    alignas(64) double numerator[3][2];  // base, dx and dy of both: no pair is in two lines of the cache
     Ramp q;
+    int width, height;
     bool
         is_in_float;  // rounded and divided in float, in which no value is in doubt; eight columns, an even number of rows
     float* out[2];

@@ -31,11 +31,16 @@ struct SmallFunction {
                 gamma(20)) {}
 };
 
-// At the corner where a function is least.
+// At the corner where a function is least, and where it is largest.
 template <class Number>
 Number least_of(const Number& base, const Number& right, const Number& bottom) noexcept {
     const Number of_row = smaller(base, base + right);
     return smaller(of_row, of_row + bottom);
+}
+template <class Number>
+Number largest_of(const Number& base, const Number& right, const Number& bottom) noexcept {
+    const Number of_row = larger(base, base + right);
+    return larger(of_row, of_row + bottom);
 }
 
 // Whether all of it is lit, or certainly a part, and far enough from q = 0 and from 0 that one bound serves all quotients. The
@@ -50,7 +55,7 @@ enum class SmallAnswer { doubt, lit, partly_lit };
 inline SmallAnswer ask(const LitTest& lit, double tolerance, const SmallFunction<Double2>& f,
                        const SmallFunction<double>& q, SmallTile& tile) noexcept {
     const double least_q = least_of(q.base, q.right, q.bottom);
-    const double largest_q = -least_of(-q.base, -q.right, -q.bottom);
+    const double largest_q = largest_of(q.base, q.right, q.bottom);
     if (!(least_q > larger(0x1p44 * q.error, 0x1p-100) && largest_q < 0x1p60)) return SmallAnswer::doubt;
     const Double2 min = double2_of(lit.least(0), lit.least(1));
     const Double2 max = double2_of(lit.greatest(0), lit.greatest(1));
@@ -60,9 +65,9 @@ inline SmallAnswer ask(const LitTest& lit, double tolerance, const SmallFunction
     const Double2 least_below = least_of<Double2>(below[0], below[1], below[2]);
     const Double2 error = f.error + max * q.error;
     const Double2 margin = error * 2.0 + (max * 0x1p-21 + (0x1.1p-124 + 4.1 * tolerance)) * largest_q;
-    const bool is_lit = all_less(margin, least_above, margin, least_below);
+    const bool is_lit = all_less(margin, smaller(least_above, least_below));
     tile.is_in_float = false;
-    if (is_lit && tolerance != 0.0 && tile.width == 8 && tile.height % 2 == 0) {
+    if (is_lit && tolerance != 0.0 && tile.width == 8 && read_alone(tile.height) % 2 == 0) {
         const double allowed = (tolerance - 0x1p-100) * (least_q - q.error);
         const Double2 rounded = larger(f.bottom, -f.bottom) + max * (4.02 * least_q + std::fabs(q.bottom));
         tile.is_in_float =
@@ -73,9 +78,10 @@ inline SmallAnswer ask(const LitTest& lit, double tolerance, const SmallFunction
     if (!all_less(f.error * 0x1.8p41 + 0x1.1p-124 * largest_q, least_of<Double2>(f.base, f.right, f.bottom)))
         return SmallAnswer::doubt;
     if (is_lit) return SmallAnswer::lit;
-    const bool is_partly_dark = any_less(least_above, -margin, least_below, -margin);
-    const bool may_be_dark = any_less(-least_of<Double2>(-above[0], -above[1], -above[2]), margin,
-                                      -least_of<Double2>(-below[0], -below[1], -below[2]), margin);
+    const bool is_partly_dark = any_less(smaller(least_above, least_below), -margin);
+    const Double2 largest_above = largest_of<Double2>(above[0], above[1], above[2]);
+    const Double2 largest_below = largest_of<Double2>(below[0], below[1], below[2]);
+    const bool may_be_dark = any_less(smaller(largest_above, largest_below), margin);
     return is_partly_dark && !may_be_dark ? SmallAnswer::partly_lit : SmallAnswer::doubt;
 }
 
@@ -94,13 +100,14 @@ TEXGEN_APART inline SmallAnswer fill_small(const TriangleFunctions& triangle, co
     const SmallAnswer answer = ask(triangle.lit, triangle.tolerance, f, q, tile);
     if (answer == SmallAnswer::doubt) return answer;
     const RampOf<Double2>& st = triangle.st.value;
+    const Double2 numerator[3] = {f.base, st.dx, st.dy};
     TEXGEN_UNROLL
-    for (std::size_t k = 0; k < 2; ++k) tile.numerator[k] = {f.base[k], st.dx[k], st.dy[k]};
+    for (std::size_t i = 0; i < 3; ++i) std::memcpy(tile.numerator[i], &numerator[i], sizeof numerator[i]);
     tile.q = {q.base, triangle.q.value.dx, triangle.q.value.dy};
     tile.out[0] = out.s.data();
     tile.out[1] = out.t.data();
     tile.lit = out.lit.empty() ? nullptr : out.lit.data();
-    triangle.lit.copy_to(tile.min, tile.max);
+    if (tile.lit != nullptr) triangle.lit.copy_to(tile.min, tile.max);
     return chosen<TileKernels>().fill_small(tile) ? answer : SmallAnswer::doubt;
 }
 
