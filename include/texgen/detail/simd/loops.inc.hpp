@@ -67,28 +67,28 @@ struct Lanes {
 using Doubles = Lanes<double>;
 using Floats = Lanes<float>;
 using Words = Lanes<int>;
+using Residues = Lanes<std::uint64_t>;
 using WideFloats = Floats;
 using WideWords = Words;
+
+// Lane by lane: the numbers converted, and their bits as they are.
+template <class To, class From>
+TEXGEN_INLINE To converted(const From& from) noexcept {
+    return To::of([&](int i) { return static_cast<typename To::Element>(from.lane[i]); });
+}
+template <class To, class From>
+TEXGEN_INLINE To bits_as(const From& from) noexcept {
+    return To::of([&](int i) { return bit_cast<typename To::Element>(from.lane[i]); });
+}
 
 template <class Vector>
 TEXGEN_INLINE Vector indices() noexcept {
     return Vector::of([](int i) { return static_cast<typename Vector::Element>(i); });
 }
 
-TEXGEN_INLINE Doubles to_doubles(const Words& values) noexcept {
-    return Doubles::of([&](int i) { return static_cast<double>(values.lane[i]); });
-}
-TEXGEN_INLINE Floats to_floats(const Doubles& values) noexcept {
-    return Floats::of([&](int i) { return static_cast<float>(values.lane[i]); });
-}
-
-TEXGEN_INLINE Words bits(const Floats& values) noexcept {
-    return Words::of([&](int i) { return bit_cast<int>(values.lane[i]); });
-}
-
-TEXGEN_INLINE Doubles to_doubles(const Floats& values) noexcept {
-    return Doubles::of([&](int i) { return static_cast<double>(values.lane[i]); });
-}
+TEXGEN_INLINE Doubles to_doubles(const auto& values) noexcept { return converted<Doubles>(values); }
+TEXGEN_INLINE Floats to_floats(const Doubles& values) noexcept { return converted<Floats>(values); }
+TEXGEN_INLINE Words bits(const Floats& values) noexcept { return bits_as<Words>(values); }
 // Of doubles that were rounded to float a moment ago: see widen.hpp.
 TEXGEN_INLINE Doubles to_doubles_as_rounded(const Floats& values) noexcept {
     return Doubles::of([&](int i) { return widened(values.lane[i]); });
@@ -103,9 +103,7 @@ TEXGEN_INLINE WideFloats in_double(const Function& f, const Vector&... values) n
     return to_floats(f(to_doubles(values)...));
 }
 
-TEXGEN_INLINE Doubles truncated(const Doubles& values) noexcept {
-    return Doubles::of([&](int i) { return static_cast<double>(static_cast<int>(values.lane[i])); });
-}
+TEXGEN_INLINE Doubles truncated(const Doubles& values) noexcept { return to_doubles(converted<Words>(values)); }
 
 using LongWords = Words;
 TEXGEN_INLINE LongWords greater(const Doubles& a, const auto& b) noexcept {
@@ -120,9 +118,7 @@ TEXGEN_INLINE LongWords are_nonzero(const Doubles& a) noexcept {
 }
 template <int Bits>
 TEXGEN_INLINE Doubles leading_bits(const Doubles& a) noexcept {
-    return Doubles::of([&](int i) {
-        return bit_cast<double>(bit_cast<std::uint64_t>(a.lane[i]) & (~std::uint64_t{0} << (53 - Bits)));
-    });
+    return bits_as<Doubles>(bits_as<Residues>(a) & (~std::uint64_t{0} << (53 - Bits)));
 }
 TEXGEN_INLINE Doubles where(const LongWords& mask, const Doubles& values) noexcept {
     return Doubles::of([&](int i) { return mask.lane[i] != 0 ? values.lane[i] : 0.0; });
@@ -141,19 +137,14 @@ TEXGEN_INLINE Doubles middle_near(const Doubles& a) noexcept {
     });
 }
 
-using Residues = Lanes<std::uint64_t>;
 TEXGEN_INLINE Residues to_residues(const Doubles& integers) noexcept {
-    return Residues::of([&](int i) { return static_cast<std::uint64_t>(static_cast<std::int64_t>(integers.lane[i])); });
+    return converted<Residues>(converted<Lanes<std::int64_t>>(integers));
 }
 TEXGEN_INLINE Doubles without_last_bit(const Doubles& a) noexcept {
-    return Doubles::of([&](int i) {
-        const auto bits = bit_cast<std::uint64_t>(a.lane[i]);
-        return bit_cast<double>(bits & (bits - 1));
-    });
+    const auto all = bits_as<Residues>(a);
+    return bits_as<Doubles>(all & (all - std::uint64_t{1}));
 }
-TEXGEN_INLINE Doubles signs_of(const Residues& a) noexcept {
-    return Doubles::of([&](int i) { return bit_cast<double>(a.lane[i]); });
-}
+TEXGEN_INLINE Doubles signs_of(const Residues& a) noexcept { return bits_as<Doubles>(a); }
 TEXGEN_INLINE LongWords are_zero(const Residues& a) noexcept {
     return LongWords::of([&](int i) { return a.lane[i] == 0 ? -1 : 0; });
 }
@@ -170,26 +161,16 @@ TEXGEN_INLINE Doubles with_sign_of(const Doubles& size, const Doubles& sign) noe
     return Doubles::of([&](int i) { return std::copysign(size.lane[i], sign.lane[i]); });
 }
 TEXGEN_INLINE Doubles power_of_two_below(const Doubles& a) noexcept {
-    return Doubles::of(
-        [&](int i) { return bit_cast<double>(bit_cast<std::uint64_t>(a.lane[i]) & 0x7ff0000000000000); });
+    return bits_as<Doubles>(bits_as<Residues>(a) & std::uint64_t{0x7ff0000000000000});
 }
 TEXGEN_INLINE Doubles reciprocals_of_powers(const Doubles& a) noexcept {
-    return Doubles::of(
-        [&](int i) { return bit_cast<double>(0x7fe0000000000000 - bit_cast<std::uint64_t>(a.lane[i])); });
+    return bits_as<Doubles>(std::uint64_t{0x7fe0000000000000} - bits_as<Residues>(a));
 }
 
-TEXGEN_INLINE WideWords magnitude_bits(const WideFloats& a) noexcept {
-    return WideWords::of([&](int i) { return bit_cast<int>(a.lane[i]) & 0x7fffffff; });
-}
-TEXGEN_INLINE WideWords signed_bits(const WideFloats& a) noexcept {
-    return WideWords::of([&](int i) { return bit_cast<int>(a.lane[i]); });
-}
-TEXGEN_INLINE WideFloats from_bits(const WideWords& words) noexcept {
-    return WideFloats::of([&](int i) { return bit_cast<float>(words.lane[i]); });
-}
-TEXGEN_INLINE WideFloats to_numbers(const WideWords& words) noexcept {
-    return WideFloats::of([&](int i) { return static_cast<float>(words.lane[i]); });
-}
+TEXGEN_INLINE WideWords magnitude_bits(const WideFloats& a) noexcept { return bits_as<WideWords>(a) & 0x7fffffff; }
+TEXGEN_INLINE WideWords signed_bits(const WideFloats& a) noexcept { return bits_as<WideWords>(a); }
+TEXGEN_INLINE WideFloats from_bits(const WideWords& words) noexcept { return bits_as<WideFloats>(words); }
+TEXGEN_INLINE WideFloats to_numbers(const WideWords& words) noexcept { return converted<WideFloats>(words); }
 TEXGEN_INLINE WideWords halved(const WideWords& words) noexcept {
     return WideWords::of([&](int i) { return words.lane[i] >> 1; });
 }
