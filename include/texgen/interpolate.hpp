@@ -98,9 +98,9 @@ Work interpolate(const TriangleSetup& setup, FragmentRect rect, Texcoords out) n
 
 #include "detail/triangle/survey.inc.hpp"
 
-#include "detail/triangle/small_tile.inc.hpp"
 #include "detail/triangle/units.inc.hpp"
 
 #include "detail/triangle/interpolator.inc.hpp"
+#include "detail/triangle/small_tile.inc.hpp"
 
 #include "detail/triangle/interpolate.inc.hpp"

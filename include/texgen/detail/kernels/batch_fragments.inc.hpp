@@ -98,7 +98,7 @@ struct DoubtfulRuns {
             q.take(at.values(Numerators));
             fragments.divide(at, q, Numerators, tolerance, true);
             const bool is_unknown = (unknown >> i & 1u) != 0;
-            const Words left = is_unknown ? doubtful[i] : doubtful[i] & fragments.doubtful;
+            const Words left = is_unknown ? doubtful[i] : doubtful[i] & narrow(fragments.doubtful);
             out[i]->put_where(doubtful[i], n[i], fragments.quotient, q.front);
             undecided |= std::uint64_t{bits_of(left)} << place[i];
         }

@@ -319,7 +319,7 @@ TEXGEN_APART std::uint64_t decide_tiles(const TilesJob& job, const FragmentOutpu
             q.take(at.values(Numerators));
             fragments.divide(at, q, Numerators, job.tolerance, true);
             here.put(in_scratch ? n : begin + n, fragments.quotient, q.front);
-            left |= fragments.doubtful;
+            left |= narrow(fragments.doubtful);
         }
         if (in_scratch) scratch.copy_to(out, begin, shape.count);
         if (any(left)) undecided |= std::uint64_t{1} << i;

@@ -65,33 +65,13 @@ TEXGEN_INLINE Words decide_by_residues(const Residues& f, const Grain& f_grain, 
     return doubt & ~decided;
 }
 
-// The nearer float where a quotient is so near the middle m of two that the sign of F - m Q decides: that of its residue, if there
-// is one that says all of it, else of what two doubles hold; and that is known well enough for a residue of more digits.
+// The nearer float where a quotient is so near the middle m of two that the sign of F - m Q decides: of what two doubles hold of
+// it, or of its residue, where that says all of it.
 struct CloseMiddle {
     Doubles middle, unit;  // middle is a multiple of unit, and within 2^25 of them
 
     TEXGEN_INLINE explicit CloseMiddle(const Doubles& u) noexcept
         : middle(middle_near(u)), unit(power_of_two_below(u) * 0x1p-24) {}
-
-    // The sign of `rest` decides; 0 is a tie.
-    TEXGEN_INLINE Floats beyond(const Doubles& sign, const LongWords& is_tie) const noexcept {
-        return to_floats(middle + where(~is_tie, with_sign_of(unit * 0.25, sign)));
-    }
-
-    // F - m Q, which is at most `bound`, by its residue. Returns the lanes of `doubt` that this does not decide.
-    TEXGEN_INLINE Words decide(const Residues& f, double f_grain, const Residues& q, double q_grain,
-                               const Doubles& bound, const Words& doubt, Floats& value) const noexcept {
-        const Doubles finer = minimum(unit * q_grain, Doubles{} + f_grain);
-        const Doubles per_finer = reciprocals_of_powers(finer);
-        const Doubles of_f = per_finer * f_grain;
-        const Doubles of_q = middle * q_grain * per_finer;
-        const LongWords is_known =
-            greater(finer * 0x1p62, bound) & greater(Doubles{} + 0x1p62, maximum(of_f, magnitude(of_q)));
-        const Residues rest = f * to_residues(where(is_known, of_f)) - q * to_residues(where(is_known, of_q));
-        const Words decided = doubt & narrow(is_known);
-        value = select(decided, beyond(signs_of(rest), are_zero(rest)), value);
-        return doubt & ~decided;
-    }
 
     // What is left of F - m Q, whose leading parts cancel, and its error.
     TEXGEN_INLINE Doubles rest_of(const CloseValues& f, const CloseValues& q, Doubles& error) const noexcept {
@@ -100,6 +80,25 @@ struct CloseMiddle {
         const Doubles sum = two_sum(f.high - middle * leading, middle * (leading - q.high), low);
         error = magnitude(middle) * q.error + f.error;
         return sum + (low + (f.low - middle * q.low));
+    }
+
+    // Returns the lanes that this decides.
+    TEXGEN_INLINE LongWords decide(const CloseValues& f, const CloseValues& q, const Residues& of_f, double f_grain,
+                                   const Residues& of_q, double q_grain, Floats& value) const noexcept {
+        Doubles error;
+        const Doubles rest = rest_of(f, q, error);
+        const LongWords is_clear = greater(magnitude(rest), error);
+        const Doubles finer = minimum(unit * q_grain, Doubles{} + f_grain);
+        const Doubles per_finer = reciprocals_of_powers(finer);
+        const Doubles f_times = per_finer * f_grain;
+        const Doubles q_times = middle * q_grain * per_finer;
+        const LongWords fits = greater(Doubles{} + 0x1p62, maximum(f_times, magnitude(q_times)));
+        const Residues residue = of_f * to_residues(where(fits, f_times)) - of_q * to_residues(where(fits, q_times));
+        const LongWords is_known = fits & greater(finer * 0x1p62, magnitude(rest) + error);
+        const LongWords is_tie = are_zero(residue) & ~is_clear;
+        const Doubles sign = select(is_clear, rest, signs_of(residue));
+        value = to_floats(middle + where(~is_tie, with_sign_of(unit * 0.25, sign)));
+        return is_clear | is_known;
     }
 };
 
@@ -118,70 +117,65 @@ struct CloseDivisor : CloseValues {
     }
 };
 
+// A quotient in double, and whether that leaves its float in doubt.
+struct CloseQuotient {
+    CloseValues f;
+    Doubles u, size, error;
+    LongWords is_open;
+
+    TEXGEN_INLINE CloseQuotient(const CloseValues& of_f, const CloseDivisor& q, double tolerance) noexcept
+        : f(of_f),
+          u((f.high + f.low) * q.reciprocal + 0x1p-900),  // no 0
+          size(magnitude(u)),
+          error(size * q.relative_error + (q.reciprocal * f.error + 0x1p-152)),
+          is_open(~greater(minimum(size * 0x1p-27, magnitude(u - middle_near(u))), error)) {
+        if (tolerance > 0.0)
+            is_open &=
+                ~at_most(error * 2.001 + (size * (1.0001 * unit_roundoff_float) + 0x1p-149), Doubles{} + tolerance);
+    }
+    // Of normal floats that err by so little there is but one middle in reach.
+    TEXGEN_INLINE LongWords is_rough() const noexcept { return ~greater(size * 0x1p-27, error); }
+};
+
 // A vector of fragments, again. `at` knows its functions there, q as the last.
 template <std::size_t Numerators>
 struct CloseFragments {
     Floats quotient[Numerators];
-    Words doubtful;
+    LongWords doubtful;
 
     // Of `count` numerators, with residues or two doubles if there are any; else what doubles doubt stays so.
     template <class Functions>
     TEXGEN_INLINE void divide(const Functions& at, const CloseDivisor& q, std::size_t count, double tolerance,
                               bool is_more_known) noexcept {
-        CloseValues f[Numerators];
-        Doubles u[Numerators], error[Numerators];
-        LongWords is_open[Numerators], is_rough[Numerators], any_open = q.is_beside, any_rough{};
-        const bool has_tolerance = tolerance > 0.0;
-        TEXGEN_UNROLL
-        for (std::size_t k = 0; k < Numerators; ++k) {
-            f[k] = at.values(k);
-            u[k] = (f[k].high + f[k].low) * q.reciprocal + 0x1p-900;  // no 0
-            const Doubles size = magnitude(u[k]);
-            error[k] = size * q.relative_error + (q.reciprocal * f[k].error + 0x1p-152);
-            quotient[k] = to_floats(u[k]);
-            // Of normal floats that err by so little there is but one middle in reach.
-            is_rough[k] = ~greater(size * 0x1p-27, error[k]);
-            is_open[k] = q.front & (is_rough[k] | ~greater(magnitude(u[k] - middle_near(u[k])), error[k]));
-            if (has_tolerance)
-                is_open[k] &= ~at_most(error[k] * 2.001 + (size * (1.0001 * unit_roundoff_float) + 0x1p-149),
-                                       Doubles{} + tolerance);
-            any_rough |= is_rough[k];
-            any_open |= is_open[k];
-        }
-        doubtful = narrow(any_open);
-        if (!is_more_known || !any(any_open)) return;
-        const bool has_rough = any(any_rough);
-        const Residues of_q = at.residues(Numerators);
         const double q_grain = at.grain(Numerators);
-        doubtful = narrow(q.is_beside & (~q.are_residues(q_grain) | are_positive(of_q)));
+        Residues of_q{};
+        doubtful = q.is_beside;
+        if (is_more_known) {
+            of_q = at.residues(Numerators);
+            doubtful &= ~q.are_residues(q_grain) | are_positive(of_q);
+        }
         for (std::size_t k = 0; k < count; ++k) {
-            if (!any(is_open[k])) continue;
+            const CloseQuotient close(at.values(k), q, tolerance);
+            quotient[k] = to_floats(close.u);
+            const LongWords is_open = close.is_open & q.front;
+            if (!is_more_known) doubtful |= is_open;
+            if (!is_more_known || !any(is_open)) continue;
+            const LongWords is_rough = is_open & close.is_rough();
             const double grain = at.grain(k);
             const Residues of_f = at.residues(k);
-            Words is_near = narrow(is_open[k]);
-            if (has_rough) {
-                const Words rough = is_near & narrow(is_rough[k]);
-                is_near &= ~rough;
-                const Floats above = to_floats(u[k] + error[k]);
-                const Words differ = ~equal(bits(to_floats(u[k] - error[k])) ^ bits(above), 0) & rough;
-                quotient[k] = select(rough, above, quotient[k]);
-                doubtful |= decide_zeros(f[k].are_residues(grain) & are_zero(of_f), differ, quotient[k]);
+            Floats nearest;
+            const LongWords decided =
+                CloseMiddle(close.u).decide(close.f, q, of_f, grain, of_q, q_grain, nearest) & is_open & ~is_rough;
+            quotient[k] = select(narrow(decided), nearest, quotient[k]);
+            LongWords left = is_open & ~decided;
+            if (any(is_rough)) {
+                const Floats above = to_floats(close.u + close.error);
+                const LongWords is_zero = close.f.are_residues(grain) & are_zero(of_f);
+                quotient[k] = select(narrow(is_rough), select(narrow(is_zero), Floats{}, above), quotient[k]);
+                const Words differ = bits(to_floats(close.u - close.error)) ^ bits(above);
+                left &= ~is_rough | (~is_zero & are_nonzero(to_doubles(differ)));
             }
-            // The middle is as near to the quotient as F/Q is: so |F - m Q| is at most twice the error times Q.
-            const CloseMiddle middle(u[k]);
-            Doubles bound = error[k] * q.value * 2.25;
-            for (bool is_last = false;; is_last = true) {
-                is_near = middle.decide(of_f, grain, of_q, q_grain, bound, is_near, quotient[k]);
-                if (is_last || !any(is_near)) break;
-                Doubles rest_error;
-                const Doubles rest = middle.rest_of(f[k], q, rest_error);
-                const Words decided = is_near & narrow(greater(magnitude(rest), rest_error));
-                quotient[k] = select(decided, middle.beyond(rest, LongWords{}), quotient[k]);
-                is_near &= ~decided;
-                if (!any(is_near)) break;
-                bound = magnitude(rest) + rest_error;
-            }
-            doubtful |= is_near;
+            doubtful |= left;
         }
     }
 };

@@ -33,14 +33,6 @@ TEXGEN_INLINE void store_some(float* to, int count, const Vector& values) noexce
     }
 }
 
-// A whole vector where it may be written, else up to `end`.
-template <class Vector>
-TEXGEN_INLINE void store_from(float* to, std::int64_t x, std::int64_t end, std::int64_t writable,
-                              const Vector& values) noexcept {
-    if (x + static_cast<std::int64_t>(sizeof(Vector) / sizeof(float)) <= writable) return store(to + x, values);
-    store_some(to + x, static_cast<int>(end - x), values);
-}
-
 // The mask of `count` fragments or values in front, from the coordinates that stand there: so the loops that compute them ask for no mask.
 // A last vector is one that ends with them.
 template <class Vector>

@@ -114,58 +114,69 @@ TileJob::Unit divide_in_pairs(const TileJob& job, const TileJob::Unit& first) no
 // A tile's functions at a vector of fragments.
 struct CloseFunctionsAt {
     const CloseFunction (&of)[3];
-    std::int64_t x;
-    int y;
+    Doubles x, y;
 
     TEXGEN_INLINE CloseValues values(std::size_t n) const noexcept {
-        const Doubles index = indices<Doubles>() + static_cast<double>(x);
         const auto& [high, low, error, grain, residue] = of[n];
-        return {index * high.dx + (high.base + y * high.dy), index * low.dx + (low.base + y * low.dy),
+        return {x * high.dx + (y * high.dy + high.base), x * low.dx + (y * low.dy + low.base),
                 Doubles{} + 1.01 * error};
     }
     TEXGEN_INLINE Residues residues(std::size_t n) const noexcept {
         const RampOf<std::uint64_t>& residue = of[n].residue;
-        return (indices<Residues>() + static_cast<std::uint64_t>(x)) * residue.dx +
-               (residue.base + static_cast<std::uint64_t>(y) * residue.dy);
+        return to_residues(x) * residue.dx + (to_residues(y) * residue.dy + residue.base);
     }
     TEXGEN_INLINE double grain(std::size_t n) const noexcept { return of[n].grain; }
 };
 
-// Vectors of which nothing is asked stay as they are. One numerator alone stands in both places.
+// The fragments of a unit that are asked, as many at once as a vector has, wherever they stand: those of a column, or a few that
+// are left, share vectors. One numerator alone stands in both places.
 template <class CompiledWhereCalled = void>
 std::uint64_t fill_tile_closely(const TileJob& job, const CloseFunctions& functions, TileJob::Unit unit,
                                 std::uint64_t asked) noexcept {
+    constexpr int most = TileJob::unit_size + lanes;
     const bool is_more_known = functions.have_residues || functions.are_close;
     const std::size_t numerators = job.out[0] == job.out[1] ? 1 : 2;
-    const bool q_is_constant = is_constant(functions.function[CloseFunctions::q].high) &&
-                               is_constant(functions.function[CloseFunctions::q].low);
-    bool q_is_known = false;
-    CloseDivisor q;
-    RowOutputs row(job, unit.y_begin);
-    std::uint64_t doubtful = 0;
-    int place = 0;
-    for (int y = unit.y_begin; y < unit.y_end; ++y, row.advance()) {
-        for (std::int64_t x = unit.x_begin; x < unit.x_end; x += lanes) {
-            const std::int64_t left = unit.x_end - x;
-            const int count = left < lanes ? static_cast<int>(left) : lanes;
-            const std::uint64_t all = ((std::uint64_t{1} << count) - 1) << place;
-            place += count;
-            if ((asked & all) == 0) continue;
-            CloseFragments<2> fragments;
-            const CloseFunctionsAt at{functions.function, x, y};
-            if (!q_is_known) q.take(at.values(CloseFunctions::q));
-            q_is_known = q_is_constant;
-            fragments.divide(at, q, numerators, functions.tolerance, is_more_known);
-            doubtful |= bits_of(fragments.doubtful) << (place - count) & all;
-            Floats result[3] = {fragments.quotient[numerators - 1], fragments.quotient[0]};
-            if (row.lit != nullptr) result[2] = lit_of(job, fragments.quotient, narrow(q.front));
-            float* const to[3] = {row.out[1], row.out[0], row.lit};
-            const std::int64_t writable = asked == ~std::uint64_t{0} ? row.writable : unit.x_end;
-            for (std::size_t k = 0; k < 3; ++k)
-                if (to[k] != nullptr) store_from(to[k], x, unit.x_end, writable, result[k]);
-        }
+    const int width = unit.x_end - unit.x_begin;
+    const int size = width * (unit.y_end - unit.y_begin);
+    const std::uint64_t all = ~std::uint64_t{0} >> (TileJob::unit_size - size);
+    const bool are_all = (asked & all) == all;
+    double number[most], x[most], y[most];
+    int count = are_all ? size : 0;
+    for (; !are_all && asked != 0; asked &= asked - 1) number[count++] = std::countr_zero(asked);
+    if (!are_all) store(number + count, Doubles{});
+    for (int i = 0; i < count; i += lanes) {
+        const Doubles n = are_all ? indices<Doubles>() + static_cast<double>(i) : load<Doubles>(number + i);
+        // Half of one more keeps the quotient away from the integers.
+        const Doubles row = truncated((n + 0.5) * (1.0 / width));
+        store(x + i, n - row * static_cast<double>(width) + static_cast<double>(unit.x_begin));
+        store(y + i, row + static_cast<double>(unit.y_begin));
     }
-    return doubtful;
+    float result[3][most];
+    std::uint64_t doubtful = 0;
+    for (int i = 0; i < count; i += lanes) {
+        const CloseFunctionsAt at{functions.function, load<Doubles>(x + i), load<Doubles>(y + i)};
+        CloseDivisor q;
+        q.take(at.values(CloseFunctions::q));
+        CloseFragments<2> fragments;
+        fragments.divide(at, q, numerators, functions.tolerance, is_more_known);
+        doubtful |= lane_bits(fragments.doubtful) << i;
+        for (std::size_t k = 0; k < numerators; ++k) store(result[k] + i, fragments.quotient[k]);
+        if (job.lit != nullptr) store(result[2] + i, lit_of(job, fragments.quotient, narrow(q.front)));
+    }
+    float* const to[3] = {job.is_scratch[0] ? nullptr : job.out[0],
+                          job.is_scratch[1] || numerators == 1 ? nullptr : job.out[1], job.lit};
+    const bool is_run = are_all && (unit.y_begin + 1 == unit.y_end || width == job.pitch);
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (to[k] == nullptr) continue;
+        const auto place = [&](int i) { return to[k] + (static_cast<int>(y[i]) * job.pitch + static_cast<int>(x[i])); };
+        for (int i = 0; !is_run && i < count; ++i) *place(i) = result[k][i];
+        if (is_run) std::memcpy(place(0), result[k], static_cast<std::size_t>(count) * sizeof(float));
+    }
+    doubtful &= ~std::uint64_t{0} >> (TileJob::unit_size - count);
+    if (are_all) return doubtful;
+    for (; doubtful != 0; doubtful &= doubtful - 1)
+        asked |= std::uint64_t{1} << static_cast<int>(number[std::countr_zero(doubtful)]);
+    return asked;
 }
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA

@@ -51,6 +51,13 @@ public:
         triangle_.tolerance == 0.0 ? fill_exact(tile, at) : fill(tile, at, plan);
     }
 
+    // A small tile well in front, with doubt.
+    TEXGEN_RARE void interpolate_from_doubt(const Tile& tile) noexcept {
+        const Corners at = corners_of(triangle_.planes, *planes_, triangle_.q, tile);
+        TileJob job = make_job(tile, at);
+        fill_from_doubt(tile, at, job, job.unit_at(0, 0));
+    }
+
     // In parts that the scratch arrays hold.
     void interpolate_in_strips(const Tile& tile, const Plan& plan) noexcept {
         Tile strip = tile;
@@ -162,17 +169,16 @@ private:
             tile.width + tile.height > 4 && take_exact_quotients(functions, job))
             unit = detail::fill_exact(kernels_, job, unit);
         // Doubt has company: twice as many units after each failure that follows another.
-        for (int many = 4; !job.is_done(unit);) {
+        for (int many = 1; !job.is_done(unit);) {
             for (int i = 0; i < many && !job.is_done(unit); ++i, unit = job.unit_after(unit))
                 fill_closely(tile, job, functions, unit);
             const TileJob::Unit next = detail::fill_exact(kernels_, job, unit);
-            many = next.x_begin == unit.x_begin && next.y_begin == unit.y_begin ? 2 * many : 4;
+            many = next.x_begin == unit.x_begin && next.y_begin == unit.y_begin ? 2 * many : 1;
             unit = next;
         }
     }
 
-    // A small tile, rows first, by one job for all that there are: with the planes as they are, and closely only if that leaves
-    // doubt. What a last vector writes beyond the tile is to its right, where other parts come later.
+    // A small tile, by one job for all that there are: with the planes as they are, and closely only if that leaves doubt.
     TEXGEN_RARE void fill_closely(const Tile& tile) noexcept {
         if (tile.count() > TileJob::unit_size) {
             for (const Tile& half : tile.halves(tile.height == 1)) fill_closely(half);
@@ -182,7 +188,6 @@ private:
         const int y = static_cast<int>(tile.y - whole_.y);
         if (!doubtful_) {
             doubtful_.make(DoubtfulJob{make_job(whole_, *whole_at_), functions_of(whole_, *whole_at_)});
-            doubtful_->job.is_contiguous = false;
         }
         fill_closely(whole_, doubtful_->job, doubtful_->functions, {x, x + tile.width, y, y + tile.height});
     }

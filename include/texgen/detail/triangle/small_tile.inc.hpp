@@ -85,10 +85,10 @@ inline SmallAnswer ask(const LitTest& lit, double tolerance, const SmallFunction
     return is_partly_dark && !may_be_dark ? SmallAnswer::partly_lit : SmallAnswer::doubt;
 }
 
-// s, t and their mask of a small tile, if one certificate serves all of it and no value is
-// in doubt.
-TEXGEN_APART inline SmallAnswer fill_small(const TriangleFunctions& triangle, const Tile& rect,
-                                           const Texcoords& out) noexcept {
+// s, t and their mask of a small tile, if one certificate serves all of it. What a value in doubt asks for is no plan.
+template <class CompiledWhereCalled = void>
+TEXGEN_APART SmallAnswer fill_small(const TriangleFunctions& triangle, const Tile& rect,
+                                    const Texcoords& out) noexcept {
     const Double2 least = double2_of(triangle.lit.least(0), triangle.lit.least(1));
     if (!(least[0] >= 0.0 && least[1] >= 0.0) || out.s.empty() || out.t.empty()) return SmallAnswer::doubt;
     const SmallPlace place(triangle.planes.from_a(rect), rect);
@@ -108,7 +108,14 @@ TEXGEN_APART inline SmallAnswer fill_small(const TriangleFunctions& triangle, co
     tile.out[1] = out.t.data();
     tile.lit = out.lit.empty() ? nullptr : out.lit.data();
     if (tile.lit != nullptr) triangle.lit.copy_to(tile.min, tile.max);
-    return chosen<TileKernels>().fill_small(tile) ? answer : SmallAnswer::doubt;
+    const TileKernels& kernels = chosen<TileKernels>();
+    if (!kernels.fill_small(tile)) {
+        OnDemand<CloseRamps> close;
+        TileInterpolator<> interpolator(kernels, triangle, rect, close);
+        interpolator.add(out.s, out.t, out.lit);
+        interpolator.interpolate_from_doubt(rect);
+    }
+    return answer;
 }
 
 inline Work work_of(const TriangleFunctions& triangle, bool is_lit) noexcept {
