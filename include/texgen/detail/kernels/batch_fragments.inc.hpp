@@ -67,46 +67,6 @@ TEXGEN_INLINE const float* vertices_of(const BatchJob& job, std::size_t triangle
     return job.vertices + 3 * BatchVertex::size * triangle;
 }
 
-// Vectors of fragments of one triangle each, in a row each, that have lanes in doubt: so many are decided at once.
-struct DoubtfulRuns {
-    std::size_t count = 0;
-    const float* triangle[lanes];
-    double x[lanes], y[lanes];  // of the first fragment
-    const FragmentOutputs* out[lanes];
-    std::size_t n[lanes], place[lanes];  // of the first fragment: in `out`, and in the block
-    Words doubtful[lanes];
-
-    // Puts what is decided to its place; the fragments that stay in doubt are bits of the block.
-    template <std::size_t Numerators>
-    TEXGEN_APART std::uint64_t decide(double tolerance) noexcept {
-        constexpr auto size = static_cast<std::size_t>(lanes);
-        for (std::size_t i = count; i < size; ++i) {
-            triangle[i] = triangle[0];
-            x[i] = x[0];
-            y[i] = y[0];
-        }
-        BatchFunctions functions;
-        const Doubles none{};
-        const LongWords are_unknown = functions.take<Numerators>(triangle, load<Doubles>(x), load<Doubles>(y),
-                                                                 none + static_cast<double>(lanes), none + 1.0, 0);
-        const std::uint64_t unknown = lane_bits(are_unknown);
-        std::uint64_t undecided = 0;
-        for (std::size_t i = 0; i < count; ++i) {
-            CloseFragments<Numerators> fragments;
-            const BatchFunctionsAt at{functions, i, indices<Doubles>(), none};
-            CloseDivisor q;
-            q.take(at.values(Numerators));
-            fragments.divide(at, q, Numerators, tolerance, true);
-            const bool is_unknown = (unknown >> i & 1u) != 0;
-            const Words left = is_unknown ? doubtful[i] : doubtful[i] & narrow(fragments.doubtful);
-            out[i]->put_where(doubtful[i], n[i], fragments.quotient, q.front);
-            undecided |= std::uint64_t{bits_of(left)} << place[i];
-        }
-        count = 0;
-        return undecided;
-    }
-};
-
 // The ids of a vector of fragments from n on; behind the last one they are any.
 struct FragmentIds {
     std::uint32_t last[lanes];
@@ -125,6 +85,132 @@ struct FragmentIds {
     }
 };
 
+// Vectors of fragments that have lanes in doubt, and the triangles of those, of which a block has so many: all are decided at once.
+template <std::size_t Numerators>
+class DoubtfulFragments {
+public:
+    struct Vector {
+        Doubles x, y;
+        Words doubtful;
+        const FragmentOutputs* out;
+        std::size_t n, place;  // of the first fragment: in `out`, and in the block
+    };
+
+    // Of fragments of a rectangle.
+    TEXGEN_INLINE DoubtfulFragments(const FragmentsJob& job, double left, double top, double width,
+                                    double height) noexcept
+        : job_(job), left_(left), top_(top), width_(width), height_(height) {}
+
+    TEXGEN_INLINE bool has_any() const noexcept { return count_ != 0; }
+
+    // False where there is no room for its triangles: in the beginning there is.
+    TEXGEN_INLINE bool add(const Vector& vector, const FragmentIds& ids) noexcept {
+        Known& known = vectors_[count_];
+        known.vector = vector;
+        known.is_one = ids.are_one();
+        known.asked = bits_of(vector.doubtful);
+        if (known.is_one) known.asked &= ~known.asked + 1;  // one stands for all
+        known.is_apart = !known.is_one;
+        double x[lanes], y[lanes];
+        store(x, vector.x);
+        store(y, vector.y);
+        for (std::uint64_t left = known.asked; left != 0; left &= left - 1) {
+            const auto i = static_cast<std::size_t>(std::countr_zero(left));
+            const std::uint32_t id = ids.value[i];
+            std::size_t place = id % batch_block;
+            for (std::size_t tried = 0; has(place) && id_[place] != id; ++tried) {
+                if (tried == batch_block) return false;
+                place = (place + 1) % batch_block;
+            }
+            known.triangle[i] = place;
+            known.is_apart &= !has(place);
+            if (has(place)) continue;
+            triangles_ |= 1u << place;
+            id_[place] = id;
+            x_[place] = x[i];
+            y_[place] = y[i];
+        }
+        ++count_;
+        return true;
+    }
+
+    // Puts what is decided to its place; the fragments that stay in doubt are bits of the block.
+    TEXGEN_APART std::uint64_t decide() noexcept {
+        constexpr auto size = static_cast<std::size_t>(lanes);
+        const auto first_known = static_cast<std::size_t>(std::countr_zero(triangles_));
+        const bool are_apart = count_ == 1 && vectors_[0].is_apart;
+        const Doubles none{};
+        BatchFunctions functions;
+        std::uint64_t unknown = 0;
+        for (std::size_t i = 0; i < batch_block; i += size) {
+            const float* of_lane[lanes];
+            for (std::size_t j = 0; j < size; ++j)
+                of_lane[j] = vertices_of(job_, id_[has(i + j) ? i + j : first_known]);
+            const LongWords are_unknown =
+                are_apart
+                    ? functions.take<Numerators>(of_lane, load<Doubles>(x_ + i), load<Doubles>(y_ + i), none, none, i)
+                    : functions.take<Numerators>(of_lane, none + left_, none + top_, none + width_, none + height_, i);
+            unknown |= lane_bits(are_unknown) << i;
+        }
+        std::uint64_t undecided = 0;
+        for (std::size_t k = 0; k < count_; ++k) {
+            const Known& known = vectors_[k];
+            const Vector& vector = known.vector;
+            const Doubles x = are_apart ? none : vector.x - left_, y = are_apart ? none : vector.y - top_;
+            std::uint64_t left = 0;
+            if (known.is_one) {
+                const std::size_t place = known.triangle[std::countr_zero(known.asked)];
+                left = put(vector, functions.of[place], x, y);
+                if ((unknown >> place & 1u) != 0) left = bits_of(vector.doubtful);
+            } else {
+                const BatchFunction* of_lane[lanes];
+                for (std::size_t i = 0; i < size; ++i) {
+                    const bool is_asked = (known.asked >> i & 1u) != 0;
+                    const std::size_t place = is_asked ? known.triangle[i] : first_known;
+                    of_lane[i] = &functions.of[place];
+                    left |= (unknown >> place & std::uint64_t{is_asked}) << i;
+                }
+                left |= put(vector, LaneFunctions<Numerators>(of_lane), x, y);
+            }
+            undecided |= left << vector.place;
+        }
+        triangles_ = 0;
+        count_ = 0;
+        return undecided;
+    }
+
+private:
+    struct Known {
+        Vector vector;
+        std::size_t triangle[lanes];  // of those that are asked
+        std::uint64_t asked;
+        bool is_one, is_apart;  // there is one triangle for all, or for each
+    };
+
+    TEXGEN_INLINE bool has(std::size_t place) const noexcept { return (triangles_ >> place & 1u) != 0; }
+
+    // Returns the lanes that stay in doubt.
+    template <class Functions>
+    TEXGEN_INLINE std::uint64_t put(const Vector& vector, const Functions& of, const Doubles& x,
+                                    const Doubles& y) noexcept {
+        const BatchFunctionsAt<Functions> at{of, x, y};
+        CloseFragments<Numerators> fragments;
+        CloseDivisor q;
+        q.take(at.values(Numerators));
+        fragments.divide(at, q, Numerators, job_.tolerance, true);
+        vector.out->put_where(vector.doubtful, vector.n, fragments.quotient, q.front);
+        return bits_of(vector.doubtful & narrow(fragments.doubtful));
+    }
+
+    const FragmentsJob& job_;
+    double left_, top_, width_, height_;
+    unsigned triangles_ = 0;  // a bit for each
+    std::uint32_t id_[batch_block];
+    double x_[batch_block]{}, y_[batch_block]{};  // of a fragment of each
+    std::size_t count_ = 0;
+    Known vectors_[exact_block / lanes];
+};
+
 // A block of fragments of which these lanes of its vectors are in doubt, again. Returns those that stay so, as bits.
 template <std::size_t Numerators>
 TEXGEN_APART std::uint64_t decide_fragments(const FragmentsJob& job, const FragmentOutputs& out,
@@ -132,41 +218,28 @@ TEXGEN_APART std::uint64_t decide_fragments(const FragmentsJob& job, const Fragm
                                             const Words* doubtful) noexcept {
     constexpr auto size = static_cast<std::size_t>(lanes);
     FragmentWalk<Doubles, double> walk(job.width, 1.0 / job.width, static_cast<double>(begin));
-    DoubtfulRuns runs;
+    // A part of one row, or whole ones.
+    const auto width = static_cast<std::size_t>(job.width);
+    const std::size_t row = begin / width;
+    const std::size_t rows = (end - 1) / width - row + 1;
+    const std::size_t column = rows == 1 ? begin % width : 0;
+    DoubtfulFragments<Numerators> fragments(
+        job, job.x + 0.5 + static_cast<double>(column), job.y + 0.5 + static_cast<double>(row),
+        static_cast<double>(rows == 1 ? end - begin : width), static_cast<double>(rows));
     std::uint64_t undecided = 0;
     for (std::size_t n = begin; n < end; n += size, walk.advance(), ++doubtful) {
         if (!any(*doubtful)) continue;
         const FragmentIds ids(job, n);
-        const Doubles x = walk.x + (job.x + 0.5), y = walk.y + (job.y + 0.5);
-        const float* of_lane[lanes];
-        for (std::size_t i = 0; i < size; ++i)
-            of_lane[i] = vertices_of(job, ids.value[i] < job.triangles ? ids.value[i] : 0);
         const FragmentOutputs& to = ids.is_whole ? out : in_scratch;
-        const std::size_t at = ids.is_whole ? n : 0;
-        const Words in_doubt = ~equal(*doubtful, 0);
-        double rows[lanes];
-        store(rows, y);
-        if (ids.are_one() && rows[0] == rows[size - 1]) {
-            const std::size_t i = runs.count++;
-            double columns[lanes];
-            store(columns, x);
-            runs.triangle[i] = of_lane[0];
-            runs.x[i] = columns[0];
-            runs.y[i] = rows[0];
-            runs.out[i] = &to;
-            runs.n[i] = at;
-            runs.place[i] = n - begin;
-            runs.doubtful[i] = in_doubt;
-            if (runs.count == size) undecided |= runs.decide<Numerators>(job.tolerance);
-        } else {
-            Floats quotient[Numerators];
-            LongWords in_front;
-            const Words left = divide_lanes_closely(of_lane, x, y, in_doubt, quotient, in_front);
-            to.put_where(in_doubt, at, quotient, in_front);
-            undecided |= std::uint64_t{bits_of(left)} << (n - begin);
-        }
+        const typename DoubtfulFragments<Numerators>::Vector vector{walk.x + (job.x + 0.5),
+                                                                    walk.y + (job.y + 0.5),
+                                                                    ~equal(*doubtful, 0),
+                                                                    &to,
+                                                                    ids.is_whole ? n : std::size_t{0},
+                                                                    n - begin};
+        while (!fragments.add(vector, ids)) undecided |= fragments.decide();
     }
-    if (runs.count != 0) undecided |= runs.decide<Numerators>(job.tolerance);
+    if (fragments.has_any()) undecided |= fragments.decide();
     return undecided;
 }
 

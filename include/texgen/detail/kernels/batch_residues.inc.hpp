@@ -1,65 +1,99 @@
 // The functions of a batch's triangles over tiles and runs that doubles leave in doubt, to twice their precision and as integers
-// modulo 2^64, as in triangle/close_planes.hpp, a tile in each lane; then the quotients. Included by batch.inc.hpp.
+// modulo 2^64, as in triangle/close_planes.hpp, a triangle in each lane. Included by batch.inc.hpp.
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// Of as many tiles as a block has, about their first fragments: base, and by how much it grows along a row and down; q last.
-struct BatchFunctions {
-    double high[4][3][batch_block], low[4][3][batch_block], error[4][batch_block], grain[4][batch_block];
-    std::uint64_t residue[4][3][batch_block];
+// Of a triangle about a fragment, q last: base, and by how much it grows along a row and down; of each two doubles, and an error and
+// a grain of all. In whole vectors: the last residues are 0.
+struct alignas(64) BatchFunction {
+    double part[4][8];  // high, low, error, grain
+    std::uint64_t residues[16];
 
-    // The tiles from `first` on, of a triangle in each lane: see CloseRamp::split(). What residues do not know has a grain of 0.
-    // Returns the lanes that nothing is known of.
+    TEXGEN_INLINE double number(std::size_t n, std::size_t j) const noexcept { return part[n][j]; }
+    TEXGEN_INLINE std::uint64_t residue(std::size_t i) const noexcept { return residues[i]; }
+};
+
+// Of one in each lane.
+template <std::size_t Numerators>
+struct LaneFunctions {
+    Doubles part[8 * (Numerators + 1)];
+    Residues residues[16];
+
+    TEXGEN_INLINE explicit LaneFunctions(const BatchFunction* const (&of)[lanes]) noexcept {
+        load_columns(part, 8 * (Numerators + 1), [&](std::size_t j) { return of[j]->part[0]; });
+        load_columns(residues, 3 * (Numerators + 1), [&](std::size_t j) { return of[j]->residues; });
+    }
+    TEXGEN_INLINE const Doubles& number(std::size_t n, std::size_t j) const noexcept { return part[8 * n + j]; }
+    TEXGEN_INLINE const Residues& residue(std::size_t i) const noexcept { return residues[i]; }
+};
+
+// Of as many triangles as a block has.
+struct BatchFunctions {
+    BatchFunction of[batch_block];
+
+    // Those from `first` on, of a triangle in each lane about a fragment, for so many columns and rows, or none but it: see
+    // CloseRamp::split(). What residues do not know has a grain of 0. Returns the lanes that nothing is known of.
     template <std::size_t Numerators>
     TEXGEN_APART LongWords take(const float* const (&triangle)[lanes], const Doubles& x, const Doubles& y,
                                 const Doubles& width, const Doubles& height, std::size_t first) noexcept {
+        const bool has_steps = any(greater(width, 0.0));
         const VertexLanes vertices(triangle);
         const CloseLanes close(vertices, x, y);
-        const CloseSteps along(vertices, 1), down(vertices, 0);
+        CloseTerms along{}, down{};
         ResidueLanes corners(vertices, x, y);
-        Residues dx[3], dy[3];
-        corners.steps(dx, dy);
+        Residues dx[3]{}, dy[3]{};
+        if (has_steps) {
+            along = CloseSteps(vertices, 1);
+            down = CloseSteps(vertices, 0);
+            corners.steps(dx, dy);
+        }
+        Residues residues[16]{};
         for (std::size_t n = 0; n <= Numerators; ++n) {
             const std::size_t k = n < Numerators ? n : 3;
-            const Twofold term[3] = {close.function(vertices, k), along.function(vertices, k),
-                                     down.function(vertices, k)};
+            Twofold term[3] = {close.function(vertices, k), {}, {}};
+            if (has_steps) {
+                term[1] = along.function(vertices, k);
+                term[2] = down.function(vertices, k);
+            }
             const Doubles size =
                 magnitude(term[0].high) + (magnitude(term[1].high) * width + magnitude(term[2].high) * height);
             const Doubles lost = term[0].lost + (term[1].lost * width + term[2].lost * height);
             const Doubles unit = power_of_two_below(size) * 0x1p-50;
             const Doubles rounder = unit * 0x1.8p52;
+            Doubles part[8];
             TEXGEN_UNROLL
             for (std::size_t j = 0; j < 3; ++j) {
-                const Doubles leading = (term[j].high + rounder) - rounder;
-                store(&high[n][j][first], leading);
-                store(&low[n][j][first], (term[j].high - leading) + term[j].low);
+                part[j] = (term[j].high + rounder) - rounder;
+                part[3 + j] = (term[j].high - part[j]) + term[j].low;
             }
-            store(&error[n][first], (lost + (width + height + 1.0) * unit * 0x1p-50) * 1.01);
+            part[6] = (lost + (width + height + 1.0) * unit * 0x1p-50) * 1.01;
             const ResidueValues value = corners.values(k);
-            store(&residue[n][0][first], value.times(corners.side));
-            store(&residue[n][1][first], value.times(dx));
-            store(&residue[n][2][first], value.times(dy));
+            residues[3 * n] = value.times(corners.side);
+            residues[3 * n + 1] = value.times(dx);
+            residues[3 * n + 2] = value.times(dy);
             // Of what is 0 at all corners any grain.
-            store(&grain[n][first], where(corners.is_known | at_most(size, Doubles{}), value.grain));
+            part[7] = where(corners.is_known | at_most(size, Doubles{}), value.grain);
+            store_columns(part, [&](std::size_t j) { return of[first + j].part[n]; });
         }
+        store_columns(residues, [&](std::size_t j) { return of[first + j].residues; });
         return ~vertices.has_area;
     }
 };
 
-// Of tile i at (x, y) from its first fragment; sums of the high parts are exact.
+// At (x, y) from the fragment that they are about; sums of the high parts are exact.
+template <class Functions>
 struct BatchFunctionsAt {
-    const BatchFunctions& of;
-    std::size_t i;
+    const Functions& of;
     Doubles x, y;
 
     TEXGEN_INLINE CloseValues values(std::size_t n) const noexcept {
-        return {x * of.high[n][1][i] + (y * of.high[n][2][i] + of.high[n][0][i]),
-                x * of.low[n][1][i] + (y * of.low[n][2][i] + of.low[n][0][i]), Doubles{} + of.error[n][i]};
+        return {x * of.number(n, 1) + (y * of.number(n, 2) + of.number(n, 0)),
+                x * of.number(n, 4) + (y * of.number(n, 5) + of.number(n, 3)), Doubles{} + of.number(n, 6)};
     }
     TEXGEN_INLINE Residues residues(std::size_t n) const noexcept {
-        return to_residues(x) * of.residue[n][1][i] + (to_residues(y) * of.residue[n][2][i] + of.residue[n][0][i]);
+        return to_residues(x) * of.residue(3 * n + 1) + (to_residues(y) * of.residue(3 * n + 2) + of.residue(3 * n));
     }
-    TEXGEN_INLINE double grain(std::size_t n) const noexcept { return of.grain[n][i]; }
+    TEXGEN_INLINE auto grain(std::size_t n) const noexcept { return of.number(n, 7); }
 };
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA

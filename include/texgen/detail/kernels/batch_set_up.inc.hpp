@@ -2,22 +2,38 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-TEXGEN_INLINE Doubles load_doubles(const double* from) noexcept { return load<Doubles>(from); }
-TEXGEN_INLINE Doubles load_doubles(const float* from) noexcept { return to_doubles(load<Floats>(from)); }
+TEXGEN_INLINE Doubles load_lanes(const double* from) noexcept { return load<Doubles>(from); }
+TEXGEN_INLINE Doubles load_lanes(const float* from) noexcept { return to_doubles(load<Floats>(from)); }
+TEXGEN_INLINE Residues load_lanes(const std::uint64_t* from) noexcept { return load<Residues>(from); }
 
 // The first `count` numbers, in whole vectors, that stand at from(j) for lane j. The last first: with q a division begins.
-template <std::size_t Size, class From>
-TEXGEN_INLINE void load_columns(Doubles (&columns)[Size], std::size_t count, const From& from) noexcept {
+template <class Vector, std::size_t Size, class From>
+TEXGEN_INLINE void load_columns(Vector (&columns)[Size], std::size_t count, const From& from) noexcept {
     TEXGEN_UNROLL
     for (std::size_t end = Size; end > 0; end -= static_cast<std::size_t>(lanes)) {
         const std::size_t first = end - static_cast<std::size_t>(lanes);
         if (first >= count) continue;
-        Doubles row[lanes];
+        Vector row[lanes];
         TEXGEN_UNROLL
-        for (std::size_t j = 0; j < static_cast<std::size_t>(lanes); ++j) row[j] = load_doubles(from(j) + first);
+        for (std::size_t j = 0; j < static_cast<std::size_t>(lanes); ++j) row[j] = load_lanes(from(j) + first);
         transpose(row);
         TEXGEN_UNROLL
         for (std::size_t j = 0; j < static_cast<std::size_t>(lanes); ++j) columns[first + j] = row[j];
+    }
+}
+
+// The other way.
+template <class Vector, std::size_t Size, class To>
+TEXGEN_INLINE void store_columns(const Vector (&columns)[Size], const To& to) noexcept {
+    constexpr auto size = static_cast<std::size_t>(lanes);
+    TEXGEN_UNROLL
+    for (std::size_t first = 0; first < Size; first += size) {
+        Vector row[lanes];
+        TEXGEN_UNROLL
+        for (std::size_t j = 0; j < size; ++j) row[j] = columns[first + j];
+        transpose(row);
+        TEXGEN_UNROLL
+        for (std::size_t j = 0; j < size; ++j) store(to(j) + first, row[j]);
     }
 }
 
@@ -45,20 +61,6 @@ struct TriangleLanes {
 private:
     static constexpr std::size_t of_turned[5] = {0, BatchVertex::size, 2 * BatchVertex::size, 0, BatchVertex::size};
 };
-
-// The functions of a triangle in each lane, to as many that follow one another.
-TEXGEN_INLINE void store_planes(const Doubles (&value)[BatchPlanes::count], BatchPlanes* planes) noexcept {
-    constexpr auto count = static_cast<int>(BatchPlanes::count);
-    TEXGEN_UNROLL
-    for (int first = 0; first < count; first += lanes) {
-        Doubles row[lanes];
-        TEXGEN_UNROLL
-        for (int j = 0; j < lanes; ++j) row[j] = value[first + j];
-        transpose(row);
-        TEXGEN_UNROLL
-        for (int j = 0; j < lanes; ++j) store(&planes[j].value[first], row[j]);
-    }
-}
 
 // As TrianglePlanes, with the same operations in the same order: what they err by is said there. Where the sign of the area is
 // in doubt, or a number is not one, the error of q is infinite: those lanes are returned.
@@ -128,7 +130,7 @@ TEXGEN_INLINE LongWords set_up_lanes(const float* triangles, BatchPlanes* planes
     value[BatchPlanes::origin + 1] = a[1];
     value[BatchPlanes::per_reach] = 1.0 / reach_x;
     value[BatchPlanes::per_reach + 1] = 1.0 / reach_y;
-    store_planes(value, planes);
+    store_columns(value, [&](std::size_t j) { return planes[j].value; });
     return ~is_known;
 }
 

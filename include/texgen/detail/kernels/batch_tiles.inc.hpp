@@ -314,7 +314,8 @@ TEXGEN_APART std::uint64_t decide_tiles(const TilesJob& job, const FragmentOutpu
         for (std::size_t n = 0; n < shape.count; n += static_cast<std::size_t>(lanes), walk.advance()) {
             const Doubles row = minimum(walk.y, Doubles{} + shape.last_row);
             CloseFragments<Numerators> fragments;
-            const BatchFunctionsAt at{functions, i, shape.is_turned ? row : walk.x, shape.is_turned ? walk.x : row};
+            const BatchFunctionsAt<BatchFunction> at{functions.of[i], shape.is_turned ? row : walk.x,
+                                                     shape.is_turned ? walk.x : row};
             CloseDivisor q;
             q.take(at.values(Numerators));
             fragments.divide(at, q, Numerators, job.tolerance, true);
