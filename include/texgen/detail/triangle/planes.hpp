@@ -314,7 +314,7 @@ class ExactFragment {
 public:
     enum class Factor { of_planes, any };
 
-    TEXGEN_APART ExactFragment(const TrianglePlanes& planes, std::int64_t x, std::int64_t y,
+    TEXGEN_RARE ExactFragment(const TrianglePlanes& planes, std::int64_t x, std::int64_t y,
                                Factor up_to = Factor::of_planes) noexcept
         : planes_(planes) {
         DoubleDouble to_x[3], to_y[3];
