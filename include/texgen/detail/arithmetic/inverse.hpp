@@ -78,14 +78,146 @@ private:
         return {value, gamma(2) * std::fabs(value) + 0x1p-99 * magnitude + 0x1p-1000};
     }
 
-    bool equilibrate() noexcept;
-    bool eliminate() noexcept;
-    void clear_what_has_no_terms() noexcept;
-    glm::dmat4 residual() const noexcept;
-    double certificate(const glm::dmat4& residual) const noexcept;
-    bool is_as_good_as_its_terms(const glm::dmat4& residual) const noexcept;
-    double contraction() const noexcept;
-    glm::dvec4 error_of_row(const glm::dvec4& solution, const glm::dvec4& row, double contraction) const noexcept;
+    // False where a row or a column is 0, or an element becomes smaller than least_scaled.
+    bool equilibrate() noexcept {
+        bool is_exact = true;
+        // Rows, then columns, three times.
+        for (int pass = 0; pass < 6; ++pass) {
+            scaled_ = glm::transpose(scaled_);
+            for (glm::length_t i = 0; i < 4; ++i) {
+                const glm::dvec4 line = scaled_[i];
+                const double largest =
+                    larger(larger(std::fabs(line.x), std::fabs(line.y)), larger(std::fabs(line.z), std::fabs(line.w)));
+                if (largest == 0.0) return false;
+                const int shift = -std::ilogb(largest);
+                scaled_[i] = times_powers_of_two(line, glm::ivec4(shift));
+                for (glm::length_t k = 0; k < 4; ++k)
+                    is_exact = is_exact && (line[k] == 0.0 || std::fabs(scaled_[i][k]) >= least_scaled);
+                (pass % 2 == 0 ? row_exponent_ : column_exponent_)[i] += shift;
+            }
+        }
+        return is_exact;
+    }
+
+    // Gauss-Jordan with partial pivoting.
+    bool eliminate() noexcept {
+        glm::dmat4 left = glm::transpose(scaled_), right(1.0);  // rows
+        for (glm::length_t column = 0; column < 4; ++column) {
+            glm::length_t pivot = column;
+            for (glm::length_t row = column + 1; row < 4; ++row)
+                if (std::fabs(left[row][column]) > std::fabs(left[pivot][column])) pivot = row;
+            if (left[pivot][column] == 0.0) return false;
+            std::swap(left[pivot], left[column]);
+            std::swap(right[pivot], right[column]);
+            const double reciprocal = 1.0 / left[column][column];
+            left[column] *= reciprocal;
+            right[column] *= reciprocal;
+            for (glm::length_t row = 0; row < 4; ++row) {
+                if (row == column) continue;
+                const double factor = left[row][column];
+                left[row] -= factor * left[column];
+                right[row] -= factor * right[column];
+            }
+        }
+        inverse_ = glm::transpose(right);
+        return true;
+    }
+
+    // An element of B^-1 is a cofactor over the determinant. Where a factor of each of the cofactor's products is 0 so is the
+    // element; what elimination has left there would never be small beside terms that are 0.
+    void clear_what_has_no_terms() noexcept {
+        for (glm::length_t i = 0; i < 4; ++i) {
+            for (glm::length_t j = 0; j < 4; ++j) {
+                const auto is_factor = [&](glm::length_t row, glm::length_t column) {
+                    return scaled_[(i + column) % 4][(j + row) % 4] != 0.0;
+                };
+                bool has_term = false;
+                for (glm::length_t k = 0; k < 3; ++k) {
+                    const glm::length_t l = 1 + (k + 1) % 3, m = 1 + (k + 2) % 3;
+                    has_term = has_term || (is_factor(1, 1 + k) && ((is_factor(2, l) && is_factor(3, m)) ||
+                                                                    (is_factor(2, m) && is_factor(3, l))));
+                }
+                if (!has_term) inverse_[j][i] = 0.0;
+            }
+        }
+    }
+
+    // I - B X.
+    glm::dmat4 residual() const noexcept {
+        const glm::dmat4 rows = glm::transpose(scaled_);
+        glm::dmat4 result;
+        for (glm::length_t i = 0; i < 4; ++i)
+            for (glm::length_t j = 0; j < 4; ++j) result[j][i] = residual_of(rows[i], inverse_[j], i == j ? 1.0 : 0.0);
+        return result;
+    }
+
+    double certificate(const glm::dmat4& residual) const noexcept {
+        const glm::dvec4 all(1.0);
+        const glm::dvec4 of_residual = absolute(residual) * all;
+        const glm::dvec4 of_product = absolute(inverse_) * absolute(scaled_) * all;
+        double residual_norm = 0.0, product_norm = 0.0;
+        for (glm::length_t i = 0; i < 4; ++i) {
+            residual_norm = larger_or_nan(residual_norm, of_residual[i]);
+            product_norm = larger_or_nan(product_norm, of_product[i]);
+        }
+        return residual_norm + 5.0 * unit_roundoff_double * product_norm;
+    }
+
+    // Whether each element is within 2 ulp of the largest of its terms in X B X. With R = I - B X, X lacks X R + X R^2 + ...
+    // Where no element of R is above 2^-10, the sum of all powers of |R| is at most 1.1 (|R| + |R|^2 + |R|^3), element by
+    // element: a path of more than 3 steps between 4 places goes in a circle. The error of R itself, 2^-100 of the terms of
+    // I and B X, adds as little to X as that.
+    bool is_as_good_as_its_terms(const glm::dmat4& residual) const noexcept {
+        const glm::dmat4 r = absolute(residual);
+        const glm::dmat4 powers = r + r * (r + r * r);
+        const glm::dmat4 lacking = absolute(inverse_ * residual) + gamma(5) * (absolute(inverse_) * r);
+        const glm::dmat4 error = lacking + 1.1 * (lacking * powers);
+        const glm::dmat4 b = absolute(glm::transpose(scaled_)), x = absolute(glm::transpose(inverse_));  // rows
+        for (glm::length_t i = 0; i < 4; ++i) {
+            glm::dvec4 of_product(0.0), largest(0.0);
+            for (glm::length_t k = 0; k < 4; ++k) of_product = (glm::max)(of_product, x[i][k] * b[k]);
+            for (glm::length_t k = 0; k < 4; ++k) largest = (glm::max)(largest, of_product[k] * x[k]);
+            for (glm::length_t j = 0; j < 4; ++j) {
+                if (!(r[j][i] <= 0x1p-10)) return false;
+                // Nothing is promised of what may leave the range.
+                if (largest[j] < least_scaled) continue;
+                if (!(error[j][i] < std::scalbn(1.999, std::ilogb(largest[j]) - 52))) return false;
+            }
+        }
+        return true;
+    }
+
+    // The largest sum of a column of |I - B X|. Infinite where A is not regular.
+    double contraction() const noexcept {
+        if (!regular()) return std::numeric_limits<double>::infinity();
+        const glm::dmat4 terms = glm::dmat4(1.0) + absolute(scaled_) * absolute(inverse_);
+        const glm::dmat4 r = absolute(residual()) * (1.0 + gamma(2)) + terms * 0x1p-99 + 0x1p-1000;
+        double largest = 0.0;
+        for (const glm::dvec4& column : {r[0], r[1], r[2], r[3]})
+            largest = larger_or_nan(largest, 1.001 * (column.x + column.y + column.z + column.w));
+        return largest;
+    }
+
+    // As in solve_row(), y B = target. With rho = target - y B and R = I - B X, what y lacks is rho B^-1 = d (I - R)^-1 with
+    // d = rho X. Each |d R|_j is at most max|d| r, r the largest sum of a column of |R|: so |y_j - exact| <= |d_j| +
+    // max|d| r / (1 - r).
+    glm::dvec4 error_of_row(const glm::dvec4& solution, const glm::dvec4& row, double contraction) const noexcept {
+        if (!(contraction < 1.0)) return glm::dvec4(std::numeric_limits<double>::infinity());
+        const glm::dvec4 scaled_solution = times_powers_of_two(solution, -row_exponent_);
+        const glm::dvec4 target = times_powers_of_two(row, column_exponent_);
+        const glm::dmat4 x = glm::transpose(inverse_);  // rows
+        glm::dvec4 d(0.0), error(0.0);
+        for (glm::length_t k = 0; k < 4; ++k) {
+            const Bounded rho = bounded_residual_of(scaled_solution, scaled_[k], target[k]);
+            d += rho.value * x[k];
+            error += (rho.error + gamma(5) * std::fabs(rho.value)) * absolute(x[k]);
+        }
+        const glm::dvec4 bound = absolute(d) + error;
+        double largest = 0.0;
+        for (glm::length_t j = 0; j < 4; ++j) largest = larger_or_nan(largest, bound[j]);
+        const double remainder = largest * (contraction / (1.0 - contraction));
+        return times_powers_of_two(1.001 * (bound + remainder) + 0x1p-1000, row_exponent_) + 0x1p-1074;
+    }
 
     glm::dmat4 scaled_;              // B
     glm::dmat4 inverse_{0.0};        // X
@@ -112,115 +244,6 @@ inline CertifiedInverse::CertifiedInverse(const glm::dmat4& matrix) noexcept : s
     }
 }
 
-// False where a row or a column is 0, or an element becomes smaller than least_scaled.
-inline bool CertifiedInverse::equilibrate() noexcept {
-    bool is_exact = true;
-    // Rows, then columns, three times.
-    for (int pass = 0; pass < 6; ++pass) {
-        scaled_ = glm::transpose(scaled_);
-        for (glm::length_t i = 0; i < 4; ++i) {
-            const glm::dvec4 line = scaled_[i];
-            const double largest =
-                larger(larger(std::fabs(line.x), std::fabs(line.y)), larger(std::fabs(line.z), std::fabs(line.w)));
-            if (largest == 0.0) return false;
-            const int shift = -std::ilogb(largest);
-            scaled_[i] = times_powers_of_two(line, glm::ivec4(shift));
-            for (glm::length_t k = 0; k < 4; ++k)
-                is_exact = is_exact && (line[k] == 0.0 || std::fabs(scaled_[i][k]) >= least_scaled);
-            (pass % 2 == 0 ? row_exponent_ : column_exponent_)[i] += shift;
-        }
-    }
-    return is_exact;
-}
-
-// Gauss-Jordan with partial pivoting.
-inline bool CertifiedInverse::eliminate() noexcept {
-    glm::dmat4 left = glm::transpose(scaled_), right(1.0);  // rows
-    for (glm::length_t column = 0; column < 4; ++column) {
-        glm::length_t pivot = column;
-        for (glm::length_t row = column + 1; row < 4; ++row)
-            if (std::fabs(left[row][column]) > std::fabs(left[pivot][column])) pivot = row;
-        if (left[pivot][column] == 0.0) return false;
-        std::swap(left[pivot], left[column]);
-        std::swap(right[pivot], right[column]);
-        const double reciprocal = 1.0 / left[column][column];
-        left[column] *= reciprocal;
-        right[column] *= reciprocal;
-        for (glm::length_t row = 0; row < 4; ++row) {
-            if (row == column) continue;
-            const double factor = left[row][column];
-            left[row] -= factor * left[column];
-            right[row] -= factor * right[column];
-        }
-    }
-    inverse_ = glm::transpose(right);
-    return true;
-}
-
-// An element of B^-1 is a cofactor over the determinant. Where a factor of each of the cofactor's products is 0 so is the
-// element; what elimination has left there would never be small beside terms that are 0.
-inline void CertifiedInverse::clear_what_has_no_terms() noexcept {
-    for (glm::length_t i = 0; i < 4; ++i) {
-        for (glm::length_t j = 0; j < 4; ++j) {
-            const auto is_factor = [&](glm::length_t row, glm::length_t column) {
-                return scaled_[(i + column) % 4][(j + row) % 4] != 0.0;
-            };
-            bool has_term = false;
-            for (glm::length_t k = 0; k < 3; ++k) {
-                const glm::length_t l = 1 + (k + 1) % 3, m = 1 + (k + 2) % 3;
-                has_term = has_term || (is_factor(1, 1 + k) &&
-                                        ((is_factor(2, l) && is_factor(3, m)) || (is_factor(2, m) && is_factor(3, l))));
-            }
-            if (!has_term) inverse_[j][i] = 0.0;
-        }
-    }
-}
-
-// I - B X.
-inline glm::dmat4 CertifiedInverse::residual() const noexcept {
-    const glm::dmat4 rows = glm::transpose(scaled_);
-    glm::dmat4 result;
-    for (glm::length_t i = 0; i < 4; ++i)
-        for (glm::length_t j = 0; j < 4; ++j) result[j][i] = residual_of(rows[i], inverse_[j], i == j ? 1.0 : 0.0);
-    return result;
-}
-
-inline double CertifiedInverse::certificate(const glm::dmat4& residual) const noexcept {
-    const glm::dvec4 all(1.0);
-    const glm::dvec4 of_residual = absolute(residual) * all;
-    const glm::dvec4 of_product = absolute(inverse_) * absolute(scaled_) * all;
-    double residual_norm = 0.0, product_norm = 0.0;
-    for (glm::length_t i = 0; i < 4; ++i) {
-        residual_norm = larger_or_nan(residual_norm, of_residual[i]);
-        product_norm = larger_or_nan(product_norm, of_product[i]);
-    }
-    return residual_norm + 5.0 * unit_roundoff_double * product_norm;
-}
-
-// Whether each element is within 2 ulp of the largest of its terms in X B X. With R = I - B X, X lacks X R + X R^2 + ...
-// Where no element of R is above 2^-10, the sum of all powers of |R| is at most 1.1 (|R| + |R|^2 + |R|^3), element by
-// element: a path of more than 3 steps between 4 places goes in a circle. The error of R itself, 2^-100 of the terms of
-// I and B X, adds as little to X as that.
-inline bool CertifiedInverse::is_as_good_as_its_terms(const glm::dmat4& residual) const noexcept {
-    const glm::dmat4 r = absolute(residual);
-    const glm::dmat4 powers = r + r * (r + r * r);
-    const glm::dmat4 lacking = absolute(inverse_ * residual) + gamma(5) * (absolute(inverse_) * r);
-    const glm::dmat4 error = lacking + 1.1 * (lacking * powers);
-    const glm::dmat4 b = absolute(glm::transpose(scaled_)), x = absolute(glm::transpose(inverse_));  // rows
-    for (glm::length_t i = 0; i < 4; ++i) {
-        glm::dvec4 of_product(0.0), largest(0.0);
-        for (glm::length_t k = 0; k < 4; ++k) of_product = (glm::max)(of_product, x[i][k] * b[k]);
-        for (glm::length_t k = 0; k < 4; ++k) largest = (glm::max)(largest, of_product[k] * x[k]);
-        for (glm::length_t j = 0; j < 4; ++j) {
-            if (!(r[j][i] <= 0x1p-10)) return false;
-            // Nothing is promised of what may leave the range.
-            if (largest[j] < least_scaled) continue;
-            if (!(error[j][i] < std::scalbn(1.999, std::ilogb(largest[j]) - 52))) return false;
-        }
-    }
-    return true;
-}
-
 inline glm::dmat4 CertifiedInverse::matrix() const noexcept {
     glm::dmat4 result;
     for (glm::length_t j = 0; j < 4; ++j)
@@ -238,39 +261,6 @@ inline glm::dvec4 CertifiedInverse::solve_row(const glm::dvec4& row) const noexc
         for (glm::length_t j = 0; j < 4; ++j) residual[j] = residual_of(solution, scaled_[j], target[j]);
     }
     return times_powers_of_two(solution, row_exponent_);
-}
-
-// The largest sum of a column of |I - B X|. Infinite where A is not regular.
-inline double CertifiedInverse::contraction() const noexcept {
-    if (!regular()) return std::numeric_limits<double>::infinity();
-    const glm::dmat4 terms = glm::dmat4(1.0) + absolute(scaled_) * absolute(inverse_);
-    const glm::dmat4 r = absolute(residual()) * (1.0 + gamma(2)) + terms * 0x1p-99 + 0x1p-1000;
-    double largest = 0.0;
-    for (const glm::dvec4& column : {r[0], r[1], r[2], r[3]})
-        largest = larger_or_nan(largest, 1.001 * (column.x + column.y + column.z + column.w));
-    return largest;
-}
-
-// As in solve_row(), y B = target. With rho = target - y B and R = I - B X, what y lacks is rho B^-1 = d (I - R)^-1 with
-// d = rho X. Each |d R|_j is at most max|d| r, r the largest sum of a column of |R|: so |y_j - exact| <= |d_j| +
-// max|d| r / (1 - r).
-inline glm::dvec4 CertifiedInverse::error_of_row(const glm::dvec4& solution, const glm::dvec4& row,
-                                                 double contraction) const noexcept {
-    if (!(contraction < 1.0)) return glm::dvec4(std::numeric_limits<double>::infinity());
-    const glm::dvec4 scaled_solution = times_powers_of_two(solution, -row_exponent_);
-    const glm::dvec4 target = times_powers_of_two(row, column_exponent_);
-    const glm::dmat4 x = glm::transpose(inverse_);  // rows
-    glm::dvec4 d(0.0), error(0.0);
-    for (glm::length_t k = 0; k < 4; ++k) {
-        const Bounded rho = bounded_residual_of(scaled_solution, scaled_[k], target[k]);
-        d += rho.value * x[k];
-        error += (rho.error + gamma(5) * std::fabs(rho.value)) * absolute(x[k]);
-    }
-    const glm::dvec4 bound = absolute(d) + error;
-    double largest = 0.0;
-    for (glm::length_t j = 0; j < 4; ++j) largest = larger_or_nan(largest, bound[j]);
-    const double remainder = largest * (contraction / (1.0 - contraction));
-    return times_powers_of_two(1.001 * (bound + remainder) + 0x1p-1000, row_exponent_) + 0x1p-1074;
 }
 
 inline glm::dmat4 CertifiedInverse::error_of(const glm::dmat4& solution, const glm::dmat4& rows) const noexcept {
