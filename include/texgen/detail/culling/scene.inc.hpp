@@ -11,7 +11,7 @@ void put(std::vector<Element>& elements, std::size_t i, const Element& element) 
         elements.push_back(element);
 }
 template <class Element>
-void cut(std::vector<Element>& elements, std::size_t count) noexcept {
+void truncate(std::vector<Element>& elements, std::size_t count) noexcept {
     if (count < elements.size()) elements.erase(elements.begin() + static_cast<std::ptrdiff_t>(count), elements.end());
 }
 
@@ -54,7 +54,7 @@ inline SceneWork Scene::update(const SceneView& view, const SceneChanges& change
         detail::put(prepared_, i, Prepared(view.projectors[i], region_of(i), depth_));
     }
     eye_texgens_.reserve(prepared_.capacity());
-    detail::cut(prepared_, projectors);
+    detail::truncate(prepared_, projectors);
 
     drop_changed_pairs();
     const std::size_t kept = pairs_.size();
@@ -91,7 +91,7 @@ inline std::size_t Scene::update_eye(const CameraPose& world_from_eye) noexcept 
         projector.has_eye_texgen = true;
         ++computed;
     }
-    detail::cut(eye_texgens_, prepared_.size());
+    detail::truncate(eye_texgens_, prepared_.size());
     return computed;
 }
 
@@ -120,7 +120,7 @@ inline void Scene::drop_changed_pairs() noexcept {
         else
             pairs_[kept++] = pair;
     }
-    detail::cut(pairs_, kept);
+    detail::truncate(pairs_, kept);
 }
 
 // Room for all that a pair may need until there are more of them.
