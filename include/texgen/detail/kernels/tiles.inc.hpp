@@ -115,11 +115,13 @@ TileJob::Unit divide_in_pairs(const TileJob& job, const TileJob::Unit& first) no
 struct CloseFunctionsAt {
     const CloseFunction (&of)[3];
     Doubles x, y;
+    bool are_close;
 
     TEXGEN_INLINE CloseValues values(std::size_t n) const noexcept {
         const auto& [high, low, error, grain, residue] = of[n];
-        return {x * high.dx + (y * high.dy + high.base), x * low.dx + (y * low.dy + low.base),
-                Doubles{} + 1.01 * error};
+        Doubles rest{};
+        if (are_close) rest = x * low.dx + (y * low.dy + low.base);
+        return {x * high.dx + (y * high.dy + high.base), rest, Doubles{} + 1.01 * error};
     }
     TEXGEN_INLINE Residues residues(std::size_t n) const noexcept {
         const RampOf<std::uint64_t>& residue = of[n].residue;
@@ -154,7 +156,7 @@ std::uint64_t fill_tile_closely(const TileJob& job, const CloseFunctions& functi
     float result[3][most];
     std::uint64_t doubtful = 0;
     for (int i = 0; i < count; i += lanes) {
-        const CloseFunctionsAt at{functions.function, load<Doubles>(x + i), load<Doubles>(y + i)};
+        const CloseFunctionsAt at{functions.function, load<Doubles>(x + i), load<Doubles>(y + i), functions.are_close};
         CloseDivisor q;
         q.take(at.values(CloseFunctions::q));
         CloseFragments<2> fragments;

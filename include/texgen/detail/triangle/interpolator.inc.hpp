@@ -117,13 +117,16 @@ private:
         return functions.are_close = true;
     }
 
-    // A unit with what is known of the functions, and with more while that leaves doubt; the rest one by one.
-    TEXGEN_APART void fill_closely(const Tile& tile, const TileJob& job, DoubtfulFunctions& functions,
+    // A unit with what is known of the functions, and with more while that leaves doubt; the rest one by one. Whether all of 64
+    // fragments were in doubt.
+    TEXGEN_APART bool fill_closely(const Tile& tile, const TileJob& job, DoubtfulFunctions& functions,
                                    const TileJob::Unit& unit) noexcept {
         std::uint64_t doubtful = kernels_.fill_closely(job, functions, unit, ~std::uint64_t{0});
+        const bool are_all = doubtful == ~std::uint64_t{0};
         while (doubtful != 0 && sharpen(tile, functions))
             doubtful = kernels_.fill_closely(job, functions, unit, doubtful);
         fill_some(tile, unit, doubtful);
+        return are_all;
     }
 
     bool is_mask_alone() const noexcept { return output_[0].empty() && output_[1].empty(); }
@@ -168,10 +171,10 @@ private:
         if (is_constant(functions.function[CloseFunctions::q].high) && sharpen(tile, functions) &&
             tile.width + tile.height > 4 && take_exact_quotients(functions, job))
             unit = detail::fill_exact(kernels_, job, unit);
-        // Doubt has company: twice as many units after each failure that follows another.
+        // Doubt has company: twice as many units after each failure that follows another, and some after one of nothing else.
         for (int many = 1; !job.is_done(unit);) {
             for (int i = 0; i < many && !job.is_done(unit); ++i, unit = job.unit_after(unit))
-                fill_closely(tile, job, functions, unit);
+                if (fill_closely(tile, job, functions, unit)) many = many < 4 ? 4 : many;
             const TileJob::Unit next = detail::fill_exact(kernels_, job, unit);
             many = next.x_begin == unit.x_begin && next.y_begin == unit.y_begin ? 2 * many : 1;
             unit = next;
