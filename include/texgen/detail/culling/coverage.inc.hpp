@@ -40,9 +40,9 @@ Coverage coverage_of(const BoxKernels& kernels, const LitForms& forms, const Box
     const float *const min = &box.min.x, *const max = &box.max.x;
     const int answer = forms.can_say() ? kernels.classify(forms.lanes(), min, max) : body_in_doubt;
     if (answer < open_body) return static_cast<Coverage>(answer);
-    if (answer == body_in_doubt) {
+    if (answer != open_body + static_cast<int>(Coverage::partial)) {
         if (!forms.can_say() || !has_points(box)) return coverage_without_forms(forms, box);
-        const int decided = kernels.decide(forms.matrix(), forms.outer(), forms.inner(), min, max);
+        const int decided = kernels.decide(answer, forms.matrix(), forms.outer(), forms.inner(), min, max);
         if (decided != static_cast<int>(Coverage::partial)) return static_cast<Coverage>(decided);
     }
     return kernels.is_separated(separating(), min, max) ? Coverage::outside : Coverage::partial;

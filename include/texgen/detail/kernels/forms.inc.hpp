@@ -178,9 +178,9 @@ int classify_box(const FormLanes& forms, const float* box_min, const float* box_
         not_inside = not_inside | ~greater(least - error[i], narrowing * narrowed);
         dark = dark | ~greater(value[i], error[i]);
     }
-    if (any(open)) return body_in_doubt;
+    if (any(open)) return any(negative) ? body_not_inside : body_in_doubt;
     if (any(negative)) return any(dark) ? open_body + 1 : 1;
-    return any(not_inside) ? body_in_doubt : 2;
+    return any(not_inside) ? body_not_outside : 2;
 }
 
 // Numbers with the exact signs of forms where they are largest over a box that has points, or least. Two doubles tell them where
@@ -235,8 +235,8 @@ TEXGEN_INLINE Doubles signed_forms(const glm::dmat4& matrix, const WeightLanes& 
 }
 
 template <class CompiledWhereCalled = void>
-int decide_box(const glm::dmat4& matrix, const FormWeights& outer, const FormWeights& inner, const float* box_min,
-               const float* box_max) noexcept {
+int decide_box(int answer, const glm::dmat4& matrix, const FormWeights& outer, const FormWeights& inner,
+               const float* box_min, const float* box_max) noexcept {
     constexpr double least[form_lanes] = {0.0, 0.0, 0.0, 0.0, 0x1p-1000};  // q is not 0
     double min[3], max[3];
     for (std::size_t j = 0; j < 3; ++j) {
@@ -244,13 +244,14 @@ int decide_box(const glm::dmat4& matrix, const FormWeights& outer, const FormWei
         max[j] = widened(box_max[j]);
     }
     for (const bool is_largest : {true, false}) {
+        if (answer == (is_largest ? body_not_outside : body_not_inside)) continue;
         for (std::size_t i = 0; i < form_lanes; i += static_cast<std::size_t>(lanes)) {
             const Doubles value = signed_forms(matrix, WeightLanes(is_largest ? outer : inner, i),
                                                is_largest ? max : min, is_largest ? min : max);
             if (any(greater(load<Doubles>(least + i), value))) return is_largest ? 0 : 1;
         }
     }
-    return 2;
+    return answer == body_not_inside ? 1 : 2;
 }
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA

@@ -91,6 +91,8 @@ struct DoubleForms {
 // more: a further plane may separate what is partial, or there is doubt.
 inline constexpr int open_body = 4;
 inline constexpr int body_in_doubt = open_body + 3;
+inline constexpr int body_not_outside = open_body + 0;  // in doubt is only whether one box is inside
+inline constexpr int body_not_inside = open_body + 2;   // or only whether it is outside
 
 // The kernels of many bodies take a multiple of body_quantum.
 inline constexpr std::size_t body_quantum = 16;
@@ -124,9 +126,9 @@ struct SeparatingFormKernels {
 struct BoxKernels {
     // What doubles are certain of. Empty boxes are in doubt, as are those of which a coordinate in use is no finite number.
     int (*classify)(const FormLanes& forms, const float* min, const float* max) noexcept;
-    // What the forms say of a box that has points, exactly.
-    int (*decide)(const glm::dmat4& matrix, const FormWeights& outer, const FormWeights& inner, const float* min,
-                  const float* max) noexcept;
+    // What the forms say of a box that has points, exactly; classify() has said what needs no question.
+    int (*decide)(int answer, const glm::dmat4& matrix, const FormWeights& outer, const FormWeights& inner,
+                  const float* min, const float* max) noexcept;
     // Whether one of them is negative over all of a box that has points.
     bool (*is_separated)(const SeparatingForms& planes, const float* min, const float* max) noexcept;
 };
