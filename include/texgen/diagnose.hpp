@@ -240,9 +240,10 @@ using Setup = ProjectionSetup<Space>;
 
 // Says what is wrong with a set-up, most likely first; empty where nothing is known to be.
 // Guarantee: no finding for a set-up that projector.hpp and linear.hpp can make, in double or rounded to float, under any
-// conventions, lens, pose of regular matrices and distance from the origin, but for what is true of it: that it lights
-// none of the points, shows all of them less than a texel, or loses half a texel (of a picture of 4096, where the
-// texture's size is not given). A lens that mirrors says so in its facts, a model may mirror. No allocation, noexcept.
+// conventions, lens, pose of regular matrices (of a camera that is not given: a rigid one) and distance from the origin,
+// but for what is true of it: that it lights none of the points, shows all of them less than a texel, or loses half a
+// texel (of a picture of 4096, where the texture's size is not given). A lens that mirrors says so in its facts, a model
+// may mirror. No allocation, noexcept.
 // About a microsecond for what was composed in double, microseconds where it was composed in float or has a mistake to be
 // named: at most 8 times what one with one defect costs. No mistake is named of numbers beyond 2^150 or below 2^-150.
 // What it sees: of a projector alone, its matrices' own marks (transposed, exchanged, of rank below 3, mirrored, reversed
