@@ -17,7 +17,6 @@
 #include <glm/mat4x4.hpp>
 
 #include "../../conventions.hpp"
-#include "../arithmetic/expansion.hpp"
 #include "../arithmetic/inverse.hpp"
 #include "../arithmetic/nearest.hpp"
 #include "../arithmetic/rounding.hpp"
@@ -26,9 +25,6 @@
 #include "slide_planes.hpp"
 
 namespace TEXGEN_DETAIL {
-
-// The coordinates of the middle of a sphere.
-using Point = std::array<double, 3>;
 
 class LitForms {
 public:
@@ -62,7 +58,6 @@ public:
 
     // The forms, each times a positive number that brings its largest a near to 1.
     const FormLanes& lanes() const noexcept { return lanes_; }
-    Point a(std::size_t k) const noexcept { return {lanes_.a[0][k], lanes_.a[1][k], lanes_.a[2][k]}; }
     const glm::dmat4& matrix() const noexcept { return matrix_; }
     const FormWeights& outer() const noexcept { return outer_; }
     const FormWeights& inner() const noexcept { return inner_; }
@@ -76,8 +71,8 @@ public:
 
     // |a| of a form, or up to 12 u of it more.
     double slope(std::size_t k) const noexcept {
-        const Point of = a(k);
-        return (1.0 + gamma(4)) * std::sqrt(of[0] * of[0] + of[1] * of[1] + of[2] * of[2]);
+        const double x = lanes_.a[0][k], y = lanes_.a[1][k], z = lanes_.a[2][k];
+        return (1.0 + gamma(4)) * std::sqrt(x * x + y * y + z * z);
     }
 
     // For spheres.

@@ -90,15 +90,15 @@ inline namespace TEXGEN_BUILD {
 template <class SlopeOf, class MakeUnit>
 Coverage coverage_of(const LitForms& forms, const FormLanes& lanes, const SlopeOf& slope_of, const MakeUnit& make_unit,
                      const Sphere& sphere) noexcept {
-    const Point centre{widened(sphere.centre.x), widened(sphere.centre.y), widened(sphere.centre.z)};
+    const glm::dvec3 centre = widened(sphere.centre);
     const double radius = widened(sphere.radius);
-    const double size = std::fabs(centre[0]) + std::fabs(centre[1]) + std::fabs(centre[2]);
+    const double size = std::fabs(centre.x) + std::fabs(centre.y) + std::fabs(centre.z);
     if (!forms.can_say() || !(radius >= 0.0) || !is_finite(size + radius)) return coverage_without_forms(forms, sphere);
     const double of_q = (size + 2.0 * radius) * lanes.largest_q + lanes.last_q;
     bool is_inside = true, is_partial = false, is_lit = true;
     for (std::size_t k = 0; k < forms.count(); ++k) {
         const double value =
-            lanes.a[0][k] * centre[0] + lanes.a[1][k] * centre[1] + lanes.a[2][k] * centre[2] + lanes.d[k];
+            lanes.a[0][k] * centre.x + lanes.a[1][k] * centre.y + lanes.a[2][k] * centre.z + lanes.d[k];
         const double change = slope_of(k) * radius;
         const double bound = 2.0 * (lanes.error_a[k] * size + lanes.error_d[k] + gamma(4) * change);
         if (value + change < -bound) return Coverage::outside;
