@@ -315,7 +315,7 @@ public:
     enum class Factor { of_planes, any };
 
     TEXGEN_RARE ExactFragment(const TrianglePlanes& planes, std::int64_t x, std::int64_t y,
-                               Factor up_to = Factor::of_planes) noexcept
+                              Factor up_to = Factor::of_planes) noexcept
         : planes_(planes) {
         DoubleDouble to_x[3], to_y[3];
         for (std::size_t i = 0; i < 3; ++i) {
