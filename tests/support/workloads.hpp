@@ -568,10 +568,10 @@ Calls one_output_calls(const Numbers& n) {
             {.s = {}, .t = {}, .r = IsMask ? std::span<float>() : out, .lit = IsMask ? out : std::span<float>()}));
     });
 }
-// With a region that leaves no tile dark.
-template <int Width, int Height, bool IsExact>
+// With a region that leaves no tile dark; or with the texture's, in which small tiles have a certificate of their own.
+template <int Width, int Height, bool IsExact, texgen::TextureRegion (*Region)() = wide_open>
 Calls open_triangle_calls(const Numbers& n) {
-    const auto call = tile_call<Width, Height, IsExact>(n, wide_open());
+    const auto call = tile_call<Width, Height, IsExact>(n, Region());
     if (!call) return {};
     return calls_of([call] {
         keep(texgen::interpolate(call->setup, call->rect, {.s = call->out[0], .t = call->out[1], .r = {}, .lit = {}}));
@@ -1458,6 +1458,14 @@ inline const std::array workloads{
              detail::open_triangle_calls<8, 8, false>, detail::triangle_limit<8, 8>},
     Workload{"interpolate a triangle, exact, 1 x 1", 23, detail::ordinary_triangle, detail::hostile_triangle,
              detail::open_triangle_calls<1, 1, true>, detail::triangle_limit<1, 1>},
+    Workload{"interpolate a triangle, exact, of the texture, 1 x 64", 23, detail::ordinary_triangle, detail::hostile_triangle,
+             detail::open_triangle_calls<1, 64, true, texgen::whole_texture>, detail::triangle_limit<1, 64>},
+    Workload{"interpolate a triangle, tolerance, of the texture, 1 x 64", 23, detail::ordinary_triangle, detail::hostile_triangle,
+             detail::open_triangle_calls<1, 64, false, texgen::whole_texture>, detail::triangle_limit<1, 64>},
+    Workload{"interpolate a triangle, exact, all outputs, 8 x 8", 23, detail::ordinary_triangle, detail::hostile_triangle,
+             detail::triangle_calls<8, 8, true>, detail::triangle_limit<8, 8>},
+    Workload{"interpolate a triangle, tolerance, all outputs, 8 x 8", 23, detail::ordinary_triangle, detail::hostile_triangle,
+             detail::triangle_calls<8, 8, false>, detail::triangle_limit<8, 8>},
     Workload{"interpolate a triangle, exact, r alone, 64 x 4", 23, detail::ordinary_triangle, detail::hostile_triangle,
              detail::one_output_calls<64, 4, false>, detail::triangle_limit<64, 4>},
     Workload{"interpolate a triangle, exact, lit alone, 64 x 4", 23, detail::ordinary_triangle,
