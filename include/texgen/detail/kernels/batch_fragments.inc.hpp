@@ -85,7 +85,8 @@ struct FragmentIds {
     }
 };
 
-// Vectors of fragments that have lanes in doubt, and the triangles of those, of which a block has so many: all are decided at once.
+// Vectors of fragments that have lanes in doubt, and the triangles of those, of which a block has so many: all are decided at once, by what
+// fragments of a triangle share. Where few vectors do, each is decided alone, as where its triangles are of one place.
 template <std::size_t Numerators>
 class DoubtfulFragments {
 public:
@@ -103,74 +104,79 @@ public:
 
     TEXGEN_INLINE bool has_any() const noexcept { return count_ != 0; }
 
-    // False where there is no room for its triangles: in the beginning there is.
+    // False where there is no room for its triangles, each of which has one place.
     TEXGEN_INLINE bool add(const Vector& vector, const FragmentIds& ids) noexcept {
         Known& known = vectors_[count_];
         known.vector = vector;
         known.is_one = ids.are_one();
         known.asked = bits_of(vector.doubtful);
-        if (known.is_one) known.asked &= ~known.asked + 1;  // one stands for all
-        known.is_apart = !known.is_one;
-        double x[lanes], y[lanes];
-        store(x, vector.x);
-        store(y, vector.y);
+        known.first = static_cast<std::size_t>(std::countr_zero(known.asked));
+        if (known.is_one) known.asked = std::uint64_t{1} << known.first;
         for (std::uint64_t left = known.asked; left != 0; left &= left - 1) {
             const auto i = static_cast<std::size_t>(std::countr_zero(left));
             const std::uint32_t id = ids.value[i];
-            std::size_t place = id % batch_block;
-            for (std::size_t tried = 0; has(place) && id_[place] != id; ++tried) {
-                if (tried == batch_block) return false;
-                place = (place + 1) % batch_block;
+            const std::size_t place = id % batch_block;
+            if (has(place) && id_[place] != id) {
+                if (count_ == 0) triangles_ = 0;
+                return false;
             }
             known.triangle[i] = place;
-            known.is_apart &= !has(place);
-            if (has(place)) continue;
             triangles_ |= 1u << place;
             id_[place] = id;
-            x_[place] = x[i];
-            y_[place] = y[i];
         }
         ++count_;
         return true;
+    }
+
+    // Lanes that stay in doubt.
+    TEXGEN_INLINE std::uint64_t decide_alone(const Vector& vector, const FragmentIds& ids) noexcept {
+        const float* of_lane[lanes];
+        for (std::size_t i = 0; i < static_cast<std::size_t>(lanes); ++i)
+            of_lane[i] = vertices_of(job_, ids.value[i] < job_.triangles ? ids.value[i] : 0);
+        return put_closely(of_lane, vector);
     }
 
     // Puts what is decided to its place; the fragments that stay in doubt are bits of the block.
     TEXGEN_APART std::uint64_t decide() noexcept {
         constexpr auto size = static_cast<std::size_t>(lanes);
         const auto first_known = static_cast<std::size_t>(std::countr_zero(triangles_));
-        const bool are_apart = count_ == 1 && vectors_[0].is_apart;
+        const bool are_few = count_ <= 2;
         const Doubles none{};
         BatchFunctions functions;
         std::uint64_t unknown = 0;
-        for (std::size_t i = 0; i < batch_block; i += size) {
+        for (std::size_t i = 0; !are_few && i < batch_block; i += size) {
             const float* of_lane[lanes];
             for (std::size_t j = 0; j < size; ++j)
                 of_lane[j] = vertices_of(job_, id_[has(i + j) ? i + j : first_known]);
             const LongWords are_unknown =
-                are_apart
-                    ? functions.take<Numerators>(of_lane, load<Doubles>(x_ + i), load<Doubles>(y_ + i), none, none, i)
-                    : functions.take<Numerators>(of_lane, none + left_, none + top_, none + width_, none + height_, i);
+                functions.take<Numerators>(of_lane, none + left_, none + top_, none + width_, none + height_, i);
             unknown |= lane_bits(are_unknown) << i;
         }
         std::uint64_t undecided = 0;
         for (std::size_t k = 0; k < count_; ++k) {
             const Known& known = vectors_[k];
             const Vector& vector = known.vector;
-            const Doubles x = are_apart ? none : vector.x - left_, y = are_apart ? none : vector.y - top_;
+            const Doubles x = vector.x - left_, y = vector.y - top_;
+            const auto place_of = [&](std::size_t i) {
+                const bool is_asked = known.is_one || (known.asked >> i & 1u) != 0;
+                return is_asked ? known.triangle[known.is_one ? known.first : i] : first_known;
+            };
             std::uint64_t left = 0;
-            if (known.is_one) {
-                const std::size_t place = known.triangle[std::countr_zero(known.asked)];
+            if (are_few) {
+                const float* of_lane[lanes];
+                for (std::size_t i = 0; i < size; ++i) of_lane[i] = vertices_of(job_, id_[place_of(i)]);
+                left = put_closely(of_lane, vector);
+            } else if (known.is_one) {
+                const std::size_t place = place_of(0);
                 left = put(vector, functions.of[place], x, y);
                 if ((unknown >> place & 1u) != 0) left = bits_of(vector.doubtful);
             } else {
                 const BatchFunction* of_lane[lanes];
                 for (std::size_t i = 0; i < size; ++i) {
-                    const bool is_asked = (known.asked >> i & 1u) != 0;
-                    const std::size_t place = is_asked ? known.triangle[i] : first_known;
-                    of_lane[i] = &functions.of[place];
-                    left |= (unknown >> place & std::uint64_t{is_asked}) << i;
+                    of_lane[i] = &functions.of[place_of(i)];
+                    left |= (unknown >> place_of(i) & 1u) << i;
                 }
-                left |= put(vector, LaneFunctions<Numerators>(of_lane), x, y);
+                left = (left & known.asked) | put(vector, LaneFunctions<Numerators>(of_lane), x, y);
             }
             undecided |= left << vector.place;
         }
@@ -184,7 +190,8 @@ private:
         Vector vector;
         std::size_t triangle[lanes];  // of those that are asked
         std::uint64_t asked;
-        bool is_one, is_apart;  // there is one triangle for all, or for each
+        std::size_t first;  // the first that is asked
+        bool is_one;        // triangle, that one's
     };
 
     TEXGEN_INLINE bool has(std::size_t place) const noexcept { return (triangles_ >> place & 1u) != 0; }
@@ -202,11 +209,18 @@ private:
         return bits_of(vector.doubtful & narrow(fragments.doubtful));
     }
 
+    TEXGEN_INLINE std::uint64_t put_closely(const float* const (&of_lane)[lanes], const Vector& vector) noexcept {
+        Floats quotient[Numerators];
+        LongWords in_front;
+        const Words left = divide_lanes_closely(of_lane, vector.x, vector.y, vector.doubtful, quotient, in_front);
+        vector.out->put_where(vector.doubtful, vector.n, quotient, in_front);
+        return bits_of(left);
+    }
+
     const FragmentsJob& job_;
     double left_, top_, width_, height_;
     unsigned triangles_ = 0;  // a bit for each
     std::uint32_t id_[batch_block];
-    double x_[batch_block]{}, y_[batch_block]{};  // of a fragment of each
     std::size_t count_ = 0;
     Known vectors_[exact_block / lanes];
 };
@@ -237,7 +251,9 @@ TEXGEN_APART std::uint64_t decide_fragments(const FragmentsJob& job, const Fragm
                                                                     &to,
                                                                     ids.is_whole ? n : std::size_t{0},
                                                                     n - begin};
-        while (!fragments.add(vector, ids)) undecided |= fragments.decide();
+        if (fragments.add(vector, ids)) continue;
+        if (fragments.has_any()) undecided |= fragments.decide();
+        if (!fragments.add(vector, ids)) undecided |= fragments.decide_alone(vector, ids) << vector.place;
     }
     if (fragments.has_any()) undecided |= fragments.decide();
     return undecided;

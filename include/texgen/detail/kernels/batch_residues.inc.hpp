@@ -31,30 +31,22 @@ struct LaneFunctions {
 struct BatchFunctions {
     BatchFunction of[batch_block];
 
-    // Those from `first` on, of a triangle in each lane about a fragment, for so many columns and rows, or none but it: see
+    // Those from `first` on, of a triangle in each lane about a fragment, for so many columns and rows: see
     // CloseRamp::split(). What residues do not know has a grain of 0. Returns the lanes that nothing is known of.
     template <std::size_t Numerators>
     TEXGEN_APART LongWords take(const float* const (&triangle)[lanes], const Doubles& x, const Doubles& y,
                                 const Doubles& width, const Doubles& height, std::size_t first) noexcept {
-        const bool has_steps = any(greater(width, 0.0));
         const VertexLanes vertices(triangle);
         const CloseLanes close(vertices, x, y);
-        CloseTerms along{}, down{};
+        const CloseSteps along(vertices, 1), down(vertices, 0);
         ResidueLanes corners(vertices, x, y);
-        Residues dx[3]{}, dy[3]{};
-        if (has_steps) {
-            along = CloseSteps(vertices, 1);
-            down = CloseSteps(vertices, 0);
-            corners.steps(dx, dy);
-        }
+        Residues dx[3], dy[3];
+        corners.steps(dx, dy);
         Residues residues[16]{};
         for (std::size_t n = 0; n <= Numerators; ++n) {
             const std::size_t k = n < Numerators ? n : 3;
-            Twofold term[3] = {close.function(vertices, k), {}, {}};
-            if (has_steps) {
-                term[1] = along.function(vertices, k);
-                term[2] = down.function(vertices, k);
-            }
+            const Twofold term[3] = {close.function(vertices, k), along.function(vertices, k),
+                                     down.function(vertices, k)};
             const Doubles size =
                 magnitude(term[0].high) + (magnitude(term[1].high) * width + magnitude(term[2].high) * height);
             const Doubles lost = term[0].lost + (term[1].lost * width + term[2].lost * height);
