@@ -582,7 +582,7 @@ MUTANTS = [
           "interpolate_test"),
          ("doubt goes to the other neighbour", "with_sign_of(unit * 0.25, sign)", "with_sign_of(unit * 0.25, sign * -1.0)",
           "near_ties_test batch_test"),
-         ("residues of any length are believed", "fits & greater(finer * 0x1p62,", "fits & greater(finer * 0x1p162,",
+         ("residues of any length are believed", "fits & greater(finer * 0x1p62, bound)", "fits & greater(finer * 0x1p162, bound)",
           "interpolate_test batch_test"),
          ("quotients in doubt err by nothing", "reciprocal * error + 0x1p-50", "reciprocal * error", "batch_test"),
          ("values of any length are their residues", "greater(Doubles{} + grain * 0x1p62,",

@@ -83,25 +83,30 @@ struct CloseMiddle {
         return sum + (low + (f.low - middle * q.low));
     }
 
-    // Returns the lanes that this decides.
+    // F - m Q is at most `bound`. Returns the lanes that this decides: those that are asked by residues at once, if they can.
     template <class Grain>
     TEXGEN_INLINE LongWords decide(const CloseValues& f, const CloseValues& q, const Residues& of_f,
                                    const Grain& f_grain, const Residues& of_q, const Grain& q_grain,
-                                   Floats& value) const noexcept {
-        Doubles error;
-        const Doubles rest = rest_of(f, q, error);
-        const LongWords is_clear = greater(magnitude(rest), error);
+                                   const Doubles& bound, const LongWords& asked, Floats& value) const noexcept {
         const Doubles finer = minimum(unit * q_grain, Doubles{} + f_grain);
         const Doubles per_finer = reciprocals_of_powers(finer);
         const Doubles f_times = per_finer * f_grain;
         const Doubles q_times = middle * q_grain * per_finer;
         const LongWords fits = greater(Doubles{} + 0x1p62, maximum(f_times, magnitude(q_times)));
         const Residues residue = of_f * to_residues(where(fits, f_times)) - of_q * to_residues(where(fits, q_times));
-        const LongWords is_known = fits & greater(finer * 0x1p62, magnitude(rest) + error);
-        const LongWords is_tie = are_zero(residue) & ~is_clear;
-        const Doubles sign = select(is_clear, rest, signs_of(residue));
+        LongWords is_known = fits & greater(finer * 0x1p62, bound);
+        Doubles sign = signs_of(residue);
+        LongWords is_tie = are_zero(residue);
+        if (any(asked & ~is_known)) {
+            Doubles error;
+            const Doubles rest = rest_of(f, q, error);
+            const LongWords is_clear = greater(magnitude(rest), error);
+            is_known |= is_clear | (fits & greater(finer * 0x1p62, magnitude(rest) + error));
+            sign = select(is_clear, rest, sign);
+            is_tie &= ~is_clear;
+        }
         value = to_floats(middle + where(~is_tie, with_sign_of(unit * 0.25, sign)));
-        return is_clear | is_known;
+        return is_known;
     }
 };
 
@@ -167,8 +172,10 @@ struct CloseFragments {
             const auto grain = at.grain(k);
             const Residues of_f = at.residues(k);
             Floats nearest;
-            const LongWords decided =
-                CloseMiddle(close.u).decide(close.f, q, of_f, grain, of_q, q_grain, nearest) & is_open & ~is_rough;
+            // The middle is as near to the quotient as F/Q is: so |F - m Q| is at most twice the error times Q.
+            const LongWords asked = is_open & ~is_rough;
+            const LongWords decided = asked & CloseMiddle(close.u).decide(close.f, q, of_f, grain, of_q, q_grain,
+                                                                          close.error * q.value * 2.25, asked, nearest);
             quotient[k] = select(narrow(decided), nearest, quotient[k]);
             LongWords left = is_open & ~decided;
             if (any(is_rough)) {
