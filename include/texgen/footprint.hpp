@@ -20,7 +20,7 @@
 #include "detail/arithmetic/nearest.hpp"
 #include "detail/simd/lanes.hpp"
 #include "detail/triangle/footprint_extremes.hpp"
-#include "detail/triangle/functions.hpp"
+#include "detail/triangle/slopes.hpp"
 #include "interpolate.hpp"
 #include "primitives.hpp"
 #include "texcoord.hpp"

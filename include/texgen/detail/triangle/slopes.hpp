@@ -1,34 +1,17 @@
 #pragma once
 
-// A triangle made ready: what its tiles read, of coordinates and of their derivatives.
+// The derivatives of a triangle, made ready: what its tiles read.
 
 #include <cmath>
 #include <cstddef>
 
 #include <glm/vec2.hpp>
 
-#include "../../conventions.hpp"
-#include "../../primitives.hpp"
 #include "../arithmetic/rounding.hpp"
-#include "../culling/lit_test.hpp"
 #include "../language.hpp"
-#include "../simd/lanes.hpp"
 #include "planes.hpp"
 
 namespace TEXGEN_DETAIL {
-
-struct TriangleFunctions {
-    TrianglePlanes planes;
-    PlaneOf<Double2> st;
-    Plane q;
-    LitTest lit;
-    double tolerance;
-
-    TriangleFunctions(const Triangle& triangle, const TextureRegion& region, double accepted) noexcept
-        : planes(triangle), lit(region), tolerance(accepted) {
-        planes.planes_of_stq(st, q);
-    }
-};
 
 // The numerators of the derivatives of s (0) and t (1), see Slope.
 struct FootprintFunctions {

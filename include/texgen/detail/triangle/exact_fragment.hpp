@@ -1,0 +1,101 @@
+#pragma once
+
+// What doubles leave in doubt of a triangle's planes at one fragment, by exact sums.
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include <glm/vec2.hpp>
+
+#include "../arithmetic/expansion.hpp"
+#include "../arithmetic/nearest.hpp"
+#include "../arithmetic/rounding.hpp"
+#include "../arithmetic/widen.hpp"
+#include "../language.hpp"
+#include "../simd/lanes.hpp"
+#include "planes.hpp"
+
+namespace TEXGEN_DETAIL {
+
+// The functions at one fragment, exactly: F = sum G_i f_i with G_i = E_i w_j w_k, but for the planes' common factor, or for any
+// positive one.
+class ExactFragment {
+public:
+    enum class Factor { of_planes, any };
+
+    TEXGEN_RARE ExactFragment(const TrianglePlanes& planes, std::int64_t x, std::int64_t y,
+                              Factor up_to = Factor::of_planes) noexcept
+        : planes_(planes) {
+        DoubleDouble to_x[3], to_y[3];
+        for (std::size_t i = 0; i < 3; ++i) {
+            to_x[i] = two_sum(planes.corner(i).x, -(static_cast<double>(x) + 0.5));  // integers
+            to_y[i] = two_sum(planes.corner(i).y, -(static_cast<double>(y) + 0.5));  // integers
+        }
+        if (up_to == Factor::any && is_on_side(to_x, to_y)) return;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::size_t j = (i + 1) % 3;
+            const std::size_t k = (i + 2) % 3;
+            const double weight = planes.unscaled_weight(i);
+            const DoubleDouble factor[][2] = {{to_x[j], to_y[k]}, {-to_y[j], to_x[k]}};
+            for (const auto& [left, right] : factor) {
+                for (const double a : {left.high, left.low}) {
+                    for (const double b : {right.high, right.low}) {
+                        if (a == 0.0 || b == 0.0) continue;
+                        const DoubleDouble term = two_product(a, b);
+                        for (const double part : {term.high, term.low}) weighted_[i].add_product(part, weight);
+                    }
+                }
+            }
+        }
+    }
+
+    // F - u Q of one coordinate, 0 to 3 for s, t, r, q; or F.
+    using Sum = Expansion<384>;
+    TEXGEN_APART Sum difference(glm::length_t coordinate, double u) const noexcept {
+        Sum sum;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const double product = u * planes_.value(i, 3);  // exact for a middle of two floats
+            const DoubleDouble value = two_sum(planes_.value(i, coordinate), -product);
+            for (const double part : {value.high, value.low}) sum.add_scaled(weighted_[i], part);
+        }
+        return sum;
+    }
+    Sum function(glm::length_t coordinate) const noexcept { return difference(coordinate, 0.0); }
+
+    // The float nearest to F / Q, in front.
+    float nearest_quotient(glm::length_t coordinate, const Sum& q) const noexcept {
+        const Sum numerator = function(coordinate);
+        if (numerator.sign() == 0) return 0.0f;
+        const double quotient = numerator.estimate() / q.estimate();
+        return nearest_to(quotient, 0x1p-48 * std::fabs(quotient),
+                          [&](double middle) { return difference(coordinate, middle).sign(); });
+    }
+
+private:
+    // On the line through corners j and k the third one, whose numbers may be long, has no part, and along either axis
+    // G_j : G_k = w_k (k - p) : w_j (p - j). False where p is on none, or a difference is no double.
+    TEXGEN_RARE bool is_on_side(const DoubleDouble (&to_x)[3], const DoubleDouble (&to_y)[3]) noexcept {
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::size_t j = (i + 1) % 3;
+            const std::size_t k = (i + 2) % 3;
+            if (to_x[j].low != 0.0 || to_y[j].low != 0.0 || to_x[k].low != 0.0 || to_y[k].low != 0.0) continue;
+            const DoubleDouble left = two_product(to_x[j].high, to_y[k].high);
+            const DoubleDouble right = two_product(to_y[j].high, to_x[k].high);
+            if (left.high != right.high || left.low != right.low) continue;
+            const DoubleDouble(&to)[3] = to_x[j].high != to_x[k].high ? to_x : to_y;
+            for (const std::size_t end : {j, k}) {
+                const std::size_t other = end == j ? k : j;
+                const double side = to[end].high < to[other].high ? to[other].high : -to[other].high;
+                weighted_[end].add_product(side, widened(planes_.vertex(other).clip_w));
+            }
+            return true;
+        }
+        return false;
+    }
+
+    const TrianglePlanes& planes_;
+    Expansion<32> weighted_[3];
+};
+
+}  // namespace TEXGEN_DETAIL
