@@ -32,7 +32,7 @@ struct BatchFunctions {
     BatchFunction of[batch_block];
 
     // Those from `first` on, of a triangle in each lane about a fragment, for so many columns and rows: see
-    // CloseRamp::split(). What residues do not know has a grain of 0. Returns the lanes that nothing is known of.
+    // CloseRamp::copy_to(). What residues do not know has a grain of 0. Returns the lanes that nothing is known of.
     template <std::size_t Numerators>
     TEXGEN_APART LongWords take(const float* const (&triangle)[lanes], const Doubles& x, const Doubles& y,
                                 const Doubles& width, const Doubles& height, std::size_t first) noexcept {

@@ -47,7 +47,7 @@ struct CloseRamp {
 
     // As high and low parts, see CloseFunction. The coefficients of low are at most half a unit: they, two products and two
     // sums are rounded in double, 6 u of half of width + height + 1 units: less than 2^-50 of those.
-    TEXGEN_APART void split(const Tile& tile, CloseFunction& result) const noexcept {
+    TEXGEN_APART void copy_to(const Tile& tile, CloseFunction& result) const noexcept {
         const double unit = unit_for(tile);
         const double rounder = 0x1.8p52 * unit;
         double high[3];
@@ -84,8 +84,8 @@ struct CloseRamps {
     }
 
     // Residues stay.
-    void split(CloseFunctions& result) const noexcept {
-        for (std::size_t k = 0; k < 3; ++k) function[k].split(tile, result.function[k]);
+    void copy_to(CloseFunctions& result) const noexcept {
+        for (std::size_t k = 0; k < 3; ++k) function[k].copy_to(tile, result.function[k]);
     }
 };
 

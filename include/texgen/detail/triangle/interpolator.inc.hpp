@@ -95,7 +95,7 @@ private:
         DoubtfulFunctions result{};
         result.tolerance = triangle_.tolerance;
         result.are_close = static_cast<bool>(close_);
-        result.are_close ? close_ramps(tile).split(result) : take_planes(at, result);
+        result.are_close ? close_ramps(tile).copy_to(result) : take_planes(at, result);
         return result;
     }
 
@@ -113,7 +113,7 @@ private:
             add_residues(tile, functions);
             if (functions.residues_first && !functions.are_close && are_decided_by_residues(functions)) return true;
         }
-        if (!functions.are_close) close_ramps(tile).split(functions);
+        if (!functions.are_close) close_ramps(tile).copy_to(functions);
         return functions.are_close = true;
     }
 
