@@ -627,23 +627,23 @@ inline Calls batch_facing_calls(const Numbers& n) {
         keep(batch->planes());
     });
 }
-// The fragments of one of eight triangles that are the same, in runs of `Run`.
-template <std::size_t Run, class Ask>
+// The fragments of one of `Count` triangles that are the same, in runs of `Run`.
+template <std::size_t Run, std::size_t Count = 8, class Ask>
 Calls ids_calls(const Numbers& n, bool is_exact, texgen::TextureRegion region, Ask ask) {
     const auto call = tile_call<64, 4, true>(n, region);
     if (!call) return {};
     auto batch = std::make_shared<texgen::TriangleBatch>(region, is_exact ? texgen::exact : tolerance);
-    batch->assign(std::vector<texgen::Triangle>(8, triangle_of(n)));
+    batch->assign(std::vector<texgen::Triangle>(Count, triangle_of(n)));
     std::vector<std::uint32_t> ids(256);
-    for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = static_cast<std::uint32_t>(i / Run % 8);
+    for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = static_cast<std::uint32_t>(i / Run % Count);
     return calls_of([call, batch, ids, ask] {
         ask(*batch, ids, *call);
         keep(call->out[0].data());
     });
 }
-template <std::size_t Run, bool IsExact, OutputsOf Of = OutputsOf::s_t>
+template <std::size_t Run, bool IsExact, OutputsOf Of = OutputsOf::s_t, std::size_t Count = 8>
 Calls visibility_calls(const Numbers& n) {
-    return ids_calls<Run>(n, IsExact, region_for<Of>(), [](const auto& batch, const auto& ids, TileCall& call) {
+    return ids_calls<Run, Count>(n, IsExact, region_for<Of>(), [](const auto& batch, const auto& ids, TileCall& call) {
         interpolate(batch, ids, call.rect, outputs_for<Of>(call.out));
     });
 }
@@ -1488,6 +1488,7 @@ inline const std::array workloads{
              detail::batch_facing_calls, detail::always},
     Workload{"interpolate ids, exact, in runs", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::visibility_calls<8, true>, detail::triangle_limit<64, 4>},
     Workload{"interpolate ids, exact, mixed", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::visibility_calls<1, true>, detail::triangle_limit<64, 4>},
+    Workload{"interpolate ids, exact, each of another triangle", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::visibility_calls<1, true, detail::OutputsOf::s_t, 256>, detail::triangle_limit<64, 4>},
     Workload{"interpolate ids, tolerance, in runs", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::visibility_calls<8, false>, detail::triangle_limit<64, 4>},
     Workload{"interpolate ids, tolerance, mixed", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::visibility_calls<1, false>, detail::triangle_limit<64, 4>},
     Workload{"interpolate ids, exact, r as well, in runs", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::visibility_calls<8, true, detail::OutputsOf::s_t_r>, detail::triangle_limit<64, 4>},

@@ -292,37 +292,26 @@ private:
     bool are_large_;  // some numbers are
 };
 
-// What two doubles leave in doubt of a vector of fragments.
+// What is known of fragments of a triangle each, q last: without residues grains are 0.
 template <std::size_t Numerators>
-struct CloseDoubt {
-    CloseRemainder remainder[Numerators];
-    Doubles size[Numerators], q_size;  // no function is more
-    Words of_value[Numerators], of_side;
-};
+struct CloseFragmentsAt {
+    CloseValues value[Numerators + 1];
+    Residues residue[Numerators + 1]{};
+    Doubles of_grain[Numerators + 1]{};
 
-// The same by residues. Returns the lanes that stay in doubt.
-template <std::size_t Numerators>
-TEXGEN_APART Words decide_lanes_by_residues(const VertexLanes& vertices, const Doubles& x, const Doubles& y,
-                                            const CloseDoubt<Numerators>& close,
-                                            Floats (&quotient)[Numerators]) noexcept {
-    ResidueLanes residues(vertices, x, y);
-    const ResidueValues of_q = residues.values(3);
-    const Residues q = of_q.times(residues.side);
-    const LongWords is_behind = greater(of_q.grain * 0x1p62, close.q_size) & ~are_positive(q);
-    Words doubt = close.of_side & ~narrow(is_behind), all = close.of_side;
-    TEXGEN_UNROLL
-    for (std::size_t k = 0; k < Numerators; ++k) {
-        if (!any(close.of_value[k])) continue;
-        const ResidueValues of_f = residues.values(k);
-        const Residues f = of_f.times(residues.side);
-        const Words open =
-            decide_by_residues(f, of_f.grain, q, of_q.grain, close.remainder[k], close.of_value[k], quotient[k]);
-        const LongWords are_zeros = greater(of_f.grain * 0x1p62, close.size[k]) & are_zero(f);
-        doubt |= decide_zeros(are_zeros, open, quotient[k]);
-        all |= close.of_value[k];
+    TEXGEN_INLINE const CloseValues& values(std::size_t n) const noexcept { return value[n]; }
+    TEXGEN_INLINE const Residues& residues(std::size_t n) const noexcept { return residue[n]; }
+    TEXGEN_INLINE const Doubles& grain(std::size_t n) const noexcept { return of_grain[n]; }
+
+    TEXGEN_APART void add_residues(const VertexLanes& vertices, const Doubles& x, const Doubles& y) noexcept {
+        ResidueLanes lanes_of(vertices, x, y);
+        for (std::size_t n = 0; n <= Numerators; ++n) {
+            const ResidueValues of = lanes_of.values(n < Numerators ? n : 3);
+            residue[n] = of.times(lanes_of.side);
+            of_grain[n] = where(lanes_of.is_known, of.grain);
+        }
     }
-    return doubt | (all & ~narrow(residues.is_known));
-}
+};
 
 // The lanes in doubt of a vector of fragments at (x, y), again: others are anything. Returns those that stay so.
 template <std::size_t Numerators>
@@ -331,48 +320,25 @@ TEXGEN_APART Words divide_lanes_closely(const float* const (&triangle)[lanes], c
                                         LongWords& front) noexcept {
     const VertexLanes vertices(triangle);
     const CloseLanes close(vertices, x, y);
-    const Twofold q = close.function(vertices, 3);
-    front = greater(q.high, q.lost * 256.0);
-    const Doubles reciprocal = where(front, 1.0 / q.high);
-    const Doubles relative_error = reciprocal * q.lost + 0x1p-50;
-    const Doubles leading = leading_bits<27>(q.high);
-    const Doubles upper = leading * 0.5;
-    const Doubles lower = (q.high - leading) * 0.5;
-    CloseDoubt<Numerators> left;
-    left.of_side = narrow(~(front | at_most(q.high, q.lost * -1.0))) & in_doubt;
-    left.q_size = magnitude(q.high) + q.lost;
-    Words doubt = left.of_side;
-    TEXGEN_UNROLL
-    for (std::size_t k = 0; k < Numerators; ++k) {
-        const Twofold f = close.function(vertices, k);
-        const Doubles u = f.high * reciprocal + 0.0;  // no -0
-        const Doubles error = magnitude(u) * relative_error + reciprocal * f.lost;
-        CloseRemainder& remainder = left.remainder[k];
-        remainder.below = to_floats(u - error);
-        remainder.above = to_floats(u + error);
-        Floats value = remainder.below;
-        const Words differ = bits(remainder.below) ^ bits(remainder.above);
-        left.of_value[k] = in_doubt & ~equal(differ, 0);
-        if (any(differ)) {
-            // Of F - m Q, m being the middle of the two, leading parts cancel; the next are kept in two doubles.
-            remainder.middle =
-                to_doubles_as_rounded(remainder.below) + to_doubles_as_rounded(remainder.above);  // twice
-            remainder.unit = power_of_two_below(remainder.middle);
-            Doubles rest;
-            const Doubles sum = two_sum(f.high - remainder.middle * upper, remainder.middle * lower * -1.0, rest);
-            remainder.value = sum + (rest + (f.low - remainder.middle * (q.low * 0.5)));
-            remainder.error = magnitude(remainder.middle) * (q.lost * 0.5) + f.lost;
-            left.size[k] = magnitude(f.high) + f.lost;
-            const LongWords is_open = greater(magnitude(remainder.value), remainder.error);
-            const LongWords is_tie = at_most(magnitude(remainder.value) + remainder.error, Doubles{});
-            left.of_value[k] &= ~decide_between(remainder.below, remainder.above, remainder.middle, remainder.unit,
-                                                remainder.value, is_open, is_tie, value);
-            doubt |= left.of_value[k];
-        }
-        quotient[k] = value;
+    CloseFragmentsAt<Numerators> at;
+    for (std::size_t n = 0; n <= Numerators; ++n) {
+        const Twofold f = close.function(vertices, n < Numerators ? n : 3);
+        at.value[n] = {f.high, f.low, f.lost};
     }
-    if (any(doubt)) doubt = decide_lanes_by_residues(vertices, x, y, left, quotient);
-    return (doubt | narrow(~vertices.has_area)) & in_doubt;
+    CloseDivisor q;
+    q.take(at.value[Numerators]);
+    front = q.front;
+    CloseFragments<Numerators> fragments;
+    const LongWords is_unknown = ~vertices.has_area;
+    Words left = in_doubt;
+    for (const bool is_last : {false, true}) {
+        if (is_last) at.add_residues(vertices, x, y);
+        fragments.divide(at, q, Numerators, 0.0, true);
+        left = in_doubt & narrow(fragments.doubtful | is_unknown);
+        if (!any(left)) break;
+    }
+    for (std::size_t k = 0; k < Numerators; ++k) quotient[k] = fragments.quotient[k];
+    return left;
 }
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA

@@ -19,53 +19,6 @@ struct CloseValues {
     }
 };
 
-// Where F is 0, as its residue says, so is the quotient.
-TEXGEN_INLINE Words decide_zeros(const LongWords& are_zeros, const Words& doubt, Floats& value) noexcept {
-    value = select(doubt & narrow(are_zeros), Floats{}, value);
-    return doubt & ~narrow(are_zeros);
-}
-
-// The nearer of `below` and `above`, next to one another, by the sign of the remainder that a quotient leaves beyond their
-// middle (`middle` is twice that, `unit` the power of two below it). Returns the lanes that this decides.
-TEXGEN_INLINE Words decide_between(const Floats& below, const Floats& above, const Doubles& middle, const Doubles& unit,
-                                   const Doubles& remainder, const LongWords& is_open, const LongWords& is_tie,
-                                   Floats& value) noexcept {
-    // A step from the middle that is less than half of what the floats are away.
-    const Doubles step = where(is_open, with_sign_of(unit * 0x1p-26, remainder));
-    const Floats nearest = to_floats((middle + step) * 0.5);
-    const LongWords are_neighbours =
-        at_most(to_doubles_as_rounded(above) - to_doubles_as_rounded(below), unit * 0x1p-24);
-    const Words decided =
-        narrow((is_open | is_tie) & are_neighbours) & ~equal(bits(below) & bits(above) & 0x7f800000, 0);
-    value = select(decided, nearest, below);
-    return decided;
-}
-
-// What F - m Q is of a vector, or nearly: m the middle of the floats below and above a quotient.
-struct CloseRemainder {
-    Floats below, above;
-    Doubles middle, unit, value, error;  // middle is twice m, and unit the power of two below it
-};
-
-// The sign of F - m Q by its residue: the finer one of its terms' grains times an integer. Returns the lanes of `doubt` that
-// this does not decide.
-template <class Grain>
-TEXGEN_INLINE Words decide_by_residues(const Residues& f, const Grain& f_grain, const Residues& q, const Grain& q_grain,
-                                       const CloseRemainder& remainder, const Words& doubt, Floats& value) noexcept {
-    const Doubles finer = minimum(remainder.unit * (0x1p-25 * q_grain), Doubles{} + f_grain);
-    const Doubles per_finer = reciprocals_of_powers(finer);
-    const Doubles of_f = per_finer * f_grain;
-    const Doubles of_q = remainder.middle * (0.5 * q_grain) * per_finer;
-    const LongWords is_known = greater(finer * 0x1p62, magnitude(remainder.value) + remainder.error) &
-                               greater(Doubles{} + 0x1p62, maximum(of_f, magnitude(of_q)));
-    const Residues residues = f * to_residues(where(is_known, of_f)) - q * to_residues(where(is_known, of_q));
-    Floats nearest;
-    const Words decided = doubt & decide_between(remainder.below, remainder.above, remainder.middle, remainder.unit,
-                                                 signs_of(residues), is_known & ~are_zero(residues), is_known, nearest);
-    value = select(decided, nearest, value);
-    return doubt & ~decided;
-}
-
 // The nearer float where a quotient is so near the middle m of two that the sign of F - m Q decides: of what two doubles hold of
 // it, or of its residue, where that says all of it.
 struct CloseMiddle {
