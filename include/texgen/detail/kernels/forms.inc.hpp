@@ -33,7 +33,7 @@ void weigh_forms(const glm::dmat4& matrix, const FormWeights& weights, FormLanes
         const WeightLanes of(weights, i);
         Doubles form[4];
         TEXGEN_UNROLL
-        for (int j = 0; j < 4; ++j) form[j] = CoefficientLanes(of, matrix[j]).rounded;
+        for (int j = 0; j < 4; ++j) form[j] = CoefficientLanes(of, matrix[static_cast<glm::length_t>(j)]).rounded;
         const Doubles largest = maximum(maximum(magnitude(form[0]), magnitude(form[1])), magnitude(form[2]));
         const Doubles size = select(greater(largest, 0.0), largest, maximum(magnitude(form[3]), Doubles{} + 0x1p-900));
         const Doubles scale = 1.0 / power_of_two_below(size);
@@ -194,7 +194,7 @@ TEXGEN_INLINE Doubles signed_forms(const glm::dmat4& matrix, const WeightLanes& 
     Doubles size_of_low = magnitude(low), last = magnitude(constant.part[2]);
     TEXGEN_UNROLL
     for (int j = 0; j < 3; ++j) {
-        coefficient[j] = CoefficientLanes(weights, matrix[j]);
+        coefficient[j] = CoefficientLanes(weights, matrix[static_cast<glm::length_t>(j)]);
         const auto& [part, rounded] = coefficient[j];
         at[j] = where(are_nonzero(rounded),
                       select(greater(rounded, 0.0), Doubles{} + at_positive[j], Doubles{} + at_negative[j]));
@@ -218,7 +218,7 @@ TEXGEN_INLINE Doubles signed_forms(const glm::dmat4& matrix, const WeightLanes& 
     const Doubles value = select(is_known, sum, nearly);
     if (!any(is_open)) return value;
     const int parts = any(are_nonzero(last)) ? 3 : 2;
-    Doubles term[21], size = magnitude(constant.rounded);
+    Doubles term[21], size{};
     Doubles* next = term;
     for (int k = 0; k < parts; ++k) {
         *next++ = constant.part[k];
@@ -229,9 +229,10 @@ TEXGEN_INLINE Doubles signed_forms(const glm::dmat4& matrix, const WeightLanes& 
             *next++ = (coefficient[j].part[k] - first) * at[j];
         }
     }
-    for (int j = 0; j < 3; ++j) size = size + magnitude(coefficient[j].rounded * at[j]);
-    const Doubles sigma = power_of_two_below(size) * 8.0;
-    return select(is_open, signed_sum(term, static_cast<std::size_t>(7 * parts), sigma, is_open), value);
+    // Parts may cancel: they are larger than what they are of.
+    const std::size_t terms = static_cast<std::size_t>(7 * parts);
+    for (std::size_t k = 0; k < terms; ++k) size = size + magnitude(term[k]);
+    return select(is_open, signed_sum(term, terms, power_of_two_below(size) * 8.0, is_open), value);
 }
 
 template <class CompiledWhereCalled = void>
