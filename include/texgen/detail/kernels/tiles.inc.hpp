@@ -167,12 +167,15 @@ std::uint64_t fill_tile_closely(const TileJob& job, const CloseFunctions& functi
     }
     float* const to[3] = {job.is_scratch[0] ? nullptr : job.out[0],
                           job.is_scratch[1] || numerators == 1 ? nullptr : job.out[1], job.lit};
-    const bool is_run = are_all && (unit.y_begin + 1 == unit.y_end || width == job.pitch);
+    const auto offset = [&](int column, int row) { return static_cast<std::ptrdiff_t>(row) * job.pitch + column; };
+    const int run = width == job.pitch ? size : width;  // rows that follow one another are one
     for (std::size_t k = 0; k < 3; ++k) {
         if (to[k] == nullptr) continue;
-        const auto place = [&](int i) { return to[k] + (static_cast<int>(y[i]) * job.pitch + static_cast<int>(x[i])); };
-        for (int i = 0; !is_run && i < count; ++i) *place(i) = result[k][i];
-        if (is_run) std::memcpy(place(0), result[k], static_cast<std::size_t>(count) * sizeof(float));
+        float* row = to[k] + offset(unit.x_begin, unit.y_begin);
+        for (int i = 0; are_all && i < size; i += run, row += job.pitch)
+            std::memcpy(row, result[k] + i, static_cast<std::size_t>(run) * sizeof(float));
+        for (int i = 0; !are_all && i < count; ++i)
+            to[k][offset(static_cast<int>(x[i]), static_cast<int>(y[i]))] = result[k][i];
     }
     doubtful &= ~std::uint64_t{0} >> (TileJob::unit_size - count);
     if (are_all) return doubtful;
