@@ -1141,6 +1141,28 @@ TEST_CASE("a point on sides of the slide is lit where q is positive at all, and 
     CHECK(lit_ones > 200);
 }
 
+TEST_CASE("a point whose side is what the last bits of cancelling coefficients leave is told alone as in company") {
+    Random random(1108);
+    const texgen::TextureRegion region = texgen::atlas_tile({0.0, -1.0}, {1.0, 2.0});
+    int inside = 0;
+    for (int i = 0; i < 4000; ++i) {
+        glm::dmat4 matrix;
+        for (glm::length_t column = 0; column < 4; ++column)
+            for (glm::length_t row = 0; row < 4; ++row) matrix[column][row] = random.integer(-2, 2) * (1.0 + 0x1p-50);
+        const WorldTexgen transform(matrix);
+        glm::vec3 point;
+        for (glm::length_t j = 0; j < 3; ++j)
+            point[j] = random.coin() ? 0x1p-100f : static_cast<float>(random.integer(-3, 3));
+        const std::vector<Box> boxes(2, Box{point, point});
+        std::vector<Coverage> together(2);
+        coverage(transform, region, boxes, together);
+        INFO(i);
+        CHECK(coverage(transform, region, boxes[0]) == together[0]);
+        inside += together[0] == Coverage::inside;
+    }
+    CHECK(inside > 200);
+}
+
 TEST_CASE("what is no body, no slide or no number gets a safe answer") {
     const auto projector = texgen::make_projector(
         texgen::PerspectiveLens{.fovy = degrees(30), .aspect = 1, .z_near = 0.2, .z_far = 1000},

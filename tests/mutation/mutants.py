@@ -724,6 +724,8 @@ MUTANTS = [
          ("the double's error is forgotten", "std::fabs(coefficient) * gamma(8)", "0.0", "coverage_test"),
          ("half of a coefficient is all of it", "                add(part - first, row);\n", "", "coverage_test")),
     *_of("detail/kernels/forms.inc.hpp",
+         ("parts that cancel are as large as their sum", "size = size + magnitude(term[k]);",
+          "size = magnitude(value) + magnitude(nearly);", "coverage_test"),
          ("what crosses a side is inside", "return answer == body_not_inside ? 1 : 2;", "return 2;", "coverage_test"),
          ("floats leave no room for the inner side", "+ 1.1 * most_narrowed * forms.largest_q;", ";", "coverage_test"),
          ("the error of one box is forgotten", "minimum(error[i], Doubles{} + 0x1p900) * gamma(8)",

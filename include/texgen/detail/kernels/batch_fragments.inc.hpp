@@ -85,8 +85,8 @@ struct FragmentIds {
     }
 };
 
-// Vectors of fragments that have lanes in doubt, and the triangles of those, of which a block has so many: all are decided at once, by what
-// fragments of a triangle share. Where few vectors do, each is decided alone, as where its triangles are of one place.
+// Vectors of fragments that have lanes in doubt, and the triangles of those, of which a block has so many: all are decided at
+// once, by what fragments of a triangle share. Few vectors are decided alone, and those whose triangles ask for one place.
 template <std::size_t Numerators>
 class DoubtfulFragments {
 public:
