@@ -184,12 +184,15 @@ int classify_box(const FormLanes& forms, const float* box_min, const float* box_
 }
 
 // Numbers with the exact signs of forms where they are largest over a box that has points, or least. Two doubles tell them where
-// they leave nothing, as of numbers with few digits, or are larger than the roundings of what they leave; else exact sums of 21
-// numbers at most. A coordinate without a coefficient is not used, and of what is infinite the rounded coefficients tell.
+// they leave nothing, as of numbers with few digits, or are larger than the roundings of what they leave. Then what is left is
+// summed without loss as far as two doubles go, which is all of it on a side that is touched, or but for the tiny weight of q
+// beside a side at 0; and at last exact sums tell, of 21 numbers at most. A coordinate without a coefficient is not used, and
+// of what is infinite the rounded coefficients tell.
 TEXGEN_INLINE Doubles signed_forms(const glm::dmat4& matrix, const WeightLanes& weights, const double (&at_positive)[3],
                                    const double (&at_negative)[3]) noexcept {
     const CoefficientLanes constant(weights, matrix[3]);
     CoefficientLanes coefficient[3];
+    Doubles left[3][3];
     Doubles at[3], nearly = constant.rounded, high = constant.part[0], low = constant.part[1];
     Doubles size_of_low = magnitude(low), last = magnitude(constant.part[2]);
     TEXGEN_UNROLL
@@ -200,22 +203,42 @@ TEXGEN_INLINE Doubles signed_forms(const glm::dmat4& matrix, const WeightLanes& 
                       select(greater(rounded, 0.0), Doubles{} + at_positive[j], Doubles{} + at_negative[j]));
         nearly = nearly + rounded * at[j];
         const Doubles first = leading_bits<27>(part[0]);
-        Doubles left[3];
-        high = two_sum(high, first * at[j], left[0]);
-        high = two_sum(high, (part[0] - first) * at[j], left[1]);
-        left[2] = part[1] * at[j];
+        high = two_sum(high, first * at[j], left[j][0]);
+        high = two_sum(high, (part[0] - first) * at[j], left[j][1]);
+        left[j][2] = part[1] * at[j];
         TEXGEN_UNROLL
-        for (const Doubles& of_sum : left) {
+        for (const Doubles& of_sum : left[j]) {
             low = low + of_sum;
             size_of_low = size_of_low + magnitude(of_sum);
         }
         last = last + magnitude(part[2]);
     }
-    const Doubles sum = high + low;
-    const LongWords is_known =
-        at_most(size_of_low, Doubles{}) | greater(magnitude(sum), size_of_low * gamma(24) + 0x1p-1000);
-    const LongWords is_open = at_most(magnitude(nearly), Doubles{} + 0x1p1000) & ~is_known;
-    const Doubles value = select(is_known, sum, nearly);
+    Doubles value = nearly;
+    LongWords is_open = at_most(magnitude(nearly), Doubles{} + 0x1p1000);
+    const auto take = [&](const Doubles& sum, const Doubles& lost) {
+        value = select(is_open, sum, value);
+        is_open &= greater(lost, 0.0) & ~greater(magnitude(sum), lost * gamma(24) + 0x1p-1000);
+    };
+    take(high + low, size_of_low);
+    if (!any(is_open)) return value;
+    // Beyond high + low each of 16 numbers is rounded once, and fifteen times their sum; all three are rounded twice more.
+    Doubles rest = constant.part[2], lost = magnitude(rest);
+    low = constant.part[1];
+    TEXGEN_UNROLL
+    for (int j = 0; j < 3; ++j) {
+        const auto& [part, rounded] = coefficient[j];
+        const Doubles first = leading_bits<27>(part[1]);
+        Doubles of_low[5] = {{}, {}, {}, (part[1] - first) * at[j], part[2] * at[j]};
+        low = two_sum(low, left[j][0], of_low[0]);
+        low = two_sum(low, left[j][1], of_low[1]);
+        low = two_sum(low, first * at[j], of_low[2]);
+        TEXGEN_UNROLL
+        for (const Doubles& number : of_low) {
+            rest = rest + number;
+            lost = lost + magnitude(number);
+        }
+    }
+    take((high + low) + rest, lost);
     if (!any(is_open)) return value;
     const int parts = any(are_nonzero(last)) ? 3 : 2;
     Doubles term[21], size{};
