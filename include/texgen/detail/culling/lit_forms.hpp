@@ -186,10 +186,6 @@ private:
                 add(part - first, row);
             }
         }
-        if (k == q) {
-            form.coefficient[3] -= 0x1p-1000;
-            add(-0x1p-1000, FormAtVertex::row_of_1);
-        }
     }
 
     static constexpr double infinity = std::numeric_limits<double>::infinity();

@@ -97,11 +97,10 @@ TEXGEN_INLINE Doubles signed_form(const FormAtVertex& form, const BoxRows& row, 
     return select(is_open, signed_sum(term, form.term_count, sigma, is_open), value);
 }
 
-// Whether a form is negative where it is largest, then whether an inner one is where it is least; q first, which is negative
-// for half of what is at the apex. Where that is known of every box, the other forms are not asked.
+// Whether a form is negative where it is largest, or q is 0, then whether an inner one is where it is least; q first, which is
+// negative for half of what is at the apex. Where that is known of every box, the other forms are not asked.
 TEXGEN_INLINE void bound_box(const DoubleForms& forms, const BoxRows& row, const LongWords& have_points,
                              LongWords& outside, LongWords& inside) noexcept {
-    const Doubles zero{};
     BoxRows size;
     TEXGEN_UNROLL
     for (std::size_t j = 0; j < 8; ++j) size[j] = minimum(magnitude(row[j]), Doubles{} + 0x1p128);
@@ -109,7 +108,8 @@ TEXGEN_INLINE void bound_box(const DoubleForms& forms, const BoxRows& row, const
     for (const bool largest : {true, false}) {
         for (std::size_t k = forms.count; k-- > 0 && any(inside);) {
             const FormAtVertex& form = largest ? forms.form[k].largest : forms.form[k].least;
-            inside = inside & ~greater(zero, signed_form(form, row, size, inside));
+            const double least = k == form_of_q ? 0x1p-1000 : 0.0;
+            inside = inside & ~greater(Doubles{} + least, signed_form(form, row, size, inside));
         }
         if (largest) outside = have_points & ~inside;
     }

@@ -77,7 +77,7 @@ struct FormAtVertex {
 };
 
 // The forms for boxes that floats leave in doubt, where they are largest, and the inner ones where they are least. A point is
-// outside where one is below 0: of q a number is subtracted that is smaller than any other value.
+// outside where one is below 0, or q is 0.
 struct DoubleForms {
     struct Form {
         FormAtVertex largest, least;
