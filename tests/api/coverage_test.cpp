@@ -1106,6 +1106,24 @@ TEST_CASE("what cancels to less than two doubles hold is not taken for 0") {
     CHECK(of(0x1p-130) == Coverage::inside);
 }
 
+TEST_CASE("what cancels only after a double has lost digits of it is 0") {
+    Random random(1109);
+    for (int i = 0; i < 20; ++i) {
+        const double slope = 1.0 + 0x1p-52;
+        const float tiny = 0x1p-100f * random.uniform_float(1.0, 2.0);
+        glm::dmat4 matrix(0.0);
+        matrix[0][0] = slope;
+        matrix[1][0] = -slope;
+        matrix[2][0] = 1.0;
+        matrix[3] = {-1.0, 0.5, 0.0, 1.0};
+        const std::vector<Box> boxes(2, Box{glm::vec3(tiny, tiny, 1.0f), glm::vec3(tiny, tiny, 1.0f)});
+        std::vector<Coverage> together(2);
+        coverage(WorldTexgen(matrix), whole_texture(), boxes, together);
+        CHECK(together[0] == Coverage::inside);
+        CHECK(coverage(WorldTexgen(matrix), whole_texture(), boxes[0]) == Coverage::inside);
+    }
+}
+
 TEST_CASE("a side is decided exactly where its terms have too many digits for two doubles") {
     // At the point (1 + 2^-23, 2^-40, 0) s is (1 + 2^-23) q but for the tiny term of y.
     const double side = 0x1.000002p0, q = 0x1.0000000000001p0;
