@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "judges/oracle.hpp"
+#include "judges/rational_traits.hpp"
 #include "support/hex.hpp"
 #include "support/random.hpp"
 #include "texgen/reference.hpp"

@@ -81,10 +81,10 @@ using LongMatrix = std::array<LongVector, 4>;  // [row][column]
 
 // Nearer than a rounding of long double: high part and rest.
 long double to_long(const Rational& value) {
-    const double high = static_cast<double>(value);
+    const double high = nearest<double>(value);
     if (!std::isfinite(high)) return static_cast<long double>(high);
     const Rational rest = value - Rational(high);
-    return static_cast<long double>(high) + static_cast<long double>(static_cast<double>(rest));
+    return static_cast<long double>(high) + static_cast<long double>(nearest<double>(rest));
 }
 
 LongMatrix to_long(const RationalMatrix& m) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "judges/oracle.hpp"
+#include "judges/rational_traits.hpp"
 #include "support/hex.hpp"
 #include "support/random.hpp"
 #include "support/triangles.hpp"

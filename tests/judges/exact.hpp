@@ -23,53 +23,6 @@
 
 namespace support {
 
-// mantissa * 2^exponent.
-class Dyadic {
-public:
-    Dyadic() = default;
-    // Precondition: finite.
-    Dyadic(double value) {
-        if (value == 0.0) return;
-        mantissa_ = static_cast<std::int64_t>(std::ldexp(std::frexp(value, &exponent_), 53));
-        exponent_ -= 53;
-    }
-    Dyadic(Integer mantissa, int exponent) : mantissa_(std::move(mantissa)), exponent_(exponent) {}
-
-    int sign() const { return mantissa_.sign(); }
-    Rational rational() const { return Rational(mantissa_) * power_of_two(exponent_); }
-
-    // Within a few double ulp; infinity and zero beyond the range.
-    double estimate() const {
-        if (mantissa_.is_zero()) return 0.0;
-        const Integer size = boost::multiprecision::abs(mantissa_);
-        const int surplus = std::max(0, static_cast<int>(msb(size)) - 62);
-        const auto top = static_cast<double>(static_cast<std::int64_t>(size >> static_cast<unsigned>(surplus)));
-        return std::ldexp(mantissa_.sign() < 0 ? -top : top, exponent_ + surplus);
-    }
-
-    friend Dyadic operator-(Dyadic a) {
-        a.mantissa_.backend().negate();
-        return a;
-    }
-    friend Dyadic operator*(const Dyadic& a, const Dyadic& b) {
-        return {Integer(a.mantissa_ * b.mantissa_), a.exponent_ + b.exponent_};
-    }
-    friend Dyadic operator+(const Dyadic& a, const Dyadic& b) {
-        if (a.sign() == 0) return b;
-        if (b.sign() == 0) return a;
-        if (a.exponent_ < b.exponent_) return b + a;
-        return {Integer((a.mantissa_ << static_cast<unsigned>(a.exponent_ - b.exponent_)) + b.mantissa_), b.exponent_};
-    }
-    friend Dyadic operator-(const Dyadic& a, const Dyadic& b) { return a + -b; }
-    friend bool operator<(const Dyadic& a, const Dyadic& b) { return (a - b).sign() < 0; }
-    friend bool operator<=(const Dyadic& a, const Dyadic& b) { return (a - b).sign() <= 0; }
-    friend bool operator==(const Dyadic& a, const Dyadic& b) { return (a - b).sign() == 0; }
-
-private:
-    Integer mantissa_ = 0;
-    int exponent_ = 0;
-};
-
 inline Dyadic magnitude(const Dyadic& value) { return value.sign() < 0 ? -value : value; }
 
 // n/d: a coordinate and its q. It is asked about only where d > 0.
@@ -214,8 +167,7 @@ private:
     };
 
     Dyadic value(std::size_t k, std::int64_t x, std::int64_t y) const {
-        return planes_[k].x * Dyadic(Integer(2 * x + 1), -1) + planes_[k].y * Dyadic(Integer(2 * y + 1), -1) +
-               planes_[k].constant;
+        return planes_[k].x * Dyadic(2 * x + 1, -1) + planes_[k].y * Dyadic(2 * y + 1, -1) + planes_[k].constant;
     }
 
     std::array<Plane, 5> planes_;

@@ -1,6 +1,7 @@
 // The fast judge against the rational one and against the reference in rationals.
 
 #include "judges/exact.hpp"
+#include "judges/rational_traits.hpp"
 
 #include <doctest/doctest.h>
 

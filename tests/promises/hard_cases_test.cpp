@@ -14,6 +14,7 @@
 
 #include "judges/oracle.hpp"
 #include "judges/rational_matrix.hpp"
+#include "judges/rational_traits.hpp"
 #include "support/hex.hpp"
 #include "support/json.hpp"
 #include "support/random.hpp"
@@ -58,12 +59,8 @@ glm::dmat4 from_rows(const Json& json) {
 // "-3e/b" and "0", hexadecimal.
 Rational as_rational(const Json& json) {
     std::string text = json.text;
-    const bool negative = text.front() == '-';
-    if (negative) text.erase(0, 1);
-    const std::size_t slash = text.find('/');
-    const support::Integer numerator("0x" + text.substr(0, slash));
-    const support::Integer denominator(slash == std::string::npos ? "1" : "0x" + text.substr(slash + 1));
-    return Rational(negative ? support::Integer(-numerator) : numerator, denominator);
+    if (const std::size_t slash = text.find('/'); slash != std::string::npos) text.insert(slash + 1, "0x");
+    return Rational(text.insert(text.front() == '-' ? 1 : 0, "0x"));
 }
 
 const texgen::TextureRegion everywhere = texgen::atlas_tile({-1e300, -1e300}, {1e300, 1e300});

@@ -1,0 +1,143 @@
+#include "judges/numbers.hpp"
+
+#include <algorithm>
+#include <boost/multiprecision/cpp_int.hpp>
+#include <cmath>
+#include <ostream>
+#include <utility>
+
+#include "judges/oracle.hpp"
+
+namespace support {
+
+namespace {
+
+namespace multiprecision = boost::multiprecision;
+using Integer = multiprecision::number<multiprecision::cpp_int_backend<>, multiprecision::et_off>;
+using Fraction = multiprecision::number<multiprecision::cpp_rational_backend, multiprecision::et_off>;
+
+}  // namespace
+
+// ---- Rationals ------------------------------------------------------------------------------------------------------
+
+struct Rational::Value {
+    Fraction number;
+};
+
+Rational::Rational(Value value) : value_(std::make_shared<const Value>(std::move(value))) {}
+Rational::Rational(std::int64_t numerator, std::int64_t denominator)
+    : Rational(Value{Fraction(Integer(numerator), Integer(denominator))}) {}
+Rational::Rational(double value) : Rational(Dyadic(value).rational()) {}
+Rational::Rational(const std::string& text) : Rational(Value{Fraction(text)}) {}
+
+const Rational::Value& Rational::value() const {
+    static const Value zero;
+    return value_ ? *value_ : zero;
+}
+
+namespace {
+
+const Fraction& number(const Rational& a) { return a.value().number; }
+Rational rational(Fraction number) { return Rational(Rational::Value{std::move(number)}); }
+
+}  // namespace
+
+int Rational::sign() const { return value_ ? value_->number.sign() : 0; }
+
+Rational operator-(const Rational& a) { return rational(-number(a)); }
+Rational operator+(const Rational& a, const Rational& b) { return rational(number(a) + number(b)); }
+Rational operator-(const Rational& a, const Rational& b) { return rational(number(a) - number(b)); }
+Rational operator*(const Rational& a, const Rational& b) { return rational(number(a) * number(b)); }
+Rational operator/(const Rational& a, const Rational& b) { return rational(number(a) / number(b)); }
+std::strong_ordering operator<=>(const Rational& a, const Rational& b) { return number(a).compare(number(b)) <=> 0; }
+
+Rational power_of_two(int exponent) {
+    const Integer power = Integer(1) << static_cast<unsigned>(std::abs(exponent));
+    return rational(exponent < 0 ? Fraction(Integer(1), power) : Fraction(power));
+}
+
+int exponent_of(const Rational& value) {
+    const Integer n = abs(numerator(number(value)));
+    const Integer d = denominator(number(value));
+    const int guess = static_cast<int>(msb(n)) - static_cast<int>(msb(d));
+    const bool reached =
+        guess >= 0 ? n >= (d << static_cast<unsigned>(guess)) : (n << static_cast<unsigned>(-guess)) >= d;
+    return reached ? guess : guess - 1;
+}
+
+template <class Float>
+Float nearest(const Rational& value) {
+    if (value == 0) return Float(0);
+    const int ulp = ulp_exponent<Float>(value);
+    const Fraction scaled = abs(number(value)) * number(power_of_two(-ulp));
+    Integer quotient, remainder;
+    divide_qr(numerator(scaled), denominator(scaled), quotient, remainder);
+    const Integer twice = remainder * 2;
+    if (twice > denominator(scaled) || (twice == denominator(scaled) && bit_test(quotient, 0))) ++quotient;
+    const Float size = std::ldexp(static_cast<Float>(static_cast<std::uint64_t>(quotient)), ulp);
+    return value < 0 ? -size : size;
+}
+template float nearest(const Rational& value);
+template double nearest(const Rational& value);
+
+std::string numerator(const Rational& value) { return numerator(number(value)).str(); }
+std::string denominator(const Rational& value) { return denominator(number(value)).str(); }
+
+std::ostream& operator<<(std::ostream& stream, const Rational& value) { return stream << number(value); }
+
+// ---- Dyadic numbers -------------------------------------------------------------------------------------------------
+
+struct Dyadic::Mantissa {
+    Integer number;
+};
+
+Dyadic::Dyadic(Mantissa mantissa, int exponent)
+    : mantissa_(std::make_shared<const Mantissa>(std::move(mantissa))), exponent_(exponent) {}
+Dyadic::Dyadic(std::int64_t mantissa, int exponent) : Dyadic(Mantissa{mantissa}, exponent) {}
+Dyadic::Dyadic(double value) {
+    if (value == 0.0) return;
+    const double mantissa = std::ldexp(std::frexp(value, &exponent_), 53);
+    *this = Dyadic(static_cast<std::int64_t>(mantissa), exponent_ - 53);
+}
+
+int Dyadic::sign() const { return mantissa_ ? mantissa_->number.sign() : 0; }
+
+Rational Dyadic::rational() const {
+    if (!mantissa_) return {};
+    const Integer power = Integer(1) << static_cast<unsigned>(std::abs(exponent_));
+    return support::rational(exponent_ < 0 ? Fraction(mantissa_->number, power) : Fraction(mantissa_->number * power));
+}
+
+double Dyadic::estimate() const {
+    if (sign() == 0) return 0.0;
+    const Integer size = abs(mantissa_->number);
+    const int surplus = std::max(0, static_cast<int>(msb(size)) - 62);
+    const auto top = static_cast<double>(static_cast<std::int64_t>(size >> static_cast<unsigned>(surplus)));
+    return std::ldexp(sign() < 0 ? -top : top, exponent_ + surplus);
+}
+
+Dyadic operator-(const Dyadic& a) { return a.mantissa_ ? Dyadic({Integer(-a.mantissa_->number)}, a.exponent_) : a; }
+Dyadic operator*(const Dyadic& a, const Dyadic& b) {
+    if (!a.mantissa_ || !b.mantissa_) return {};
+    return Dyadic({Integer(a.mantissa_->number * b.mantissa_->number)}, a.exponent_ + b.exponent_);
+}
+Dyadic operator+(const Dyadic& a, const Dyadic& b) {
+    if (a.sign() == 0) return b;
+    if (b.sign() == 0) return a;
+    if (a.exponent_ < b.exponent_) return b + a;
+    Integer sum = a.mantissa_->number << static_cast<unsigned>(a.exponent_ - b.exponent_);
+    sum += b.mantissa_->number;
+    return Dyadic({std::move(sum)}, b.exponent_);
+}
+Dyadic operator-(const Dyadic& a, const Dyadic& b) {
+    if (a.sign() == 0) return -b;
+    if (b.sign() == 0) return a;
+    const int exponent = std::min(a.exponent_, b.exponent_);
+    Integer difference = a.mantissa_->number << static_cast<unsigned>(a.exponent_ - exponent);
+    difference -= b.exponent_ == exponent
+                      ? b.mantissa_->number
+                      : Integer(b.mantissa_->number << static_cast<unsigned>(b.exponent_ - exponent));
+    return Dyadic({std::move(difference)}, exponent);
+}
+
+}  // namespace support
