@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <boost/multiprecision/cpp_int.hpp>
 #include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <new>
 #include <ostream>
 #include <utility>
 
@@ -12,9 +15,42 @@ namespace support {
 
 namespace {
 
+// Numbers come and go by the million: their memory is used again, in blocks of 64 bytes, and never given back.
+struct FreeBlock {
+    FreeBlock* next;
+};
+FreeBlock* free_blocks[16] = {};  // of so many times 64 bytes
+
+template <class Type>
+struct Pool {
+    using value_type = Type;
+
+    Pool() = default;
+    template <class Other>
+    Pool(const Pool<Other>&) {}
+
+    static std::size_t blocks(std::size_t count) { return (count * sizeof(Type) + 63) / 64; }
+    Type* allocate(std::size_t count) {
+        const std::size_t size = blocks(count);
+        if (size >= std::size(free_blocks) || free_blocks[size] == nullptr)
+            return static_cast<Type*>(::operator new(64 * size));
+        return static_cast<Type*>(static_cast<void*>(std::exchange(free_blocks[size], free_blocks[size]->next)));
+    }
+    void deallocate(Type* memory, std::size_t count) {
+        const std::size_t size = blocks(count);
+        if (size >= std::size(free_blocks))
+            ::operator delete(memory);
+        else
+            free_blocks[size] = new (memory) FreeBlock{free_blocks[size]};
+    }
+    friend bool operator==(const Pool&, const Pool&) { return true; }
+};
+
 namespace multiprecision = boost::multiprecision;
-using Integer = multiprecision::number<multiprecision::cpp_int_backend<>, multiprecision::et_off>;
-using Fraction = multiprecision::number<multiprecision::cpp_rational_backend, multiprecision::et_off>;
+using Backend = multiprecision::cpp_int_backend<0, 0, multiprecision::signed_magnitude, multiprecision::unchecked,
+                                                Pool<multiprecision::limb_type>>;
+using Integer = multiprecision::number<Backend, multiprecision::et_off>;
+using Fraction = multiprecision::number<multiprecision::rational_adaptor<Backend>, multiprecision::et_off>;
 
 }  // namespace
 
@@ -24,7 +60,7 @@ struct Rational::Value {
     Fraction number;
 };
 
-Rational::Rational(Value value) : value_(std::make_shared<const Value>(std::move(value))) {}
+Rational::Rational(Value value) : value_(std::allocate_shared<const Value>(Pool<Value>(), std::move(value))) {}
 Rational::Rational(std::int64_t numerator, std::int64_t denominator)
     : Rational(Value{Fraction(Integer(numerator), Integer(denominator))}) {}
 Rational::Rational(double value) : Rational(Dyadic(value).rational()) {}
@@ -92,7 +128,7 @@ struct Dyadic::Mantissa {
 };
 
 Dyadic::Dyadic(Mantissa mantissa, int exponent)
-    : mantissa_(std::make_shared<const Mantissa>(std::move(mantissa))), exponent_(exponent) {}
+    : mantissa_(std::allocate_shared<const Mantissa>(Pool<Mantissa>(), std::move(mantissa))), exponent_(exponent) {}
 Dyadic::Dyadic(std::int64_t mantissa, int exponent) : Dyadic(Mantissa{mantissa}, exponent) {}
 Dyadic::Dyadic(double value) {
     if (value == 0.0) return;
