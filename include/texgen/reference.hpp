@@ -38,9 +38,9 @@ using Vector4 = Eigen::Matrix<Scalar, 4, 1>;
 // Source: OpenGL 2.1 specification, 3.5.1; Heckbert and Moreton, Interpolation for Polygon Texture Mapping and Shading.
 template <class Scalar>
 Vector4<Scalar> strq(const Triangle& triangle, Scalar window_x, Scalar window_y) {
-    const detail::Corners<Scalar> corners(triangle);
-    const Vector3<Scalar> weights = corners.weights(window_x, window_y);
-    const Vector4<Scalar> sum = weights[0] * corners.a.strq + weights[1] * corners.b.strq + weights[2] * corners.c.strq;
+    const detail::WindowTriangle<Scalar> t(triangle);
+    const Vector3<Scalar> weights = t.weights(window_x, window_y);
+    const Vector4<Scalar> sum = weights[0] * t.a.strq + weights[1] * t.b.strq + weights[2] * t.c.strq;
     return sum / Scalar(weights[0] + weights[1] + weights[2]);
 }
 
@@ -88,10 +88,10 @@ Vector3<Scalar> wrong_divide_then_interpolate(const Vector4<Scalar>& a, const Ve
 // in the camera's w). The wrong one. For pictures and tests only; preconditions as strq().
 template <class Scalar>
 Vector3<Scalar> wrong_divide_then_interpolate(const Triangle& triangle, Scalar window_x, Scalar window_y) {
-    const detail::Corners<Scalar> corners(triangle);
-    const Vector3<Scalar> weights = corners.weights(window_x, window_y);
-    const Vector3<Scalar> sum = weights[0] * quotient(corners.a.strq) + weights[1] * quotient(corners.b.strq) +
-                                weights[2] * quotient(corners.c.strq);
+    const detail::WindowTriangle<Scalar> t(triangle);
+    const Vector3<Scalar> weights = t.weights(window_x, window_y);
+    const Vector3<Scalar> sum =
+        weights[0] * quotient(t.a.strq) + weights[1] * quotient(t.b.strq) + weights[2] * quotient(t.c.strq);
     return sum / Scalar(weights[0] + weights[1] + weights[2]);
 }
 
@@ -117,13 +117,13 @@ inline void interpolate(const Triangle& triangle, TextureRegion region, Fragment
         TEXGEN_ASSERT(span.empty() || span.size() == width * height);
 
     const std::optional<glm::dvec2> depth = region.depth();
-    const detail::Corners<double> corners(triangle);
+    const detail::WindowTriangle<double> vertices(triangle);
     for (std::size_t row = 0; row < height; ++row) {
         const double y = rect.y + static_cast<double>(row) + 0.5;  // integers
         for (std::size_t column = 0; column < width; ++column) {
             const double x = rect.x + static_cast<double>(column) + 0.5;  // integers
-            const Vector3<double> k = corners.weights(x, y);
-            const Vector4<double> strq = k[0] * corners.a.strq + k[1] * corners.b.strq + k[2] * corners.c.strq;
+            const Vector3<double> k = vertices.weights(x, y);
+            const Vector4<double> strq = k[0] * vertices.a.strq + k[1] * vertices.b.strq + k[2] * vertices.c.strq;
             const bool in_front = strq[3] > 0.0;
             const auto divided = [&](int i) { return in_front ? static_cast<float>(strq[i] / strq[3]) : 0.0f; };
             const auto s = detail::exactly<double>(divided(0));

@@ -170,9 +170,9 @@ void orient(const Json& json) {
     };
     const Triangle triangle{vertex(0), vertex(1), vertex(2)};
     const int sign = static_cast<int>(json["sign"].number());
-    const reference::detail::Corner<Rational> a(triangle.a), b(triangle.b), p(triangle.c);
+    const reference::detail::Vertex<Rational> a(triangle.a), b(triangle.b), p(triangle.c);
     CHECK(reference::detail::edge(a, b, p.x, p.y) == as_rational(json["exact_hex_rational"]));
-    if (sign != 0) CHECK(reference::detail::Corners<Rational>(triangle).side == sign);
+    if (sign != 0) CHECK(reference::detail::WindowTriangle<Rational>(triangle).side == sign);
     CHECK(texgen::TriangleSetup::of(triangle, texgen::whole_texture()).has_value() == (sign != 0));
 }
 

@@ -47,11 +47,11 @@ inline double cross(double ax, double ay, double bx, double by) noexcept {
 }
 
 template <class Scalar>
-struct Corner {
+struct Vertex {
     Scalar x, y, w;
     Eigen::Matrix<Scalar, 4, 1> strq;
 
-    explicit Corner(const WindowVertex& vertex)
+    explicit Vertex(const WindowVertex& vertex)
         : x(exactly<Scalar>(vertex.window.x)),
           y(exactly<Scalar>(vertex.window.y)),
           w(exactly<Scalar>(vertex.clip_w)),
@@ -60,16 +60,16 @@ struct Corner {
 
 // Twice the signed area of the triangle (from, to, point).
 template <class Scalar>
-Scalar edge(const Corner<Scalar>& from, const Corner<Scalar>& to, const Scalar& x, const Scalar& y) {
+Scalar edge(const Vertex<Scalar>& from, const Vertex<Scalar>& to, const Scalar& x, const Scalar& y) {
     return cross(Scalar(from.x - x), Scalar(from.y - y), Scalar(to.x - x), Scalar(to.y - y));
 }
 
 template <class Scalar>
-struct Corners {
-    Corner<Scalar> a, b, c;
+struct WindowTriangle {
+    Vertex<Scalar> a, b, c;
     Scalar side;  // 1, or -1 for a triangle that is seen from behind
 
-    explicit Corners(const Triangle& triangle) : a(triangle.a), b(triangle.b), c(triangle.c), side(0) {
+    explicit WindowTriangle(const Triangle& triangle) : a(triangle.a), b(triangle.b), c(triangle.c), side(0) {
         const Scalar area = edge(a, b, c.x, c.y), zero(0);
         side = Scalar(area > zero ? 1 : area < zero ? -1 : 0);
         TEXGEN_ASSERT(side != zero && a.w > zero && b.w > zero && c.w > zero);
