@@ -4,10 +4,8 @@
 
 #include "detail/language.hpp"
 
-#include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <span>
 
 #include "conventions.hpp"

@@ -122,45 +122,23 @@ inline bool all_less(const Double2& a, const Double2& b, const Double2& c, const
 #define TEXGEN_APART [[gnu::noinline]]            // what is rare, so that it costs the rest no registers
 #define TEXGEN_RARE [[gnu::noinline, gnu::cold]]  // what only ties need, so that it costs the rest no room
 
-// GCC keeps a loop over an array of vectors, and so the array in memory, below -O3.
+// What the compilers have different words for: a loop over an array of vectors, which GCC keeps, and so the array in memory,
+// below -O3; eight or four doubles of floats, of which GCC 12 converts eight the generic way in two halves; all of sixteen
+// lanes, of which a mask has a sign to GCC; a masked or, of 512 bits two instructions to GCC 12; and which of sixteen lanes of a
+// mask have any of these bits.
 #ifdef __clang__
 #define TEXGEN_UNROLL
-#else
-#define TEXGEN_UNROLL _Pragma("GCC unroll 32")
-#endif
-
-// GCC 12 converts eight floats the generic way in two halves.
-#ifdef __clang__
 #define TEXGEN_EIGHT_DOUBLES(values) __builtin_convertvector(values, Doubles)
-#else
-#define TEXGEN_EIGHT_DOUBLES(values) __builtin_ia32_cvtps2pd512_mask(values, Doubles{}, static_cast<char>(-1), 4)
-#endif
-
-// As four floats.
-#ifdef __clang__
 #define TEXGEN_FOUR_DOUBLES(values) __builtin_convertvector(values, Double4)
-#else
-#define TEXGEN_FOUR_DOUBLES(values) __builtin_ia32_cvtps2pd256(values)
-#endif
-
-// All of sixteen lanes: a mask has a sign to GCC.
-#ifdef __clang__
 #define TEXGEN_SIXTEEN_LANES 0xffff
-#else
-#define TEXGEN_SIXTEEN_LANES (-1)
-#endif
-
-// Of 512 bits GCC 12 makes two instructions.
-#ifdef __clang__
 #define TEXGEN_MASKED_OR(a, bits, b) (((a) & (bits)) | (b))
-#else
-#define TEXGEN_MASKED_OR(a, bits, b) __builtin_ia32_pternlogq512_mask(a, bits, b, 0xea, 0xff)
-#endif
-
-// Which of sixteen lanes of a mask have any of these bits.
-#ifdef __clang__
 #define TEXGEN_ANY_BITS(a, bits, mask) __builtin_ia32_cmpd512_mask((a) & (bits), WideWords{}, 4, mask)
 #else
+#define TEXGEN_UNROLL _Pragma("GCC unroll 32")
+#define TEXGEN_EIGHT_DOUBLES(values) __builtin_ia32_cvtps2pd512_mask(values, Doubles{}, static_cast<char>(-1), 4)
+#define TEXGEN_FOUR_DOUBLES(values) __builtin_ia32_cvtps2pd256(values)
+#define TEXGEN_SIXTEEN_LANES (-1)
+#define TEXGEN_MASKED_OR(a, bits, b) __builtin_ia32_pternlogq512_mask(a, bits, b, 0xea, 0xff)
 #define TEXGEN_ANY_BITS(a, bits, mask) __builtin_ia32_ptestmd512(a, bits, mask)
 #endif
 
