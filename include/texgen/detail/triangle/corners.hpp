@@ -93,7 +93,7 @@ struct Corners {
 
     // The largest |F/Q| of a tile in front. Where Q varies little the quotient of the bounds will do; else the corners have
     // it, u = F/Q being monotone along every line.
-    Double2 largest_quotient() const noexcept {
+    TEXGEN_APART Double2 largest_quotient() const noexcept {
         if (largest_q < 1.25 * least_q) return (largest_numerator + numerator_error) * reciprocal;
         Double2 size[4];
         TEXGEN_UNROLL

@@ -71,7 +71,9 @@ public:
 private:
     TEXGEN_APART void fill(const Tile& tile, int longest = longest_chunk) noexcept {
         const Corners at = corners_at(tile);
-        if (triangle_.tolerance == 0.0) return fill_exact(tile, at);
+        // Of what floats round by more than the tolerance no chunk is served.
+        const Double2 rounded = at.largest_quotient() * unit_roundoff_float;
+        if (!(larger(rounded[0], rounded[1]) < triangle_.tolerance)) return fill_exact(tile, at);
         Plan plan = plan_without_survey(tile, at);
         if (plan.chunk > longest) plan.chunk = 0;
         fill(tile, at, plan);
@@ -160,7 +162,7 @@ private:
         for (std::size_t k = 0; k < 2; ++k) job.quotient_error[k] = error[k];
         // A small tile does not repay the search for its least quotient.
         job.ulps = tile.count() < 1024 ? 0 : at.ulps_of_quotients();
-        const TileJob::Unit unit = detail::fill_exact(kernels_, job, job.unit_at(0, 0));
+        const TileJob::Unit unit = detail::fill_exact(kernels_, job, job.unit_at(0, 0), 16 * TileJob::unit_size);
         if (!job.is_done(unit)) fill_from_doubt(tile, at, job, unit);
     }
 
@@ -170,12 +172,12 @@ private:
         // What residues decide of a few fragments they decide sooner than their quotients are seen to be exact.
         if (is_constant(functions.function[CloseFunctions::q].high) && sharpen(tile, functions) &&
             tile.width + tile.height > 4 && take_exact_quotients(functions, job))
-            unit = detail::fill_exact(kernels_, job, unit);
+            unit = detail::fill_exact(kernels_, job, unit, TileJob::unit_size);
         // Doubt has company: twice as many units after each failure that follows another, and some after one of nothing else.
         for (int many = 1; !job.is_done(unit);) {
             for (int i = 0; i < many && !job.is_done(unit); ++i, unit = job.unit_after(unit))
                 if (fill_closely(tile, job, functions, unit)) many = many < 4 ? 4 : many;
-            const TileJob::Unit next = detail::fill_exact(kernels_, job, unit);
+            const TileJob::Unit next = detail::fill_exact(kernels_, job, unit, TileJob::unit_size);
             many = next.x_begin == unit.x_begin && next.y_begin == unit.y_begin ? 2 * many : 1;
             unit = next;
         }
@@ -224,9 +226,12 @@ private:
     // In shorter chunks, or by divisions. Below what is refused of a row the same will be; then no vector may be written beyond its row.
     TEXGEN_APART void fill_refused(const Tile& tile, TileJob& job, const TileJob::Unit& refused) noexcept {
         Tile rest = part_of(tile, refused);
-        if (rest.width < tile.width && job.filled.x_end == 0) {
+        const bool touches = refused.x_begin == job.filled.x_end || refused.x_end == job.filled.x_begin;
+        if (rest.width < tile.width && (job.filled.x_end == 0 || touches)) {
             rest.height = tile.height - refused.y_begin;
-            job.filled = refused;
+            job.filled.x_begin =
+                job.filled.x_end == 0 ? refused.x_begin : std::min(refused.x_begin, job.filled.x_begin);
+            job.filled.x_end = std::max(refused.x_end, job.filled.x_end);
             job.is_contiguous = false;
         }
         fill(rest, job.chunk - 1);

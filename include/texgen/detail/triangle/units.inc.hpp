@@ -3,22 +3,20 @@
 namespace TEXGEN_DETAIL {
 inline namespace TEXGEN_BUILD {
 
-// Does the units from `first` on up to the first one that is in doubt. Where none is, more and more of them are done at once, and
-// what is in doubt then is done again by less; or all are done in pairs, but those that are in doubt then.
-inline TileJob::Unit fill_exact(const TileKernels& kernels, const TileJob& job, TileJob::Unit first) noexcept {
-    constexpr int most = 16 * TileJob::unit_size;
-    TileJob::Unit unit = first;
+// Does the units from the given one on up to the first that is in doubt. Where none is, more and more of them are done at once, `most`
+// fragments at most, and one by one after what is in doubt then; or all in pairs, but those that are in doubt then.
+inline TileJob::Unit fill_exact(const TileKernels& kernels, const TileJob& job, TileJob::Unit unit, int most) noexcept {
     for (int size = TileJob::unit_size; !job.is_done(unit);) {
         if (job.ulps != 0 && unit.x_end - unit.x_begin >= TileJob::longest_pair) {
             unit = kernels.divide_in_pairs(job, unit);
             if (job.is_done(unit)) return unit;
         }
         if (!kernels.divide(job, unit)) {
-            size = job.ulps != 0 ? size : size < most ? 2 * size : most;
+            if (job.ulps == 0 && size < most) size *= 2;
             unit = job.unit_after(unit, size);
         } else {
             if (size == TileJob::unit_size) return unit;
-            size = TileJob::unit_size;
+            most = size = TileJob::unit_size;
             unit = job.unit_at(unit.x_begin, unit.y_begin);
         }
     }
