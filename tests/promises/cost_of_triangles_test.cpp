@@ -116,6 +116,24 @@ TEST_CASE("a triangle that the near plane cuts costs at most 16 times the ordina
     }
 }
 
+TEST_CASE("a tolerance finer than the floats of a tile costs at most three times what exact does") {
+    Random random(73);
+    const Tolerance fine = dial[1];
+    for (const auto& [width, height] : {std::array{64, 4}, std::array{65, 16}, std::array{200, 16}}) {
+        for (int i = 0; i < 60; ++i) {
+            Shot shot{support::make_triangle(support::Family::friendly, random), {300, 300, width, height}};
+            // A repeated slide, far from where it begins.
+            for (WindowVertex* corner : support::vertices(shot.triangle)) {
+                corner->strq.x += corner->strq.w * random.uniform_float(1e2, 1e5);
+                corner->strq.y += corner->strq.w * random.uniform_float(-1e4, 1e4);
+            }
+            const double ratio =
+                support::worst_over_ordinary_within(3.0, Workload(shot, texgen::exact), Workload(shot, fine));
+            REQUIRE_MESSAGE(ratio <= 3.0, ratio, " times in ", hex(shot));
+        }
+    }
+}
+
 TEST_CASE("a triangle whose cut corner comes first costs what it costs with the other corners first") {
     const Triangle cut{{{-544164.188f, 27988.3828f}, 0.1f, {-68.9127731f, -22.6434841f, -10.0570049f, -24.988451f}},
                        {{810.03656f, 428.25708f}, 97.3841324f, {82.398613f, 24.5005531f, 16.0539932f, 30.6767712f}},
