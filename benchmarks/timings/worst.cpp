@@ -56,7 +56,7 @@ void add_rows(const Workload& workload, const std::vector<support::RecordedInput
 
 void add_near_cuts(const Workload& workload, std::vector<Row>& rows) {
     constexpr int triangles = 240;
-    const support::NearCutTimes times = support::race_near_cuts(workload.calls, triangles);
+    const support::NearCutTimes times = support::race_near_cuts(workload, triangles);
     const auto add = [&](const std::string& input, const support::Slowness& slowness, double limit) {
         rows.push_back({workload.function, input, slowness.ordinary, slowness.hostile, limit});
     };

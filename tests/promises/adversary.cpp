@@ -1035,7 +1035,7 @@ bool is_above_limit(const support::Workload& workload, const support::SlowInput&
 
 bool near_cuts_keep_limits(const support::Workload& workload) {
     for (int attempt = 0;; ++attempt) {
-        const support::NearCutTimes times = support::race_near_cuts(workload.calls, 40);
+        const support::NearCutTimes times = support::race_near_cuts(workload, 40);
         const bool kept = times.slowest.ratio() <= support::limit::near_plane &&
                           times.of_99_in_100.ratio() <= support::limit::near_plane_99_of_100 &&
                           times.rotation.ratio() <= support::limit::rotation;
