@@ -166,20 +166,18 @@ TEXGEN_APART inline Corners corners_of(const TrianglePlanes& planes, const Plane
 
 // Each coefficient is rounded to double; its product with an index, which is less than the width or the height, and two sums are
 // rounded once each.
-TEXGEN_RARE inline Corners corners_of(const CloseRamps& close) noexcept {
+TEXGEN_RARE inline void take_corners(Corners& corners, const CloseRamps& close) noexcept {
     const auto& [s, t, q] = close.function;
     const auto high = [](const DoubleDouble& of_s, const DoubleDouble& of_t) {
         return double2_of(of_s.high, of_t.high);
     };
     const Tile last{0, 0, close.tile.width - 1, close.tile.height - 1};
     const auto error = [&last](const CloseRamp& ramp) { return ramp.error + gamma(4) * ramp.size_over(last); };
-    Corners corners;
     corners.numerator_ramp = {high(s.term[0], t.term[0]), high(s.term[1], t.term[1]), high(s.term[2], t.term[2])};
     corners.q_ramp = {q.term[0].high, q.term[1].high, q.term[2].high};
     corners.numerator_error = double2_of(error(s), error(t));
     corners.q_error = error(q);
     take_corners(corners, close.tile);
-    return corners;
 }
 
 // The planes of these corners, as they are.

@@ -33,7 +33,9 @@ private:
     // Of q alone.
     Corners corners_at(const Tile& tile) noexcept {
         const CloseRamp q = close_q().moved_to(tile.x, tile.y);
-        return corners_of(CloseRamps{tile, {q, q, q}});
+        Corners at;
+        take_corners(at, CloseRamps{tile, {q, q, q}});
+        return at;
     }
 
     const ClosePlane& close_q() noexcept {

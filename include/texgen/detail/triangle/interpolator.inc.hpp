@@ -35,8 +35,9 @@ public:
     }
 
     TEXGEN_APART Corners corners_at(const Tile& tile) noexcept {
-        const Corners at = corners_of(triangle_.planes, *planes_, triangle_.q, tile);
-        return at.all_behind() || !at.cancel() ? at : corners_of(close_ramps(tile));
+        Corners at = corners_of(triangle_.planes, *planes_, triangle_.q, tile);
+        if (!at.all_behind() && at.cancel()) take_corners(at, close_ramps(tile));
+        return at;
     }
 
     void interpolate(const Tile& tile, const Plan* plan) noexcept {
@@ -154,7 +155,8 @@ private:
         }
     }
 
-    void fill_exact(const Tile& tile, const Corners& at) noexcept {
+    // All, or from a unit on.
+    TEXGEN_APART void fill_exact(const Tile& tile, const Corners& at, const TileJob::Unit* from = nullptr) noexcept {
         if (!at.has_one_error()) return split(tile, at);
         TileJob job = make_job(tile, at);
         const Double2 error = at.quotient_error(at.largest_quotient());
@@ -162,7 +164,8 @@ private:
         for (std::size_t k = 0; k < 2; ++k) job.quotient_error[k] = error[k];
         // A small tile does not repay the search for its least quotient.
         job.ulps = tile.count() < 1024 ? 0 : at.ulps_of_quotients();
-        const TileJob::Unit unit = detail::fill_exact(kernels_, job, job.unit_at(0, 0), 16 * TileJob::unit_size);
+        const TileJob::Unit first = from == nullptr ? job.unit_at(0, 0) : *from;
+        const TileJob::Unit unit = detail::fill_exact(kernels_, job, first, 16 * TileJob::unit_size);
         if (!job.is_done(unit)) fill_from_doubt(tile, at, job, unit);
     }
 
@@ -175,8 +178,16 @@ private:
             unit = detail::fill_exact(kernels_, job, unit, TileJob::unit_size);
         // Doubt has company: twice as many units after each failure that follows another, and some after one of nothing else.
         for (int many = 1; !job.is_done(unit);) {
+            const bool were_close = functions.are_close;
             for (int i = 0; i < many && !job.is_done(unit); ++i, unit = job.unit_after(unit))
                 if (fill_closely(tile, job, functions, unit)) many = many < 4 ? 4 : many;
+            if (job.is_done(unit)) return;
+            // What two doubles are rounded to errs by less than the planes.
+            if (functions.are_close && !were_close) {
+                Corners closer;
+                take_corners(closer, close_ramps(tile));
+                return fill_exact(tile, closer, &unit);
+            }
             const TileJob::Unit next = detail::fill_exact(kernels_, job, unit, TileJob::unit_size);
             many = next.x_begin == unit.x_begin && next.y_begin == unit.y_begin ? 2 * many : 1;
             unit = next;

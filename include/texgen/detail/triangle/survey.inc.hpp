@@ -113,7 +113,7 @@ inline TileSurvey survey(const TriangleFunctions& triangle, const Tile& tile) no
         choose_plan(triangle, tile, found.at, found.plan);
         if (found.close || found.plan.work == Work::nothing || !found.at.cancel()) return found;
         found.close.make(ClosePlanes(triangle.planes, tile).ramps(0, 1));
-        found.at = corners_of(*found.close);
+        take_corners(found.at, *found.close);
     }
 }
 
