@@ -60,10 +60,7 @@ enum Output : std::size_t { dsdx, dtdx, dsdy, dtdy, level, anisotropy, major_s, 
 struct ExactFootprint {
     Real dx[2], dy[2];
 
-    static Real real(const Dyadic& value) {
-        const support::Rational rational = value.rational();
-        return Real(numerator(rational)) / Real(denominator(rational));
-    }
+    static Real real(const Dyadic& value) { return Real(value.rational()); }
 
     // S, T and Q are affine, so differences of neighbours are their slopes exactly.
     ExactFootprint(const ExactTriangle& exact, std::int64_t x, std::int64_t y) {

@@ -1,6 +1,7 @@
 #include "judges/numbers.hpp"
 
 #include <algorithm>
+#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/multiprecision/cpp_int.hpp>
 #include <cmath>
 #include <cstddef>
@@ -116,9 +117,6 @@ Float nearest(const Rational& value) {
 template float nearest(const Rational& value);
 template double nearest(const Rational& value);
 
-std::string numerator(const Rational& value) { return numerator(number(value)).str(); }
-std::string denominator(const Rational& value) { return denominator(number(value)).str(); }
-
 std::ostream& operator<<(std::ostream& stream, const Rational& value) { return stream << number(value); }
 
 // ---- Dyadic numbers -------------------------------------------------------------------------------------------------
@@ -175,5 +173,44 @@ Dyadic operator-(const Dyadic& a, const Dyadic& b) {
                       : Integer(b.mantissa_->number << static_cast<unsigned>(b.exponent_ - exponent));
     return Dyadic({std::move(difference)}, exponent);
 }
+
+// ---- Reals ----------------------------------------------------------------------------------------------------------
+
+struct Real::Value {
+    multiprecision::number<multiprecision::cpp_bin_float<400, multiprecision::digit_base_2>, multiprecision::et_off>
+        number;
+};
+
+Real::Real(Value value) : value_(std::allocate_shared<const Value>(Pool<Value>(), std::move(value))) {}
+Real::Real(double value) : Real(Value{value}) {}
+Real::Real(const Rational& value)
+    : Real(Value{decltype(Value::number)(numerator(support::number(value)).str()) /
+                 decltype(Value::number)(denominator(support::number(value)).str())}) {}
+Real::operator double() const { return static_cast<double>(value().number); }
+
+const Real::Value& Real::value() const {
+    static const Value zero;
+    return value_ ? *value_ : zero;
+}
+
+Real operator-(const Real& a) { return Real(Real::Value{-a.value().number}); }
+Real operator+(const Real& a, const Real& b) { return Real(Real::Value{a.value().number + b.value().number}); }
+Real operator-(const Real& a, const Real& b) { return Real(Real::Value{a.value().number - b.value().number}); }
+Real operator*(const Real& a, const Real& b) { return Real(Real::Value{a.value().number * b.value().number}); }
+Real operator/(const Real& a, const Real& b) { return Real(Real::Value{a.value().number / b.value().number}); }
+std::partial_ordering operator<=>(const Real& a, const Real& b) {
+    const auto &x = a.value().number, &y = b.value().number;
+    return x < y    ? std::partial_ordering::less
+           : x > y  ? std::partial_ordering::greater
+           : x == y ? std::partial_ordering::equivalent
+                    : std::partial_ordering::unordered;
+}
+
+Real abs(const Real& a) { return Real(Real::Value{abs(a.value().number)}); }
+Real sqrt(const Real& a) { return Real(Real::Value{sqrt(a.value().number)}); }
+Real tan(const Real& a) { return Real(Real::Value{tan(a.value().number)}); }
+Real atan(const Real& a) { return Real(Real::Value{atan(a.value().number)}); }
+Real log(const Real& a) { return Real(Real::Value{log(a.value().number)}); }
+Real ldexp(const Real& a, int exponent) { return Real(Real::Value{ldexp(a.value().number, exponent)}); }
 
 }  // namespace support

@@ -61,8 +61,6 @@ template <class Float>
 Float nearest(const Rational& value);
 
 // In decimal digits.
-std::string numerator(const Rational& value);
-std::string denominator(const Rational& value);
 std::ostream& operator<<(std::ostream& stream, const Rational& value);
 
 // mantissa * 2^exponent: sums and products of floats, which are not reduced at every step as rationals are.
@@ -92,6 +90,39 @@ private:
 
     std::shared_ptr<const Mantissa> mantissa_;  // none is 0
     int exponent_ = 0;
+};
+
+// Of 400 bits, where a root or a tangent enters: its own error never shows in a double.
+class Real {
+public:
+    Real() = default;
+    Real(double value);
+    explicit Real(const Rational& value);
+    explicit operator double() const;
+
+    friend Real operator-(const Real& a);
+    friend Real operator+(const Real& a, const Real& b);
+    friend Real operator-(const Real& a, const Real& b);
+    friend Real operator*(const Real& a, const Real& b);
+    friend Real operator/(const Real& a, const Real& b);
+    friend std::partial_ordering operator<=>(const Real& a, const Real& b);
+    friend bool operator==(const Real& a, const Real& b) { return (a <=> b) == 0; }
+
+    Real& operator+=(const Real& b) { return *this = *this + b; }
+
+    friend Real abs(const Real& a);
+    friend Real sqrt(const Real& a);
+    friend Real tan(const Real& a);
+    friend Real atan(const Real& a);
+    friend Real log(const Real& a);
+    friend Real ldexp(const Real& a, int exponent);
+
+private:
+    struct Value;
+    explicit Real(Value value);
+    const Value& value() const;
+
+    std::shared_ptr<const Value> value_;  // none is 0
 };
 
 }  // namespace support

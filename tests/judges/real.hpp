@@ -1,8 +1,6 @@
 #pragma once
 
-// The judge where a root or a tangent enters: 400 bits, so that its own error never shows in a double.
-
-#include <boost/multiprecision/cpp_bin_float.hpp>
+// The judge where a root or a tangent enters: vectors and matrices of reals.
 
 #include <array>
 #include <cmath>
@@ -10,11 +8,9 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
-namespace support {
+#include "judges/numbers.hpp"
 
-using Real =
-    boost::multiprecision::number<boost::multiprecision::cpp_bin_float<400, boost::multiprecision::digit_base_2>,
-                                  boost::multiprecision::et_off>;
+namespace support {
 
 using RealVector = std::array<Real, 3>;
 using RealMatrix = std::array<std::array<Real, 4>, 4>;  // [row][column]
