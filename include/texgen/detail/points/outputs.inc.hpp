@@ -68,8 +68,9 @@ void for_each_group(const Texcoords& out, std::size_t count, const LitTest& regi
         group(2, 1, PointOutputs{{r}, darkened, nullptr, region.r_min(), region.r_max()});
 }
 
-// What one job does: `count` points or values, padded to `whole`, a multiple of point_quantum; the results belong at `first`.
-struct Batch {
+// The part of the points or values that one job does: `count`, padded to `whole`, a multiple of point_quantum; the results belong
+// at `first`.
+struct JobPart {
     std::size_t first, count, whole;
 };
 
@@ -78,57 +79,57 @@ inline constexpr std::size_t copy_size = float_block;
 
 inline namespace TEXGEN_BUILD {
 
-// Runs a job for the r of a batch, and takes the light where that is beyond the depth. A part that is dark already needs none.
+// Runs a job for the r of a part, and takes the light where that is beyond the depth. What is dark already needs none.
 template <class Job, class Run>
-void darken_batch(Job job, const PointOutputs& out, const Batch& batch, const Run& run) noexcept {
+void darken_part(Job job, const PointOutputs& out, const JobPart& part, const Run& run) noexcept {
     constexpr std::size_t size = 4 * copy_size;
-    const auto [first, count, whole] = batch;
+    const auto [first, count, whole] = part;
     float buffer[size];
     job.lit = nullptr;
     for (std::size_t begin = 0; begin < count; begin += size, job.advance(job.count)) {
         job.count = whole - begin < size ? whole - begin : size;
-        const std::size_t part = count - begin < job.count ? count - begin : job.count;
+        const std::size_t here = count - begin < job.count ? count - begin : job.count;
         float* const lit = out.lit + first + begin;
         float* const r = out.coordinate[0] != nullptr ? out.coordinate[0] + first + begin : nullptr;
         bool is_needed = r != nullptr;
-        for (std::size_t i = 0; i < part && !is_needed; ++i) is_needed = lit[i] > 0.0f;
+        for (std::size_t i = 0; i < here && !is_needed; ++i) is_needed = lit[i] > 0.0f;
         if (!is_needed) continue;
-        job.out[0] = r != nullptr && part == job.count ? r : buffer;
+        job.out[0] = r != nullptr && here == job.count ? r : buffer;
         run(job);
-        chosen<MaskKernels>().darken(lit, job.out[0], part, out.r_min, out.r_max);
-        if (r != nullptr && job.out[0] == buffer) std::memcpy(r, buffer, part * sizeof(float));
+        chosen<MaskKernels>().darken(lit, job.out[0], here, out.r_min, out.r_max);
+        if (r != nullptr && job.out[0] == buffer) std::memcpy(r, buffer, here * sizeof(float));
     }
 }
 
-// Where the results of a batch go, if all have a place of their own. The job is changed in place: copies of what has just been
+// Where the results of a part go, if all have a place of their own. The job is changed in place: copies of what has just been
 // written, in other sizes, wait for it.
 template <class Job>
-TEXGEN_INLINE bool is_placed(Job& job, const PointOutputs& out, const Batch& batch) noexcept {
-    if (batch.count != batch.whole || !out.are_complete(job.numerators)) return false;
+TEXGEN_INLINE bool is_placed(Job& job, const PointOutputs& out, const JobPart& part) noexcept {
+    if (part.count != part.whole || !out.are_complete(job.numerators)) return false;
     if (job.numerators == 1 && out.lit != nullptr) return false;
-    job.count = batch.count;
+    job.count = part.count;
     job.interleaved_st = out.st != nullptr;
     for (int k = 0; k < job.numerators; ++k)
-        job.out[k] = job.interleaved_st ? out.st + 2 * batch.first : out.coordinate[k] + batch.first;
-    job.lit = out.lit != nullptr ? out.lit + batch.first : nullptr;
+        job.out[k] = job.interleaved_st ? out.st + 2 * part.first : out.coordinate[k] + part.first;
+    job.lit = out.lit != nullptr ? out.lit + part.first : nullptr;
     return true;
 }
 
-// Runs a job for a batch. What has no place of its own goes through buffers.
+// Runs a job for a part. What has no place of its own goes through buffers.
 template <class Job, class Run>
-void run_batch(Job& job, const PointOutputs& out, const Batch& batch, const Run& run) noexcept {
-    if (job.numerators == 1 && out.lit != nullptr) return darken_batch(job, out, batch, run);
-    if (is_placed(job, out, batch)) return run(job);
+void run_part(Job& job, const PointOutputs& out, const JobPart& part, const Run& run) noexcept {
+    if (job.numerators == 1 && out.lit != nullptr) return darken_part(job, out, part, run);
+    if (is_placed(job, out, part)) return run(job);
     float buffer[3][copy_size];
     job.out[0] = buffer[0];
     job.out[1] = buffer[1];
     job.lit = out.lit != nullptr ? buffer[2] : nullptr;
     job.interleaved_st = false;
-    for (std::size_t begin = 0; begin < batch.count; begin += copy_size) {
-        job.count = batch.whole - begin < copy_size ? batch.whole - begin : copy_size;
+    for (std::size_t begin = 0; begin < part.count; begin += copy_size) {
+        job.count = part.whole - begin < copy_size ? part.whole - begin : copy_size;
         run(job);
-        const std::size_t first = batch.first + begin;
-        const std::size_t end = batch.count - begin < job.count ? batch.count - begin : job.count;
+        const std::size_t first = part.first + begin;
+        const std::size_t end = part.count - begin < job.count ? part.count - begin : job.count;
         // One array after another: of stores to all Clang makes masked ones, and one without an array takes 100 ns.
         const auto copy = [&](float* to, const float* from, std::size_t stride) {
             if (to == nullptr) return;

@@ -279,7 +279,7 @@ TEXGEN_APART void run_rest(SegmentJob& job, const PointOutputs& outputs, std::sp
     float padded[point_quantum];
     for (std::size_t i = 0; i < point_quantum; ++i) padded[i] = alpha[first + (i < rest ? i : rest - 1)];
     job.alpha = padded;
-    run_batch(job, outputs, {first, rest, point_quantum}, run);
+    run_part(job, outputs, {first, rest, point_quantum}, run);
 }
 
 // Values along a segment, a group of coordinates after another.
@@ -301,7 +301,7 @@ struct SegmentGroups {
             if (is_placed(job, outputs, {0, whole, whole}))
                 run(job);
             else
-                run_batch(job, outputs, {0, whole, whole}, run);
+                run_part(job, outputs, {0, whole, whole}, run);
         }
         if (whole == alpha.size()) return;
         run_rest(job, outputs, alpha, run);

@@ -1,33 +1,33 @@
-// The bodies of texcoord.hpp: points in batches that the kernels can read, from one tier to the next.
+// The bodies of texcoord.hpp: points in parts that the kernels can read, from one tier to the next.
 
 namespace TEXGEN_DETAIL {
 
-// Calls run(input, batch) for parts of the positions that the kernels can read: as they are, or, where the count is no
+// Calls run(input, part) for parts of the positions that the kernels can read: as they are, or, where the count is no
 // multiple of point_quantum or the layout is none of theirs, copied, and padded with the last point.
 template <class Space, class Run>
-void for_each_batch(const Positions<Space>& positions, const Run& run) noexcept {
+void for_each_part(const Positions<Space>& positions, const Run& run) noexcept {
     const std::size_t count = positions.size();
     std::size_t first = 0;
     if (positions.is_planar() || positions.is_interleaved()) {
         first = count / point_quantum * point_quantum;
         if (first != 0)
             run(PointInput{positions.is_interleaved(), positions.x(), positions.y(), positions.z()},
-                Batch{0, first, first});
+                JobPart{0, first, first});
     }
     float x[copy_size];
     float y[copy_size];
     float z[copy_size];
     while (first < count) {
-        const std::size_t part = count - first < copy_size ? count - first : copy_size;
-        const std::size_t whole = (part + point_quantum - 1) / point_quantum * point_quantum;
+        const std::size_t size = count - first < copy_size ? count - first : copy_size;
+        const std::size_t whole = (size + point_quantum - 1) / point_quantum * point_quantum;
         for (std::size_t i = 0; i < whole; ++i) {
-            const glm::vec3 point = positions[first + (i < part ? i : part - 1)];
+            const glm::vec3 point = positions[first + (i < size ? i : size - 1)];
             x[i] = point.x;
             y[i] = point.y;
             z[i] = point.z;
         }
-        run(PointInput{false, x, y, z}, Batch{first, part, whole});
-        first += part;
+        run(PointInput{false, x, y, z}, JobPart{first, size, whole});
+        first += size;
     }
 }
 
@@ -128,9 +128,9 @@ template <class Space>
 void project_all(const Positions<Space>& positions, PointJob& job, const PointOutputs& out) noexcept {
     const PointKernels& kernels = chosen<PointKernels>();
     take_bounds(job, positions.bounds());
-    for_each_batch(positions, [&](const PointInput& input, const Batch& batch) {
+    for_each_part(positions, [&](const PointInput& input, const JobPart& part) {
         static_cast<PointInput&>(job) = input;
-        run_batch(job, out, batch, [&](PointJob& points) { project_job(kernels, points); });
+        run_part(job, out, part, [&](PointJob& points) { project_job(kernels, points); });
     });
 }
 
@@ -139,8 +139,8 @@ void generate_all(const glm::dmat4& matrix, const Positions<Space>& positions, f
                   float* strq) noexcept {
     GenerateJob job{};
     for (int k = 0; k < 4; ++k) job.form[k] = form(matrix, k);
-    for_each_batch(positions, [&](const PointInput& input, const Batch& batch) {
-        const auto [first, count, whole] = batch;
+    for_each_part(positions, [&](const PointInput& input, const JobPart& job_part) {
+        const auto [first, count, whole] = job_part;
         GenerateJob part = job;
         static_cast<PointInput&>(part) = input;
         part.count = whole;
