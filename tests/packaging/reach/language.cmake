@@ -1,7 +1,7 @@
 cmake_minimum_required(VERSION 3.25)
 
-# Before C++20, by __cplusplus or, where it is there, by MSVC's _MSVC_LANG, each public header of HEADERS ends the
-# compilation by COMPILER with one line that says what to do, whatever stands below it.
+# Before C++20 by __cplusplus each public header of HEADERS ends the compilation by COMPILER with one line that says what to do,
+# whatever stands below it; by MSVC's _MSVC_LANG, where it is there, one of them.
 find_program(compiler ${COMPILER})
 if(NOT compiler)
     message(STATUS "Skipped: no ${COMPILER}")
@@ -14,11 +14,16 @@ if(NOT headers)
     message(FATAL_ERROR "no headers in ${HEADERS}")
 endif()
 foreach(header IN LISTS headers)
+    set(languages -std=c++17)
+    if(header STREQUAL "texgen/texgen.hpp")
+        list(APPEND languages "-std=c++20 -D_MSVC_LANG=201703L")
+    endif()
     string(MAKE_C_IDENTIFIER ${header} name)
     set(file ${DIRECTORY}/${name}.cpp)
     file(WRITE ${file} "#include <${header}>\nconst auto region = texgen::whole_texture();\n")
-    foreach(language IN ITEMS -std=c++17 "-std=c++20;-D_MSVC_LANG=201703L")
-        execute_process(COMMAND ${compiler} ${language} ${includes} -fsyntax-only ${file}
+    foreach(language IN LISTS languages)
+        separate_arguments(flags UNIX_COMMAND "${language}")
+        execute_process(COMMAND ${compiler} ${flags} ${includes} -fsyntax-only ${file}
                         RESULT_VARIABLE result ERROR_VARIABLE messages)
         string(REGEX MATCHALL "(error|warning):[^\n]*" complaints "${messages}")
         list(LENGTH complaints count)
