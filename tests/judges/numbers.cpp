@@ -51,51 +51,77 @@ namespace multiprecision = boost::multiprecision;
 using Backend = multiprecision::cpp_int_backend<0, 0, multiprecision::signed_magnitude, multiprecision::unchecked,
                                                 Pool<multiprecision::limb_type>>;
 using Integer = multiprecision::number<Backend, multiprecision::et_off>;
-using Fraction = multiprecision::number<multiprecision::rational_adaptor<Backend>, multiprecision::et_off>;
 
 }  // namespace
 
 // ---- Rationals ------------------------------------------------------------------------------------------------------
 
+// In lowest terms, the denominator positive. Of floats it is a power of two, whose common divisors Boost's own rationals
+// look for bit by bit.
 struct Rational::Value {
-    Fraction number;
+    Integer numerator, denominator;
+
+    Value(Integer n, Integer d) : numerator(std::move(n)), denominator(std::move(d)) {
+        if (numerator == 0) denominator = 1;
+        if (denominator < 0) numerator = -numerator, denominator = -denominator;
+        if (numerator == 0) return;
+        const unsigned twos = std::min(lsb(abs(numerator)), lsb(denominator));
+        numerator >>= twos;
+        denominator >>= twos;
+        if (lsb(denominator) == msb(denominator)) return;
+        const Integer divisor = gcd(numerator, denominator);
+        numerator /= divisor;
+        denominator /= divisor;
+    }
 };
 
 Rational::Rational(Value value) : value_(std::allocate_shared<const Value>(Pool<Value>(), std::move(value))) {}
-Rational::Rational(std::int64_t numerator, std::int64_t denominator)
-    : Rational(Value{Fraction(Integer(numerator), Integer(denominator))}) {}
+Rational::Rational(std::int64_t numerator, std::int64_t denominator) : Rational(Value(numerator, denominator)) {}
 Rational::Rational(double value) : Rational(Dyadic(value).rational()) {}
-Rational::Rational(const std::string& text) : Rational(Value{Fraction(text)}) {}
+Rational::Rational(const std::string& text) {
+    const std::size_t slash = text.find('/');
+    *this =
+        Rational(Value(Integer(text.substr(0, slash)), Integer(slash < text.size() ? text.substr(slash + 1) : "1")));
+}
 
 const Rational::Value& Rational::value() const {
-    static const Value zero;
+    static const Value zero(0, 1);
     return value_ ? *value_ : zero;
 }
 
-namespace {
+int Rational::sign() const { return value().numerator.sign(); }
 
-const Fraction& number(const Rational& a) { return a.value().number; }
-Rational rational(Fraction number) { return Rational(Rational::Value{std::move(number)}); }
-
-}  // namespace
-
-int Rational::sign() const { return value_ ? value_->number.sign() : 0; }
-
-Rational operator-(const Rational& a) { return rational(-number(a)); }
-Rational operator+(const Rational& a, const Rational& b) { return rational(number(a) + number(b)); }
-Rational operator-(const Rational& a, const Rational& b) { return rational(number(a) - number(b)); }
-Rational operator*(const Rational& a, const Rational& b) { return rational(number(a) * number(b)); }
-Rational operator/(const Rational& a, const Rational& b) { return rational(number(a) / number(b)); }
-std::strong_ordering operator<=>(const Rational& a, const Rational& b) { return number(a).compare(number(b)) <=> 0; }
+Rational operator-(const Rational& a) { return Rational(Rational::Value(-a.value().numerator, a.value().denominator)); }
+Rational operator+(const Rational& a, const Rational& b) {
+    const auto& [n, d] = a.value();
+    const auto& [m, e] = b.value();
+    return Rational(Rational::Value(n * e + m * d, d * e));
+}
+Rational operator-(const Rational& a, const Rational& b) { return a + -b; }
+Rational operator*(const Rational& a, const Rational& b) {
+    const auto& [n, d] = a.value();
+    const auto& [m, e] = b.value();
+    return Rational(Rational::Value(n * m, d * e));
+}
+Rational operator/(const Rational& a, const Rational& b) {
+    const auto& [n, d] = a.value();
+    const auto& [m, e] = b.value();
+    return Rational(Rational::Value(n * e, d * m));
+}
+std::strong_ordering operator<=>(const Rational& a, const Rational& b) {
+    const auto& [n, d] = a.value();
+    const auto& [m, e] = b.value();
+    return Integer(n * e).compare(m * d) <=> 0;
+}
 
 Rational power_of_two(int exponent) {
     const Integer power = Integer(1) << static_cast<unsigned>(std::abs(exponent));
-    return rational(exponent < 0 ? Fraction(Integer(1), power) : Fraction(power));
+    return Rational(exponent < 0 ? Rational::Value(1, power) : Rational::Value(power, 1));
 }
 
 int exponent_of(const Rational& value) {
-    const Integer n = abs(numerator(number(value)));
-    const Integer d = denominator(number(value));
+    const Integer n = abs(value.value().numerator);
+    const Integer& d = value.value().denominator;
     const int guess = static_cast<int>(msb(n)) - static_cast<int>(msb(d));
     const bool reached =
         guess >= 0 ? n >= (d << static_cast<unsigned>(guess)) : (n << static_cast<unsigned>(-guess)) >= d;
@@ -106,18 +132,21 @@ template <class Float>
 Float nearest(const Rational& value) {
     if (value == 0) return Float(0);
     const int ulp = ulp_exponent<Float>(value);
-    const Fraction scaled = abs(number(value)) * number(power_of_two(-ulp));
+    const Rational scaled = magnitude(value) * power_of_two(-ulp);
+    const auto& [n, d] = scaled.value();
     Integer quotient, remainder;
-    divide_qr(numerator(scaled), denominator(scaled), quotient, remainder);
+    divide_qr(n, d, quotient, remainder);
     const Integer twice = remainder * 2;
-    if (twice > denominator(scaled) || (twice == denominator(scaled) && bit_test(quotient, 0))) ++quotient;
+    if (twice > d || (twice == d && bit_test(quotient, 0))) ++quotient;
     const Float size = std::ldexp(static_cast<Float>(static_cast<std::uint64_t>(quotient)), ulp);
     return value < 0 ? -size : size;
 }
 template float nearest(const Rational& value);
 template double nearest(const Rational& value);
 
-std::ostream& operator<<(std::ostream& stream, const Rational& value) { return stream << number(value); }
+std::ostream& operator<<(std::ostream& stream, const Rational& value) {
+    return stream << value.value().numerator << '/' << value.value().denominator;
+}
 
 // ---- Dyadic numbers -------------------------------------------------------------------------------------------------
 
@@ -139,7 +168,8 @@ int Dyadic::sign() const { return mantissa_ ? mantissa_->number.sign() : 0; }
 Rational Dyadic::rational() const {
     if (!mantissa_) return {};
     const Integer power = Integer(1) << static_cast<unsigned>(std::abs(exponent_));
-    return support::rational(exponent_ < 0 ? Fraction(mantissa_->number, power) : Fraction(mantissa_->number * power));
+    return Rational(exponent_ < 0 ? Rational::Value(mantissa_->number, power)
+                                  : Rational::Value(mantissa_->number * power, 1));
 }
 
 double Dyadic::estimate() const {
@@ -184,8 +214,8 @@ struct Real::Value {
 Real::Real(Value value) : value_(std::allocate_shared<const Value>(Pool<Value>(), std::move(value))) {}
 Real::Real(double value) : Real(Value{value}) {}
 Real::Real(const Rational& value)
-    : Real(Value{decltype(Value::number)(numerator(support::number(value)).str()) /
-                 decltype(Value::number)(denominator(support::number(value)).str())}) {}
+    : Real(Value{decltype(Value::number)(value.value().numerator.str()) /
+                 decltype(Value::number)(value.value().denominator.str())}) {}
 Real::operator double() const { return static_cast<double>(value().number); }
 
 const Real::Value& Real::value() const {

@@ -30,31 +30,25 @@ inline RationalMatrix operator*(const RationalMatrix& a, const RationalMatrix& b
     return result;
 }
 
-// Gauss-Jordan; empty for a singular matrix.
-inline std::optional<RationalMatrix> inverse(RationalMatrix left) {
-    RationalMatrix right;
-    for (std::size_t i = 0; i < 4; ++i) right[i][i] = 1;
-    for (std::size_t column = 0; column < 4; ++column) {
-        std::size_t pivot = column;
-        while (pivot < 4 && left[pivot][column] == 0) ++pivot;
-        if (pivot == 4) return std::nullopt;
-        std::swap(left[pivot], left[column]);
-        std::swap(right[pivot], right[column]);
-        const Rational divisor = left[column][column];
-        for (std::size_t k = 0; k < 4; ++k) {
-            left[column][k] /= divisor;
-            right[column][k] /= divisor;
-        }
-        for (std::size_t row = 0; row < 4; ++row) {
-            if (row == column) continue;
-            const Rational factor = left[row][column];
-            for (std::size_t k = 0; k < 4; ++k) {
-                left[row][k] -= factor * left[column][k];
-                right[row][k] -= factor * right[column][k];
-            }
+// Empty for a singular matrix. By cofactors: the denominators of sums and products of doubles stay powers of two.
+inline std::optional<RationalMatrix> inverse(const RationalMatrix& m) {
+    RationalMatrix cofactor, result;
+    for (std::size_t i = 0; i < 4; ++i) {
+        for (std::size_t j = 0; j < 4; ++j) {
+            const auto at = [&](std::size_t row, std::size_t column) { return m[(i + row) % 4][(j + column) % 4]; };
+            const auto minor_of = [&](std::size_t a, std::size_t b) {
+                return at(2, a) * at(3, b) - at(2, b) * at(3, a);
+            };
+            const Rational value = at(1, 1) * minor_of(2, 3) + at(1, 2) * minor_of(3, 1) + at(1, 3) * minor_of(1, 2);
+            cofactor[i][j] = (i + j) % 2 == 0 ? value : -value;
         }
     }
-    return right;
+    Rational determinant;
+    for (std::size_t j = 0; j < 4; ++j) determinant += m[0][j] * cofactor[0][j];
+    if (determinant == 0) return std::nullopt;
+    for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t j = 0; j < 4; ++j) result[j][i] = cofactor[i][j] / determinant;
+    return result;
 }
 
 // The largest row sum of magnitudes.
