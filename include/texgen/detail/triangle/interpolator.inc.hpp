@@ -240,9 +240,9 @@ private:
         const bool touches = refused.x_begin == job.filled.x_end || refused.x_end == job.filled.x_begin;
         if (rest.width < tile.width && (job.filled.x_end == 0 || touches)) {
             rest.height = tile.height - refused.y_begin;
-            job.filled.x_begin =
-                job.filled.x_end == 0 ? refused.x_begin : std::min(refused.x_begin, job.filled.x_begin);
-            job.filled.x_end = std::max(refused.x_end, job.filled.x_end);
+            const bool is_first = job.filled.x_end == 0 || refused.x_begin < job.filled.x_begin;
+            if (is_first) job.filled.x_begin = refused.x_begin;
+            if (refused.x_end > job.filled.x_end) job.filled.x_end = refused.x_end;
             job.is_contiguous = false;
         }
         fill(rest, job.chunk - 1);
