@@ -104,7 +104,7 @@ void interpolate(const TriangleBatch& batch, std::span<const std::uint32_t> ids,
 // Guarantee: as footprint() of a FootprintSetup of the triangle has it, for a rectangle of the neighbours in a row with one id.
 // Where that writes nothing, ids[k] is no_triangle or its triangle is refused, all outputs are 0. No allocation, noexcept.
 // Shapes: as above.
-// Cost: a FootprintSetup for each run of one id in a row.
+// Cost: a FootprintSetup for each run of one id in a row, but for those of the last few triangles.
 // Bad input: as of footprint(), and above.
 template <class CompiledWhereCalled = void>
 void footprint(const TriangleBatch& batch, std::span<const std::uint32_t> ids, FragmentRect rect, TexelsPerUnit texels,

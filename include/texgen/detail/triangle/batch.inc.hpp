@@ -214,12 +214,16 @@ void footprint(const TriangleBatch& batch, std::span<const std::uint32_t> ids, F
     if (count == 0) return;
     TEXGEN_ASSERT(ids.size() == count);
     if (ids.size() != count || !detail::take_computed(out, count)) return;
-    std::uint32_t known = no_triangle;
-    std::optional<FootprintSetup> setup;
+    struct Known {
+        std::uint32_t id = no_triangle;
+        std::optional<FootprintSetup> setup;
+    };
+    Known last[detail::batch_block];  // neighbours share few triangles
     detail::for_each_run(
         ids, rect, 0, count, [](std::size_t) { return true; },
         [&](std::uint32_t id, const detail::Tile& part, std::size_t first) {
             Footprints here = detail::part_of(out, first, static_cast<std::size_t>(part.width));
+            auto& [known, setup] = last[id % detail::batch_block];
             if (id != known) {
                 setup.reset();
                 if (id < batch.size())
