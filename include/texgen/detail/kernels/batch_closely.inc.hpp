@@ -184,25 +184,20 @@ struct CloseSteps : CloseTerms {
     }
 };
 
-// The last bit of each that is set; of 0 it is that of no other number.
-TEXGEN_INLINE Doubles last_bits(const Doubles& a) noexcept {
-    const Doubles size = magnitude(a);
-    const Doubles last = select(are_nonzero(size - power_of_two_below(a)), size - magnitude(without_last_bit(a)), size);
-    return where(are_nonzero(a), last) + where(~are_nonzero(a), Doubles{} + 0x1p500);
-}
-
 // Three numbers as integers, in a power of two of which they are multiples.
 struct IntegerLanes {
     Doubles unit, per_unit, largest;
     Doubles value[3];
 
     TEXGEN_INLINE IntegerLanes(const Doubles& a, const Doubles& b, const Doubles& c, double largest_unit) noexcept {
-        unit = minimum(minimum(last_bits(a), minimum(last_bits(b), last_bits(c))), Doubles{} + largest_unit);
+        const Doubles size[3] = {magnitude(a), magnitude(b), magnitude(c)};
+        unit = minimum(minimum(last_bits(size[0]), minimum(last_bits(size[1]), last_bits(size[2]))),
+                       Doubles{} + largest_unit);
         per_unit = reciprocals_of_powers(unit);
         value[0] = a * per_unit;
         value[1] = b * per_unit;
         value[2] = c * per_unit;
-        largest = maximum(magnitude(value[0]), maximum(magnitude(value[1]), magnitude(value[2])));
+        largest = maximum(size[0], maximum(size[1], size[2])) * per_unit;
     }
 };
 

@@ -35,19 +35,20 @@ TEXGEN_INLINE Doubles value_at(const PointForm& form, const PointLanes& point) n
     return point.v[0] * form.x + (point.v[1] * form.y + (point.v[2] * form.z + form.w));
 }
 
-// The magnitudes of coordinates, and their last bits that are set: of what has one more in front, which 1 has, too.
+// The last bits that are set of numbers that are not negative, of at most 51: of what has one more in front, which 1 has, too. Of 0
+// that of no other number.
+TEXGEN_INLINE Doubles last_bits(const Doubles& size) noexcept {
+    const Doubles longer = size + power_of_two_below(size) * 4.0;
+    return select(greater(size, 0.0), longer - without_last_bit(longer), Doubles{} + 0x1p500);
+}
+
+// The magnitudes of coordinates, and their last bits.
 struct PointSizes {
     Doubles size[3], grain[3];
 
     TEXGEN_INLINE explicit PointSizes(const PointLanes& at) noexcept
         : size{magnitude(at.v[0]), magnitude(at.v[1]), magnitude(at.v[2])},
-          grain{grain_of(size[0]), grain_of(size[1]), grain_of(size[2])} {}
-
-private:
-    TEXGEN_INLINE static Doubles grain_of(const Doubles& size) noexcept {
-        const Doubles longer = size + power_of_two_below(size) * 4.0;
-        return select(greater(size, 0.0), longer - without_last_bit(longer), Doubles{} + 0x1p200);
-    }
+          grain{last_bits(size[0]), last_bits(size[1]), last_bits(size[2])} {}
 };
 
 // The value of a form at points. A coefficient is split in two, so that both products with a float are exact.
