@@ -9,6 +9,7 @@ struct VertexLanes {
     Doubles vertex[3][8];
     Doubles area;        // nearly, doubled
     LongWords has_area;  // its sign is known
+    Doubles error_of_q;  // infinite elsewhere, so that all is in doubt
 
     TEXGEN_INLINE explicit VertexLanes(const float* const (&triangle)[lanes]) noexcept {
         TEXGEN_UNROLL
@@ -18,6 +19,7 @@ struct VertexLanes {
         const Doubles right = (number(1, 1) - number(0, 1)) * (number(2, 0) - number(0, 0));
         area = left - right;
         has_area = greater(magnitude(area), (magnitude(left) + magnitude(right)) * gamma(4));
+        error_of_q = where(~has_area, Doubles{} + std::numeric_limits<double>::infinity());
     }
 
     TEXGEN_INLINE const Doubles& number(std::size_t i, std::size_t k) const noexcept {
@@ -80,7 +82,7 @@ struct CloseTerms {
     }
 
     // Of coordinate k, 0 to 3 for s, t, r, q.
-    TEXGEN_INLINE Twofold function(const VertexLanes& given, std::size_t k) const noexcept {
+    TEXGEN_INLINE CloseValues function(const VertexLanes& given, std::size_t k) const noexcept {
         Doubles f[3];
         TEXGEN_UNROLL
         for (std::size_t i = 0; i < 3; ++i) f[i] = given.number(i, 3 + k);
@@ -96,13 +98,13 @@ struct CloseTerms {
             is_inexact = is_inexact + ((magnitude(error[2]) + magnitude(error[3])) + magnitude(error[4]));
             rest = (rest + error[4]) + ((error[2] + error[3]) + (low[0] * f[0] + (low[1] * f[1] + low[2] * f[2])));
         }
-        Twofold result;
+        CloseValues result;
         result.high = two_sum(sum, rest, result.low);
-        result.lost = Doubles{};
+        result.error = Doubles{};
         const LongWords is_rounded = greater(is_inexact, 0.0);
         if (any(is_rounded)) {
             const Doubles terms = magnitude(f[0]) * size[0] + (magnitude(f[1]) * size[1] + magnitude(f[2]) * size[2]);
-            result.lost = where(is_rounded, terms * 0x1p-96);
+            result.error = where(is_rounded, terms * 0x1p-96);
         }
         return result;
     }
@@ -316,20 +318,17 @@ TEXGEN_APART Words divide_lanes_closely(const float* const (&triangle)[lanes], c
     const VertexLanes vertices(triangle);
     const CloseLanes close(vertices, x, y);
     CloseFragmentsAt<Numerators> at;
-    for (std::size_t n = 0; n <= Numerators; ++n) {
-        const Twofold f = close.function(vertices, n < Numerators ? n : 3);
-        at.value[n] = {f.high, f.low, f.lost};
-    }
+    for (std::size_t n = 0; n <= Numerators; ++n) at.value[n] = close.function(vertices, n < Numerators ? n : 3);
+    at.value[Numerators].error = at.value[Numerators].error + vertices.error_of_q;
     CloseDivisor q;
     q.take(at.value[Numerators]);
     front = q.front;
     CloseFragments<Numerators> fragments;
-    const LongWords is_unknown = ~vertices.has_area;
     Words left = in_doubt;
     for (const bool is_last : {false, true}) {
         if (is_last) at.add_residues(vertices, x, y);
         fragments.divide(at, q, Numerators, 0.0, true);
-        left = in_doubt & narrow(fragments.doubtful | is_unknown);
+        left = in_doubt & narrow(fragments.doubtful);
         if (!any(left)) break;
     }
     for (std::size_t k = 0; k < Numerators; ++k) quotient[k] = fragments.quotient[k];

@@ -109,12 +109,10 @@ public:
         Known& known = vectors_[count_];
         known.vector = vector;
         known.is_one = ids.are_one();
-        known.asked = bits_of(vector.doubtful);
-        known.first = static_cast<std::size_t>(std::countr_zero(known.asked));
-        if (known.is_one) known.asked = std::uint64_t{1} << known.first;
-        for (std::uint64_t left = known.asked; left != 0; left &= left - 1) {
-            const auto i = static_cast<std::size_t>(std::countr_zero(left));
-            const std::uint32_t id = ids.value[i];
+        const std::uint64_t asked = bits_of(vector.doubtful);
+        const auto first = static_cast<std::size_t>(std::countr_zero(asked));
+        for (std::size_t i = 0; i < (known.is_one ? 1 : static_cast<std::size_t>(lanes)); ++i) {
+            const std::uint32_t id = ids.value[(asked >> i & 1u) != 0 ? i : first];
             const std::size_t place = id % batch_block;
             if (has(place) && id_[place] != id) {
                 if (count_ == 0) triangles_ = 0;
@@ -143,40 +141,29 @@ public:
         const bool are_few = count_ <= 2;
         const Doubles none{};
         BatchFunctions functions;
-        std::uint64_t unknown = 0;
         for (std::size_t i = 0; !are_few && i < batch_block; i += size) {
             const float* of_lane[lanes];
             for (std::size_t j = 0; j < size; ++j)
                 of_lane[j] = vertices_of(job_, id_[has(i + j) ? i + j : first_known]);
-            const LongWords are_unknown =
-                functions.take<Numerators>(of_lane, none + left_, none + top_, none + width_, none + height_, i);
-            unknown |= lane_bits(are_unknown) << i;
+            functions.take<Numerators>(of_lane, none + left_, none + top_, none + width_, none + height_, i);
         }
         std::uint64_t undecided = 0;
         for (std::size_t k = 0; k < count_; ++k) {
             const Known& known = vectors_[k];
             const Vector& vector = known.vector;
             const Doubles x = vector.x - left_, y = vector.y - top_;
-            const auto place_of = [&](std::size_t i) {
-                const bool is_asked = known.is_one || (known.asked >> i & 1u) != 0;
-                return is_asked ? known.triangle[known.is_one ? known.first : i] : first_known;
-            };
             std::uint64_t left = 0;
             if (are_few) {
                 const float* of_lane[lanes];
-                for (std::size_t i = 0; i < size; ++i) of_lane[i] = vertices_of(job_, id_[place_of(i)]);
+                for (std::size_t i = 0; i < size; ++i)
+                    of_lane[i] = vertices_of(job_, id_[known.triangle[known.is_one ? 0 : i]]);
                 left = put_closely(of_lane, vector);
             } else if (known.is_one) {
-                const std::size_t place = place_of(0);
-                left = put(vector, functions.of[place], x, y);
-                if ((unknown >> place & 1u) != 0) left = bits_of(vector.doubtful);
+                left = put(vector, functions.of[known.triangle[0]], x, y);
             } else {
                 const BatchFunction* of_lane[lanes];
-                for (std::size_t i = 0; i < size; ++i) {
-                    of_lane[i] = &functions.of[place_of(i)];
-                    left |= (unknown >> place_of(i) & 1u) << i;
-                }
-                left = (left & known.asked) | put(vector, LaneFunctions<Numerators>(of_lane), x, y);
+                for (std::size_t i = 0; i < size; ++i) of_lane[i] = &functions.of[known.triangle[i]];
+                left = put(vector, LaneFunctions<Numerators>(of_lane), x, y);
             }
             undecided |= left << vector.place;
         }
@@ -188,10 +175,8 @@ public:
 private:
     struct Known {
         Vector vector;
-        std::size_t triangle[lanes];  // of those that are asked
-        std::uint64_t asked;
-        std::size_t first;  // the first that is asked
-        bool is_one;        // triangle, that one's
+        std::size_t triangle[lanes];  // where a lane is certain that of the first that is not
+        bool is_one;                  // the first is that of all
     };
 
     TEXGEN_INLINE bool has(std::size_t place) const noexcept { return (triangles_ >> place & 1u) != 0; }

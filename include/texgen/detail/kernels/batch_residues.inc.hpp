@@ -32,10 +32,10 @@ struct BatchFunctions {
     BatchFunction of[batch_block];
 
     // Those from `first` on, of a triangle in each lane about a fragment, for so many columns and rows: see
-    // CloseRamp::copy_to(). What residues do not know has a grain of 0. Returns the lanes that nothing is known of.
+    // CloseRamp::copy_to(). What residues do not know has a grain of 0.
     template <std::size_t Numerators>
-    TEXGEN_APART LongWords take(const float* const (&triangle)[lanes], const Doubles& x, const Doubles& y,
-                                const Doubles& width, const Doubles& height, std::size_t first) noexcept {
+    TEXGEN_APART void take(const float* const (&triangle)[lanes], const Doubles& x, const Doubles& y,
+                           const Doubles& width, const Doubles& height, std::size_t first) noexcept {
         const VertexLanes vertices(triangle);
         const CloseLanes close(vertices, x, y);
         const CloseSteps along(vertices, 1), down(vertices, 0);
@@ -45,11 +45,11 @@ struct BatchFunctions {
         Residues residues[16]{};
         for (std::size_t n = 0; n <= Numerators; ++n) {
             const std::size_t k = n < Numerators ? n : 3;
-            const Twofold term[3] = {close.function(vertices, k), along.function(vertices, k),
-                                     down.function(vertices, k)};
+            const CloseValues term[3] = {close.function(vertices, k), along.function(vertices, k),
+                                         down.function(vertices, k)};
             const Doubles size =
                 magnitude(term[0].high) + (magnitude(term[1].high) * width + magnitude(term[2].high) * height);
-            const Doubles lost = term[0].lost + (term[1].lost * width + term[2].lost * height);
+            const Doubles lost = term[0].error + (term[1].error * width + term[2].error * height);
             const Doubles unit = power_of_two_below(size) * 0x1p-50;
             const Doubles rounder = unit * 0x1.8p52;
             Doubles part[8];
@@ -59,6 +59,7 @@ struct BatchFunctions {
                 part[3 + j] = (term[j].high - part[j]) + term[j].low;
             }
             part[6] = (lost + (width + height + 1.0) * unit * 0x1p-50) * 1.01;
+            if (n == Numerators) part[6] = part[6] + vertices.error_of_q;
             const ResidueValues value = corners.values(k);
             residues[3 * n] = value.times(corners.side);
             residues[3 * n + 1] = value.times(dx);
@@ -68,7 +69,6 @@ struct BatchFunctions {
             store_columns(part, [&](std::size_t j) { return of[first + j].part[n]; });
         }
         store_columns(residues, [&](std::size_t j) { return of[first + j].residues; });
-        return ~vertices.has_area;
     }
 };
 

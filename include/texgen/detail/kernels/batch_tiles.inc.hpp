@@ -283,7 +283,6 @@ TEXGEN_APART std::uint64_t decide_tiles(const TilesJob& job, const FragmentOutpu
                                         const int (*block)[4], std::uint64_t doubtful, std::size_t done) noexcept {
     BatchFunctions functions;
     TileScratch scratch;
-    std::uint64_t unknown = 0;
     const auto known = static_cast<std::size_t>(std::countr_zero(doubtful));  // finite, where others may be no numbers
     for (std::size_t i = 0; i < batch_block; i += static_cast<std::size_t>(lanes)) {
         constexpr auto all_lanes = (std::uint64_t{1} << lanes) - 1;
@@ -294,18 +293,17 @@ TEXGEN_APART std::uint64_t decide_tiles(const TilesJob& job, const FragmentOutpu
             of_lane[j] = vertices_of(job, first + ((doubtful >> (i + j) & 1u) != 0 ? i + j : known));
         Words tile[4];
         load_fours(block[i], tile);
-        const LongWords are_unknown = functions.take<Numerators>(
-            of_lane, to_doubles(tile[0]) + 0.5, to_doubles(tile[1]) + 0.5, to_doubles(tile[2]), to_doubles(tile[3]), i);
-        unknown |= lane_bits(are_unknown) << i;
+        functions.take<Numerators>(of_lane, to_doubles(tile[0]) + 0.5, to_doubles(tile[1]) + 0.5, to_doubles(tile[2]),
+                                   to_doubles(tile[3]), i);
     }
-    std::uint64_t undecided = doubtful & unknown;
+    std::uint64_t undecided = 0;
     for (std::size_t i = 0; i < batch_block; ++i) {
         if (block[i][2] <= 0 || block[i][3] <= 0) continue;
         TileShape shape;
         shape.take(block[i][2], block[i][3]);
         const std::size_t begin = done;
         done += shape.count;
-        if (((doubtful & ~unknown) >> i & 1u) == 0) continue;
+        if ((doubtful >> i & 1u) == 0) continue;
         // What follows is there already.
         const bool in_scratch = shape.count % static_cast<std::size_t>(lanes) != 0;
         const FragmentOutputs here = in_scratch ? scratch.in_place_of(out) : out;
