@@ -11,8 +11,8 @@
 
 #include "detail/matrices/required.hpp"
 
-// 0.4.4: 10000 major + 100 minor + patch.
-#define TEXGEN_VERSION 404
+// 0.4.5: 10000 major + 100 minor + patch.
+#define TEXGEN_VERSION 405
 
 namespace TEXGEN_NAMESPACE {
 
