@@ -1038,12 +1038,16 @@ bool near_cuts_keep_limits(const support::Workload& workload) {
         const support::NearCutTimes times = support::race_near_cuts(workload, 40);
         const bool kept = times.slowest.ratio() <= support::limit::near_plane &&
                           times.of_99_in_100.ratio() <= support::limit::near_plane_99_of_100 &&
-                          times.rotation.ratio() <= support::limit::rotation;
+                          times.rotation.ratio() <= support::limit::rotation &&
+                          times.crossed.ratio() <= support::limit::q_is_zero;
         if (!kept && attempt < 2) continue;
         std::printf(
-            "%s cut by the near plane: %.1f at most (%g), %.1f for 99 of 100 (%g), %.1f between rotations (%g)\n",
+            "%s cut by the near plane: %.1f at most (%g), %.1f for 99 of 100 (%g), %.1f between rotations (%g), %.1f "
+            "where q = 0 "
+            "crosses (%g)\n",
             workload.function, times.slowest.ratio(), support::limit::near_plane, times.of_99_in_100.ratio(),
-            support::limit::near_plane_99_of_100, times.rotation.ratio(), support::limit::rotation);
+            support::limit::near_plane_99_of_100, times.rotation.ratio(), support::limit::rotation,
+            times.crossed.ratio(), support::limit::q_is_zero);
         return kept;
     }
 }

@@ -96,9 +96,9 @@ private:
 
 // Triangles that the near plane has cut, each in all orders of its corners: the slowest of them, the one that 99 of 100 do
 // not exceed, and the slowest order of a triangle's corners over its fastest. One of 60 tiles of theirs is crossed by q = 0, which has
-// a limit of its own: those are left to the searches.
+// a limit of its own: the slowest of those stands apart.
 struct NearCutTimes {
-    Slowness slowest, of_99_in_100, rotation;
+    Slowness slowest, of_99_in_100, rotation, crossed;
 };
 
 inline NearCutTimes race_near_cuts(const Workload& workload, std::size_t triangles) {
@@ -109,7 +109,8 @@ inline NearCutTimes race_near_cuts(const Workload& workload, std::size_t triangl
         ordinary.push_back(workload.calls(detail::ordinary_triangle(random)));
     const auto is_less = [](const Slowness& a, const Slowness& b) { return a.ratio() < b.ratio(); };
     std::vector<Slowness> times, rotations;
-    while (rotations.size() < triangles) {
+    Slowness crossed;
+    while (rotations.size() < triangles || crossed.hostile == 0.0) {
         const NearCut cut = near_cut(random);
         std::vector<Calls> all = ordinary;
         bool is_crossed = false;
@@ -119,9 +120,13 @@ inline NearCutTimes race_near_cuts(const Workload& workload, std::size_t triangl
             is_crossed = is_crossed || workload.limit(numbers) == limit::q_is_zero;
             all.push_back(workload.calls(numbers));
         }
-        if (is_crossed) continue;
         const std::vector<double> least = least_times(all, 7, 5e3);
         const auto first = least.begin() + ordinary_count;
+        if (is_crossed) {
+            const double of_ordinary = (least[0] + least[1] + least[2]) / 3.0;
+            crossed = std::max(crossed, {of_ordinary, *std::max_element(first, least.end())}, is_less);
+            continue;
+        }
         for (auto time = first; time != least.end(); ++time)
             times.push_back({(least[0] + least[1] + least[2]) / 3.0, *time});
         const auto [fastest, slowest] = std::minmax_element(first, least.end());
@@ -129,7 +134,7 @@ inline NearCutTimes race_near_cuts(const Workload& workload, std::size_t triangl
     }
     std::sort(times.begin(), times.end(), is_less);
     return {times.back(), times[times.size() * 99 / 100],
-            *std::max_element(rotations.begin(), rotations.end(), is_less)};
+            *std::max_element(rotations.begin(), rotations.end(), is_less), crossed};
 }
 
 // An input that a search found: a line of function | words | numbers in hexadecimal.

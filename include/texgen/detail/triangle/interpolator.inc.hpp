@@ -72,7 +72,7 @@ public:
 private:
     TEXGEN_APART void fill(const Tile& tile, int longest = longest_chunk) noexcept {
         const Corners at = corners_at(tile);
-        // Of what floats round by more than the tolerance no chunk is served.
+        // Where floats round the largest quotient by more than the tolerance its chunk is not served, and mostly no other one.
         const Double2 rounded = at.largest_quotient() * unit_roundoff_float;
         if (!(larger(rounded[0], rounded[1]) < triangle_.tolerance)) return fill_exact(tile, at);
         Plan plan = plan_without_survey(tile, at);
