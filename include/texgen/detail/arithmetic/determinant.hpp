@@ -14,18 +14,10 @@
 
 namespace TEXGEN_DETAIL {
 
-// A number within 2^-51 of itself, with its sign and its zeros, of which `close` is within `error`; grain() is a power of two of
-// which it is a multiple, or infinity.
-template <class Grain, class Exact>
-double settled(const DoubleDouble& close, double error, const Grain& grain, const Exact& exact) noexcept {
-    if (error <= 0x1p-54 * magnitude(close.high)) return close.high;
-    // Where the grain is that large, `close` is next to the one multiple that is meant, which is below 2^53 grains.
-    if (const double unit = grain(); error < 0.25 * unit) return std::nearbyint(close.high / unit) * unit;
-    return exact().estimate();
-}
-
-inline double smallest_last_bit(double a, double b, double c) noexcept {
-    return smaller(last_bit(a), smaller(last_bit(b), last_bit(c)));
+// A number within 2^-51 of itself, with its sign and its zeros, of which `close` is within `error`.
+template <class Exact>
+double settled(const DoubleDouble& close, double error, const Exact& exact) noexcept {
+    return error <= 0x1p-54 * magnitude(close.high) ? close.high : exact().estimate();
 }
 
 // The determinant of three rows of floats. A product of two is exact in double, and nothing leaves the range.
@@ -36,12 +28,18 @@ public:
 
     int sign() const noexcept {
         const auto [sum, size] = nearly();
-        const double value = magnitude(sum) > gamma(4) * size ? sum : this->value(size);
-        return sign_of(value);
+        if (magnitude(sum) > gamma(4) * size) return sign_of(sum);
+        return size < 0x1p1000 ? exactly().sign() : 0;
     }
 
-    // Within 2^-51 of itself.
-    double value() const noexcept { return value(size()); }
+    // Within 2^-51 of itself: three products within 2^-103 of their terms, and two sums.
+    double value() const noexcept {
+        const double size = this->size();
+        if (!(size < 0x1p1000)) return std::numeric_limits<double>::quiet_NaN();
+        const auto terms = [&](int i, int j, int k) { return product(exact_minor(i, j), {row_[k].z, 0.0}); };
+        return settled(sum(sum(terms(1, 2, 0), terms(2, 0, 1)), terms(0, 1, 2)), 0x1p-100 * size,
+                       [&] { return exactly(); });
+    }
 
     // In double, within gamma(4) of the sum of its terms' magnitudes, which is the size.
     struct Nearly {
@@ -74,25 +72,6 @@ private:
         return terms(1, 2, 0) + terms(2, 0, 1) + terms(0, 1, 2);
     }
 
-    // Three products within 2^-103 of their terms, and two sums.
-    double value(double size) const noexcept {
-        if (!(size < 0x1p1000)) return std::numeric_limits<double>::quiet_NaN();
-        const auto terms = [&](int i, int j, int k) { return product(exact_minor(i, j), {row_[k].z, 0.0}); };
-        return settled(
-            sum(sum(terms(1, 2, 0), terms(2, 0, 1)), terms(0, 1, 2)), 0x1p-100 * size, [&] { return grain(); },
-            [&] { return exactly(); });
-    }
-
-    // Of the term of which it is the least: units of rows and of columns make no difference.
-    double grain() const noexcept {
-        glm::dvec3 last[3];
-        for (int i = 0; i < 3; ++i) last[i] = {last_bit(row_[i].x), last_bit(row_[i].y), last_bit(row_[i].z)};
-        const auto least = [&](int i, int j, int k) {
-            return smaller(last[i].x * last[j].y, last[j].x * last[i].y) * last[k].z;
-        };
-        return smaller(least(1, 2, 0), smaller(least(2, 0, 1), least(0, 1, 2)));
-    }
-
     glm::dvec3 row_[3];
 };
 
@@ -103,20 +82,17 @@ inline double twice_area(const glm::dvec2& a, const glm::dvec2& b, const glm::dv
         return product(two_sum(x, -x_from), two_sum(y, -y_from));
     };
     const DoubleDouble left = product_of(b.x, a.x, c.y, a.y), right = product_of(c.x, a.x, b.y, a.y);
-    return settled(
-        sum(left, -right), 0x1p-100 * (magnitude(left.high) + magnitude(right.high)),
-        [&] { return smallest_last_bit(a.x, b.x, c.x) * smallest_last_bit(a.y, b.y, c.y); },
-        [&] {
-            Expansion<12> sum;
-            const auto add = [&sum](const glm::dvec2& from, const glm::dvec2& to) {
-                sum.add_product(from.x, to.y);
-                sum.add_product(-to.x, from.y);
-            };
-            add(a, b);
-            add(b, c);
-            add(c, a);
-            return sum;
-        });
+    return settled(sum(left, -right), 0x1p-100 * (magnitude(left.high) + magnitude(right.high)), [&] {
+        Expansion<12> sum;
+        const auto add = [&sum](const glm::dvec2& from, const glm::dvec2& to) {
+            sum.add_product(from.x, to.y);
+            sum.add_product(-to.x, from.y);
+        };
+        add(a, b);
+        add(b, c);
+        add(c, a);
+        return sum;
+    });
 }
 
 }  // namespace TEXGEN_DETAIL
