@@ -16,6 +16,7 @@
 #include "../arithmetic/inverse.hpp"
 #include "../arithmetic/rounding.hpp"
 #include "../arithmetic/widen.hpp"
+#include "../simd/lanes.hpp"
 #include "lit_forms.hpp"
 #include "slide_planes.hpp"
 
@@ -113,7 +114,11 @@ public:
         for (const SlidePlane& plane : planes)
             if (!LitForms::is_usable_side(plane.bound, plane.none())) return;
         const glm::dmat4 magnitude = absolute(texture_from_eye) * absolute(view);
-        for (const SlidePlane& plane : planes) set(forms_[count_++], matrix, magnitude, plane);
+        // q comes last: few bounds are behind a projector and beyond none of its sides.
+        while (count_ < planes.size()) {
+            set(forms_[count_], matrix, magnitude, planes[(count_ + 1) % planes.size()]);
+            ++count_;
+        }
     }
 
     // outside and inside for certain. A form over bounds is its value in the middle, give or take that of half the extents;
@@ -127,14 +132,17 @@ public:
             half[j] = 0.5 * (bounds.max[j] - bounds.min[j]);
         }
         bool is_inside = count_ > 0;
-        for (std::size_t k = 0; k < count_; ++k) {
+        // Unrolled, as each form's branch is foreseen by itself.
+        TEXGEN_UNROLL
+        for (std::size_t k = 0; k < SlidePlanes::max_size; ++k) {
+            if (k == count_) break;
             const LinearForm& form = forms_[k];
             const auto& a = form.a;
             const double value = a[0] * middle[0] + a[1] * middle[1] + a[2] * middle[2] + form.d;
             const double change = std::fabs(a[0]) * half[0] + std::fabs(a[1]) * half[1] + std::fabs(a[2]) * half[2];
             const double slack = form.error_a * bounds.size + form.error_d;
             if (value + change < -slack) return Coverage::outside;
-            is_inside = is_inside && value - change > slack;
+            is_inside &= value - change > slack;
         }
         return is_inside ? Coverage::inside : Coverage::partial;
     }
