@@ -44,8 +44,7 @@ TileJob job_of(int width, int height, std::span<float> out) {
     job.width = width;
     job.height = height;
     const double step = -0x1p-31;
-    job.numerator[0] = {1.0, step, step};
-    job.numerator[1] = {1.5, 0.5 * step, 0.5 * step};
+    job.numerator = {{1.0, 1.5}, {step, 0.5 * step}, {step, 0.5 * step}};
     job.q = {1.0, 0x1p-32, 0x1p-32};
     job.out[0] = job.out[1] = out.data();
     job.pitch = width;

@@ -41,15 +41,16 @@ void weigh_chunks(const TileJob& job, ChunkGroup& group, int chunks_of_row, int 
         const Doubles half = (minimum(begin + length, Doubles{} + width) - begin) * 0.5 - 0.5;
         const Doubles at_x = begin + half;
         const Doubles at_y = row + static_cast<double>(y);
-        const auto value = [&](const Ramp& ramp) { return at_x * ramp.dx + (at_y * ramp.dy + ramp.base); };
-        const Doubles q = value(job.q);
+        const auto value = [&](double base, double dx, double dy) { return at_x * dx + (at_y * dy + base); };
+        const Doubles q = value(job.q.base, job.q.dx, job.q.dy);
         const Doubles reciprocal = 1.0 / q;
         const Doubles bends = reciprocal * job.q.dx;
         store(&group.bend[i], to_floats(bends));
         Doubles u[2], d[2];
         for (std::size_t k = 0; k < 2; ++k) {
-            u[k] = value(job.numerator[k]) * reciprocal;
-            d[k] = (u[k] * -job.q.dx + job.numerator[k].dx) * reciprocal;
+            const double dx = job.numerator.dx[k];
+            u[k] = value(job.numerator.base[k], dx, job.numerator.dy[k]) * reciprocal;
+            d[k] = (u[k] * -job.q.dx + dx) * reciprocal;
             store(&group.middle[k][i], to_floats(u[k]));
             store(&group.slope[k][i], to_floats(d[k]));
         }

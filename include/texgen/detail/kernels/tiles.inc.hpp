@@ -9,22 +9,26 @@ struct TileRow {
 
     TEXGEN_INLINE void move_to(const TileJob& job, int y) noexcept {
         q = job.q.base + y * job.q.dy;
-        for (std::size_t k = 0; k < 2; ++k) base[k] = job.numerator[k].base + y * job.numerator[k].dy;
+        for (std::size_t k = 0; k < 2; ++k) base[k] = job.numerator.base[k] + y * job.numerator.dy[k];
     }
     TEXGEN_INLINE Doubles q_at(const TileJob& job, const Doubles& index) const noexcept { return index * job.q.dx + q; }
     TEXGEN_INLINE Doubles numerator_at(const TileJob& job, std::size_t k, const Doubles& index) const noexcept {
-        return index * job.numerator[k].dx + base[k];
+        return index * job.numerator.dx[k] + base[k];
     }
 };
 
-// One vector of quotients: marks in `doubtful` where value - error and value + error do not round to one float.
+// One vector of quotients: marks in `doubtful` where value - error and value + error do not round to one float, unless both are
+// within the tolerance.
 TEXGEN_INLINE void divide_vector(const TileJob& job, const TileRow& row, const Doubles& index, Doubles& reciprocal,
                                  Floats (&quotient)[2], Words& doubtful) noexcept {
     if (!job.q_is_constant) reciprocal = 1.0 / row.q_at(job, index);
     for (std::size_t k = 0; k < 2; ++k) {
         const Doubles value = row.numerator_at(job, k, index) * reciprocal;
         quotient[k] = to_floats(value - job.quotient_error[k]);
-        doubtful |= bits(quotient[k]) ^ bits(to_floats(value + job.quotient_error[k]));
+        Words differ = bits(quotient[k]) ^ bits(to_floats(value + job.quotient_error[k]));
+        if (job.accepts_some) [[unlikely]]
+            differ &= narrow(greater(value * value, job.accepted_square));
+        doubtful |= differ;
     }
 }
 // The same of numerators and q that are rounded to float and divided there, with no doubt.

@@ -18,6 +18,12 @@ struct RampOf {
 };
 using Ramp = RampOf<double>;
 
+// Two of them, in pairs as compilers load them: a pair that is stored number by number would be waited for.
+struct TwoRamps {
+    alignas(16) double base[2];
+    double dx[2], dy[2];
+};
+
 template <class Number>
 bool is_constant(const RampOf<Number>& ramp) noexcept {
     return ramp.dx == 0 && ramp.dy == 0;
@@ -41,11 +47,13 @@ struct TileJob {
     int width, height;
     int chunk = 0;                         // the most fragments of a row that share a middle
     StepRule steps = StepRule::undecided;  // of all chunks
-    Ramp numerator[2];
+    TwoRamps numerator;
     Ramp q;
     bool q_is_constant;
-    bool is_in_float = false;        // numerators and q are rounded to float and divided there
-    double quotient_error[2] = {};   // for fill_exact
+    bool is_in_float = false;       // numerators and q are rounded to float and divided there
+    double quotient_error[2] = {};  // for fill_exact
+    bool accepts_some = false;      // both floats beside a quotient with that error, up to the root of this:
+    double accepted_square = 0.0;
     std::int32_t ulps = 0;           // see Corners::ulps_of_quotients
     double numerator_error[2] = {};  // for fill_polynomial, as what follows
     double q_error = 0.0;
@@ -83,7 +91,7 @@ struct TileJob {
 
 // A tile of no more than a unit of which one certificate holds: see small_tile.inc.hpp.
 struct SmallTile {
-    alignas(64) double numerator[3][2];  // base, dx and dy of both: no pair is in two lines of the cache
+    TwoRamps numerator;
     Ramp q;
     int width, height;
     bool

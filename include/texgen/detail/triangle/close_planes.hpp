@@ -193,9 +193,8 @@ inline bool take_exact_quotients(const CloseFunctions& functions, TileJob& job) 
     bool is_any_exact = false;
     for (std::size_t k = 0; k < 2; ++k) {
         const CloseFunction& f = functions.function[k];
-        Ramp& ramp = job.numerator[k];
-        ramp = {(f.high.base + f.low.base) * reciprocal, (f.high.dx + f.low.dx) * reciprocal,
-                (f.high.dy + f.low.dy) * reciprocal};
+        Ramp ramp{(f.high.base + f.low.base) * reciprocal, (f.high.dx + f.low.dx) * reciprocal,
+                  (f.high.dy + f.low.dy) * reciprocal};
         const double size = std::fabs(ramp.base) + job.width * std::fabs(ramp.dx) + job.height * std::fabs(ramp.dy);
         // Of 45 bits, so that the kernel's products and sums are exact.
         const double rounder = 0x1.8p8 / reciprocal_power_of_two(size);
@@ -203,11 +202,15 @@ inline bool take_exact_quotients(const CloseFunctions& functions, TileJob& job) 
         const bool is_exact =
             is_multiple(f, 0, exact.base, q) && is_multiple(f, 1, exact.dx, q) && is_multiple(f, 2, exact.dy, q);
         if (is_exact) ramp = exact;
+        job.numerator.base[k] = ramp.base;
+        job.numerator.dx[k] = ramp.dx;
+        job.numerator.dy[k] = ramp.dy;
         job.quotient_error[k] = is_exact ? 0.0 : (f.error + size * q.error) * (1.001 * reciprocal) + gamma(5) * size;
         is_any_exact |= is_exact;
     }
     job.q = {1.0, 0.0, 0.0};
     job.q_is_constant = true;
+    job.accepts_some = false;  // as the errors were
     job.ulps = 0;
     return is_any_exact;
 }

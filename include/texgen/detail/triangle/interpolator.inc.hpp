@@ -162,6 +162,10 @@ private:
         const Double2 error = at.quotient_error(at.largest_quotient());
         TEXGEN_UNROLL
         for (std::size_t k = 0; k < 2; ++k) job.quotient_error[k] = error[k];
+        // What is written errs by twice that and half an ulp, of 2^-24 of it or 2^-150.
+        const double accepted = (triangle_.tolerance - 2.01 * larger(error[0], error[1]) - 0x1p-148) * 0x1.fffp23;
+        job.accepts_some = accepted > 0.0;
+        job.accepted_square = accepted * accepted;
         // A small tile does not repay the search for its least quotient.
         job.ulps = tile.count() < 1024 ? 0 : at.ulps_of_quotients();
         const TileJob::Unit first = from == nullptr ? job.unit_at(0, 0) : *from;
@@ -289,14 +293,12 @@ private:
         job.q_is_constant = is_constant(at.q_ramp);
         job.pitch = rect_.width;
         job.is_contiguous = tile.width == rect_.width;
-        const Double2 base = at.numerator_ramp.base * factor;
-        const Double2 dx = at.numerator_ramp.dx * factor;
-        const Double2 dy = at.numerator_ramp.dy * factor;
+        const auto& [base, dx, dy] = at.numerator_ramp;
+        store_ramps({base * factor, dx * factor, dy * factor}, job.numerator);
         // One coordinate alone takes the place of both.
         TEXGEN_UNROLL
         for (std::size_t k = 0; k < 2; ++k) {
             const std::span<float>& output = output_[k < count_ ? k : 0];
-            job.numerator[k] = {base[k], dx[k], dy[k]};
             job.is_scratch[k] = output.empty();
             job.out[k] = output.empty() ? scratch_[k] : output.data() + offset(tile.x, tile.y);
             job.is_contiguous = job.is_contiguous && !job.is_scratch[k];

@@ -71,6 +71,12 @@ inline std::size_t count_of(const FragmentRect& rect) noexcept {
     return width <= most / height ? width * height : most;
 }
 
+inline void store_ramps(const RampOf<Double2>& ramps, TwoRamps& to) noexcept {
+    std::memcpy(to.base, &ramps.base, sizeof to.base);
+    std::memcpy(to.dx, &ramps.dx, sizeof to.dx);
+    std::memcpy(to.dy, &ramps.dy, sizeof to.dy);
+}
+
 // Where a fragment stands in the row-major outputs of a rectangle.
 inline std::size_t offset_in(const Tile& rect, std::int64_t x, std::int64_t y) noexcept {
     return static_cast<std::size_t>((y - rect.y) * rect.width + (x - rect.x));

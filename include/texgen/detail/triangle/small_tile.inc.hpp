@@ -100,9 +100,7 @@ TEXGEN_APART SmallAnswer fill_small(const TriangleFunctions& triangle, const Til
     const SmallAnswer answer = ask(triangle.lit, triangle.tolerance, f, q, tile);
     if (answer == SmallAnswer::doubt) return answer;
     const RampOf<Double2>& st = triangle.st.value;
-    const Double2 numerator[3] = {f.base, st.dx, st.dy};
-    TEXGEN_UNROLL
-    for (std::size_t i = 0; i < 3; ++i) std::memcpy(tile.numerator[i], &numerator[i], sizeof numerator[i]);
+    store_ramps({f.base, st.dx, st.dy}, tile.numerator);
     tile.q = {q.base, triangle.q.value.dx, triangle.q.value.dy};
     tile.out[0] = out.s.data();
     tile.out[1] = out.t.data();
