@@ -186,7 +186,7 @@ TEXGEN_RARE inline bool is_multiple(const CloseFunction& f, std::size_t j, doubl
 }
 
 // Where q is constant the quotients are linear; of one that doubles hold exactly rounding to float decides every tie.
-inline bool take_exact_quotients(const CloseFunctions& functions, TileJob& job) noexcept {
+TEXGEN_RARE inline bool take_exact_quotients(const CloseFunctions& functions, TileJob& job) noexcept {
     const CloseFunction& q = functions.function[CloseFunctions::q];
     if (!is_multiple(q, 1, 0.0, q) || !is_multiple(q, 2, 0.0, q)) return false;
     const double reciprocal = 1.0 / (q.high.base + q.low.base);

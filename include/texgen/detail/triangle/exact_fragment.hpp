@@ -52,7 +52,7 @@ public:
 
     // F - u Q of one coordinate, 0 to 3 for s, t, r, q; or F.
     using Sum = Expansion<384>;
-    TEXGEN_APART Sum difference(glm::length_t coordinate, double u) const noexcept {
+    TEXGEN_RARE Sum difference(glm::length_t coordinate, double u) const noexcept {
         Sum sum;
         for (std::size_t i = 0; i < 3; ++i) {
             const double product = u * planes_.value(i, 3);  // exact for a middle of two floats
@@ -64,7 +64,7 @@ public:
     Sum function(glm::length_t coordinate) const noexcept { return difference(coordinate, 0.0); }
 
     // The float nearest to F / Q, in front.
-    float nearest_quotient(glm::length_t coordinate, const Sum& q) const noexcept {
+    TEXGEN_RARE float nearest_quotient(glm::length_t coordinate, const Sum& q) const noexcept {
         const Sum numerator = function(coordinate);
         if (numerator.sign() == 0) return 0.0f;
         const double quotient = numerator.estimate() / q.estimate();

@@ -18,9 +18,9 @@ TEXGEN_APART void interpolate_alone(const TileKernels& kernels, const TriangleFu
 // Takes the light of a tile's fragments whose r, which nobody asked for, is beyond the depth, which cuts it. It is halved until
 // the buffer holds it; of a half where nothing is lit, or all is in the depth, r is not computed.
 template <class CompiledWhereCalled = void>
-inline void darken_beyond_depth(const TileKernels& kernels, const TriangleFunctions& triangle, const Tile& rect,
-                                const Tile& tile, const std::span<float>& buffer,
-                                const std::span<float>& lit) noexcept {
+TEXGEN_RARE inline void darken_beyond_depth(const TileKernels& kernels, const TriangleFunctions& triangle,
+                                            const Tile& rect, const Tile& tile, const std::span<float>& buffer,
+                                            const std::span<float>& lit) noexcept {
     const auto count = static_cast<std::size_t>(tile.count());
     if (count > buffer.size()) {
         for (const Tile& half : tile.halves()) {

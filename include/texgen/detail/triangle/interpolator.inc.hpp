@@ -70,7 +70,7 @@ public:
     }
 
 private:
-    TEXGEN_APART void fill(const Tile& tile, int longest = longest_chunk) noexcept {
+    TEXGEN_RARE void fill(const Tile& tile, int longest = longest_chunk) noexcept {
         const Corners at = corners_at(tile);
         // Where floats round the largest quotient by more than the tolerance its chunk is not served, and mostly no other one.
         const Double2 rounded = at.largest_quotient() * unit_roundoff_float;
@@ -141,7 +141,7 @@ private:
     }
 
     // A tile behind is cleared. Of one in doubt what is next to q = 0 is divided closely, if those are few; else it is halved.
-    TEXGEN_APART void split(const Tile& tile, const Corners& at) noexcept {
+    TEXGEN_RARE void split(const Tile& tile, const Corners& at) noexcept {
         if (at.all_behind()) return clear(tile);
         if (tile.count() <= TileJob::unit_size) return fill_closely(tile);
         const Stretch stretch = at.next_to_zero(tile, is_mask_alone() && triangle_.tolerance == 0.0 ? 0x1p-4 : 0x1p-2);
@@ -268,7 +268,7 @@ private:
     }
 
     // One fragment, every decision exact.
-    void fill_one(std::int64_t x, std::int64_t y) noexcept {
+    TEXGEN_RARE void fill_one(std::int64_t x, std::int64_t y) noexcept {
         const ExactFragment exact(triangle_.planes, x, y, ExactFragment::Factor::any);
         const ExactFragment::Sum q = exact.function(3);
         const bool in_front = q.sign() > 0;
