@@ -95,21 +95,23 @@ struct CloseRamps {
 class ClosePlanes {
 public:
     ClosePlanes(const TrianglePlanes& planes, const Tile& tile) noexcept : planes_(planes), tile_(tile) {
-        const double x = static_cast<double>(tile.x) + 0.5;  // integers
-        const double y = static_cast<double>(tile.y) + 0.5;  // integers
-        for (std::size_t i = 0; i < 3; ++i) {
-            const glm::dvec2 corner = planes.corner(i);
-            to_x_[i] = two_sum(corner.x, -x);
-            to_y_[i] = two_sum(corner.y, -y);
-        }
+        const Double2 first =
+            double2_of(static_cast<double>(tile.x) + 0.5, static_cast<double>(tile.y) + 0.5);  // integers
+        const auto corner = [&](std::size_t i) {
+            const glm::dvec2 at = planes.corner(i);
+            return double2_of(at.x, at.y);
+        };
+        Pair to[3];  // from the first fragment to the corners
+        for (std::size_t i = 0; i < 3; ++i) to[i] = Pair(corner(i), first);
         for (std::size_t i = 0; i < 3; ++i) {
             const std::size_t j = (i + 1) % 3;
             const std::size_t k = (i + 2) % 3;
-            const DoubleDouble left = product(to_x_[j], to_y_[k]);
-            const DoubleDouble right = product(to_y_[j], to_x_[k]);
+            const DoubleDouble left = product(to[j].lane(0), to[k].lane(1));
+            const DoubleDouble right = product(to[j].lane(1), to[k].lane(0));
+            const Pair side(corner(j), corner(k));
             edge_[i][0] = sum(left, -right);
-            edge_[i][1] = two_sum(planes.corner(j).y, -planes.corner(k).y);
-            edge_[i][2] = two_sum(planes.corner(k).x, -planes.corner(j).x);
+            edge_[i][1] = side.lane(1);
+            edge_[i][2] = -side.lane(0);
             magnitude_[i] = std::fabs(left.high) + std::fabs(right.high) + tile.width * std::fabs(edge_[i][1].high) +
                             tile.height * std::fabs(edge_[i][2].high);
         }
@@ -132,10 +134,21 @@ public:
     }
 
 private:
+    // Exactly a - b of x and of y, as two_sum() has it.
+    struct Pair {
+        Double2 high, low;
+
+        Pair() = default;
+        Pair(const Double2& a, const Double2& b) noexcept : high(a - b) {
+            const Double2 b_part = high - a;
+            low = (a - (high - b_part)) - (b + b_part);
+        }
+        DoubleDouble lane(std::size_t i) const noexcept { return {high[i], low[i]}; }
+    };
+
     const TrianglePlanes& planes_;
     Tile tile_;
-    DoubleDouble to_x_[3], to_y_[3];  // from the first fragment to the corners
-    DoubleDouble edge_[3][3];         // of the side opposite each corner: its function's value there, and by x and by y
+    DoubleDouble edge_[3][3];  // of the side opposite each corner: its function's value there, and by x and by y
     double magnitude_[3];
 };
 
