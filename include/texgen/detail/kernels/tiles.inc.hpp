@@ -134,6 +134,24 @@ struct CloseFunctionsAt {
     TEXGEN_INLINE double grain(std::size_t n) const noexcept { return of[n].grain; }
 };
 
+// Whether the sides of the region decide all of a vector of a mask alone, see MaskSide, and who is lit then.
+TEXGEN_INLINE bool are_sided(const CloseFunctions& functions, const CloseFunctionsAt& at, const CloseValues& of_q,
+                             Floats& lit) noexcept {
+    const Doubles q = of_q.high + of_q.low;
+    // Where the least of these is above 0 all is lit, where one of those is not, dark.
+    Doubles within = q - of_q.error, near = q + of_q.error;
+    for (std::size_t k = 0; k < 2; ++k) {
+        const auto& [middle, half, margin, margin_by_q] = functions.side[k];
+        const CloseValues f = at.values(k);
+        const Doubles inside = q * half - magnitude((f.high + f.low) - q * middle);
+        const Doubles least = q * margin_by_q + margin;
+        within = minimum(inside - least, within);
+        near = minimum(inside + least, near);
+    }
+    lit = one_where(narrow(greater(within, 0.0)));
+    return !any(at_most(within, Doubles{}) & greater(near, 0.0));
+}
+
 // The fragments of a unit that are asked, as many at once as a vector has, wherever they stand: those of a column, or a few that
 // are left, share vectors. One numerator alone stands in both places.
 template <class CompiledWhereCalled = void>
@@ -142,6 +160,7 @@ std::uint64_t fill_tile_closely(const TileJob& job, const CloseFunctions& functi
     constexpr int most = TileJob::unit_size + lanes;
     const bool is_more_known = functions.have_residues || functions.are_close;
     const std::size_t numerators = job.out[0] == job.out[1] ? 1 : 2;
+    const bool is_mask = job.is_scratch[0] && job.is_scratch[1];
     const int width = unit.x_end - unit.x_begin;
     const int size = width * (unit.y_end - unit.y_begin);
     const std::uint64_t all = ~std::uint64_t{0} >> (TileJob::unit_size - size);
@@ -161,8 +180,14 @@ std::uint64_t fill_tile_closely(const TileJob& job, const CloseFunctions& functi
     std::uint64_t doubtful = 0;
     for (int i = 0; i < count; i += lanes) {
         const CloseFunctionsAt at{functions.function, load<Doubles>(x + i), load<Doubles>(y + i), functions.are_close};
+        const CloseValues of_q = at.values(CloseFunctions::q);
+        Floats lit;
+        if (is_mask && are_sided(functions, at, of_q, lit)) {
+            store(result[2] + i, lit);
+            continue;
+        }
         CloseDivisor q;
-        q.take(at.values(CloseFunctions::q));
+        q.take(of_q);
         CloseFragments<2> fragments;
         fragments.divide(at, q, numerators, functions.tolerance, is_more_known);
         doubtful |= lane_bits(fragments.doubtful) << i;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "../../primitives.hpp"
 #include "../arithmetic/rounding.hpp"
@@ -67,10 +68,10 @@ struct Corners {
     }
 
     // What of a tile is next to q = 0, along the side by which q varies more: before and after that it is behind, or q is no less
-    // than a share of its largest. All, if that is nothing; but where it is not few fragments, nothing in the middle of the
+    // than a fourth of its largest. All, if that is nothing; but where it is not few fragments, nothing in the middle of the
     // longer side.
     static constexpr int few = 4 * TileJob::unit_size;
-    TEXGEN_RARE Stretch next_to_zero(const Tile& tile, double share) const noexcept {
+    TEXGEN_RARE Stretch next_to_zero(const Tile& tile) const noexcept {
         const bool across_width = std::fabs(q_ramp.dx) * tile.width >= std::fabs(q_ramp.dy) * tile.height;
         const int size = across_width ? tile.width : tile.height;
         const double step = across_width ? q_ramp.dx : q_ramp.dy;
@@ -78,7 +79,7 @@ struct Corners {
         // Counted from where q is least: it is at most largest_q - (size - 1 - i) |step|, and at least least_q + i |step|.
         const auto index = [size](double i) { return i > 0.0 ? (i < size ? static_cast<int>(i) : size) : 0; };
         int begin = index(size - 1 - (largest_q + q_error) * per_step);
-        int end = index((share * largest_q - least_q) * per_step + 1.0);
+        int end = index((0x1p-2 * largest_q - least_q) * per_step + 1.0);
         if (begin >= end) {
             begin = 0;
             end = size;
@@ -231,6 +232,22 @@ inline Coverage st_coverage(const Corners& at, const LitTest& lit, double tolera
 inline Coverage st_coverage_apart(const Corners& at, const LitTest& lit, double tolerance) noexcept {
     return coverage_apart(at, double2_of(lit.least(0), lit.least(1)), double2_of(lit.greatest(0), lit.greatest(1)),
                           tolerance);
+}
+
+// The sides of a mask alone, with the margins of coverage_of(): what is known of the functions later errs by less. Q is at most what is
+// computed and its error. Roundings, here and where a fragment is asked, are some 2^-50 of c and of the bounds times q: nothing to
+// margins of 2^-22 of those, or to a c that is larger. Bounds that are not finite leave all to the floats.
+TEXGEN_RARE inline void take_sides(const LitTest& lit, CloseFunctions& functions) noexcept {
+    const double q_error = functions.function[CloseFunctions::q].error;
+    for (std::size_t k = 0; k < 2; ++k) {
+        const double least = 0.5 * lit.least(k), greatest = 0.5 * lit.greatest(k);
+        const double bound = std::fabs(least) + std::fabs(greatest);  // half of the larger one at least
+        const double by_q = bound * 0x1.1p-21 + (0x1.1p-125 + 2.1 * functions.tolerance);
+        const double error = functions.function[k].error + (2.0 * bound + by_q) * q_error;
+        constexpr double infinity = std::numeric_limits<double>::infinity();
+        functions.side[k] = bound < infinity ? MaskSide{greatest + least, greatest - least, 1.02 * error, by_q}
+                                             : MaskSide{0.0, 0.0, infinity, 0.0};
+    }
 }
 
 // Of a depth, where the numerators are r twice. For an infinite limit stands what is rounded to infinity; but where it is none a

@@ -86,7 +86,7 @@ private:
     }
 
     // They are made when a tile first needs them, for all of the rectangle.
-    TEXGEN_APART CloseRamps close_ramps(const Tile& tile) noexcept {
+    TEXGEN_RARE CloseRamps close_ramps(const Tile& tile) noexcept {
         if (!close_) close_.make(ClosePlanes(triangle_.planes, rect_).ramps(coordinate_of(0), coordinate_of(1)));
         return close_->moved_to(tile);
     }
@@ -99,6 +99,7 @@ private:
         result.tolerance = triangle_.tolerance;
         result.are_close = static_cast<bool>(close_);
         result.are_close ? close_ramps(tile).copy_to(result) : take_planes(at, result);
+        if (is_mask_alone()) take_sides(triangle_.lit, result);
         return result;
     }
 
@@ -144,7 +145,7 @@ private:
     TEXGEN_RARE void split(const Tile& tile, const Corners& at) noexcept {
         if (at.all_behind()) return clear(tile);
         if (tile.count() <= TileJob::unit_size) return fill_closely(tile);
-        const Stretch stretch = at.next_to_zero(tile, is_mask_alone() && triangle_.tolerance == 0.0 ? 0x1p-4 : 0x1p-2);
+        const Stretch stretch = at.next_to_zero(tile);
         for (std::size_t i = 0; i < 3; ++i) {
             const Tile part = stretch.part(tile, i);
             if (part.count() == 0 || (is_mask_alone() && lights_at_once(part))) continue;
@@ -244,7 +245,7 @@ private:
     }
 
     // In shorter chunks, or by divisions. Below what is refused of a row the same will be; then no vector may be written beyond its row.
-    TEXGEN_APART void fill_refused(const Tile& tile, TileJob& job, const TileJob::Unit& refused) noexcept {
+    TEXGEN_RARE void fill_refused(const Tile& tile, TileJob& job, const TileJob::Unit& refused) noexcept {
         Tile rest = part_of(tile, refused);
         const bool touches = refused.x_begin == job.filled.x_end || refused.x_end == job.filled.x_begin;
         if (rest.width < tile.width && (job.filled.x_end == 0 || touches)) {
