@@ -181,7 +181,7 @@ private:
         if (is_constant(functions.function[CloseFunctions::q].high) && sharpen(tile, functions) &&
             tile.width + tile.height > 4 && take_exact_quotients(functions, job))
             unit = detail::fill_exact(kernels_, job, unit, TileJob::unit_size);
-        // Doubt has company: twice as many units after each failure that follows another, and some after one of nothing else.
+        // Doubt has company: four times as many units after each failure that follows another, and some after one of nothing else.
         for (int many = 1; !job.is_done(unit);) {
             const bool were_close = functions.are_close;
             for (int i = 0; i < many && !job.is_done(unit); ++i, unit = job.unit_after(unit))
@@ -193,7 +193,7 @@ private:
                 const TileJob::Unit next = detail::fill_exact(kernels_, job, unit, TileJob::unit_size);
                 const bool fails_again = next.x_begin == unit.x_begin && next.y_begin == unit.y_begin;
                 is_closer = fails_again && !functions.are_close && !functions.have_residues;
-                many = fails_again ? 2 * many : 1;
+                many = fails_again ? 4 * many : 1;
                 unit = next;
             }
             if (is_closer) {
