@@ -4,6 +4,52 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
+// A difference: the leading 26 bits of the double next to it, the others, and what that lacks. Of two such products all but that of
+// the others are exact.
+struct DifferenceLanes {
+    Doubles high, low, lost;
+
+    TEXGEN_INLINE void set(const Doubles& a, const Doubles& b) noexcept {
+        const Doubles difference = two_sum(a, b * -1.0, lost);
+        high = leading_bits<26>(difference);
+        low = difference - high;
+    }
+};
+
+// An edge function in two doubles, and the sizes of the terms that it is the difference of.
+struct EdgeLanes {
+    Doubles high, low, size;
+
+    // What two differences span: within 2^-98 of the size. Not short are differences that have a low part, or have lost one.
+    TEXGEN_INLINE void set(const DifferenceLanes& to_x, const DifferenceLanes& to_y, const DifferenceLanes& from_x,
+                           const DifferenceLanes& from_y, bool is_short, bool is_lost) noexcept {
+        const Doubles left = to_x.high * from_y.high;
+        const Doubles right = to_y.high * from_x.high;
+        size = magnitude(left) + magnitude(right);
+        high = two_sum(left, right * -1.0, low);
+        if (is_short) return;
+        Doubles error[4];
+        const Doubles left_middle = two_sum(to_x.high * from_y.low, to_x.low * from_y.high, error[0]);
+        const Doubles right_middle = two_sum(to_y.high * from_x.low, to_y.low * from_x.high, error[1]);
+        const Doubles middle = two_sum(left_middle, right_middle * -1.0, error[2]);
+        const Doubles sum = two_sum(high, middle, error[3]);
+        Doubles last = to_x.low * from_y.low - to_y.low * from_x.low;
+        if (is_lost)
+            last = last + (((to_x.high + to_x.low) * from_y.lost + to_x.lost * (from_y.high + from_y.low)) -
+                           ((to_y.high + to_y.low) * from_x.lost + to_y.lost * (from_x.high + from_x.low)));
+        const Doubles rest = ((low + error[3]) + (error[2] + (error[0] - error[1]))) + last;
+        high = two_sum(sum, rest, low);
+    }
+
+    // A product with a float is within 2^-104 of itself.
+    TEXGEN_INLINE void multiply(const Doubles& factor) noexcept {
+        const Doubles leading = leading_bits<27>(high);
+        Doubles error;
+        high = quick_two_sum(leading * factor, (high - leading) * factor, error);
+        low = low * factor + error;
+    }
+};
+
 // The vertices of the triangle in each lane; of its numbers x, y, w, s, t, r, q.
 struct VertexLanes {
     Doubles vertex[3][8];
@@ -19,35 +65,26 @@ struct VertexLanes {
         const Doubles right = (number(1, 1) - number(0, 1)) * (number(2, 0) - number(0, 0));
         area = left - right;
         has_area = greater(magnitude(area), (magnitude(left) + magnitude(right)) * gamma(4));
+        if (any(~has_area)) find_area();
         error_of_q = where(~has_area, Doubles{} + std::numeric_limits<double>::infinity());
     }
 
     TEXGEN_INLINE const Doubles& number(std::size_t i, std::size_t k) const noexcept {
         return vertex[i][k < 3 ? k : BatchVertex::strq + (k - 3)];
     }
-};
 
-// A difference: the leading 26 bits of the double next to it, the others, and what that lacks. Of two such products all but that of
-// the others are exact.
-struct DifferenceLanes {
-    Doubles high, low, lost;
-
-    TEXGEN_INLINE void set(const Doubles& a, const Doubles& b) noexcept {
-        const Doubles difference = two_sum(a, b * -1.0, lost);
-        high = leading_bits<26>(difference);
-        low = difference - high;
-    }
-};
-
-// A product of an edge function, in two doubles, with a float: within 2^-104 of itself.
-struct EdgeLanes {
-    Doubles high, low;
-
-    TEXGEN_INLINE void multiply(const Doubles& factor) noexcept {
-        const Doubles leading = leading_bits<27>(high);
-        Doubles error;
-        high = quick_two_sum(leading * factor, (high - leading) * factor, error);
-        low = low * factor + error;
+private:
+    // Of slivers it takes two doubles.
+    TEXGEN_INLINE void find_area() noexcept {
+        DifferenceLanes to_b[2], to_c[2];
+        for (std::size_t k = 0; k < 2; ++k) {
+            to_b[k].set(number(1, k), number(0, k));
+            to_c[k].set(number(2, k), number(0, k));
+        }
+        EdgeLanes edge;
+        edge.set(to_b[0], to_b[1], to_c[0], to_c[1], false, true);
+        area = edge.high;
+        has_area = greater(magnitude(area), edge.size * 0x1p-98);
     }
 };
 
@@ -58,9 +95,8 @@ struct CloseTerms {
     Doubles inexact;                          // 0 where all G_i are a double, exactly
     bool is_leading;                          // leading is all there is
 
-    // Of E_i, what they are the differences of, and what is not 0 where those are not exact.
-    TEXGEN_INLINE void take(const VertexLanes& given, EdgeLanes (&edge)[3], const Doubles (&edge_size)[3],
-                            const Doubles& edge_inexact) noexcept {
+    // Of E_i, and what is not 0 where they are not exact differences.
+    TEXGEN_INLINE void take(const VertexLanes& given, EdgeLanes (&edge)[3], const Doubles& edge_inexact) noexcept {
         inexact = edge_inexact;
         Doubles rest{};
         TEXGEN_UNROLL
@@ -73,7 +109,7 @@ struct CloseTerms {
             edge[i].multiply(w_k);
             low[i] = edge[i].low;
             inexact = inexact + magnitude(low[i]);
-            size[i] = edge_size[i] * (w_j * w_k);
+            size[i] = edge[i].size * (w_j * w_k);
             leading[i] = leading_bits<27>(edge[i].high);
             trailing[i] = edge[i].high - leading[i];
             rest = rest + (magnitude(trailing[i]) + magnitude(low[i]));
@@ -143,30 +179,12 @@ struct CloseLanes : CloseTerms {
         }
         const bool is_short = !is_lost && !any(greater(below, 0.0));
         EdgeLanes edge[3];
-        Doubles edge_size[3];
         TEXGEN_UNROLL
         for (std::size_t i = 0; i < 3; ++i) {
             const std::size_t j = (i + 1) % 3;
-            const Doubles left = to_x[j].high * from_y[i].high;
-            const Doubles right = to_y[j].high * from_x[i].high;
-            edge_size[i] = magnitude(left) + magnitude(right);
-            edge[i].high = two_sum(left, right * -1.0, edge[i].low);
-            if (is_short) continue;
-            Doubles error[4];
-            const Doubles left_middle = two_sum(to_x[j].high * from_y[i].low, to_x[j].low * from_y[i].high, error[0]);
-            const Doubles right_middle = two_sum(to_y[j].high * from_x[i].low, to_y[j].low * from_x[i].high, error[1]);
-            const Doubles middle = two_sum(left_middle, right_middle * -1.0, error[2]);
-            const Doubles sum = two_sum(edge[i].high, middle, error[3]);
-            Doubles last = to_x[j].low * from_y[i].low - to_y[j].low * from_x[i].low;
-            if (is_lost)
-                last =
-                    last +
-                    (((to_x[j].high + to_x[j].low) * from_y[i].lost + to_x[j].lost * (from_y[i].high + from_y[i].low)) -
-                     ((to_y[j].high + to_y[j].low) * from_x[i].lost + to_y[j].lost * (from_x[i].high + from_x[i].low)));
-            const Doubles rest = ((edge[i].low + error[3]) + (error[2] + (error[0] - error[1]))) + last;
-            edge[i].high = two_sum(sum, rest, edge[i].low);
+            edge[i].set(to_x[j], to_y[j], from_x[i], from_y[i], is_short, is_lost);
         }
-        take(given, edge, edge_size, below + lost);
+        take(given, edge, below + lost);
     }
 };
 
@@ -174,15 +192,14 @@ struct CloseLanes : CloseTerms {
 struct CloseSteps : CloseTerms {
     TEXGEN_INLINE CloseSteps(const VertexLanes& given, std::size_t axis) noexcept {
         EdgeLanes edge[3];
-        Doubles edge_size[3];
         TEXGEN_UNROLL
         for (std::size_t i = 0; i < 3; ++i) {
             const std::size_t j = (i + (axis == 1 ? 1 : 2)) % 3;
             const std::size_t k = (i + (axis == 1 ? 2 : 1)) % 3;
             edge[i].high = two_sum(given.number(j, axis), given.number(k, axis) * -1.0, edge[i].low);
-            edge_size[i] = magnitude(edge[i].high);
+            edge[i].size = magnitude(edge[i].high);
         }
-        take(given, edge, edge_size, Doubles{});
+        take(given, edge, Doubles{});
     }
 };
 
