@@ -203,19 +203,23 @@ struct CloseSteps : CloseTerms {
     }
 };
 
-// Three numbers as integers, in a power of two of which they are multiples.
-struct IntegerLanes {
-    Doubles unit, per_unit, largest;
-    Doubles value[3];
+// Of integers below 2^115, or that are multiples of so large a power of two.
+TEXGEN_INLINE Residues to_residues_of_any(const Doubles& integers) noexcept {
+    const Doubles rest = integers - ((integers * 0x1p-64 + 0x1.8p52) - 0x1.8p52) * 0x1p64;
+    return to_residues(rest - where(~greater(Doubles{} + 0x1p63, rest), Doubles{} + 0x1p64));
+}
 
-    TEXGEN_INLINE IntegerLanes(const Doubles& a, const Doubles& b, const Doubles& c, double largest_unit) noexcept {
+// Three numbers, and the power of two of which they are integers.
+struct IntegerLanes {
+    Doubles number[3];
+    Doubles unit, per_unit, largest;
+
+    TEXGEN_INLINE IntegerLanes(const Doubles& a, const Doubles& b, const Doubles& c, const auto&... units) noexcept
+        : number{a, b, c} {
         const Doubles size[3] = {magnitude(a), magnitude(b), magnitude(c)};
-        unit = minimum(minimum(last_bits(size[0]), minimum(last_bits(size[1]), last_bits(size[2]))),
-                       Doubles{} + largest_unit);
+        unit = minimum(last_bits(size[0]), minimum(last_bits(size[1]), last_bits(size[2])));
+        ((unit = minimum(unit, Doubles{} + units)), ...);
         per_unit = reciprocals_of_powers(unit);
-        value[0] = a * per_unit;
-        value[1] = b * per_unit;
-        value[2] = c * per_unit;
         largest = maximum(size[0], maximum(size[1], size[2])) * per_unit;
     }
 };
@@ -244,21 +248,22 @@ struct ResidueLanes {
         const IntegerLanes y(number(0, 1), number(1, 1), number(2, 1), 0.5);
         const Doubles w[3] = {number(0, 2), number(1, 2), number(2, 2)};
         const IntegerLanes weight(with_sign_of(w[1] * w[2], given.area), with_sign_of(w[2] * w[0], given.area),
-                                  with_sign_of(w[0] * w[1], given.area), 0x1p500);
+                                  with_sign_of(w[0] * w[1], given.area));
         const Doubles largest =
             maximum(maximum(x.largest, maximum(y.largest, weight.largest)), maximum(x.per_unit, y.per_unit));
         take_known(given.has_area, largest);
-        one_x_ = known(x.per_unit);
-        one_y_ = known(y.per_unit);
+        const Doubles one = Doubles{} + 1.0;
+        one_x_ = known(one, x.per_unit);
+        one_y_ = known(one, y.per_unit);
         unit_ = x.unit * y.unit * weight.unit;
         // Integers, of which a fragment far away has a product that is none of 63 bits.
-        const Residues first_x = to_residues(at_x * 2.0) * known(x.per_unit * 0.5);
-        const Residues first_y = to_residues(at_y * 2.0) * known(y.per_unit * 0.5);
+        const Residues first_x = to_residues(at_x * 2.0) * known(one * 0.5, x.per_unit);
+        const Residues first_y = to_residues(at_y * 2.0) * known(one * 0.5, y.per_unit);
         TEXGEN_UNROLL
         for (std::size_t i = 0; i < 3; ++i) {
-            scale_[i] = known(weight.value[i]);
-            to_x_[i] = known(x.value[i]) - first_x;
-            to_y_[i] = known(y.value[i]) - first_y;
+            scale_[i] = known(weight.number[i], weight.per_unit);
+            to_x_[i] = known(x.number[i], x.per_unit) - first_x;
+            to_y_[i] = known(y.number[i], y.per_unit) - first_y;
         }
         TEXGEN_UNROLL
         for (std::size_t i = 0; i < 3; ++i) {
@@ -281,9 +286,10 @@ struct ResidueLanes {
 
     // Of coordinate k, 0 to 3 for s, t, r, q.
     TEXGEN_INLINE ResidueValues values(std::size_t k) noexcept {
-        const IntegerLanes f(given.number(0, 3 + k), given.number(1, 3 + k), given.number(2, 3 + k), 0x1p500);
+        const IntegerLanes f(given.number(0, 3 + k), given.number(1, 3 + k), given.number(2, 3 + k));
         take_known(is_known, f.largest);
-        return {{known(f.value[0]), known(f.value[1]), known(f.value[2])}, unit_ * f.unit};
+        return {{known(f.number[0], f.per_unit), known(f.number[1], f.per_unit), known(f.number[2], f.per_unit)},
+                unit_ * f.unit};
     }
 
 private:
@@ -292,18 +298,41 @@ private:
         are_large_ = any(greater(largest, 0x1p62));
     }
     // Modulo 2^64, of at most 48 bits: so large numbers are multiples of what their sums here are rounded to.
-    TEXGEN_INLINE Residues known(const Doubles& integer) const noexcept {
-        Doubles rest = where(is_known, integer);
-        if (are_large_) {
-            rest = rest - ((rest * 0x1p-64 + 0x1.8p52) - 0x1.8p52) * 0x1p64;
-            rest = rest - where(~greater(Doubles{} + 0x1p63, rest), Doubles{} + 0x1p64);
-        }
-        return to_residues(rest);
+    TEXGEN_INLINE Residues known(const Doubles& number, const Doubles& per_unit) const noexcept {
+        const Doubles integer = number * where(is_known, per_unit);
+        return are_large_ ? to_residues_of_any(integer) : to_residues(integer);
     }
 
     Residues scale_[3], to_x_[3], to_y_[3], one_x_, one_y_;
     Doubles unit_;
     bool are_large_;  // some numbers are
+};
+
+// The functions of a triangle in each lane at a fragment, in double, of which corner k is taken off corner j as one far away has it
+// in CloseLanes. With u = 2^-53 the differences are within u, an edge function 4 u of the sizes of its terms, times its weight 6 u,
+// the sum of three 9 u of theirs, and the sizes themselves 7 u.
+struct NearLanes {
+    Doubles term[3], size[3];
+
+    TEXGEN_INLINE NearLanes(const VertexLanes& given, const Doubles& x, const Doubles& y) noexcept {
+        TEXGEN_UNROLL
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::size_t j = (i + 1) % 3;
+            const std::size_t k = (i + 2) % 3;
+            const Doubles left = (given.number(j, 0) - x) * (given.number(k, 1) - given.number(j, 1));
+            const Doubles right = (given.number(j, 1) - y) * (given.number(k, 0) - given.number(j, 0));
+            const Doubles weight = given.number(j, 2) * given.number(k, 2);
+            term[i] = (left - right) * with_sign_of(weight, given.area);
+            size[i] = (magnitude(left) + magnitude(right)) * weight;
+        }
+    }
+    // Within 1.01 times what it may err by, as a divisor takes it.
+    TEXGEN_INLINE CloseValues function(const VertexLanes& given, std::size_t k) const noexcept {
+        const Doubles* const f[3] = {&given.number(0, 3 + k), &given.number(1, 3 + k), &given.number(2, 3 + k)};
+        return {term[0] * *f[0] + (term[1] * *f[1] + term[2] * *f[2]), Doubles{},
+                (size[0] * magnitude(*f[0]) + (size[1] * magnitude(*f[1]) + size[2] * magnitude(*f[2]))) *
+                    (1.02 * gamma(9))};
+    }
 };
 
 // What is known of fragments of a triangle each, q last: without residues grains are 0.
@@ -313,43 +342,43 @@ struct CloseFragmentsAt {
     Residues residue[Numerators + 1]{};
     Doubles of_grain[Numerators + 1]{};
 
-    TEXGEN_INLINE const CloseValues& values(std::size_t n) const noexcept { return value[n]; }
+    // One by one: GCC copies them in halves, which a load of the whole waits for.
+    TEXGEN_INLINE CloseValues values(std::size_t n) const noexcept {
+        return {value[n].high, value[n].low, value[n].error};
+    }
     TEXGEN_INLINE const Residues& residues(std::size_t n) const noexcept { return residue[n]; }
     TEXGEN_INLINE const Doubles& grain(std::size_t n) const noexcept { return of_grain[n]; }
 
-    TEXGEN_APART void add_residues(const VertexLanes& vertices, const Doubles& x, const Doubles& y) noexcept {
+    template <class Terms>
+    TEXGEN_INLINE void take(const VertexLanes& vertices, const Terms& terms) noexcept {
+        TEXGEN_UNROLL
+        for (std::size_t n = 0; n <= Numerators; ++n) value[n] = terms.function(vertices, n < Numerators ? n : 3);
+        value[Numerators].error = value[Numerators].error + vertices.error_of_q;
+    }
+    TEXGEN_INLINE void add_residues(const VertexLanes& vertices, const Doubles& x, const Doubles& y) noexcept {
         ResidueLanes lanes_of(vertices, x, y);
+        TEXGEN_UNROLL
         for (std::size_t n = 0; n <= Numerators; ++n) {
             const ResidueValues of = lanes_of.values(n < Numerators ? n : 3);
             residue[n] = of.times(lanes_of.side);
             of_grain[n] = where(lanes_of.is_known, of.grain);
         }
     }
-};
-
-// The lanes in doubt of a vector of fragments at (x, y), again: others are anything. Returns those that stay so.
-template <std::size_t Numerators>
-TEXGEN_APART Words divide_lanes_closely(const float* const (&triangle)[lanes], const Doubles& x, const Doubles& y,
-                                        const Words& in_doubt, Floats (&quotient)[Numerators],
-                                        LongWords& front) noexcept {
-    const VertexLanes vertices(triangle);
-    const CloseLanes close(vertices, x, y);
-    CloseFragmentsAt<Numerators> at;
-    for (std::size_t n = 0; n <= Numerators; ++n) at.value[n] = close.function(vertices, n < Numerators ? n : 3);
-    at.value[Numerators].error = at.value[Numerators].error + vertices.error_of_q;
-    CloseDivisor q;
-    q.take(at.value[Numerators]);
-    front = q.front;
-    CloseFragments<Numerators> fragments;
-    Words left = in_doubt;
-    for (const bool is_last : {false, true}) {
-        if (is_last) at.add_residues(vertices, x, y);
-        fragments.divide(at, q, Numerators, 0.0, true);
-        left = in_doubt & narrow(fragments.doubtful);
-        if (!any(left)) break;
+    // Where the grain is coarse enough, one integer times it that has the residue is next to a value: what the leading part is rounded
+    // to is within `reach`, or a grain, of it. Of their difference, the rest, 2^-50 is lost, or nothing.
+    TEXGEN_INLINE void sharpen() noexcept {
+        TEXGEN_UNROLL
+        for (std::size_t n = 0; n <= Numerators; ++n) {
+            CloseValues& f = value[n];
+            const Doubles reach = magnitude(f.high) * 0x1p-48 + f.error;
+            const LongWords is_one = greater(of_grain[n] * 0x1p60, reach);
+            const Doubles integer = (where(is_one, f.high * reciprocals_of_powers(of_grain[n])) + 0x1.8p52) - 0x1.8p52;
+            const Doubles rest = signed_numbers(residue[n] - to_residues_of_any(integer)) * of_grain[n];
+            Doubles low;
+            const Doubles high = quick_two_sum(integer * of_grain[n], rest, low);
+            f = {select(is_one, high, f.high), select(is_one, low, f.low), select(is_one, reach * 0x1p-48, f.error)};
+        }
     }
-    for (std::size_t k = 0; k < Numerators; ++k) quotient[k] = fragments.quotient[k];
-    return left;
-}
+};
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA

@@ -85,8 +85,13 @@ struct FragmentIds {
     }
 };
 
-// Vectors of fragments that have lanes in doubt, and the triangles of those, of which a block has so many: all are decided at
-// once, by what fragments of a triangle share. Few vectors are decided alone, and those whose triangles ask for one place.
+// What vectors in doubt say of those that follow: that they ask for the triangles of others, and what decides them.
+struct Learned {
+    bool vectors_share = true, starts_closely = false;
+};
+
+// Vectors of fragments that have lanes in doubt, and the triangles of those, as many as a block has: all are decided at once, by
+// what fragments of a triangle share. Few vectors, and what that leaves, are decided alone.
 template <std::size_t Numerators>
 class DoubtfulFragments {
 public:
@@ -97,79 +102,30 @@ public:
         std::size_t n, place;  // of the first fragment: in `out`, and in the block
     };
 
-    // Of fragments of a rectangle.
-    TEXGEN_INLINE DoubtfulFragments(const FragmentsJob& job, double left, double top, double width,
+    // Of fragments of a rectangle; what is learned is for the next block, too.
+    TEXGEN_INLINE DoubtfulFragments(const FragmentsJob& job, Learned& learned, double left, double top, double width,
                                     double height) noexcept
-        : job_(job), left_(left), top_(top), width_(width), height_(height) {}
+        : job_(job), learned_(learned), left_(left), top_(top), width_(width), height_(height) {}
 
-    TEXGEN_INLINE bool has_any() const noexcept { return count_ != 0; }
-
-    // False where there is no room for its triangles, each of which has one place.
-    TEXGEN_INLINE bool add(const Vector& vector, const FragmentIds& ids) noexcept {
-        Known& known = vectors_[count_];
-        known.vector = vector;
-        known.is_one = ids.are_one();
-        const std::uint64_t asked = bits_of(vector.doubtful);
-        const auto first = static_cast<std::size_t>(std::countr_zero(asked));
-        for (std::size_t i = 0; i < (known.is_one ? 1 : static_cast<std::size_t>(lanes)); ++i) {
-            const std::uint32_t id = ids.value[(asked >> i & 1u) != 0 ? i : first];
-            const std::size_t place = id % batch_block;
-            if (has(place) && id_[place] != id) {
-                if (count_ == 0) triangles_ = 0;
-                return false;
-            }
-            known.triangle[i] = place;
-            triangles_ |= 1u << place;
-            id_[place] = id;
+    TEXGEN_INLINE void add(const Vector& vector, const FragmentIds& ids) noexcept {
+        const bool is_shared = learned_.vectors_share || ids.are_one();
+        if (is_shared && has_taken(vector, ids)) return;
+        if (is_shared && count_ != 0) {
+            learned_.vectors_share = count_ > 2;
+            decide();
+            if (has_taken(vector, ids)) return;
         }
-        ++count_;
-        return true;
-    }
-
-    // Lanes that stay in doubt.
-    TEXGEN_INLINE std::uint64_t decide_alone(const Vector& vector, const FragmentIds& ids) noexcept {
+        if (count_ == 0) triangles_ = 0;
         const float* of_lane[lanes];
         for (std::size_t i = 0; i < static_cast<std::size_t>(lanes); ++i)
             of_lane[i] = vertices_of(job_, ids.value[i] < job_.triangles ? ids.value[i] : 0);
-        return put_closely(of_lane, vector);
+        undecided_ |= put_closely(of_lane, vector) << vector.place;
     }
 
-    // Puts what is decided to its place; the fragments that stay in doubt are bits of the block.
-    TEXGEN_APART std::uint64_t decide() noexcept {
-        constexpr auto size = static_cast<std::size_t>(lanes);
-        const auto first_known = static_cast<std::size_t>(std::countr_zero(triangles_));
-        const bool are_few = count_ <= 2;
-        const Doubles none{};
-        BatchFunctions functions;
-        for (std::size_t i = 0; !are_few && i < batch_block; i += size) {
-            const float* of_lane[lanes];
-            for (std::size_t j = 0; j < size; ++j)
-                of_lane[j] = vertices_of(job_, id_[has(i + j) ? i + j : first_known]);
-            functions.take<Numerators>(of_lane, none + left_, none + top_, none + width_, none + height_, i);
-        }
-        std::uint64_t undecided = 0;
-        for (std::size_t k = 0; k < count_; ++k) {
-            const Known& known = vectors_[k];
-            const Vector& vector = known.vector;
-            const Doubles x = vector.x - left_, y = vector.y - top_;
-            std::uint64_t left = 0;
-            if (are_few) {
-                const float* of_lane[lanes];
-                for (std::size_t i = 0; i < size; ++i)
-                    of_lane[i] = vertices_of(job_, id_[known.triangle[known.is_one ? 0 : i]]);
-                left = put_closely(of_lane, vector);
-            } else if (known.is_one) {
-                left = put(vector, functions.of[known.triangle[0]], x, y);
-            } else {
-                const BatchFunction* of_lane[lanes];
-                for (std::size_t i = 0; i < size; ++i) of_lane[i] = &functions.of[known.triangle[i]];
-                left = put(vector, LaneFunctions<Numerators>(of_lane), x, y);
-            }
-            undecided |= left << vector.place;
-        }
-        triangles_ = 0;
-        count_ = 0;
-        return undecided;
+    // The fragments that stay in doubt, as bits of the block.
+    TEXGEN_INLINE std::uint64_t undecided() noexcept {
+        if (count_ != 0) decide();
+        return undecided_;
     }
 
 private:
@@ -181,11 +137,66 @@ private:
 
     TEXGEN_INLINE bool has(std::size_t place) const noexcept { return (triangles_ >> place & 1u) != 0; }
 
+    // False where there is no room for its triangles.
+    TEXGEN_INLINE bool has_taken(const Vector& vector, const FragmentIds& ids) noexcept {
+        Known& known = vectors_[count_];
+        known.vector = vector;
+        known.is_one = ids.are_one();
+        const std::uint64_t asked = bits_of(vector.doubtful);
+        const auto first = static_cast<std::size_t>(std::countr_zero(asked));
+        for (std::size_t i = 0; i < (known.is_one ? 1 : static_cast<std::size_t>(lanes)); ++i) {
+            const std::uint32_t id = ids.value[(asked >> i & 1u) != 0 ? i : first];
+            const std::size_t place = id % batch_block;
+            if (has(place) && id_[place] != id) return false;
+            known.triangle[i] = place;
+            triangles_ |= 1u << place;
+            id_[place] = id;
+        }
+        ++count_;
+        return true;
+    }
+
+    // Puts what is decided to its place.
+    TEXGEN_APART void decide() noexcept {
+        constexpr auto size = static_cast<std::size_t>(lanes);
+        const bool are_few = count_ <= 2;
+        const Doubles none{};
+        BatchFunctions functions;
+        const auto first_known = static_cast<std::size_t>(std::countr_zero(triangles_));
+        for (std::size_t i = 0; !are_few && i < batch_block; i += size) {
+            const float* of_lane[lanes];
+            for (std::size_t j = 0; j < size; ++j)
+                of_lane[j] = vertices_of(job_, id_[has(i + j) ? i + j : first_known]);
+            functions.take<Numerators>(of_lane, none + left_, none + top_, none + width_, none + height_, i);
+        }
+        for (std::size_t k = 0; k < count_; ++k) {
+            const Known& known = vectors_[k];
+            const Vector& vector = known.vector;
+            const Doubles x = vector.x - left_, y = vector.y - top_;
+            const auto place_of = [&](std::size_t i) { return known.triangle[known.is_one ? 0 : i]; };
+            std::uint64_t left = bits_of(vector.doubtful);
+            if (!are_few && known.is_one) {
+                left = put(vector, BatchFunctionsAt<BatchFunction>{functions.of[place_of(0)], x, y});
+            } else if (!are_few) {
+                const BatchFunction* of_lane[lanes];
+                for (std::size_t i = 0; i < size; ++i) of_lane[i] = &functions.of[place_of(i)];
+                const LaneFunctions<Numerators> of(of_lane);
+                left = put(vector, BatchFunctionsAt<LaneFunctions<Numerators>>{of, x, y});
+            }
+            if (left != 0) {
+                const float* of_lane[lanes];
+                for (std::size_t i = 0; i < size; ++i) of_lane[i] = vertices_of(job_, id_[place_of(i)]);
+                left = put_closely(of_lane, vector);
+            }
+            undecided_ |= left << vector.place;
+        }
+        triangles_ = 0;
+        count_ = 0;
+    }
+
     // Returns the lanes that stay in doubt.
     template <class Functions>
-    TEXGEN_INLINE std::uint64_t put(const Vector& vector, const Functions& of, const Doubles& x,
-                                    const Doubles& y) noexcept {
-        const BatchFunctionsAt<Functions> at{of, x, y};
+    TEXGEN_INLINE std::uint64_t put(const Vector& vector, const Functions& at) const noexcept {
         CloseFragments<Numerators> fragments;
         CloseDivisor q;
         q.take(at.values(Numerators));
@@ -194,19 +205,34 @@ private:
         return bits_of(vector.doubtful & narrow(fragments.doubtful));
     }
 
-    TEXGEN_INLINE std::uint64_t put_closely(const float* const (&of_lane)[lanes], const Vector& vector) noexcept {
-        Floats quotient[Numerators];
-        LongWords in_front;
-        const Words left = divide_lanes_closely(of_lane, vector.x, vector.y, vector.doubtful, quotient, in_front);
-        vector.out->put_where(vector.doubtful, vector.n, quotient, in_front);
-        return bits_of(left);
+    // By residues and doubles, and by two doubles: first by what decided the vector before.
+    TEXGEN_APART std::uint64_t put_closely(const float* const (&of_lane)[lanes], const Vector& vector) noexcept {
+        const VertexLanes vertices(of_lane);
+        CloseFragmentsAt<Numerators> at;
+        std::uint64_t left = 0;
+        const bool starts_closely = learned_.starts_closely;
+        for (const bool closely : {starts_closely, !starts_closely}) {
+            if (closely) {
+                at.take(vertices, CloseLanes(vertices, vector.x, vector.y));
+            } else {
+                at.add_residues(vertices, vector.x, vector.y);
+                if (!starts_closely) at.take(vertices, NearLanes(vertices, vector.x, vector.y));
+            }
+            if (!closely || !starts_closely) at.sharpen();
+            left = put(vector, at);
+            if (left == 0) break;
+            learned_.starts_closely = true;
+        }
+        return left;
     }
 
     const FragmentsJob& job_;
+    Learned& learned_;
     double left_, top_, width_, height_;
+    std::uint64_t undecided_ = 0;
+    std::size_t count_ = 0;
     unsigned triangles_ = 0;  // a bit for each
     std::uint32_t id_[batch_block];
-    std::size_t count_ = 0;
     Known vectors_[exact_block / lanes];
 };
 
@@ -214,8 +240,7 @@ private:
 template <std::size_t Numerators>
 TEXGEN_APART std::uint64_t decide_fragments(const FragmentsJob& job, const FragmentOutputs& out,
                                             const FragmentOutputs& in_scratch, std::size_t begin, std::size_t end,
-                                            const Words* doubtful) noexcept {
-    constexpr auto size = static_cast<std::size_t>(lanes);
+                                            const Words* doubtful, Learned& learned) noexcept {
     FragmentWalk<Doubles, double> walk(job.width, 1.0 / job.width, static_cast<double>(begin));
     // A part of one row, or whole ones.
     const auto width = static_cast<std::size_t>(job.width);
@@ -223,25 +248,16 @@ TEXGEN_APART std::uint64_t decide_fragments(const FragmentsJob& job, const Fragm
     const std::size_t rows = (end - 1) / width - row + 1;
     const std::size_t column = rows == 1 ? begin % width : 0;
     DoubtfulFragments<Numerators> fragments(
-        job, job.x + 0.5 + static_cast<double>(column), job.y + 0.5 + static_cast<double>(row),
+        job, learned, job.x + 0.5 + static_cast<double>(column), job.y + 0.5 + static_cast<double>(row),
         static_cast<double>(rows == 1 ? end - begin : width), static_cast<double>(rows));
-    std::uint64_t undecided = 0;
-    for (std::size_t n = begin; n < end; n += size, walk.advance(), ++doubtful) {
+    for (std::size_t n = begin; n < end; n += static_cast<std::size_t>(lanes), walk.advance(), ++doubtful) {
         if (!any(*doubtful)) continue;
         const FragmentIds ids(job, n);
-        const FragmentOutputs& to = ids.is_whole ? out : in_scratch;
-        const typename DoubtfulFragments<Numerators>::Vector vector{walk.x + (job.x + 0.5),
-                                                                    walk.y + (job.y + 0.5),
-                                                                    ~equal(*doubtful, 0),
-                                                                    &to,
-                                                                    ids.is_whole ? n : std::size_t{0},
-                                                                    n - begin};
-        if (fragments.add(vector, ids)) continue;
-        if (fragments.has_any()) undecided |= fragments.decide();
-        if (!fragments.add(vector, ids)) undecided |= fragments.decide_alone(vector, ids) << vector.place;
+        fragments.add({walk.x + (job.x + 0.5), walk.y + (job.y + 0.5), ~equal(*doubtful, 0),
+                       ids.is_whole ? &out : &in_scratch, ids.is_whole ? n : std::size_t{0}, n - begin},
+                      ids);
     }
-    if (fragments.has_any()) undecided |= fragments.decide();
-    return undecided;
+    return fragments.undecided();
 }
 
 template <std::size_t Numerators>
@@ -254,6 +270,7 @@ TEXGEN_INLINE Undecided divide_all_fragments(const FragmentsJob& job, std::size_
     const double left = job.x + 0.5;
     const double top = job.y + 0.5;
     const auto planes_of = [&](std::uint32_t id) { return &job.planes[id < job.triangles ? id : job.triangles]; };
+    Learned learned;
     for (std::size_t n = first; n < job.count;) {
         const std::size_t begin = n;
         const std::size_t end = job.count - begin < exact_block ? job.count : begin + exact_block;
@@ -278,7 +295,8 @@ TEXGEN_INLINE Undecided divide_all_fragments(const FragmentsJob& job, std::size_
             any_doubtful |= fragments.doubtful;
         }
         std::uint64_t undecided = 0;
-        if (any(any_doubtful)) undecided = decide_fragments<Numerators>(job, out, in_scratch, begin, end, doubtful);
+        if (any(any_doubtful))
+            undecided = decide_fragments<Numerators>(job, out, in_scratch, begin, end, doubtful, learned);
         if (n > job.count) scratch.copy_to(out, n - size, job.count + size - n);
         if (undecided != 0) return {begin, undecided};
     }

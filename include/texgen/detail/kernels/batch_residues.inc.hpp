@@ -64,8 +64,7 @@ struct BatchFunctions {
             residues[3 * n] = value.times(corners.side);
             residues[3 * n + 1] = value.times(dx);
             residues[3 * n + 2] = value.times(dy);
-            // Of what is 0 at all corners any grain.
-            part[7] = where(corners.is_known | at_most(size, Doubles{}), value.grain);
+            part[7] = where(corners.is_known, value.grain);
             store_columns(part, [&](std::size_t j) { return of[first + j].part[n]; });
         }
         store_columns(residues, [&](std::size_t j) { return of[first + j].residues; });

@@ -12,10 +12,10 @@ TEXGEN_INLINE std::uint64_t bits_of(const Words& mask) noexcept {
 struct CloseValues {
     Doubles high, low, error;
 
-    // Where its residue times the grain, of all lanes or of each, is all of it.
+    // Where its residue times the grain, of all lanes or of each, is all of it; of 0 any grain is, and of nothing else 0.
     template <class Grain>
     TEXGEN_INLINE LongWords are_residues(const Grain& grain) const noexcept {
-        return greater(Doubles{} + grain * 0x1p62, magnitude(high + low) + error);
+        return at_most(magnitude(high + low) + error, Doubles{} + grain * 0x1p62);
     }
 };
 

@@ -140,6 +140,9 @@ TEXGEN_INLINE Doubles middle_near(const Doubles& a) noexcept {
 TEXGEN_INLINE Residues to_residues(const Doubles& integers) noexcept {
     return converted<Residues>(converted<Lanes<std::int64_t>>(integers));
 }
+TEXGEN_INLINE Doubles signed_numbers(const Residues& a) noexcept {
+    return to_doubles(converted<Lanes<std::int64_t>>(a));
+}
 TEXGEN_INLINE Doubles without_last_bit(const Doubles& a) noexcept {
     const auto all = bits_as<Residues>(a);
     return bits_as<Doubles>(all & (all - std::uint64_t{1}));

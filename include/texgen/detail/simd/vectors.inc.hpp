@@ -94,6 +94,9 @@ TEXGEN_INLINE Doubles masked_or(const Doubles& a, long long bits, const Doubles&
 TEXGEN_INLINE Residues to_residues(const Doubles& integers) noexcept {
     return __builtin_bit_cast(Residues, __builtin_convertvector(integers, LongWords));
 }
+TEXGEN_INLINE Doubles signed_numbers(const Residues& a) noexcept {
+    return __builtin_convertvector(__builtin_bit_cast(LongWords, a), Doubles);
+}
 // A number without its last bit that is set; of a power of two, or 0, it is none.
 TEXGEN_INLINE Doubles without_last_bit(const Doubles& a) noexcept {
     const auto bits = __builtin_bit_cast(Residues, a);
