@@ -111,7 +111,7 @@ public:
         const bool is_shared = learned_.vectors_share || ids.are_one();
         if (is_shared && has_taken(vector, ids)) return;
         if (is_shared && count_ != 0) {
-            learned_.vectors_share = count_ > 2;
+            learned_.vectors_share = count_ > 1;
             decide();
             if (has_taken(vector, ids)) return;
         }
