@@ -106,19 +106,16 @@ inline constexpr double slide_clip_error = 0x1p-20;
 
 inline namespace TEXGEN_COMPILER {
 
-// Cuts off what of a convex polygon the slide does not fall on; the rest is in the order of the polygon, though its first
-// vertex may be another: q > 0, s and t in the region's four sides, and r in its depth where it has one. Returns the count
-// of vertices written to `out`; 0 where nothing is inside a side, or where what is not outside only touches it, with any
-// number of corners. A polygon whose own corners are collinear, or become so by rounding, is cut as any other:
-// TriangleSetup::of() refuses it.
+// Cuts off what of a convex polygon the slide does not fall on: q > 0, s and t in the region's four sides, and r in its depth
+// where it has one, are what is left. Returns the count of vertices written to `out`, in the order of clip_to_near(); 0 where
+// nothing is inside a side, or what is not outside only touches it. Collinear corners are cut as there.
 // Guarantee: every vertex that comes out has q > 0 and is inside the region but for slide_clip_error. Vertices inside keep
 // their bits; sides are decided exactly, so a vertex on a side stays. A new vertex is the exact intersection of its edge
 // (of a new edge's ends as they were rounded), each component of position and strq the nearest float. Shared edges stay
 // closed, to the bit: the edges are cut one after another at q = 0, at the four sides and at the limits of depth, and what
 // becomes of an edge at each is a function of its two ends, in whatever order and whatever polygon they stand. No
 // allocation, noexcept.
-// Shape: out.size() >= polygon.size() + 5, or 7 with a depth (asserted); out may begin where the polygon does, and overlaps it
-// in no other way.
+// Shape: out.size() >= polygon.size() + 5, or 7 with a depth (asserted); out overlaps the polygon as that of clip_to_near() may.
 // At the projector itself (s = t = q = 0, the one point of the sides with q = 0) there is no coordinate: a polygon that
 // reaches it is cut at a millionth (2^-20) of the q of the edge's other end.
 // Bad input: a polygon with an s, t or q that is not finite is dropped, with a depth also one with such an r, and all are

@@ -3,12 +3,8 @@
 // Floor 7: (s, t, r) over the fragments of triangles: interpolate s, t, r, q perspective-correctly, then divide by q, per
 // fragment. Segments are in segment.hpp.
 //
-// The dial chooses how it is computed: exactly, by a division in double with a certificate; under a tolerance without a division,
-// by the first polynomial whose bound fits, else by one in float, if that fits, else as exactly. All begins with the homogeneous
-// values at the corners of the rectangle, which decide whether anything is lit at all (Work::nothing).
-//
-// Where q changes sign the rectangle is cut until its parts are on one side. What is still in doubt (ties, and the last
-// parts) is decided closely, to twice the precision of double; and what that leaves, fragment by fragment, exactly.
+// The tolerance chooses how it is computed: `exact` by a division in double with a certificate, and what that leaves in doubt by
+// exact sums; others by the first polynomial whose bound fits, else by a division in float, if that fits, else as `exact`.
 
 #include "detail/language.hpp"
 

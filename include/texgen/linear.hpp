@@ -112,7 +112,7 @@ std::optional<EyeTexgen> eye_planes_as_stored(const Transform<Texture, Space>& p
 // Shape: elements as in stored.matrix(), planes and M as for eye_planes_as_stored().
 // Bad input: infinite where M is refused; a NaN or an infinity of a plane, given or stored, stays in its row, as does one that
 // their products make.
-// Source: see detail/arithmetic/inverse.hpp.
+// Source: the residual of a solution bounds its error: Higham, Accuracy and Stability of Numerical Algorithms, 7.
 template <class Space>
 glm::dmat4 eye_planes_error_bound(const Transform<Texture, Space>& planes, const Transform<Eye, Space>& modelview,
                                   const EyeTexgen& stored) noexcept;

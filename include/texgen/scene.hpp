@@ -70,9 +70,8 @@ inline namespace TEXGEN_COMPILER {
 // Cost: an update in which nothing changed does nothing. Otherwise only pairs of which a part changed are tested, through
 // a tree over the objects' bounds in the world: a changed projector costs what its light is near to, a changed object at
 // most one test a projector and level (5 for 10 000 objects), fewer where the light is far from all that changed; what is
-// found costs a T_o and a coverage(); and the lit pairs are gone through once, at about a nanosecond each. The tree is put
-// into a new order once as many objects changed as there are, a few objects for each that changes: no update does all of
-// it, but one that changes or adds as many. Where there are more objects than ever, their memory moves. Memory: 250 bytes
+// found costs a T_o and a coverage(); and the lit pairs are gone through once, at about a nanosecond each. The tree is sorted
+// anew as objects change, a few objects for each: no update sorts all, but one that changes or adds as many. Memory: 250 bytes
 // an object, 1050 a projector, 170 a lit pair, up to twice that where they came one by one.
 // Bad input: where T_o, as it is computed, or a box is not finite, the pair is partial and kept, as coverage() has it: where
 // a product of finite matrices overflows, too. An empty box is never lit. Where exponents are so far apart that coverage()

@@ -88,7 +88,7 @@ using WindowTexgen = Transform<Texture, Window>;                     // T_w
 // noexcept.
 // Bad input: empty for a matrix that is singular to working precision, is not finite, or whose inverse overflows, and where
 // an element is below 2^-900 of others in its row or column: scaling could round it.
-// Source: see detail/arithmetic/inverse.hpp.
+// Source: the residual bounds the error of any inverse: Higham, Accuracy and Stability of Numerical Algorithms, 14.
 template <class To, class From>
 std::optional<Transform<From, To>> inverse(const Transform<To, From>& transform) noexcept;
 
@@ -98,7 +98,7 @@ std::optional<Transform<From, To>> inverse(const Transform<To, From>& transform)
 // noexcept; it costs about what inverse() does.
 // Shape: elements as in inverse.matrix().
 // Bad input: infinite where inverse() refuses the transform; a NaN or an infinity of the inverse stays in its row.
-// Source: see detail/arithmetic/inverse.hpp.
+// Source: the residual bounds the error of any inverse: Higham, Accuracy and Stability of Numerical Algorithms, 14.
 template <class To, class From>
 glm::dmat4 inverse_error_bound(const Transform<To, From>& transform, const Transform<From, To>& inverse) noexcept;
 

@@ -10,9 +10,7 @@
 //   all_float       numerators, q and quotient in float
 //   polynomial      in float about the middle of a chunk, with a polynomial instead of a division
 //
-// exact, float_divided and all_float serve points, exact, in_double and all_float segments, exact, float_divided and
-// polynomial triangles, in_double and all_float footprints. in_double serves the doubt of points, too, where their tolerance
-// holds both floats.
+// CONTRIBUTING.md has a table of which serve what.
 
 #include <limits>
 
