@@ -77,12 +77,6 @@ inline Double2 larger(const Double2& a, const Double2& b) noexcept {
 }
 inline bool any_less(const Double2& a, const Double2& b) noexcept { return a[0] < b[0] || a[1] < b[1]; }
 inline bool all_less(const Double2& a, const Double2& b) noexcept { return a[0] < b[0] && a[1] < b[1]; }
-inline bool any_less(const Double2& a, const Double2& b, const Double2& c, const Double2& d) noexcept {
-    return any_less(a, b) || any_less(c, d);
-}
-inline bool all_less(const Double2& a, const Double2& b, const Double2& c, const Double2& d) noexcept {
-    return all_less(a, b) && all_less(c, d);
-}
 
 }  // namespace TEXGEN_DETAIL
 
@@ -167,12 +161,6 @@ TEXGEN_INLINE int bits_of(const Bits2& mask) noexcept {
 }
 TEXGEN_INLINE bool any_less(const Double2& a, const Double2& b) noexcept { return bits_of(a < b) != 0; }
 TEXGEN_INLINE bool all_less(const Double2& a, const Double2& b) noexcept { return bits_of(a < b) == 3; }
-TEXGEN_INLINE bool any_less(const Double2& a, const Double2& b, const Double2& c, const Double2& d) noexcept {
-    return (bits_of(a < b) | bits_of(c < d)) != 0;
-}
-TEXGEN_INLINE bool all_less(const Double2& a, const Double2& b, const Double2& c, const Double2& d) noexcept {
-    return (bits_of(a < b) & bits_of(c < d)) == 3;
-}
 TEXGEN_INLINE Double2 magnitude(const Double2& a) noexcept {
     return __builtin_bit_cast(Double2, __builtin_bit_cast(Bits2, a) & 0x7fffffffffffffffLL);
 }

@@ -156,7 +156,6 @@ TEXGEN_INLINE LongWords are_positive(const Residues& a) noexcept {
 }
 
 TEXGEN_INLINE Words narrow(const LongWords& mask) noexcept { return mask; }
-TEXGEN_INLINE int lane(const Words& a, int i) noexcept { return a.lane[i]; }
 TEXGEN_INLINE Words equal(const Words& a, int b) noexcept {
     return Words::of([&](int i) { return a.lane[i] == b ? -1 : 0; });
 }

@@ -114,7 +114,6 @@ TEXGEN_INLINE Words narrow(const LongWords& mask) noexcept {
     return __builtin_convertvector(mask, Words);
 #endif
 }
-TEXGEN_INLINE int lane(const Words& a, int i) noexcept { return a[i]; }
 TEXGEN_INLINE Words equal(const Words& a, int b) noexcept { return a == b; }
 TEXGEN_INLINE Floats select(const Words& mask, const Floats& a, const Floats& b) noexcept {
     return __builtin_bit_cast(Floats, (mask & bits(a)) | (~mask & bits(b)));

@@ -213,8 +213,8 @@ inline Coverage coverage_of(const Corners& at, const Double2& min, const Double2
     };
     const Side of_min = side_of(min);
     const Side of_max = side_of(max);
-    if (any_less(of_min.largest, -of_min.margin, of_max.margin, of_max.least)) return Coverage::outside;
-    const bool all_inside = all_less(of_min.margin, of_min.least, of_max.largest, -of_max.margin);
+    if (any_less(of_min.largest, -of_min.margin) || any_less(of_max.margin, of_max.least)) return Coverage::outside;
+    const bool all_inside = all_less(of_min.margin, of_min.least) && all_less(of_max.largest, -of_max.margin);
     return all_inside && at.all_in_front() ? Coverage::inside : Coverage::partial;
 }
 
