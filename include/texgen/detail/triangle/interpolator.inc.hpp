@@ -187,12 +187,14 @@ private:
             for (int i = 0; i < many && !job.is_done(unit); ++i, unit = job.unit_after(unit))
                 if (fill_closely(tile, job, functions, unit)) many = many < 4 ? 4 : many;
             if (job.is_done(unit)) return;
-            // What two doubles are rounded to errs by less than the planes: once they are known, or where the planes fail again.
+            // What two doubles are rounded to errs by less than the planes: once they are known, or where the planes fail again
+            // (under a tolerance in any other unit: the quotients that it doesn't forgive are large).
             bool is_closer = functions.are_close && !were_close;
             if (!is_closer) {
                 const TileJob::Unit next = detail::fill_exact(kernels_, job, unit, TileJob::unit_size);
                 const bool fails_again = next.x_begin == unit.x_begin && next.y_begin == unit.y_begin;
-                is_closer = fails_again && !functions.are_close && !functions.have_residues;
+                is_closer = (fails_again || triangle_.tolerance > 0.0) && !job.is_done(next) && !functions.are_close &&
+                            !functions.have_residues;
                 many = fails_again ? 4 * many : 1;
                 unit = next;
             }
