@@ -11,8 +11,8 @@
 
 #include "detail/matrices/required.hpp"
 
-// 0.4.5: 10000 major + 100 minor + patch.
-#define TEXGEN_VERSION 405
+// 0.4.6: 10000 major + 100 minor + patch.
+#define TEXGEN_VERSION 406
 
 namespace TEXGEN_NAMESPACE {
 
