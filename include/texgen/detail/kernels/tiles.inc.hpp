@@ -139,17 +139,17 @@ TEXGEN_INLINE bool are_sided(const CloseFunctions& functions, const CloseFunctio
                              Floats& lit) noexcept {
     const Doubles q = of_q.high + of_q.low;
     // Where the least of these is above 0 all is lit, where one of those is not, dark.
-    Doubles within = q - of_q.error, near = q + of_q.error;
+    Doubles certainly = q - of_q.error, possibly = q + of_q.error;
     for (std::size_t k = 0; k < 2; ++k) {
         const auto& [middle, half, margin, margin_by_q] = functions.side[k];
         const CloseValues f = at.values(k);
         const Doubles inside = q * half - magnitude((f.high + f.low) - q * middle);
         const Doubles least = q * margin_by_q + margin;
-        within = minimum(inside - least, within);
-        near = minimum(inside + least, near);
+        certainly = minimum(inside - least, certainly);
+        possibly = minimum(inside + least, possibly);
     }
-    lit = one_where(narrow(greater(within, 0.0)));
-    return !any(at_most(within, Doubles{}) & greater(near, 0.0));
+    lit = one_where(narrow(greater(certainly, 0.0)));
+    return !any(at_most(certainly, Doubles{}) & greater(possibly, 0.0));
 }
 
 // The fragments of a unit that are asked, as many at once as a vector has, wherever they stand: those of a column, or a few that
