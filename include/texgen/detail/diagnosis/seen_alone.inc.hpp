@@ -5,8 +5,8 @@ namespace TEXGEN_DETAIL {
 
 // Whether near or far, where they are known, land on an end of the other range, or infinity lands where they say it does
 // there: that holds in any units.
-inline bool is_of_other_range(const SeenLens& lens, const DepthEnds& ends, const LensFacts& facts,
-                              bool is_placed) noexcept {
+inline bool lands_on_other_range(const SeenLens& lens, const DepthEnds& ends, const LensFacts& facts,
+                                 bool is_placed) noexcept {
     for (const auto& distance : {facts.z_near, facts.z_far}) {
         if (!is_placed || !distance || !(*distance > 0.0)) continue;
         const Estimate r = lens.r_at(*distance);
@@ -112,7 +112,7 @@ inline void examine_seen_lens(const SeenLens& lens, const SetupMatrices& setup, 
         std::fabs(in_ndc.y / in_ndc.x * *facts.aspect - 1.0) <= 0x1p-12)
         diagnosis.add(Defect::aspect_inverted);
     const bool knows_planes = facts.z_near || facts.z_far;
-    if (ends && (knows_planes ? is_of_other_range(lens, *ends, facts, setup.is_placed())
+    if (ends && (knows_planes ? lands_on_other_range(lens, *ends, facts, setup.is_placed())
                               : is_round_in_other_range(lens, *ends, setup.is_placed() || setup.in_eye_space)))
         diagnosis.add(Defect::depth_range_mismatch);
 }
