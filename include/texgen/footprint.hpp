@@ -2,8 +2,7 @@
 
 // Floor 8: footprints. What a fragment covers of the texture: the derivatives of s/q and t/q by the window's x and y, and
 // what filters make of them. Projection varies them wildly within one triangle, and where q is near 0 a difference of two
-// fragments tells nothing; so they are computed in closed form, from the set-up that interpolates: see Slope in
-// detail/triangle/planes.hpp.
+// fragments tells nothing; so they are computed in closed form, from the set-up that interpolates.
 
 #include "detail/language.hpp"
 
