@@ -165,13 +165,16 @@ private:
         for (std::size_t k = 0; k < 2; ++k) job.quotient_error[k] = error[k];
         // What is written errs by twice that and half an ulp, of 2^-24 of it or 2^-150.
         const double accepted = (triangle_.tolerance - 2.01 * larger(error[0], error[1]) - 0x1p-148) * 0x1.fffp23;
-        job.accepts_some = accepted > 0.0;
+        // Of more than a unit they are asked for once there is doubt: every vector takes longer with them.
+        job.accepts_some = accepted > 0.0 && tile.count() <= TileJob::unit_size;
         job.accepted_square = accepted * accepted;
         // A small tile does not repay the search for its least quotient.
         job.ulps = tile.count() < 1024 ? 0 : at.ulps_of_quotients();
         const TileJob::Unit first = from == nullptr ? job.unit_at(0, 0) : *from;
         const TileJob::Unit unit = detail::fill_exact(kernels_, job, first, 16 * TileJob::unit_size);
-        if (!job.is_done(unit)) fill_from_doubt(tile, at, job, unit);
+        if (job.is_done(unit)) return;
+        job.accepts_some = accepted > 0.0;
+        fill_from_doubt(tile, at, job, unit);
     }
 
     TEXGEN_RARE void fill_from_doubt(const Tile& tile, const Corners& at, TileJob& job, TileJob::Unit unit) noexcept {
