@@ -298,6 +298,8 @@ MUTANTS = [
          ("a small tile that its depth cuts is lit", "answer == detail::SmallAnswer::lit && depth == Coverage::inside",
           "answer == detail::SmallAnswer::lit", "depth_test work_test")),
     *_of("detail/triangle/interpolator.inc.hpp",
+         ("floats beyond the tolerance are accepted", "job.accepted_square = accepted * accepted;",
+          "job.accepted_square = 16.0 * accepted * accepted;", "near_ties_test"),
          ("the chunks' certificate has no margin of its own", "job.least_q = 0x1p24 * at.q_error;",
           "job.least_q = -1.0;", "tolerance_test work_test",
           {"survives": "Where q is not above its error the bound's term |u| e_Q / Q is above |u| itself: nothing passes but a "
@@ -341,6 +343,8 @@ MUTANTS = [
           "if (!at.all_in_front()) return std::numeric_limits<double>::infinity();\n        return detail::larger",
           "return detail::larger", "work_test")),
     *_of("detail/triangle/corners.hpp",
+         ("a side of a mask has no margin", "greatest - least, 1.02 * error, by_q}", "greatest - least, 0.0 * error, 0.0 * by_q}",
+          "near_ties_test"),
          ("the error of float_divided is halved", "largest * float_divided.roundings",
           "largest * (0.5 * float_divided.roundings)",
           "bounds_test tolerance_test"),

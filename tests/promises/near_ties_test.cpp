@@ -15,6 +15,7 @@
 
 #include "judges/exact.hpp"
 #include "judges/fragments.hpp"
+#include "support/hex.hpp"
 #include "support/outputs.hpp"
 #include "texgen/batch.hpp"
 #include "texgen/interpolate.hpp"
@@ -72,6 +73,36 @@ Answer of_triangle(const std::vector<double>& n, std::size_t count) {
     return answer;
 }
 
+// What stands beside the float of that fragment: within the tolerance, as a part of the quotient, or on a side of the region; in
+// tiles of one unit and of more. A mask alone is that of its coordinates.
+void check_beside(const texgen::Triangle& triangle, const Answer& nearest, const std::string& line) {
+    constexpr double beyond = 1e30;
+    const glm::dvec2 value(nearest.out[0][0], nearest.out[1][0]);
+    const auto beside = [&](double to) {
+        return glm::dvec2(std::nextafter(nearest.out[0][0], support::to_float(to)),
+                          std::nextafter(nearest.out[1][0], support::to_float(to)));
+    };
+    for (const texgen::FragmentRect rect : {texgen::FragmentRect{20, 20, 64, 1}, texgen::FragmentRect{20, 20, 64, 4}}) {
+        for (const double share : {0.75 * 0x1p-25, 0x1p-25})
+            for (std::size_t k = 0; k < 2; ++k) {
+                const texgen::Tolerance tolerance{share * std::fabs(value[static_cast<int>(k)])};
+                Outputs out(support::count_of(rect), 3u);
+                interpolate(support::setup_of(triangle, everywhere(), tolerance), rect, out.spans());
+                CHECK_MESSAGE(is_within(out[k][0], nearest.exact.over_q(k), tolerance.value), line, " ",
+                              support::hex(tolerance.value));
+            }
+        for (const auto& [min, max] :
+             {std::pair{glm::dvec2(-beyond), value}, std::pair{glm::dvec2(-beyond), beside(-beyond)},
+              std::pair{value, glm::dvec2(beyond)}, std::pair{beside(beyond), glm::dvec2(beyond)}}) {
+            const texgen::TextureRegion region = texgen::atlas_tile(min, max);
+            Outputs out(support::count_of(rect), 8u);
+            interpolate(support::setup_of(triangle, region), rect, out.spans());
+            const bool is_lit = support::contains(region, nearest.out[0][0], nearest.out[1][0], 0.0f);
+            CHECK_MESSAGE(out.lit()[0] == (is_lit ? 1.0f : 0.0f), line, " ", rect.width);
+        }
+    }
+}
+
 // The same by a batch, as a tile and by its id.
 Answer of_tile(const std::vector<double>& n, int width, int height, bool by_id) {
     const texgen::Triangle triangle = triangle_of(n);
@@ -117,6 +148,7 @@ TEST_CASE("next to the middle of two floats the nearest is found, alone and in c
             }
         }
         if (kind != "triangle") continue;
+        check_beside(triangle_of(numbers), of_triangle(numbers, 1), line);
         for (const auto& size : {std::pair{8, 8}, std::pair{16, 4}, std::pair{64, 1}, std::pair{5, 3}})
             for (const bool by_id : {false, true}) {
                 const Answer answer = of_tile(numbers, size.first, size.second, by_id);
