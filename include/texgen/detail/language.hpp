@@ -8,6 +8,12 @@
 
 #include <glm/vec2.hpp>
 
+// No macro of clang++ tells of -funsafe-math-optimizations, nor since 22 of -ffp-model=fast: from here on a file's arithmetic
+// is as written, for which the bounds are proved. Before 18 it has no such word for reciprocals.
+#if defined(__clang__) && __clang_major__ >= 18
+#pragma clang fp reassociate(off) reciprocal(off)
+#endif
+
 // All of the library stands in this namespace. What GLM aligns by default has another layout: files that do and files that
 // do not link into one program, each with types and functions of its own.
 #if defined(GLM_FORCE_DEFAULT_ALIGNED_GENTYPES) && GLM_CONFIG_ALIGNED_GENTYPES == GLM_ENABLE
