@@ -4,23 +4,26 @@ namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
 // About the middle of a chunk of a row, i fragments from it, F/Q is exactly
 //   u + d i / (1 + x),  u = F/Q and d = (F_x - u Q_x) / Q in the middle,  x = b i, b = Q_x / Q in the middle,
-// and 1 / (1 + x) = (1 - x) (1 + x^2) (1 + x^4) ..., which has a relative error of x^(2^n) after n factors: a parabola and
-// on, until a division is cheaper. (A line saves nothing beside the stores.)
+// and i fragments before it u - d i / (1 - x): both are of y = i / (1 - x^2), u + d y (1 - x) and u - d y (1 + x). And
+// 1 / (1 - x^2) = (1 + x^2) (1 + x^4) ..., which times 1 - x has a relative error of x^(2^n) after n factors, that one
+// included: two or three, until a division is cheaper. (A line or a parabola saves nothing beside the stores.)
 //
-// With h the largest |i|, X = |b| h <= 3/4 and S = 1 + X + 4 X^2 >= 1/(1 - X), no step |d i / (1 + x)| is above
-// D = h |d| S. In float, with r = 2^-24, the roundings of b and of x change 1/(1 + x) by at most 2 r X/(1 - X), which is 6 r
-// where there is a division (its sum and quotient add 2 r), and 1 r where X <= 1/4 and there are factors (whose products
-// and sums add 3.5 r); d and its product add 2 r. Less than 11 r D, and the roundings of u and of the last sum,
-// 2 r |u| + r D. Subnormals, or what is flushed to zero, add less than 2^-116; the doubles (e_F + (|u| + D) e_Q) / Q.
+// With h the largest |i|, X = |b| h <= 3/4 and S = 1 + X + 4 X^2 >= 1/(1 - X), no step |d i / (1 + x)| is above h |d| / (1 - X),
+// which is at most D = h |d| S. In float, with r = 2^-24, the largest errs by 2 r X/(1 - X) of itself by the roundings of b and
+// of x; d and its product add 2 r. With a division x^2 adds r X^2/(1 - X^2), 1 - x^2 and the quotient 2 r, y x, of which the
+// step is a sum, r X/(1 + X), and that sum r; factors, where X <= 1/4, add 0.1 r more than all that. So with the last sum's
+// share it errs by (6.1 + 2 X/(1 - X) + X/(1 - X^2)) r of itself, and that is less than (6.4 + 24 X^4) r D. u adds 2 r |u|,
+// by its rounding and the last sum's. Subnormals, or what is flushed to zero, add less than 2^-116; the doubles
+// (e_F + (|u| + D) e_Q) / Q.
 // As names: bend is b, extent X, reach D; room is what a chunk leaves of the tolerance for the remainder of its factors,
 // x^(2^n) D.
 
-// The rest of a chunk's error, of s or of t, or of both: u, reach and 1 / Q at their largest.
-template <class Number, class Error, class Reciprocal>
+// The rest of a chunk's error, of s or of t, or of both: u, reach, 1 / Q and X^4 at their largest.
+template <class Number, class Error, class Extent>
 TEXGEN_INLINE Number chunk_error(const Number& u, const Number& reach, const Error& numerator_error, double q_error,
-                                 const Reciprocal& reciprocal) noexcept {
+                                 const Extent& reciprocal, const Extent& fourth) noexcept {
     constexpr double middle_roundings = 2.001 * unit_roundoff_float;
-    constexpr double step_roundings = 12.004 * unit_roundoff_float;
+    const Extent step_roundings = fourth * (24.0 * unit_roundoff_float) + 6.4 * unit_roundoff_float;
     constexpr double underflow = 0x1p-115;
     return u * middle_roundings + reach * step_roundings + underflow +
            ((u + reach) * q_error + numerator_error) * (reciprocal * 1.001);
@@ -58,53 +61,51 @@ void weigh_chunks(const TileJob& job, ChunkGroup& group, int chunks_of_row, int 
         const Doubles extents = magnitude(bends) * half;
         const Doubles stretch = (extents * 4.0 + 1.0) * extents + 1.0;
         Doubles reaches[2], room[2];
+        const Doubles square = extents * extents, fourth = square * square;
         for (std::size_t k = 0; k < 2; ++k) {
             reaches[k] = magnitude(d[k]) * half * stretch;
             room[k] = job.tolerance - chunk_error(magnitude(u[k]), reaches[k], job.numerator_error[k], job.q_error,
-                                                  reciprocal * stretch);
+                                                  reciprocal * stretch, fourth);
         }
         // The cheapest rule with which a chunk stays inside the tolerance.
         const auto all = [](StepRule rule_of_all) { return Doubles{} + static_cast<double>(rule_of_all); };
         const auto fits = [&](const Doubles& share) {
             return at_most(share * reaches[0], room[0]) & at_most(share * reaches[1], room[1]);
         };
-        const Doubles square = extents * extents;
-        const Doubles fourth = square * square;
         Doubles rules = select(fits(fourth * fourth), all(StepRule::degree8), all(StepRule::divide));
         rules = select(fits(fourth), all(StepRule::degree4), rules);
-        rules = select(fits(square), all(StepRule::degree2), rules);
         rules = select(at_most(extents, Doubles{} + 0.25), rules, all(StepRule::divide));
         const LongWords holds = at_most(extents, Doubles{} + 0.75) & greater(q - q * extents, job.least_q);
         store(&group.rule[i], to_floats(select(holds & fits(Doubles{}), rules, all(StepRule::none))));
     }
 }
 
-// i / (1 + i bend).
-template <StepRule Rule>
-TEXGEN_INLINE WideFloats bent(const WideFloats& i, const WideFloats& bend) noexcept {
-    WideFloats x = i * bend;
-    if constexpr (Rule == StepRule::divide) return i / (x + 1.0f);
-    WideFloats result = i - i * x;
-    for (int n = static_cast<int>(StepRule::degree2); n < static_cast<int>(Rule); ++n) {
-        x = x * x;
-        result = result + result * x;
-    }
-    return result;
-}
-
-// `count` fragments of a chunk, in whole vectors. The indices are loaded, as that is what arithmetic leaves idle.
-template <StepRule Rule>
-TEXGEN_INLINE void fill_vectors(const WideFloats& bend, const WideFloats (&middle)[2], const WideFloats (&slope)[2],
-                                const float* index, float* s, float* t, int count) noexcept {
-    for (std::ptrdiff_t x = 0; x < count; x += wide_lanes) {
-        const WideFloats step = bent<Rule>(load<WideFloats>(index + x), bend);
+// A chunk of no less than a vector, from both ends: what begins before the middle ends behind it. The indices are loaded, as
+// that is what arithmetic leaves idle.
+TEXGEN_INLINE void fill_vectors(StepRule rule, const WideFloats& bend, const WideFloats (&middle)[2],
+                                const WideFloats (&slope)[2], const float* index, float* s, float* t,
+                                int count) noexcept {
+    std::ptrdiff_t last = count - wide_lanes;
+    for (std::ptrdiff_t x = 0; 2 * x < count; x += wide_lanes, last -= wide_lanes) {
+        const auto i = load<WideFloats>(index + x);
+        const WideFloats bent = i * bend, square = bent * bent;
+        WideFloats mean;
+        if (rule == StepRule::divide) {
+            mean = i / (1.0f - square);
+        } else {
+            mean = i + i * square;
+            if (rule == StepRule::degree8) mean = mean + mean * (square * square);
+        }
+        const WideFloats step = mean - mean * bent, step_back = reversed(mean + mean * bent);
         store(s + x, step * slope[0] + middle[0]);
         store(t + x, step * slope[1] + middle[1]);
+        store(s + last, middle[0] - step_back * slope[0]);
+        store(t + last, middle[1] - step_back * slope[1]);
     }
 }
 
-// The group's chunks from `first` to `end`, of one rule, which begin at x of the row, and their mask. What the last vector of one
-// writes beyond it the next one writes again; where there is no room for it, it is written beside the row.
+// The group's chunks from `first` to `end`, of one rule, which begin at x of the row, and their mask. Those of less than a vector,
+// ends of rows, are written beside it.
 template <class CompiledWhereCalled = void>
 void fill_chunks(const TileJob& job, const RowOutputs& row, ChunkGroup& group, int first, int end, int x) noexcept {
     const StepRule rule = group.rule_of(job, first);
@@ -112,29 +113,21 @@ void fill_chunks(const TileJob& job, const RowOutputs& row, ChunkGroup& group, i
     if (length != group.indexed) {
         group.indexed = length;
         const WideFloats first_index = indices<WideFloats>() - 0.5f * static_cast<float>(length - 1);
-        for (int i = 0; i < length; i += wide_lanes) store(group.index + i, first_index + static_cast<float>(i));
+        for (int i = 0; 2 * i < length; i += wide_lanes) store(group.index + i, first_index + static_cast<float>(i));
     }
-    alignas(WideFloats) float buffer[2][longest_chunk];
-    const std::int64_t last_with_room = row.writable - (length + wide_lanes - 1) / wide_lanes * wide_lanes;
+    const bool is_short = length < wide_lanes;
+    float buffer[2][2 * wide_lanes];
     std::int64_t begin = x;
     for (std::ptrdiff_t i = first; i < end; ++i, begin += length) {
         const WideFloats bend = group.bend[i] - WideFloats{};
         const WideFloats middle[2] = {group.middle[0][i] - WideFloats{}, group.middle[1][i] - WideFloats{}};
         const WideFloats slope[2] = {group.slope[0][i] - WideFloats{}, group.slope[1][i] - WideFloats{}};
-        const bool has_room = begin <= last_with_room;
-        float* const s = has_room ? row.out[0] + begin : buffer[0];
-        float* const t = has_room ? row.out[1] + begin : buffer[1];
-        if (rule == StepRule::degree2)
-            fill_vectors<StepRule::degree2>(bend, middle, slope, group.index, s, t, length);
-        else if (rule == StepRule::degree4)
-            fill_vectors<StepRule::degree4>(bend, middle, slope, group.index, s, t, length);
-        else if (rule == StepRule::degree8)
-            fill_vectors<StepRule::degree8>(bend, middle, slope, group.index, s, t, length);
-        else
-            fill_vectors<StepRule::divide>(bend, middle, slope, group.index, s, t, length);
-        if (has_room) continue;
+        float* const s = is_short ? buffer[0] + wide_lanes : row.out[0] + begin;
+        float* const t = is_short ? buffer[1] + wide_lanes : row.out[1] + begin;
+        fill_vectors(rule, bend, middle, slope, group.index, s, t, length);
+        if (!is_short) continue;
         for (std::size_t k = 0; k < 2; ++k)
-            std::memcpy(row.out[k] + begin, buffer[k], static_cast<std::size_t>(length) * sizeof(float));
+            std::memcpy(row.out[k] + begin, buffer[k] + wide_lanes, static_cast<std::size_t>(length) * sizeof(float));
     }
     light(job, row, x, begin);
 }

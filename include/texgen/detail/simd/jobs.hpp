@@ -139,8 +139,8 @@ struct ChunkGroup {
     float bend[size];
     float middle[2][size], slope[2][size];
     float rule[size];
-    alignas(64) float index[longest_chunk];  // of each fragment of a chunk, from the middle,
-    int indexed = 0;                         // which has so many
+    alignas(64) float index[longest_chunk / 2];  // of each fragment up to the middle of a chunk, from there,
+    int indexed = 0;                             // which has so many
 
     StepRule rule_of(const TileJob& job, int i) const noexcept {
         return job.steps == StepRule::undecided ? static_cast<StepRule>(static_cast<int>(rule[i])) : job.steps;

@@ -222,6 +222,10 @@ TEXGEN_INLINE Floats one_where(const Words& mask) noexcept {
     return Floats::of([&](int i) { return mask.lane[i] != 0 ? 1.0f : 0.0f; });
 }
 
+TEXGEN_INLINE Floats reversed(const Floats& a) noexcept {
+    return Floats::of([&](int i) { return a.lane[lanes - 1 - i]; });
+}
+
 TEXGEN_INLINE void load_interleaved(const float* from, Floats& x, Floats& y, Floats& z) noexcept {
     x = Floats::of([&](int i) { return from[3 * i]; });
     y = Floats::of([&](int i) { return from[3 * i + 1]; });

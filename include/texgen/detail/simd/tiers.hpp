@@ -42,8 +42,8 @@ struct FloatDivision {
 inline constexpr FloatDivision all_float{5.01 * unit_roundoff_float, 2.01 * unit_roundoff_float};
 inline constexpr FloatDivision float_divided{gamma(5), 4.01 * unit_roundoff_float};
 
-// How the steps i / (1 + x) of a chunk are computed: with 1, 2 or 3 factors of 1 / (1 + x) = (1 - x) (1 + x^2) (1 + x^4) ...,
-// which leaves x^2, x^4 or x^8 of them; by a division; or not, as no bound holds. Undecided: chunk by chunk.
-enum class StepRule { undecided, degree2, degree4, degree8, divide, none };
+// How the steps i / (1 + x) of a chunk are computed: with 2 or 3 factors of 1 / (1 + x) = (1 - x) (1 + x^2) (1 + x^4) ...,
+// which leaves x^4 or x^8 of them; by a division; or not, as no bound holds. Undecided: chunk by chunk.
+enum class StepRule { undecided, degree4, degree8, divide, none };
 
 }  // namespace TEXGEN_DETAIL

@@ -204,6 +204,14 @@ TEXGEN_INLINE WideFloats one_where(const WideWords& mask) noexcept {
     return __builtin_bit_cast(WideFloats, mask & bit_cast<int>(1.0f));
 }
 
+template <int... Lane>
+TEXGEN_INLINE WideFloats reversed(const WideFloats& a, std::integer_sequence<int, Lane...>) noexcept {
+    return __builtin_shufflevector(a, a, (wide_lanes - 1 - Lane)...);
+}
+TEXGEN_INLINE WideFloats reversed(const WideFloats& a) noexcept {
+    return reversed(a, std::make_integer_sequence<int, wide_lanes>());
+}
+
 // Element 3 i + Component, for every lane i, of the three vectors that follow one another at `from`.
 template <int Component, class Vector, int... Lane>
 TEXGEN_INLINE Vector every_third(const Vector& a, const Vector& b, const Vector& c,

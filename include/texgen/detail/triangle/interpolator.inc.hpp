@@ -249,7 +249,7 @@ private:
         }
     }
 
-    // In shorter chunks, or by divisions. Below what is refused of a row the same will be; then no vector may be written beyond its row.
+    // In shorter chunks, or by divisions. Below what is refused of a row the same will be; then chunks of a row follow those of another no more.
     TEXGEN_RARE void fill_refused(const Tile& tile, TileJob& job, const TileJob::Unit& refused) noexcept {
         Tile rest = part_of(tile, refused);
         const bool touches = refused.x_begin == job.filled.x_end || refused.x_end == job.filled.x_begin;

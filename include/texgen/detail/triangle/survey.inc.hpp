@@ -59,8 +59,9 @@ inline void choose_steps(Plan& plan, const Corners& at, double tolerance) noexce
     };
     const Double2 reach =
         larger(slope_times_q_squared(0), slope_times_q_squared(2)) * (1.001 * half * at.reciprocal * at.reciprocal);
+    const double square = extent * extent, fourth = square * square;
     const Double2 rest =
-        of_flags::chunk_error(at.largest_quotient(), reach, at.numerator_error, at.q_error, at.reciprocal);
+        of_flags::chunk_error(at.largest_quotient(), reach, at.numerator_error, at.q_error, at.reciprocal, fourth);
     const auto fits = [&](double share) {
         const Double2 error = reach * share + rest;
         plan.error[0] = error[0];
@@ -68,14 +69,13 @@ inline void choose_steps(Plan& plan, const Corners& at, double tolerance) noexce
         return error[0] <= tolerance && error[1] <= tolerance;
     };
     const bool is_affine = fits(extent);
-    double share = extent;
-    for (const StepRule rule : {StepRule::degree2, StepRule::degree4, StepRule::degree8}) {
-        share *= share;
-        if (!fits(share)) continue;
-        plan.steps = rule;
-        if (plan.work != Work::affine) plan.work = is_affine ? Work::affine : Work::quadratic;
+    if (fits(fourth))
+        plan.steps = StepRule::degree4;
+    else if (fits(fourth * fourth))
+        plan.steps = StepRule::degree8;
+    else
         return;
-    }
+    if (plan.work != Work::affine) plan.work = is_affine ? Work::affine : Work::quadratic;
 }
 
 // How much of a tile is between the limits of the region's depth: by the planes as they are, as no more than their leading
