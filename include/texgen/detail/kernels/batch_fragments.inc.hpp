@@ -142,7 +142,7 @@ private:
         Known& known = vectors_[count_];
         known.vector = vector;
         known.is_one = ids.are_one();
-        const std::uint64_t asked = bits_of(vector.doubtful);
+        const std::uint64_t asked = lane_bits(vector.doubtful);
         const auto first = static_cast<std::size_t>(std::countr_zero(asked));
         for (std::size_t i = 0; i < (known.is_one ? 1 : static_cast<std::size_t>(lanes)); ++i) {
             const std::uint32_t id = ids.value[(asked >> i & 1u) != 0 ? i : first];
@@ -174,7 +174,7 @@ private:
             const Vector& vector = known.vector;
             const Doubles x = vector.x - left_, y = vector.y - top_;
             const auto place_of = [&](std::size_t i) { return known.triangle[known.is_one ? 0 : i]; };
-            std::uint64_t left = bits_of(vector.doubtful);
+            std::uint64_t left = lane_bits(vector.doubtful);
             if (!are_few && known.is_one) {
                 left = put(vector, BatchFunctionsAt<BatchFunction>{functions.of[place_of(0)], x, y});
             } else if (!are_few) {
@@ -202,7 +202,7 @@ private:
         q.take(at.values(Numerators));
         fragments.divide(at, q, Numerators, job_.tolerance, true);
         vector.out->put_where(vector.doubtful, vector.n, fragments.quotient, q.front);
-        return bits_of(vector.doubtful & narrow(fragments.doubtful));
+        return lane_bits(vector.doubtful & narrow(fragments.doubtful));
     }
 
     // By residues and doubles, and by two doubles: first by what decided the vector before.

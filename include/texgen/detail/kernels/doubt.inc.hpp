@@ -3,11 +3,6 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// Bit i for lane i.
-TEXGEN_INLINE std::uint64_t bits_of(const Words& mask) noexcept {
-    return lane_bits(are_nonzero(to_doubles_as_rounded(one_where(mask))));
-}
-
 // A function at a vector of fragments: within `error` of the sum of two doubles.
 struct CloseValues {
     Doubles high, low, error;

@@ -17,19 +17,18 @@ struct TileRow {
     }
 };
 
-// One vector of quotients: marks in `doubtful` where value - error and value + error do not round to one float, unless both are
-// within the tolerance.
-TEXGEN_INLINE void divide_vector(const TileJob& job, const TileRow& row, const Doubles& index, Doubles& reciprocal,
-                                 Floats (&quotient)[2], Words& doubtful) noexcept {
+// One vector of quotients. In doubt, a bit for each, is where value - error and value + error do not round to one float.
+TEXGEN_INLINE std::uint64_t divide_vector(const TileJob& job, const TileRow& row, const Doubles& index,
+                                          Doubles& reciprocal, Floats (&quotient)[2]) noexcept {
     if (!job.q_is_constant) reciprocal = 1.0 / row.q_at(job, index);
+    Words doubtful{};
+    TEXGEN_UNROLL
     for (std::size_t k = 0; k < 2; ++k) {
         const Doubles value = row.numerator_at(job, k, index) * reciprocal;
         quotient[k] = to_floats(value - job.quotient_error[k]);
-        Words differ = bits(quotient[k]) ^ bits(to_floats(value + job.quotient_error[k]));
-        if (job.accepts_some) [[unlikely]]
-            differ &= narrow(greater(value * value, job.accepted_square));
-        doubtful |= differ;
+        doubtful |= bits(quotient[k]) ^ bits(to_floats(value + job.quotient_error[k]));
     }
+    return lane_bits(doubtful);
 }
 // The same of numerators and q that are rounded to float and divided there, with no doubt.
 TEXGEN_INLINE void divide_in_float(const TileJob& job, const TileRow& row, const Doubles& index,
@@ -38,13 +37,15 @@ TEXGEN_INLINE void divide_in_float(const TileJob& job, const TileRow& row, const
     for (std::size_t k = 0; k < 2; ++k) quotient[k] = to_floats(row.numerator_at(job, k, index)) * reciprocal;
 }
 
-// Divides a part of a row, or whole rows. Whether a value is in doubt (it is written all the same). What a last vector writes
+// Divides a part of a row, or whole rows. Which fragments are in doubt (they are written all the same). What a last vector writes
 // beyond its row is written again by those that follow, and may only cause a doubt too many.
 template <class CompiledWhereCalled = void>
-bool divide_tile(const TileJob& job, const TileJob::Unit& part) noexcept {
+std::uint64_t divide_tile(const TileJob& job, const TileJob::Unit& part) noexcept {
     const auto [x_begin, x_end, y_begin, y_end] = part;
     Doubles reciprocal = Doubles{} + 1.0 / job.q.base;
-    Words doubtful{};
+    // Of the next vector the first bit is the lowest one.
+    std::uint64_t doubtful = 0;
+    const int beyond = (x_begin - x_end) & (lanes - 1);
     RowOutputs row(job, y_begin);
     TileRow tile_row;
     for (int y = y_begin; y < y_end; ++y, row.advance()) {
@@ -57,15 +58,18 @@ bool divide_tile(const TileJob& job, const TileJob::Unit& part) noexcept {
             if (job.is_in_float)
                 divide_in_float(job, tile_row, index, quotient);
             else
-                divide_vector(job, tile_row, index, reciprocal, quotient, doubtful);
+                doubtful = std::rotr(doubtful | divide_vector(job, tile_row, index, reciprocal, quotient), lanes);
             if (x > last) break;
+            TEXGEN_UNROLL
             for (std::size_t k = 0; k < 2; ++k) store(row.out[k] + x, quotient[k]);
         }
         if (x < x_end)
             for (std::size_t k = 0; k < 2; ++k) store_some(row.out[k] + x, static_cast<int>(x_end - x), quotient[k]);
         light(job, row, x_begin, x_end);
+        doubtful = std::rotl(doubtful, beyond);
     }
-    return any(doubtful);
+    const unsigned count = static_cast<unsigned>(x_end - x_begin) * static_cast<unsigned>(y_end - y_begin);
+    return std::rotl(doubtful, static_cast<int>(count % 64));
 }
 
 // The same of a job that knows its ulps, unit by unit of its rows: pairs of vectors share a division, which adds two roundings to a
@@ -153,7 +157,7 @@ TEXGEN_INLINE bool are_sided(const CloseFunctions& functions, const CloseFunctio
 }
 
 // The fragments of a unit that are asked, as many at once as a vector has, wherever they stand: those of a column, or a few that
-// are left, share vectors. One numerator alone stands in both places.
+// are left, share vectors; more than half of a unit is asked as all of it. One numerator alone stands in both places.
 template <class CompiledWhereCalled = void>
 std::uint64_t fill_tile_closely(const TileJob& job, const CloseFunctions& functions, TileJob::Unit unit,
                                 std::uint64_t asked) noexcept {
@@ -164,10 +168,14 @@ std::uint64_t fill_tile_closely(const TileJob& job, const CloseFunctions& functi
     const int width = unit.x_end - unit.x_begin;
     const int size = width * (unit.y_end - unit.y_begin);
     const std::uint64_t all = ~std::uint64_t{0} >> (TileJob::unit_size - size);
-    const bool are_all = (asked & all) == all;
+    asked &= all;
+    if (asked == 0) return 0;
+    const bool are_all = 2 * std::popcount(asked) > size;
+    if (are_all) asked = all;
     double number[most], x[most], y[most];
     int count = are_all ? size : 0;
-    for (; !are_all && asked != 0; asked &= asked - 1) number[count++] = std::countr_zero(asked);
+    for (std::uint64_t left = are_all ? 0 : asked; left != 0; left &= left - 1)
+        number[count++] = std::countr_zero(left);
     if (!are_all) store(number + count, Doubles{});
     for (int i = 0; i < count; i += lanes) {
         const Doubles n = are_all ? indices<Doubles>() + static_cast<double>(i) : load<Doubles>(number + i);
@@ -192,7 +200,7 @@ std::uint64_t fill_tile_closely(const TileJob& job, const CloseFunctions& functi
         fragments.divide(at, q, numerators, functions.tolerance, is_more_known);
         doubtful |= lane_bits(fragments.doubtful) << i;
         // Doubt has company: where all of a first vector stay so, more is to be known of the others, too.
-        if (!is_more_known && i == 0 && doubtful == (std::uint64_t{1} << lanes) - 1) return asked & all;
+        if (!is_more_known && i == 0 && doubtful == (std::uint64_t{1} << lanes) - 1) return asked;
         for (std::size_t k = 0; k < numerators; ++k) store(result[k] + i, fragments.quotient[k]);
         if (job.lit != nullptr) store(result[2] + i, lit_of(job, fragments.quotient, narrow(q.front)));
     }
@@ -210,7 +218,7 @@ std::uint64_t fill_tile_closely(const TileJob& job, const CloseFunctions& functi
     }
     doubtful &= ~std::uint64_t{0} >> (TileJob::unit_size - count);
     if (are_all) return doubtful;
-    for (; doubtful != 0; doubtful &= doubtful - 1)
+    for (asked = 0; doubtful != 0; doubtful &= doubtful - 1)
         asked |= std::uint64_t{1} << static_cast<int>(number[std::countr_zero(doubtful)]);
     return asked;
 }

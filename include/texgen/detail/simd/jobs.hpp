@@ -50,10 +50,8 @@ struct TileJob {
     TwoRamps numerator;
     Ramp q;
     bool q_is_constant;
-    bool is_in_float = false;       // numerators and q are rounded to float and divided there
-    double quotient_error[2] = {};  // for fill_exact
-    bool accepts_some = false;      // both floats beside a quotient with that error, up to the root of this:
-    double accepted_square = 0.0;
+    bool is_in_float = false;        // numerators and q are rounded to float and divided there
+    double quotient_error[2] = {};   // for fill_exact; 0 where whatever is nearest to a double will do
     std::int32_t ulps = 0;           // see Corners::ulps_of_quotients
     double numerator_error[2] = {};  // for fill_polynomial, as what follows
     double q_error = 0.0;
@@ -295,13 +293,14 @@ struct FootprintJob {
 struct TileKernels {
     // Whether no value is in doubt.
     bool (*fill_small)(const SmallTile&) noexcept;
-    // Whether a value of a part is in doubt; and the first unit from `first` on that is, of a job that knows its ulps.
-    bool (*divide)(const TileJob&, const TileJob::Unit& part) noexcept;
+    // What of a part is in doubt, of a unit a bit for each fragment, row by row; and the first unit from `first` on that is, of a job
+    // that knows its ulps.
+    std::uint64_t (*divide)(const TileJob&, const TileJob::Unit& part) noexcept;
     TileJob::Unit (*divide_in_pairs)(const TileJob&, const TileJob::Unit& first) noexcept;
     // Makes a group of `count` chunks from one of row y on; and fills some of it that have one rule, from x of a row on.
     void (*weigh_chunks)(const TileJob&, ChunkGroup&, int chunks_of_row, int y, int chunk, int count) noexcept;
     void (*fill_chunks)(const TileJob&, const RowOutputs&, ChunkGroup&, int first, int end, int x) noexcept;
-    // What is asked of a unit on either side of the projector: a bit for each fragment, row by row, as for those that stay in doubt.
+    // What is asked of a unit on either side of the projector: bits as above, as for those that stay in doubt.
     std::uint64_t (*fill_closely)(const TileJob&, const CloseFunctions&, TileJob::Unit unit,
                                   std::uint64_t asked) noexcept;
 };

@@ -156,8 +156,8 @@ TEXGEN_INLINE LongWords are_positive(const Residues& a) noexcept {
 }
 
 TEXGEN_INLINE Words narrow(const LongWords& mask) noexcept { return mask; }
-TEXGEN_INLINE Words equal(const Words& a, int b) noexcept {
-    return Words::of([&](int i) { return a.lane[i] == b ? -1 : 0; });
+TEXGEN_INLINE Words equal(const Words& a, const auto& b) noexcept {
+    return Words::of([&](int i) { return a.lane[i] == Words::at(b, i) ? -1 : 0; });
 }
 TEXGEN_INLINE Doubles with_sign_of(const Doubles& size, const Doubles& sign) noexcept {
     return Doubles::of([&](int i) { return std::copysign(size.lane[i], sign.lane[i]); });

@@ -114,7 +114,7 @@ TEXGEN_INLINE Words narrow(const LongWords& mask) noexcept {
     return __builtin_convertvector(mask, Words);
 #endif
 }
-TEXGEN_INLINE Words equal(const Words& a, int b) noexcept { return a == b; }
+TEXGEN_INLINE Words equal(const Words& a, const auto& b) noexcept { return a == b; }
 TEXGEN_INLINE Floats select(const Words& mask, const Floats& a, const Floats& b) noexcept {
     return __builtin_bit_cast(Floats, (mask & bits(a)) | (~mask & bits(b)));
 }
@@ -342,6 +342,16 @@ TEXGEN_INLINE std::uint64_t lane_bits(const LongWords& mask) noexcept {
     return static_cast<std::uint64_t>(__builtin_ia32_movmskpd256(__builtin_bit_cast(Doubles, mask)));
 #else
     return static_cast<std::uint64_t>((mask[0] & 1) | (mask[1] & 2));
+#endif
+}
+// Of words that are not 0.
+TEXGEN_INLINE std::uint64_t lane_bits(const Words& words) noexcept {
+#if TEXGEN_LANE_BYTES == 64
+    return static_cast<std::uint8_t>(__builtin_ia32_cmpd256_mask(words, Words{}, 4, 0xff));
+#elif TEXGEN_LANE_BYTES == 32
+    return static_cast<std::uint64_t>(__builtin_ia32_movmskps(__builtin_bit_cast(Floats, words != 0)));
+#else
+    return (words[0] != 0 ? 1u : 0u) | (words[1] != 0 ? 2u : 0u);
 #endif
 }
 TEXGEN_INLINE bool any(const LongWords& mask) noexcept {

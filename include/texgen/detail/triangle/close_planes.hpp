@@ -223,7 +223,6 @@ TEXGEN_RARE inline bool take_exact_quotients(const CloseFunctions& functions, Ti
     }
     job.q = {1.0, 0.0, 0.0};
     job.q_is_constant = true;
-    job.accepts_some = false;  // as the errors were
     job.ulps = 0;
     return is_any_exact;
 }

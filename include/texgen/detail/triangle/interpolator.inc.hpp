@@ -110,10 +110,13 @@ private:
         functions.have_residues = true;
     }
 
-    // More of them, if there is more.
-    TEXGEN_RARE bool sharpen(const Tile& tile, DoubtfulFunctions& functions) noexcept {
+    // More than a fourth of a unit: what may be ties, or the planes', and no chance.
+    static bool are_many(std::uint64_t fragments) noexcept { return std::popcount(fragments) > 16; }
+
+    // More of them, if there is more: residues first for ties, which have company.
+    TEXGEN_RARE bool sharpen(const Tile& tile, DoubtfulFunctions& functions, bool are_ties) noexcept {
         if (functions.are_close && functions.have_residues) return false;
-        if (!functions.have_residues) {
+        if (!functions.have_residues && (are_ties || functions.are_close)) {
             add_residues(tile, functions);
             if (functions.residues_first && !functions.are_close && are_decided_by_residues(functions)) return true;
         }
@@ -121,13 +124,13 @@ private:
         return functions.are_close = true;
     }
 
-    // A unit with what is known of the functions, and with more while that leaves doubt; the rest one by one. Whether all of 64
-    // fragments were in doubt.
+    // A unit's fragments with what is known of the functions, and with more while that leaves doubt; the rest one by one. Whether all
+    // of 64 fragments were in doubt.
     TEXGEN_APART bool fill_closely(const Tile& tile, const TileJob& job, DoubtfulFunctions& functions,
-                                   const TileJob::Unit& unit) noexcept {
-        std::uint64_t doubtful = kernels_.fill_closely(job, functions, unit, ~std::uint64_t{0});
+                                   const TileJob::Unit& unit, std::uint64_t asked = ~std::uint64_t{0}) noexcept {
+        std::uint64_t doubtful = kernels_.fill_closely(job, functions, unit, asked);
         const bool are_all = doubtful == ~std::uint64_t{0};
-        while (doubtful != 0 && sharpen(tile, functions))
+        while (doubtful != 0 && sharpen(tile, functions, are_many(doubtful)))
             doubtful = kernels_.fill_closely(job, functions, unit, doubtful);
         fill_some(tile, unit, doubtful);
         return are_all;
@@ -160,46 +163,43 @@ private:
     TEXGEN_APART void fill_exact(const Tile& tile, const Corners& at, const TileJob::Unit* from = nullptr) noexcept {
         if (!at.has_one_error()) return split(tile, at);
         TileJob job = make_job(tile, at);
-        const Double2 error = at.quotient_error(at.largest_quotient());
+        const Double2 largest = at.largest_quotient();
+        const Double2 error = at.quotient_error(largest);
+        // The float next to a quotient in double errs by half an ulp more, of 2^-24 of it, or by what is flushed to zero.
+        const Double2 written = error * 1.001 + (largest * (1.0001 * unit_roundoff_float) + 0x1p-125);
         TEXGEN_UNROLL
-        for (std::size_t k = 0; k < 2; ++k) job.quotient_error[k] = error[k];
-        // What is written errs by twice that and half an ulp, of 2^-24 of it or 2^-150.
-        const double accepted = (triangle_.tolerance - 2.01 * larger(error[0], error[1]) - 0x1p-148) * 0x1.fffp23;
-        // Of more than a unit they are asked for once there is doubt: every vector takes longer with them.
-        job.accepts_some = accepted > 0.0 && tile.count() <= TileJob::unit_size;
-        job.accepted_square = accepted * accepted;
+        for (std::size_t k = 0; k < 2; ++k) job.quotient_error[k] = written[k] <= triangle_.tolerance ? 0.0 : error[k];
         // A small tile does not repay the search for its least quotient.
         job.ulps = tile.count() < 1024 ? 0 : at.ulps_of_quotients();
         const TileJob::Unit first = from == nullptr ? job.unit_at(0, 0) : *from;
-        const TileJob::Unit unit = detail::fill_exact(kernels_, job, first, 16 * TileJob::unit_size);
+        std::uint64_t doubtful = 0;
+        const TileJob::Unit unit = detail::fill_exact(kernels_, job, first, 16 * TileJob::unit_size, doubtful);
         if (job.is_done(unit)) return;
-        job.accepts_some = accepted > 0.0;
-        fill_from_doubt(tile, at, job, unit);
+        fill_from_doubt(tile, at, job, unit, doubtful);
     }
 
-    TEXGEN_RARE void fill_from_doubt(const Tile& tile, const Corners& at, TileJob& job, TileJob::Unit unit) noexcept {
+    TEXGEN_RARE void fill_from_doubt(const Tile& tile, const Corners& at, TileJob& job, TileJob::Unit unit,
+                                     std::uint64_t doubtful = ~std::uint64_t{0}) noexcept {
         DoubtfulFunctions functions = functions_of(tile, at);
         functions.residues_first = true;
         // What residues decide of a few fragments they decide sooner than their quotients are seen to be exact.
-        if (is_constant(functions.function[CloseFunctions::q].high) && sharpen(tile, functions) &&
+        if (is_constant(functions.function[CloseFunctions::q].high) && sharpen(tile, functions, true) &&
             tile.width + tile.height > 4 && take_exact_quotients(functions, job))
-            unit = detail::fill_exact(kernels_, job, unit, TileJob::unit_size);
+            unit = detail::fill_exact(kernels_, job, unit, TileJob::unit_size, doubtful);
         // Doubt has company: four times as many units after each failure that follows another, and some after one of nothing else.
         for (int many = 1; !job.is_done(unit);) {
             const bool were_close = functions.are_close;
-            for (int i = 0; i < many && !job.is_done(unit); ++i, unit = job.unit_after(unit))
-                if (fill_closely(tile, job, functions, unit)) many = many < 4 ? 4 : many;
+            for (int i = 0; i < many && !job.is_done(unit);
+                 ++i, unit = job.unit_after(unit), doubtful = ~std::uint64_t{0})
+                if (fill_closely(tile, job, functions, unit, doubtful)) many = many < 4 ? 4 : many;
             if (job.is_done(unit)) return;
-            // What two doubles are rounded to errs by less than the planes: once they are known, or where the planes fail again
-            // (under a tolerance in any other unit: the quotients that it doesn't forgive are large).
+            // What two doubles are rounded to errs by less than the planes: once they are known, or where the planes fail again.
             bool is_closer = functions.are_close && !were_close;
             if (!is_closer) {
-                const TileJob::Unit next = detail::fill_exact(kernels_, job, unit, TileJob::unit_size);
-                const bool fails_again = next.x_begin == unit.x_begin && next.y_begin == unit.y_begin;
-                is_closer = (fails_again || triangle_.tolerance > 0.0) && !job.is_done(next) && !functions.are_close &&
-                            !functions.have_residues;
+                unit = detail::fill_exact(kernels_, job, unit, TileJob::unit_size, doubtful);
+                const bool fails_again = are_many(doubtful);
+                is_closer = fails_again && !job.is_done(unit) && !functions.are_close && !functions.have_residues;
                 many = fails_again ? 4 * many : 1;
-                unit = next;
             }
             if (is_closer) {
                 Corners closer;
@@ -291,7 +291,7 @@ private:
     }
 
     // What every kernel needs. A factor that the numerators and q share is free.
-    TileJob make_job(const Tile& tile, const Corners& at, double factor = 1.0) noexcept {
+    TEXGEN_APART TileJob make_job(const Tile& tile, const Corners& at, double factor = 1.0) noexcept {
         TileJob job;  // not {}: all zeros would cost what a row does
         job.width = tile.width;
         job.height = tile.height;

@@ -3,15 +3,18 @@
 namespace TEXGEN_DETAIL {
 inline namespace TEXGEN_BUILD {
 
-// Does the units from the given one on up to the first that is in doubt. Where none is, more and more of them are done at once, `most`
-// fragments at most, and one by one after what is in doubt then; or all in pairs, but those that are in doubt then.
-inline TileJob::Unit fill_exact(const TileKernels& kernels, const TileJob& job, TileJob::Unit unit, int most) noexcept {
+// Does the units from the given one on up to the first with fragments in doubt, and says which. Where none is, more and more of them
+// are done at once, `most` fragments at most, and one by one after what is in doubt then; or all in pairs, but those that are in
+// doubt then.
+inline TileJob::Unit fill_exact(const TileKernels& kernels, const TileJob& job, TileJob::Unit unit, int most,
+                                std::uint64_t& doubtful) noexcept {
     for (int size = TileJob::unit_size; !job.is_done(unit);) {
         if (job.ulps != 0 && unit.x_end - unit.x_begin >= TileJob::longest_pair) {
             unit = kernels.divide_in_pairs(job, unit);
             if (job.is_done(unit)) return unit;
         }
-        if (!kernels.divide(job, unit)) {
+        doubtful = kernels.divide(job, unit);
+        if (doubtful == 0) {
             if (job.ulps == 0 && size < most) size *= 2;
             unit = job.unit_after(unit, size);
         } else {
