@@ -93,8 +93,9 @@ struct CloseQuotient {
     TEXGEN_INLINE LongWords is_rough() const noexcept { return ~greater(size * 0x1p-27, error); }
 };
 
-// A vector of fragments, again. `at` knows its functions there, q as the last.
-template <std::size_t Numerators>
+// A vector of fragments, again. `at` knows its functions there, q as the last. Where no lane is next to a middle, as of zeros, they
+// may be skipped, for which a tile's kernel has no room.
+template <std::size_t Numerators, bool SkipsMiddles = true>
 struct CloseFragments {
     Floats quotient[Numerators];
     LongWords doubtful;
@@ -119,12 +120,14 @@ struct CloseFragments {
             const LongWords is_rough = is_open & close.is_rough();
             const auto grain = at.grain(k);
             const Residues of_f = at.residues(k);
-            Floats nearest;
-            // The middle is as near to the quotient as F/Q is: so |F - m Q| is at most twice the error times Q.
-            const LongWords asked = is_open & ~is_rough;
-            const LongWords decided = asked & CloseMiddle(close.u).decide(close.f, q, of_f, grain, of_q, q_grain,
-                                                                          close.error * q.value * 2.25, asked, nearest);
-            quotient[k] = select(narrow(decided), nearest, quotient[k]);
+            LongWords decided = is_open & ~is_rough;
+            if (!SkipsMiddles || any(decided)) {
+                Floats nearest;
+                // The middle is as near to the quotient as F/Q is: so |F - m Q| is at most twice the error times Q.
+                decided &= CloseMiddle(close.u).decide(close.f, q, of_f, grain, of_q, q_grain,
+                                                       close.error * q.value * 2.25, decided, nearest);
+                quotient[k] = select(narrow(decided), nearest, quotient[k]);
+            }
             LongWords left = is_open & ~decided;
             if (any(is_rough)) {
                 const Floats above = to_floats(close.u + close.error);

@@ -196,7 +196,7 @@ std::uint64_t fill_tile_closely(const TileJob& job, const CloseFunctions& functi
         }
         CloseDivisor q;
         q.take(of_q);
-        CloseFragments<2> fragments;
+        CloseFragments<2, false> fragments;
         fragments.divide(at, q, numerators, functions.tolerance, is_more_known);
         doubtful |= lane_bits(fragments.doubtful) << i;
         // Doubt has company: where all of a first vector stay so, more is to be known of the others, too.
