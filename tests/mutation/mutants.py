@@ -379,8 +379,6 @@ MUTANTS = [
          ("the padding of a segment is written", "run_part(job, outputs, {first, rest, point_quantum}, run);",
           "run_part(job, outputs, {first, point_quantum, point_quantum}, run);", "segment_test")),
     *_of("detail/points/segment_forms.inc.hpp",
-         ("floats about the asymptote are off by less", "return about.error(u, rounded_to_float) * unit_roundoff_float",
-          "return about.error(u, rounded_to_float) * (0.1 * unit_roundoff_float)", "bounds_test segment_test error_bound_test"),
          ("the float segment's roundings are forgotten", "(u.largest() * 2.0 + magnitude(u.at_a - u.at_b) * 12.0)",
           "(u.largest() * 0.4 + magnitude(u.at_a - u.at_b))", "bounds_test segment_test"),
          ("a float segment is taken from the end where q is more", "is_b(ends.q_b < ends.q_a)",

@@ -245,32 +245,29 @@ std::size_t fill_segment_in_double(const SegmentJob& job, std::size_t first) noe
 
 // The same in float. The step of the steeper coordinate is what is divided by two vectors, and the other's a share of it: a
 // product less, and of fewer sums that compilers fuse with products, which wait for stores.
-template <std::size_t Numerators, bool IsAsymptotic>
+template <std::size_t Numerators>
 std::size_t fill_segment_all_float_of(const SegmentJob& job, std::size_t first, std::size_t count) noexcept {
     const float* const from = job.alpha;
     constexpr auto width = static_cast<std::size_t>(wide_lanes);
     const int other = Numerators == 2 ? 1 - job.steeper : 0;
     float* const out = job.out[job.steeper];
     float* const other_out = job.out[other];
-    const auto pole = static_cast<float>(job.pole), bend = static_cast<float>(job.bend);
+    const auto bend = static_cast<float>(job.bend);
     const auto base = static_cast<float>(job.base[job.steeper]), other_base = static_cast<float>(job.base[other]);
     const auto slope = static_cast<float>(job.step), share = static_cast<float>(job.share);
     // alpha, or 1 - alpha.
     const float start = job.about_b ? 1.0f : 0.0f, direction = job.about_b ? -1.0f : 1.0f;
-    const auto load_alpha = [&](std::size_t i) {
-        const auto alpha = load<WideFloats>(from + i);
-        return IsAsymptotic ? alpha : alpha * direction + start;
-    };
+    const auto load_alpha = [&](std::size_t i) { return load<WideFloats>(from + i) * direction + start; };
     const auto store_at = [&](std::size_t i, const WideFloats& alpha, const WideFloats& of_q) {
-        const WideFloats step = IsAsymptotic ? of_q : of_q * alpha;
+        const WideFloats step = of_q * alpha;
         store(out + i, step + base);
         if (Numerators == 2) store(other_out + i, step * share + other_base);
     };
     WideFloats sum{};
     const auto fill_both = [&](std::size_t i, std::size_t next) {
         const WideFloats alpha = load_alpha(i), next_alpha = load_alpha(next);
-        const WideFloats q = IsAsymptotic ? alpha + pole : alpha * bend + pole;
-        const WideFloats next_q = IsAsymptotic ? next_alpha + pole : next_alpha * bend + pole;
+        const WideFloats q = alpha * bend + 1.0f;
+        const WideFloats next_q = next_alpha * bend + 1.0f;
         const WideFloats product = q * next_q;
         sum = sum + product;
         const WideFloats of_both = slope / product;
@@ -291,11 +288,7 @@ std::size_t fill_segment_all_float_of(const SegmentJob& job, std::size_t first, 
 
 template <class CompiledWhereCalled = void>
 std::size_t fill_segment_all_float(const SegmentJob& job, std::size_t first) noexcept {
-    if (job.numerators == 2)
-        return fill_in_front(
-            job.is_asymptotic ? fill_segment_all_float_of<2, true> : fill_segment_all_float_of<2, false>, job, first);
-    return fill_in_front(job.is_asymptotic ? fill_segment_all_float_of<1, true> : fill_segment_all_float_of<1, false>,
-                         job, first);
+    return fill_in_front(job.numerators == 2 ? fill_segment_all_float_of<2> : fill_segment_all_float_of<1>, job, first);
 }
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA

@@ -98,7 +98,7 @@ inline constexpr double quick_ulps = 0x1p13;
 
 // Whether there are so few about the asymptote, and no subnormal floats; takes how many.
 inline bool is_quick_about_asymptote(const Asymptote& about, const EndQuotients& u, double& ulps) noexcept {
-    const Double2 least = u.least(), error = about.error(u, rounded_in_double);
+    const Double2 least = u.least(), error = about.error(u);
     if (!about.is_in_range(u) || !all_less(double2_of(0.0, 0.0), u.at_a * u.at_b) ||
         !all_less(double2_of(0x1p-120, 0x1p-120), least))
         return false;
@@ -170,26 +170,15 @@ TEXGEN_APART inline bool prepare_in_double(SegmentJob& job) noexcept {
 TEXGEN_INLINE bool prepare_in_float(SegmentJob& job, const SegmentEnds& ends, double tolerance) noexcept {
     if (!(tolerance > 0.0 && ends.are_in_front())) return false;
     const EndQuotients u(ends);
-    const Asymptote asymptote(ends, u);
-    Double2 slope;
-    job.is_asymptotic = fits_in_float(asymptote, u, tolerance);
-    if (job.is_asymptotic) {
-        job.pole = asymptote.pole;
-        put(job.base, asymptote.base);
-        slope = asymptote.slope;
-    } else {
-        const LesserEnd end(ends, u);
-        if (!fits_in_float(end, u, tolerance)) return false;
-        job.about_b = end.is_b;
-        job.pole = 1.0;
-        job.bend = end.bend;
-        put(job.base, end.base);
-        slope = end.slope;
-    }
-    const bool is_second = magnitude(slope[0]) < magnitude(slope[1]);
-    const double lesser = is_second ? slope[0] : slope[1];
+    const LesserEnd end(ends, u);
+    if (!end.is_in_range(u) || !all_less(end.error(u), double2_of(tolerance, tolerance))) return false;
+    job.about_b = end.is_b;
+    job.bend = end.bend;
+    put(job.base, end.base);
+    const bool is_second = magnitude(end.slope[0]) < magnitude(end.slope[1]);
+    const double lesser = is_second ? end.slope[0] : end.slope[1];
     job.steeper = is_second ? 1 : 0;
-    job.step = is_second ? slope[1] : slope[0];
+    job.step = is_second ? end.slope[1] : end.slope[0];
     job.share = job.step != 0.0 ? lesser / job.step : 0.0;
     return true;
 }
@@ -342,14 +331,11 @@ inline glm::dvec2 error_bound(const Segment& segment, Tolerance tolerance) noexc
         const detail::EndQuotients u(ends);
         const double rounded = detail::half_ulp(1.001 * u.largest()[0]);
         double largest = detail::accepts_rounding(u.largest()[0], accepted) ? 1.001 * rounded : rounded;
+        const detail::LesserEnd end(ends, u);
+        const double error = end.error(u)[0];
         // Where both are next to one another, a file with other flags may have decided otherwise.
-        const auto take = [&](const auto& about) {
-            const double error = detail::error_in_float(about, u)[0];
-            if (about.is_in_range(u) && error * (1.0 - 0x1p-40) <= accepted) largest = detail::larger(largest, error);
-        };
-        take(detail::Asymptote(ends, u));
-        take(detail::LesserEnd(ends, u));
-        return largest;
+        const bool is_in_float = end.is_in_range(u) && error * (1.0 - 0x1p-40) <= accepted;
+        return is_in_float ? detail::larger(largest, error) : largest;
     };
     return {bound(0), bound(1)};
 }

@@ -43,13 +43,6 @@ struct EndQuotients {
     Double2 sum() const noexcept { return magnitude(at_a) + magnitude(at_b); }
 };
 
-// The roundings of U, p and d below: of D, its reciprocal and their products, or of each once more to float, where one d is
-// a share of the other, rounded too.
-struct AsymptoteRoundings {
-    double base, pole, slope;
-};
-inline constexpr AsymptoteRoundings rounded_in_double{4.0, 3.0, 7.0}, rounded_to_float{1.0, 1.0, 2.0};
-
 // With D = Q1 - Q0, u is exactly
 //   U + d / (alpha + p),  U = (F1 - F0) / D, p = Q0 / D, d = (F0 Q1 - F1 Q0) / D^2.
 struct Asymptote {
@@ -70,12 +63,12 @@ struct Asymptote {
                all_less(u.sum() + magnitude(base), double2_of(0x1p60, 0x1p60));
     }
 
-    // The error of that in unit roundoffs. p is at most max(1, Q0 / Q1) times the divisor: its roundings and one for the sum,
-    // three for a reciprocal that two vectors share, those of d and one for the product are of u - U, which is largest at an
-    // end; the last sum is of u.
-    Double2 error(const EndQuotients& u, const AsymptoteRoundings& of) const noexcept {
+    // The error of that in unit roundoffs of double. D, its reciprocal and their products round p by 3, which is at most
+    // max(1, Q0 / Q1) times the divisor, U by 4 and d by 7. Those of p and d, one for the sum, three for a reciprocal that two
+    // vectors share, and one for the product are of u - U, which is largest at an end; the last sum is of u.
+    Double2 error(const EndQuotients& u) const noexcept {
         const Double2 part = larger(magnitude(u.at_a - base), magnitude(u.at_b - base));
-        return (part * (of.slope + 5.0 + of.pole * ratio) + magnitude(base) * of.base + u.largest()) * 1.01;
+        return (part * (12.0 + 3.0 * ratio) + magnitude(base) * 4.0 + u.largest()) * 1.01;
     }
 };
 
@@ -98,27 +91,14 @@ struct LesserEnd {
         return ratio < 0x1p60 && all_less(u.sum(), double2_of(0x1p60, 0x1p60));
     }
 
-    // The error of that in unit roundoffs of float: 1 - alpha, b, its product and the sum, the product of two sums, what it
-    // divides, the products with the other sum and with i, d, the share of the other d and its product are rounded, 11 of the
-    // step at most; u0 and the last sum once each.
+    // The error of that in float, in whose unit roundoffs 1 - alpha, b, its product and the sum, the product of two sums, what it
+    // divides, the products with the other sum and with i, d, the share of the other d and its product are rounded by 11 of the
+    // step at most; u0 and the last sum once each. A share of d, and what of d two vectors divide, may be less than all normal
+    // floats: that times what is less than 2^60 is lost of each.
     Double2 error(const EndQuotients& u) const noexcept {
-        return (u.largest() * 2.0 + magnitude(u.at_a - u.at_b) * 12.0) * 1.001;
+        return (u.largest() * 2.0 + magnitude(u.at_a - u.at_b) * 12.0) * 1.001 * unit_roundoff_float + 0x1p-64;
     }
 };
-
-// The errors of both in float. A share of d, and what of d two vectors divide, may be less than all normal floats: that times
-// what is less than 2^60 is lost of each.
-inline Double2 error_in_float(const Asymptote& about, const EndQuotients& u) noexcept {
-    return about.error(u, rounded_to_float) * unit_roundoff_float + 0x1p-64;
-}
-inline Double2 error_in_float(const LesserEnd& about, const EndQuotients& u) noexcept {
-    return about.error(u) * unit_roundoff_float + 0x1p-64;
-}
-// Whether they are inside a tolerance; not where one is NaN.
-template <class Form>
-TEXGEN_INLINE bool fits_in_float(const Form& about, const EndQuotients& u, double tolerance) noexcept {
-    return about.is_in_range(u) && all_less(error_in_float(about, u), double2_of(tolerance, tolerance));
-}
 
 }  // namespace TEXGEN_BUILD
 }  // namespace TEXGEN_DETAIL

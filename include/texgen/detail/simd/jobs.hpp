@@ -232,14 +232,13 @@ struct SegmentJob : DividedOutput {
     double q_a, q_b;
     double tolerance;
     bool is_in_float, is_quick;  // fill_all_float is inside the tolerance; else whether fill_in_double is worth a try
-    // For both, where all is in front. About what it is where q is infinite,
+    // For both, where all is in front. In double about what it is where q is infinite,
     //   base + slope / (alpha + pole),
-    // else in double (base + slope alpha) / (pole + bend alpha), and in float, about the end where q is less,
-    // base + slope i / (1 + bend i), i the alpha from there.
+    // or (base + slope alpha) / (pole + bend alpha); and in float, about the end where q is less,
+    // base + slope i / (1 + bend i), i the alpha from there: the slope of one coordinate is `step`, that of the other a share of it.
     bool is_asymptotic;
     bool about_b;
     double base[2], slope[2], pole, bend;
-    // In float the slope of one coordinate is `step`, and that of the other a share of it.
     int steeper;
     double step, share;
     std::int32_t ulps;  // that quotients in double are within, 1 less than a power of two
