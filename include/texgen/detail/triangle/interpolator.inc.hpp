@@ -249,7 +249,7 @@ private:
         }
     }
 
-    // In shorter chunks, or by divisions. Below what is refused of a row the same will be; then chunks of a row follow those of another no more.
+    // In shorter chunks, or by divisions. Below what is refused of a row the same will be.
     TEXGEN_RARE void fill_refused(const Tile& tile, TileJob& job, const TileJob::Unit& refused) noexcept {
         Tile rest = part_of(tile, refused);
         const bool touches = refused.x_begin == job.filled.x_end || refused.x_end == job.filled.x_begin;
@@ -258,7 +258,6 @@ private:
             const bool is_first = job.filled.x_end == 0 || refused.x_begin < job.filled.x_begin;
             if (is_first) job.filled.x_begin = refused.x_begin;
             if (refused.x_end > job.filled.x_end) job.filled.x_end = refused.x_end;
-            job.is_contiguous = false;
         }
         fill(rest, job.chunk - 1);
     }
