@@ -240,13 +240,8 @@ private:
         job.q_error = at.q_error;
         job.least_q = 0x1p24 * at.q_error;
         for (std::size_t k = 0; k < 2; ++k) job.numerator_error[k] = at.numerator_error[k];
-        for (TileJob::Unit next{0, 0, 0, 0};;) {
-            const TileJob::Unit refused = detail::fill_polynomial(kernels_, job, next);
-            if (job.is_done(refused)) return;
-            fill_refused(tile, job, refused);
-            next = refused.x_end < tile.width ? TileJob::Unit{refused.x_end, 0, refused.y_begin, 0}
-                                              : TileJob::Unit{0, 0, refused.y_end, 0};
-        }
+        detail::fill_polynomial(kernels_, job, {0, 0, 0, 0},
+                                [&](const TileJob::Unit& refused) { fill_refused(tile, job, refused); });
     }
 
     // In shorter chunks, or by divisions. Below what is refused of a row the same will be.

@@ -26,15 +26,15 @@ inline TileJob::Unit fill_exact(const TileKernels& kernels, const TileJob& job, 
     return unit;
 }
 
-// Does the job from `first` on. Stops at chunks that no rule serves and that are not filled, and returns them, a part of one row or
-// whole rows; the empty unit if there are none. The next call starts after them.
-inline TileJob::Unit fill_polynomial(const TileKernels& kernels, const TileJob& job, TileJob::Unit first) noexcept {
+// Does the job from `first` on. Chunks that no rule serves, a part of one row or whole rows, are handed to `refuse`, unless they are
+// filled.
+template <class Refuse>
+void fill_polynomial(const TileKernels& kernels, const TileJob& job, TileJob::Unit first,
+                     const Refuse& refuse) noexcept {
     const int width = job.width, height = job.height;
     const int longest = job.chunk;
     const int whole_chunks = width / longest;
     const int per_row = whole_chunks + (whole_chunks * longest < width ? 1 : 0);
-    // Where the rows of the outputs follow one another, and consist of whole chunks, so do those.
-    const bool is_seamless = job.is_contiguous && whole_chunks * longest == width;
     int chunk = first.x_begin / longest, y = first.y_begin;
     ChunkGroup group;
     RowOutputs row(job, y);
@@ -43,26 +43,26 @@ inline TileJob::Unit fill_polynomial(const TileKernels& kernels, const TileJob& 
         const int count = left < group.size ? static_cast<int>(left) : group.size;
         kernels.weigh_chunks(job, group, per_row, y, chunk, count);
         for (int i = 0, end; i < count; i = end) {
-            // Chunks of a rule that follow one another are filled at once.
+            // Chunks of a rule that follow one another are filled at once; where the rows of the outputs follow one another, and
+            // consist of whole chunks, over the ends of rows.
             const StepRule rule = group.rule_of(job, i);
+            const bool is_refused = rule == StepRule::none;
+            const bool is_seamless = job.is_contiguous && whole_chunks * longest == width && !is_refused;
             const int in_row = whole_chunks > chunk ? whole_chunks - chunk : 1;
-            const int most = is_seamless || count - i < in_row ? count : i + in_row;
+            const int most = is_seamless || count - i < in_row || (is_refused && per_row == 1) ? count : i + in_row;
             end = job.steps != StepRule::undecided ? most : i + 1;
             while (end < most && group.rule_of(job, end) == rule) ++end;
             const int begin = chunk * longest;
-            if (rule == StepRule::none) {
-                while (per_row == 1 && end < count && group.rule_of(job, end) == rule) ++end;
-                if (per_row == 1) return {0, width, y, y + (end - i)};
-                const std::int64_t last = std::int64_t{begin} + (end - i) * job.length_of_chunk(begin);
-                const int x_end = last < width ? static_cast<int>(last) : width;
-                if (begin < job.filled.x_begin || x_end > job.filled.x_end) return {begin, x_end, y, y + 1};
+            if (is_refused) {
+                const int rows = per_row == 1 ? end - i : 1;
+                const int x_end = begin + (end - i) / rows * job.length_of_chunk(begin);
+                if (begin < job.filled.x_begin || x_end > job.filled.x_end) refuse({begin, x_end, y, y + rows});
             } else {
                 kernels.fill_chunks(job, row, group, i, end, begin);
             }
             for (chunk += end - i; chunk >= per_row; chunk -= per_row, ++y) row.advance();
         }
     }
-    return {0, 0, height, height};
 }
 
 }  // namespace TEXGEN_BUILD
