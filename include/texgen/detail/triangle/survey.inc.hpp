@@ -28,7 +28,7 @@ struct TileSurvey {
 inline int chunk_length(const Corners& at, int width) noexcept {
     const double q = 0.25 * (at.q[0] + at.q[1] + at.q[2] + at.q[3]);
     int longest = longest_chunk;
-    while (longest > 64 && std::fabs(at.q_ramp.dx) * longest > 0.25 * q) longest /= 2;
+    while (longest > 64 && std::fabs(at.q_ramp.dx) * longest > 0.5 * q) longest /= 2;
     if (width <= longest) return width;
     const int chunks = (width - 1) / longest + 1;
     constexpr int lanes = 16;
