@@ -462,6 +462,32 @@ TEST_CASE("a tie that has more bits than two doubles is decided as for each tria
     }
 }
 
+// Of 384 000 such ties the five that are decided wrongly where the rounded integer is taken for the exact one.
+TEST_CASE("a tie of an integer that is rounded as it becomes a double is a tie") {
+    struct Found {
+        float w[3];
+        int x, y;
+    };
+    for (const Found& found : {Found{{0x1.a94e0ep+0f, 0x1.fa1e5ap+0f, 0x1.e2678ap+0f}, 281, 752},
+                               Found{{0x1.cd34e6p+0f, 0x1.f4035ep+0f, 0x1.551fd6p+0f}, 337, 968},
+                               Found{{0x1.abf152p+0f, 0x1.ed0762p+0f, 0x1.faf93ep+0f}, 231, 962}}) {
+        const auto vertex = [&](float x, float y, std::size_t i, float s) {
+            const float w = found.w[i];
+            return texgen::WindowVertex{{x, y}, w, {w * s, w * s, 0.0f, w}};
+        };
+        const Triangle triangle{vertex(0.0f, 0.0f, 0, 0x1p24f), vertex(0x1p23f, 0.0f, 1, 0x1p25f),
+                                vertex(0.0f, 1.0f, 2, 0x1p24f)};
+        TriangleBatch batch(support::everywhere());
+        batch.assign({&triangle, 1});
+        Outputs out(16, 3u);
+        interpolate(batch, std::vector<std::uint32_t>(16, 0), {found.x, found.y, 16, 1}, out.spans());
+        for (std::size_t i = 0; i < 16; ++i) {
+            const int odd = (1 << 24) + 2 * (found.x + static_cast<int>(i)) + 1;
+            CHECK_MESSAGE(out[0][i] == static_cast<float>(odd), support::hex(triangle), " number ", i);
+        }
+    }
+}
+
 TEST_CASE("tiles next to the slowest that were found have the bits of a setup") {
     std::ifstream file(TEXGEN_TEST_DATA "/promises/worst_inputs.txt");
     std::vector<std::vector<float>> found;

@@ -436,6 +436,8 @@ MUTANTS = [
           "value[n] = {terms.function(vertices, n < Numerators ? n : 3).high, {}, {}};", "batch_test near_ties_test"),
          ("doubles are next to one integer however far they reach", "greater(of_grain[n] * 0x1p60, reach)", "greater(of_grain[n] * 0x1p90, reach)",
           "batch_test"),
+         ("an integer is not rounded as it becomes a double", "select(is_one, reach * 0x1p-48, f.error)", "where(~is_one, f.error)",
+          "batch_test"),
          ("residues of a batch have one orientation", "with_sign_of(w[1] * w[2], given.area)", "w[1] * w[2]", "batch_test"),
          ("sums of more bits than two doubles are exact", "terms * 0x1p-96", "terms * 0x1p-126", "batch_test")),
     *_of("detail/triangle/batch.inc.hpp",
