@@ -199,8 +199,8 @@ std::uint64_t fill_tile_closely(const TileJob& job, const CloseFunctions& functi
         CloseFragments<2, false> fragments;
         fragments.divide(at, q, numerators, functions.tolerance, is_more_known);
         doubtful |= lane_bits(fragments.doubtful) << i;
-        // Doubt has company: where all of a first vector stay so, more is to be known of the others, too.
-        if (!is_more_known && i == 0 && doubtful == (std::uint64_t{1} << lanes) - 1) return asked;
+        // Doubt has company: where most of a first vector stay so, more is to be known of the others, too.
+        if (!is_more_known && i == 0 && 2 * std::popcount(doubtful) > lanes) return asked;
         for (std::size_t k = 0; k < numerators; ++k) store(result[k] + i, fragments.quotient[k]);
         if (job.lit != nullptr) store(result[2] + i, lit_of(job, fragments.quotient, narrow(q.front)));
     }

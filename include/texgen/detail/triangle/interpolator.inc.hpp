@@ -111,7 +111,9 @@ private:
     }
 
     // More than a fourth of a unit: what may be ties, or the planes', and no chance.
-    static bool are_many(std::uint64_t fragments) noexcept { return std::popcount(fragments) > 16; }
+    static bool are_many(std::uint64_t fragments, const Tile& tile) noexcept {
+        return std::popcount(fragments) > (tile.count() < TileJob::unit_size ? tile.count() : TileJob::unit_size) / 4;
+    }
 
     // More of them, if there is more: residues first for ties, which have company.
     TEXGEN_RARE bool sharpen(const Tile& tile, DoubtfulFunctions& functions, bool are_ties) noexcept {
@@ -130,7 +132,7 @@ private:
                                    const TileJob::Unit& unit, std::uint64_t asked = ~std::uint64_t{0}) noexcept {
         std::uint64_t doubtful = kernels_.fill_closely(job, functions, unit, asked);
         const bool are_all = doubtful == ~std::uint64_t{0};
-        while (doubtful != 0 && sharpen(tile, functions, are_many(doubtful)))
+        while (doubtful != 0 && sharpen(tile, functions, are_many(doubtful, tile)))
             doubtful = kernels_.fill_closely(job, functions, unit, doubtful);
         fill_some(tile, unit, doubtful);
         return are_all;
@@ -188,16 +190,17 @@ private:
             unit = detail::fill_exact(kernels_, job, unit, TileJob::unit_size, doubtful);
         // Doubt has company: four times as many units after each failure that follows another, and some after one of nothing else.
         for (int many = 1; !job.is_done(unit);) {
-            const bool were_close = functions.are_close;
+            const bool may_get_closer = !functions.are_close && are_many(doubtful, tile);
             for (int i = 0; i < many && !job.is_done(unit);
                  ++i, unit = job.unit_after(unit), doubtful = ~std::uint64_t{0})
                 if (fill_closely(tile, job, functions, unit, doubtful)) many = many < 4 ? 4 : many;
             if (job.is_done(unit)) return;
-            // What two doubles are rounded to errs by less than the planes: once they are known, or where the planes fail again.
-            bool is_closer = functions.are_close && !were_close;
+            // What two doubles are rounded to errs by less than the planes: where those leave much doubt, and once they are known or
+            // the planes fail again.
+            bool is_closer = may_get_closer && functions.are_close;
             if (!is_closer) {
                 unit = detail::fill_exact(kernels_, job, unit, TileJob::unit_size, doubtful);
-                const bool fails_again = are_many(doubtful);
+                const bool fails_again = are_many(doubtful, tile);
                 is_closer = fails_again && !job.is_done(unit) && !functions.are_close && !functions.have_residues;
                 many = fails_again ? 4 * many : 1;
             }
