@@ -72,15 +72,23 @@ public:
 private:
     TEXGEN_RARE void fill(const Tile& tile, int longest = longest_chunk) noexcept {
         const Corners at = corners_at(tile);
-        // Where floats round the largest quotient by more than the tolerance its chunk is not served, and mostly no other one.
-        const Double2 rounded = at.largest_quotient() * unit_roundoff_float;
-        if (!(larger(rounded[0], rounded[1]) < triangle_.tolerance)) return fill_exact(tile, at);
+        if (are_floats_apart(at)) return fill_exact(tile, at);
         Plan plan = plan_without_survey(tile, at);
         if (plan.chunk > longest) plan.chunk = 0;
         fill(tile, at, plan);
     }
 
+    // Where floats round the largest quotient by more than the tolerance its chunk is not served, and mostly no other one.
+    TEXGEN_RARE bool are_floats_apart(const Corners& at) const noexcept {
+        const Double2 rounded = at.largest_quotient() * unit_roundoff_float;
+        return !(larger(rounded[0], rounded[1]) < triangle_.tolerance);
+    }
+
     void fill(const Tile& tile, const Corners& at, const Plan& plan) noexcept {
+        // Few chunks do not repay a try.
+        if (plan.chunk != 0 && plan.steps == StepRule::undecided && tile.count() <= Corners::few &&
+            are_floats_apart(at))
+            return fill_exact(tile, at);
         if (at.well_in_front()) return plan.chunk != 0 ? fill_polynomial(tile, at, plan) : fill_float_divided(tile, at);
         split(tile, at);
     }
