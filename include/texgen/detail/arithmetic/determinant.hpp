@@ -2,7 +2,6 @@
 
 // Determinants whose terms may cancel to the last bit: in double or in two doubles where a bound decides, else as exact sums.
 
-#include <cmath>
 #include <limits>
 
 #include <glm/vec2.hpp>

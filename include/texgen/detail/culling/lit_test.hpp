@@ -6,8 +6,6 @@
 #include <cstddef>
 #include <limits>
 
-#include <glm/vec2.hpp>
-
 #include "../../conventions.hpp"
 #include "../arithmetic/nearest.hpp"
 #include "../arithmetic/widen.hpp"

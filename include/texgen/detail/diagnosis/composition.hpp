@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <optional>
 
-#include <glm/geometric.hpp>
 #include <glm/mat2x4.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>

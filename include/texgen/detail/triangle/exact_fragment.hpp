@@ -6,8 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <glm/vec2.hpp>
-
 #include "../arithmetic/expansion.hpp"
 #include "../arithmetic/nearest.hpp"
 #include "../arithmetic/rounding.hpp"
