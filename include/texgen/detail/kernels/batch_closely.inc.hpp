@@ -146,8 +146,8 @@ struct CloseTerms {
     }
 };
 
-// At a fragment: all are within 2^-98 of their size. Of one far away what corner k is off corner j takes the place of what it is off
-// the fragment: E_i is the same, of terms that are less.
+// At a fragment: all are within 2^-98 of their size. Of one farther off than the corners are apart, what corner k is off corner j takes
+// the place of what it is off the fragment: E_i is the same, of terms that are less.
 struct CloseLanes : CloseTerms {
     TEXGEN_INLINE CloseLanes(const VertexLanes& given, const Doubles& x, const Doubles& y) noexcept {
         // Of side i from here to its corner j, and from there or here to k.
@@ -168,7 +168,7 @@ struct CloseLanes : CloseTerms {
             for (std::size_t i = 1; i < 3; ++i)
                 spread = spread + (magnitude(given.number(i, 0) - given.number(0, 0)) +
                                    magnitude(given.number(i, 1) - given.number(0, 1)));
-            const LongWords is_far = greater(magnitude(to_x[0].high) + magnitude(to_y[0].high), spread * 0x1p10);
+            const LongWords is_far = greater(magnitude(to_x[0].high) + magnitude(to_y[0].high), spread);
             for (std::size_t i = 0; i < 3; ++i) {
                 const std::size_t j = (i + 1) % 3;
                 const std::size_t k = (i + 2) % 3;
