@@ -81,7 +81,7 @@ struct CloseQuotient {
 
     TEXGEN_INLINE CloseQuotient(const CloseValues& of_f, const CloseDivisor& q, double tolerance) noexcept
         : f(of_f),
-          u((f.high + f.low) * q.reciprocal + 0x1p-900),  // no 0
+          u((f.high + f.low) * q.reciprocal + 0x1p-200),  // no 0, and normal times a grain
           size(magnitude(u)),
           error(size * q.relative_error + (q.reciprocal * f.error + 0x1p-152)),
           is_open(~greater(minimum(size * 0x1p-27, magnitude(u - middle_near(u))), error)) {
