@@ -97,7 +97,7 @@ TEXGEN_INLINE Doubles signed_form(const FormAtVertex& form, const BoxRows& row, 
     if (!any(is_open)) return value;
     Doubles term[FormAtVertex::max_terms];
     for (std::size_t k = 0; k < form.term_count; ++k) term[k] = row[form.term[k].row] * form.term[k].factor;
-    const Doubles sigma = power_of_two_below(maximum(error, Doubles{} + 0x1p-1000)) * 0x1p52;
+    const Doubles sigma = power_of_two_below(maximum(error, Doubles{} + 0x1p-900)) * 0x1p52;
     return select(is_open, signed_sum(term, form.term_count, sigma, is_open), value);
 }
 
