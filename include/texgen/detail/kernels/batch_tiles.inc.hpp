@@ -182,12 +182,12 @@ TEXGEN_APART bool divide_whole_tile(const BatchPlanes& planes, const BatchTiles&
     return !any_zero(least);
 }
 
-// 1 / (1 + x), see chunks.inc.hpp.
+// 1 / (1 + x), see chunks.inc.hpp: what keeps powers normal adds 2^-61 of it to its roundings.
 template <bool IsPolynomial>
 TEXGEN_INLINE WideFloats bent_factor(const WideFloats& x) noexcept {
     if constexpr (!IsPolynomial) return 1.0f / (x + 1.0f);
     WideFloats factor = 1.0f - x;
-    WideFloats power = x * x + 0x1p-62f;  // its square is normal: subnormal numbers take long
+    WideFloats power = x * x + 0x1p-62f;  // subnormal numbers take long
     factor = factor * power + factor;
     power = power * power;
     return factor * power + factor;
