@@ -12,11 +12,13 @@
 #include <vector>
 
 #include "judges/fragments.hpp"
+#include "support/float_state.hpp"
 #include "support/hard_triangles.hpp"
 #include "support/hex.hpp"
 #include "support/near_cut.hpp"
 #include "support/random.hpp"
 #include "support/stopwatch.hpp"
+#include "texgen/batch.hpp"
 #include "texgen/interpolate.hpp"
 
 namespace {
@@ -192,4 +194,40 @@ TEST_CASE("a row on which q is 0 everywhere, and a rectangle far outside of the 
     require_cost("q = 0 along a row", {zero_row, {30, 8, 64, 4}}, 24.0);
     for (const int x : {1000000000, -1000000000})
         require_cost("far away", {ordinary(64, 4).triangle, {x, 100, 64, 4}}, 8.0);
+}
+
+// As users have it: the other times are of a state in which subnormal numbers cost nothing.
+TEST_CASE("where no coordinate is subnormal, subnormal numbers do not double the time") {
+    const auto require_same_cost = [](const char* name, const support::Calls& calls) {
+        double ratio = HUGE_VAL;
+        for (int attempt = 0; attempt < 5 && ratio > 2.0; ++attempt) {
+            std::array<double, 2> least{HUGE_VAL, HUGE_VAL};
+            for (int turn = 0; turn < 30; ++turn)
+                for (std::size_t i = 0; i < least.size(); ++i)
+                    support::under(support::float_states[i],
+                                   [&] { least[i] = std::min(least[i], support::detail::nanoseconds_of(calls, 8)); });
+            ratio = least[0] / least[1];
+        }
+        CHECK_MESSAGE(ratio <= 2.0, name, ": ", ratio, " times");
+    };
+    const auto cut = [](float s, float t) {
+        return Triangle{vertex(-544164.188f, 27988.3828f, 0.1f, -69.1f * s, -22.6f * t, -25.1f),
+                        vertex(810.03656f, 428.25708f, 97.3841324f, 82.3f * s, 24.5f * t, 30.7f),
+                        vertex(525.804382f, 361.901428f, 68.5282516f, 38.5f * s, 12.9f * t, 8.97f)};
+    };
+    for (const Tolerance tolerance : dial) {
+        for (const auto& [s, t] : {std::array{0.0f, 0.0f}, std::array{0.0f, 1.0f}, std::array{1.0f, 0.0f}}) {
+            const Shot shot{cut(s, t), {169, 428, 64, 4}};
+            require_same_cost("zeros", support::calls_of(Workload(shot, tolerance)));
+        }
+        // Weights that differ by a rounding.
+        const float next = 1.0f + 0x1p-23f;
+        const Triangle flat{vertex(0.0f, 0.0f, 1.0f, 0.1f, 0.2f, 1.0f), vertex(1000.0f, 0.0f, next, 0.9f, 0.3f, 1.0f),
+                            vertex(0.0f, 1000.0f, 1.0f, 0.2f, 0.8f, 1.0f)};
+        texgen::TriangleBatch batch(everywhere(), tolerance);
+        batch.assign(std::vector<Triangle>(8, flat));
+        const std::vector<FragmentRect> rects(8, {300, 300, 8, 8});
+        std::vector<float> s(512), t(512);
+        require_same_cost("weights", support::calls_of([&] { interpolate(batch, rects, {s, t, {}, {}}); }));
+    }
 }
