@@ -103,6 +103,23 @@ Cloud seen(Random& random, std::size_t count) {
     return cloud;
 }
 
+// In front, no coordinate changing its sign, each at one point as close to a middle of two floats as doubles let it be, by sums
+// whose terms cancel.
+Cloud next_to_ties(Random& random, std::size_t count) {
+    Cloud cloud{"next to ties", glm::dmat4(0.0), {}};
+    for (std::size_t i = 0; i < count; ++i) cloud.points.push_back(1.5f + 0x1p-8f * random.vector3(1.0));
+    for (int row = 0; row < 4; ++row)
+        for (int j = 0; j < 3; ++j) cloud.matrix[j][row] = random.uniform(-100.0, 100.0);
+    cloud.matrix[3][3] = 5.0 - (cloud.matrix * glm::dvec4(1.5))[3];
+    for (int row = 0; row < 2; ++row) {
+        const auto one = static_cast<std::size_t>(random.integer(0, static_cast<int>(count) - 1));
+        const glm::dvec4 point(cloud.points[one], 1.0);
+        const double middle = static_cast<double>(support::to_float(random.uniform(4.0, 7.0))) + 0x1p-22;
+        cloud.matrix[3][row] += middle * (cloud.matrix * point)[3] - (cloud.matrix * point)[row];
+    }
+    return cloud;
+}
+
 Box grown(const Box& box, double by) {
     const glm::vec3 margin = support::to_float(by) * (box.max - box.min);
     return {box.min - margin, box.max + margin};
@@ -147,6 +164,7 @@ TEST_CASE("a box changes no bit of the nearest floats, pairs and points in doubt
     for (const std::size_t count : {std::size_t{1}, std::size_t{16}, std::size_t{100}, std::size_t{333}}) {
         std::vector<Cloud> clouds = support::doubtful_clouds(count, random);
         for (int i = 0; i < 20; ++i) clouds.push_back(seen(random, count));
+        for (int i = 0; i < 200; ++i) clouds.push_back(next_to_ties(random, count));
         for (const Cloud& cloud : clouds) {
             const texgen::WorldTexgen texgen(cloud.matrix);
             const Box box = box_of(cloud.points);

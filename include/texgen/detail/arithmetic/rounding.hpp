@@ -86,6 +86,13 @@ constexpr double gamma(int n) noexcept {
     return n * u / (1.0 - n * u);
 }
 
+// The most ulps for which numbers in double are worth being rounded to float: more are in doubt too often.
+inline constexpr double quick_ulps = 0x1p13;
+// More ulps than so many, as 1 less than a power of two.
+inline std::int32_t mask_of_ulps(double ulps) noexcept {
+    return (1 << std::bit_width(static_cast<unsigned>(ulps) + 1)) - 1;
+}
+
 // A double and a bound on its distance from the number that it stands for.
 struct Bounded {
     double value, error;

@@ -116,40 +116,86 @@ TEXGEN_INLINE PointLanes load_points(const PointInput& job, std::size_t i) noexc
     return {{to_doubles(x), to_doubles(y), to_doubles(z)}};
 }
 
+// Of eight doubles a division takes longer than all else, so two vectors of points share one: 1/q = q' (1 / (q q')).
+inline constexpr bool divides_pairs = lanes == 8 && wide_lanes == 16;
+inline constexpr std::size_t vectors_at_once = wide_lanes / lanes;
+
+// What is divided at these points, the divisions begun. Returns 1 / (q q').
+template <std::size_t Numerators, bool Shares>
+TEXGEN_INLINE Doubles begin_division(const PointJob& job, const WideFloats& x, const WideFloats& y, const WideFloats& z,
+                                     PointDivision* division) noexcept {
+    PointDivision* next = division;
+    for_halves(
+        [&](const Doubles& of_x, const Doubles& of_y, const Doubles& of_z) {
+            const PointLanes point{{of_x, of_y, of_z}};
+            next->q = value_at(job.q, point);
+            if constexpr (!Shares) next->reciprocal = 1.0 / next->q;
+            for (std::size_t k = 0; k < Numerators; ++k) next->numerator[k] = value_at(job.numerator[k], point);
+            ++next;
+        },
+        x, y, z);
+    if constexpr (!Shares) return division[0].reciprocal * division[vectors_at_once - 1].reciprocal;
+    const Doubles of_both = 1.0 / (division[0].q * division[1].q);
+    division[0].reciprocal = of_both * division[1].q;
+    division[1].reciprocal = of_both * division[0].q;
+    return of_both;
+}
+
+// Whether reciprocals, or those of products of two q, are between 2^-500 and 2^500, so that what shares a division is a product
+// of numbers in range. The sum tells of what the least of them forgets, a NaN, and is no less than the largest.
+struct ReciprocalRange {
+    Doubles least = Doubles{} + 1.0, sum{};
+
+    TEXGEN_INLINE void add(const Doubles& reciprocal) noexcept {
+        least = minimum(reciprocal, least);
+        sum = sum + reciprocal;
+    }
+    TEXGEN_INLINE LongWords holds() const noexcept {
+        return greater(least, 0x1p-500) & greater(Doubles{} + 0x1p500, sum);
+    }
+};
+
+// A block of points of a job that knows its ulps. Returns whether all is certain (it is written all the same). A point that is
+// not in the job's box may spoil the one that shares its division, and only so any other: the range tells.
+template <std::size_t Numerators>
+TEXGEN_INLINE bool fill_bounded_block(const PointJob& job, std::size_t begin, std::size_t end) noexcept {
+    Distances distance = far_from_middles();
+    ReciprocalRange range;
+    for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(wide_lanes)) {
+        WideFloats x, y, z;
+        load_points(job, i, x, y, z);
+        PointDivision division[vectors_at_once];
+        range.add(begin_division<Numerators, divides_pairs>(job, x, y, z, division));
+        TEXGEN_UNROLL
+        for (std::size_t j = 0; j < vectors_at_once; ++j) {
+            Doubles quotient[2];
+            Floats value[2];
+            for (std::size_t k = 0; k < Numerators; ++k) {
+                quotient[k] = division[j].numerator[k] * division[j].reciprocal;
+                value[k] = to_floats(quotient[k]);
+            }
+            distance = nearer(distance, quotient[0], quotient[Numerators - 1], job.ulps);
+            store_points(job, i + j * static_cast<std::size_t>(lanes), Numerators, value, ~Words{});
+        }
+    }
+    return !any(~range.holds()) && !any_zero(distance);
+}
+
 // A block of points, with errors that hold for all of it. Returns what is in doubt (it is written all the same).
 // All divisions are begun before the first result is asked for: instructions that wait for one keep others from being begun.
 template <bool Signed, std::size_t Numerators>
 TEXGEN_INLINE Doubt fill_points_block(const PointJob& job, std::size_t begin, std::size_t end) noexcept {
-    const bool is_bounded = !Signed && job.is_bounded;
-    // Of eight doubles a division takes longer than all else, so two vectors share one: 1/q = q' (1 / (q q')).
-    constexpr bool shares = !Signed && lanes == 8 && wide_lanes == 16;
     PointExtent extent;
     PointDivision division[(Signed ? exact_block : float_block) / static_cast<std::size_t>(lanes)];
     PointDivision* next = division;
     for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(wide_lanes)) {
         WideFloats x, y, z;
         load_points(job, i, x, y, z);
-        if (!is_bounded) extent.add(x, y, z);
-        for_halves(
-            [&](const Doubles& of_x, const Doubles& of_y, const Doubles& of_z) {
-                const PointLanes point{{of_x, of_y, of_z}};
-                next->q = value_at(job.q, point);
-                if constexpr (!shares) next->reciprocal = 1.0 / next->q;
-                for (std::size_t k = 0; k < Numerators; ++k) next->numerator[k] = value_at(job.numerator[k], point);
-                ++next;
-            },
-            x, y, z);
-        if constexpr (shares) {
-            PointDivision& first = *(next - 2);
-            PointDivision& second = *(next - 1);
-            const Doubles of_both = 1.0 / (first.q * second.q);
-            first.reciprocal = of_both * second.q;
-            second.reciprocal = of_both * first.q;
-        }
+        extent.add(x, y, z);
+        begin_division<Numerators, !Signed && divides_pairs>(job, x, y, z, next);
+        next += vectors_at_once;
     }
-    const Doubles x_size = is_bounded ? Doubles{} + job.bound[0] : folded(extent.x);
-    const Doubles y_size = is_bounded ? Doubles{} + job.bound[1] : folded(extent.y);
-    const Doubles z_size = is_bounded ? Doubles{} + job.bound[2] : folded(extent.z);
+    const Doubles x_size = folded(extent.x), y_size = folded(extent.y), z_size = folded(extent.z);
     const auto error_of = [&](const PointForm& form) {
         return (x_size * std::fabs(form.x) +
                 (y_size * std::fabs(form.y) + (z_size * std::fabs(form.z) + std::fabs(form.w)))) *
@@ -159,23 +205,16 @@ TEXGEN_INLINE Doubt fill_points_block(const PointJob& job, std::size_t begin, st
     for (std::size_t k = 0; k < Numerators; ++k) numerator_error[k] = error_of(job.numerator[k]);
     const Doubles q_error = error_of(job.q);
     Doubt doubt;
-    // Of 1/q. The sum tells of what the least of them forgets, a NaN, and is no less than the largest.
-    Doubles least = Doubles{} + 1.0, sum{};
+    ReciprocalRange range;
     next = division;
     for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(lanes)) {
-        if constexpr (!Signed) {
-            least = minimum(next->reciprocal, least);
-            sum = sum + next->reciprocal;
-        }
+        if constexpr (!Signed) range.add(next->reciprocal);
         Floats value[2];
         const LongWords in_front =
             divide_certainly<Signed>(Numerators, *next++, numerator_error, q_error, job.tolerance, value, doubt);
         store_points(job, i, Numerators, value, narrow(in_front));
     }
-    // Between 2^-500 and 2^500 the reciprocals are products of numbers in range: 1 / (q q') is about their product.
-    if constexpr (!Signed)
-        doubt.side = ~(greater(least, 0x1p-500) & greater(Doubles{} + 0x1p500, sum) &
-                       greater(Doubles{} + 0x1p-13, sum * q_error));
+    if constexpr (!Signed) doubt.side = ~(range.holds() & greater(Doubles{} + 0x1p-13, range.sum * q_error));
     return doubt;
 }
 
@@ -293,7 +332,9 @@ TEXGEN_INLINE Undecided fill_points_exact_of(const PointJob& original, std::size
         if (begin / exact_block % 8 == 0 && effort.rung == Rung::each_lane) effort = {};
         if (effort.rung == Rung::in_front && begin % float_block == 0) {
             const std::size_t end = end_of_block(job.count, begin, float_block);
-            if (!fill_points_block<false, Numerators>(job, begin, end).any_lane()) {
+            const bool is_certain = job.ulps != 0 ? fill_bounded_block<Numerators>(job, begin, end)
+                                                  : !fill_points_block<false, Numerators>(job, begin, end).any_lane();
+            if (is_certain) {
                 begin = end;
                 continue;
             }

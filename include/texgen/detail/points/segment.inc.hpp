@@ -93,9 +93,6 @@ inline double ulps_of_sum(double a, double b) noexcept {
 
 inline namespace TEXGEN_BUILD {
 
-// The most ulps for which quotients in double are worth a try: more are in doubt too often.
-inline constexpr double quick_ulps = 0x1p13;
-
 // Whether there are so few about the asymptote, and no subnormal floats; takes how many.
 inline bool is_quick_about_asymptote(const Asymptote& about, const EndQuotients& u, double& ulps) noexcept {
     const Double2 least = u.least(), error = about.error(u);
@@ -161,7 +158,7 @@ TEXGEN_APART inline bool prepare_in_double(SegmentJob& job) noexcept {
         put(job.base, ends.a + 0.0);
         put(job.slope, ends.b - ends.a);
     }
-    job.ulps = static_cast<std::int32_t>(std::bit_ceil(static_cast<std::uint32_t>(ulps) + 8)) - 1;
+    job.ulps = mask_of_ulps(ulps + 6.0);
     job.are_accepted = accepts_rounding(larger_lane(u.largest()), job.tolerance);
     return true;
 }

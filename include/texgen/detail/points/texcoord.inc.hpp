@@ -75,16 +75,21 @@ inline void take_bounds(PointJob& job, const Box& box) noexcept {
     };
     const Range q = range_of(job.q);
     if (!(q.terms < 0x1p1000 && q.least > 0x1p20 * gamma(5) * q.terms)) return;
-    job.is_bounded = true;
     job.is_certified = is_float(job.q);
-    for (glm::length_t j = 0; j < 3; ++j) job.bound[j] = size[j];
+    double ulps = 0.0;
     for (int k = 0; k < job.numerators; ++k) {
         const PointForm& form = job.numerator[k];
         const Range s = range_of(form);
         const double quotient = larger(-s.least, s.largest) / q.least * (1.0 + gamma(2));
-        const double error = all_float.error(s.terms, q.terms, size.x + size.y + size.z + 1.0, q.least, quotient);
-        job.is_certified = job.is_certified && is_float(form) && error <= job.tolerance;
+        const double of_float = all_float.error(s.terms, q.terms, size.x + size.y + size.z + 1.0, q.least, quotient);
+        job.is_certified = job.is_certified && is_float(form) && of_float <= job.tolerance;
+        // Of itself a quotient errs by e_s / |s| + e_q / q and four roundings, and an ulp of it is at least 2^-53 of it.
+        const double least = larger(s.least, -s.largest);  // negative where the sign changes
+        const double share = (s.terms / least + q.terms / q.least) * gamma(5);
+        ulps = larger(ulps, least > 0x1p-124 * q.largest ? share * 0x1.01p53 + 4.0 : quick_ulps);
     }
+    // Products of two such q are in range, and quotients are no subnormal floats.
+    if (ulps < quick_ulps && q.least > 0x1p-240 && q.terms < 0x1p240) job.ulps = mask_of_ulps(ulps);
 }
 
 inline namespace TEXGEN_BUILD {

@@ -207,9 +207,8 @@ struct PointJob : DividedOutput, PointInput {
     PointForm q;
     double tolerance;
     // What the caller's word on all of them makes of their errors.
-    bool is_bounded;    // no |x|, |y| and |z| is more than `bound`, and all are well in front
     bool is_certified;  // fill_all_float is inside the tolerance
-    double bound[3];
+    std::int32_t ulps;  // that quotients in double are within, 1 less than a power of two; 0 where that is not known
 };
 
 // (1 - alpha) a + alpha b of floats as base + alpha (step + rest): both products with a float are exact.

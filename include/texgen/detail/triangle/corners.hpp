@@ -130,7 +130,7 @@ struct Corners {
         const double share =
             larger(numerator_error[0] / least[0], numerator_error[1] / least[1]) + q_error * reciprocal;
         const double ulps = share * 0x1.01p53 + 6.0;
-        return ulps < 0x1p15 ? (1 << std::bit_width(static_cast<unsigned>(ulps) + 1)) - 1 : 0;
+        return ulps < 0x1p15 ? mask_of_ulps(ulps) : 0;
     }
 };
 
