@@ -592,7 +592,7 @@ MUTANTS = [
          ("a residue forgets q", " - of_q * to_residues(where(fits, q_times));", ";", "interpolate_test"),
          ("the low part of q is forgotten", "(low + (f.low - middle * q.low))", "(low + f.low)", "near_ties_test")),
     *_of("detail/kernels/tiles.inc.hpp",
-         ("a doubtful unit is passed", "    return std::rotl(doubtful, static_cast<int>(count % 64));", "    return 0;", "interpolate_test"),
+         ("a doubtful unit is passed", "    return rotated(doubtful, static_cast<int>(count % 64));", "    return 0;", "interpolate_test"),
          ("doubt is of the fragments of another row", "(x_begin - x_end) & (lanes - 1)", "0", "near_ties_test"),
          ("pairs of vectors are in no doubt", "if (any_zero(least)) break;", "", "interpolate_test"),
          ("a vector is written beyond the outputs", "last = row.writable - lanes;", "last = row.writable - lanes + 1;",

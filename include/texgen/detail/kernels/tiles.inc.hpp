@@ -37,6 +37,11 @@ TEXGEN_INLINE void divide_in_float(const TileJob& job, const TileRow& row, const
     for (std::size_t k = 0; k < 2; ++k) quotient[k] = to_floats(row.numerator_at(job, k, index)) * reciprocal;
 }
 
+// By up to 63 bits to the left. (std::rotl takes an int or an unsigned one, by the library.)
+TEXGEN_INLINE std::uint64_t rotated(std::uint64_t bits, int count) noexcept {
+    return bits << count | bits >> (-count & 63);
+}
+
 // Divides a part of a row, or whole rows. Which fragments are in doubt (they are written all the same). What a last vector writes
 // beyond its row is written again by those that follow, and may only cause a doubt too many.
 template <class CompiledWhereCalled = void>
@@ -58,7 +63,7 @@ std::uint64_t divide_tile(const TileJob& job, const TileJob::Unit& part) noexcep
             if (job.is_in_float)
                 divide_in_float(job, tile_row, index, quotient);
             else
-                doubtful = std::rotr(doubtful | divide_vector(job, tile_row, index, reciprocal, quotient), lanes);
+                doubtful = rotated(doubtful | divide_vector(job, tile_row, index, reciprocal, quotient), 64 - lanes);
             if (x > last) break;
             TEXGEN_UNROLL
             for (std::size_t k = 0; k < 2; ++k) store(row.out[k] + x, quotient[k]);
@@ -66,10 +71,10 @@ std::uint64_t divide_tile(const TileJob& job, const TileJob::Unit& part) noexcep
         if (x < x_end)
             for (std::size_t k = 0; k < 2; ++k) store_some(row.out[k] + x, static_cast<int>(x_end - x), quotient[k]);
         light(job, row, x_begin, x_end);
-        doubtful = std::rotl(doubtful, beyond);
+        doubtful = rotated(doubtful, beyond);
     }
     const unsigned count = static_cast<unsigned>(x_end - x_begin) * static_cast<unsigned>(y_end - y_begin);
-    return std::rotl(doubtful, static_cast<int>(count % 64));
+    return rotated(doubtful, static_cast<int>(count % 64));
 }
 
 // The same of a job that knows its ulps, unit by unit of its rows: pairs of vectors share a division, which adds two roundings to a
