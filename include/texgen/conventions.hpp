@@ -11,8 +11,8 @@
 
 #include "detail/matrices/required.hpp"
 
-// 0.4.6: 10000 major + 100 minor + patch.
-#define TEXGEN_VERSION 406
+// 0.4.7: 10000 major + 100 minor + patch.
+#define TEXGEN_VERSION 407
 
 namespace TEXGEN_NAMESPACE {
 
