@@ -183,25 +183,35 @@ int classify_box(const FormLanes& forms, const float* box_min, const float* box_
     return any(not_inside) ? body_not_outside : 2;
 }
 
-// Numbers with the exact signs of forms where they are largest over a box that has points, or least. Two doubles tell them where
-// they leave nothing, as of numbers with few digits, or are larger than the roundings of what they leave. Then what is left is
-// summed without loss as far as two doubles go, which is all of it on a side that is touched, or but for the tiny weight of q
-// beside a side at 0; and at last exact sums tell, of 21 numbers at most. A coordinate without a coefficient is not used, and
-// of what is infinite the rounded coefficients tell.
+// Numbers with the exact signs of forms where they are largest over a box that has points, or least. A double tells them where it is
+// larger than its roundings, or infinite; two where they leave nothing, as of numbers with few digits, or are larger than the
+// roundings of what they leave. Then what is left is summed without loss as far as two doubles go, which is all of it on a side
+// that is touched, or but for the tiny weight of q beside a side at 0; and at last exact sums tell, of 21 numbers at most. A
+// coordinate without a coefficient is not used.
 TEXGEN_INLINE Doubles signed_forms(const glm::dmat4& matrix, const WeightLanes& weights, const double (&at_positive)[3],
                                    const double (&at_negative)[3]) noexcept {
     const CoefficientLanes constant(weights, matrix[3]);
     CoefficientLanes coefficient[3];
-    Doubles left[3][3];
-    Doubles at[3], nearly = constant.rounded, high = constant.part[0], low = constant.part[1];
-    Doubles size_of_low = magnitude(low), last = magnitude(constant.part[2]);
+    Doubles at[3], value = constant.rounded, size = magnitude(value);
     TEXGEN_UNROLL
     for (int j = 0; j < 3; ++j) {
         coefficient[j] = CoefficientLanes(weights, matrix[static_cast<glm::length_t>(j)]);
-        const auto& [part, rounded] = coefficient[j];
+        const Doubles& rounded = coefficient[j].rounded;
         at[j] = where(are_nonzero(rounded),
                       select(greater(rounded, 0.0), Doubles{} + at_positive[j], Doubles{} + at_negative[j]));
-        nearly = nearly + rounded * at[j];
+        const Doubles term = rounded * at[j];
+        value = value + term;
+        size = size + magnitude(term);
+    }
+    // A coefficient is rounded twice, its product once, and their sums.
+    LongWords is_open = at_most(magnitude(value), minimum(size * gamma(8) + 0x1p-1000, Doubles{} + 0x1p1000));
+    if (!any(is_open)) return value;
+    Doubles left[3][3];
+    Doubles high = constant.part[0], low = constant.part[1];
+    Doubles size_of_low = magnitude(low), last = magnitude(constant.part[2]);
+    TEXGEN_UNROLL
+    for (int j = 0; j < 3; ++j) {
+        const Doubles(&part)[3] = coefficient[j].part;
         const Doubles first = leading_bits<27>(part[0]);
         high = two_sum(high, first * at[j], left[j][0]);
         high = two_sum(high, (part[0] - first) * at[j], left[j][1]);
@@ -213,8 +223,6 @@ TEXGEN_INLINE Doubles signed_forms(const glm::dmat4& matrix, const WeightLanes& 
         }
         last = last + magnitude(part[2]);
     }
-    Doubles value = nearly;
-    LongWords is_open = at_most(magnitude(nearly), Doubles{} + 0x1p1000);
     const auto take = [&](const Doubles& sum, const Doubles& lost) {
         value = select(is_open, sum, value);
         is_open &= greater(lost, 0.0) & ~greater(magnitude(sum), lost * gamma(24) + 0x1p-1000);
@@ -241,7 +249,7 @@ TEXGEN_INLINE Doubles signed_forms(const glm::dmat4& matrix, const WeightLanes& 
     take((high + low) + rest, lost);
     if (!any(is_open)) return value;
     const int parts = any(are_nonzero(last)) ? 3 : 2;
-    Doubles term[21], size{};
+    Doubles term[21];
     Doubles* next = term;
     for (int k = 0; k < parts; ++k) {
         *next++ = constant.part[k];
@@ -254,6 +262,7 @@ TEXGEN_INLINE Doubles signed_forms(const glm::dmat4& matrix, const WeightLanes& 
     }
     // Parts may cancel: they are larger than what they are of.
     const std::size_t terms = static_cast<std::size_t>(7 * parts);
+    size = Doubles{};
     for (std::size_t k = 0; k < terms; ++k) size = size + magnitude(term[k]);
     return select(is_open, signed_sum(term, terms, power_of_two_below(size) * 8.0, is_open), value);
 }
