@@ -204,6 +204,7 @@ TEXGEN_INLINE LongWords are_separated(const SeparatingForms& planes, const Doubl
     for (std::size_t k = 0; k < planes.count; ++k) {
         if (!(planes.d[k] < infinity)) continue;
         Doubles largest = planes.d[k] + size * planes.error[k];
+        TEXGEN_UNROLL
         for (std::size_t j = 0; j < 3; ++j)
             if (const double a = planes.a[j][k]; a != 0.0) largest = largest + (a > 0.0 ? max : min)[j] * a;
         least = minimum(largest, least);
