@@ -338,6 +338,7 @@ struct NearLanes {
 // What is known of fragments of a triangle each, q last: without residues grains are 0.
 template <std::size_t Numerators>
 struct CloseFragmentsAt {
+    static constexpr bool are_sums_first = false;
     CloseValues value[Numerators + 1];
     Residues residue[Numerators + 1]{};
     Doubles of_grain[Numerators + 1]{};

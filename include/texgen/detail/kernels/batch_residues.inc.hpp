@@ -74,6 +74,7 @@ struct BatchFunctions {
 // At (x, y) from the fragment that they are about; sums of the high parts are exact.
 template <class Functions>
 struct BatchFunctionsAt {
+    static constexpr bool are_sums_first = true;
     const Functions& of;
     Doubles x, y;
 

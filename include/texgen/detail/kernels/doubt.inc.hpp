@@ -31,12 +31,34 @@ struct CloseMiddle {
         return sum + (low + (f.low - middle * q.low));
     }
 
+    // What F - m Q is a multiple of.
+    template <class Grain>
+    TEXGEN_INLINE Doubles grain_of(const Grain& f_grain, const Grain& q_grain) const noexcept {
+        return minimum(unit * q_grain, Doubles{} + f_grain);
+    }
+
+    // The float on the side of `sign`, or in a tie the even one.
+    TEXGEN_INLINE Floats nearest(const Doubles& sign, const LongWords& is_tie) const noexcept {
+        return to_floats(middle + where(~is_tie, with_sign_of(unit * 0.25, sign)));
+    }
+
+    // By two doubles: where F - m Q is larger than its error, or that is less than half a grain. Returns the lanes that this decides.
+    template <class Grain>
+    TEXGEN_INLINE LongWords decide_by_sums(const CloseValues& f, const CloseValues& q, const Grain& f_grain,
+                                           const Grain& q_grain, Floats& value) const noexcept {
+        Doubles error;
+        const Doubles rest = rest_of(f, q, error);
+        const LongWords is_tie = at_most(magnitude(rest), error);
+        value = nearest(rest, is_tie);
+        return ~is_tie | greater(grain_of(f_grain, q_grain), error * 2.25);
+    }
+
     // F - m Q is at most `bound`. Returns the lanes that this decides: those that are asked by residues at once, if they can.
     template <class Grain>
     TEXGEN_INLINE LongWords decide(const CloseValues& f, const CloseValues& q, const Residues& of_f,
                                    const Grain& f_grain, const Residues& of_q, const Grain& q_grain,
                                    const Doubles& bound, const LongWords& asked, Floats& value) const noexcept {
-        const Doubles finer = minimum(unit * q_grain, Doubles{} + f_grain);
+        const Doubles finer = grain_of(f_grain, q_grain);
         const Doubles per_finer = reciprocals_of_powers(finer);
         const Doubles f_times = per_finer * f_grain;
         const Doubles q_times = middle * q_grain * per_finer;
@@ -53,7 +75,7 @@ struct CloseMiddle {
             sign = select(is_clear, rest, sign);
             is_tie &= ~is_clear;
         }
-        value = to_floats(middle + where(~is_tie, with_sign_of(unit * 0.25, sign)));
+        value = nearest(sign, is_tie);
         return is_known;
     }
 };
@@ -107,7 +129,7 @@ struct CloseFragments {
         const auto q_grain = at.grain(Numerators);
         Residues of_q{};
         doubtful = q.is_beside;
-        if (is_more_known) {
+        if (is_more_known && (!Functions::are_sums_first || any(doubtful))) {
             of_q = at.residues(Numerators);
             doubtful &= ~q.are_residues(q_grain) | are_positive(of_q);
         }
@@ -119,16 +141,27 @@ struct CloseFragments {
             if (!is_more_known || !any(is_open)) continue;
             const LongWords is_rough = is_open & close.is_rough();
             const auto grain = at.grain(k);
-            const Residues of_f = at.residues(k);
-            LongWords decided = is_open & ~is_rough;
-            if (!SkipsMiddles || any(decided)) {
-                Floats nearest;
-                // The middle is as near to the quotient as F/Q is: so |F - m Q| is at most twice the error times Q.
-                decided &= CloseMiddle(close.u).decide(close.f, q, of_f, grain, of_q, q_grain,
-                                                       close.error * q.value * 2.25, decided, nearest);
+            LongWords left = is_open;
+            const auto take = [&](LongWords decided, const Floats& nearest) {
+                decided &= left & ~is_rough;
                 quotient[k] = select(narrow(decided), nearest, quotient[k]);
+                left &= ~decided;
+            };
+            const CloseMiddle middle(close.u);
+            Floats nearest;
+            if constexpr (Functions::are_sums_first) {
+                take(middle.decide_by_sums(close.f, q, grain, q_grain, nearest), nearest);
+                if (!any(left)) continue;
+                of_q = at.residues(Numerators);
             }
-            LongWords left = is_open & ~decided;
+            const Residues of_f = at.residues(k);
+            const LongWords asked = left & ~is_rough;
+            if (!SkipsMiddles || any(asked)) {
+                // The middle is as near to the quotient as F/Q is: so |F - m Q| is at most twice the error times Q.
+                take(
+                    middle.decide(close.f, q, of_f, grain, of_q, q_grain, close.error * q.value * 2.25, asked, nearest),
+                    nearest);
+            }
             if (any(is_rough)) {
                 const Floats above = to_floats(close.u + close.error);
                 const LongWords is_zero = close.f.are_residues(grain) & are_zero(of_f);

@@ -126,6 +126,7 @@ TileJob::Unit divide_in_pairs(const TileJob& job, const TileJob::Unit& first) no
 
 // A tile's functions at a vector of fragments.
 struct CloseFunctionsAt {
+    static constexpr bool are_sums_first = false;
     const CloseFunction (&of)[3];
     Doubles x, y;
     bool are_close;
