@@ -90,9 +90,18 @@ TEXGEN_INLINE Doubles masked_or(const Doubles& a, long long bits, const Doubles&
 #endif
 }
 
-// A number that is an integer of less than 2^63, and what is asked of residues.
+// A number that is an integer of less than 2^63, and what is asked of residues. AVX2 converts one after another: the low bits of a sum
+// with 0x1.8p52 are those of an integer below 2^51.
 TEXGEN_INLINE Residues to_residues(const Doubles& integers) noexcept {
+#if TEXGEN_LANE_BYTES == 32
+    constexpr double rounder = 0x1.8p52;
+    const Doubles high = integers * 0x1p-32 + rounder;
+    const Doubles low = (integers - (high - rounder) * 0x1p32) + rounder;
+    return (__builtin_bit_cast(Residues, high) << 32) +
+           (__builtin_bit_cast(Residues, low) - bit_cast<std::uint64_t>(rounder));
+#else
     return __builtin_bit_cast(Residues, __builtin_convertvector(integers, LongWords));
+#endif
 }
 TEXGEN_INLINE Doubles signed_numbers(const Residues& a) noexcept {
     return __builtin_convertvector(__builtin_bit_cast(LongWords, a), Doubles);
