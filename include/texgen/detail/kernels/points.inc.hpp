@@ -91,7 +91,13 @@ enum class Rung {
 struct Effort {
     Rung rung = Rung::in_front;
     bool are_ties = false;   // closely: the numerators as well as q
-    bool precisely = false;  // all of the sums, or their leading part
+    bool precisely[3] = {};  // all of the numerators' sums and of q's, or their leading part
+
+    // Where lanes of numerator k, or of q, are unknown they ask for more. False if that is all there is.
+    TEXGEN_INLINE bool sharpen(std::size_t k, std::uint64_t unknown) noexcept {
+        if (unknown == 0 || (precisely[k] && precisely[2])) return false;
+        return precisely[precisely[k] ? 2 : k] = true;
+    }
 };
 
 // The largest |x|, |y|, |z| in each lane, of those that are numbers: where one is none, so is q, whatever its form.
@@ -234,11 +240,11 @@ struct PointTerms {
     }
 };
 
-// Does a block again, from each_lane on at least. What a vector needs beyond that, up to 15 that follow it get at once.
+// Does a block again, from each_lane on at least. What a vector needs beyond that, those that follow get at once, up to eight blocks.
 // Returns what stays in doubt, bit i for point begin + i.
 TEXGEN_INLINE std::uint64_t fill_block_again(const PointJob& job, const PointTerms& terms, std::size_t begin,
                                              std::size_t end, Effort& effort) noexcept {
-    const auto numerators = static_cast<std::size_t>(job.numerators);
+    const std::size_t numerators = job.numerators == 2 ? 2 : 1;
     // Floats below are no further apart than the tolerance.
     const Doubles within = power_of_two_below(Doubles{} + job.tolerance) * 0x1p24;
     std::uint64_t doubtful = 0;
@@ -247,44 +253,61 @@ TEXGEN_INLINE std::uint64_t fill_block_again(const PointJob& job, const PointTer
         const PointSizes sizes(at);
         const LongWords are_dark = terms.are_dark(at);
         Floats value[2];
-        LongWords in_front{}, is_known = ~in_front;
+        Words in_front{};
+        std::uint64_t unknown = 0;
         bool is_decided = false;
-        if (effort.rung <= Rung::each_lane || i / static_cast<std::size_t>(lanes) % 16 == 0) {
+        if (effort.rung <= Rung::each_lane || i % (8 * exact_block) == 0) {
             PointDivision division;
             Doubles numerator_error[2];
             division.q = value_at(terms.q.form, at);
             division.reciprocal = 1.0 / division.q;
             for (std::size_t k = 0; k < numerators; ++k) {
                 division.numerator[k] = value_at(terms.numerator[k].form, at);
-                numerator_error[k] = terms.numerator[k].error_at(at);
+                numerator_error[k] = terms.numerator[k].error_at(sizes);
             }
             Doubt doubt;
-            in_front = divide_certainly<true>(numerators, division, numerator_error, terms.q.error_at(at),
-                                              job.tolerance, value, doubt);
+            in_front = narrow(divide_certainly<true>(numerators, division, numerator_error, terms.q.error_at(sizes),
+                                                     job.tolerance, value, doubt));
             is_decided = !any(doubt.rounding | narrow(doubt.side & ~are_dark));
-            effort = {is_decided ? Rung::each_lane : Rung::closely, effort.are_ties && !is_decided,
-                      effort.precisely && !is_decided};
+            if (is_decided) effort = {};
+            effort.rung = is_decided ? Rung::each_lane : Rung::closely;
+        }
+        while (!is_decided && !effort.are_ties) {
+            TwofoldDivisor q(terms.q.at(at, sizes, effort.precisely[2]));
+            q.in_front &= ~are_dark;
+            in_front = narrow(q.in_front);
+            is_decided = lane_bits(~(q.is_known | are_dark)) == 0;
+            const bool is_known = is_decided;
+            for (std::size_t k = 0; k < numerators; ++k)
+                is_decided &= divide_nearly(value_at(terms.numerator[k].form, at), terms.numerator[k].error_at(sizes),
+                                            q, value[k]);
+            if (is_decided) break;
+            effort.are_ties = is_known || effort.precisely[2];
+            effort.precisely[2] = !effort.are_ties;
         }
         while (!is_decided) {
-            TwofoldDivisor q(terms.q.at(at, sizes, effort.precisely));
-            in_front = q.in_front &= ~are_dark;
-            is_known = q.is_known | are_dark;
+            const PointGrains grains(sizes);
+            TwofoldDivisor q(terms.q.at(at, sizes, effort.precisely[2], grains));
+            q.in_front &= ~are_dark;
+            in_front = narrow(q.in_front);
+            unknown = lane_bits(~(q.is_known | are_dark));
+            is_decided = !effort.sharpen(2, unknown);
             for (std::size_t k = 0; k < numerators; ++k) {
                 const auto& numerator = terms.numerator[k];
-                if (!effort.are_ties)
-                    effort.are_ties = !divide_nearly(value_at(numerator.form, at), numerator.error_at(at), q, value[k]);
-                if (!effort.are_ties) continue;
-                if (numerator.is_finite)
-                    value[k] = nearest_quotients(numerator.at(at, sizes, effort.precisely), q, within, effort.precisely,
-                                                 is_known);
-                else
-                    value[k] = to_floats(where(in_front, value_at(numerator.form, at) * q.reciprocal));
+                if (!numerator.is_finite) {
+                    value[k] = to_floats(where(q.in_front, value_at(numerator.form, at) * q.reciprocal));
+                    continue;
+                }
+                LongWords is_known;
+                value[k] = nearest_quotients(numerator.at(at, sizes, effort.precisely[k], grains), q, within,
+                                             effort.precisely[k], is_known);
+                const std::uint64_t unknown_of_it = lane_bits(~is_known);
+                unknown |= unknown_of_it;
+                is_decided &= !effort.sharpen(k, unknown_of_it);
             }
-            is_decided = effort.precisely || !any(narrow(~is_known));
-            effort.precisely = effort.precisely || !is_decided;
         }
-        store_points(job, i, numerators, value, narrow(in_front));
-        if (any(~is_known)) doubtful |= lane_bits(~is_known) << (i - begin);
+        store_points(job, i, numerators, value, in_front);
+        doubtful |= unknown << (i - begin);
     }
     return doubtful;
 }

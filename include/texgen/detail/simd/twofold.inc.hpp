@@ -44,25 +44,34 @@ TEXGEN_INLINE Doubles last_bits(const Doubles& size) noexcept {
 
 // The magnitudes of coordinates, and their last bits.
 struct PointSizes {
-    Doubles size[3], grain[3];
+    Doubles size[3];
 
     TEXGEN_INLINE explicit PointSizes(const PointLanes& at) noexcept
-        : size{magnitude(at.v[0]), magnitude(at.v[1]), magnitude(at.v[2])},
-          grain{last_bits(size[0]), last_bits(size[1]), last_bits(size[2])} {}
+        : size{magnitude(at.v[0]), magnitude(at.v[1]), magnitude(at.v[2])} {}
+};
+struct PointGrains {
+    Doubles grain[3];
+
+    TEXGEN_INLINE explicit PointGrains(const PointSizes& of) noexcept
+        : grain{last_bits(of.size[0]), last_bits(of.size[1]), last_bits(of.size[2])} {}
 };
 
 // The value of a form at points. A coefficient is split in two, so that both products with a float are exact.
 struct TwofoldForm {
     PointForm form;
     double high[3], low[3], size[3], grain[3];
-    double grain_of_w;
-    bool is_used[3], has_low[3];
+    double size_of_w, grain_of_w;
+    bool is_used[3], has_low[3], is_added[3];  // is_added: to something
     bool is_finite;
 
     TwofoldForm() = default;
     TEXGEN_INLINE explicit TwofoldForm(const PointForm& given) noexcept
-        : form(given), grain_of_w(last_bit(form.w)), is_finite(0.0 * (form.x + form.y + form.z + form.w) == 0.0) {
+        : form(given),
+          size_of_w(std::fabs(form.w)),
+          grain_of_w(last_bit(form.w)),
+          is_finite(0.0 * (form.x + form.y + form.z + form.w) == 0.0) {
         const double coefficient[3] = {form.x, form.y, form.z};
+        bool has_terms = form.w != 0.0;
         for (int j = 0; j < 3; ++j) {
             high[j] = leading_29_bits(coefficient[j]);
             low[j] = coefficient[j] - high[j];
@@ -70,22 +79,24 @@ struct TwofoldForm {
             grain[j] = last_bit(coefficient[j]);
             is_used[j] = coefficient[j] != 0.0;
             has_low[j] = low[j] != 0.0;
+            is_added[j] = has_terms;
+            has_terms |= is_used[j];
         }
     }
 
-    TEXGEN_INLINE Doubles error_at(const PointLanes& at) const noexcept {
-        return (magnitude(at.v[0]) * std::fabs(form.x) + magnitude(at.v[1]) * std::fabs(form.y) +
-                magnitude(at.v[2]) * std::fabs(form.z) + std::fabs(form.w)) *
-               gamma(5);
+    TEXGEN_INLINE Doubles error_at(const PointSizes& of) const noexcept {
+        return (of.size[0] * size[0] + (of.size[1] * size[1] + (of.size[2] * size[2] + size_of_w))) * gamma(5);
     }
 
     // Of points that are numbers: a coordinate without a coefficient is not looked at. With T the sum of the terms' magnitudes,
     // what is left of the sum are six terms of less than 2^-50 T together, and precisely what is left of their sum five of less
-    // than 2^-101 T. The last are added in one double: exactly where their grain is at least 2^-102 T, as that of numbers of
-    // about one size is, or 2^-152 T, and else but for five roundings.
-    TEXGEN_INLINE PointSum at(const PointLanes& at, const PointSizes& of, bool precisely) const noexcept {
+    // than 2^-101 T. The last are added in one double, but for five roundings: exactly where their grain, if it is asked, is at
+    // least 2^-102 T, as that of numbers of about one size is, or 2^-152 T.
+    template <class... Grains>
+    TEXGEN_INLINE PointSum at(const PointLanes& at, const PointSizes& of, bool precisely,
+                              const Grains&... grains) const noexcept {
         Doubles sum = Doubles{} + form.w;
-        Doubles terms = magnitude(sum);
+        Doubles terms = Doubles{} + size_of_w;
         Doubles second{}, third{};  // what the sum leaves, and what that leaves
         PointSum result;
         result.grain = Doubles{} + grain_of_w;
@@ -104,13 +115,19 @@ struct TwofoldForm {
             Doubles left;
             const Doubles product = quick_two_sum(at.v[j] * high[j], at.v[j] * low[j], left);
             if (has_low[j]) keep(left);
-            sum = two_sum(sum, product, left);
-            keep(left);
+            if (is_added[j]) {
+                sum = two_sum(sum, product, left);
+                keep(left);
+            } else {
+                sum = product;
+            }
             terms = terms + of.size[j] * size[j];
-            result.grain = minimum(of.grain[j] * grain[j], result.grain);
+            ((result.grain = minimum(grains.grain[j] * grain[j], result.grain)), ...);
         }
         const auto lost_beyond = [&](double range) {
-            return where(greater(terms, result.grain * range), terms * (4.0 / range) + 0x1p-1000);
+            const Doubles lost = terms * (4.0 / range) + 0x1p-1000;
+            if constexpr (sizeof...(grains) == 0) return lost;
+            return where(greater(terms, result.grain * range), lost);
         };
         result.rest = third;
         if (precisely) {
@@ -194,16 +211,15 @@ TEXGEN_INLINE Floats nearest_quotients(const PointSum& s, const TwofoldDivisor& 
     const LongWords is_small = is_open & greater(Doubles{} + 0x1p-125, size) & greater(size, 0x1p-800);
     LongWords is_near = is_open & are_near_middles(quotient, 63);
     if (!any(is_near | is_small)) {
-        is_known &= ~q.in_front | is_precise;
+        is_known = ~q.in_front | is_precise;
         return to_floats(quotient);
     }
     Doubles middle = middle_near(quotient + 0x1p-900);  // of 0 it is subnormal, which takes long
     if (any(is_small)) {
-        const Doubles error = size * 0x1p-48;
-        const Doubles low = to_doubles_as_rounded(to_floats(quotient - error));
-        const Doubles high = to_doubles_as_rounded(to_floats(quotient + error));
-        middle = select(is_small, low * 0.5 + high * 0.5, middle);
-        is_near = (is_near & ~is_small) | (is_small & greater(high, low));
+        constexpr double rounder = 0x1.8p52 * 0x1p-149;
+        const Doubles of_small = (((quotient - 0x1p-150) + rounder) - rounder) + 0x1p-150;
+        middle = select(is_small, of_small, middle);
+        is_near = (is_near & ~is_small) | (is_small & at_most(magnitude(quotient - of_small), size * 0x1p-48));
     }
     const Doubles leading_rest = (s.high - middle * q.part[0]) - middle * q.part[1];
     // All are multiples of the grains of s and of middle q, which is at least 2^-25 middle times q's. What is added in one
@@ -226,7 +242,7 @@ TEXGEN_INLINE Floats nearest_quotients(const PointSum& s, const TwofoldDivisor& 
         remainder = sum + (((left[0] + left[1]) - middle * (q.low - low_part)) + (s.rest - middle * q.rest));
         lost = lost + lost_beyond(0x1p130);
     }
-    is_known &= ~q.in_front | (is_precise & (~is_near | at_most(lost * 2.0, magnitude(remainder))));
+    is_known = ~q.in_front | (is_precise & (~is_near | at_most(lost * 2.0, magnitude(remainder))));
     const Doubles decided = middle + where(are_nonzero(remainder), with_sign_of(size * 0x1p-48, remainder));
     return to_floats(select(is_near, decided, quotient));
 }
