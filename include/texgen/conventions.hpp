@@ -11,8 +11,8 @@
 
 #include "detail/matrices/required.hpp"
 
-// 0.4.7: 10000 major + 100 minor + patch.
-#define TEXGEN_VERSION 407
+// 0.4.8: 10000 major + 100 minor + patch.
+#define TEXGEN_VERSION 408
 
 namespace TEXGEN_NAMESPACE {
 
