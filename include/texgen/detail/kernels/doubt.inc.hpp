@@ -115,7 +115,8 @@ struct CloseQuotient {
     TEXGEN_INLINE LongWords is_rough() const noexcept { return ~greater(size * 0x1p-27, error); }
 };
 
-// A vector of fragments, again. `at` knows its functions there, q as the last. Where no lane is next to a middle, as of zeros, they
+// A vector of fragments, again. `at` knows its functions there, q as the last, and whether its two doubles say more than residues do
+// and so are asked first. Where no lane is next to a middle, as of zeros, they
 // may be skipped, for which a tile's kernel has no room.
 template <std::size_t Numerators, bool SkipsMiddles = true>
 struct CloseFragments {

@@ -244,7 +244,7 @@ struct PointTerms {
 // Returns what stays in doubt, bit i for point begin + i.
 TEXGEN_INLINE std::uint64_t fill_block_again(const PointJob& job, const PointTerms& terms, std::size_t begin,
                                              std::size_t end, Effort& effort) noexcept {
-    const std::size_t numerators = job.numerators == 2 ? 2 : 1;
+    const std::size_t numerators = job.numerators == 2 ? 2 : 1;  // never 0: GCC 12 fails on a loop that may be none
     // Floats below are no further apart than the tolerance.
     const Doubles within = power_of_two_below(Doubles{} + job.tolerance) * 0x1p24;
     std::uint64_t doubtful = 0;
@@ -272,6 +272,7 @@ TEXGEN_INLINE std::uint64_t fill_block_again(const PointJob& job, const PointTer
             if (is_decided) effort = {};
             effort.rung = is_decided ? Rung::each_lane : Rung::closely;
         }
+        // q alone in two doubles: what it loses is small beside it unless ties, or q = 0, ask for the last bits of coordinates.
         while (!is_decided && !effort.are_ties) {
             TwofoldDivisor q(terms.q.at(at, sizes, effort.precisely[2]));
             q.in_front &= ~are_dark;
