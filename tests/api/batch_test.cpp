@@ -77,6 +77,26 @@ Shot almost_without_area(Random& random) {
     return {triangle, {random.integer(0, 9), random.integer(0, 9), 4, 3}};
 }
 
+// A sliver 2^20 long and more at the window's edge, of a q/w that is all but constant, and a rectangle at the ends of int.
+Shot far_sliver(Random& random) {
+    Triangle triangle = support::make_triangle(support::Family::parallel, random);
+    const int axis = random.integer(0, 1), first = random.integer(0, 2);
+    const float across = random.uniform_float(0x1p-11, 0x1p-9);
+    for (int i = 0; i < 3; ++i) {
+        texgen::WindowVertex& vertex = *support::vertices(triangle)[static_cast<std::size_t>((first + i) % 3)];
+        const double length = i == 0 ? random.power_of_ten(6.0, 6.6) : random.power_of_ten(-6.0, 0.0);
+        vertex.window[axis] = static_cast<float>(random.coin() ? length : -length) + static_cast<float>(i) * 0x1p-20f;
+        vertex.window[1 - axis] = across * (1.0f + static_cast<float>(i == 0 ? random.integer(1, 999) : 0) * 0x1p-23f);
+        vertex.clip_w = 1.0f + static_cast<float>(random.integer(0, 3)) * 0x1p-22f;
+        vertex.strq.w = vertex.clip_w;
+    }
+    const auto at_an_end = [&] {
+        const int low = std::numeric_limits<int>::min() + random.integer(0, 99);
+        return random.coin() ? low : std::numeric_limits<int>::max() - 8 - random.integer(0, 99);
+    };
+    return {triangle, {at_an_end(), at_an_end(), 8, 8}};
+}
+
 // q/w grows several times over a tile.
 Shot steep(Random& random) {
     Triangle triangle = support::make_triangle(support::Family::friendly, random);
@@ -629,6 +649,56 @@ TEST_CASE("no tile of ties needs a set-up of its own") {
         }
         CHECK(left_by_vectors(triangles, rects, texgen::exact) == 0);
     }
+}
+
+TEST_CASE("what cancels 2^60 of its terms is the nearest float all the same, in a tile, a batch and a visibility buffer") {
+    Random random(15);
+    int hard = 0, lit = 0;
+    for (int round = 0; round < 150; ++round) {
+        std::vector<Triangle> triangles;
+        std::vector<FragmentRect> rects;
+        for (int i = 0; i < 8; ++i) {
+            const Shot shot = far_sliver(random);
+            triangles.push_back(shot.triangle);
+            rects.push_back(shot.rect);
+            hard += std::fabs(support::twice_area(shot.triangle)) < 0x1p-60 * 0x1p31 * 1e6 ? 1 : 0;
+        }
+        CHECK(left_by_vectors(triangles, rects, texgen::exact) == 0);
+        TriangleBatch batch(support::everywhere());
+        batch.assign(triangles);
+        Outputs of_tiles(8 * 64), of_ids(64);
+        interpolate(batch, rects, of_tiles.spans());
+        std::uint32_t ids[64];
+        const int run = random.integer(1, 9);
+        for (int i = 0; i < 64; ++i) ids[i] = static_cast<std::uint32_t>(i / run % 8);
+        interpolate(batch, ids, rects[0], of_ids.spans());
+        const auto check = [&](std::size_t id, const FragmentRect& rect, std::size_t i, const Outputs& out, std::size_t n) {
+            const auto at = static_cast<std::int64_t>(i);
+            const support::Homogeneous exact =
+                support::ExactTriangle(triangles[id]).at(rect.x + at % 8, rect.y + at / 8);
+            const bool in_front = exact.q.sign() > 0;
+            lit += in_front ? 1 : 0;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const bool is_right =
+                    in_front ? is_nearest(out[k][n], exact.over_q(k)) : support::same_bits(out[k][n], 0.0f);
+                CHECK_MESSAGE(is_right, support::hex(triangles[id]), " at ", support::text(rect), " fragment ", i);
+            }
+        };
+        for (std::size_t id = 0; id < 8; ++id) {
+            Outputs of_tile(64);
+            const auto setup = TriangleSetup::of(triangles[id], support::everywhere(), texgen::exact);
+            REQUIRE(setup);
+            const bool has_fragments = interpolate(*setup, rects[id], of_tile.spans()) != Work::nothing;
+            for (int draw = 0; draw < 4; ++draw) {
+                const auto i = static_cast<std::size_t>(random.integer(0, 63));
+                check(id, rects[id], i, of_tiles, 64 * id + i);
+                if (has_fragments) check(id, rects[id], i, of_tile, i);
+                check(ids[i], rects[0], i, of_ids, i);
+            }
+        }
+    }
+    CHECK(hard > 600);
+    CHECK(lit > 7000);
 }
 
 TEST_CASE("few friendly tiles need a set-up of their own") {

@@ -55,6 +55,16 @@ public:
         return sum;
     }
 
+    // Within 2^-104 of it.
+    DoubleDouble leading() const noexcept {
+        DoubleDouble result{};
+        for (std::size_t i = count_; i-- > 0;) {
+            const DoubleDouble sum = two_sum(result.high, terms_[i]);
+            result = {sum.high, result.low + sum.low};
+        }
+        return quick_two_sum(result.high, result.low);
+    }
+
     // -1, 0 or 1, exactly.
     int sign() const noexcept { return count_ == 0 ? 0 : terms_[count_ - 1] > 0.0 ? 1 : -1; }
 

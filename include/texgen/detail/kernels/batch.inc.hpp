@@ -4,6 +4,8 @@
 
 #include "batch_closely.inc.hpp"
 
+#include "batch_corners.inc.hpp"
+
 #include "batch_residues.inc.hpp"
 
 #include "batch_fragments.inc.hpp"

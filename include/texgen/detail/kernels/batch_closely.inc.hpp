@@ -73,9 +73,7 @@ struct VertexLanes {
         return vertex[i][k < 3 ? k : BatchVertex::strq + (k - 3)];
     }
 
-private:
-    // Of slivers it takes two doubles.
-    TEXGEN_INLINE void find_area() noexcept {
+    TEXGEN_INLINE EdgeLanes area_closely() const noexcept {
         DifferenceLanes to_b[2], to_c[2];
         for (std::size_t k = 0; k < 2; ++k) {
             to_b[k].set(number(1, k), number(0, k));
@@ -83,6 +81,13 @@ private:
         }
         EdgeLanes edge;
         edge.set(to_b[0], to_b[1], to_c[0], to_c[1], false, true);
+        return edge;
+    }
+
+private:
+    // Of slivers it takes two doubles.
+    TEXGEN_INLINE void find_area() noexcept {
+        const EdgeLanes edge = area_closely();
         area = edge.high;
         has_area = greater(magnitude(area), edge.size * 0x1p-98);
     }
@@ -240,6 +245,8 @@ struct ResidueLanes {
     const VertexLanes& given;
     Residues side[3];    // with the weights
     LongWords is_known;  // no number is too large, and the area is not next to 0
+    Residues one_x, one_y;
+    Doubles per_x, per_y;  // the same, no residues
 
     TEXGEN_INLINE ResidueLanes(const VertexLanes& vertices, const Doubles& at_x, const Doubles& at_y) noexcept
         : given(vertices) {
@@ -252,9 +259,11 @@ struct ResidueLanes {
         const Doubles largest =
             maximum(maximum(x.largest, maximum(y.largest, weight.largest)), maximum(x.per_unit, y.per_unit));
         take_known(given.has_area, largest);
+        per_x = x.per_unit;
+        per_y = y.per_unit;
         const Doubles one = Doubles{} + 1.0;
-        one_x_ = known(one, x.per_unit);
-        one_y_ = known(one, y.per_unit);
+        one_x = known(one, per_x);
+        one_y = known(one, per_y);
         unit_ = x.unit * y.unit * weight.unit;
         // Integers, of which a fragment far away has a product that is none of 63 bits.
         const Residues first_x = to_residues(at_x * 2.0) * known(one * 0.5, x.per_unit);
@@ -273,16 +282,21 @@ struct ResidueLanes {
         }
     }
 
-    // By how much the sides' functions grow along a row and down.
+    // By how much the sides' functions grow along a row, times one_x the same integers, and down, times one_y.
     TEXGEN_INLINE void steps(Residues (&dx)[3], Residues (&dy)[3]) const noexcept {
         TEXGEN_UNROLL
         for (std::size_t i = 0; i < 3; ++i) {
             const std::size_t j = (i + 1) % 3;
             const std::size_t k = (i + 2) % 3;
-            dx[i] = scale_[i] * ((to_y_[j] - to_y_[k]) * one_x_);
-            dy[i] = scale_[i] * ((to_x_[k] - to_x_[j]) * one_y_);
+            dx[i] = scale_[i] * (to_y_[j] - to_y_[k]);
+            dy[i] = scale_[i] * (to_x_[k] - to_x_[j]);
         }
     }
+    // The doubled area, of this grain where all is known.
+    TEXGEN_INLINE Residues area() const noexcept {
+        return (to_x_[1] - to_x_[0]) * (to_y_[2] - to_y_[0]) - (to_y_[1] - to_y_[0]) * (to_x_[2] - to_x_[0]);
+    }
+    TEXGEN_INLINE Doubles area_grain() const noexcept { return where(is_known, reciprocals_of_powers(per_x * per_y)); }
 
     // Of coordinate k, 0 to 3 for s, t, r, q.
     TEXGEN_INLINE ResidueValues values(std::size_t k) noexcept {
@@ -303,7 +317,7 @@ private:
         return are_large_ ? to_residues_of_any(integer) : to_residues(integer);
     }
 
-    Residues scale_[3], to_x_[3], to_y_[3], one_x_, one_y_;
+    Residues scale_[3], to_x_[3], to_y_[3];
     Doubles unit_;
     bool are_large_;  // some numbers are
 };
@@ -335,51 +349,21 @@ struct NearLanes {
     }
 };
 
-// What is known of fragments of a triangle each, q last: without residues grains are 0.
-template <std::size_t Numerators>
-struct CloseFragmentsAt {
-    static constexpr bool are_sums_first = false;
-    CloseValues value[Numerators + 1];
-    Residues residue[Numerators + 1]{};
-    Doubles of_grain[Numerators + 1]{};
+// Where the grain is coarse enough, one integer times it that has the residue is next to a value: what the leading part is rounded
+// to is within `reach`, or a grain, of it. Of their difference, the rest, 2^-50 is lost, or nothing.
+TEXGEN_INLINE CloseValues sharpened(const CloseValues& f, const Residues& residue, const Doubles& grain) noexcept {
+    const Doubles reach = magnitude(f.high) * 0x1p-48 + f.error;
+    const LongWords is_one = greater(grain * 0x1p60, reach);
+    const Doubles integer = (where(is_one, f.high * reciprocals_of_powers(grain)) + 0x1.8p52) - 0x1.8p52;
+    const Doubles rest = signed_numbers(residue - to_residues_of_any(integer)) * grain;
+    Doubles low;
+    const Doubles high = quick_two_sum(integer * grain, rest, low);
+    return {select(is_one, high, f.high), select(is_one, low, f.low), select(is_one, reach * 0x1p-48, f.error)};
+}
 
-    // One by one: GCC copies them in halves, which a load of the whole waits for.
-    TEXGEN_INLINE CloseValues values(std::size_t n) const noexcept {
-        return {value[n].high, value[n].low, value[n].error};
-    }
-    TEXGEN_INLINE const Residues& residues(std::size_t n) const noexcept { return residue[n]; }
-    TEXGEN_INLINE const Doubles& grain(std::size_t n) const noexcept { return of_grain[n]; }
-
-    template <class Terms>
-    TEXGEN_INLINE void take(const VertexLanes& vertices, const Terms& terms) noexcept {
-        TEXGEN_UNROLL
-        for (std::size_t n = 0; n <= Numerators; ++n) value[n] = terms.function(vertices, n < Numerators ? n : 3);
-        value[Numerators].error = value[Numerators].error + vertices.error_of_q;
-    }
-    TEXGEN_INLINE void add_residues(const VertexLanes& vertices, const Doubles& x, const Doubles& y) noexcept {
-        ResidueLanes lanes_of(vertices, x, y);
-        TEXGEN_UNROLL
-        for (std::size_t n = 0; n <= Numerators; ++n) {
-            const ResidueValues of = lanes_of.values(n < Numerators ? n : 3);
-            residue[n] = of.times(lanes_of.side);
-            of_grain[n] = where(lanes_of.is_known, of.grain);
-        }
-    }
-    // Where the grain is coarse enough, one integer times it that has the residue is next to a value: what the leading part is rounded
-    // to is within `reach`, or a grain, of it. Of their difference, the rest, 2^-50 is lost, or nothing.
-    TEXGEN_INLINE void sharpen() noexcept {
-        TEXGEN_UNROLL
-        for (std::size_t n = 0; n <= Numerators; ++n) {
-            CloseValues& f = value[n];
-            const Doubles reach = magnitude(f.high) * 0x1p-48 + f.error;
-            const LongWords is_one = greater(of_grain[n] * 0x1p60, reach);
-            const Doubles integer = (where(is_one, f.high * reciprocals_of_powers(of_grain[n])) + 0x1.8p52) - 0x1.8p52;
-            const Doubles rest = signed_numbers(residue[n] - to_residues_of_any(integer)) * of_grain[n];
-            Doubles low;
-            const Doubles high = quick_two_sum(integer * of_grain[n], rest, low);
-            f = {select(is_one, high, f.high), select(is_one, low, f.low), select(is_one, reach * 0x1p-48, f.error)};
-        }
-    }
-};
+TEXGEN_INLINE CloseValues better(const CloseValues& a, const CloseValues& b) noexcept {
+    const LongWords is_b = greater(a.error, b.error);
+    return {select(is_b, b.high, a.high), select(is_b, b.low, a.low), minimum(a.error, b.error)};
+}
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA

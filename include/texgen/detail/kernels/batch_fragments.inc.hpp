@@ -87,7 +87,9 @@ struct FragmentIds {
 
 // What vectors in doubt say of those that follow: that they ask for the triangles of others, and what decides them.
 struct Learned {
-    bool vectors_share = true, starts_closely = false;
+    enum Way { nearly, closely, about_corners };
+    bool vectors_share = true;
+    Way first = nearly;
 };
 
 // Vectors of fragments that have lanes in doubt, and the triangles of those, as many as a block has: all are decided at once, by
@@ -205,12 +207,18 @@ private:
         return lane_bits(vector.doubtful & narrow(fragments.doubtful));
     }
 
-    // By residues and doubles, and by two doubles: first by what decided the vector before.
+    // By residues and doubles, by two doubles, and about a corner: first by what decided the vector before.
     TEXGEN_APART std::uint64_t put_closely(const float* const (&of_lane)[lanes], const Vector& vector) noexcept {
         const VertexLanes vertices(of_lane);
         CloseFragmentsAt<Numerators> at;
         std::uint64_t left = 0;
-        const bool starts_closely = learned_.starts_closely;
+        const Learned::Way first = learned_.first;
+        if (first == Learned::about_corners) {
+            at.take_about_corners(vertices, vector.x, vector.y, true);
+            left = put(vector, at);
+            if (left == 0) return 0;
+        }
+        const bool starts_closely = first != Learned::nearly;
         for (const bool closely : {starts_closely, !starts_closely}) {
             if (closely) {
                 at.take(vertices, CloseLanes(vertices, vector.x, vector.y));
@@ -220,10 +228,12 @@ private:
             }
             if (!closely || !starts_closely) at.sharpen();
             left = put(vector, at);
-            if (left == 0) break;
-            learned_.starts_closely = true;
+            if (left == 0) return 0;
+            if (first == Learned::nearly) learned_.first = Learned::closely;
         }
-        return left;
+        at.take_about_corners(vertices, vector.x, vector.y, false);
+        learned_.first = Learned::about_corners;
+        return put(vector, at);
     }
 
     const FragmentsJob& job_;

@@ -43,31 +43,59 @@ struct BatchFunctions {
         Residues dx[3], dy[3];
         corners.steps(dx, dy);
         Residues residues[16]{};
+        LongWords cancel{};
         for (std::size_t n = 0; n <= Numerators; ++n) {
             const std::size_t k = n < Numerators ? n : 3;
             const CloseValues term[3] = {close.function(vertices, k), along.function(vertices, k),
                                          down.function(vertices, k)};
-            const Doubles size =
-                magnitude(term[0].high) + (magnitude(term[1].high) * width + magnitude(term[2].high) * height);
-            const Doubles lost = term[0].error + (term[1].error * width + term[2].error * height);
-            const Doubles unit = power_of_two_below(size) * 0x1p-50;
-            const Doubles rounder = unit * 0x1.8p52;
-            Doubles part[8];
-            TEXGEN_UNROLL
-            for (std::size_t j = 0; j < 3; ++j) {
-                part[j] = (term[j].high + rounder) - rounder;
-                part[3 + j] = (term[j].high - part[j]) + term[j].low;
-            }
-            part[6] = (lost + (width + height + 1.0) * unit * 0x1p-50) * 1.01;
-            if (n == Numerators) part[6] = part[6] + vertices.error_of_q;
             const ResidueValues value = corners.values(k);
             residues[3 * n] = value.times(corners.side);
-            residues[3 * n + 1] = value.times(dx);
-            residues[3 * n + 2] = value.times(dy);
-            part[7] = where(corners.is_known, value.grain);
-            store_columns(part, [&](std::size_t j) { return of[first + j].part[n]; });
+            residues[3 * n + 1] = value.times(dx) * corners.one_x;
+            residues[3 * n + 2] = value.times(dy) * corners.one_y;
+            cancel |= put(n, term, where(corners.is_known, value.grain), width, height,
+                          n < Numerators ? Doubles{} : vertices.error_of_q, first);
         }
         store_columns(residues, [&](std::size_t j) { return of[first + j].residues; });
+        if (any(cancel)) take_about_corners<Numerators>(vertices, x, y, width, height, first);
+    }
+
+private:
+    // Function n. Returns where more than one float in 2^12 would stay in doubt.
+    TEXGEN_INLINE LongWords put(std::size_t n, const CloseValues (&term)[3], const Doubles& grain, const Doubles& width,
+                                const Doubles& height, const Doubles& further_error, std::size_t first) noexcept {
+        const Doubles size =
+            magnitude(term[0].high) + (magnitude(term[1].high) * width + magnitude(term[2].high) * height);
+        const Doubles lost = term[0].error + (term[1].error * width + term[2].error * height);
+        const Doubles unit = power_of_two_below(size) * 0x1p-50;
+        const Doubles rounder = unit * 0x1.8p52;
+        Doubles part[8];
+        TEXGEN_UNROLL
+        for (std::size_t j = 0; j < 3; ++j) {
+            part[j] = (term[j].high + rounder) - rounder;
+            part[3 + j] = (term[j].high - part[j]) + term[j].low;
+        }
+        part[6] = (lost + (width + height + 1.0) * unit * 0x1p-50) * 1.01 + further_error;
+        part[7] = grain;
+        store_columns(part, [&](std::size_t j) { return of[first + j].part[n]; });
+        return greater(lost, size * 0x1p-36);
+    }
+
+    // Residues stay.
+    template <std::size_t Numerators>
+    TEXGEN_APART void take_about_corners(const VertexLanes& vertices, const Doubles& x, const Doubles& y,
+                                         const Doubles& width, const Doubles& height, std::size_t first) noexcept {
+        ResidueLanes residues(vertices, x, y);
+        const CloseLanes close(vertices, x, y);
+        const CornerLanes corners(vertices, residues, x, y);
+        for (std::size_t n = 0; n <= Numerators; ++n) {
+            const std::size_t k = n < Numerators ? n : 3;
+            const ResidueValues value = residues.values(k);
+            CloseValues term[3];
+            corners.take(k, value, term[0], term[1], term[2]);
+            term[0] = better(term[0], close.function(vertices, k));
+            put(n, term, where(residues.is_known, value.grain), width, height,
+                n < Numerators ? Doubles{} : vertices.error_of_q, first);
+        }
     }
 };
 

@@ -83,6 +83,13 @@ struct CloseRamps {
         return result;
     }
 
+    // Where more than one float in 2^12 would stay in doubt.
+    bool cancel() const noexcept {
+        for (const CloseRamp& ramp : function)
+            if (ramp.error > 0x1p-36 * ramp.size_over(tile) + 0x1p-700) return true;
+        return false;
+    }
+
     // Residues stay.
     void copy_to(CloseFunctions& result) const noexcept {
         for (std::size_t k = 0; k < 3; ++k) function[k].copy_to(tile, result.function[k]);

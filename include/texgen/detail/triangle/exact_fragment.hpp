@@ -1,6 +1,6 @@
 #pragma once
 
-// What doubles leave in doubt of a triangle's planes at one fragment, by exact sums.
+// What doubles leave in doubt of a triangle's planes, by exact sums: at one fragment, or of all of a tile.
 
 #include <cmath>
 #include <cstddef>
@@ -12,6 +12,7 @@
 #include "../arithmetic/widen.hpp"
 #include "../language.hpp"
 #include "../simd/lanes.hpp"
+#include "close_planes.hpp"
 #include "planes.hpp"
 
 namespace TEXGEN_DETAIL {
@@ -48,6 +49,19 @@ public:
         }
     }
 
+    // By how much the functions grow along a row (axis 0) or down (1): E_i does by what corners j and k are apart.
+    TEXGEN_RARE static ExactFragment growth(const TrianglePlanes& planes, glm::length_t axis) noexcept {
+        ExactFragment result(planes);
+        for (std::size_t i = 0; i < 3; ++i) {
+            const double j = planes.corner((i + 1) % 3)[1 - axis];
+            const double k = planes.corner((i + 2) % 3)[1 - axis];
+            const DoubleDouble apart = axis == 0 ? two_sum(j, -k) : two_sum(k, -j);
+            for (const double part : {apart.high, apart.low})
+                result.weighted_[i].add_product(part, planes.unscaled_weight(i));
+        }
+        return result;
+    }
+
     // F - u Q of one coordinate, 0 to 3 for s, t, r, q; or F.
     using Sum = Expansion<384>;
     TEXGEN_RARE Sum difference(glm::length_t coordinate, double u) const noexcept {
@@ -71,6 +85,8 @@ public:
     }
 
 private:
+    explicit ExactFragment(const TrianglePlanes& planes) noexcept : planes_(planes) {}
+
     // On the line through corners j and k the third one, whose numbers may be long, has no part, and along either axis
     // G_j : G_k = w_k (k - p) : w_j (p - j). False where p is on none, or a difference is no double.
     TEXGEN_RARE bool is_on_side(const DoubleDouble (&to_x)[3], const DoubleDouble (&to_y)[3]) noexcept {
@@ -95,5 +111,23 @@ private:
     const TrianglePlanes& planes_;
     Expansion<32> weighted_[3];
 };
+
+// Two numerators and q over a tile, where their terms cancel even two doubles: the coefficients are those next to exact ones, within
+// 2^-104 of each. What they are moved by, and summed, in two doubles takes 2^-100 of what they are over the tile.
+TEXGEN_RARE inline CloseRamps exact_ramps(const TrianglePlanes& planes, const Tile& tile, glm::length_t first,
+                                          glm::length_t second) noexcept {
+    CloseRamps result{tile, {}};
+    const glm::length_t coordinate[3] = {first, second, 3};
+    for (std::size_t j = 0; j < 3; ++j) {
+        const ExactFragment exact = j == 0 ? ExactFragment(planes, tile.x, tile.y)
+                                           : ExactFragment::growth(planes, static_cast<glm::length_t>(j - 1));
+        for (std::size_t k = 0; k < 3; ++k) {
+            const DoubleDouble leading = exact.function(coordinate[k]).leading();
+            result.function[k].term[j] = {leading.high * planes.factor(), leading.low * planes.factor()};
+        }
+    }
+    for (CloseRamp& ramp : result.function) ramp.error = 0x1p-100 * ramp.size_over(tile) + 0x1p-800;
+    return result;
+}
 
 }  // namespace TEXGEN_DETAIL

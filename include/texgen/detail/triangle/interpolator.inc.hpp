@@ -106,9 +106,16 @@ private:
         DoubtfulFunctions result{};
         result.tolerance = triangle_.tolerance;
         result.are_close = static_cast<bool>(close_);
-        result.are_close ? close_ramps(tile).copy_to(result) : take_planes(at, result);
+        result.are_close ? take_close(tile, result) : take_planes(at, result);
         if (is_mask_alone()) take_sides(triangle_.lit, result);
         return result;
+    }
+
+    // In two doubles, and where their terms cancel those next to exact ones: they cost what two fragments alone do.
+    TEXGEN_RARE void take_close(const Tile& tile, CloseFunctions& functions) noexcept {
+        if (close_ramps(tile).cancel() && rect_.count() > 2)
+            close_.make(exact_ramps(triangle_.planes, rect_, coordinate_of(0), coordinate_of(1)));
+        close_ramps(tile).copy_to(functions);
     }
 
     TEXGEN_RARE void add_residues(const Tile& tile, DoubtfulFunctions& functions) noexcept {
@@ -130,7 +137,7 @@ private:
             add_residues(tile, functions);
             if (functions.residues_first && !functions.are_close && are_decided_by_residues(functions)) return true;
         }
-        if (!functions.are_close) close_ramps(tile).copy_to(functions);
+        if (!functions.are_close) take_close(tile, functions);
         return functions.are_close = true;
     }
 

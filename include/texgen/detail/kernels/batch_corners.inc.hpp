@@ -1,0 +1,137 @@
+// The functions of a batch's triangles far off slivers, where the terms of batch_closely.inc.hpp cancel: about a corner, where but one of
+// them is not 0, and from coefficients that residues have sharpened. Included by batch.inc.hpp.
+
+namespace TEXGEN_DETAIL::TEXGEN_ISA {
+
+// Exact products with a difference, and what two doubles times it have beside them.
+struct ProductLanes {
+    Doubles high, middle[2], rest;
+
+    TEXGEN_INLINE ProductLanes(const CloseValues& a, const DifferenceLanes& b) noexcept {
+        const Doubles leading = leading_bits<26>(a.high);
+        const Doubles trailing = a.high - leading;
+        high = leading * b.high;
+        middle[0] = trailing * b.high;
+        middle[1] = leading * b.low;
+        rest = trailing * b.low + (a.low * (b.high + b.low) + a.high * b.lost);
+    }
+};
+
+// With C the corner next to a fragment p, F(p) = F(C) + F_x (p - C).x + F_y (p - C).y, F(C) = area w_j w_k f_C. The three sums have 98
+// bits of what they cancel from, or by residues 145; all else 2^-100 of the terms here.
+struct CornerLanes {
+    TEXGEN_INLINE CornerLanes(const VertexLanes& given, ResidueLanes& residues, const Doubles& x,
+                              const Doubles& y) noexcept
+        : given_(given), residues_(residues), along_(given, 1), down_(given, 0) {
+        Doubles distance[3];
+        TEXGEN_UNROLL
+        for (std::size_t i = 0; i < 3; ++i)
+            distance[i] = magnitude(x - given.number(i, 0)) + magnitude(y - given.number(i, 1));
+        is_second_ = greater(distance[0], distance[1]);
+        is_third_ = greater(minimum(distance[0], distance[1]), distance[2]);
+        to_x_.set(x, corner(0));
+        to_y_.set(y, corner(1));
+        const EdgeLanes edge = given.area_closely();
+        area_ = sharpened({edge.high, edge.low, edge.size * 0x1p-98}, residues.area(), residues.area_grain());
+        weight_[0] = with_sign_of(of_corner(given.number(1, 2), given.number(2, 2), given.number(0, 2)), given.area);
+        weight_[1] = of_corner(given.number(2, 2), given.number(0, 2), given.number(1, 2));
+        residues.steps(dx_, dy_);
+    }
+
+    // Of coordinate k: at the fragment, and by how much it grows along a row and down.
+    TEXGEN_INLINE void take(std::size_t k, const ResidueValues& values, CloseValues& base, CloseValues& dx,
+                            CloseValues& dy) const noexcept {
+        const Doubles grain = where(residues_.is_known, values.grain);
+        dx = sharpened(along_.function(given_, k), values.times(dx_), grain * residues_.per_x);
+        dy = sharpened(down_.function(given_, k), values.times(dy_), grain * residues_.per_y);
+        const Doubles f = corner(3 + k);
+        EdgeLanes at_corner{area_.high, area_.low, {}};
+        at_corner.multiply(weight_[0]);
+        at_corner.multiply(weight_[1]);
+        at_corner.multiply(f);
+        const ProductLanes of_x(dx, to_x_), of_y(dy, to_y_);
+        Doubles error[6];
+        Doubles sum = two_sum(of_x.high, of_y.high, error[0]);
+        sum = two_sum(sum, at_corner.high, error[1]);
+        Doubles middle = two_sum(of_x.middle[0], of_y.middle[0], error[2]);
+        middle = two_sum(middle, of_x.middle[1], error[3]);
+        middle = two_sum(middle, of_y.middle[1], error[4]);
+        sum = two_sum(sum, middle, error[5]);
+        const Doubles rest = ((error[0] + error[1]) + (error[2] + error[3]) + (error[4] + error[5])) +
+                             (at_corner.low + (of_x.rest + of_y.rest));
+        base.high = two_sum(sum, rest, base.low);
+        const Doubles x = magnitude(to_x_.high + to_x_.low), y = magnitude(to_y_.high + to_y_.low);
+        base.error = (magnitude(at_corner.high) + magnitude(dx.high) * x + magnitude(dy.high) * y) * 0x1p-100 +
+                     (area_.error * magnitude(weight_[0] * weight_[1] * f) + (dx.error * x + dy.error * y)) * 1.01;
+    }
+
+private:
+    TEXGEN_INLINE Doubles of_corner(const Doubles& a, const Doubles& b, const Doubles& c) const noexcept {
+        return select(is_third_, c, select(is_second_, b, a));
+    }
+    TEXGEN_INLINE Doubles corner(std::size_t k) const noexcept {
+        return of_corner(given_.number(0, k), given_.number(1, k), given_.number(2, k));
+    }
+
+    const VertexLanes& given_;
+    const ResidueLanes& residues_;
+    CloseSteps along_, down_;
+    LongWords is_second_, is_third_;  // the corner that is next to the fragment
+    DifferenceLanes to_x_, to_y_;     // from there
+    CloseValues area_;
+    Doubles weight_[2];
+    Residues dx_[3], dy_[3];
+};
+
+// What is known of fragments of a triangle each, q last: without residues grains are 0.
+template <std::size_t Numerators>
+struct CloseFragmentsAt {
+    static constexpr bool are_sums_first = false;
+    CloseValues value[Numerators + 1];
+    Residues residue[Numerators + 1]{};
+    Doubles of_grain[Numerators + 1]{};
+
+    // One by one: GCC copies them in halves, which a load of the whole waits for.
+    TEXGEN_INLINE CloseValues values(std::size_t n) const noexcept {
+        return {value[n].high, value[n].low, value[n].error};
+    }
+    TEXGEN_INLINE const Residues& residues(std::size_t n) const noexcept { return residue[n]; }
+    TEXGEN_INLINE const Doubles& grain(std::size_t n) const noexcept { return of_grain[n]; }
+
+    template <class Terms>
+    TEXGEN_INLINE void take(const VertexLanes& vertices, const Terms& terms) noexcept {
+        TEXGEN_UNROLL
+        for (std::size_t n = 0; n <= Numerators; ++n) value[n] = terms.function(vertices, n < Numerators ? n : 3);
+        value[Numerators].error = value[Numerators].error + vertices.error_of_q;
+    }
+    TEXGEN_INLINE void add_residues(const VertexLanes& vertices, const Doubles& x, const Doubles& y) noexcept {
+        ResidueLanes lanes_of(vertices, x, y);
+        TEXGEN_UNROLL
+        for (std::size_t n = 0; n <= Numerators; ++n) {
+            const ResidueValues of = lanes_of.values(n < Numerators ? n : 3);
+            residue[n] = of.times(lanes_of.side);
+            of_grain[n] = where(lanes_of.is_known, of.grain);
+        }
+    }
+    // Where the leading digits of residues are not next to two doubles, and what those are cancels.
+    TEXGEN_APART void take_about_corners(const VertexLanes& vertices, const Doubles& x, const Doubles& y,
+                                         bool is_first) noexcept {
+        ResidueLanes residues(vertices, x, y);
+        const CornerLanes corners(vertices, residues, x, y);
+        for (std::size_t n = 0; n <= Numerators; ++n) {
+            const ResidueValues of = residues.values(n < Numerators ? n : 3);
+            CloseValues at, dx, dy;
+            corners.take(n < Numerators ? n : 3, of, at, dx, dy);
+            if (n == Numerators) at.error = at.error + vertices.error_of_q;
+            residue[n] = of.times(residues.side);
+            of_grain[n] = where(residues.is_known, of.grain);
+            value[n] = sharpened(is_first ? at : better(value[n], at), residue[n], of_grain[n]);
+        }
+    }
+    TEXGEN_INLINE void sharpen() noexcept {
+        TEXGEN_UNROLL
+        for (std::size_t n = 0; n <= Numerators; ++n) value[n] = sharpened(value[n], residue[n], of_grain[n]);
+    }
+};
+
+}  // namespace TEXGEN_DETAIL::TEXGEN_ISA
