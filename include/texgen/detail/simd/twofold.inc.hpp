@@ -61,7 +61,7 @@ struct TwofoldForm {
     PointForm form;
     double high[3], low[3], size[3], grain[3];
     double size_of_w, grain_of_w;
-    bool is_used[3], has_low[3], is_added[3];  // is_added: to something
+    unsigned used = 0, with_low = 0, added = 0;  // a bit for each coefficient; added: to something
     bool is_finite;
 
     TwofoldForm() = default;
@@ -72,15 +72,16 @@ struct TwofoldForm {
           is_finite(0.0 * (form.x + form.y + form.z + form.w) == 0.0) {
         const double coefficient[3] = {form.x, form.y, form.z};
         bool has_terms = form.w != 0.0;
-        for (int j = 0; j < 3; ++j) {
+        for (unsigned j = 0; j < 3; ++j) {
             high[j] = leading_29_bits(coefficient[j]);
             low[j] = coefficient[j] - high[j];
             size[j] = std::fabs(coefficient[j]);
             grain[j] = last_bit(coefficient[j]);
-            is_used[j] = coefficient[j] != 0.0;
-            has_low[j] = low[j] != 0.0;
-            is_added[j] = has_terms;
-            has_terms |= is_used[j];
+            const bool is_used = coefficient[j] != 0.0;
+            used |= is_used ? 1u << j : 0;
+            with_low |= low[j] != 0.0 ? 1u << j : 0;
+            added |= has_terms ? 1u << j : 0;
+            has_terms |= is_used;
         }
     }
 
@@ -110,12 +111,12 @@ struct TwofoldForm {
             }
         };
         TEXGEN_UNROLL
-        for (int j = 0; j < 3; ++j) {
-            if (!is_used[j]) continue;
+        for (unsigned j = 0; j < 3; ++j) {
+            if ((used >> j & 1u) == 0) continue;
             Doubles left;
             const Doubles product = quick_two_sum(at.v[j] * high[j], at.v[j] * low[j], left);
-            if (has_low[j]) keep(left);
-            if (is_added[j]) {
+            if ((with_low >> j & 1u) != 0) keep(left);
+            if ((added >> j & 1u) != 0) {
                 sum = two_sum(sum, product, left);
                 keep(left);
             } else {
