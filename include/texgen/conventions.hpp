@@ -11,8 +11,8 @@
 
 #include "detail/matrices/required.hpp"
 
-// 0.4.8: 10000 major + 100 minor + patch.
-#define TEXGEN_VERSION 408
+// 0.4.9: 10000 major + 100 minor + patch.
+#define TEXGEN_VERSION 409
 
 namespace TEXGEN_NAMESPACE {
 

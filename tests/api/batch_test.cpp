@@ -77,24 +77,34 @@ Shot almost_without_area(Random& random) {
     return {triangle, {random.integer(0, 9), random.integer(0, 9), 4, 3}};
 }
 
-// A sliver 2^20 long and more at the window's edge, of a q/w that is all but constant, and a rectangle at the ends of int.
+// A sliver 2^20 long and more at the window's edge, of a q/w that is all but constant, and a rectangle at the ends of int; or s/q is
+// half-way between two floats at every fragment there, being 0 2^24 pixels nearer, of functions of more bits than a double.
 Shot far_sliver(Random& random) {
     Triangle triangle = support::make_triangle(support::Family::parallel, random);
     const int axis = random.integer(0, 1), first = random.integer(0, 2);
     const float across = random.uniform_float(0x1p-11, 0x1p-9);
+    const bool has_ties = random.coin();
+    const double end = random.coin() ? 0x1p31 : -0x1p31;
     for (int i = 0; i < 3; ++i) {
         texgen::WindowVertex& vertex = *support::vertices(triangle)[static_cast<std::size_t>((first + i) % 3)];
-        const double length = i == 0 ? random.power_of_ten(6.0, 6.6) : random.power_of_ten(-6.0, 0.0);
-        vertex.window[axis] = static_cast<float>(random.coin() ? length : -length) + static_cast<float>(i) * 0x1p-20f;
-        vertex.window[1 - axis] = across * (1.0f + static_cast<float>(i == 0 ? random.integer(1, 999) : 0) * 0x1p-23f);
-        vertex.clip_w = 1.0f + static_cast<float>(random.integer(0, 3)) * 0x1p-22f;
+        double along = (i == 0 ? random.power_of_ten(6.0, 6.6) : random.power_of_ten(-6.0, 0.0)) + i * 0x1p-20;
+        if (has_ties) along = i == 0 ? 0x1p20 * random.integer(1, 5) : i == 1 ? 0.0 : 0x1p14;
+        if (random.coin()) along = -along;
+        vertex.window[axis] = static_cast<float>(along);
+        vertex.window[1 - axis] = across * (1.0f + static_cast<float>(i == 0 ? random.integer(1, 255) : 0) * 0x1p-23f);
+        const int bits_of_w = !has_ties ? 22 : i == 0 ? 12 : i == 1 ? 16 : 6;
+        vertex.clip_w = 1.0f + std::ldexp(static_cast<float>(random.integer(0, has_ties ? 63 : 3)), -bits_of_w);
         vertex.strq.w = vertex.clip_w;
+        if (has_ties)
+            vertex.strq.x = static_cast<float>((along - end * (1.0 - 0x1p-7)) * 0x1p-24) * vertex.clip_w;  // exactly
     }
-    const auto at_an_end = [&] {
+    const auto pixel = [&](double at) {
         const int low = std::numeric_limits<int>::min() + random.integer(0, 99);
-        return random.coin() ? low : std::numeric_limits<int>::max() - 8 - random.integer(0, 99);
+        return at < 0.0 ? low : std::numeric_limits<int>::max() - 8 - random.integer(0, 99);
     };
-    return {triangle, {at_an_end(), at_an_end(), 8, 8}};
+    FragmentRect rect{pixel(random.coin() ? 1.0 : -1.0), pixel(end), 8, 8};
+    if (axis == 0) std::swap(rect.x, rect.y);
+    return {triangle, rect};
 }
 
 // q/w grows several times over a tile.
@@ -651,9 +661,10 @@ TEST_CASE("no tile of ties needs a set-up of its own") {
     }
 }
 
-TEST_CASE("what cancels 2^60 of its terms is the nearest float all the same, in a tile, a batch and a visibility buffer") {
+TEST_CASE(
+    "what cancels 2^60 of its terms is the nearest float all the same, in a tile, a batch and a visibility buffer") {
     Random random(15);
-    int hard = 0, lit = 0;
+    int hard = 0, lit = 0, ties = 0;
     for (int round = 0; round < 150; ++round) {
         std::vector<Triangle> triangles;
         std::vector<FragmentRect> rects;
@@ -672,12 +683,14 @@ TEST_CASE("what cancels 2^60 of its terms is the nearest float all the same, in 
         const int run = random.integer(1, 9);
         for (int i = 0; i < 64; ++i) ids[i] = static_cast<std::uint32_t>(i / run % 8);
         interpolate(batch, ids, rects[0], of_ids.spans());
-        const auto check = [&](std::size_t id, const FragmentRect& rect, std::size_t i, const Outputs& out, std::size_t n) {
+        const auto check = [&](std::size_t id, const FragmentRect& rect, std::size_t i, const Outputs& out,
+                               std::size_t n) {
             const auto at = static_cast<std::int64_t>(i);
             const support::Homogeneous exact =
                 support::ExactTriangle(triangles[id]).at(rect.x + at % 8, rect.y + at / 8);
             const bool in_front = exact.q.sign() > 0;
             lit += in_front ? 1 : 0;
+            ties += in_front && support::is_tie(exact.over_q(0)) ? 1 : 0;
             for (std::size_t k = 0; k < 3; ++k) {
                 const bool is_right =
                     in_front ? is_nearest(out[k][n], exact.over_q(k)) : support::same_bits(out[k][n], 0.0f);
@@ -699,6 +712,7 @@ TEST_CASE("what cancels 2^60 of its terms is the nearest float all the same, in 
     }
     CHECK(hard > 600);
     CHECK(lit > 7000);
+    CHECK(ties > 3000);
 }
 
 TEST_CASE("few friendly tiles need a set-up of their own") {

@@ -17,8 +17,9 @@ struct ProductLanes {
     }
 };
 
-// With C the corner next to a fragment p, F(p) = F(C) + F_x (p - C).x + F_y (p - C).y, F(C) = area w_j w_k f_C. The three sums have 98
-// bits of what they cancel from, or by residues 145; all else 2^-100 of the terms here.
+// With C the corner next to a fragment p, F(p) = F(C) + F_x (p - C).x + F_y (p - C).y, F(C) = area w_j w_k f_C. The area, F_x and F_y
+// have 96 bits of what they cancel from, or by residues 144. With u = 2^-53 the products here lack 12 u^2 of F(C) and 9 u^2 of the
+// others, and sums of what is left of exact ones 48 u^2 of all three: 2^-98 covers them.
 struct CornerLanes {
     TEXGEN_INLINE CornerLanes(const VertexLanes& given, ResidueLanes& residues, const Doubles& x,
                               const Doubles& y) noexcept
@@ -61,7 +62,7 @@ struct CornerLanes {
                              (at_corner.low + (of_x.rest + of_y.rest));
         base.high = two_sum(sum, rest, base.low);
         const Doubles x = magnitude(to_x_.high + to_x_.low), y = magnitude(to_y_.high + to_y_.low);
-        base.error = (magnitude(at_corner.high) + magnitude(dx.high) * x + magnitude(dy.high) * y) * 0x1p-100 +
+        base.error = (magnitude(at_corner.high) + magnitude(dx.high) * x + magnitude(dy.high) * y) * 0x1p-98 +
                      (area_.error * magnitude(weight_[0] * weight_[1] * f) + (dx.error * x + dy.error * y)) * 1.01;
     }
 

@@ -84,7 +84,7 @@ struct CloseRamps {
     }
 
     // Where more than one float in 2^12 would stay in doubt.
-    bool cancel() const noexcept {
+    TEXGEN_RARE bool cancel() const noexcept {
         for (const CloseRamp& ramp : function)
             if (ramp.error > 0x1p-36 * ramp.size_over(tile) + 0x1p-700) return true;
         return false;
@@ -136,8 +136,10 @@ public:
         return ramp;
     }
 
-    CloseRamps ramps(glm::length_t first, glm::length_t second) const noexcept {
-        return {tile_, {ramp(first), ramp(second), ramp(3)}};
+    // One coordinate alone takes the place of both.
+    TEXGEN_APART CloseRamps ramps(glm::length_t first, glm::length_t second) const noexcept {
+        const CloseRamp of_first = ramp(first);
+        return {tile_, {of_first, second == first ? of_first : ramp(second), ramp(3)}};
     }
 
 private:

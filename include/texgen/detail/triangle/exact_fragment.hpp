@@ -112,22 +112,20 @@ private:
     Expansion<32> weighted_[3];
 };
 
-// Two numerators and q over a tile, where their terms cancel even two doubles: the coefficients are those next to exact ones, within
-// 2^-104 of each. What they are moved by, and summed, in two doubles takes 2^-100 of what they are over the tile.
-TEXGEN_RARE inline CloseRamps exact_ramps(const TrianglePlanes& planes, const Tile& tile, glm::length_t first,
-                                          glm::length_t second) noexcept {
-    CloseRamps result{tile, {}};
+// For two numerators and q over a tile, where their terms cancel even two doubles: the coefficients next to exact ones, within 2^-104
+// of each. What they are moved by, and summed, in two doubles takes 2^-100 of what they are over the tile.
+TEXGEN_RARE inline void take_exact_coefficients(const TrianglePlanes& planes, glm::length_t first, glm::length_t second,
+                                                CloseRamps& ramps) noexcept {
     const glm::length_t coordinate[3] = {first, second, 3};
     for (std::size_t j = 0; j < 3; ++j) {
-        const ExactFragment exact = j == 0 ? ExactFragment(planes, tile.x, tile.y)
+        const ExactFragment exact = j == 0 ? ExactFragment(planes, ramps.tile.x, ramps.tile.y)
                                            : ExactFragment::growth(planes, static_cast<glm::length_t>(j - 1));
         for (std::size_t k = 0; k < 3; ++k) {
             const DoubleDouble leading = exact.function(coordinate[k]).leading();
-            result.function[k].term[j] = {leading.high * planes.factor(), leading.low * planes.factor()};
+            ramps.function[k].term[j] = {leading.high * planes.factor(), leading.low * planes.factor()};
         }
     }
-    for (CloseRamp& ramp : result.function) ramp.error = 0x1p-100 * ramp.size_over(tile) + 0x1p-800;
-    return result;
+    for (CloseRamp& ramp : ramps.function) ramp.error = 0x1p-100 * ramp.size_over(ramps.tile) + 0x1p-800;
 }
 
 }  // namespace TEXGEN_DETAIL

@@ -111,10 +111,10 @@ private:
         return result;
     }
 
-    // In two doubles, and where their terms cancel those next to exact ones: they cost what two fragments alone do.
+    // In two doubles, and where their terms cancel those next to exact ones: they cost more than one fragment alone.
     TEXGEN_RARE void take_close(const Tile& tile, CloseFunctions& functions) noexcept {
-        if (close_ramps(tile).cancel() && rect_.count() > 2)
-            close_.make(exact_ramps(triangle_.planes, rect_, coordinate_of(0), coordinate_of(1)));
+        if (rect_.count() > 1 && close_ramps(tile).cancel())
+            take_exact_coefficients(triangle_.planes, coordinate_of(0), coordinate_of(1), *close_);
         close_ramps(tile).copy_to(functions);
     }
 
