@@ -252,7 +252,7 @@ MUTANTS = [
          ("clip planes lose the sign of min", "std::fma(-sign * bound, q, sign * u)", "std::fma(bound, q, sign * u)",
           "clip_slide_test")),
     *_of("detail/triangle/close_planes.hpp",
-         ("a part of a tile lies on its diagonal", "product(term[j], {j == 1 ? x : y, 0.0})", "product(term[j], {x, 0.0})",
+         ("a part of a tile lies on its diagonal", "product(term[j], j == 1 ? x : y)", "product(term[j], x)",
           "interpolate_test"),
          ("residues are of the pixel's corner", "residue_of((static_cast<double>(tile.x) + 0.5) * per_x)",
           "residue_of(static_cast<double>(tile.x) * per_x)", "interpolate_test"),

@@ -33,11 +33,8 @@ struct CloseRamp {
     DoubleDouble term[3];
     double error;
 
-    CloseRamp moved(double x, double y) const noexcept {
-        CloseRamp result = *this;
-        for (std::size_t j = 1; j < 3; ++j)
-            result.term[0] = sum(result.term[0], product(term[j], {j == 1 ? x : y, 0.0}));
-        return result;
+    TEXGEN_APART void move(const DoubleDouble& x, const DoubleDouble& y) noexcept {
+        for (std::size_t j = 1; j < 3; ++j) term[0] = sum(term[0], product(term[j], j == 1 ? x : y));
     }
 
     // |base| + |i dx| + |j dy| where that is largest.
@@ -79,7 +76,7 @@ struct CloseRamps {
         CloseRamps result = *this;
         result.tile = part;
         if (x == 0.0 && y == 0.0) return result;
-        for (CloseRamp& ramp : result.function) ramp = ramp.moved(x, y);
+        for (CloseRamp& ramp : result.function) ramp.move({x, 0.0}, {y, 0.0});
         return result;
     }
 
@@ -317,7 +314,9 @@ public:
     }
 
     CloseRamp moved_to(std::int64_t x, std::int64_t y) const noexcept {
-        return ramp_.moved(static_cast<double>(x - tile_.x), static_cast<double>(y - tile_.y));  // integers
+        CloseRamp result = ramp_;
+        result.move({static_cast<double>(x - tile_.x), 0.0}, {static_cast<double>(y - tile_.y), 0.0});  // integers
+        return result;
     }
 
     // At one fragment: with a small error beside the value, where 2^62 grains are more than that is without the residue.

@@ -112,20 +112,30 @@ private:
     Expansion<32> weighted_[3];
 };
 
-// For two numerators and q over a tile, where their terms cancel even two doubles: the coefficients next to exact ones, within 2^-104
-// of each. What they are moved by, and summed, in two doubles takes 2^-100 of what they are over the tile.
-TEXGEN_RARE inline void take_exact_coefficients(const TrianglePlanes& planes, glm::length_t first, glm::length_t second,
-                                                CloseRamps& ramps) noexcept {
+// For two numerators and q over a tile, where their terms cancel even two doubles: from exact growths, within 2^-104 of each, about
+// the first corner, where but one term is not 0: F(A) = area w_b w_c f_A. Products and sums of those take 2^-99 of the three, and as
+// much again what they are moved by. A tile is less than 2^33 of its sides away, so that little of that is lost.
+TEXGEN_RARE inline void take_exact_growths(const TrianglePlanes& planes, glm::length_t first, glm::length_t second,
+                                           CloseRamps& ramps) noexcept {
+    const DoubleDouble x = two_sum(static_cast<double>(ramps.tile.x) + 0.5, -planes.corner(0).x);  // integers
+    const DoubleDouble y = two_sum(static_cast<double>(ramps.tile.y) + 0.5, -planes.corner(0).y);  // integers
+    const DoubleDouble weight = product(planes.exact_area().leading(), {planes.weight(0), 0.0});
     const glm::length_t coordinate[3] = {first, second, 3};
-    for (std::size_t j = 0; j < 3; ++j) {
-        const ExactFragment exact = j == 0 ? ExactFragment(planes, ramps.tile.x, ramps.tile.y)
-                                           : ExactFragment::growth(planes, static_cast<glm::length_t>(j - 1));
+    for (glm::length_t axis = 0; axis < 2; ++axis) {
+        const ExactFragment growth = ExactFragment::growth(planes, axis);
         for (std::size_t k = 0; k < 3; ++k) {
-            const DoubleDouble leading = exact.function(coordinate[k]).leading();
-            ramps.function[k].term[j] = {leading.high * planes.factor(), leading.low * planes.factor()};
+            const DoubleDouble leading = growth.function(coordinate[k]).leading();
+            ramps.function[k].term[1 + axis] = {leading.high * planes.factor(), leading.low * planes.factor()};
         }
     }
-    for (CloseRamp& ramp : ramps.function) ramp.error = 0x1p-100 * ramp.size_over(ramps.tile) + 0x1p-800;
+    for (std::size_t k = 0; k < 3; ++k) {
+        CloseRamp& ramp = ramps.function[k];
+        ramp.term[0] = product(weight, {planes.value(0, coordinate[k]), 0.0});
+        const double size = std::fabs(ramp.term[0].high) + std::fabs(ramp.term[1].high * x.high) +
+                            std::fabs(ramp.term[2].high * y.high);
+        ramp.move(x, y);
+        ramp.error = 0x1p-98 * (size + ramp.size_over(ramps.tile)) + 0x1p-800;
+    }
 }
 
 }  // namespace TEXGEN_DETAIL

@@ -111,10 +111,10 @@ private:
         return result;
     }
 
-    // In two doubles, and where their terms cancel those next to exact ones: they cost more than one fragment alone.
+    // In two doubles, and where their terms cancel from exact growths, which cost what one fragment alone does.
     TEXGEN_RARE void take_close(const Tile& tile, CloseFunctions& functions) noexcept {
         if (rect_.count() > 1 && close_ramps(tile).cancel())
-            take_exact_coefficients(triangle_.planes, coordinate_of(0), coordinate_of(1), *close_);
+            take_exact_growths(triangle_.planes, coordinate_of(0), coordinate_of(1), *close_);
         close_ramps(tile).copy_to(functions);
     }
 

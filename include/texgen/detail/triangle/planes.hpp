@@ -241,6 +241,16 @@ public:
     double unscaled_weight(std::size_t i) const noexcept { return weight_[i] * orientation_; }
     double factor() const noexcept { return factor_ * orientation_; }
 
+    // (b - a) x (c - a), every product of two floats being exact in double.
+    Expansion<6> exact_area() const noexcept {
+        const glm::dvec2 a = window(triangle_.a);
+        const glm::dvec2 b = window(triangle_.b);
+        const glm::dvec2 c = window(triangle_.c);
+        Expansion<6> sum;
+        for (const double term : {a.x * b.y, -a.y * b.x, b.x * c.y, -b.y * c.x, c.x * a.y, -c.y * a.x}) sum.add(term);
+        return sum;
+    }
+
 private:
     // The plane through values at the corners. The common factor, which is known last, is the edges'.
     template <class Number>
@@ -287,16 +297,6 @@ private:
             for (const std::uint64_t word : words) sum |= (word & 0x7fffffff7fffffff) + 0x0080000000800000;
         }
         return (sum & 0x8000000080000000) == 0;
-    }
-
-    // (b - a) x (c - a), every product of two floats being exact in double.
-    Expansion<6> exact_area() const noexcept {
-        const glm::dvec2 a = window(triangle_.a);
-        const glm::dvec2 b = window(triangle_.b);
-        const glm::dvec2 c = window(triangle_.c);
-        Expansion<6> sum;
-        for (const double term : {a.x * b.y, -a.y * b.x, b.x * c.y, -b.y * c.x, c.x * a.y, -c.y * a.x}) sum.add(term);
-        return sum;
     }
 
     // Twice the signed area within 4 u of itself; it may cancel below the rounding of the differences.
