@@ -10,6 +10,9 @@
 #include <cstdio>
 #include <cstring>
 
+#ifndef WITHOUT_A_LIBRARY  // from which a batch has its memory
+#include <texgen/batch.hpp>
+#endif
 #include <texgen/clip.hpp>
 #include <texgen/coverage.hpp>
 #include <texgen/interpolate.hpp>
@@ -97,6 +100,7 @@ Kind kind_of(int round) { return static_cast<Kind>(round % 3); }
 const texgen::TextureRegion boundless = texgen::atlas_tile({-0x1p120, -0x1p120}, {0x1p120, 0x1p120});
 
 bool same_in_all_layouts = true;
+bool same_in_batches = true;
 
 // A matrix of the kind, with a q that is constant for `middles`.
 glm::dmat4 matrix(Random& random, Kind kind) {
@@ -199,9 +203,48 @@ std::uint64_t segments(Classes& classes) {
     return digest.value();
 }
 
+// Two triangles and their rectangles in one batch, and the first rectangle's fragments by ids.
+struct InBatch {
+    texgen::Triangle triangle[2];
+    texgen::FragmentRect rect[2];
+    Outputs alone[2] = {Outputs(0), Outputs(0)};
+};
+
+bool same_in_a_batch([[maybe_unused]] const InBatch& given) {
+    bool is_same = true;
+#ifndef WITHOUT_A_LIBRARY
+    texgen::TriangleBatch batch(boundless);
+    batch.assign(given.triangle);
+    Outputs all(given.alone[0].count + given.alone[1].count);
+    if (all.count <= most) {
+        interpolate(batch, given.rect, all.spans());
+        for (std::size_t i = 0; i < all.count; ++i) {
+            const std::size_t from = i < given.alone[0].count ? 0 : given.alone[0].count;
+            const Outputs& alone = given.alone[from == 0 ? 0 : 1];
+            is_same = is_same && all.s[i] == alone.s[i - from] && all.t[i] == alone.t[i - from] &&
+                      all.r[i] == alone.r[i - from] && all.lit[i] == alone.lit[i - from];
+        }
+    }
+    const texgen::FragmentRect& rect = given.rect[0];
+    Outputs second(given.alone[0].count), by_id(second.count);
+    if (const auto setup = texgen::TriangleSetup::of(given.triangle[1], boundless))
+        interpolate(*setup, rect, second.spans());
+    std::array<std::uint32_t, most> ids;
+    for (std::size_t i = 0; i < second.count; ++i) ids[i] = i % 7 < 3 ? 1 : 0;
+    interpolate(batch, std::span<const std::uint32_t>(ids.data(), by_id.count), rect, by_id.spans());
+    for (std::size_t i = 0; i < by_id.count; ++i) {
+        const Outputs& alone = ids[i] == 0 ? given.alone[0] : second;
+        is_same = is_same && by_id.s[i] == alone.s[i] && by_id.t[i] == alone.t[i] && by_id.r[i] == alone.r[i] &&
+                  by_id.lit[i] == alone.lit[i];
+    }
+#endif
+    return is_same;
+}
+
 std::uint64_t triangles(Classes& classes) {
     Random random(4);
     Digest digest;
+    InBatch last{};
     for (int round = 0; round < 150; ++round) {
         const Kind kind = kind_of(round);
         const auto vertex = [&](int x, int y) {
@@ -229,7 +272,11 @@ std::uint64_t triangles(Classes& classes) {
             if (const auto setup = texgen::TriangleSetup::of(triangle, region)) interpolate(*setup, rect, out.spans());
             return out;
         };
-        add(digest, classes, interpolated(boundless), interpolated(texgen::whole_texture()));
+        const Outputs everywhere = interpolated(boundless);
+        add(digest, classes, everywhere, interpolated(texgen::whole_texture()));
+        InBatch given{{triangle, last.triangle[0]}, {rect, last.rect[0]}, {everywhere, last.alone[0]}};
+        same_in_batches = same_in_batches && same_in_a_batch(given);
+        last = given;
     }
     return digest.value();
 }
@@ -350,5 +397,6 @@ int main() {
     compare("bodies", bodies, 0x2e85bbd30985cf48);
     compare("inverses", inverses, 0xdc50a6ad49ba5418);
     if (!same_in_all_layouts) std::puts("points: the layouts disagree");
-    return holds && same_in_all_layouts ? 0 : 1;
+    if (!same_in_batches) std::puts("triangles: in a batch they have other bits than alone");
+    return holds && same_in_all_layouts && same_in_batches ? 0 : 1;
 }
