@@ -32,10 +32,11 @@ struct BatchFunctions {
     BatchFunction of[batch_block];
 
     // Those from `first` on, of a triangle in each lane about a fragment, for so many columns and rows: see
-    // CloseRamp::copy_to(). What residues do not know has a grain of 0.
+    // CloseRamp::copy_to(). What residues do not know has a grain of 0. Where their terms cancel, or are said to, about corners.
     template <std::size_t Numerators>
     TEXGEN_APART void take(const float* const (&triangle)[lanes], const Doubles& x, const Doubles& y,
-                           const Doubles& width, const Doubles& height, std::size_t first) noexcept {
+                           const Doubles& width, const Doubles& height, std::size_t first,
+                           bool about_corners = false) noexcept {
         const VertexLanes vertices(triangle);
         const CloseLanes close(vertices, x, y);
         const CloseSteps along(vertices, 1), down(vertices, 0);
@@ -56,7 +57,7 @@ struct BatchFunctions {
                           n < Numerators ? Doubles{} : vertices.error_of_q, first);
         }
         store_columns(residues, [&](std::size_t j) { return of[first + j].residues; });
-        if (any(cancel)) take_about_corners<Numerators>(vertices, x, y, width, height, first);
+        if (about_corners || any(cancel)) take_about_corners<Numerators>(vertices, x, y, width, height, first);
     }
 
 private:

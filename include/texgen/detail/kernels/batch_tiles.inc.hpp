@@ -277,10 +277,12 @@ TEXGEN_INLINE bool fill_tile(const FragmentOutputs& out, const TileShape& shape,
     return is_certain;
 }
 
-// Tiles of the block from `first` on that are in doubt, a bit each, again; its values begin at `done`. Returns those that stay so.
+// Tiles of the block from `first` on that are in doubt, a bit each, again; its values begin at `of_block`. Returns those that stay so, after
+// their functions about corners, too.
 template <std::size_t Numerators>
 TEXGEN_APART std::uint64_t decide_tiles(const TilesJob& job, const FragmentOutputs& out, std::size_t first,
-                                        const int (*block)[4], std::uint64_t doubtful, std::size_t done) noexcept {
+                                        const int (*block)[4], std::uint64_t doubtful, std::size_t of_block,
+                                        bool about_corners = false) noexcept {
     BatchFunctions functions;
     TileScratch scratch;
     const auto known = static_cast<std::size_t>(std::countr_zero(doubtful));  // finite, where others may be no numbers
@@ -294,9 +296,10 @@ TEXGEN_APART std::uint64_t decide_tiles(const TilesJob& job, const FragmentOutpu
         Words tile[4];
         load_fours(block[i], tile);
         functions.take<Numerators>(of_lane, to_doubles(tile[0]) + 0.5, to_doubles(tile[1]) + 0.5, to_doubles(tile[2]),
-                                   to_doubles(tile[3]), i);
+                                   to_doubles(tile[3]), i, about_corners);
     }
     std::uint64_t undecided = 0;
+    std::size_t done = of_block;
     for (std::size_t i = 0; i < batch_block; ++i) {
         if (block[i][2] <= 0 || block[i][3] <= 0) continue;
         TileShape shape;
@@ -323,7 +326,8 @@ TEXGEN_APART std::uint64_t decide_tiles(const TilesJob& job, const FragmentOutpu
         if (in_scratch) scratch.copy_to(out, begin, shape.count);
         if (any(left)) undecided |= std::uint64_t{1} << i;
     }
-    return undecided;
+    if (undecided == 0 || about_corners) return undecided;
+    return decide_tiles<Numerators>(job, out, first, block, undecided, of_block, true);
 }
 
 template <std::size_t Numerators>

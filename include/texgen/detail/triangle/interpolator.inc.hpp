@@ -12,7 +12,7 @@ public:
     // `close` is what is known of the functions that add() says, or nothing yet.
     TileInterpolator(const TileKernels& kernels, const TriangleFunctions& triangle, const Tile& rect,
                      OnDemand<CloseRamps>& close) noexcept
-        : kernels_(kernels), triangle_(triangle), rect_(rect), close_(close) {}
+        : kernels_(kernels), triangle_(triangle), rect_(rect), close_(close), are_exact_(rect.count() == 1) {}
 
     // s and t, of which one that only the mask needs has no output.
     void add(const std::span<float>& s, const std::span<float>& t, const std::span<float>& lit) noexcept {
@@ -106,15 +106,17 @@ private:
         DoubtfulFunctions result{};
         result.tolerance = triangle_.tolerance;
         result.are_close = static_cast<bool>(close_);
-        result.are_close ? take_close(tile, result) : take_planes(at, result);
+        result.are_close ? take_close(tile, result, false) : take_planes(at, result);
         if (is_mask_alone()) take_sides(triangle_.lit, result);
         return result;
     }
 
-    // In two doubles, and where their terms cancel from exact growths, which cost what one fragment alone does.
-    TEXGEN_RARE void take_close(const Tile& tile, CloseFunctions& functions) noexcept {
-        if (rect_.count() > 1 && close_ramps(tile).cancel())
+    // In two doubles, and where their terms cancel, or leave doubt, from exact growths, which cost what one fragment alone does.
+    TEXGEN_RARE void take_close(const Tile& tile, CloseFunctions& functions, bool leave_doubt) noexcept {
+        if ((leave_doubt || close_ramps(tile).cancel()) && !are_exact_) {
             take_exact_growths(triangle_.planes, coordinate_of(0), coordinate_of(1), *close_);
+            are_exact_ = true;
+        }
         close_ramps(tile).copy_to(functions);
     }
 
@@ -132,12 +134,13 @@ private:
 
     // More of them, if there is more: residues first for ties, which have company.
     TEXGEN_RARE bool sharpen(const Tile& tile, DoubtfulFunctions& functions, bool are_ties) noexcept {
-        if (functions.are_close && functions.have_residues) return false;
+        const bool have_both = functions.are_close && functions.have_residues;
+        if (have_both && are_exact_) return false;
         if (!functions.have_residues && (are_ties || functions.are_close)) {
             add_residues(tile, functions);
             if (functions.residues_first && !functions.are_close && are_decided_by_residues(functions)) return true;
         }
-        if (!functions.are_close) take_close(tile, functions);
+        if (have_both || !functions.are_close) take_close(tile, functions, have_both);
         return functions.are_close = true;
     }
 
@@ -344,6 +347,7 @@ private:
     const Corners* whole_at_;
     OnDemand<DoubtfulJob> doubtful_;
     OnDemand<PlaneResidues> residues_;
+    bool are_exact_;  // the growths of close_, or there is but one fragment
     std::span<float> output_[2];
     std::span<float> lit_;
     float scratch_[2][scratch_width];  // coordinates that only the mask needs, a row at a time
