@@ -277,8 +277,8 @@ TEXGEN_INLINE bool fill_tile(const FragmentOutputs& out, const TileShape& shape,
     return is_certain;
 }
 
-// Tiles of the block from `first` on that are in doubt, a bit each, again; its values begin at `of_block`. Returns those that stay so, after
-// their functions about corners, too.
+// Tiles of the block from `first` on that are in doubt, a bit each, again; its values begin at `of_block`. From the first that stays so on
+// they have functions about corners, too. Returns those that this leaves.
 template <std::size_t Numerators>
 TEXGEN_APART std::uint64_t decide_tiles(const TilesJob& job, const FragmentOutputs& out, std::size_t first,
                                         const int (*block)[4], std::uint64_t doubtful, std::size_t of_block,
@@ -312,7 +312,7 @@ TEXGEN_APART std::uint64_t decide_tiles(const TilesJob& job, const FragmentOutpu
         const FragmentOutputs here = in_scratch ? scratch.in_place_of(out) : out;
         FragmentWalk<Doubles, double> walk(shape.width, shape.per_width, 0.0);
         Words left{};
-        for (std::size_t n = 0; n < shape.count; n += static_cast<std::size_t>(lanes), walk.advance()) {
+        for (std::size_t n = 0; n < shape.count && !any(left); n += static_cast<std::size_t>(lanes), walk.advance()) {
             const Doubles row = minimum(walk.y, Doubles{} + shape.last_row);
             CloseFragments<Numerators> fragments;
             const BatchFunctionsAt<BatchFunction> at{functions.of[i], shape.is_turned ? row : walk.x,
@@ -321,13 +321,14 @@ TEXGEN_APART std::uint64_t decide_tiles(const TilesJob& job, const FragmentOutpu
             q.take(at.values(Numerators));
             fragments.divide(at, q, Numerators, job.tolerance, true);
             here.put(in_scratch ? n : begin + n, fragments.quotient, q.front);
-            left |= narrow(fragments.doubtful);
+            left = narrow(fragments.doubtful);
         }
         if (in_scratch) scratch.copy_to(out, begin, shape.count);
-        if (any(left)) undecided |= std::uint64_t{1} << i;
+        if (!any(left)) continue;
+        if (!about_corners) return decide_tiles<Numerators>(job, out, first, block, doubtful >> i << i, of_block, true);
+        undecided |= std::uint64_t{1} << i;
     }
-    if (undecided == 0 || about_corners) return undecided;
-    return decide_tiles<Numerators>(job, out, first, block, undecided, of_block, true);
+    return undecided;
 }
 
 template <std::size_t Numerators>
