@@ -246,7 +246,7 @@ struct ResidueLanes {
     Residues side[3];    // with the weights
     LongWords is_known;  // no number is too large, and the area is not next to 0
     Residues one_x, one_y;
-    Doubles per_x, per_y;  // the same, no residues
+    Doubles per_x, per_y;  // what 1 is in the units of x and y, as they are
 
     TEXGEN_INLINE ResidueLanes(const VertexLanes& vertices, const Doubles& at_x, const Doubles& at_y) noexcept
         : given(vertices) {
@@ -292,7 +292,7 @@ struct ResidueLanes {
             dy[i] = scale_[i] * (to_x_[k] - to_x_[j]);
         }
     }
-    // The doubled area, of this grain where all is known.
+    // The doubled area, and its grain where all is known.
     TEXGEN_INLINE Residues area() const noexcept {
         return (to_x_[1] - to_x_[0]) * (to_y_[2] - to_y_[0]) - (to_y_[1] - to_y_[0]) * (to_x_[2] - to_x_[0]);
     }
@@ -361,6 +361,7 @@ TEXGEN_INLINE CloseValues sharpened(const CloseValues& f, const Residues& residu
     return {select(is_one, high, f.high), select(is_one, low, f.low), select(is_one, reach * 0x1p-48, f.error)};
 }
 
+// Lane by lane what errs by less.
 TEXGEN_INLINE CloseValues better(const CloseValues& a, const CloseValues& b) noexcept {
     const LongWords is_b = greater(a.error, b.error);
     return {select(is_b, b.high, a.high), select(is_b, b.low, a.low), minimum(a.error, b.error)};

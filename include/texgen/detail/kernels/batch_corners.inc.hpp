@@ -114,7 +114,7 @@ struct CloseFragmentsAt {
             of_grain[n] = where(lanes_of.is_known, of.grain);
         }
     }
-    // Where the leading digits of residues are not next to two doubles, and what those are cancels.
+    // Where the terms cancel by more than two doubles, and residues beside them, know.
     TEXGEN_APART void take_about_corners(const VertexLanes& vertices, const Doubles& x, const Doubles& y,
                                          bool is_first) noexcept {
         ResidueLanes residues(vertices, x, y);

@@ -113,8 +113,8 @@ private:
 };
 
 // For two numerators and q over a tile, where their terms cancel even two doubles: from exact growths, within 2^-104 of each, about
-// the first corner, where but one term is not 0: F(A) = area w_b w_c f_A. Products and sums of those take 2^-99 of the three, and as
-// much again what they are moved by. A tile is less than 2^33 of its sides away, so that little of that is lost.
+// the first corner, where but one term is not 0: F(A) = area w_b w_c f_A. Products and sums take 2^-99 of these three, and moving
+// within the tile as much of what they are over it: little of that, as a tile is less than 2^33 times its sides away.
 TEXGEN_RARE inline void take_exact_growths(const TrianglePlanes& planes, glm::length_t first, glm::length_t second,
                                            CloseRamps& ramps) noexcept {
     const DoubleDouble x = two_sum(static_cast<double>(ramps.tile.x) + 0.5, -planes.corner(0).x);  // integers
