@@ -10,7 +10,7 @@
 #include <cstdio>
 #include <cstring>
 
-#ifndef WITHOUT_A_LIBRARY  // from which a batch has its memory
+#ifdef WITH_BATCHES
 #include <texgen/batch.hpp>
 #endif
 #include <texgen/clip.hpp>
@@ -212,7 +212,7 @@ struct InBatch {
 
 bool same_in_a_batch([[maybe_unused]] const InBatch& given) {
     bool is_same = true;
-#ifndef WITHOUT_A_LIBRARY
+#ifdef WITH_BATCHES
     texgen::TriangleBatch batch(boundless);
     batch.assign(given.triangle);
     Outputs all(given.alone[0].count + given.alone[1].count);
