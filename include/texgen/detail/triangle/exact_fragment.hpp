@@ -113,12 +113,13 @@ private:
 };
 
 // For two numerators and q over a tile, where their terms cancel even two doubles: from exact growths, within 2^-104 of each, about
-// the first corner, where but one term is not 0: F(A) = area w_b w_c f_A. Products and sums take 2^-99 of these three, and moving
-// within the tile as much of what they are over it: little of that, as a tile is less than 2^33 times its sides away.
+// the first corner, where but one term is not 0: F(A) = area w_b w_c f_A. Products and sums, and what these are moved by within the
+// tile, take less than 2^-97 of the three. Where that corner is so far away that it says less, the value stays.
 TEXGEN_RARE inline void take_exact_growths(const TrianglePlanes& planes, glm::length_t first, glm::length_t second,
                                            CloseRamps& ramps) noexcept {
     const DoubleDouble x = two_sum(static_cast<double>(ramps.tile.x) + 0.5, -planes.corner(0).x);  // integers
     const DoubleDouble y = two_sum(static_cast<double>(ramps.tile.y) + 0.5, -planes.corner(0).y);  // integers
+    const double reach_x = std::fabs(x.high) + ramps.tile.width, reach_y = std::fabs(y.high) + ramps.tile.height;
     const DoubleDouble weight = product(planes.exact_area().leading(), {planes.weight(0), 0.0});
     const glm::length_t coordinate[3] = {first, second, 3};
     for (glm::length_t axis = 0; axis < 2; ++axis) {
@@ -129,12 +130,18 @@ TEXGEN_RARE inline void take_exact_growths(const TrianglePlanes& planes, glm::le
         }
     }
     for (std::size_t k = 0; k < 3; ++k) {
-        CloseRamp& ramp = ramps.function[k];
-        ramp.term[0] = product(weight, {planes.value(0, coordinate[k]), 0.0});
-        const double size = std::fabs(ramp.term[0].high) + std::fabs(ramp.term[1].high * x.high) +
-                            std::fabs(ramp.term[2].high * y.high);
-        ramp.move(x, y);
-        ramp.error = 0x1p-98 * (size + ramp.size_over(ramps.tile)) + 0x1p-800;
+        auto& [term, error] = ramps.function[k];
+        const DoubleDouble before = term[0];
+        term[0] = product(weight, {planes.value(0, coordinate[k]), 0.0});
+        const double size =
+            std::fabs(term[0].high) + std::fabs(term[1].high) * reach_x + std::fabs(term[2].high) * reach_y;
+        const double error_about_it = 0x1p-97 * size + 0x1p-800;
+        if (error_about_it < error) {
+            ramps.function[k].move(x, y);
+            error = error_about_it;
+        } else {
+            term[0] = before;
+        }
     }
 }
 
