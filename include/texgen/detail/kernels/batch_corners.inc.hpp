@@ -21,7 +21,7 @@ struct ProductLanes {
 // have 96 bits of what they cancel from, or by residues 144. With u = 2^-53 the products here lack 12 u^2 of F(C) and 9 u^2 of the
 // others, and sums of what is left of exact ones 48 u^2 of all three: 2^-98 covers them.
 struct CornerLanes {
-    TEXGEN_INLINE CornerLanes(const VertexLanes& given, ResidueLanes& residues, const Doubles& x,
+    TEXGEN_INLINE CornerLanes(const VertexLanes& given, const ResidueLanes& residues, const Doubles& x,
                               const Doubles& y) noexcept
         : given_(given), residues_(residues), along_(given, 1), down_(given, 0) {
         Doubles distance[3];
