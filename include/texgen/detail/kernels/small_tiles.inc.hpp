@@ -2,15 +2,25 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// Two rows share a division of doubles, of an odd number of them the last two, and a single row is both; integers are asked whether
-// a value is in doubt. What a vector writes beyond its row is written again by those that follow.
+// Two rows share a division of doubles, of an odd number of them the last two, and a short single row is both; integers are asked
+// whether a value is in doubt. A long one is cut into rows as wide as a vector, of which the last may begin in the one before. What a
+// vector writes beyond its row is written again by those that follow.
 TEXGEN_INLINE bool divide_small(const SmallTile& tile) noexcept {
     const auto& [f_base, f_dx, f_dy] = tile.numerator;
     const Ramp& of_q = tile.q;
-    const int width = tile.width, count = width * tile.height;
-    const bool is_row = tile.height == 1;
-    const int stride = is_row ? 0 : width;
-    const double q_dy = is_row ? 0.0 : of_q.dy, dy[2] = {is_row ? 0.0 : f_dy[0], is_row ? 0.0 : f_dy[1]};
+    int width = tile.width, stride = width;
+    const int count = width * tile.height;
+    double height = tile.height, q_dy = of_q.dy, dy[2] = {f_dy[0], f_dy[1]};
+    if (tile.height == 1) {
+        const bool is_short = width < 2 * lanes;
+        stride = is_short ? 0 : lanes;
+        q_dy = stride * of_q.dx;
+        for (std::size_t k = 0; k < 2; ++k) dy[k] = stride * f_dx[k];
+        if (!is_short) {
+            width = lanes;
+            height = count * (1.0 / lanes);
+        }
+    }
     // Shorter rows than vectors have no room for the last of them.
     float buffer[2][TileJob::unit_size + lanes];
     const bool has_room = width >= lanes;
@@ -44,7 +54,7 @@ TEXGEN_INLINE bool divide_small(const SmallTile& tile) noexcept {
             y = y + 2.0;
             if (n > last) {
                 n = last;
-                y = Doubles{} + (tile.height - 2.0);
+                y = Doubles{} + (height - 2.0);
             }
         }
         if (begin + lanes >= width) break;

@@ -87,8 +87,10 @@ struct TileJob {
     bool is_done(const Unit& unit) const noexcept { return unit.y_begin >= height; }
 };
 
-// A tile of no more than a unit of which one certificate holds: see small_tile.inc.hpp.
+// A tile of few fragments of which one certificate holds: see small_tile.inc.hpp.
 struct SmallTile {
+    static constexpr int most = 1024;  // of more, one in doubt, which has all of them divided again, is no longer rare
+
     TwoRamps numerator;
     Ramp q;
     int width, height;

@@ -104,7 +104,7 @@ TEXGEN_INLINE Work interpolate(const TriangleSetup& setup, FragmentRect rect, Te
     const detail::TriangleFunctions& triangle = setup.functions();
     Coverage depth = Coverage::inside;
     detail::SmallAnswer answer = detail::SmallAnswer::doubt;
-    if (tile.width <= detail::TileJob::unit_size / 4 && tile.count() <= detail::TileJob::unit_size) {
+    if (detail::is_small(tile, triangle.tolerance)) {
         if (triangle.lit.has_depth()) depth = detail::depth_coverage(triangle, tile);
         if (depth != Coverage::outside) answer = detail::fill_small(triangle, tile, out);
     }

@@ -4,6 +4,13 @@
 namespace TEXGEN_DETAIL {
 inline namespace TEXGEN_BUILD {
 
+// Rows that are shorter than vectors are gathered in a buffer, which has a unit.
+inline bool is_small(const Tile& tile, double tolerance) noexcept {
+    constexpr int longest_vector = 8;
+    if (tile.width < longest_vector) return tile.count() <= TileJob::unit_size;
+    return tile.count() <= SmallTile::most && (tolerance == 0.0 || !pays_for_chunks(tile));
+}
+
 // Where a tile begins from the vertex that the planes are about, how far it reaches from there at least, and its last column and row.
 struct SmallPlace {
     double x, y, reach_x, reach_y, right, bottom;

@@ -35,8 +35,8 @@ inline int chunk_length(const Corners& at, int width) noexcept {
     return ((width - 1) / chunks / lanes + 1) * lanes;
 }
 
-// A chunk costs as much as some fragments, and the first of them as much as some tens.
-inline bool pays_for_chunks(const Tile& tile) noexcept { return tile.width >= 16 && tile.count() > 64; }
+// A chunk costs as much as some fragments, and the first of them, with what they ask for, as much as some tens.
+inline bool pays_for_chunks(const Tile& tile) noexcept { return tile.width >= 16 && tile.count() > 128; }
 
 // Of a tile that is divided, whatever it shows.
 inline Plan plan_without_survey(const Tile& tile, const Corners& at) noexcept {
