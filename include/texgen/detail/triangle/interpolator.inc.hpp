@@ -190,8 +190,8 @@ private:
         const Double2 written = error * 1.001 + (largest * (1.0001 * unit_roundoff_float) + 0x1p-125);
         TEXGEN_UNROLL
         for (std::size_t k = 0; k < 2; ++k) job.quotient_error[k] = written[k] <= triangle_.tolerance ? 0.0 : error[k];
-        // A small tile does not repay the search for its least quotient.
-        job.ulps = tile.count() < 1024 ? 0 : at.ulps_of_quotients();
+        // Less than a unit does not repay the search for its least quotient.
+        job.ulps = tile.count() < TileJob::unit_size ? 0 : at.ulps_of_quotients();
         const TileJob::Unit first = from == nullptr ? job.unit_at(0, 0) : *from;
         std::uint64_t doubtful = 0;
         const TileJob::Unit unit = detail::fill_exact(kernels_, job, first, 16 * TileJob::unit_size, doubtful);
@@ -221,7 +221,7 @@ private:
                 unit = detail::fill_exact(kernels_, job, unit, TileJob::unit_size, doubtful);
                 const bool fails_again = are_many(doubtful, tile);
                 is_closer = fails_again && !job.is_done(unit) && !functions.are_close && !functions.have_residues;
-                many = fails_again ? 4 * many : 1;
+                many = std::popcount(doubtful) > TileJob::unit_size * 3 / 4 ? 4 * many : 1;
             }
             if (is_closer) {
                 Corners closer;
