@@ -132,6 +132,18 @@ Shot row_with_a_tie(int column, int width, int height, Random& random) {
             {x, y, width, height}};
 }
 
+// Of a scene, with all of a window of 450 x 320 in front and in the slide: one certificate mostly serves a tile of it.
+Triangle gentle_triangle(Random& random) {
+    const auto vertex = [&](float x, float y) {
+        const float q = random.uniform_float(1.0, 3.0);
+        const auto coordinate = [&] { return q * random.uniform_float(0.1, 0.9); };
+        return WindowVertex{{x + random.uniform_float(-9.0, 9.0), y + random.uniform_float(-9.0, 9.0)},
+                            random.uniform_float(1.0, 4.0),
+                            {coordinate(), coordinate(), coordinate(), q}};
+    };
+    return {vertex(-20.0f, -20.0f), vertex(1400.0f, 40.0f), vertex(60.0f, 1200.0f)};
+}
+
 }  // namespace
 
 TEST_CASE("every fragment is the nearest float of the exact rational, in every family") {
@@ -219,17 +231,19 @@ TEST_CASE("every fragment of a row whose values all lie between two floats is de
 TEST_CASE("one tie anywhere in rows of values that are far from ties is rounded to the even float") {
     Random random(201);
     Seen seen;
-    int long_ones = 0;  // so long that pairs of vectors share a division
-    for (int i = 0; i < 60; ++i) {
-        const int width = random.integer(70, 1500), height = random.integer(1, 3),
-                  column = random.integer(64, std::min(width, 900) - 1);
-        long_ones += width * height >= 1024;
+    int long_ones = 0;  // so long that one certificate is not asked for
+    for (int i = 0; i < 120; ++i) {
+        const bool is_long = i % 2 == 0;
+        const int width = random.integer(is_long ? 70 : 16, is_long ? 1500 : 300), height = random.integer(1, 3),
+                  column = random.integer(is_long ? 64 : 0, std::min(width, 900) - 1);
+        long_ones += width * height > 1024;
         const Shot shot = row_with_a_tie(column, width, height, random);
         REQUIRE(support::is_tie(ExactTriangle(shot.triangle).at(shot.x(column), shot.y(0)).over_q(0)));
         Outputs out(count_of(shot.rect), random.coin() ? 15u : 3u, static_cast<std::size_t>(random.integer(0, 15)));
         require_right(shot, everywhere(), out, seen);
     }
     CHECK(long_ones > 20);
+    CHECK(long_ones < 100);
 }
 
 TEST_CASE("a tie that a corner 2^-20 to 2^-100 of a pixel off its place leaves is rounded to its side") {
@@ -371,6 +385,29 @@ TEST_CASE("a value does not depend on the rectangle that it was asked with") {
     }
     CHECK(parts > 8000);
     CHECK(parts_with_nothing > 10);
+}
+
+TEST_CASE("the fragments of a tile of any width are those that are asked for alone") {
+    Random random(350);
+    for (int width = 1; width <= 140; ++width) {
+        for (const int height : {1, 2, 3, 8, 31}) {
+            if (width * height > 1200) continue;
+            const FragmentRect rect = {random.integer(0, 300), random.integer(0, 300), width, height};
+            const Triangle triangle = gentle_triangle(random);
+            const TriangleSetup setup = setup_of(triangle, random.coin() ? everywhere() : texgen::whole_texture());
+            Outputs whole(count_of(rect), Outputs::all, static_cast<std::size_t>(random.integer(0, 15)));
+            if (interpolate(setup, rect, whole.spans()) == Work::nothing) continue;
+            for (int i = 0; i < width * height; ++i) {
+                Outputs alone(1);
+                const FragmentRect fragment = {rect.x + i % width, rect.y + i / width, 1, 1};
+                const bool nothing = interpolate(setup, fragment, alone.spans()) == Work::nothing;
+                for (std::size_t k = nothing ? 3 : 0; k < 4; ++k)
+                    REQUIRE_MESSAGE(same_bits(whole[k].subspan(static_cast<std::size_t>(i), 1), alone[k]), "output ", k,
+                                    " of fragment ", i, " in ", text(rect), " of ", hex(Shot{triangle, rect}));
+            }
+            REQUIRE(whole.pads_are_intact());
+        }
+    }
 }
 
 TEST_CASE("a value depends neither on what else is asked, nor on the alignment, nor on the length") {

@@ -214,13 +214,14 @@ std::uint64_t fill_tile_closely(const TileJob& job, const CloseFunctions& functi
                           job.is_scratch[1] || numerators == 1 ? nullptr : job.out[1], job.lit};
     const auto offset = [&](int column, int row) { return static_cast<std::ptrdiff_t>(row) * job.pitch + column; };
     const int run = width == job.pitch ? size : width;  // rows that follow one another are one
+    std::ptrdiff_t place[most];
+    for (int i = 0; !are_all && i < count; ++i) place[i] = offset(static_cast<int>(x[i]), static_cast<int>(y[i]));
     for (std::size_t k = 0; k < 3; ++k) {
         if (to[k] == nullptr) continue;
         float* row = to[k] + offset(unit.x_begin, unit.y_begin);
         for (int i = 0; are_all && i < size; i += run, row += job.pitch)
             std::memcpy(row, result[k] + i, static_cast<std::size_t>(run) * sizeof(float));
-        for (int i = 0; !are_all && i < count; ++i)
-            to[k][offset(static_cast<int>(x[i]), static_cast<int>(y[i]))] = result[k][i];
+        for (int i = 0; !are_all && i < count; ++i) to[k][place[i]] = result[k][i];
     }
     doubtful &= ~std::uint64_t{0} >> (TileJob::unit_size - count);
     if (are_all) return doubtful;

@@ -35,17 +35,12 @@ public:
         for (std::size_t i = 0; i < 3; ++i) {
             const std::size_t j = (i + 1) % 3;
             const std::size_t k = (i + 2) % 3;
-            const double weight = planes.unscaled_weight(i);
+            Expansion<16> edge;
             const DoubleDouble factor[][2] = {{to_x[j], to_y[k]}, {-to_y[j], to_x[k]}};
-            for (const auto& [left, right] : factor) {
-                for (const double a : {left.high, left.low}) {
-                    for (const double b : {right.high, right.low}) {
-                        if (a == 0.0 || b == 0.0) continue;
-                        const DoubleDouble term = two_product(a, b);
-                        for (const double part : {term.high, term.low}) weighted_[i].add_product(part, weight);
-                    }
-                }
-            }
+            for (const auto& [left, right] : factor)
+                for (const double a : {left.low, left.high})
+                    for (const double b : {right.low, right.high}) edge.add_product(a, b);
+            weighted_[i].add_scaled(edge, planes.unscaled_weight(i));
         }
     }
 
