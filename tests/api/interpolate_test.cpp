@@ -236,7 +236,7 @@ TEST_CASE("one tie anywhere in rows of values that are far from ties is rounded 
         const bool is_long = i % 2 == 0;
         const int width = random.integer(is_long ? 70 : 16, is_long ? 1500 : 300), height = random.integer(1, 3),
                   column = random.integer(is_long ? 64 : 0, std::min(width, 900) - 1);
-        long_ones += width * height > 1024;
+        long_ones += width * height > 512;
         const Shot shot = row_with_a_tie(column, width, height, random);
         REQUIRE(support::is_tie(ExactTriangle(shot.triangle).at(shot.x(column), shot.y(0)).over_q(0)));
         Outputs out(count_of(shot.rect), random.coin() ? 15u : 3u, static_cast<std::size_t>(random.integer(0, 15)));
