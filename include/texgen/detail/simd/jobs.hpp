@@ -89,7 +89,7 @@ struct TileJob {
 
 // A tile of few fragments of which one certificate holds: see small_tile.inc.hpp.
 struct SmallTile {
-    static constexpr int most = 512;  // of more, one in doubt, which has all of them divided again, is no longer rare
+    static constexpr int most = 512;  // in more, vectors of a row that share a division are cheaper
 
     TwoRamps numerator;
     Ramp q;
