@@ -89,8 +89,6 @@ struct TileJob {
 
 // A tile of few fragments of which one certificate holds: see small_tile.inc.hpp.
 struct SmallTile {
-    static constexpr int most = 512;  // in more, vectors of a row that share a division are cheaper
-
     TwoRamps numerator;
     Ramp q;
     int width, height;

@@ -4,11 +4,12 @@
 namespace TEXGEN_DETAIL {
 inline namespace TEXGEN_BUILD {
 
-// Rows that are shorter than vectors are gathered in a buffer, which has a unit.
+// Rows that are shorter than vectors are gathered in a buffer, which has a unit. Of many fragments one may well be in doubt, which
+// has all of them divided again; and in long rows vectors that follow one another share a division at less cost.
 inline bool is_small(const Tile& tile, double tolerance) noexcept {
     constexpr int longest_vector = 8;
-    if (tile.width < longest_vector) return tile.count() <= TileJob::unit_size;
-    return tile.count() <= SmallTile::most && (tolerance == 0.0 || !pays_for_chunks(tile));
+    const int most = tile.width < longest_vector ? TileJob::unit_size : tile.width <= 64 ? 4096 : 512;
+    return tile.count() <= most && (tolerance == 0.0 || !pays_for_chunks(tile));
 }
 
 // Where a tile begins from the vertex that the planes are about, how far it reaches from there at least, and its last column and row.
