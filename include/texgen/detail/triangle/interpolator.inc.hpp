@@ -207,7 +207,7 @@ private:
         if (is_constant(functions.function[CloseFunctions::q].high) && sharpen(tile, functions, true) &&
             tile.width + tile.height > 4 && take_exact_quotients(functions, job))
             unit = detail::fill_exact(kernels_, job, unit, TileJob::unit_size, doubtful);
-        // Doubt has company: four times as many units after each failure that follows another, and some after one of nothing else.
+        // Doubt has company: four times as many units at once after each of which most is in doubt, and some after one that was all.
         for (int many = 1; !job.is_done(unit);) {
             const bool may_get_closer = !functions.are_close && are_many(doubtful, tile);
             for (int i = 0; i < many && !job.is_done(unit);
@@ -221,7 +221,8 @@ private:
                 unit = detail::fill_exact(kernels_, job, unit, TileJob::unit_size, doubtful);
                 const bool fails_again = are_many(doubtful, tile);
                 is_closer = fails_again && !job.is_done(unit) && !functions.are_close && !functions.have_residues;
-                many = std::popcount(doubtful) > TileJob::unit_size * 3 / 4 ? 4 * many : 1;
+                const int size = (unit.x_end - unit.x_begin) * (unit.y_end - unit.y_begin);
+                many = 4 * std::popcount(doubtful) > 3 * size ? 4 * many : 1;
             }
             if (is_closer) {
                 Corners closer;
