@@ -2,8 +2,8 @@ cmake_minimum_required(VERSION 3.25)
 include(${CMAKE_CURRENT_LIST_DIR}/../../benchmarks/report/compile_cost.cmake)
 
 # Compares what it costs to compile texgen's umbrella header with what the GLM headers cost that its users have anyway.
-# On a quiet machine it is 315 to 350 %.
-set(allowed_percent 350)
+# It is 270 to 400 %: the shorter one is more often in luck on a busy machine.
+set(allowed_percent 400)
 
 string(REGEX REPLACE "([^|]+)" "-I\\1" flags "${INCLUDES}")
 string(REPLACE "|" ";" flags "${flags}")

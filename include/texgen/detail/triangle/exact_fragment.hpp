@@ -35,7 +35,7 @@ public:
         for (std::size_t i = 0; i < 3; ++i) {
             const std::size_t j = (i + 1) % 3;
             const std::size_t k = (i + 2) % 3;
-            Expansion<16> edge;
+            Expansion<32> edge;
             const DoubleDouble factor[][2] = {{to_x[j], to_y[k]}, {-to_y[j], to_x[k]}};
             for (const auto& [left, right] : factor)
                 for (const double a : {left.low, left.high})

@@ -52,9 +52,8 @@ public:
         triangle_.tolerance == 0.0 ? fill_exact(tile, at) : fill(tile, at, plan);
     }
 
-    // A small tile well in front, with doubt: in its only unit, or somewhere.
+    // A tile of one unit, well in front, with doubt.
     TEXGEN_RARE void interpolate_from_doubt(const Tile& tile) noexcept {
-        if (tile.count() > TileJob::unit_size) return interpolate(tile, nullptr);
         const Corners at = corners_of(triangle_.planes, *planes_, triangle_.q, tile);
         TileJob job = make_job(tile, at);
         fill_from_doubt(tile, at, job, job.unit_at(0, 0));

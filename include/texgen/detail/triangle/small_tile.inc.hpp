@@ -93,7 +93,7 @@ inline SmallAnswer ask(const LitTest& lit, double tolerance, const SmallFunction
     return is_partly_dark && !may_be_dark ? SmallAnswer::partly_lit : SmallAnswer::doubt;
 }
 
-// s, t and their mask of a small tile, if one certificate serves all of it. What a value in doubt asks for is no plan.
+// s, t and their mask of a small tile, if one certificate serves all of it. What a value in doubt of a unit asks for is no plan.
 template <class CompiledWhereCalled = void>
 TEXGEN_APART SmallAnswer fill_small(const TriangleFunctions& triangle, const Tile& rect,
                                     const Texcoords& out) noexcept {
@@ -116,6 +116,7 @@ TEXGEN_APART SmallAnswer fill_small(const TriangleFunctions& triangle, const Til
     if (tile.lit != nullptr) triangle.lit.copy_to(tile.min, tile.max);
     const TileKernels& kernels = chosen<TileKernels>();
     if (!kernels.fill_small(tile)) {
+        if (rect.count() > TileJob::unit_size) return SmallAnswer::doubt;
         OnDemand<CloseRamps> close;
         TileInterpolator<> interpolator(kernels, triangle, rect, close);
         interpolator.add(out.s, out.t, out.lit);
