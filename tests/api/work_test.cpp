@@ -384,6 +384,29 @@ TEST_CASE("error_bound under a tolerance is never below the error, and is at mos
     }
 }
 
+TEST_CASE(
+    "where q/w varies short rows and few fragments are divided, and others need none where the tolerance is large") {
+    Random random(3600);
+    int few = 0, many = 0;
+    while (many < 300) {
+        const Shot shot = support::detail::ordinary(support::Family::friendly, random);
+        const TriangleSetup setup = setup_of(shot.triangle, everywhere(), Tolerance{1e6});
+        const auto rect_of = [&](int width, int height) {
+            return FragmentRect{shot.rect.x, shot.rect.y, width, height};
+        };
+        const Work of_more = setup.work(rect_of(129, 1));  // or q is next to 0, or varies too much for a chunk
+        if (of_more != Work::affine && of_more != Work::quadratic) continue;
+        ++many;
+        for (const FragmentRect& rect : {rect_of(128, 1), rect_of(16, 8), rect_of(15, 40), rect_of(1, 1)}) {
+            const Work work = setup.work(rect);
+            if (work == Work::nothing) continue;
+            ++few;
+            REQUIRE_MESSAGE(work >= Work::divide, hex(Shot{shot.triangle, rect}));
+        }
+    }
+    CHECK(few > 1000);
+}
+
 TEST_CASE("a rectangle without fragments needs nothing and has no error") {
     Random random(3500);
     const TriangleSetup setup = setup_of(make_triangle(support::Family::friendly, random));

@@ -323,6 +323,7 @@ MUTANTS = [
          ("the middle's rounding is forgotten", "u * middle_roundings", "u * (0.001 * middle_roundings)",
           "tolerance_test work_test")),
     *_of("detail/triangle/survey.inc.hpp",
+         ("rectangles of 65 fragments are filled in chunks", "tile.count() > 128", "tile.count() > 64", "work_test"),
          ("what the depth cuts needs no test",
           "sides == Coverage::inside && depth == Coverage::inside", "sides == Coverage::inside", "work_test"),
          ("what is beyond the depth is divided", "    if (depth == Coverage::outside) return;\n", "", "work_test")),
