@@ -87,7 +87,7 @@ private:
 // What is known of fragments of a triangle each, q last: without residues grains are 0.
 template <std::size_t Numerators>
 struct CloseFragmentsAt {
-    static constexpr bool are_sums_first = false;
+    bool are_sums_first;
     CloseValues value[Numerators + 1];
     Residues residue[Numerators + 1]{};
     Doubles of_grain[Numerators + 1]{};
@@ -100,7 +100,8 @@ struct CloseFragmentsAt {
     TEXGEN_INLINE const Doubles& grain(std::size_t n) const noexcept { return of_grain[n]; }
 
     template <class Terms>
-    TEXGEN_INLINE void take(const VertexLanes& vertices, const Terms& terms) noexcept {
+    TEXGEN_INLINE void take(const VertexLanes& vertices, const Terms& terms, bool are_close) noexcept {
+        are_sums_first = are_close;
         TEXGEN_UNROLL
         for (std::size_t n = 0; n <= Numerators; ++n) value[n] = terms.function(vertices, n < Numerators ? n : 3);
         value[Numerators].error = value[Numerators].error + vertices.error_of_q;
@@ -117,6 +118,7 @@ struct CloseFragmentsAt {
     // Where the terms cancel by more than two doubles, and residues beside them, know.
     TEXGEN_APART void take_about_corners(const VertexLanes& vertices, const Doubles& x, const Doubles& y,
                                          bool is_first) noexcept {
+        are_sums_first = true;
         ResidueLanes residues(vertices, x, y);
         const CornerLanes corners(vertices, residues, x, y);
         for (std::size_t n = 0; n <= Numerators; ++n) {

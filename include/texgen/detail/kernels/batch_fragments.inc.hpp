@@ -221,10 +221,10 @@ private:
         const bool starts_closely = first != Learned::nearly;
         for (const bool closely : {starts_closely, !starts_closely}) {
             if (closely) {
-                at.take(vertices, CloseLanes(vertices, vector.x, vector.y));
+                at.take(vertices, CloseLanes(vertices, vector.x, vector.y), true);
             } else {
                 at.add_residues(vertices, vector.x, vector.y);
-                if (!starts_closely) at.take(vertices, NearLanes(vertices, vector.x, vector.y));
+                if (!starts_closely) at.take(vertices, NearLanes(vertices, vector.x, vector.y), false);
             }
             if (!closely || !starts_closely) at.sharpen();
             left = put(vector, at);

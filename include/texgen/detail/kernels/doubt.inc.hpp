@@ -22,15 +22,6 @@ struct CloseMiddle {
     TEXGEN_INLINE explicit CloseMiddle(const Doubles& u) noexcept
         : middle(middle_near(u)), unit(power_of_two_below(u) * 0x1p-24) {}
 
-    // What is left of F - m Q, whose leading parts cancel, and its error.
-    TEXGEN_INLINE Doubles rest_of(const CloseValues& f, const CloseValues& q, Doubles& error) const noexcept {
-        const Doubles leading = leading_bits<27>(q.high);
-        Doubles low;
-        const Doubles sum = two_sum(f.high - middle * leading, middle * (leading - q.high), low);
-        error = magnitude(middle) * q.error + f.error;
-        return sum + (low + (f.low - middle * q.low));
-    }
-
     // What F - m Q is a multiple of.
     template <class Grain>
     TEXGEN_INLINE Doubles grain_of(const Grain& f_grain, const Grain& q_grain) const noexcept {
@@ -46,37 +37,30 @@ struct CloseMiddle {
     template <class Grain>
     TEXGEN_INLINE LongWords decide_by_sums(const CloseValues& f, const CloseValues& q, const Grain& f_grain,
                                            const Grain& q_grain, Floats& value) const noexcept {
-        Doubles error;
-        const Doubles rest = rest_of(f, q, error);
+        // The leading parts cancel, and their product is exact.
+        const Doubles leading = leading_bits<27>(q.high);
+        Doubles low;
+        const Doubles sum = two_sum(f.high - middle * leading, middle * (leading - q.high), low);
+        const Doubles rest = sum + (low + (f.low - middle * q.low));
+        const Doubles error = magnitude(middle) * q.error + f.error;
         const LongWords is_tie = at_most(magnitude(rest), error);
         value = nearest(rest, is_tie);
         return ~is_tie | greater(grain_of(f_grain, q_grain), error * 2.25);
     }
 
-    // F - m Q is at most `bound`. Returns the lanes that this decides: those that are asked by residues at once, if they can.
+    // By residues, of F - m Q that is at most `bound`: where they say all of it. Returns the lanes that this decides.
     template <class Grain>
-    TEXGEN_INLINE LongWords decide(const CloseValues& f, const CloseValues& q, const Residues& of_f,
-                                   const Grain& f_grain, const Residues& of_q, const Grain& q_grain,
-                                   const Doubles& bound, const LongWords& asked, Floats& value) const noexcept {
+    TEXGEN_INLINE LongWords decide_by_residues(const Residues& of_f, const Grain& f_grain, const Residues& of_q,
+                                               const Grain& q_grain, const Doubles& bound,
+                                               Floats& value) const noexcept {
         const Doubles finer = grain_of(f_grain, q_grain);
         const Doubles per_finer = reciprocals_of_powers(finer);
         const Doubles f_times = per_finer * f_grain;
         const Doubles q_times = middle * q_grain * per_finer;
         const LongWords fits = greater(Doubles{} + 0x1p62, maximum(f_times, magnitude(q_times)));
         const Residues residue = of_f * to_residues(where(fits, f_times)) - of_q * to_residues(where(fits, q_times));
-        LongWords is_known = fits & greater(finer * 0x1p62, bound);
-        Doubles sign = signs_of(residue);
-        LongWords is_tie = are_zero(residue);
-        if (any(asked & ~is_known)) {
-            Doubles error;
-            const Doubles rest = rest_of(f, q, error);
-            const LongWords is_clear = greater(magnitude(rest), error);
-            is_known |= is_clear | (fits & greater(finer * 0x1p62, magnitude(rest) + error));
-            sign = select(is_clear, rest, sign);
-            is_tie &= ~is_clear;
-        }
-        value = nearest(sign, is_tie);
-        return is_known;
+        value = nearest(signs_of(residue), are_zero(residue));
+        return fits & greater(finer * 0x1p62, bound);
     }
 };
 
@@ -130,7 +114,7 @@ struct CloseFragments {
         const auto q_grain = at.grain(Numerators);
         Residues of_q{};
         doubtful = q.is_beside;
-        if (is_more_known && (!Functions::are_sums_first || any(doubtful))) {
+        if (is_more_known && (!at.are_sums_first || any(doubtful))) {
             of_q = at.residues(Numerators);
             doubtful &= ~q.are_residues(q_grain) | are_positive(of_q);
         }
@@ -150,18 +134,16 @@ struct CloseFragments {
             };
             const CloseMiddle middle(close.u);
             Floats nearest;
-            if constexpr (Functions::are_sums_first) {
+            if (at.are_sums_first) {
                 take(middle.decide_by_sums(close.f, q, grain, q_grain, nearest), nearest);
                 if (!any(left)) continue;
                 of_q = at.residues(Numerators);
             }
             const Residues of_f = at.residues(k);
-            const LongWords asked = left & ~is_rough;
-            if (!SkipsMiddles || any(asked)) {
+            if (!SkipsMiddles || any(left & ~is_rough)) {
                 // The middle is as near to the quotient as F/Q is: so |F - m Q| is at most twice the error times Q.
-                take(
-                    middle.decide(close.f, q, of_f, grain, of_q, q_grain, close.error * q.value * 2.25, asked, nearest),
-                    nearest);
+                const Doubles bound = close.error * q.value * 2.25;
+                take(middle.decide_by_residues(of_f, grain, of_q, q_grain, bound, nearest), nearest);
             }
             if (any(is_rough)) {
                 const Floats above = to_floats(close.u + close.error);

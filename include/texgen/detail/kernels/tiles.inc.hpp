@@ -126,10 +126,9 @@ TileJob::Unit divide_in_pairs(const TileJob& job, const TileJob::Unit& first) no
 
 // A tile's functions at a vector of fragments.
 struct CloseFunctionsAt {
-    static constexpr bool are_sums_first = false;
     const CloseFunction (&of)[3];
     Doubles x, y;
-    bool are_close;
+    bool are_close, are_sums_first;
 
     TEXGEN_INLINE CloseValues values(std::size_t n) const noexcept {
         const auto& [high, low, error, grain, residue] = of[n];
@@ -193,7 +192,8 @@ std::uint64_t fill_tile_closely(const TileJob& job, const CloseFunctions& functi
     float result[3][most];
     std::uint64_t doubtful = 0;
     for (int i = 0; i < count; i += lanes) {
-        const CloseFunctionsAt at{functions.function, load<Doubles>(x + i), load<Doubles>(y + i), functions.are_close};
+        const CloseFunctionsAt at{functions.function, load<Doubles>(x + i), load<Doubles>(y + i), functions.are_close,
+                                  functions.are_sums_first};
         const CloseValues of_q = at.values(CloseFunctions::q);
         Floats lit;
         if (is_mask && are_sided(functions, at, of_q, lit)) {

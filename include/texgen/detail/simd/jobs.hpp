@@ -166,6 +166,7 @@ struct CloseFunctions {
     MaskSide side[2];
     double tolerance;               // within which whatever is nearest to a double will do
     bool are_close, have_residues;  // or they are of the planes as they are, without low parts, and without residues
+    bool are_sums_first;            // as they say more than residues do
 };
 
 // A linear form of points (x, y, z, 1).

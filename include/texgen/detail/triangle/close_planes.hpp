@@ -179,6 +179,14 @@ struct DoubtfulJob {
     DoubtfulFunctions functions;
 };
 
+// Whether sums decide ties too, if they err by `share` of what functions do now: by less than half a grain of F - m Q, where m is a
+// multiple of 2^-25 of itself.
+TEXGEN_RARE inline bool are_decided_by_sums(const CloseFunctions& functions, double share) noexcept {
+    const auto& [first, second, q] = functions.function;
+    return 4.0 * share * first.error < first.grain && 4.0 * share * second.error < second.grain &&
+           0x1p27 * share * q.error < q.grain;
+}
+
 // Whether quotients of a tile well in front are decided by residues, of numerators as large as their errors let expect. Planes that
 // are multiples of their grains become exact: the error that is left is of what is computed of them, 2^-98 of the values.
 TEXGEN_RARE inline bool are_decided_by_residues(CloseFunctions& functions) noexcept {

@@ -8,6 +8,7 @@ template <class CompiledWhereCalled = void>
 class TileInterpolator {
 public:
     static constexpr int scratch_width = 512;
+    static constexpr int few_ties = 16;
 
     // `close` is what is known of the functions that add() says, or nothing yet.
     TileInterpolator(const TileKernels& kernels, const TriangleFunctions& triangle, const Tile& rect,
@@ -107,6 +108,7 @@ private:
         result.tolerance = triangle_.tolerance;
         result.are_close = static_cast<bool>(close_);
         result.are_close ? take_close(tile, result, false) : take_planes(at, result);
+        result.are_sums_first = result.are_close;
         if (is_mask_alone()) take_sides(triangle_.lit, result);
         return result;
     }
@@ -132,16 +134,24 @@ private:
         return std::popcount(fragments) > (tile.count() < TileJob::unit_size ? tile.count() : TileJob::unit_size) / 4;
     }
 
-    // More of them, if there is more: residues first for ties, which have company.
+    // More of them, if there is more: residues first for ties, which have company, and alone where sums would not decide them, or
+    // fragments are few.
     TEXGEN_RARE bool sharpen(const Tile& tile, DoubtfulFunctions& functions, bool are_ties) noexcept {
         const bool have_both = functions.are_close && functions.have_residues;
         if (have_both && are_exact_) return false;
+        bool are_enough = false;
         if (!functions.have_residues && (are_ties || functions.are_close)) {
             add_residues(tile, functions);
-            if (functions.residues_first && !functions.are_close && are_decided_by_residues(functions)) return true;
+            are_enough = functions.residues_first && !functions.are_close && are_decided_by_residues(functions) &&
+                         (tile.count() < few_ties || are_decided_by_sums(functions, 1.0) ||
+                          !are_decided_by_sums(functions, 0x1p-46));
         }
-        if (have_both || !functions.are_close) take_close(tile, functions, have_both);
-        return functions.are_close = true;
+        if (!are_enough && (have_both || !functions.are_close)) {
+            take_close(tile, functions, have_both);
+            functions.are_close = true;
+        }
+        functions.are_sums_first = functions.are_close || are_decided_by_sums(functions, 1.0);
+        return true;
     }
 
     // A unit's fragments with what is known of the functions, and with more while that leaves doubt; the rest one by one. Whether all
