@@ -190,6 +190,10 @@ void run(const char* name, unsigned mask, void (*program)(Tolerance), Tolerance 
     std::printf("\n");
 }
 
+// Compilers lost variables that are one by one: of those each set of outputs is asked for, of others each alone and all.
+using AllMasks = std::integer_sequence<unsigned, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15>;
+using SomeMasks = std::integer_sequence<unsigned, 1, 2, 4, 8, 15>;
+
 #define FOUR_OUTPUTS(CALL, is_exact)                                                                             \
     template <unsigned mask>                                                                                     \
     [[gnu::noinline]] void CALL##_scalars([[maybe_unused]] Tolerance tolerance) {                                \
@@ -225,12 +229,19 @@ void run(const char* name, unsigned mask, void (*program)(Tolerance), Tolerance 
             for (const float value : *output) print(value);                                                      \
     }                                                                                                            \
     template <unsigned... mask>                                                                                  \
-    void CALL##_masks(std::integer_sequence<unsigned, mask...>) {                                                \
+    void CALL##_few(std::integer_sequence<unsigned, mask...>, Tolerance tolerance) {                             \
+        (run(#CALL " scalars", mask, CALL##_scalars<mask>, tolerance, is_exact), ...);                           \
+        (run(#CALL " members", mask, CALL##_members<mask>, tolerance, is_exact), ...);                           \
+    }                                                                                                            \
+    template <unsigned... mask>                                                                                  \
+    void CALL##_many(std::integer_sequence<unsigned, mask...>, Tolerance tolerance) {                            \
+        (run(#CALL " arrays", mask, CALL##_arrays<mask>, tolerance, is_exact), ...);                             \
+        (run(#CALL " vectors", mask, CALL##_vectors<mask>, tolerance, is_exact), ...);                           \
+    }                                                                                                            \
+    void CALL##_masks() {                                                                                        \
         for (const Tolerance tolerance : {exact, Tolerance{0x1p-12}}) {                                          \
-            (run(#CALL " scalars", mask + 1, CALL##_scalars<mask + 1>, tolerance, is_exact), ...);               \
-            (run(#CALL " members", mask + 1, CALL##_members<mask + 1>, tolerance, is_exact), ...);               \
-            (run(#CALL " arrays", mask + 1, CALL##_arrays<mask + 1>, tolerance, is_exact), ...);                 \
-            (run(#CALL " vectors", mask + 1, CALL##_vectors<mask + 1>, tolerance, is_exact), ...);               \
+            CALL##_few(AllMasks(), tolerance);                                                                   \
+            CALL##_many(SomeMasks(), tolerance);                                                                 \
         }                                                                                                        \
     }
 
@@ -335,22 +346,21 @@ void run_clip(const char* name, Clip clip) {
 }  // namespace
 
 int main() {
-    constexpr std::make_integer_sequence<unsigned, 15> masks;
-    PROJECT_masks(masks);
-    PROJECT_PLANAR_masks(masks);
-    PROJECT_STRIDED_masks(masks);
-    PROJECT_WITHIN_masks(masks);
-    GENERATE_masks(masks);
-    INTERPOLATE_masks(masks);
-    INTERPOLATE_BATCH_masks(masks);
-    INTERPOLATE_IDS_masks(masks);
-    DERIVATIVES_OF_IDS_masks(masks);
-    INTERPOLATE_SEGMENT_masks(masks);
-    DERIVATIVES_masks(masks);
-    FILTERS_masks(masks);
+    PROJECT_masks();
+    PROJECT_PLANAR_masks();
+    PROJECT_STRIDED_masks();
+    PROJECT_WITHIN_masks();
+    GENERATE_masks();
+    INTERPOLATE_masks();
+    INTERPOLATE_BATCH_masks();
+    INTERPOLATE_IDS_masks();
+    DERIVATIVES_OF_IDS_masks();
+    INTERPOLATE_SEGMENT_masks();
+    DERIVATIVES_masks();
+    FILTERS_masks();
 #if __has_include(<Eigen/Core>)
-    PROJECT_EIGEN_masks(masks);
-    REFERENCE_masks(masks);
+    PROJECT_EIGEN_masks();
+    REFERENCE_masks();
 #endif
     PROJECT_PAIRS_all();
     GENERATE_VECTORS_all();
