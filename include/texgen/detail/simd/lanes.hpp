@@ -117,20 +117,34 @@ inline bool all_less(const Double2& a, const Double2& b) noexcept { return a[0] 
 #define TEXGEN_RARE [[gnu::noinline, gnu::cold]]  // what only ties need, so that it costs the rest no room
 
 // What the compilers have different words for: a loop over an array of vectors, which GCC keeps, and so the array in memory,
-// below -O3; eight or four doubles of floats, of which GCC 12 converts eight the generic way in two halves; all of sixteen
+// below -O3; doubles of as many floats or integers as 64, 32 or 16 bytes hold, which GCC 12 converts the generic way in parts; all of sixteen
 // lanes, of which a mask has a sign to GCC; a masked or, of 512 bits two instructions to GCC 12; and which of sixteen lanes of a
 // mask have any of these bits.
 #ifdef __clang__
 #define TEXGEN_UNROLL
-#define TEXGEN_EIGHT_DOUBLES(values) __builtin_convertvector(values, Doubles)
-#define TEXGEN_FOUR_DOUBLES(values) __builtin_convertvector(values, Double4)
+#define TEXGEN_DOUBLES_64(values) __builtin_convertvector(values, Doubles)
+#define TEXGEN_DOUBLES_32(values) TEXGEN_DOUBLES_64(values)
+#define TEXGEN_DOUBLES_16(values) TEXGEN_DOUBLES_64(values)
+#define TEXGEN_DOUBLES_OF_WORDS_64(values) TEXGEN_DOUBLES_64(values)
+#define TEXGEN_DOUBLES_OF_WORDS_32(values) TEXGEN_DOUBLES_64(values)
+#define TEXGEN_DOUBLES_OF_WORDS_16(values) TEXGEN_DOUBLES_64(values)
 #define TEXGEN_SIXTEEN_LANES 0xffff
 #define TEXGEN_MASKED_OR(a, bits, b) (((a) & (bits)) | (b))
 #define TEXGEN_ANY_BITS(a, bits, mask) __builtin_ia32_cmpd512_mask((a) & (bits), WideWords{}, 4, mask)
 #else
 #define TEXGEN_UNROLL _Pragma("GCC unroll 32")
-#define TEXGEN_EIGHT_DOUBLES(values) __builtin_ia32_cvtps2pd512_mask(values, Doubles{}, static_cast<char>(-1), 4)
-#define TEXGEN_FOUR_DOUBLES(values) __builtin_ia32_cvtps2pd256(values)
+#define TEXGEN_DOUBLES_64(values) __builtin_ia32_cvtps2pd512_mask(values, Doubles{}, static_cast<char>(-1), 4)
+#define TEXGEN_DOUBLES_32(values) __builtin_ia32_cvtps2pd256(values)
+#define TEXGEN_DOUBLES_OF_WORDS_64(values) __builtin_ia32_cvtdq2pd512_mask(values, Doubles{}, 0xff)
+#define TEXGEN_DOUBLES_OF_WORDS_32(values) __builtin_ia32_cvtdq2pd256(values)
+#if defined(__SSE2__)
+#define TEXGEN_DOUBLES_16(values) __builtin_ia32_cvtps2pd(__builtin_shufflevector(values, values, 0, 1, -1, -1))
+#define TEXGEN_DOUBLES_OF_WORDS_16(values) \
+    __builtin_ia32_cvtdq2pd(__builtin_shufflevector(values, values, 0, 1, -1, -1))
+#else
+#define TEXGEN_DOUBLES_16(values) __builtin_convertvector(values, Doubles)
+#define TEXGEN_DOUBLES_OF_WORDS_16(values) __builtin_convertvector(values, Doubles)
+#endif
 #define TEXGEN_SIXTEEN_LANES (-1)
 #define TEXGEN_MASKED_OR(a, bits, b) __builtin_ia32_pternlogq512_mask(a, bits, b, 0xea, 0xff)
 #define TEXGEN_ANY_BITS(a, bits, mask) __builtin_ia32_ptestmd512(a, bits, mask)
@@ -192,7 +206,8 @@ TEXGEN_INLINE Double4 magnitude(const Double4& a) noexcept {
 }
 TEXGEN_INLINE Double4 four_widened(const glm::vec4& v) noexcept {
     using Given [[gnu::vector_size(16), gnu::aligned(4), gnu::may_alias]] = float;
-    return TEXGEN_FOUR_DOUBLES(reinterpret_cast<const volatile Given&>(v));
+    using Doubles [[maybe_unused]] = Double4;
+    return TEXGEN_DOUBLES_32(reinterpret_cast<const volatile Given&>(v));
 }
 TEXGEN_INLINE Double2 first_two(const Double4& a) noexcept { return __builtin_shufflevector(a, a, 0, 1); }
 TEXGEN_INLINE Double2 last_two(const Double4& a) noexcept { return __builtin_shufflevector(a, a, 2, 3); }

@@ -20,15 +20,13 @@ TEXGEN_INLINE Vector indices() noexcept {
     return result;
 }
 
-TEXGEN_INLINE Doubles to_doubles(const Words& values) noexcept { return __builtin_convertvector(values, Doubles); }
+TEXGEN_INLINE Doubles to_doubles(const Words& values) noexcept {
+    return TEXGEN_NAMED(TEXGEN_DOUBLES_OF_WORDS_, TEXGEN_LANE_BYTES)(values);
+}
 TEXGEN_INLINE Floats to_floats(const Doubles& values) noexcept { return __builtin_convertvector(values, Floats); }
 TEXGEN_INLINE Words bits(const Floats& values) noexcept { return __builtin_bit_cast(Words, values); }
 TEXGEN_INLINE Doubles to_doubles(const Floats& values) noexcept {
-#if TEXGEN_LANE_BYTES == 64
-    return TEXGEN_EIGHT_DOUBLES(values);
-#else
-    return __builtin_convertvector(values, Doubles);
-#endif
+    return TEXGEN_NAMED(TEXGEN_DOUBLES_, TEXGEN_LANE_BYTES)(values);
 }
 TEXGEN_INLINE Doubles to_doubles_as_rounded(const Floats& values) noexcept { return to_doubles(values); }
 
@@ -57,7 +55,7 @@ TEXGEN_INLINE WideFloats in_double(const Function& f, const Vector&... values) n
 
 // Towards zero, of numbers that an int can hold.
 TEXGEN_INLINE Doubles truncated(const Doubles& values) noexcept {
-    return __builtin_convertvector(__builtin_convertvector(values, Words), Doubles);
+    return to_doubles(__builtin_convertvector(values, Words));
 }
 
 // Masks of Doubles are 64 bits wide.
@@ -103,8 +101,15 @@ TEXGEN_INLINE Residues to_residues(const Doubles& integers) noexcept {
     return __builtin_bit_cast(Residues, __builtin_convertvector(integers, LongWords));
 #endif
 }
+// The doubles next to integers. AVX2 has 2^52 + the low half, and 2^84 + 2^63 + what the high one stands for.
 TEXGEN_INLINE Doubles signed_numbers(const Residues& a) noexcept {
+#if TEXGEN_LANE_BYTES == 32
+    const auto low = __builtin_bit_cast(Doubles, (a & 0xffffffff) | bit_cast<std::uint64_t>(0x1p52));
+    const auto high = __builtin_bit_cast(Doubles, (a >> 32) ^ bit_cast<std::uint64_t>(0x1.000008p84));
+    return (high - (0x1.000008p84 + 0x1p52)) + low;
+#else
     return __builtin_convertvector(__builtin_bit_cast(LongWords, a), Doubles);
+#endif
 }
 // A number without its last bit that is set; of a power of two, or 0, it is none.
 TEXGEN_INLINE Doubles without_last_bit(const Doubles& a) noexcept {
@@ -119,6 +124,10 @@ TEXGEN_INLINE LongWords are_positive(const Residues& a) noexcept { return __buil
 TEXGEN_INLINE Words narrow(const LongWords& mask) noexcept {
 #if TEXGEN_LANE_BYTES == 64
     return __builtin_ia32_cvtmask2d256(__builtin_ia32_cvtq2mask512(mask));
+#elif TEXGEN_LANE_BYTES == 32
+    using Half = std::make_integer_sequence<int, lanes>;
+    const auto halves = __builtin_bit_cast(WideFloats, mask);
+    return bits(__builtin_shufflevector(half<0>(halves, Half()), half<lanes>(halves, Half()), 0, 2, 4, 6));
 #else
     return __builtin_convertvector(mask, Words);
 #endif
