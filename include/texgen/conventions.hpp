@@ -11,8 +11,8 @@
 
 #include "detail/matrices/required.hpp"
 
-// 0.4.10: 10000 major + 100 minor + patch.
-#define TEXGEN_VERSION 410
+// 0.4.11: 10000 major + 100 minor + patch.
+#define TEXGEN_VERSION 411
 
 namespace TEXGEN_NAMESPACE {
 

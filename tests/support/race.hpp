@@ -75,7 +75,7 @@ public:
     // Measures an input that looks as slow as the slowest.
     void offer(const Numbers& numbers, double glance, const std::string& words) {
         if (!(glance > 0.0)) return;
-        const double limit = workload_.limit(numbers);
+        const double limit = workload_.limit(numbers) * limit::times_by_vectors();
         const auto found =
             std::find_if(inputs_.begin(), inputs_.end(), [&](const SlowInput& i) { return i.limit == limit; });
         if (found != inputs_.end() && glance <= 1.05 * found->slowness.ratio()) return;

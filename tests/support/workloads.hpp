@@ -21,6 +21,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include "support/limits.hpp"
 #include "support/near_cut.hpp"
 #include "support/random.hpp"
 #include "support/stopwatch.hpp"
@@ -43,18 +44,6 @@
 namespace support {
 
 using Numbers = std::vector<double>;
-
-// How many times the ordinary time the worst input of a function may take.
-namespace limit {
-inline constexpr double any = 8.0;
-inline constexpr double near_plane = 16.0;           // a triangle that the camera's near plane has cut
-inline constexpr double near_plane_99_of_100 = 4.0;  // of such triangles
-inline constexpr double rotation = 3.0;              // between the orders of the corners of one triangle
-inline constexpr double q_is_zero = 24.0;            // a tile that q = 0 crosses
-inline constexpr double touching = 10.0;             // a body that touches a side
-inline constexpr double all_sizes = 24.0;            // the sign of a determinant of numbers that are 256 times apart
-inline constexpr double frame = 200.0;               // of Scene::update, over the median frame
-}  // namespace limit
 
 // Inputs that are meant to take long, where a search begins.
 struct Hostile {

@@ -1,0 +1,29 @@
+#pragma once
+
+// What the worst inputs of functions may cost.
+
+namespace support {
+
+// How many times the ordinary time the worst input of a function may take.
+namespace limit {
+inline constexpr double any = 8.0;
+inline constexpr double near_plane = 16.0;           // a triangle that the camera's near plane has cut
+inline constexpr double near_plane_99_of_100 = 4.0;  // of such triangles
+inline constexpr double rotation = 3.0;              // between the orders of the corners of one triangle
+inline constexpr double q_is_zero = 24.0;            // a tile that q = 0 crosses
+inline constexpr double touching = 10.0;             // a body that touches a side
+inline constexpr double all_sizes = 24.0;            // the sign of a determinant of numbers that are 256 times apart
+inline constexpr double frame = 200.0;               // of Scene::update, over the median frame
+
+// Without AVX-512 what is in doubt is decided in vectors of half as many doubles, and with more instructions, and ordinary inputs are
+// floats that lose less: there limits of any inputs are as many times these.
+inline double times_by_vectors() {
+#if defined(__x86_64__)
+    __builtin_cpu_init();
+    if (__builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl")) return 1.0;
+#endif
+    return 1.5;
+}
+}  // namespace limit
+
+}  // namespace support
