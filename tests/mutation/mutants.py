@@ -601,6 +601,8 @@ MUTANTS = [
           "near_ties_test batch_test"),
          ("what two doubles leave of a batch is a tie", "greater(grain_of(f_grain, q_grain), error * 2.25)",
           "greater(Doubles{} + 1.0, error * 2.25)", "batch_test near_ties_test"),
+         ("residues are all of what is larger than they hold", "return fits & greater(finer * 0x1p62, bound);", "return fits;",
+          "near_ties_test batch_test"),
          ("residues of any length are believed", "fits & greater(finer * 0x1p62, bound)", "fits & greater(finer * 0x1p162, bound)",
           "interpolate_test batch_test"),
          ("quotients in doubt err by nothing", "reciprocal * error + 0x1p-50", "reciprocal * error", "batch_test"),
