@@ -385,8 +385,7 @@ TEXGEN_INLINE bool any(const WideWords& mask) noexcept {
 #if TEXGEN_LANE_BYTES == 64
     return __builtin_ia32_cvtd2mask512(mask) != 0;
 #else
-    using Half = std::make_integer_sequence<int, lanes>;
-    return any(half<0>(mask, Half()) | half<lanes>(mask, Half()));
+    return any(__builtin_bit_cast(LongWords, mask));
 #endif
 }
 
