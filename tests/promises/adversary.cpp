@@ -5,7 +5,7 @@
 //   adversary [--seconds N] [--seed N] [--only WORD] [--towards error]
 //
 // Towards time it climbs to the inputs that a function takes longest for, as a multiple of what ordinary ones take, and
-// fails where that is above its limit (support/workloads.hpp). What it prints is a line of worst_inputs.txt, behind what it
+// fails where that is above its limit (support/limits.hpp). What it prints is a line of worst_inputs.txt, behind what it
 // measured; it begins with those, and with 0 seconds they are all. Functions whose names stand behind --but, which a | separates,
 // are searched, and never fail.
 //
