@@ -8,7 +8,6 @@ template <class CompiledWhereCalled = void>
 class TileInterpolator {
 public:
     static constexpr int scratch_width = 512;
-    static constexpr int few_ties = 16;
 
     // `close` is what is known of the functions that add() says, or nothing yet.
     TileInterpolator(const TileKernels& kernels, const TriangleFunctions& triangle, const Tile& rect,
@@ -135,7 +134,8 @@ private:
     }
 
     // More of them, if there is more: residues first for ties, which have company, and alone where sums would not decide them, or
-    // fragments are few.
+    // fragments are few, which do not repay two doubles.
+    static constexpr int few_ties = 16;
     TEXGEN_RARE bool sharpen(const Tile& tile, DoubtfulFunctions& functions, bool are_ties) noexcept {
         const bool have_both = functions.are_close && functions.have_residues;
         if (have_both && are_exact_) return false;
