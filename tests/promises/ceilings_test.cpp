@@ -23,6 +23,7 @@
 #include "judges/real.hpp"
 #include "support/aspects.hpp"
 #include "support/hard_triangles.hpp"
+#include "support/has_avx512.hpp"
 #include "support/mirrors.hpp"
 #include "support/outputs.hpp"
 #include "support/random.hpp"
@@ -57,10 +58,7 @@ std::string build() {
 #if defined(TEXGEN_NO_DISPATCH)
     const std::string set = "flags";
 #else
-    __builtin_cpu_init();
-    const std::string set = __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl") ? "avx512"
-                            : __builtin_cpu_supports("avx2")                                         ? "avx2"
-                                                                                                     : "sse2";
+    const std::string set = support::has_avx512() ? "avx512" : __builtin_cpu_supports("avx2") ? "avx2" : "sse2";
 #endif
 #else
     const std::string set = "other";

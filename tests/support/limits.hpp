@@ -2,6 +2,8 @@
 
 // What the worst inputs of functions may cost.
 
+#include "support/has_avx512.hpp"
+
 namespace support {
 
 // How many times the ordinary time the worst input of a function may take.
@@ -17,13 +19,7 @@ inline constexpr double frame = 200.0;               // of Scene::update, over t
 
 // Without AVX-512 what is in doubt is decided in vectors of half as many doubles, and with more instructions, and ordinary inputs are
 // floats that lose less: there limits of any inputs are as many times these.
-inline double times_by_vectors() {
-#if defined(__x86_64__)
-    __builtin_cpu_init();
-    if (__builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl")) return 1.0;
-#endif
-    return 1.5;
-}
+inline double times_by_vectors() { return has_avx512() ? 1.0 : 1.5; }
 }  // namespace limit
 
 }  // namespace support
