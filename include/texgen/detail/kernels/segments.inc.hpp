@@ -64,13 +64,6 @@ TEXGEN_INLINE Floats rounded_from(const Doubles& middle, const Doubles& remainde
     return to_floats(where(in_front, middle + where(are_nonzero(remainder), away)));
 }
 
-// The middle of the two floats next to a quotient that may be subnormal, or the only one.
-TEXGEN_INLINE Doubles middle_of_floats(const Doubles& quotient) noexcept {
-    const Doubles error = quotient * 0x1p-50;
-    return to_doubles_as_rounded(to_floats(quotient - error)) * 0.5 +
-           to_doubles_as_rounded(to_floats(quotient + error)) * 0.5;
-}
-
 // Blocks, on both sides of the projector, up to the first with values that stay in doubt.
 template <std::size_t Numerators, bool AreShort>
 Undecided fill_segment_closely(const SegmentJob& job, std::size_t first) noexcept {
@@ -108,11 +101,22 @@ Undecided fill_segment_closely(const SegmentJob& job, std::size_t first) noexcep
             for (std::size_t k = 0; k < Numerators; ++k) quotient[k] = s[k].high * reciprocal + 0x1p-900;
             const Distances distance = nearer(far_from_middles(), quotient[0], quotient[Numerators - 1], 7);
             const bool are_near = any_zero(distance);
-            const auto may_be_subnormal = [&](std::size_t k) {
-                const Doubles size = magnitude(quotient[k]);
-                return at_most(size, Doubles{} + 0x1p-125) & greater(size, 0x1p-800);
-            };
-            const bool are_small = has_subnormal && any(may_be_subnormal(0) | may_be_subnormal(Numerators - 1));
+            // Where the float may be subnormal, and that next to the middle of two.
+            LongWords is_tiny[2] = {}, is_small[2] = {};
+            bool are_small = false;
+            if (has_subnormal) {
+                TEXGEN_UNROLL
+                for (std::size_t k = 0; k < Numerators; ++k)
+                    is_tiny[k] = at_most(magnitude(quotient[k]), Doubles{} + 0x1p-125);
+                if (any(is_tiny[0] | is_tiny[Numerators - 1])) {
+                    TEXGEN_UNROLL
+                    for (std::size_t k = 0; k < Numerators; ++k) {
+                        const Doubles distance_to_it = magnitude(quotient[k] - middle_of_subnormals(quotient[k]));
+                        is_small[k] = is_tiny[k] & at_most(distance_to_it, magnitude(quotient[k]) * 0x1p-48);
+                    }
+                    are_small = any(is_small[0] | is_small[Numerators - 1]);
+                }
+            }
             const auto are_exact = [&] {
                 if (!has_inexact) return is_constant || !any_nonzero_near(distance, q.low());
                 const LongWords is_inexact = at_most(alpha, Doubles{} + inexact_alpha);
@@ -133,16 +137,22 @@ Undecided fill_segment_closely(const SegmentJob& job, std::size_t first) noexcep
                 const Doubles q_lost = has_inexact ? q_mixture.lost_at(alpha) : Doubles{};
                 TEXGEN_UNROLL
                 for (std::size_t k = 0; k < Numerators; ++k) {
-                    const LongWords is_small = has_subnormal ? may_be_subnormal(k) : LongWords{};
-                    const LongWords is_near = are_near_middles(quotient[k], 7) | is_small;
-                    const Doubles s_lost = has_inexact ? mixture[k].lost_at(alpha) : Doubles{};
-                    const Doubles middle = select(is_small, middle_of_floats(quotient[k]),
-                                                  select(is_near, middle_near(quotient[k]), quotient[k]));
+                    Doubles middle = middle_near(quotient[k]);
+                    if (are_small) {
+                        const Doubles of_tiny = select(is_small[k], middle_of_subnormals(quotient[k]), quotient[k]);
+                        middle = select(is_tiny[k], of_tiny, middle);
+                    }
                     const Doubles last_product = middle * q.low();
-                    const Doubles remainder = small_difference(s[k], q, middle) - last_product;
-                    const Doubles lost = s_lost + magnitude(middle) * q_lost + magnitude(last_product) * 0x1p-51;
-                    in_doubt |= is_near & ~at_most(lost * 2.0, magnitude(remainder));
-                    value[k] = rounded_from(middle, where(is_near, remainder), in_front);
+                    Doubles remainder = small_difference(s[k], q, middle) - last_product;
+                    if (!are_finite) {
+                        const LongWords is_finite = at_most(quotient[k] - quotient[k], Doubles{});
+                        middle = select(is_finite, middle, quotient[k]);
+                        remainder = where(is_finite, remainder);
+                    }
+                    Doubles lost = magnitude(last_product) * 0x1p-50;
+                    if (has_inexact) lost = lost + (mixture[k].lost_at(alpha) + magnitude(middle) * q_lost) * 2.0;
+                    in_doubt |= greater(lost, magnitude(remainder));
+                    value[k] = rounded_from(middle, remainder, in_front);
                 }
                 doubtful |= lane_bits(in_front & in_doubt) << (i - begin);
             }

@@ -197,6 +197,12 @@ TEXGEN_INLINE bool divide_nearly(const Doubles& s, const Doubles& s_error, const
     return !any(bits(value) ^ bits(to_floats(quotient + error)));
 }
 
+// The middle of two floats that is next to a number below 2^-125, where floats may be subnormal and have one exponent.
+TEXGEN_INLINE Doubles middle_of_subnormals(const Doubles& a) noexcept {
+    constexpr double rounder = 0x1.8p52 * 0x1p-149;
+    return (((a - 0x1p-150) + rounder) - rounder) + 0x1p-150;
+}
+
 // The floats nearest to s / q in front, 0 elsewhere; `is_known` loses the lanes in front where that is in doubt.
 // As nearest_quotient(): where the quotient, which errs by less than 2^-48 of it, 32 ulps, is so near the middle of two
 // floats, the sign of s - middle q decides. That is a small number beside both products, so s - middle q' is exact for the
@@ -217,8 +223,7 @@ TEXGEN_INLINE Floats nearest_quotients(const PointSum& s, const TwofoldDivisor& 
     }
     Doubles middle = middle_near(quotient + 0x1p-900);  // of 0 it is subnormal, which takes long
     if (any(is_small)) {
-        constexpr double rounder = 0x1.8p52 * 0x1p-149;
-        const Doubles of_small = (((quotient - 0x1p-150) + rounder) - rounder) + 0x1p-150;
+        const Doubles of_small = middle_of_subnormals(quotient);
         middle = select(is_small, of_small, middle);
         is_near = (is_near & ~is_small) | (is_small & at_most(magnitude(quotient - of_small), size * 0x1p-48));
     }
