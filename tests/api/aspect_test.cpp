@@ -4,27 +4,26 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include "judges/oracle.hpp"
 #include "support/aspects.hpp"
 #include "support/hex.hpp"
 #include "support/random.hpp"
+#include "support/special_values.hpp"
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
 
 namespace {
 
 using support::hex;
+using support::infinity_double;
+using support::nan_double;
 using support::Random;
 using texgen::FrustumLens;
 using texgen::OrthographicLens;
 using texgen::PerspectiveLens;
 using texgen::TextureRegion;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double nan_double = std::numeric_limits<double>::quiet_NaN();
 
 // Whether s and t of the texgen's rows grow by the same number of picture heights a unit of length: a circle stays one.
 bool is_undistorted(const glm::dmat4& texture_from_eye, double picture_aspect, double extent_s, double extent_t) {
@@ -120,7 +119,7 @@ TEST_CASE("an aspect that is none makes no lens, and a region without points") {
     const auto has_points = [](const TextureRegion& region) {
         return region.min().x <= region.max().x && region.min().y <= region.max().y;
     };
-    for (const double bad : {0.0, -1.5, nan_double, infinity, -infinity}) {
+    for (const double bad : {0.0, -1.5, nan_double, infinity_double, -infinity_double}) {
         CAPTURE(bad);
         CHECK_FALSE(perspective(contain(lens, bad), texgen::opengl));
         CHECK_FALSE(frustum(contain(frustum_lens, bad), texgen::opengl));

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <span>
 #include <string>
 
@@ -14,6 +13,7 @@
 #include "judges/real.hpp"
 #include "support/hex.hpp"
 #include "support/random.hpp"
+#include "support/special_values.hpp"
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
 #include "texgen/texcoord.hpp"
@@ -22,15 +22,14 @@ namespace {
 
 using support::exactly;
 using support::hex;
+using support::infinity_double;
+using support::nan_double;
 using support::Random;
 using support::Rational;
 using support::Real;
 using texgen::PinholeLens;
 using texgen::PixelCentre;
 using texgen::Projector;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double nan_double = std::numeric_limits<double>::quiet_NaN();
 
 PinholeLens random_lens(Random& random) {
     const double width = random.integer(320, 8192), height = random.integer(240, 8192);
@@ -41,7 +40,7 @@ PinholeLens random_lens(Random& random) {
             .width = width,
             .height = height,
             .z_near = random.power_of_ten(-3.0, 0.0),
-            .z_far = random.coin() ? infinity : random.power_of_ten(0.1, 6.0),
+            .z_far = random.coin() ? infinity_double : random.power_of_ten(0.1, 6.0),
             .centre = random.coin() ? PixelCentre::integer : PixelCentre::half,
             .skew = random.coin() ? 0.0 : width * random.uniform(-0.1, 0.1)};
 }
@@ -196,7 +195,7 @@ TEST_CASE("a pinhole that is none is refused") {
                            .width = 640.0,
                            .height = 480.0,
                            .z_near = 0.1,
-                           .z_far = infinity,
+                           .z_far = infinity_double,
                            .centre = PixelCentre::integer};
     CHECK(pinhole(good, texgen::opengl));
     const auto with = [&](double PinholeLens::*number, double value) {
@@ -205,10 +204,10 @@ TEST_CASE("a pinhole that is none is refused") {
         return pinhole(lens, texgen::vulkan);
     };
     for (const auto number : {&PinholeLens::fx, &PinholeLens::fy, &PinholeLens::width, &PinholeLens::height})
-        for (const double bad : {0.0, -1.0, nan_double, infinity, 1e308 * 1e10}) CHECK(!with(number, bad));
+        for (const double bad : {0.0, -1.0, nan_double, infinity_double, 1e308 * 1e10}) CHECK(!with(number, bad));
     for (const auto number : {&PinholeLens::cx, &PinholeLens::cy, &PinholeLens::skew})
-        for (const double bad : {nan_double, infinity, -infinity}) CHECK(!with(number, bad));
-    for (const double bad : {0.0, -1.0, nan_double, infinity}) CHECK(!with(&PinholeLens::z_near, bad));
+        for (const double bad : {nan_double, infinity_double, -infinity_double}) CHECK(!with(number, bad));
+    for (const double bad : {0.0, -1.0, nan_double, infinity_double}) CHECK(!with(&PinholeLens::z_near, bad));
     for (const double bad : {0.1, 0.0, -1.0, nan_double}) CHECK(!with(&PinholeLens::z_far, bad));
     CHECK(!with(&PinholeLens::fx, 5e-324));     // the scale of x would be 0
     CHECK(!with(&PinholeLens::width, 5e-324));  // an element would be infinite
@@ -234,7 +233,7 @@ TEST_CASE(
         }
         REQUIRE((m[0].w == 0.0 && m[1].w == 0.0 && m[2].w == 0.0 && m[3].w == 1.0));
     }
-    for (const double bad : {nan_double, infinity, -infinity}) {
+    for (const double bad : {nan_double, infinity_double, -infinity_double}) {
         glm::dmat3 rotation(1.0);
         CHECK(!texgen::view_from_opencv(rotation, {0.0, bad, 0.0}));
         rotation[1][2] = bad;

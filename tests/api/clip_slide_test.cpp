@@ -16,6 +16,7 @@
 #include "judges/oracle.hpp"
 #include "support/polygons.hpp"
 #include "support/random.hpp"
+#include "support/special_values.hpp"
 #include "texgen/clip.hpp"
 #include "texgen/linear.hpp"
 
@@ -25,7 +26,9 @@ using support::Bits;
 using support::bits;
 using support::exactly;
 using support::hex;
+using support::infinity_float;
 using support::magnitude;
+using support::nan_float;
 using support::Polygon;
 using support::Random;
 using support::Rational;
@@ -34,9 +37,6 @@ using texgen::clip_to_slide;
 using texgen::ClipVertex;
 using texgen::TextureRegion;
 using texgen::whole_texture;
-
-constexpr float nan_float = std::numeric_limits<float>::quiet_NaN();
-constexpr float infinity = std::numeric_limits<float>::infinity();
 
 std::string hex_of(const Polygon& polygon, const TextureRegion& region) {
     return "region " + hex(region.min()) + " to " + hex(region.max()) +
@@ -299,7 +299,7 @@ TEST_CASE("a point is inside all clip planes where the projector lights it") {
 }
 
 TEST_CASE("what is not finite in the matrix is not finite in the planes that it reaches") {
-    for (const float bad : {nan_float, infinity}) {
+    for (const float bad : {nan_float, infinity_float}) {
         glm::dmat4 matrix(1.0);
         matrix[2].x = static_cast<double>(bad);
         const auto planes = clip_planes(texgen::WorldTexgen(matrix), whole_texture());
@@ -322,7 +322,7 @@ TEST_CASE("a polygon inside the slide keeps every bit and its order, also where 
             polygon.push_back(v);
         }
         polygon[0].position.x = -0.0f;
-        polygon[1].position.y = infinity;
+        polygon[1].position.y = infinity_float;
         if (!region.depth()) polygon[2].strq.z = nan_float;
         REQUIRE_MESSAGE(bits(clipped(polygon, region)) == bits(polygon), hex_of(polygon, region));
     }
@@ -705,7 +705,7 @@ TEST_CASE("a depth without a point leaves nothing, one to infinity cuts nothing,
     CHECK(bits(clipped(polygon, whole_texture().with_depth(-infinite, infinite))) == bits(polygon));
     CHECK(clipped(polygon, whole_texture().with_depth(0.0, infinite)).size() == 4);
     CHECK(clipped(polygon, whole_texture().with_depth()).size() == 5);
-    for (const float bad : {nan_float, infinity}) {
+    for (const float bad : {nan_float, infinity_float}) {
         Polygon spoilt = polygon;
         spoilt[1].strq.z = bad;
         CHECK(bits(clipped(spoilt, whole_texture())) == bits(spoilt));
@@ -724,7 +724,7 @@ TEST_CASE("NaN and infinity: s, t, q drop the polygon, r and the position spoil 
     const Polygon good{{{0, 0, 0, 1}, {0.5f, 0.5f, 0, 1}}, {{1, 0, 0, 1}, {3, 0, 0, 1}}, {{0, 1, 0, 1}, {0, 3, 0, 1}}};
     const Polygon clean = clipped(good, whole_texture());
     REQUIRE(clean.size() >= 3);
-    for (const float bad : {nan_float, infinity, -infinity}) {
+    for (const float bad : {nan_float, infinity_float, -infinity_float}) {
         for (std::size_t i = 0; i < 3; ++i) {
             for (const int k : {0, 1, 3}) {
                 Polygon polygon = good;

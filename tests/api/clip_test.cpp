@@ -9,13 +9,13 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "judges/oracle.hpp"
 #include "support/polygons.hpp"
 #include "support/random.hpp"
+#include "support/special_values.hpp"
 
 namespace {
 
@@ -24,15 +24,14 @@ using support::bits;
 using support::exactly;
 using support::hex;
 using support::hex_of;
+using support::infinity_float;
+using support::nan_float;
 using support::Polygon;
 using support::Random;
 using support::Rational;
 using texgen::clip_to_near;
 using texgen::ClipVertex;
 using texgen::DepthRange;
-
-constexpr float nan_float = std::numeric_limits<float>::quiet_NaN();
-constexpr float infinity = std::numeric_limits<float>::infinity();
 
 struct NearPlane {
     DepthRange range;
@@ -93,7 +92,7 @@ TEST_CASE("a polygon in front of the near plane keeps every bit, and its order")
                 if (distance(v.position, plane) >= 0 && v.position.w > 0.0f) polygon.push_back(v);
             }
             polygon[0].strq.x = -0.0f;
-            polygon[1].strq.y = infinity;
+            polygon[1].strq.y = infinity_float;
             REQUIRE_MESSAGE(bits(clipped(polygon, plane)) == bits(polygon), hex_of(polygon));
         }
         // In the plane itself nothing is behind.
@@ -321,7 +320,7 @@ TEST_CASE("an orthographic camera has w = 1, and its cuts keep it") {
 
 TEST_CASE("NaN and infinity: a position drops its polygon, a coordinate spoils itself only, nothing crashes") {
     const ClipVertex a{{0, 0, 0.5f, 1}, {0, 0, 0, 1}}, b{{1, 0, 0.5f, 1}, {1, 0, 0, 1}}, c{{0, 1, -3, 1}, {0, 1, 0, 1}};
-    for (const float bad : {nan_float, infinity, -infinity}) {
+    for (const float bad : {nan_float, infinity_float, -infinity_float}) {
         for (int k = 0; k < 4; ++k) {
             for (std::size_t i = 0; i < 3; ++i) {
                 Polygon polygon{a, b, c};

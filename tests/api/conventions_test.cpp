@@ -7,13 +7,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <string>
 #include <type_traits>
 #include <vector>
 
 #include "support/hex.hpp"
+#include "support/special_values.hpp"
 #include "texgen/detail/culling/slide_planes.hpp"
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
@@ -22,6 +22,8 @@
 namespace {
 
 using support::hex;
+using support::infinity_double;
+using support::nan_double;
 using texgen::Aim;
 using texgen::Conventions;
 using texgen::DepthMapping;
@@ -35,9 +37,6 @@ using texgen::Projector;
 using texgen::ProjectorProjection;
 using texgen::TextureOrigin;
 using texgen::TextureRegion;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double nan_double = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<Conventions> all_conventions() {
     std::vector<Conventions> result;
@@ -96,14 +95,14 @@ std::vector<LensCase> all_lenses() {
     };
     return {{"perspective", -0.3, 0.3, -0.2, 0.2, 0.5, 100.0, true, false, perspective},
             {"reversed", -0.3, 0.3, -0.2, 0.2, 0.5, 100.0, true, true, perspective},
-            {"infinite", -0.3, 0.3, -0.2, 0.2, 0.5, infinity, true, false, perspective},
-            {"infinite reversed", -0.3, 0.3, -0.2, 0.2, 0.5, infinity, true, true, perspective},
+            {"infinite", -0.3, 0.3, -0.2, 0.2, 0.5, infinity_double, true, false, perspective},
+            {"infinite reversed", -0.3, 0.3, -0.2, 0.2, 0.5, infinity_double, true, true, perspective},
             {"frustum", -1.0, 1.0, -0.75, 0.75, 1.0, 10.0, true, false, frustum},
             {"off-axis frustum", -0.1, 0.7, -0.5, 0.2, 1.0, 10.0, true, false, frustum},
             {"wholly off-axis frustum", 0.25, 0.5, 1.0, 3.0, 0.5, 8.0, true, false, frustum},
             {"mirrored frustum", 0.4, -0.4, -0.2, 0.2, 0.5, 8.0, true, false, frustum},
             {"pinhole", -0.3, 0.3, -0.2, 0.2, 0.5, 100.0, true, false, pinhole},
-            {"infinite off-axis pinhole", -0.1, 0.7, -0.5, 0.2, 1.0, infinity, true, false, pinhole},
+            {"infinite off-axis pinhole", -0.1, 0.7, -0.5, 0.2, 1.0, infinity_double, true, false, pinhole},
             {"orthographic", -2.0, 2.0, -1.5, 1.5, 1.0, 20.0, false, false, orthographic},
             {"off-centre orthographic", 3.0, 5.0, -7.0, -6.5, -4.0, 20.0, false, false, orthographic},
             {"orthographic upside down", -1.0, 1.0, 1.0, -1.0, 0.0, 1.0, false, false, orthographic}};
@@ -156,7 +155,7 @@ TEST_CASE("corners, centre, near and far land where they should, for every lens,
                             texture_from_eye.matrix());
                     for (const bool at_far : {false, true}) {
                         // The infinitely far plane is met in the limit.
-                        const bool limit = at_far && !(lens.z_far < infinity);
+                        const bool limit = at_far && !(lens.z_far < infinity_double);
                         const double z = limit ? 1e15 : at_far ? lens.z_far : lens.z_near;
                         for (int y = -1; y <= 1; ++y) {
                             for (int x = -1; x <= 1; ++x) {
@@ -251,21 +250,22 @@ TEST_CASE("a lens that is no lens gives nothing") {
         return PerspectiveLens{.fovy = texgen::degrees(fovy), .aspect = aspect, .z_near = z_near, .z_far = z_far};
     };
     REQUIRE(perspective(with(30.0, 1.0, 0.2, 1000.0), conventions));
-    for (const double fovy : {0.0, -30.0, 180.0, 180.00001, 360.0, 1e300, infinity, -infinity, nan_double})
+    for (const double fovy :
+         {0.0, -30.0, 180.0, 180.00001, 360.0, 1e300, infinity_double, -infinity_double, nan_double})
         CHECK_MESSAGE(!perspective(with(fovy, 1.0, 0.2, 1000.0), conventions), fovy);
-    for (const double aspect : {0.0, -1.0, infinity, nan_double})
+    for (const double aspect : {0.0, -1.0, infinity_double, nan_double})
         CHECK_MESSAGE(!perspective(with(30.0, aspect, 0.2, 1000.0), conventions), aspect);
-    for (const double z_near : {0.0, -0.2, 1000.0, 2000.0, infinity, nan_double})
+    for (const double z_near : {0.0, -0.2, 1000.0, 2000.0, infinity_double, nan_double})
         CHECK_MESSAGE(!perspective(with(30.0, 1.0, z_near, 1000.0), conventions), z_near);
-    for (const double z_far : {0.2, 0.1, 0.0, -1.0, -infinity, nan_double})
+    for (const double z_far : {0.2, 0.1, 0.0, -1.0, -infinity_double, nan_double})
         CHECK_MESSAGE(!perspective(with(30.0, 1.0, 0.2, z_far), conventions), z_far);
     // Elements that no double holds.
     CHECK_FALSE(perspective(with(1e-3, 1e-307, 0.2, 1000.0), conventions));
-    CHECK_FALSE(perspective(with(179.0, 1e308, 1e308, infinity), conventions));
+    CHECK_FALSE(perspective(with(179.0, 1e308, 1e308, infinity_double), conventions));
     // The extremes that are lenses.
     CHECK(perspective(with(1e-3, 1.0, 0.2, 1000.0), conventions));
     CHECK(perspective(with(179.999, 1.0, 0.2, 1000.0), conventions));
-    CHECK(perspective(with(30.0, 1.0, 1e-30, infinity), conventions));
+    CHECK(perspective(with(30.0, 1.0, 1e-30, infinity_double), conventions));
     CHECK(perspective(with(30.0, 1.0, 1e-3, 1e308), conventions));
 
     const std::array good{-1.0, 1.0, -1.0, 1.0, 1.0, 10.0};
@@ -278,7 +278,7 @@ TEST_CASE("a lens that is no lens gives nothing") {
     REQUIRE(frustum_of(good));
     REQUIRE(orthographic_of(good));
     for (std::size_t field = 0; field < 6; ++field) {
-        for (const double bad : {infinity, -infinity, nan_double}) {
+        for (const double bad : {infinity_double, -infinity_double, nan_double}) {
             std::array<double, 6> fields = good;
             fields[field] = bad;
             CHECK_FALSE(frustum_of(fields));
@@ -336,14 +336,14 @@ TEST_CASE("a region has the depth that it was given, and is another region with 
     CHECK(volume.depth() == glm::dvec2(0.0, 1.0));
     CHECK(volume.min() == tile.min());
     CHECK(volume.max() == tile.max());
-    CHECK(tile.with_depth(-infinity, 0.5).depth() == glm::dvec2(-infinity, 0.5));
+    CHECK(tile.with_depth(-infinity_double, 0.5).depth() == glm::dvec2(-infinity_double, 0.5));
     CHECK(volume.with_depth(-2.0, 3.0).depth() == glm::dvec2(-2.0, 3.0));
 
     const std::vector<TextureRegion> all_different{tile,
                                                    volume,
                                                    tile.with_depth(0.0, 0.5),
                                                    tile.with_depth(0.5, 1.0),
-                                                   tile.with_depth(-infinity, infinity),
+                                                   tile.with_depth(-infinity_double, infinity_double),
                                                    texgen::whole_texture().with_depth()};
     for (std::size_t i = 0; i < all_different.size(); ++i)
         for (std::size_t j = 0; j < all_different.size(); ++j)
@@ -354,8 +354,8 @@ TEST_CASE("a region has the depth that it was given, and is another region with 
 TEST_CASE("the planes of a slide are q, the sides of s and t, and those of r where there is a depth") {
     using texgen::detail::SlidePlane;
     const TextureRegion tile = texgen::atlas_tile({0.25, 0.5}, {0.75, 0.625});
-    const std::vector<SlidePlane> expected{{3, 1.0, 0.0},    {0, 1.0, 0.25},   {0, -1.0, 0.75},    {1, 1.0, 0.5},
-                                           {1, -1.0, 0.625}, {2, 1.0, -0.125}, {2, -1.0, infinity}};
+    const std::vector<SlidePlane> expected{{3, 1.0, 0.0},    {0, 1.0, 0.25},   {0, -1.0, 0.75},           {1, 1.0, 0.5},
+                                           {1, -1.0, 0.625}, {2, 1.0, -0.125}, {2, -1.0, infinity_double}};
     const auto check = [&](const TextureRegion& region, std::size_t count) {
         const auto planes = texgen::detail::SlidePlanes(region);
         REQUIRE(planes.size() == count);
@@ -370,8 +370,8 @@ TEST_CASE("the planes of a slide are q, the sides of s and t, and those of r whe
         CHECK(k == count);
     };
     check(tile, 5);
-    check(tile.with_depth(-0.125, infinity), 7);
-    CHECK(texgen::detail::SlidePlanes(tile.with_depth(-0.125, infinity))[6].none() == infinity);
+    check(tile.with_depth(-0.125, infinity_double), 7);
+    CHECK(texgen::detail::SlidePlanes(tile.with_depth(-0.125, infinity_double))[6].none() == infinity_double);
 }
 
 TEST_CASE("a region is empty where its depth is, or one of its numbers is none") {
@@ -380,7 +380,7 @@ TEST_CASE("a region is empty where its depth is, or one of its numbers is none")
     CHECK_FALSE(is_empty(tile));
     CHECK_FALSE(is_empty(tile.with_depth()));
     CHECK_FALSE(is_empty(tile.with_depth(0.5, 0.5)));
-    CHECK_FALSE(is_empty(tile.with_depth(-infinity, infinity)));
+    CHECK_FALSE(is_empty(tile.with_depth(-infinity_double, infinity_double)));
     CHECK(is_empty(tile.with_depth(0.5, 0.25)));
     CHECK(is_empty(tile.with_depth(nan_double, 1.0)));
     CHECK(is_empty(tile.with_depth(0.0, nan_double)));

@@ -17,6 +17,7 @@
 #include "judges/rational_matrix.hpp"
 #include "support/hex.hpp"
 #include "support/random.hpp"
+#include "support/special_values.hpp"
 #include "texgen/coverage.hpp"
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
@@ -26,6 +27,8 @@ namespace {
 
 using support::Dyadic;
 using support::hex;
+using support::infinity_float;
+using support::nan_float;
 using support::Random;
 using texgen::atlas_tile;
 using texgen::Box;
@@ -38,8 +41,6 @@ using texgen::TextureRegion;
 using texgen::whole_texture;
 using texgen::WorldTexgen;
 
-constexpr float infinity = std::numeric_limits<float>::infinity();
-constexpr float nan_float = std::numeric_limits<float>::quiet_NaN();
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 std::string hex(const Box& box) { return "box " + hex(box.min) + " to " + hex(box.max); }
@@ -106,9 +107,9 @@ struct Rounded {
     static Rounded of_min(double min) {
         if (!std::isfinite(min)) return {min, min};
         float first = support::to_float(min);
-        while (static_cast<double>(first) < min) first = std::nextafter(first, infinity);
+        while (static_cast<double>(first) < min) first = std::nextafter(first, infinity_float);
         if (std::fabs(min) < 0x1p-126) return {-0x1p-126, first > 0.0f ? 0x1p-126 : static_cast<double>(first)};
-        return {static_cast<double>(std::nextafter(first, -infinity)), static_cast<double>(first)};
+        return {static_cast<double>(std::nextafter(first, -infinity_float)), static_cast<double>(first)};
     }
     static Rounded of_max(double max) {
         const Rounded mirrored = of_min(-max);
@@ -223,7 +224,7 @@ bool has_nan(const Box& box) {
 bool is_empty(const Box& box) { return box.min.x > box.max.x || box.min.y > box.max.y || box.min.z > box.max.z; }
 bool has_no_number(const Box& box) {
     for (int j = 0; j < 3; ++j)
-        if (box.min[j] == infinity || box.max[j] == -infinity) return true;
+        if (box.min[j] == infinity_float || box.max[j] == -infinity_float) return true;
     return false;
 }
 
@@ -540,10 +541,10 @@ Box hostile_box(const Slide& slide, Family family, Random& random) {
             Box box = random.coin() ? hostile_box(slide, Family::integers, random)
                                     : box_from(near(point_on(slide, random.integer(1, 3), random, about)), size);
             for (int j = 0; j < 3; ++j) {
-                if (random.integer(0, 2) == 0) box.min[j] = -infinity;
-                if (random.integer(0, 2) == 0) box.max[j] = infinity;
+                if (random.integer(0, 2) == 0) box.min[j] = -infinity_float;
+                if (random.integer(0, 2) == 0) box.max[j] = infinity_float;
             }
-            if (random.integer(0, 19) == 0) box.min.x = infinity;
+            if (random.integer(0, 19) == 0) box.min.x = infinity_float;
             return box;
         }
         case Family::empty: {
@@ -551,7 +552,7 @@ Box hostile_box(const Slide& slide, Family family, Random& random) {
             const int axis = random.integer(0, 2);
             std::swap(box.min[axis], box.max[axis]);
             if (box.min[axis] == box.max[axis]) box.max[axis] = support::neighbour(box.max[axis], -1);
-            if (random.integer(0, 9) == 0) box = {glm::vec3(infinity), glm::vec3(-infinity)};
+            if (random.integer(0, 9) == 0) box = {glm::vec3(infinity_float), glm::vec3(-infinity_float)};
             return box;
         }
         case Family::nan: {
@@ -924,7 +925,7 @@ TEST_CASE("no sphere is outside or inside that is not, and few of a scene are pa
                 if (nearest < 1e6)
                     sphere.radius = support::neighbour(support::to_float(nearest), random.integer(-2, 2));
             }
-            if (i % 20 == 1 || !(sphere.radius >= 0.0f && sphere.radius < infinity)) sphere.radius = 0.0f;
+            if (i % 20 == 1 || !(sphere.radius >= 0.0f && sphere.radius < infinity_float)) sphere.radius = 0.0f;
             spheres.push_back(sphere);
         }
         std::vector<Coverage> answers(spheres.size());
@@ -1190,7 +1191,7 @@ TEST_CASE("what is no body, no slide or no number gets a safe answer") {
     const Box inside{{-0.1f, -0.1f, -11.0f}, {0.1f, 0.1f, -10.0f}};
     const Sphere ball{{0.0f, 0.0f, -10.0f}, 0.5f};
     const Box behind{{-0.1f, -0.1f, 10.0f}, {0.1f, 0.1f, 11.0f}};
-    const Box everything{glm::vec3(-infinity), glm::vec3(infinity)};
+    const Box everything{glm::vec3(-infinity_float), glm::vec3(infinity_float)};
     CHECK(coverage(transform, whole_texture(), inside) == Coverage::inside);
     CHECK(coverage(transform, whole_texture(), ball) == Coverage::inside);
     CHECK(coverage(transform, whole_texture(), behind) == Coverage::outside);
@@ -1198,12 +1199,12 @@ TEST_CASE("what is no body, no slide or no number gets a safe answer") {
 
     // The apex itself has q = 0, and the half-space behind it, too.
     CHECK(coverage(transform, whole_texture(), Box{glm::vec3(0.0f), glm::vec3(0.0f)}) == Coverage::outside);
-    CHECK(coverage(transform, whole_texture(), Box{{-infinity, -infinity, 0.0f}, glm::vec3(infinity)}) ==
-          Coverage::outside);
-    CHECK(coverage(transform, whole_texture(), Box{{-infinity, -infinity, -1e-30f}, glm::vec3(infinity)}) ==
-          Coverage::partial);
+    CHECK(coverage(transform, whole_texture(),
+                   Box{{-infinity_float, -infinity_float, 0.0f}, glm::vec3(infinity_float)}) == Coverage::outside);
+    CHECK(coverage(transform, whole_texture(),
+                   Box{{-infinity_float, -infinity_float, -1e-30f}, glm::vec3(infinity_float)}) == Coverage::partial);
     // A beam to infinity along the projector's axis.
-    CHECK(coverage(transform, whole_texture(), Box{{-0.1f, -0.1f, -infinity}, {0.1f, 0.1f, -10.0f}}) ==
+    CHECK(coverage(transform, whole_texture(), Box{{-0.1f, -0.1f, -infinity_float}, {0.1f, 0.1f, -10.0f}}) ==
           Coverage::inside);
 
     SUBCASE("spheres") {
@@ -1214,11 +1215,11 @@ TEST_CASE("what is no body, no slide or no number gets a safe answer") {
             return of_batch;
         };
         CHECK(of({{0, 0, -10}, -1.0f}) == Coverage::outside);
-        CHECK(of({{0, 0, -10}, -infinity}) == Coverage::outside);
+        CHECK(of({{0, 0, -10}, -infinity_float}) == Coverage::outside);
         CHECK(of({{0, 0, -10}, nan_float}) == Coverage::partial);
         CHECK(of({{nan_float, 0, -10}, -1.0f}) == Coverage::partial);
-        CHECK(of({{0, 0, 10}, infinity}) == Coverage::partial);
-        CHECK(of({{0, 0, infinity}, 1.0f}) == Coverage::partial);
+        CHECK(of({{0, 0, 10}, infinity_float}) == Coverage::partial);
+        CHECK(of({{0, 0, infinity_float}, 1.0f}) == Coverage::partial);
         CHECK(of({{0, 0, 10}, 0.0f}) == Coverage::outside);
         CHECK(of({{0, 0, -10}, 0.0f}) == Coverage::inside);
     }

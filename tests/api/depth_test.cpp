@@ -20,6 +20,7 @@
 #include "support/hex.hpp"
 #include "support/outputs.hpp"
 #include "support/random.hpp"
+#include "support/special_values.hpp"
 #include "support/windows.hpp"
 #include "texgen/interpolate.hpp"
 #include "texgen/linear.hpp"
@@ -34,6 +35,8 @@ using support::count_of;
 using support::everywhere;
 using support::ExactTriangle;
 using support::hex;
+using support::infinity_double;
+using support::nan_double;
 using support::Outputs;
 using support::Random;
 using support::same_bits;
@@ -48,9 +51,6 @@ using texgen::Segment;
 using texgen::TextureRegion;
 using texgen::Tolerance;
 using texgen::Work;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double nan_double = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<Conventions> all_conventions() {
     std::vector<Conventions> result;
@@ -67,15 +67,16 @@ struct LensCase {
 
 template <int ZFar, bool Reversed>
 std::optional<Projector> perspective(const Aim& aim, Conventions conventions) {
-    return make_projector(texgen::PerspectiveLens{texgen::degrees(40), 1.5, 0.5, ZFar == 0 ? infinity : ZFar, Reversed},
-                          aim, conventions);
+    return make_projector(
+        texgen::PerspectiveLens{texgen::degrees(40), 1.5, 0.5, ZFar == 0 ? infinity_double : ZFar, Reversed}, aim,
+        conventions);
 }
 
 const std::array lenses{
     LensCase{"perspective", 0.5, 20.0, perspective<20, false>},
     LensCase{"reversed", 0.5, 20.0, perspective<20, true>},
-    LensCase{"infinite", 0.5, infinity, perspective<0, false>},
-    LensCase{"infinite reversed", 0.5, infinity, perspective<0, true>},
+    LensCase{"infinite", 0.5, infinity_double, perspective<0, false>},
+    LensCase{"infinite reversed", 0.5, infinity_double, perspective<0, true>},
     LensCase{"frustum", 0.5, 20.0,
              [](const Aim& aim, Conventions conventions) {
                  return make_projector(texgen::FrustumLens{-0.3, 0.4, -0.2, 0.5, 0.5, 20.0}, aim, conventions);
@@ -95,7 +96,7 @@ const std::array lenses{
 // Distances from the projector along its axis, and whether its light is there.
 std::vector<double> distances(const LensCase& lens) {
     std::vector<double> result{0.25, 0.499, 0.501, 1.0, 5.0, 19.9, 20.1, 40.0, 1e3, 1e6};
-    if (!(lens.z_far < infinity)) result.push_back(1e12);
+    if (!(lens.z_far < infinity_double)) result.push_back(1e12);
     return result;
 }
 bool is_reached(const LensCase& lens, double distance) { return distance > lens.z_near && distance < lens.z_far; }
@@ -195,15 +196,16 @@ TEST_CASE("limits that are infinite change nothing; an empty depth or a NaN take
                 project(texgen, texgen::world_space(points), region, result[2].spans(), tolerance);
                 return result;
             };
-            const std::vector<Outputs> before = answers(sides), same = answers(sides.with_depth(-infinity, infinity));
+            const std::vector<Outputs> before = answers(sides),
+                                       same = answers(sides.with_depth(-infinity_double, infinity_double));
             for (std::size_t j = 0; j < before.size(); ++j) {
                 for (std::size_t k = 0; k < 4; ++k) REQUIRE(same_bits(before[j][k], same[j][k]));
                 for (const float lit : before[j].lit()) lit_before += lit == 1.0f;
             }
             for (const TextureRegion& empty :
                  {sides.with_depth(1.0, 0.0), sides.with_depth(nan_double, 1.0), sides.with_depth(0.0, nan_double),
-                  sides.with_depth(nan_double, infinity), sides.with_depth(-infinity, nan_double),
-                  sides.with_depth(infinity, -infinity), sides.with_depth(0.1, 0.1)}) {
+                  sides.with_depth(nan_double, infinity_double), sides.with_depth(-infinity_double, nan_double),
+                  sides.with_depth(infinity_double, -infinity_double), sides.with_depth(0.1, 0.1)}) {
                 const std::vector<Outputs> dark = answers(empty);
                 for (std::size_t j = 0; j < before.size(); ++j) {
                     for (std::size_t k = 0; k < 3; ++k)
@@ -309,7 +311,7 @@ TEST_CASE("an r that is no number is in no depth, and without one does not matte
     const std::vector<glm::vec3> points(20, glm::vec3(0.25f));
     const std::vector<float> alpha(20, 0.25f);
     const glm::vec4 end(0.5f, 0.5f, std::numeric_limits<float>::infinity(), 1.0f);
-    const TextureRegion volume = texgen::whole_texture().with_depth(-infinity, infinity);
+    const TextureRegion volume = texgen::whole_texture().with_depth(-infinity_double, infinity_double);
     for (const bool has_depth : {false, true}) {
         const TextureRegion region = has_depth ? volume : texgen::whole_texture();
         for (const unsigned asked : {15u, 8u}) {

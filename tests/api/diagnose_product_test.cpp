@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
-#include <limits>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -22,6 +21,7 @@
 
 #include "support/hex.hpp"
 #include "support/random.hpp"
+#include "support/special_values.hpp"
 #include "support/windows.hpp"
 #include "texgen/diagnose.hpp"
 #include "texgen/linear.hpp"
@@ -32,6 +32,8 @@ namespace {
 
 using support::any_conventions;
 using support::hex;
+using support::infinity_double;
+using support::nan_double;
 using support::Random;
 using texgen::Conventions;
 using texgen::Defect;
@@ -44,8 +46,6 @@ using texgen::Object;
 using texgen::Projector;
 using texgen::TextureOrigin;
 using texgen::TextureRegion;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 enum class LensKind { perspective, infinite, frustum, orthographic };
 
@@ -249,7 +249,7 @@ std::optional<Projector> right_projector(const Meant& m) {
         return make_projector(texgen::OrthographicLens{m.left, m.right, m.bottom, m.top, m.z_near, m.z_far}, m.aim,
                               m.conventions);
     return make_projector(texgen::PerspectiveLens{texgen::degrees(m.fovy), m.aspect, m.z_near,
-                                                  m.kind == LensKind::infinite ? infinity : m.z_far},
+                                                  m.kind == LensKind::infinite ? infinity_double : m.z_far},
                           m.aim, m.conventions);
 }
 
@@ -308,7 +308,7 @@ Diagnosis diagnosis_in(const Meant& m, const std::optional<Projector>& projector
     if (told == Told::lens) {
         if (m.kind <= LensKind::infinite) setup.lens = {texgen::degrees(m.fovy), m.aspect};
         setup.lens.z_near = m.z_near;
-        setup.lens.z_far = m.kind == LensKind::infinite ? infinity : m.z_far;
+        setup.lens.z_far = m.kind == LensKind::infinite ? infinity_double : m.z_far;
     }
     return diagnose(texgen::Transform<texgen::Texture, Space>(texgen), setup);
 }
@@ -695,7 +695,7 @@ TEST_CASE("cameras, narrowed lenses, cropped pictures, mirrors and flashlights a
             projector = make_projector(
                 texgen::PinholeLens{focal, focal * random.uniform(0.9, 1.1), width * random.uniform(0.4, 0.6),
                                     height * random.uniform(0.4, 0.6), width, height, m.z_near,
-                                    random.coin() ? infinity : m.z_far,
+                                    random.coin() ? infinity_double : m.z_far,
                                     random.coin() ? texgen::PixelCentre::half : texgen::PixelCentre::integer,
                                     random.coin() ? 0.0 : focal * random.uniform(-0.01, 0.01)},
                 m.aim, m.conventions);
@@ -810,7 +810,6 @@ using texgen::PerspectiveLens;
 using texgen::PinholeLens;
 using texgen::PixelCentre;
 
-constexpr double nan_double = std::numeric_limits<double>::quiet_NaN();
 const Aim good_aim{{1.0, 5.0, 2.0}, {0.0, 0.0, 0.0}, {0.0, 1.0, 0.0}};
 const PerspectiveLens good_perspective{texgen::degrees(30.0), 1.5, 0.1, 100.0};
 const FrustumLens good_frustum{-0.1, 0.2, -0.1, 0.1, 0.1, 100.0};
@@ -836,7 +835,8 @@ Lens with(Lens lens, Member Lens::*member, std::type_identity_t<Member> value) {
 
 // A number that a lens may not have, more often than one that it may.
 double any_number(Random& random) {
-    constexpr std::array special{0.0, -1.0, 1.0, 2.0, 1e-320, 1e308, -1e308, infinity, -infinity, nan_double};
+    constexpr std::array special{0.0,       -1.0, 1.0, 2.0, 1e-320, 1e308, -1e308, infinity_double, -infinity_double,
+                                 nan_double};
     return random.coin() ? special[static_cast<std::size_t>(random.integer(0, 9))] : random.uniform(-2.0, 4.0);
 }
 
@@ -864,10 +864,10 @@ TEST_CASE("each way in which a lens is refused has its name") {
         require_only(with(p, &PerspectiveLens::aspect, aspect), good_aim, Defect::aspect_not_positive);
     for (const double z_near : {0.0, -0.1})
         require_only(with(p, &PerspectiveLens::z_near, z_near), good_aim, Defect::near_not_in_front);
-    for (const double z_far : {0.1, 0.05, -infinity})
+    for (const double z_far : {0.1, 0.05, -infinity_double})
         require_only(with(p, &PerspectiveLens::z_far, z_far), good_aim,
                      z_far < 0.0 ? Defect::not_finite : Defect::far_not_beyond_near);
-    for (const double number : {nan_double, infinity}) {
+    for (const double number : {nan_double, infinity_double}) {
         require_only(with(p, &PerspectiveLens::fovy, texgen::radians(number)), good_aim, Defect::not_finite);
         require_only(with(p, &PerspectiveLens::aspect, number), good_aim, Defect::not_finite);
         require_only(with(p, &PerspectiveLens::z_near, number), good_aim, Defect::not_finite);
@@ -879,14 +879,14 @@ TEST_CASE("each way in which a lens is refused has its name") {
     require_only(with(f, &FrustumLens::bottom, f.top), good_aim, Defect::lens_without_extent);
     require_only(with(f, &FrustumLens::z_near, 0.0), good_aim, Defect::near_not_in_front);
     require_only(with(f, &FrustumLens::z_far, 0.05), good_aim, Defect::far_not_beyond_near);
-    require_only(with(f, &FrustumLens::z_far, infinity), good_aim, Defect::not_finite);
+    require_only(with(f, &FrustumLens::z_far, infinity_double), good_aim, Defect::not_finite);
     require_only(with(f, &FrustumLens::top, nan_double), good_aim, Defect::not_finite);
 
     const OrthographicLens& o = good_orthographic;
     require_only(with(o, &OrthographicLens::right, o.left), good_aim, Defect::lens_without_extent);
     require_only(with(o, &OrthographicLens::top, o.bottom), good_aim, Defect::lens_without_extent);
     require_only(with(o, &OrthographicLens::z_far, -5.0), good_aim, Defect::far_not_beyond_near);
-    require_only(with(o, &OrthographicLens::left, -infinity), good_aim, Defect::not_finite);
+    require_only(with(o, &OrthographicLens::left, -infinity_double), good_aim, Defect::not_finite);
     require_only(with(o, &OrthographicLens::left, o.right + 0x1p-52), good_aim, Defect::lens_without_extent);
 
     const PinholeLens& k = good_pinhole;
@@ -895,10 +895,10 @@ TEST_CASE("each way in which a lens is refused has its name") {
     for (double PinholeLens::*size : {&PinholeLens::width, &PinholeLens::height})
         require_only(with(k, size, -1.0), good_aim, Defect::picture_without_size);
     require_only(with(k, &PinholeLens::skew, nan_double), good_aim, Defect::not_finite);
-    require_only(with(k, &PinholeLens::cx, infinity), good_aim, Defect::not_finite);
+    require_only(with(k, &PinholeLens::cx, infinity_double), good_aim, Defect::not_finite);
     require_only(with(k, &PinholeLens::z_near, 0.0), good_aim, Defect::near_not_in_front);
     require_only(with(k, &PinholeLens::z_far, 0.1), good_aim, Defect::far_not_beyond_near);
-    CHECK(diagnose(with(k, &PinholeLens::z_far, infinity), good_aim, texgen::opengl).empty());
+    CHECK(diagnose(with(k, &PinholeLens::z_far, infinity_double), good_aim, texgen::opengl).empty());
 }
 
 TEST_CASE("each way in which an aim is refused has its name, up parallel to the view first of all") {
@@ -942,8 +942,9 @@ TEST_CASE("a lens and an aim are said to be refused where no projector is made o
         require_said_where_refused(f, aim, conventions, counts);
         const OrthographicLens o{f.left, f.right, f.bottom, f.top, f.z_near, f.z_far};
         require_said_where_refused(o, aim, conventions, counts);
-        const PinholeLens k{number(9.0), number(9.0), number(3.0),      number(3.0),          number(8.0),
-                            number(8.0), number(0.1), number(infinity), PixelCentre::integer, number(0.0)};
+        const PinholeLens k{number(9.0),          number(9.0), number(3.0), number(3.0),
+                            number(8.0),          number(8.0), number(0.1), number(infinity_double),
+                            PixelCentre::integer, number(0.0)};
         require_said_where_refused(k, aim, conventions, counts);
     }
     CHECK(counts[0] > 10000);

@@ -17,6 +17,7 @@
 #include "support/allocations.hpp"
 #include "support/hex.hpp"
 #include "support/random.hpp"
+#include "support/special_values.hpp"
 #include "support/windows.hpp"
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
@@ -26,6 +27,8 @@ namespace {
 using support::allocations;
 using support::any_conventions;
 using support::hex;
+using support::infinity_double;
+using support::nan_double;
 using support::Random;
 using texgen::Conventions;
 using texgen::Defect;
@@ -43,9 +46,6 @@ using texgen::TextureOrigin;
 using texgen::TextureRegion;
 using texgen::Transform;
 using texgen::World;
-
-constexpr double nan_double = std::numeric_limits<double>::quiet_NaN();
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 enum class In { object, world, eye };
 
@@ -211,7 +211,7 @@ Lens random_lens(const Range& range, Random& random) {
     lens.aspect = random.coin() ? random.uniform(1.2, 3.0) : 1.0 / random.uniform(1.2, 3.0);
     lens.z_near = random.power_of_ten(-2.0, 1.0);
     lens.z_far = lens.z_near * random.power_of_ten(0.7, range.far_decades);
-    if (lens.kind == LensKind::infinite || lens.kind == LensKind::reversed_infinite) lens.z_far = infinity;
+    if (lens.kind == LensKind::infinite || lens.kind == LensKind::reversed_infinite) lens.z_far = infinity_double;
     const double height = random.uniform(0.3, 2.0) * lens.z_near;
     const double width = height * lens.aspect;
     lens.left = random.uniform(-1.5, 0.5) * width;
@@ -329,7 +329,7 @@ void count(const Rig& rig, Classes& classes) {
     classes.wide += rig.lens.is_symmetric() && rig.lens.fovy > 178.0;
     classes.parallel += rig.lens.kind == LensKind::orthographic;
     classes.reversed += rig.lens.is_reversed();
-    classes.infinite += rig.lens.z_far == infinity;
+    classes.infinite += rig.lens.z_far == infinity_double;
     classes.off_axis += rig.lens.kind == LensKind::frustum;
     classes.mirrored += rig.mirrored;
     classes.tiles += rig.region.min().x > 0.0;
@@ -344,7 +344,7 @@ void count(const Rig& rig, Classes& classes) {
 
 // Whether one of the points is lit at least, and they are not all in one texel.
 bool shows_points(const Parts& parts, const glm::dmat4& texgen) {
-    glm::dvec2 least(infinity), most(-infinity);
+    glm::dvec2 least(infinity_double), most(-infinity_double);
     bool any_lit = false;
     for (const glm::vec3& point : parts.points) {
         const Seen at = seen(texgen, parts.region, point);
@@ -392,7 +392,7 @@ Parts valid_parts(Random& random, Classes& classes) {
             if (at.lit) lost = std::max(lost, at.lost);
         }
         // The first is before the far plane, if float could hold it.
-        return seen(texgen, rig.region, parts.points[0]).lit ? lost : infinity;
+        return seen(texgen, rig.region, parts.points[0]).lit ? lost : infinity_double;
     };
     glm::dmat4 texgen = composed(rig, projector);
     const bool fits_float = loses(texgen) < 0.5;
@@ -671,7 +671,8 @@ std::optional<glm::dmat4> spoilt_texgen(const Rig& rig, const Projector& given, 
     }
     if (faults.has(Thing::transposition) && transpose_last) texgen = transposed(texgen);
     for (int i = 0; i < 4 && faults.has("t written as s"); ++i) texgen[i][1] = texgen[i][0];
-    if (faults.has("a NaN")) texgen[random.integer(0, 3)][random.integer(0, 3)] = random.coin() ? nan_double : infinity;
+    if (faults.has("a NaN"))
+        texgen[random.integer(0, 3)][random.integer(0, 3)] = random.coin() ? nan_double : infinity_double;
     if (faults.has("never written")) {
         texgen = glm::dmat4(0.0);
         if (random.coin()) texgen[0][0] = texgen[1][1] = 1.0;
@@ -826,7 +827,7 @@ TEST_CASE("no valid set-up of round numbers is found fault with, where factors c
                     random.coin() ? -1.0 : 0.0,
                     1.0};
         if (rig.lens.kind == LensKind::infinite || rig.lens.kind == LensKind::reversed_infinite)
-            rig.lens.z_far = infinity;
+            rig.lens.z_far = infinity_double;
         const int most = random.integer(0, 2) == 0 ? 10000000 : random.integer(0, 3);
         rig.aim.position = {whole(most), whole(most), whole(most)};
         rig.aim.up = axis();
@@ -881,8 +882,8 @@ Rig aligned_rig(Random& random) {
     rig.lens = random_lens(ordinary, random);
     rig.lens.kind = random.integer(0, 2) == 0 ? static_cast<LensKind>(random.integer(0, 4)) : LensKind::orthographic;
     if (rig.lens.kind == LensKind::infinite || rig.lens.kind == LensKind::reversed_infinite)
-        rig.lens.z_far = infinity;
-    else if (!(rig.lens.z_far < infinity))
+        rig.lens.z_far = infinity_double;
+    else if (!(rig.lens.z_far < infinity_double))
         rig.lens.z_far = 1000.0 * rig.lens.z_near;
     if (random.integer(0, 3) != 0) {
         const double width = std::ldexp(1.0, random.integer(-1, 7)), height = std::ldexp(1.0, random.integer(-1, 7));
@@ -951,7 +952,7 @@ TEST_CASE("no valid set-up along the axes is found fault with, however far, in f
             double lost = 0.0;
             for (const glm::vec3& point : parts.points) {
                 const bool is_lit = seen(texgen, rig.region, point).lit && seen(rounded, rig.region, point).lit;
-                lost = std::max(lost, is_lit ? lost_by_rounding(texgen, rounded, rig.region, point) : infinity);
+                lost = std::max(lost, is_lit ? lost_by_rounding(texgen, rounded, rig.region, point) : infinity_double);
             }
             return lost;
         };
@@ -1144,7 +1145,7 @@ TEST_CASE("of two defects of the corpus both are found, where neither hides the 
 
 TEST_CASE("what is not finite is said of every argument, and what can be seen beside it as well") {
     Random random(606);
-    for (const double bad : {nan_double, infinity, -infinity}) {
+    for (const double bad : {nan_double, infinity_double, -infinity_double}) {
         for (int i = 0; i < 300; ++i) {
             const Rig rig = random_rig(ordinary, random);
             const Projector good = projector_of(rig, projection(rig.lens, rig.conventions), rig.view);

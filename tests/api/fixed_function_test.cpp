@@ -15,6 +15,7 @@
 #include "support/fixed_function.hpp"
 #include "support/hex.hpp"
 #include "support/random.hpp"
+#include "support/special_values.hpp"
 #include "texgen/linear.hpp"
 
 namespace {
@@ -22,7 +23,9 @@ namespace {
 using support::Coordinate;
 using support::coordinates;
 using support::hex;
+using support::infinity_float;
 using support::modes;
+using support::nan_float;
 using support::NormalScaling;
 using support::Random;
 using support::Rational;
@@ -33,8 +36,6 @@ using support::TexGenMode;
 using support::TexGenUnit;
 using texgen::FixedFunctionVertex;
 
-constexpr float nan_float = std::numeric_limits<float>::quiet_NaN();
-constexpr float infinity = std::numeric_limits<float>::infinity();
 const glm::mat4 identity(1.0f);
 
 glm::mat4 translation(float x, float y, float z) {
@@ -413,7 +414,7 @@ TEST_CASE("regular matrices of small integers are all accepted") {
 TEST_CASE("a MODELVIEW, a plane or a result that is not finite is refused and the plane stays as it was") {
     TexGenUnit unit;
     REQUIRE(unit.set_eye_plane(Coordinate::q, {1, 2, 3, 4}, identity));
-    for (const float bad : {nan_float, infinity, -infinity}) {
+    for (const float bad : {nan_float, infinity_float, -infinity_float}) {
         for (int element = 0; element < 16; ++element) {
             glm::mat4 m = identity;
             m[element / 4][element % 4] = bad;
@@ -631,11 +632,11 @@ TEST_CASE("coordinates at either end of the range of float neither overflow nor 
     const glm::vec4 n = unit_with(TexGenMode::normal_map, NormalScaling::normalize).generate(vertex, steep);
     CHECK(n == glm::vec4(0, diagonal, diagonal, 1));
     const glm::vec4 raw = unit_with(TexGenMode::normal_map).generate(vertex, steep);
-    CHECK(raw == glm::vec4(-infinity, infinity, infinity, 1));
+    CHECK(raw == glm::vec4(-infinity_float, infinity_float, infinity_float, 1));
     const glm::vec4 sphere = unit_with(TexGenMode::sphere_map).generate(vertex, steep);
     CHECK(sphere == glm::vec4(0.5f, static_cast<float>(0.5 + 0.5 * std::sqrt(0.5)), 0, 1));
     const glm::vec4 r = unit_with(TexGenMode::reflection_map).generate(vertex, steep);
-    CHECK(r == glm::vec4(-infinity, infinity, infinity, 1));
+    CHECK(r == glm::vec4(-infinity_float, infinity_float, infinity_float, 1));
 }
 
 TEST_CASE("what is left when large terms cancel is still exact") {
@@ -772,7 +773,7 @@ TEST_CASE("SGI's recipe, projector in the texture matrix and identity eye planes
 // ---- Bad values ----
 
 TEST_CASE("a NaN or an infinity spoils the coordinates that are made from it, and no other") {
-    for (const float bad : {nan_float, infinity}) {
+    for (const float bad : {nan_float, infinity_float}) {
         TexGenUnit unit;
         REQUIRE(unit.set_mode(Coordinate::s, TexGenMode::object_linear));
         REQUIRE(unit.set_mode(Coordinate::t, TexGenMode::normal_map));
@@ -806,7 +807,8 @@ TEST_CASE("a NaN or an infinity spoils the coordinates that are made from it, an
         CHECK(glm::vec3(strq.x, strq.y, strq.w) == glm::vec3(right.x, right.y, right.w));
     }
     // An infinite coordinate with a plane that does look at it is an infinite distance.
-    CHECK(unit_with(TexGenMode::object_linear).generate({.position = {infinity, 1, 1, 1}}, identity).x == infinity);
+    CHECK(unit_with(TexGenMode::object_linear).generate({.position = {infinity_float, 1, 1, 1}}, identity).x ==
+          infinity_float);
 }
 
 TEST_CASE("a batch has the bits of its vertices one by one, and a bad vertex spoils itself only") {

@@ -21,6 +21,7 @@
 #include "support/hex.hpp"
 #include "support/outputs.hpp"
 #include "support/random.hpp"
+#include "support/special_values.hpp"
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
 #include "texgen/texcoord.hpp"
@@ -34,6 +35,8 @@ using support::ExactTriangle;
 using support::FootprintOutputs;
 using support::hex;
 using support::Homogeneous;
+using support::infinity_double;
+using support::nan_double;
 using support::Random;
 using support::Real;
 using support::same_bits;
@@ -49,9 +52,6 @@ using texgen::Tolerance;
 using texgen::Triangle;
 using texgen::TriangleSetup;
 using texgen::WindowVertex;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double nan_double = std::numeric_limits<double>::quiet_NaN();
 
 // Where each output of a batch stands in the arrays below.
 enum Output : std::size_t { dsdx, dtdx, dsdy, dtdy, level, anisotropy, major_s, major_t };
@@ -392,7 +392,7 @@ TEST_CASE("where the derivatives of a row nearly vanish at one fragment, it is a
             REQUIRE(std::fabs(out.at(level, k) - std::log2(static_cast<double>(shape.rho))) <= 0x1p-16 * 2.0);
             const double length = std::hypot(out.at(major_s, k) * texels.s, out.at(major_t, k) * texels.t);
             REQUIRE(std::fabs(length / static_cast<double>(shape.largest) - 1.0) <= 0x1p-16);
-            REQUIRE(out.at(anisotropy, k) == infinity);
+            REQUIRE(out.at(anisotropy, k) == infinity_double);
         }
     }
 }
@@ -592,8 +592,8 @@ TEST_CASE("no fragment of ten million is outside the extremes, and they are reac
             for (const int y : {rect.y, rect.y + rect.height - 1})
                 promised = promised && exact.has_positive_w(x, y) && exact.at(x, y).q.sign() > 0;
         if (!promised) continue;
-        double least = infinity, largest = -infinity, neighbours = 0.0, thinnest = 0.0, area_least = infinity,
-               area_largest = 0.0;
+        double least = infinity_double, largest = -infinity_double, neighbours = 0.0, thinnest = 0.0,
+               area_least = infinity_double, area_largest = 0.0;
         for (std::size_t k = 0; k < count; ++k) {
             const double here = out.at(level, k);
             least = std::min(least, here);
@@ -630,7 +630,7 @@ TEST_CASE("no fragment of ten million is outside the extremes, and they are reac
         if (neighbours < 0.02) {
             worst_gap = std::max(worst_gap, gap - neighbours);
             REQUIRE_MESSAGE(gap <= 0.0144 + neighbours, context);
-            double corner_least = infinity, corner_largest = 0.0, corner_level = infinity;
+            double corner_least = infinity_double, corner_largest = 0.0, corner_level = infinity_double;
             for (const int x : {rect.x, rect.x + rect.width - 1}) {
                 for (const int y : {rect.y, rect.y + rect.height - 1}) {
                     const Footprint at = setup.at(x, y).value();
@@ -662,7 +662,7 @@ TEST_CASE("the extremes of a triangle hold for all fragments inside it, and are 
         const FootprintSetup setup(setup_of(triangle), texels);
         const auto extremes = setup.extremes();
         REQUIRE(extremes.has_value());
-        double least = infinity, largest = -infinity, thinnest = 0.0;
+        double least = infinity_double, largest = -infinity_double, thinnest = 0.0;
         FootprintOutputs row({0, 0, rect.width, 1}, (1u << level) | (1u << anisotropy));
         for (int y = rect.y; y < rect.y + rect.height; ++y) {
             if (!footprint(setup, {rect.x, y, rect.width, 1}, row.spans())) continue;
@@ -903,13 +903,13 @@ TEST_CASE("a Jacobian of rank 1 or 0, and texels that are none, get what the hea
         REQUIRE(footprint(setup, rect, out.spans()));
         for (std::size_t k = 0; k < count_of(rect); ++k) {
             for (const std::size_t o : {dsdx, dtdx, dsdy, dtdy, major_s, major_t}) REQUIRE(out[o][k] == 0.0f);
-            REQUIRE(out.at(level, k) == -infinity);
+            REQUIRE(out.at(level, k) == -infinity_double);
             REQUIRE(out[anisotropy][k] == 1.0f);
         }
         const auto extremes = setup.extremes(rect);
         REQUIRE(extremes.has_value());
-        CHECK(extremes->least_level == -infinity);
-        CHECK(extremes->largest_level == -infinity);
+        CHECK(extremes->least_level == -infinity_double);
+        CHECK(extremes->largest_level == -infinity_double);
         CHECK(extremes->largest_area == 0.0);
     }
     {
@@ -917,15 +917,15 @@ TEST_CASE("a Jacobian of rank 1 or 0, and texels that are none, get what the hea
         FootprintOutputs out(rect);
         REQUIRE(footprint(setup, rect, out.spans()));
         for (std::size_t k = 0; k < count_of(rect); ++k) {
-            REQUIRE(out.at(anisotropy, k) == infinity);
+            REQUIRE(out.at(anisotropy, k) == infinity_double);
             REQUIRE(std::isfinite(out.at(level, k)));
             REQUIRE(std::fabs(out.at(major_s, k) - out.at(major_t, k)) <= 1e-5 * std::fabs(out.at(major_s, k)));
         }
         const auto one = setup.at(5, 5);
         REQUIRE(one.has_value());
-        CHECK(one->anisotropy == infinity);
+        CHECK(one->anisotropy == infinity_double);
         CHECK(one->singular_values.y == 0.0);
-        CHECK(setup.extremes(rect)->largest_anisotropy == infinity);
+        CHECK(setup.extremes(rect)->largest_anisotropy == infinity_double);
     }
     // t = 3/4 s at every corner, with all the digits that floats have for it: the rank is exact, sums of doubles are not.
     Random random(6700);
@@ -936,9 +936,9 @@ TEST_CASE("a Jacobian of rank 1 or 0, and texels that are none, get what the hea
             vertex->strq.y = 0.75f * vertex->strq.x;
         }
         const auto one = FootprintSetup(setup_of(thin), {64.0, 64.0}).at(200, 200);
-        if (one && one->singular_values.x > 0.0) REQUIRE_MESSAGE(one->anisotropy == infinity, hex(thin));
+        if (one && one->singular_values.x > 0.0) REQUIRE_MESSAGE(one->anisotropy == infinity_double, hex(thin));
     }
-    for (const double bad : {0.0, -1.0, nan_double, infinity}) {
+    for (const double bad : {0.0, -1.0, nan_double, infinity_double}) {
         const TexelsPerUnit texels = bad > 0.0 ? TexelsPerUnit{bad, 64.0} : TexelsPerUnit{64.0, bad};
         const FootprintSetup setup(setup_of(line), texels), good(setup_of(line), {64.0, 64.0});
         FootprintOutputs out(rect), right(rect);
@@ -1023,7 +1023,7 @@ TEST_CASE(
     bad.a.clip_w = 0.5f;
     bad.c.clip_w = 2.0f;
     bad.c.strq.w = -1.0f;
-    CHECK(texgen::headlights(bad) == infinity);
+    CHECK(texgen::headlights(bad) == infinity_double);
     const Triangle good = bad;
     for (const float no_number : {std::numeric_limits<float>::quiet_NaN(), HUGE_VALF}) {
         for (std::size_t i = 0; i < 3; ++i) {

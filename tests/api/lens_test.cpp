@@ -12,11 +12,13 @@
 #include "judges/real.hpp"
 #include "support/hex.hpp"
 #include "support/random.hpp"
+#include "support/special_values.hpp"
 #include "texgen/projector.hpp"
 
 namespace {
 
 using support::hex;
+using support::infinity_double;
 using support::Random;
 using support::Real;
 using texgen::Conventions;
@@ -25,7 +27,6 @@ using texgen::NdcY;
 using texgen::PerspectiveLens;
 using texgen::TextureOrigin;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double bound_in_ulps = 4.0;  // as perspective() states it
 
 Conventions with(DepthRange depth, NdcY y = NdcY::up) {
@@ -41,7 +42,7 @@ Depth exact_depth(double z_near, double z_far, bool reversed, DepthRange range) 
     const Real low = range == DepthRange::zero_to_one ? 0 : -1, high = 1;
     const Real at_near = reversed ? high : low, at_far = reversed ? low : high;
     // At z_eye = -z the NDC is (-scale z + offset) / z = at(z).
-    if (!(z_far < infinity)) return {-at_far, (at_near - at_far) * Real(z_near)};
+    if (!(z_far < infinity_double)) return {-at_far, (at_near - at_far) * Real(z_near)};
     const Real near(z_near), far(z_far);
     return {(at_near * near - at_far * far) / (far - near), (at_near - at_far) * near * far / (far - near)};
 }
@@ -66,7 +67,7 @@ TEST_CASE("a perspective's elements are within 4 double ulp from 0.1 to 179.99 d
         PerspectiveLens lens{.fovy = texgen::degrees(fovy),
                              .aspect = random.power_of_ten(-2.0, 2.0),
                              .z_near = random.power_of_ten(-6.0, 3.0),
-                             .z_far = infinity,
+                             .z_far = infinity_double,
                              .reversed_depth = random.coin()};
         switch (random.integer(0, 3)) {
             case 0:
@@ -83,7 +84,7 @@ TEST_CASE("a perspective's elements are within 4 double ulp from 0.1 to 179.99 d
         }
         narrow += fovy < 1.0;
         wide += fovy > 179.0;
-        infinite += !(lens.z_far < infinity);
+        infinite += !(lens.z_far < infinity_double);
         close_planes += lens.z_far < 1.001 * lens.z_near;
         far_planes += lens.z_far > 1e9 * lens.z_near;
         const DepthRange range = random.coin() ? DepthRange::zero_to_one : DepthRange::negative_one_to_one;
@@ -95,8 +96,8 @@ TEST_CASE("a perspective's elements are within 4 double ulp from 0.1 to 179.99 d
         const std::array<double, 4> computed{m[0][0], m[1][1], m[2][2], m[3][2]};
         const std::array<Real, 4> exact{focal_length / Real(lens.aspect), focal_length, depth.scale, depth.offset};
         for (std::size_t k = 0; k < 4; ++k) {
-            const double error =
-                exact[k] == 0 ? (computed[k] == 0.0 ? 0.0 : infinity) : support::error_in_ulps(computed[k], exact[k]);
+            const double error = exact[k] == 0 ? (computed[k] == 0.0 ? 0.0 : infinity_double)
+                                               : support::error_in_ulps(computed[k], exact[k]);
             if (error > worst) {
                 worst = error;
                 worst_input = describe(lens);
@@ -226,7 +227,7 @@ TEST_CASE("a lens of any finite numbers has its matrix, each element within 4 ul
         const Conventions conventions = with(unit ? DepthRange::zero_to_one : DepthRange::negative_one_to_one);
         const int kind = i % 4;
         if (kind != 1) z_near = std::fabs(z_near), z_far = std::fabs(z_far);
-        if (!(z_near < z_far && z_far < infinity) || left == right || bottom == top) continue;
+        if (!(z_near < z_far && z_far < infinity_double) || left == right || bottom == top) continue;
         if (kind != 1 && !(z_near > 0.0)) continue;
         const Real n(z_near), f(z_far), width = Real(right) - Real(left), height = Real(top) - Real(bottom);
         const Real sum_x = (Real(right) + Real(left)) / width, sum_y = (Real(top) + Real(bottom)) / height;

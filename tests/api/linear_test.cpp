@@ -17,11 +17,13 @@
 #include "judges/real.hpp"
 #include "support/hex.hpp"
 #include "support/random.hpp"
+#include "support/special_values.hpp"
 
 namespace {
 
 using support::exactly;
 using support::hex;
+using support::nan_double;
 using support::Random;
 using support::Rational;
 using support::RationalMatrix;
@@ -34,8 +36,6 @@ using texgen::ModelMatrix;
 using texgen::PerspectiveLens;
 using texgen::Projector;
 using texgen::WorldTexgen;
-
-constexpr double nan_double = std::numeric_limits<double>::quiet_NaN();
 
 PerspectiveLens lens(double degrees = 30.0) {
     return {.fovy = texgen::degrees(degrees), .aspect = 1.0, .z_near = 0.2, .z_far = 1000.0};

@@ -14,6 +14,7 @@
 #include "judges/rational_traits.hpp"
 #include "support/hex.hpp"
 #include "support/random.hpp"
+#include "support/special_values.hpp"
 #include "support/triangles.hpp"
 
 namespace {
@@ -23,12 +24,11 @@ using support::exactly;
 using support::families;
 using support::Family;
 using support::hex;
+using support::nan_float;
 using support::Random;
 using support::Rational;
 using texgen::FragmentRect;
 using texgen::Triangle;
-
-constexpr float nan_float = std::numeric_limits<float>::quiet_NaN();
 
 struct Outputs {
     explicit Outputs(std::size_t count) : s(count, -7.0f), t(count, -7.0f), r(count, -7.0f), lit(count, -7.0f) {}

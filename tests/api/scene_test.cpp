@@ -15,7 +15,6 @@ int broken_preconditions = 0;
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,6 +23,7 @@ int broken_preconditions = 0;
 #include "support/allocations.hpp"
 #include "support/hex.hpp"
 #include "support/random.hpp"
+#include "support/special_values.hpp"
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
 #include "texgen/scene.hpp"
@@ -32,6 +32,8 @@ namespace {
 
 using support::allocations;
 using support::hex;
+using support::infinity_float;
+using support::nan_float;
 using support::Random;
 using texgen::Box;
 using texgen::Coverage;
@@ -43,9 +45,6 @@ using texgen::Scene;
 using texgen::SceneChanges;
 using texgen::SceneWork;
 using texgen::TextureRegion;
-
-constexpr float nan_float = std::numeric_limits<float>::quiet_NaN();
-constexpr float infinity = std::numeric_limits<float>::infinity();
 
 using Indices = std::vector<std::uint32_t>;
 
@@ -72,7 +71,8 @@ ModelMatrix some_model(Random& random, double size, Hostile* hostile = nullptr) 
         for (int j = 0; j < 3; ++j) m[j] *= random.power_of_ten(-1.0, 0.5);
     switch (hostile != nullptr ? random.integer(0, 30) : 30) {
         case 0:
-            m[random.integer(0, 3)][random.integer(0, 3)] = static_cast<double>(random.coin() ? nan_float : infinity);
+            m[random.integer(0, 3)][random.integer(0, 3)] =
+                static_cast<double>(random.coin() ? nan_float : infinity_float);
             ++hostile->nan_model;
             break;
         case 1:
@@ -103,7 +103,7 @@ Box some_box(Random& random, Hostile* hostile = nullptr) {
             ++hostile->empty_box;
             break;
         case 2:
-            box.max[axis] = infinity;
+            box.max[axis] = infinity_float;
             ++hostile->infinite_box;
             break;
         case 3:

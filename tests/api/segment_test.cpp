@@ -18,6 +18,7 @@
 #include "support/hex.hpp"
 #include "support/outputs.hpp"
 #include "support/random.hpp"
+#include "support/special_values.hpp"
 #include "texgen/interpolate.hpp"
 
 namespace {
@@ -26,15 +27,15 @@ using support::everywhere;
 using support::exactly_at;
 using support::hex;
 using support::Homogeneous;
+using support::infinity_float;
 using support::is_tie;
+using support::nan_float;
 using support::Outputs;
 using support::Random;
 using support::same_bits;
 using texgen::Segment;
 using texgen::Tolerance;
 
-constexpr float infinity = std::numeric_limits<float>::infinity();
-constexpr float nan_float = std::numeric_limits<float>::quiet_NaN();
 constexpr float denorm_min = std::numeric_limits<float>::denorm_min();
 constexpr float largest_float = std::numeric_limits<float>::max();
 
@@ -246,12 +247,12 @@ texgen::TextureRegion any_region(const Case& c, Random& random) {
     return support::region_about(at, random);
 }
 
-struct Tally {
+struct Classes {
     int in_front = 0, behind = 0, on_plane = 0, lit = 0, subnormal = 0, infinite = 0;
 };
 
 void require_right(const Case& c, const texgen::TextureRegion& region, Tolerance tolerance, Outputs& out,
-                   Tally& tally) {
+                   Classes& classes) {
     interpolate(c.segment, c.alphas, region, out.spans(), tolerance);
     REQUIRE_MESSAGE(out.pads_are_intact(), hex(c.segment));
     for (std::size_t i = 0; i < c.alphas.size(); ++i) {
@@ -259,11 +260,11 @@ void require_right(const Case& c, const texgen::TextureRegion& region, Tolerance
         const std::string wrong = what_is_wrong(at, region, tolerance, out, i);
         REQUIRE_MESSAGE(wrong.empty(), wrong, " at alpha ", hex(c.alphas[i]), " of ", hex(c.segment), ", tolerance ",
                         hex(tolerance.value));
-        ++(at.q.sign() > 0 ? tally.in_front : at.q.sign() < 0 ? tally.behind : tally.on_plane);
-        if (out.asked(3)) tally.lit += out.lit()[i] == 1.0f;
+        ++(at.q.sign() > 0 ? classes.in_front : at.q.sign() < 0 ? classes.behind : classes.on_plane);
+        if (out.asked(3)) classes.lit += out.lit()[i] == 1.0f;
         if (out.asked(0)) {
-            tally.subnormal += std::fpclassify(out.s()[i]) == FP_SUBNORMAL;
-            tally.infinite += std::isinf(out.s()[i]);
+            classes.subnormal += std::fpclassify(out.s()[i]) == FP_SUBNORMAL;
+            classes.infinite += std::isinf(out.s()[i]);
         }
     }
 }
@@ -272,7 +273,7 @@ void require_right(const Case& c, const texgen::TextureRegion& region, Tolerance
 
 TEST_CASE("every value of a segment is the nearest float of the exact rational, in every family") {
     std::uint64_t seed = 4000;
-    Tally tally;
+    Classes classes;
     for (const SegmentFamily& family : families) {
         CAPTURE(std::string(family.name));
         Random random(++seed);
@@ -282,16 +283,16 @@ TEST_CASE("every value of a segment is the nearest float of the exact rational, 
             const Case c = family.make(random, static_cast<std::size_t>(random.integer(1, 90)));
             hard += family.is_hard(c);
             Outputs out(c.alphas.size(), Outputs::all, static_cast<std::size_t>(i % 16));
-            require_right(c, any_region(c, random), texgen::exact, out, tally);
+            require_right(c, any_region(c, random), texgen::exact, out, classes);
         }
         CHECK(hard >= family.least_share * members);
     }
-    CHECK(tally.in_front > 20000);
-    CHECK(tally.behind > 5000);
-    CHECK(tally.on_plane > 500);
-    CHECK(tally.lit > 5000);
-    CHECK(tally.subnormal > 1000);
-    CHECK(tally.infinite > 100);
+    CHECK(classes.in_front > 20000);
+    CHECK(classes.behind > 5000);
+    CHECK(classes.on_plane > 500);
+    CHECK(classes.lit > 5000);
+    CHECK(classes.subnormal > 1000);
+    CHECK(classes.infinite > 100);
 }
 
 TEST_CASE("the ends of a segment are the quotients of its ends") {
@@ -321,7 +322,7 @@ TEST_CASE("the ends of a segment are the quotients of its ends") {
 
 TEST_CASE("no error on a segment is larger than was accepted, in every family at every tolerance") {
     std::uint64_t seed = 4200;
-    Tally tally;
+    Classes classes;
     for (const Tolerance tolerance :
          {texgen::texels(1.0 / 512.0, 4096.0), texgen::texels(1.0 / 16.0, 1024.0), texgen::texels(1.0, 256.0),
           Tolerance{0.1}, Tolerance{10.0}, Tolerance{1e300}, Tolerance{std::numeric_limits<double>::infinity()}}) {
@@ -332,17 +333,17 @@ TEST_CASE("no error on a segment is larger than was accepted, in every family at
                 const Case c = family.make(random, static_cast<std::size_t>(random.integer(1, 70)));
                 const unsigned asked = random.coin() ? Outputs::all : static_cast<unsigned>(random.integer(0, 15));
                 Outputs out(c.alphas.size(), asked, static_cast<std::size_t>(i % 16));
-                require_right(c, any_region(c, random), tolerance, out, tally);
+                require_right(c, any_region(c, random), tolerance, out, classes);
             }
         }
     }
-    CHECK(tally.in_front > 20000);
-    CHECK(tally.behind > 5000);
+    CHECK(classes.in_front > 20000);
+    CHECK(classes.behind > 5000);
 }
 
 TEST_CASE("a tolerance of some units of the largest coordinate is kept, whatever the unit") {
     std::uint64_t seed = 4300;
-    Tally tally;
+    Classes classes;
     for (const SegmentFamily& family : families) {
         CAPTURE(std::string(family.name));
         Random random(++seed);
@@ -356,10 +357,10 @@ TEST_CASE("a tolerance of some units of the largest coordinate is kept, whatever
             }
             const double units = std::ldexp(random.uniform(1.0, 2.0), random.integer(-26, -10));
             Outputs out(c.alphas.size(), random.coin() ? Outputs::all : static_cast<unsigned>(random.integer(0, 15)));
-            require_right(c, any_region(c, random), {largest * units}, out, tally);
+            require_right(c, any_region(c, random), {largest * units}, out, classes);
         }
     }
-    CHECK(tally.in_front > 20000);
+    CHECK(classes.in_front > 20000);
 }
 
 TEST_CASE("a tolerance that is not positive means exact") {
@@ -450,7 +451,7 @@ TEST_CASE("an alpha that is NaN is behind, alone and in any company") {
 TEST_CASE("a bad coordinate of an end spoils that coordinate only; a bad q, and everything is dark") {
     Random random(4700);
     for (const Tolerance tolerance : {texgen::exact, Tolerance{1e-4}}) {
-        for (const float bad : {nan_float, infinity, -infinity}) {
+        for (const float bad : {nan_float, infinity_float, -infinity_float}) {
             for (int coordinate = 0; coordinate < 4; ++coordinate) {
                 for (const bool at_a : {false, true}) {
                     Case c = families[0].make(random, 40);

@@ -20,6 +20,7 @@
 #include "judges/oracle.hpp"
 #include "support/hex.hpp"
 #include "support/random.hpp"
+#include "support/special_values.hpp"
 #include "support/surfaces.hpp"
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
@@ -39,6 +40,8 @@ using support::exact_slide_area;
 using support::exactly;
 using support::facing_of_sign;
 using support::hex;
+using support::infinity_float;
+using support::nan_float;
 using support::Quadrilateral;
 using support::Random;
 using support::Rational;
@@ -52,9 +55,6 @@ using texgen::quadrilateral;
 using texgen::receiver_plane;
 using texgen::slide_area;
 using texgen::TextureOrigin;
-
-constexpr float nan_float = std::numeric_limits<float>::quiet_NaN();
-constexpr float infinity = std::numeric_limits<float>::infinity();
 
 // How many triangles the test of facing takes of a family: TEXGEN_FACING_TRIANGLES says otherwise.
 int facing_triangles() {
@@ -126,7 +126,7 @@ TEST_CASE(
 
 TEST_CASE("a number that is not finite is seen edge on, has no area and no plane; r is looked at by the plane alone") {
     Random random(403);
-    for (const float bad : {nan_float, infinity, -infinity}) {
+    for (const float bad : {nan_float, infinity_float, -infinity_float}) {
         for (int k = 0; k < 12; ++k) {
             Corners corners = corners_of(CornerFamily::ordinary, random);
             corners[static_cast<std::size_t>(k / 4)][k % 4] = bad;

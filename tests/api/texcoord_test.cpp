@@ -10,7 +10,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -20,6 +19,7 @@
 #include "support/hex.hpp"
 #include "support/outputs.hpp"
 #include "support/random.hpp"
+#include "support/special_values.hpp"
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
 #include "texgen/texcoord.hpp"
@@ -31,6 +31,8 @@ using support::everywhere;
 using support::exactly_at;
 using support::hex;
 using support::Homogeneous;
+using support::infinity_float;
+using support::nan_float;
 using support::Outputs;
 using support::Random;
 using support::same_bits;
@@ -38,9 +40,6 @@ using texgen::Object;
 using texgen::ObjectTexgen;
 using texgen::Positions;
 using texgen::Tolerance;
-
-constexpr float nan_float = std::numeric_limits<float>::quiet_NaN();
-constexpr float infinity = std::numeric_limits<float>::infinity();
 
 using Points = std::vector<glm::vec3>;
 
@@ -530,7 +529,7 @@ TEST_CASE("a NaN or an infinity in a position spoils its own point only") {
                 std::vector<bool> bad(count);
                 for (std::size_t j = 0; j < count; ++j) {
                     bad[j] = random.integer(0, 5) == 0;
-                    const float values[] = {nan_float, -nan_float, infinity, -infinity};
+                    const float values[] = {nan_float, -nan_float, infinity_float, -infinity_float};
                     if (bad[j]) batch.points[j][random.integer(0, 2)] = values[random.integer(0, 3)];
                     spoilt += bad[j];
                 }

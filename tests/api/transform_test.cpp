@@ -15,17 +15,17 @@
 #include "judges/rational_matrix.hpp"
 #include "support/hex.hpp"
 #include "support/random.hpp"
+#include "support/special_values.hpp"
 
 namespace {
 
 using support::exactly;
 using support::hex;
+using support::nan_double;
 using support::Random;
 using support::Rational;
 using support::RationalMatrix;
 using texgen::ModelMatrix;
-
-constexpr double nan_double = std::numeric_limits<double>::quiet_NaN();
 
 glm::dmat4 random_matrix(Random& random, double size = 1.0) {
     glm::dmat4 m(0.0);

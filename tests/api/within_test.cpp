@@ -23,6 +23,7 @@ inline std::size_t broken_preconditions = 0;
 #include "support/hex.hpp"
 #include "support/outputs.hpp"
 #include "support/random.hpp"
+#include "support/special_values.hpp"
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
 #include "texgen/texcoord.hpp"
@@ -31,6 +32,8 @@ namespace {
 
 using support::Cloud;
 using support::everywhere;
+using support::infinity_float;
+using support::nan_float;
 using support::Outputs;
 using support::Random;
 using texgen::Box;
@@ -38,12 +41,9 @@ using texgen::Positions;
 using texgen::Tolerance;
 using texgen::World;
 
-constexpr float nan_float = std::numeric_limits<float>::quiet_NaN();
-constexpr float infinity = std::numeric_limits<float>::infinity();
-
 // The smallest box, of the points that are numbers.
 Box box_of(const std::vector<glm::vec3>& points) {
-    Box box{glm::vec3(infinity), glm::vec3(-infinity)};
+    Box box{glm::vec3(infinity_float), glm::vec3(-infinity_float)};
     for (const glm::vec3& point : points)
         for (int k = 0; k < 3; ++k) {
             if (std::isnan(point[k])) continue;
@@ -210,8 +210,8 @@ TEST_CASE("a box of which nothing is certain leaves the certificates to the bloc
     Random random(8400);
     const Cloud cloud = seen(random, 300);
     const float largest = std::numeric_limits<float>::max();
-    for (const Box& box : {Box{glm::vec3(-infinity), glm::vec3(infinity)}, Box{glm::vec3(-largest), glm::vec3(largest)},
-                           Box{glm::vec3(-1e6f), glm::vec3(1e6f)}}) {
+    for (const Box& box : {Box{glm::vec3(-infinity_float), glm::vec3(infinity_float)},
+                           Box{glm::vec3(-largest), glm::vec3(largest)}, Box{glm::vec3(-1e6f), glm::vec3(1e6f)}}) {
         for (const double tolerance : {0.0, 0x1p-20, 0x1p-10}) {
             Outputs out(300);
             project(texgen::WorldTexgen(cloud.matrix), texgen::world_space(cloud.points).within(box), everywhere(),
@@ -241,7 +241,7 @@ TEST_CASE("a point outside of its box is asserted, and without assertions spoils
         const texgen::WorldTexgen texgen(cloud.matrix);
         const Box box = box_of(cloud.points);
         const Tolerance tolerance{round % 2 == 0 ? 0.0 : 0x1p-10};
-        for (const float bad : {nan_float, infinity, 1e30f}) {
+        for (const float bad : {nan_float, infinity_float, 1e30f}) {
             std::vector<glm::vec3> points = cloud.points;
             const auto at = static_cast<std::size_t>(random.integer(0, count - 1));
             points[at][random.integer(0, 2)] = bad;

@@ -16,6 +16,7 @@
 #include "support/hard_triangles.hpp"
 #include "support/outputs.hpp"
 #include "support/random.hpp"
+#include "support/special_values.hpp"
 #include "texgen/interpolate.hpp"
 
 namespace {
@@ -25,6 +26,7 @@ using support::everywhere;
 using support::ExactTriangle;
 using support::hex;
 using support::Homogeneous;
+using support::nan_double;
 using support::Outputs;
 using support::Random;
 using support::region_at;
@@ -37,8 +39,6 @@ using texgen::Tolerance;
 using texgen::TriangleSetup;
 using texgen::WindowVertex;
 using texgen::Work;
-
-constexpr double nan_double = std::numeric_limits<double>::quiet_NaN();
 
 std::string hex(const TextureRegion& region) {
     const std::string sides = "region " + hex(region.min()) + " to " + hex(region.max());

@@ -11,16 +11,12 @@
 #include "judges/real.hpp"
 #include "support/hex.hpp"
 #include "support/random.hpp"
+#include "support/special_values.hpp"
 
 using support::exactly;
+using support::infinity_float;
 using support::nearest;
 using support::Rational;
-
-namespace {
-
-constexpr float infinity = std::numeric_limits<float>::infinity();
-
-}  // namespace
 
 TEST_CASE("floats and doubles survive the way through rationals, subnormals included") {
     support::Random random(1);
@@ -54,8 +50,8 @@ TEST_CASE("ties go to even, and beyond the largest float and half an ulp lies in
     CHECK(nearest<float>(exactly(0x1p-150)) == 0.0f);
     CHECK(nearest<float>(exactly(0x3p-150)) == 0x1p-148f);
     CHECK(nearest<float>(exactly(0x1.fffffefffffffp127)) == 0x1.fffffep127f);
-    CHECK(nearest<float>(exactly(0x1.ffffffp127)) == infinity);
-    CHECK(nearest<float>(exactly(-0x1p200)) == -infinity);
+    CHECK(nearest<float>(exactly(0x1.ffffffp127)) == infinity_float);
+    CHECK(nearest<float>(exactly(-0x1p200)) == -infinity_float);
     CHECK(nearest<double>(Rational(1, 3)) == 1.0 / 3.0);
     CHECK(nearest<float>(Rational(-1, 3)) == -1.0f / 3.0f);
 }
@@ -66,8 +62,8 @@ TEST_CASE("the distance in ulps is measured in the binade of the exact value") {
     CHECK(support::ulp_error(1.0f, exactly(1.0 - 0x1p-25)) == 0.5);
     CHECK(support::ulp_error(0.0f, exactly(0x1p-150)) == 0.5);
     CHECK(support::ulp_error(3.0f, Rational(1, 3)) > 1e7);
-    CHECK(support::ulp_error(infinity, exactly(0x1p128)) == 0.0);
-    CHECK(std::isinf(support::ulp_error(infinity, exactly(1.0))));
+    CHECK(support::ulp_error(infinity_float, exactly(0x1p128)) == 0.0);
+    CHECK(std::isinf(support::ulp_error(infinity_float, exactly(1.0))));
     CHECK(std::isinf(support::ulp_error(std::numeric_limits<float>::quiet_NaN(), exactly(1.0))));
 }
 

@@ -41,7 +41,8 @@ def configure(copy, build, flags):
         else:
             shutil.copy2(source, target)
     subprocess.run(["cmake", "-S", copy, "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=None",
-                    f"-DCMAKE_CXX_FLAGS=-O1 {flags}", "-DTEXGEN_BENCHMARKS=OFF", "-DTEXGEN_TESTS=ON"],
+                    f"-DCMAKE_CXX_FLAGS=-O1 {flags}", "-DTEXGEN_BENCHMARKS=OFF", "-DTEXGEN_TESTS=ON",
+                    "-DTEXGEN_TESTS_TOGETHER=OFF"],
                    check=True, stdout=subprocess.DEVNULL)
 
 

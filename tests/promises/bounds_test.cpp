@@ -27,7 +27,7 @@ using support::Outputs;
 using support::Random;
 using texgen::Tolerance;
 
-constexpr double u = 0x1p-24;
+constexpr double unit_roundoff = 0x1p-24;
 
 // The number of points that are not what exact gives: they came from a cheaper tier.
 int count_of_cheap(const glm::dmat4& matrix, const std::vector<glm::vec3>& points, Tolerance tolerance) {
@@ -49,13 +49,14 @@ int count_of_cheap(const glm::dmat4& matrix, const std::vector<glm::vec3>& point
 
 TEST_CASE("forms in float whose coefficients and sums are all rounded the same way stay inside the tolerance") {
     // s: 1 + 2^-24 and three times 2^-24 are rounded down to 1, one by one; q: 1 + 3 * 2^-24 is rounded up, and three
-    // times -2^-24 leave it there. The quotient is 8 u too small.
+    // times -2^-24 leave it there. The quotient is 8 unit roundoffs too small.
     glm::dmat4 matrix(0.0);
-    for (int j = 0; j < 3; ++j) matrix[j] = {u, u, u, -u};
-    matrix[3] = {1.0 + u, 1.0 + u, 1.0 + u, 1.0 + 3.0 * u};
+    for (int j = 0; j < 3; ++j) matrix[j] = {unit_roundoff, unit_roundoff, unit_roundoff, -unit_roundoff};
+    matrix[3] = {1.0 + unit_roundoff, 1.0 + unit_roundoff, 1.0 + unit_roundoff, 1.0 + 3.0 * unit_roundoff};
     const std::vector<glm::vec3> points(64, glm::vec3(1.0f));
     int cheap = 0;
-    for (double units = 1.0; units < 40.0; units += 0.25) cheap += count_of_cheap(matrix, points, {units * u});
+    for (double units = 1.0; units < 40.0; units += 0.25)
+        cheap += count_of_cheap(matrix, points, {units * unit_roundoff});
     CHECK(cheap > 1000);
 }
 
@@ -76,7 +77,7 @@ TEST_CASE("forms in double that are rounded to float and divided there stay insi
             const float size = random.uniform_float(1.0, 1024.0);
             point = {size, size, random.uniform_float(1.0, 1.0 + 0x1p-6)};
         }
-        cheap += count_of_cheap(matrix, points, {random.uniform(1.0, 5.0) * u});
+        cheap += count_of_cheap(matrix, points, {random.uniform(1.0, 5.0) * unit_roundoff});
     }
     CHECK(cheap > 100);
 }
@@ -93,7 +94,7 @@ TEST_CASE("float functions of a segment stay inside the tolerance at every multi
                                       {random.coin() ? s : about_one(), t, 0.0f, about_one()}};
         std::vector<float> alpha(64);
         for (float& a : alpha) a = random.uniform_float(0.0, 1.0);
-        const Tolerance tolerance{random.uniform(1.0, 14.0) * u};
+        const Tolerance tolerance{random.uniform(1.0, 14.0) * unit_roundoff};
         Outputs out(alpha.size()), exact(alpha.size());
         interpolate(segment, alpha, everywhere(), out.spans(), tolerance);
         interpolate(segment, alpha, everywhere(), exact.spans());
@@ -121,7 +122,7 @@ TEST_CASE("functions over a triangle in float, or in double and rounded, stay in
         const bool is_float = random.coin();
         const texgen::FragmentRect rect{random.integer(0, 20), random.integer(0, 20), is_float ? 30 : 15,
                                         is_float ? 1 : 2};
-        const Tolerance tolerance{random.uniform(1.0, is_float ? 7.0 : 4.5) * u};
+        const Tolerance tolerance{random.uniform(1.0, is_float ? 7.0 : 4.5) * unit_roundoff};
         const texgen::TriangleSetup setup = support::setup_of(triangle, everywhere(), tolerance);
         Outputs out(30), nearest(30);
         const texgen::Work work = interpolate(setup, rect, out.spans());

@@ -10,13 +10,13 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "support/random.hpp"
+#include "support/special_values.hpp"
 #include "support/stopwatch.hpp"
 #include "texgen/coverage.hpp"
 #include "texgen/footprint.hpp"
@@ -26,6 +26,8 @@
 
 namespace {
 
+using support::infinity_float;
+using support::nan_float;
 using support::Random;
 using support::worst_over_ordinary_within;
 using texgen::Box;
@@ -34,9 +36,6 @@ using texgen::LitVolume;
 using texgen::Sphere;
 using texgen::World;
 using texgen::WorldTexgen;
-
-constexpr float infinity = std::numeric_limits<float>::infinity();
-constexpr float nan_float = std::numeric_limits<float>::quiet_NaN();
 
 constexpr double limit_of_touching_bodies = 10.0;
 constexpr double limit_of_functions = 8.0;
@@ -121,8 +120,8 @@ std::vector<Family> families(Random& random) {
     touching("touch all sides", [] { return Box{{-4, -4, -3}, {4, 4, 6}}; });
     touching("columns that touch", [&] {
         Box box = touching_box(random, random.coin());
-        box.min.z = -infinity;
-        box.max.z = infinity;
+        box.min.z = -infinity_float;
+        box.max.z = infinity_float;
         return box;
     });
     touching("touch q = 0 from behind", [&] {
@@ -145,10 +144,10 @@ std::vector<Family> families(Random& random) {
         const Box box = some_box(random);
         return Box{box.max, box.min};
     });
-    other("infinite", [] { return Box{glm::vec3(-infinity), glm::vec3(infinity)}; });
+    other("infinite", [] { return Box{glm::vec3(-infinity_float), glm::vec3(infinity_float)}; });
     other("infinite to one side", [&] {
         Box box = some_box(random);
-        box.max[random.integer(0, 2)] = infinity;
+        box.max[random.integer(0, 2)] = infinity_float;
         return box;
     });
     other("huge", [] { return Box{glm::vec3(-3e38f), glm::vec3(3e38f)}; });
@@ -223,7 +222,7 @@ TEST_CASE("no sphere costs more than 8 ordinary ones") {
              return Sphere{{0, nan_float, 0}, 1};
          })},
         {"infinite", many<Sphere>([] {
-             return Sphere{{0, 0, 0}, infinity};
+             return Sphere{{0, 0, 0}, infinity_float};
          })}};
     for (const Slide& slide : slides()) {
         const LitVolume<World> volume(slide.transform, texgen::whole_texture());

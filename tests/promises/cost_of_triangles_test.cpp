@@ -57,9 +57,9 @@ Shot ordinary(int width, int height) {
             {300, 100, width, height}};
 }
 
-// The time of a shot over that of the ordinary one of its size; taken anew while it is above the limit.
-double cost(const Shot& shot, Tolerance tolerance, double limit) {
-    return support::worst_over_ordinary_within(limit, Workload(ordinary(shot.rect.width, shot.rect.height), tolerance),
+// The time of a shot over that of the ordinary one of its size; taken anew while it is above the most that it may be.
+double cost(const Shot& shot, Tolerance tolerance, double most) {
+    return support::worst_over_ordinary_within(most, Workload(ordinary(shot.rect.width, shot.rect.height), tolerance),
                                                Workload(shot, tolerance));
 }
 
@@ -71,10 +71,10 @@ double least_time(const Shot& shot, Tolerance tolerance) {
     return least;
 }
 
-void require_cost(const char* name, const Shot& shot, double limit) {
+void require_cost(const char* name, const Shot& shot, double most) {
     for (const Tolerance tolerance : dial) {
-        const double ratio = cost(shot, tolerance, limit);
-        REQUIRE_MESSAGE(ratio <= limit, name, ", tolerance ", tolerance.value, ": ", ratio, " times in ", hex(shot));
+        const double ratio = cost(shot, tolerance, most);
+        REQUIRE_MESSAGE(ratio <= most, name, ", tolerance ", tolerance.value, ": ", ratio, " times in ", hex(shot));
     }
 }
 

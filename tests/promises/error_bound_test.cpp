@@ -19,6 +19,7 @@
 #include "support/hex.hpp"
 #include "support/outputs.hpp"
 #include "support/random.hpp"
+#include "support/special_values.hpp"
 #include "texgen/fixed_function.hpp"
 #include "texgen/interpolate.hpp"
 #include "texgen/linear.hpp"
@@ -31,6 +32,8 @@ using support::Dyadic;
 using support::exactly;
 using support::hex;
 using support::Homogeneous;
+using support::infinity_double;
+using support::nan_double;
 using support::Outputs;
 using support::Random;
 using support::Rational;
@@ -43,16 +46,13 @@ using texgen::ObjectTexgen;
 using texgen::Segment;
 using texgen::Tolerance;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double nan_double = std::numeric_limits<double>::quiet_NaN();
-
-bool is_no_bound(double bound) { return !(bound < infinity); }
+bool is_no_bound(double bound) { return !(bound < infinity_double); }
 
 // How many times a bound is the error that was seen; errors of 0 say nothing of it.
 class Tightness {
 public:
     void add(double bound, double error) {
-        if (error > 0.0 && bound < infinity) ratios_.push_back(bound / error);
+        if (error > 0.0 && bound < infinity_double) ratios_.push_back(bound / error);
     }
     std::size_t size() const { return ratios_.size(); }
     double median() {
@@ -263,7 +263,7 @@ void check(const glm::dmat4& bound, const glm::dmat4& computed, const RationalMa
                                    exact[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)]);
             const double b = bound[column][row];
             REQUIRE_MESSAGE(b >= 0.0, context);
-            if (b < infinity) REQUIRE_MESSAGE(error <= exactly(b), hex(b), " for ", context);
+            if (b < infinity_double) REQUIRE_MESSAGE(error <= exactly(b), hex(b), " for ", context);
             tightness.add(b, support::nearest<double>(error));
         }
     }
@@ -317,7 +317,7 @@ TEST_CASE("a segment's error_bound is never below the error, and is tight in eve
                     if (at.q.sign() > 0) largest = std::max(largest, support::distance(out[k][n], at.over_q(k)));
                 }
                 REQUIRE_MESSAGE(largest <= b * (1.0 + 1e-12), hex(segment.a), hex(segment.b), hex(tolerance.value));
-                if (!family.is_finite) REQUIRE_MESSAGE(b == infinity, hex(segment.a), hex(segment.b));
+                if (!family.is_finite) REQUIRE_MESSAGE(b == infinity_double, hex(segment.a), hex(segment.b));
                 tightness.add(b, largest);
                 if (tolerance.value > 1e-6) of_float.add(b, largest);
             }
@@ -350,8 +350,8 @@ TEST_CASE("a segment that is behind has no error, and one with a NaN or an infin
 TEST_CASE("from 2^128 - 2^103 on the nearest float is infinity, and the bound with it") {
     const auto bound_at = [](float s) { return error_bound({{s, 0, 0, 1}, {s, 0, 0, 1}}).x; };
     constexpr float largest = std::numeric_limits<float>::max();
-    CHECK(bound_at(0x1p127f) < infinity);
-    CHECK(bound_at(largest) == infinity);  // 1.001 times it, to be safe
+    CHECK(bound_at(0x1p127f) < infinity_double);
+    CHECK(bound_at(largest) == infinity_double);  // 1.001 times it, to be safe
     const ObjectTexgen texgen(glm::dmat4(0x1.fffffefp127, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1));
     const ObjectTexgen beyond(glm::dmat4(0x1.ffffff1p127, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1));
     const glm::vec3 point(1.0f, 0.0f, 0.0f);
@@ -359,10 +359,10 @@ TEST_CASE("from 2^128 - 2^103 on the nearest float is infinity, and the bound wi
     glm::vec4 strq(0.0f);
     generate(texgen, points, std::span(&strq, 1));
     CHECK(strq.x == largest);
-    CHECK(generate_error_bound(texgen, points).x < infinity);
+    CHECK(generate_error_bound(texgen, points).x < infinity_double);
     generate(beyond, points, std::span(&strq, 1));
     CHECK(strq.x == HUGE_VALF);
-    CHECK(generate_error_bound(beyond, points).x == infinity);
+    CHECK(generate_error_bound(beyond, points).x == infinity_double);
 }
 
 TEST_CASE("generate_error_bound is never below the error of any coordinate, and is tight where terms cancel, too") {
@@ -436,7 +436,7 @@ TEST_CASE("points without an error have no bound above 0, and a NaN or an infini
     const ObjectTexgen texgen(glm::dmat4(1.0));
     CHECK(project_error_bound(texgen, texgen::object_space(std::span<const glm::vec3>())) == glm::dvec2(0.0));
     CHECK(generate_error_bound(texgen, texgen::object_space(std::span<const glm::vec3>())) == glm::dvec4(0.0));
-    for (const double bad : {nan_double, infinity, -infinity}) {
+    for (const double bad : {nan_double, infinity_double, -infinity_double}) {
         for (int k = 0; k < 3; ++k) {
             std::array<glm::vec3, 3> points{{{0.1f, 0.2f, 0.3f}, {0.4f, 0.5f, 0.6f}, {0.7f, 0.8f, 0.9f}}};
             points[1][k] = static_cast<float>(bad);
@@ -494,9 +494,9 @@ TEST_CASE("inverse_error_bound is never below the error of an inverse, whoever c
 
 TEST_CASE("an inverse of what is singular, or of what is not finite, has no error bound") {
     const texgen::Transform<texgen::Object, texgen::World> given(glm::dmat4(1.0));
-    for (const glm::dmat4& m : {glm::dmat4(0.0), glm::dmat4(nan_double), glm::dmat4(infinity)})
+    for (const glm::dmat4& m : {glm::dmat4(0.0), glm::dmat4(nan_double), glm::dmat4(infinity_double)})
         CHECK(all_are_no_bounds(inverse_error_bound(ModelMatrix(m), given)));
-    for (const double bad : {nan_double, infinity, -infinity}) {
+    for (const double bad : {nan_double, infinity_double, -infinity_double}) {
         for (int row = 0; row < 4; ++row) {
             glm::dmat4 m(1.0);
             m[1][row] = bad;
@@ -554,7 +554,7 @@ TEST_CASE("planes under what is singular, and planes that are not finite, have n
     const EyeTexgen given(glm::dmat4(1.0));
     CHECK(all_are_no_bounds(
         eye_planes_error_bound(ObjectTexgen(glm::dmat4(1.0)), ModelviewMatrix(glm::dmat4(0.0)), given)));
-    for (const double bad : {nan_double, infinity}) {
+    for (const double bad : {nan_double, infinity_double}) {
         glm::dmat4 m(1.0);
         m[2][1] = bad;
         const glm::dmat4 of_plane = eye_planes_error_bound(ObjectTexgen(m), identity, given);

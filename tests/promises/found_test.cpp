@@ -10,15 +10,15 @@
 #include "judges/exact.hpp"
 #include "judges/verdict.hpp"
 #include "support/outputs.hpp"
+#include "support/special_values.hpp"
 #include "texgen/interpolate.hpp"
 #include "texgen/texcoord.hpp"
 
 namespace {
 
+using support::nan_float;
 using support::Outputs;
 using texgen::Tolerance;
-
-constexpr float nan_float = std::numeric_limits<float>::quiet_NaN();
 
 }  // namespace
 

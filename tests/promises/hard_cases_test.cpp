@@ -63,8 +63,8 @@ Rational as_rational(const Json& json) {
     return Rational(text.insert(text.front() == '-' ? 1 : 0, "0x"));
 }
 
-const texgen::TextureRegion everywhere = texgen::atlas_tile({-1e300, -1e300}, {1e300, 1e300});
-const texgen::TextureRegion open_everywhere = texgen::atlas_tile({-HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, HUGE_VAL});
+const texgen::TextureRegion vast = texgen::atlas_tile({-1e300, -1e300}, {1e300, 1e300});
+const texgen::TextureRegion boundless = texgen::atlas_tile({-HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, HUGE_VAL});
 
 struct Divided {
     float s, lit;
@@ -72,8 +72,7 @@ struct Divided {
 
 Divided at(const Segment& segment, float alpha) {
     Divided result{-7.0f, -7.0f};
-    texgen::interpolate(segment, {&alpha, 1}, everywhere,
-                        {.s = {&result.s, 1}, .t = {}, .r = {}, .lit = {&result.lit, 1}});
+    texgen::interpolate(segment, {&alpha, 1}, vast, {.s = {&result.s, 1}, .t = {}, .r = {}, .lit = {&result.lit, 1}});
     return result;
 }
 
@@ -104,7 +103,7 @@ void cu(const Json& json) {
     CHECK((exact[3] > 0) == in_front);
     CHECK(computed.s == (in_front ? as_float(json["f32"]) : 0.0f));
     if (in_front && std::isfinite(computed.s)) {
-        CHECK(work(segment, everywhere) != texgen::Work::nothing);
+        CHECK(work(segment, vast) != texgen::Work::nothing);
         const Rational error = support::magnitude(exactly(computed.s) - reference::quotient(exact)[0]);
         const double bound = error_bound(segment).x;
         if (std::isfinite(bound)) CHECK(error <= exactly(bound));
@@ -149,11 +148,11 @@ void dot4(const Json& json) {
     const Rational half_ulp = support::power_of_two(support::ulp_exponent<float>(exact) - 1);
     CHECK(support::magnitude(exactly(strq.w) - exact) <= half_ulp + slack);
     Divided projected{-7.0f, -7.0f};
-    texgen::project(texture_from_object, points, everywhere,
+    texgen::project(texture_from_object, points, vast,
                     {.s = {&projected.s, 1}, .t = {}, .r = {}, .lit = {&projected.lit, 1}});
     CHECK(support::magnitude(exactly(strq.w) - exact) <= exactly(generate_error_bound(texture_from_object, points).w));
     const bool in_front = json["sign"].number() > 0.0;
-    CHECK((coverage(texture_from_object, open_everywhere, texgen::Box{point, point}) == texgen::Coverage::outside) !=
+    CHECK((coverage(texture_from_object, boundless, texgen::Box{point, point}) == texgen::Coverage::outside) !=
           in_front);
     if (in_front && std::isfinite(projected.s))
         CHECK(support::magnitude(exactly(projected.s) - 1 / exact) <=
@@ -192,8 +191,8 @@ void tri(const Json& json) {
     CHECK(reference::quotient(exact)[0] == as_rational(json["exact_hex_rational"]));
     const texgen::FragmentRect pixel{static_cast<int>(std::floor(px)), static_cast<int>(std::floor(py)), 1, 1};
     float by_reference = -7.0f, fast = -7.0f;
-    reference::interpolate(triangle, everywhere, pixel, {.s = {&by_reference, 1}, .t = {}, .r = {}, .lit = {}});
-    const auto setup = texgen::TriangleSetup::of(triangle, everywhere);
+    reference::interpolate(triangle, vast, pixel, {.s = {&by_reference, 1}, .t = {}, .r = {}, .lit = {}});
+    const auto setup = texgen::TriangleSetup::of(triangle, vast);
     REQUIRE(setup);
     texgen::interpolate(*setup, pixel, {.s = {&fast, 1}, .t = {}, .r = {}, .lit = {}});
     CHECK(by_reference == as_float(json["f32"]));
@@ -359,7 +358,7 @@ void affine_dev(const Json& json) {
     const texgen::Tolerance tolerance{0.5 * support::nearest<double>(worst)};
     std::vector<float> alpha, s(static_cast<std::size_t>(steps + 1));
     for (int i = 0; i <= steps; ++i) alpha.push_back(support::to_float(static_cast<double>(i) / steps));
-    texgen::interpolate(segment, alpha, everywhere, {.s = s, .t = {}, .r = {}, .lit = {}}, tolerance);
+    texgen::interpolate(segment, alpha, vast, {.s = s, .t = {}, .r = {}, .lit = {}}, tolerance);
     for (std::size_t i = 0; i < alpha.size(); ++i) {
         const Rational right = reference::quotient(reference::strq(segment, exactly(alpha[i])))[0];
         const Rational error = support::magnitude(exactly(s[i]) - right);
