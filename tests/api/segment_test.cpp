@@ -36,7 +36,7 @@ using support::same_bits;
 using texgen::Segment;
 using texgen::Tolerance;
 
-constexpr float denorm_min = std::numeric_limits<float>::denorm_min();
+constexpr float least_float = std::numeric_limits<float>::denorm_min();
 constexpr float largest_float = std::numeric_limits<float>::max();
 
 std::string hex(const Segment& segment) { return "{" + hex(segment.a) + ", " + hex(segment.b) + "}"; }
@@ -207,8 +207,8 @@ const std::array families{
                       const bool small_q = random.coin();
                       for (glm::vec4* end : {&segment.a, &segment.b}) {
                           for (int k = 0; k < 3; ++k)
-                              (*end)[k] = static_cast<float>(random.integer(-3000, 3000)) * denorm_min;
-                          if (small_q) end->w = static_cast<float>(random.integer(1, 3000)) * denorm_min;
+                              (*end)[k] = static_cast<float>(random.integer(-3000, 3000)) * least_float;
+                          if (small_q) end->w = static_cast<float>(random.integer(1, 3000)) * least_float;
                       }
                       return {segment, any_alphas(random, count)};
                   },

@@ -27,7 +27,7 @@ using support::Homogeneous;
 using support::Outputs;
 using support::Random;
 
-constexpr std::array<std::size_t, 4> counts{1, 16, 100, 333};
+constexpr std::array<std::size_t, 4> point_counts{1, 16, 100, 333};
 
 bool is_finite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
@@ -62,7 +62,7 @@ std::vector<support::Cloud> clouds(std::size_t count, Random& random) {
 
 TEST_CASE("points in doubt are what exact numbers make of them, at every tolerance and in every number") {
     Random random(51);
-    for (const std::size_t count : counts) {
+    for (const std::size_t count : point_counts) {
         for (const support::Cloud& cloud : clouds(count, random)) {
             const bool is_number = 0.0 * (cloud.matrix[0][0] + cloud.matrix[0][3] + cloud.matrix[3][3]) == 0.0;
             if (!is_number) continue;
@@ -137,7 +137,7 @@ TEST_CASE("one point has the bits that it has in a batch, and is empty behind") 
 
 TEST_CASE("values of a segment in doubt are what exact numbers make of them, at every tolerance and in every number") {
     Random random(53);
-    for (const std::size_t count : counts) {
+    for (const std::size_t count : point_counts) {
         for (const support::Stretch& stretch : support::doubtful_stretches(count, random)) {
             const glm::vec4 ends = 0.0f * (stretch.segment.a + stretch.segment.b);
             if (!(ends.x + ends.y + ends.z + ends.w == 0.0f)) continue;
