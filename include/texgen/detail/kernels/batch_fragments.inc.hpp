@@ -41,14 +41,14 @@ struct FragmentLanes {
             quotient[k] = to_floats(u[k]);
         }
         doubtful = Words{};
-        Words can_be_doubtful = ~Words{};
+        LongWords is_certain{};
         if (tolerance > 0.0) {
-            // Whichever float is taken; what doubles are rounded by is within 1.0002.
-            const Doubles written = (largest * functions[BatchPlanes::q + 3] + largest_error) * (stretched * 2.0) +
-                                    (largest * (1.0002 * unit_roundoff_float) + 0x1p-149);
-            const LongWords is_certain = front & at_most(written, Doubles{} + tolerance);
-            if (all(is_certain)) return;
-            can_be_doubtful = ~narrow(is_certain);
+            // Half of it, whichever float is taken; what doubles are rounded by is within 1.0002.
+            const Doubles written = (largest * functions[BatchPlanes::q + 3] + largest_error) * stretched +
+                                    (largest * (0.5001 * unit_roundoff_float) + 0x1p-150);
+            is_certain = front & at_most(written, Doubles{} + 0.5 * tolerance);
+            if (all(is_certain)) [[likely]]
+                return;
         }
         if (!all(front)) doubtful = narrow(~(front | greater(q * -1.0, q_error)));
         const Doubles relative_error = functions[BatchPlanes::q + 3] * stretched + 8.0 * unit_roundoff_double;
@@ -59,7 +59,7 @@ struct FragmentLanes {
             quotient[k] = to_floats(u[k] - error);
             doubtful |= bits(quotient[k]) ^ bits(to_floats(u[k] + error));
         }
-        doubtful &= can_be_doubtful;
+        doubtful &= ~narrow(is_certain);
     }
 };
 
@@ -83,6 +83,42 @@ struct FragmentIds {
     TEXGEN_INLINE bool are_one() const noexcept {
         return !any(load<Words>(value) ^ (Words{} + static_cast<int>(value[0])));
     }
+};
+
+// The centres of a vector of fragments of a rectangle, which follow one another row by row.
+class FragmentCentres {
+public:
+    Doubles x, y;
+
+    TEXGEN_INLINE FragmentCentres(const FragmentsJob& job, std::size_t first) noexcept
+        : width_(job.width),
+          per_width_(1.0 / job.width),
+          left_(job.x + 0.5),
+          top_(job.y + 0.5),
+          first_(static_cast<double>(first)) {
+        place();
+    }
+    // Within a row the next ones are beside them.
+    TEXGEN_INLINE void advance() noexcept {
+        first_ += lanes;
+        column_ += lanes;
+        if (column_ + lanes <= width_)
+            x = x + static_cast<double>(lanes);
+        else
+            place();
+    }
+
+private:
+    TEXGEN_INLINE void place() noexcept {
+        using Walk = FragmentWalk<Doubles, double>;
+        const Walk walk(width_, per_width_, first_);
+        x = walk.x + left_;
+        y = walk.y + top_;
+        column_ = first_ - Walk::row_of(first_ + 0.5, per_width_) * width_;
+    }
+
+    double width_, per_width_, left_, top_;
+    double first_, column_;  // of the first fragment: its number, and its column
 };
 
 // What vectors in doubt say of those that follow: that they ask for the triangles of others, and what decides them.
@@ -251,7 +287,7 @@ template <std::size_t Numerators>
 TEXGEN_APART std::uint64_t decide_fragments(const FragmentsJob& job, const FragmentOutputs& out,
                                             const FragmentOutputs& in_scratch, std::size_t begin, std::size_t end,
                                             const Words* doubtful, Learned& learned) noexcept {
-    FragmentWalk<Doubles, double> walk(job.width, 1.0 / job.width, static_cast<double>(begin));
+    FragmentCentres centres(job, begin);
     // A part of one row, or whole ones.
     const auto width = static_cast<std::size_t>(job.width);
     const std::size_t row = begin / width;
@@ -260,11 +296,11 @@ TEXGEN_APART std::uint64_t decide_fragments(const FragmentsJob& job, const Fragm
     DoubtfulFragments<Numerators> fragments(
         job, learned, job.x + 0.5 + static_cast<double>(column), job.y + 0.5 + static_cast<double>(row),
         static_cast<double>(rows == 1 ? end - begin : width), static_cast<double>(rows));
-    for (std::size_t n = begin; n < end; n += static_cast<std::size_t>(lanes), walk.advance(), ++doubtful) {
+    for (std::size_t n = begin; n < end; n += static_cast<std::size_t>(lanes), centres.advance(), ++doubtful) {
         if (!any(*doubtful)) continue;
         const FragmentIds ids(job, n);
-        fragments.add({walk.x + (job.x + 0.5), walk.y + (job.y + 0.5), ~equal(*doubtful, 0),
-                       ids.is_whole ? &out : &in_scratch, ids.is_whole ? n : std::size_t{0}, n - begin},
+        fragments.add({centres.x, centres.y, ~equal(*doubtful, 0), ids.is_whole ? &out : &in_scratch,
+                       ids.is_whole ? n : std::size_t{0}, n - begin},
                       ids);
     }
     return fragments.undecided();
@@ -276,9 +312,7 @@ TEXGEN_INLINE Undecided divide_all_fragments(const FragmentsJob& job, std::size_
     const FragmentOutputs out(job);
     ScratchOutputs<size> scratch;
     const FragmentOutputs in_scratch = scratch.in_place_of(out);
-    FragmentWalk<Doubles, double> walk(job.width, 1.0 / job.width, static_cast<double>(first));
-    const double left = job.x + 0.5;
-    const double top = job.y + 0.5;
+    FragmentCentres centres(job, first);
     const auto planes_of = [&](std::uint32_t id) { return &job.planes[id < job.triangles ? id : job.triangles]; };
     Learned learned;
     for (std::size_t n = first; n < job.count;) {
@@ -286,18 +320,16 @@ TEXGEN_INLINE Undecided divide_all_fragments(const FragmentsJob& job, std::size_
         const std::size_t end = job.count - begin < exact_block ? job.count : begin + exact_block;
         Words doubtful[exact_block / size], any_doubtful{};
         Words* next = doubtful;
-        for (; n < end; n += size, walk.advance()) {
+        for (; n < end; n += size, centres.advance()) {
             const FragmentIds ids(job, n);
-            const Doubles x = walk.x + left;
-            const Doubles y = walk.y + top;
             FragmentLanes<Numerators> fragments;
             if (ids.are_one()) {
-                fragments.divide(OneTriangle{planes_of(ids.value[0])->value}, x, y, job.tolerance);
+                fragments.divide(OneTriangle{planes_of(ids.value[0])->value}, centres.x, centres.y, job.tolerance);
             } else {
                 const BatchPlanes* of_lane[lanes];
                 TEXGEN_UNROLL
                 for (std::size_t i = 0; i < size; ++i) of_lane[i] = planes_of(ids.value[i]);
-                fragments.divide(BatchLanes(of_lane, Numerators == 3), x, y, job.tolerance);
+                fragments.divide(BatchLanes(of_lane, Numerators == 3), centres.x, centres.y, job.tolerance);
             }
             const FragmentOutputs& to = ids.is_whole ? out : in_scratch;
             to.put(ids.is_whole ? n : 0, fragments.quotient, fragments.front);

@@ -181,13 +181,18 @@ struct FragmentWalk {
         place();
     }
 
+    // Adding and taking `rounder` leaves the nearest integer.
+    template <class Number>
+    TEXGEN_INLINE static Number row_of(const Number& number, Scalar per_width) noexcept {
+        constexpr auto rounder = static_cast<Scalar>(sizeof(Scalar) == sizeof(double) ? 0x1.8p52 : 0x1.8p23);
+        return ((number * per_width - Scalar(0.5)) + rounder) - rounder;
+    }
+
 private:
     static constexpr int size = static_cast<int>(sizeof(Vector) / sizeof(Scalar));
 
-    // Adding and taking `rounder` leaves the nearest integer.
     TEXGEN_INLINE void place() noexcept {
-        constexpr auto rounder = static_cast<Scalar>(sizeof(Scalar) == sizeof(double) ? 0x1.8p52 : 0x1.8p23);
-        y = ((number * per_width - Scalar(0.5)) + rounder) - rounder;
+        y = row_of(number, per_width);
         x = (number - Scalar(0.5)) - y * width;
     }
 };
