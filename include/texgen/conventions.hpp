@@ -11,8 +11,8 @@
 
 #include "detail/matrices/required.hpp"
 
-// 0.4.11: 10000 major + 100 minor + patch.
-#define TEXGEN_VERSION 411
+// 0.4.12: 10000 major + 100 minor + patch.
+#define TEXGEN_VERSION 412
 
 namespace TEXGEN_NAMESPACE {
 
