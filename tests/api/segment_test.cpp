@@ -568,3 +568,29 @@ TEST_CASE("half-way between two floats, where quotients in double cancel about a
     }
     CHECK(ties > 500);
 }
+
+TEST_CASE("next to ties of other values subnormal ones are rounded once, however near the middle of two they are") {
+    Random random(58);
+    int next_to_middles = 0;
+    for (int round = 0; round < 2000; ++round) {
+        const float end = std::ldexp(random.uniform_float(1.0, 2.0), -40);
+        const texgen::Segment segment{{0.0f, 1.0f, 0.0f, 1.0f}, {end, 2.0f, 0.0f, 1.0f}};
+        std::vector<float> alpha(64);
+        for (std::size_t i = 0; i < alpha.size(); ++i) {
+            // 1 + alpha is a tie where alpha is an odd multiple of 2^-24.
+            const double middle = (random.integer(1, 4000) + 0.5) * 0x1p-149;
+            alpha[i] = random.coin() ? static_cast<float>(2 * random.integer(0, 1 << 22) + 1) * 0x1p-24f
+                                     : static_cast<float>(middle / static_cast<double>(end));
+        }
+        std::vector<float> s(alpha.size()), t(alpha.size());
+        interpolate(segment, alpha, everywhere(), {s, t, {}, {}});
+        for (std::size_t i = 0; i < alpha.size(); ++i) {
+            const double exact_s = static_cast<double>(alpha[i]) * static_cast<double>(end);
+            const double exact_t = static_cast<double>(alpha[i]) + 1.0;
+            next_to_middles += alpha[i] < 0x1p-80f;
+            REQUIRE_MESSAGE(s[i] == static_cast<float>(exact_s), hex(alpha[i]), " of ", hex(end), ": ", hex(s[i]));
+            REQUIRE_MESSAGE(t[i] == static_cast<float>(exact_t), hex(alpha[i]), ": ", hex(t[i]));
+        }
+    }
+    CHECK(next_to_middles > 50000);
+}

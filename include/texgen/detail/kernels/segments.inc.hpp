@@ -101,18 +101,19 @@ Undecided fill_segment_closely(const SegmentJob& job, std::size_t first) noexcep
             for (std::size_t k = 0; k < Numerators; ++k) quotient[k] = s[k].high * reciprocal + 0x1p-900;
             const Distances distance = nearer(far_from_middles(), quotient[0], quotient[Numerators - 1], 7);
             const bool are_near = any_zero(distance);
-            // Where the float may be subnormal, and that next to the middle of two.
-            LongWords is_tiny[2] = {}, is_small[2] = {};
+            // Where the float may be subnormal, and that is next to the middle of two. Elsewhere middle_near() serves: the middles of
+            // subnormal floats are among the floats that it would have next to it.
+            LongWords is_small[2] = {};
             bool are_small = false;
             if (has_subnormal) {
                 TEXGEN_UNROLL
                 for (std::size_t k = 0; k < Numerators; ++k)
-                    is_tiny[k] = at_most(magnitude(quotient[k]), Doubles{} + 0x1p-125);
-                if (any(is_tiny[0] | is_tiny[Numerators - 1])) {
+                    is_small[k] = at_most(magnitude(quotient[k]), Doubles{} + 0x1p-125);
+                if (any(is_small[0] | is_small[Numerators - 1])) {
                     TEXGEN_UNROLL
                     for (std::size_t k = 0; k < Numerators; ++k) {
                         const Doubles distance_to_it = magnitude(quotient[k] - middle_of_subnormals(quotient[k]));
-                        is_small[k] = is_tiny[k] & at_most(distance_to_it, magnitude(quotient[k]) * 0x1p-48);
+                        is_small[k] &= at_most(distance_to_it, magnitude(quotient[k]) * 0x1p-48);
                     }
                     are_small = any(is_small[0] | is_small[Numerators - 1]);
                 }
@@ -138,10 +139,7 @@ Undecided fill_segment_closely(const SegmentJob& job, std::size_t first) noexcep
                 TEXGEN_UNROLL
                 for (std::size_t k = 0; k < Numerators; ++k) {
                     Doubles middle = middle_near(quotient[k]);
-                    if (are_small) {
-                        const Doubles of_tiny = select(is_small[k], middle_of_subnormals(quotient[k]), quotient[k]);
-                        middle = select(is_tiny[k], of_tiny, middle);
-                    }
+                    if (are_small) middle = select(is_small[k], middle_of_subnormals(quotient[k]), middle);
                     const Doubles last_product = middle * q.low();
                     Doubles remainder = small_difference(s[k], q, middle) - last_product;
                     if (!are_finite) {
