@@ -428,6 +428,7 @@ MUTANTS = [
          ("a batch's residues are of the pixel's corner", "ResidueLanes corners(vertices, x, y)", "ResidueLanes corners(vertices, x + 0.5, y)",
           "batch_test")),
     *_of("detail/kernels/batch_fragments.inc.hpp",
+         ("fragments step beyond their row", "column_ + lanes <= width_", "column_ <= width_", "batch_test"),
          ("fragments are never in doubt",
           "            doubtful |= bits(quotient[k]) ^ bits(to_floats(u[k] + error));\n",
           "", "batch_test"),
