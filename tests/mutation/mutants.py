@@ -287,7 +287,7 @@ MUTANTS = [
          ("a clip_w of zero is taken", "b.clip_w > 0.0f && triangle_.c.clip_w > 0.0f &&",
           "b.clip_w >= 0.0f && triangle_.c.clip_w >= 0.0f &&", "interpolate_test")),
     *_of("detail/triangle/exact_fragment.hpp",
-         ("the exact edge forgets a term", "{-to_y[j], to_x[k]}", "{-to_y[j], to_y[k]}", "interpolate_test"),
+         ("the exact edge forgets a term", "{-to_y[j], x_apart}", "{-to_y[j], y_apart}", "interpolate_test"),
          ("a side's corners have each other's parts", "side, widened(planes_.vertex(other).clip_w)",
           "side, widened(planes_.vertex(end).clip_w)", "batch_test interpolate_test"),
          ("exact functions fall where they grow", "axis == 0 ? two_sum(j, -k) : two_sum(k, -j)",

@@ -7,7 +7,6 @@
 #include <cstdint>
 
 #include "../arithmetic/expansion.hpp"
-#include "../arithmetic/nearest.hpp"
 #include "../arithmetic/rounding.hpp"
 #include "../arithmetic/widen.hpp"
 #include "../language.hpp"
@@ -35,8 +34,11 @@ public:
         for (std::size_t i = 0; i < 3; ++i) {
             const std::size_t j = (i + 1) % 3;
             const std::size_t k = (i + 2) % 3;
-            Expansion<32> edge;
-            const DoubleDouble factor[][2] = {{to_x[j], to_y[k]}, {-to_y[j], to_x[k]}};
+            // What corner k is off corner j has fewer digits than what it is off a fragment far away.
+            const DoubleDouble x_apart = two_sum(planes.corner(k).x, -planes.corner(j).x);
+            const DoubleDouble y_apart = two_sum(planes.corner(k).y, -planes.corner(j).y);
+            Expansion<16> edge;
+            const DoubleDouble factor[][2] = {{to_x[j], y_apart}, {-to_y[j], x_apart}};
             for (const auto& [left, right] : factor)
                 for (const double a : {left.low, left.high})
                     for (const double b : {right.low, right.high}) edge.add_product(a, b);
@@ -57,26 +59,11 @@ public:
         return result;
     }
 
-    // F - u Q of one coordinate, 0 to 3 for s, t, r, q; or F.
-    using Sum = Expansion<384>;
-    TEXGEN_RARE Sum difference(glm::length_t coordinate, double u) const noexcept {
-        Sum sum;
-        for (std::size_t i = 0; i < 3; ++i) {
-            const double product = u * planes_.value(i, 3);  // exact for a middle of two floats
-            const DoubleDouble value = two_sum(planes_.value(i, coordinate), -product);
-            for (const double part : {value.high, value.low}) sum.add_scaled(weighted_[i], part);
-        }
+    // F of one coordinate, 0 to 3 for s, t, r, q.
+    TEXGEN_RARE Expansion<192> function(glm::length_t coordinate) const noexcept {
+        Expansion<192> sum;
+        for (std::size_t i = 0; i < 3; ++i) sum.add_scaled(weighted_[i], planes_.value(i, coordinate));
         return sum;
-    }
-    Sum function(glm::length_t coordinate) const noexcept { return difference(coordinate, 0.0); }
-
-    // The float nearest to F / Q, in front.
-    TEXGEN_RARE float nearest_quotient(glm::length_t coordinate, const Sum& q) const noexcept {
-        const Sum numerator = function(coordinate);
-        if (numerator.sign() == 0) return 0.0f;
-        const double quotient = numerator.estimate() / q.estimate();
-        return nearest_to(quotient, 0x1p-48 * std::fabs(quotient),
-                          [&](double middle) { return difference(coordinate, middle).sign(); });
     }
 
 private:

@@ -12,7 +12,7 @@ public:
     // `close` is what is known of the functions that add() says, or nothing yet.
     TileInterpolator(const TileKernels& kernels, const TriangleFunctions& triangle, const Tile& rect,
                      OnDemand<CloseRamps>& close) noexcept
-        : kernels_(kernels), triangle_(triangle), rect_(rect), close_(close), are_exact_(rect.count() == 1) {}
+        : kernels_(kernels), triangle_(triangle), rect_(rect), close_(close) {}
 
     // s and t, of which one that only the mask needs has no output.
     void add(const std::span<float>& s, const std::span<float>& t, const std::span<float>& lit) noexcept {
@@ -166,6 +166,8 @@ private:
         return are_all;
     }
 
+    // One fragment costs as much exactly as what is known of a tile's.
+    bool is_one() const noexcept { return rect_.count() == 1; }
     bool is_mask_alone() const noexcept { return output_[0].empty() && output_[1].empty(); }
     // Writes the mask of a part of a tile if all of it is lit or dark.
     TEXGEN_RARE bool lights_at_once(const Tile& part) noexcept {
@@ -210,6 +212,7 @@ private:
 
     TEXGEN_RARE void fill_from_doubt(const Tile& tile, const Corners& at, TileJob& job, TileJob::Unit unit,
                                      std::uint64_t doubtful = ~std::uint64_t{0}) noexcept {
+        if (is_one()) return fill_one(tile.x, tile.y);
         DoubtfulFunctions functions = functions_of(tile, at);
         functions.residues_first = true;
         // What residues decide of a few fragments they decide sooner than their quotients are seen to be exact.
@@ -243,6 +246,7 @@ private:
 
     // A small tile, by one job for all that there are: with the planes as they are, and closely only if that leaves doubt.
     TEXGEN_RARE void fill_closely(const Tile& tile) noexcept {
+        if (is_one()) return fill_one(tile.x, tile.y);
         if (tile.count() > TileJob::unit_size) {
             for (const Tile& half : tile.halves(tile.height == 1)) fill_closely(half);
             return;
@@ -302,11 +306,11 @@ private:
     // One fragment, every decision exact.
     TEXGEN_RARE void fill_one(std::int64_t x, std::int64_t y) noexcept {
         const ExactFragment exact(triangle_.planes, x, y, ExactFragment::Factor::any);
-        const ExactFragment::Sum q = exact.function(3);
+        const auto q = exact.function(3);
         const bool in_front = q.sign() > 0;
         float value[2] = {0.0f, 0.0f};
         for (std::size_t k = 0; k < count_; ++k) {
-            if (in_front) value[k] = exact.nearest_quotient(coordinate_[k], q);
+            if (in_front) value[k] = nearest_quotient(exact.function(coordinate_[k]), q);
             if (!output_[k].empty()) output_[k][offset(x, y)] = value[k];
         }
         if (!lit_.empty()) lit_[offset(x, y)] = in_front ? triangle_.lit(value[0], value[1]) : 0.0f;
@@ -358,7 +362,7 @@ private:
     const Corners* whole_at_;
     OnDemand<DoubtfulJob> doubtful_;
     OnDemand<PlaneResidues> residues_;
-    bool are_exact_;  // the growths of close_, or there is but one fragment
+    bool are_exact_ = false;  // the growths of close_
     std::span<float> output_[2];
     std::span<float> lit_;
     float scratch_[2][scratch_width];  // coordinates that only the mask needs, a row at a time
