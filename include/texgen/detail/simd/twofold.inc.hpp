@@ -151,25 +151,29 @@ struct TwofoldForm {
 // the sum of their magnitudes. What is added to sigma stays between a half and twice of it: without sigma it is a multiple of
 // 2^-53 sigma, and leaves at most that of each term, of all less than a quarter of the next sigma, 2^-46 sigma. The sum so far
 // is at most half the next sigma, and with what is added there an exact multiple again, or has the sign of all that follows.
-// What two sigmas leave is taken as it is summed in double, unless it cancels, too: that is rounded 25 times.
+// What two sigmas leave, of each term at most 2^-7 of a third one, is taken as it is summed in double, rounded 25 times, unless it
+// cancels, too.
 // Source: Rump, Ogita, Oishi, Accurate Floating-Point Summation I, SIAM J. Sci. Comput. 31 (2008), ExtractVector.
 TEXGEN_INLINE Doubles signed_sum(Doubles* term, std::size_t count, Doubles sigma, const LongWords& asked) noexcept {
-    Doubles sum{}, value, left;
-    do {
+    Doubles sum{};
+    for (;;) {
         const Doubles next = sigma * 0x1p-46;
         Doubles high = sigma, low = next, rest;
-        Doubles tail = left = Doubles{};
+        Doubles tail{};
         for (std::size_t k = 0; k < count; ++k) {
             high = quick_two_sum(high, term[k], rest);
             low = quick_two_sum(low, rest, term[k]);
             tail = tail + term[k];
-            left = left + magnitude(term[k]);
         }
         sum = (sum + (high - sigma)) + (low - next);
-        value = sum + tail;
+        const Doubles value = sum + tail;
         sigma = next * 0x1p-46;
-    } while (any(asked & greater(left, 0.0) & at_most(magnitude(value), left * gamma(28))));
-    return value;
+        const LongWords are_open = asked & at_most(magnitude(value), sigma * (26 * 0x1p-7 * gamma(28)));
+        if (!any(are_open)) return value;
+        Doubles left{};
+        for (std::size_t k = 0; k < count; ++k) left = left + magnitude(term[k]);
+        if (!any(are_open & greater(left, 0.0) & at_most(magnitude(value), left * gamma(28)))) return value;
+    }
 }
 
 // The denominators of a vector of quotients, and on which side of 0 they are.
