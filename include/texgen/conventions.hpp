@@ -11,8 +11,8 @@
 
 #include "detail/matrices/required.hpp"
 
-// 0.4.12: 10000 major + 100 minor + patch.
-#define TEXGEN_VERSION 412
+// 0.4.13: 10000 major + 100 minor + patch.
+#define TEXGEN_VERSION 413
 
 namespace TEXGEN_NAMESPACE {
 

@@ -134,11 +134,12 @@ private:
     }
 
     // More of them, if there is more: residues first for ties, which have company, and alone where sums would not decide them, or
-    // fragments are few, which do not repay two doubles.
-    static constexpr int few_ties = 16;
-    TEXGEN_RARE bool sharpen(const Tile& tile, DoubtfulFunctions& functions, bool are_ties) noexcept {
+    // fragments are few, which do not repay two doubles. As few as do not repay exact growths are left to be asked alone.
+    static constexpr int few_ties = 16, few_alone = 4;
+    TEXGEN_RARE bool sharpen(const Tile& tile, DoubtfulFunctions& functions, std::uint64_t doubtful,
+                             bool are_ties) noexcept {
         const bool have_both = functions.are_close && functions.have_residues;
-        if (have_both && are_exact_) return false;
+        if (have_both && (are_exact_ || (alone_count_ += std::popcount(doubtful)) <= few_alone)) return false;
         bool are_enough = false;
         if (!functions.have_residues && (are_ties || functions.are_close)) {
             add_residues(tile, functions);
@@ -160,7 +161,7 @@ private:
                                    const TileJob::Unit& unit, std::uint64_t asked = ~std::uint64_t{0}) noexcept {
         std::uint64_t doubtful = kernels_.fill_closely(job, functions, unit, asked);
         const bool are_all = doubtful == ~std::uint64_t{0};
-        while (doubtful != 0 && sharpen(tile, functions, are_many(doubtful, tile)))
+        while (doubtful != 0 && sharpen(tile, functions, doubtful, are_many(doubtful, tile)))
             doubtful = kernels_.fill_closely(job, functions, unit, doubtful);
         fill_some(tile, unit, doubtful);
         return are_all;
@@ -216,7 +217,7 @@ private:
         DoubtfulFunctions functions = functions_of(tile, at);
         functions.residues_first = true;
         // What residues decide of a few fragments they decide sooner than their quotients are seen to be exact.
-        if (is_constant(functions.function[CloseFunctions::q].high) && sharpen(tile, functions, true) &&
+        if (is_constant(functions.function[CloseFunctions::q].high) && sharpen(tile, functions, doubtful, true) &&
             tile.width + tile.height > 4 && take_exact_quotients(functions, job))
             unit = detail::fill_exact(kernels_, job, unit, TileJob::unit_size, doubtful);
         // Doubt has company: four times as many units at once after each of which most is in doubt, and some after one that was all.
@@ -363,6 +364,7 @@ private:
     OnDemand<DoubtfulJob> doubtful_;
     OnDemand<PlaneResidues> residues_;
     bool are_exact_ = false;  // the growths of close_
+    int alone_count_ = 0;     // fragments that two doubles and residues left
     std::span<float> output_[2];
     std::span<float> lit_;
     float scratch_[2][scratch_width];  // coordinates that only the mask needs, a row at a time
