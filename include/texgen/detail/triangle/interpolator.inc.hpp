@@ -133,13 +133,19 @@ private:
         return std::popcount(fragments) > (tile.count() < TileJob::unit_size ? tile.count() : TileJob::unit_size) / 4;
     }
 
+    // So few that all of the tile's, if others have as many, do not repay exact growths, which cost what two cost alone.
+    static bool are_few(std::uint64_t fragments, const Tile& tile) noexcept {
+        const auto count = tile.count() < 2 * TileJob::unit_size ? 2 * TileJob::unit_size : tile.count();
+        return std::popcount(fragments) * count <= 4 * TileJob::unit_size;
+    }
+
     // More of them, if there is more: residues first for ties, which have company, and alone where sums would not decide them, or
-    // fragments are few, which do not repay two doubles. As few as do not repay exact growths are left to be asked alone.
-    static constexpr int few_ties = 16, few_alone = 4;
+    // fragments are few, which do not repay two doubles.
+    static constexpr int few_ties = 16;
     TEXGEN_RARE bool sharpen(const Tile& tile, DoubtfulFunctions& functions, std::uint64_t doubtful,
                              bool are_ties) noexcept {
         const bool have_both = functions.are_close && functions.have_residues;
-        if (have_both && (are_exact_ || (alone_count_ += std::popcount(doubtful)) <= few_alone)) return false;
+        if (have_both && (are_exact_ || are_few(doubtful, tile))) return false;
         bool are_enough = false;
         if (!functions.have_residues && (are_ties || functions.are_close)) {
             add_residues(tile, functions);
@@ -364,7 +370,6 @@ private:
     OnDemand<DoubtfulJob> doubtful_;
     OnDemand<PlaneResidues> residues_;
     bool are_exact_ = false;  // the growths of close_
-    int alone_count_ = 0;     // fragments that two doubles and residues left
     std::span<float> output_[2];
     std::span<float> lit_;
     float scratch_[2][scratch_width];  // coordinates that only the mask needs, a row at a time
