@@ -173,7 +173,7 @@ private:
         return are_all;
     }
 
-    // One fragment costs as much exactly as what is known of a tile's.
+    // Exact sums of one fragment cost less than two doubles and residues, which a tile shares.
     bool is_one() const noexcept { return rect_.count() == 1; }
     bool is_mask_alone() const noexcept { return output_[0].empty() && output_[1].empty(); }
     // Writes the mask of a part of a tile if all of it is lit or dark.
