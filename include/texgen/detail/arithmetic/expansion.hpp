@@ -30,6 +30,12 @@ inline std::size_t grow(double* terms, std::size_t count, double term) noexcept 
 template <std::size_t Capacity>
 class Expansion {
 public:
+    Expansion() = default;
+    template <std::size_t OtherCapacity>
+    explicit Expansion(const Expansion<OtherCapacity>& other) noexcept : count_(other.count()) {
+        for (std::size_t i = 0; i < count_; ++i) terms_[i] = other.term(i);
+    }
+
     void add(double term) noexcept {
         if (term != 0.0) count_ = grow(terms_.data(), count_, term);
     }

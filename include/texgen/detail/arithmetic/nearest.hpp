@@ -52,8 +52,7 @@ float nearest_quotient(const Expansion<N>& numerator, const Expansion<D>& denomi
     if (numerator.sign() == 0) return 0.0f;
     const double quotient = numerator.estimate() / denominator.estimate();
     return nearest_to(quotient, 0x1p-48 * std::fabs(quotient), [&](double middle) {
-        Expansion<N + 2 * D> remainder;
-        for (std::size_t i = 0; i < numerator.count(); ++i) remainder.add(numerator.term(i));
+        Expansion<N + 2 * D> remainder(numerator);
         remainder.add_scaled(denominator, -middle);
         return remainder.sign();
     });

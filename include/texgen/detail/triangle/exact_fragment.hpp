@@ -20,6 +20,8 @@ namespace TEXGEN_DETAIL {
 // positive one.
 class ExactFragment {
 public:
+    // 8 products are 16 doubles, times a weight 32; three such times a value are 192.
+    using Sum = Expansion<192>;
     enum class Factor { of_planes, any };
 
     TEXGEN_RARE ExactFragment(const TrianglePlanes& planes, std::int64_t x, std::int64_t y,
@@ -33,15 +35,13 @@ public:
         if (up_to == Factor::any && is_on_side(to_x, to_y)) return;
         for (std::size_t i = 0; i < 3; ++i) {
             const std::size_t j = (i + 1) % 3;
-            const std::size_t k = (i + 2) % 3;
-            // What corner k is off corner j has fewer digits than what it is off a fragment far away.
-            const DoubleDouble x_apart = two_sum(planes.corner(k).x, -planes.corner(j).x);
-            const DoubleDouble y_apart = two_sum(planes.corner(k).y, -planes.corner(j).y);
-            Expansion<16> edge;
-            const DoubleDouble factor[][2] = {{to_x[j], y_apart}, {-to_y[j], x_apart}};
-            for (const auto& [left, right] : factor)
-                for (const double a : {left.low, left.high})
-                    for (const double b : {right.low, right.high}) edge.add_product(a, b);
+            Sum edge;
+            for (glm::length_t axis = 0; axis < 2; ++axis) {
+                const DoubleDouble to_j = axis == 0 ? to_x[j] : -to_y[j];
+                const DoubleDouble along = side(i, 1 - axis);
+                for (const double a : {to_j.low, to_j.high})
+                    for (const double b : {along.low, along.high}) edge.add_product(a, b);
+            }
             weighted_[i].add_scaled(edge, planes.unscaled_weight(i));
         }
     }
@@ -50,24 +50,27 @@ public:
     TEXGEN_RARE static ExactFragment growth(const TrianglePlanes& planes, glm::length_t axis) noexcept {
         ExactFragment result(planes);
         for (std::size_t i = 0; i < 3; ++i) {
-            const double j = planes.corner((i + 1) % 3)[1 - axis];
-            const double k = planes.corner((i + 2) % 3)[1 - axis];
-            const DoubleDouble apart = axis == 0 ? two_sum(j, -k) : two_sum(k, -j);
-            for (const double part : {apart.high, apart.low})
-                result.weighted_[i].add_product(part, planes.unscaled_weight(i));
+            const DoubleDouble along = result.side(i, 1 - axis);
+            const double weight = axis == 0 ? -planes.unscaled_weight(i) : planes.unscaled_weight(i);
+            for (const double part : {along.high, along.low}) result.weighted_[i].add_product(part, weight);
         }
         return result;
     }
 
     // F of one coordinate, 0 to 3 for s, t, r, q.
-    TEXGEN_RARE Expansion<192> function(glm::length_t coordinate) const noexcept {
-        Expansion<192> sum;
+    TEXGEN_RARE Sum function(glm::length_t coordinate) const noexcept {
+        Sum sum;
         for (std::size_t i = 0; i < 3; ++i) sum.add_scaled(weighted_[i], planes_.value(i, coordinate));
         return sum;
     }
 
 private:
     explicit ExactFragment(const TrianglePlanes& planes) noexcept : planes_(planes) {}
+
+    // Opposite corner i, from j to k: of fewer digits than what k is off a fragment far away.
+    TEXGEN_RARE DoubleDouble side(std::size_t i, glm::length_t axis) const noexcept {
+        return two_sum(planes_.corner((i + 2) % 3)[axis], -planes_.corner((i + 1) % 3)[axis]);
+    }
 
     // On the line through corners j and k the third one, whose numbers may be long, has no part, and along either axis
     // G_j : G_k = w_k (k - p) : w_j (p - j). False where p is on none, or a difference is no double.
@@ -91,7 +94,7 @@ private:
     }
 
     const TrianglePlanes& planes_;
-    Expansion<32> weighted_[3];
+    Sum weighted_[3];
 };
 
 // For two numerators and q over a tile, where their terms cancel even two doubles: from exact growths, within 2^-104 of each, about

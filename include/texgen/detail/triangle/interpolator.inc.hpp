@@ -129,25 +129,23 @@ private:
     }
 
     // More than a fourth of a unit: what may be ties, or the planes', and no chance.
-    static bool are_many(std::uint64_t fragments, const Tile& tile) noexcept {
-        return std::popcount(fragments) > (tile.count() < TileJob::unit_size ? tile.count() : TileJob::unit_size) / 4;
+    static bool are_many(int fragments, const Tile& tile) noexcept {
+        return fragments > (tile.count() < TileJob::unit_size ? tile.count() : TileJob::unit_size) / 4;
     }
 
     // So few that all of the tile's, if others have as many, do not repay exact growths, which cost what two cost alone.
-    static bool are_few(std::uint64_t fragments, const Tile& tile) noexcept {
-        const auto count = tile.count() < 2 * TileJob::unit_size ? 2 * TileJob::unit_size : tile.count();
-        return std::popcount(fragments) * count <= 4 * TileJob::unit_size;
+    static bool are_few(int fragments, const Tile& tile) noexcept {
+        return fragments * tile.count() <= 4 * TileJob::unit_size && fragments <= 2;
     }
 
     // More of them, if there is more: residues first for ties, which have company, and alone where sums would not decide them, or
     // fragments are few, which do not repay two doubles.
     static constexpr int few_ties = 16;
-    TEXGEN_RARE bool sharpen(const Tile& tile, DoubtfulFunctions& functions, std::uint64_t doubtful,
-                             bool are_ties) noexcept {
+    TEXGEN_RARE bool sharpen(const Tile& tile, DoubtfulFunctions& functions, int fragments) noexcept {
         const bool have_both = functions.are_close && functions.have_residues;
-        if (have_both && (are_exact_ || are_few(doubtful, tile))) return false;
+        if (have_both && (are_exact_ || are_few(fragments, tile))) return false;
         bool are_enough = false;
-        if (!functions.have_residues && (are_ties || functions.are_close)) {
+        if (!functions.have_residues && (functions.are_close || are_many(fragments, tile))) {
             add_residues(tile, functions);
             are_enough = functions.residues_first && !functions.are_close && are_decided_by_residues(functions) &&
                          (tile.count() < few_ties || are_decided_by_sums(functions, 1.0) ||
@@ -167,7 +165,7 @@ private:
                                    const TileJob::Unit& unit, std::uint64_t asked = ~std::uint64_t{0}) noexcept {
         std::uint64_t doubtful = kernels_.fill_closely(job, functions, unit, asked);
         const bool are_all = doubtful == ~std::uint64_t{0};
-        while (doubtful != 0 && sharpen(tile, functions, doubtful, are_many(doubtful, tile)))
+        while (doubtful != 0 && sharpen(tile, functions, std::popcount(doubtful)))
             doubtful = kernels_.fill_closely(job, functions, unit, doubtful);
         fill_some(tile, unit, doubtful);
         return are_all;
@@ -223,12 +221,12 @@ private:
         DoubtfulFunctions functions = functions_of(tile, at);
         functions.residues_first = true;
         // What residues decide of a few fragments they decide sooner than their quotients are seen to be exact.
-        if (is_constant(functions.function[CloseFunctions::q].high) && sharpen(tile, functions, doubtful, true) &&
+        if (is_constant(functions.function[CloseFunctions::q].high) && sharpen(tile, functions, TileJob::unit_size) &&
             tile.width + tile.height > 4 && take_exact_quotients(functions, job))
             unit = detail::fill_exact(kernels_, job, unit, TileJob::unit_size, doubtful);
         // Doubt has company: four times as many units at once after each of which most is in doubt, and some after one that was all.
         for (int many = 1; !job.is_done(unit);) {
-            const bool may_get_closer = !functions.are_close && are_many(doubtful, tile);
+            const bool may_get_closer = !functions.are_close && are_many(std::popcount(doubtful), tile);
             for (int i = 0; i < many && !job.is_done(unit);
                  ++i, unit = job.unit_after(unit), doubtful = ~std::uint64_t{0})
                 if (fill_closely(tile, job, functions, unit, doubtful)) many = many < 4 ? 4 : many;
@@ -238,7 +236,7 @@ private:
             bool is_closer = may_get_closer && functions.are_close;
             if (!is_closer) {
                 unit = detail::fill_exact(kernels_, job, unit, TileJob::unit_size, doubtful);
-                const bool fails_again = are_many(doubtful, tile);
+                const bool fails_again = are_many(std::popcount(doubtful), tile);
                 is_closer = fails_again && !job.is_done(unit) && !functions.are_close && !functions.have_residues;
                 const int size = (unit.x_end - unit.x_begin) * (unit.y_end - unit.y_begin);
                 many = 4 * std::popcount(doubtful) > 3 * size ? 4 * many : 1;
@@ -313,7 +311,7 @@ private:
     // One fragment, every decision exact.
     TEXGEN_RARE void fill_one(std::int64_t x, std::int64_t y) noexcept {
         const ExactFragment exact(triangle_.planes, x, y, ExactFragment::Factor::any);
-        const auto q = exact.function(3);
+        const ExactFragment::Sum q = exact.function(3);
         const bool in_front = q.sign() > 0;
         float value[2] = {0.0f, 0.0f};
         for (std::size_t k = 0; k < count_; ++k) {
