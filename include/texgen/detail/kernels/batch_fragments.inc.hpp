@@ -121,11 +121,17 @@ private:
     double first_, column_;  // of the first fragment: its number, and its column
 };
 
-// What vectors in doubt say of those that follow: that they ask for the triangles of others, and what decides them.
+// What vectors in doubt say of those that follow: that they ask for the triangles of others, what decides them, and the functions
+// of these triangles in the rows from the first one on.
 struct Learned {
     enum Way { nearly, closely, about_corners };
-    bool vectors_share = true;
+    static constexpr double rows = 64.0;
+    bool vectors_share = true, are_functions_about_corners = false;
     Way first = nearly;
+    unsigned triangles = 0;  // a bit for each
+    std::uint32_t id[batch_block];
+    double left = 0.0, top = 0.0;  // what the functions are about
+    BatchFunctions functions;
 };
 
 // Vectors of fragments that have lanes in doubt, and the triangles of those, as many as a block has: all are decided at once, by
@@ -198,19 +204,13 @@ private:
     TEXGEN_APART void decide() noexcept {
         constexpr auto size = static_cast<std::size_t>(lanes);
         const bool are_few = count_ <= 2;
-        const Doubles none{};
-        BatchFunctions functions;
-        const auto first_known = static_cast<std::size_t>(std::countr_zero(triangles_));
-        for (std::size_t i = 0; !are_few && i < batch_block; i += size) {
-            const float* of_lane[lanes];
-            for (std::size_t j = 0; j < size; ++j)
-                of_lane[j] = vertices_of(job_, id_[has(i + j) ? i + j : first_known]);
-            functions.take<Numerators>(of_lane, none + left_, none + top_, none + width_, none + height_, i);
-        }
+        if (!are_few && !are_functions_known()) take_functions();
+        const BatchFunctions& functions = learned_.functions;
+        bool is_one_left = false;
         for (std::size_t k = 0; k < count_; ++k) {
             const Known& known = vectors_[k];
             const Vector& vector = known.vector;
-            const Doubles x = vector.x - left_, y = vector.y - top_;
+            const Doubles x = vector.x - learned_.left, y = vector.y - learned_.top;
             const auto place_of = [&](std::size_t i) { return known.triangle[known.is_one ? 0 : i]; };
             std::uint64_t left = lane_bits(vector.doubtful);
             if (!are_few && known.is_one) {
@@ -221,6 +221,13 @@ private:
                 const LaneFunctions<Numerators> of(of_lane);
                 left = put(vector, BatchFunctionsAt<LaneFunctions<Numerators>>{of, x, y});
             }
+            if (left != 0 && is_one_left && !are_few && !learned_.are_functions_about_corners) {
+                learned_.are_functions_about_corners = true;
+                take_functions();
+                --k;
+                continue;
+            }
+            is_one_left |= left != 0;
             if (left != 0) {
                 const float* of_lane[lanes];
                 for (std::size_t i = 0; i < size; ++i) of_lane[i] = vertices_of(job_, id_[place_of(i)]);
@@ -230,6 +237,32 @@ private:
         }
         triangles_ = 0;
         count_ = 0;
+    }
+
+    bool are_functions_known() const noexcept {
+        bool are_same =
+            learned_.left == left_ && learned_.top <= top_ && top_ + height_ <= learned_.top + learned_.rows;
+        for (std::size_t i = 0; i < batch_block; ++i)
+            are_same &= !has(i) || ((learned_.triangles >> i & 1u) != 0 && learned_.id[i] == id_[i]);
+        return are_same;
+    }
+
+    // Of all these triangles, and of those before that they leave a place.
+    TEXGEN_APART void take_functions() noexcept {
+        for (std::size_t i = 0; i < batch_block; ++i)
+            if (has(i)) learned_.id[i] = id_[i];
+        learned_.triangles |= triangles_;
+        learned_.left = left_;
+        learned_.top = top_;
+        const auto first = static_cast<std::size_t>(std::countr_zero(triangles_));
+        const Doubles none{};
+        for (std::size_t i = 0; i < batch_block; i += static_cast<std::size_t>(lanes)) {
+            const float* of_lane[lanes];
+            for (std::size_t j = 0; j < static_cast<std::size_t>(lanes); ++j)
+                of_lane[j] = vertices_of(job_, learned_.id[(learned_.triangles >> (i + j) & 1u) != 0 ? i + j : first]);
+            learned_.functions.take<Numerators>(of_lane, none + left_, none + top_, none + width_, none + learned_.rows,
+                                                i, learned_.are_functions_about_corners);
+        }
     }
 
     // Returns the lanes that stay in doubt.
@@ -292,10 +325,11 @@ TEXGEN_APART std::uint64_t decide_fragments(const FragmentsJob& job, const Fragm
     const auto width = static_cast<std::size_t>(job.width);
     const std::size_t row = begin / width;
     const std::size_t rows = (end - 1) / width - row + 1;
-    const std::size_t column = rows == 1 ? begin % width : 0;
+    const bool is_part = rows == 1 && width > 1024;
+    const std::size_t column = is_part ? begin % width : 0;
     DoubtfulFragments<Numerators> fragments(
         job, learned, job.x + 0.5 + static_cast<double>(column), job.y + 0.5 + static_cast<double>(row),
-        static_cast<double>(rows == 1 ? end - begin : width), static_cast<double>(rows));
+        static_cast<double>(is_part ? end - begin : width), static_cast<double>(rows));
     for (std::size_t n = begin; n < end; n += static_cast<std::size_t>(lanes), centres.advance(), ++doubtful) {
         if (!any(*doubtful)) continue;
         const FragmentIds ids(job, n);

@@ -39,25 +39,31 @@ struct BatchFunctions {
                            bool about_corners = false) noexcept {
         const VertexLanes vertices(triangle);
         const CloseLanes close(vertices, x, y);
-        const CloseSteps along(vertices, 1), down(vertices, 0);
-        ResidueLanes corners(vertices, x, y);
+        ResidueLanes of_corners(vertices, x, y);
         Residues dx[3], dy[3];
-        corners.steps(dx, dy);
+        of_corners.steps(dx, dy);
         Residues residues[16]{};
-        LongWords cancel{};
+        Doubles grain[Numerators + 1];
         for (std::size_t n = 0; n <= Numerators; ++n) {
-            const std::size_t k = n < Numerators ? n : 3;
-            const CloseValues term[3] = {close.function(vertices, k), along.function(vertices, k),
-                                         down.function(vertices, k)};
-            const ResidueValues value = corners.values(k);
-            residues[3 * n] = value.times(corners.side);
-            residues[3 * n + 1] = value.times(dx) * corners.one_x;
-            residues[3 * n + 2] = value.times(dy) * corners.one_y;
-            cancel |= put(n, term, where(corners.is_known, value.grain), width, height,
-                          n < Numerators ? Doubles{} : vertices.error_of_q, first);
+            const ResidueValues value = of_corners.values(n < Numerators ? n : 3);
+            residues[3 * n] = value.times(of_corners.side);
+            residues[3 * n + 1] = value.times(dx) * of_corners.one_x;
+            residues[3 * n + 2] = value.times(dy) * of_corners.one_y;
+            grain[n] = where(of_corners.is_known, value.grain);
         }
         store_columns(residues, [&](std::size_t j) { return of[first + j].residues; });
-        if (about_corners || any(cancel)) take_about_corners<Numerators>(vertices, x, y, width, height, first);
+        const auto error_of = [&](std::size_t n) { return n < Numerators ? Doubles{} : vertices.error_of_q; };
+        if (!about_corners) {
+            const CloseSteps along(vertices, 1), down(vertices, 0);
+            LongWords cancel{};
+            for (std::size_t n = 0; n <= Numerators; ++n) {
+                const std::size_t k = n < Numerators ? n : 3;
+                cancel |= put(n, {close.function(vertices, k), along.function(vertices, k), down.function(vertices, k)},
+                              grain[n], width, height, error_of(n), first);
+            }
+            if (!any(cancel)) return;
+        }
+        take_about_corners(vertices, close, of_corners, x, y, grain, width, height, first);
     }
 
 private:
@@ -81,21 +87,18 @@ private:
         return greater(lost, size * 0x1p-36);
     }
 
-    // Residues stay.
-    template <std::size_t Numerators>
-    TEXGEN_APART void take_about_corners(const VertexLanes& vertices, const Doubles& x, const Doubles& y,
+    template <std::size_t Functions>
+    TEXGEN_APART void take_about_corners(const VertexLanes& vertices, const CloseLanes& close, ResidueLanes& residues,
+                                         const Doubles& x, const Doubles& y, const Doubles (&grain)[Functions],
                                          const Doubles& width, const Doubles& height, std::size_t first) noexcept {
-        ResidueLanes residues(vertices, x, y);
-        const CloseLanes close(vertices, x, y);
         const CornerLanes corners(vertices, residues, x, y);
-        for (std::size_t n = 0; n <= Numerators; ++n) {
-            const std::size_t k = n < Numerators ? n : 3;
-            const ResidueValues value = residues.values(k);
+        for (std::size_t n = 0; n < Functions; ++n) {
+            const bool is_q = n + 1 == Functions;
+            const std::size_t k = is_q ? 3 : n;
             CloseValues term[3];
-            corners.take(k, value, term[0], term[1], term[2]);
+            corners.take(k, residues.values(k), term[0], term[1], term[2]);
             term[0] = better(term[0], close.function(vertices, k));
-            put(n, term, where(residues.is_known, value.grain), width, height,
-                n < Numerators ? Doubles{} : vertices.error_of_q, first);
+            put(n, term, grain[n], width, height, is_q ? vertices.error_of_q : Doubles{}, first);
         }
     }
 };
