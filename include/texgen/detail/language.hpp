@@ -40,6 +40,16 @@ static_assert(glm::defaultp == glm::packed_highp, "GLM was configured otherwise 
 #define TEXGEN_COMPILER other_compiler
 #endif
 
+// Functions that are compiled apart: what is rare, so that it costs the rest no registers, and what only ties need, so that it
+// costs the rest no room.
+#if defined(__GNUC__) || defined(__clang__)
+#define TEXGEN_APART [[gnu::noinline]]
+#define TEXGEN_RARE [[gnu::noinline, gnu::cold]]
+#else
+#define TEXGEN_APART
+#define TEXGEN_RARE
+#endif
+
 // What is not public stands in this one.
 #define TEXGEN_DETAIL TEXGEN_NAMESPACE::detail::inline TEXGEN_COMPILER
 

@@ -6,38 +6,60 @@
 #include <array>
 #include <cstddef>
 
+#include "../language.hpp"
 #include "rounding.hpp"
 
 namespace TEXGEN_DETAIL {
 
-// Adds a number to the exact value of `count` doubles that do not overlap, smallest first; returns how many they are then.
-// One function for all capacities. Source: Shewchuk, Adaptive Precision Floating-Point Arithmetic, Grow-Expansion.
-inline std::size_t grow(double* terms, std::size_t count, double term) noexcept {
+// What follows is one function for all capacities, of exact values as doubles that do not overlap, smallest first; each returns how
+// many there are then. Source: Shewchuk, Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates.
+
+// Adds a number (Grow-Expansion). Those before `first` stay; it steps over what larger numbers that do not overlap with this one
+// leave as it is (Expansion-Sum).
+inline std::size_t grow(double* terms, std::size_t count, double term, std::size_t& first) noexcept {
+    if (term == 0.0) return count;
     double carry = term;
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < count; ++i) {
+    std::size_t kept = first;
+    for (std::size_t i = first; i < count; ++i) {
         const DoubleDouble sum = two_sum(carry, terms[i]);
         carry = sum.high;
-        if (sum.low != 0.0) terms[kept++] = sum.low;
+        if (sum.low == 0.0) continue;
+        if (i == first) ++first;
+        terms[kept++] = sum.low;
     }
     if (carry != 0.0) terms[kept++] = carry;
     return kept;
 }
 
+// Adds a multiple of another (Scale-Expansion).
+TEXGEN_APART inline std::size_t grow_by_multiple(double* terms, std::size_t count, const double* other,
+                                                 std::size_t other_count, double factor) noexcept {
+    std::size_t first = 0;
+    double carry = 0.0;
+    for (std::size_t i = 0; i < other_count; ++i) {
+        const DoubleDouble product = two_product(other[i], factor);
+        const DoubleDouble low = two_sum(carry, product.low);
+        const DoubleDouble high = quick_two_sum(product.high, low.high);
+        for (const double term : {low.low, high.low}) count = grow(terms, count, term, first);
+        carry = high.high;
+    }
+    return grow(terms, count, carry, first);
+}
+
 // The exact value of a sum, kept as at most Capacity doubles that do not overlap, smallest first.
 // Exact while no product leaves 2^-960 .. 2^1000, which products of five floats cannot.
-// Source: Shewchuk, Scale-Expansion.
 template <std::size_t Capacity>
 class Expansion {
 public:
     Expansion() = default;
     template <std::size_t OtherCapacity>
     explicit Expansion(const Expansion<OtherCapacity>& other) noexcept : count_(other.count()) {
-        for (std::size_t i = 0; i < count_; ++i) terms_[i] = other.term(i);
+        for (std::size_t i = 0; i < count_; ++i) terms_[i] = other.terms()[i];
     }
 
     void add(double term) noexcept {
-        if (term != 0.0) count_ = grow(terms_.data(), count_, term);
+        std::size_t first = 0;
+        count_ = grow(terms_.data(), count_, term, first);
     }
 
     void add_product(double a, double b) noexcept {
@@ -48,11 +70,11 @@ public:
 
     template <std::size_t OtherCapacity>
     void add_scaled(const Expansion<OtherCapacity>& other, double factor) noexcept {
-        for (std::size_t i = 0; i < other.count(); ++i) add_product(other.term(i), factor);
+        count_ = grow_by_multiple(terms_.data(), count_, other.terms(), other.count(), factor);
     }
 
     std::size_t count() const noexcept { return count_; }
-    double term(std::size_t i) const noexcept { return terms_[i]; }
+    const double* terms() const noexcept { return terms_.data(); }
 
     // Within a few ulp of the value: the terms do not overlap.
     double estimate() const noexcept {

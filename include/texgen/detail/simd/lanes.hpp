@@ -40,8 +40,6 @@
 #define TEXGEN_FLAGS(name) scalar
 #define TEXGEN_BUILD TEXGEN_NAMED(TEXGEN_COMPILER, _scalar)
 #define TEXGEN_INLINE inline
-#define TEXGEN_APART
-#define TEXGEN_RARE
 #define TEXGEN_UNROLL
 
 namespace TEXGEN_DETAIL {
@@ -113,8 +111,6 @@ inline bool all_less(const Double2& a, const Double2& b) noexcept { return a[0] 
 #endif
 
 #define TEXGEN_INLINE [[gnu::always_inline]] inline
-#define TEXGEN_APART [[gnu::noinline]]            // what is rare, so that it costs the rest no registers
-#define TEXGEN_RARE [[gnu::noinline, gnu::cold]]  // what only ties need, so that it costs the rest no room
 
 // What the compilers have different words for: a loop over an array of vectors, which GCC keeps, and so the array in memory,
 // below -O3; doubles of as many floats or integers as 64, 32 or 16 bytes hold, which GCC 12 converts the generic way in parts; all of sixteen
