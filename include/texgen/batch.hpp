@@ -84,7 +84,7 @@ inline namespace TEXGEN_BUILD {
 // Shapes: as many rectangles as triangles, of no negative size, and outputs of all their fragments together, or empty ones
 // (all asserted; else nothing is written). Fragments outside a triangle get the values of its plane; where the interpolated
 // 1/w is not positive nothing is promised.
-// Cost: with its set-up a tile of 8 x 8 takes a quarter to a third of what a TriangleSetup does; beyond 512 fragments it is left to
+// Cost: with its set-up a tile of 8 x 8 takes about half of what a TriangleSetup does; beyond 512 fragments it is left to
 // one, as is what is in doubt: that takes as long as some tiles of a friendly triangle.
 // Bad input: an empty rectangle has no values.
 template <class CompiledWhereCalled = void>

@@ -42,7 +42,7 @@ inline constexpr Conventions direct3d{DepthRange::zero_to_one, NdcY::up, Texture
 inline constexpr Conventions metal{DepthRange::zero_to_one, NdcY::up, TextureOrigin::top_left, Handedness::right};
 inline constexpr Conventions vulkan{DepthRange::zero_to_one, NdcY::down, TextureOrigin::top_left, Handedness::right};
 
-// The same API in a left-handed world, as Unity's, Unreal's and that of XMMatrixLookAtLH: left_handed(direct3d).
+// Makes the conventions of the same API in a left-handed world, as Unity's, Unreal's and that of XMMatrixLookAtLH: left_handed(direct3d).
 constexpr Conventions left_handed(Conventions api) noexcept {
     return {api.depth, api.ndc_y, api.origin, Handedness::left};
 }
@@ -61,7 +61,7 @@ public:
     constexpr const glm::dvec2&(min)() const noexcept { return min_; }
     constexpr const glm::dvec2&(max)() const noexcept { return max_; }
 
-    // The same rectangle, lit only where r_min <= r <= r_max too: in a projector's volume, from its near plane to its far
+    // Makes the region of the same rectangle that is lit only where r_min <= r <= r_max too: in a projector's volume, from its near plane to its far
     // one, as the matrix maps them to r. An infinite limit is none.
     [[nodiscard]] GLM_CONSTEXPR TextureRegion with_depth(double r_min = 0.0, double r_max = 1.0) const noexcept {
         TextureRegion region(min_, max_);
@@ -69,7 +69,7 @@ public:
         region.has_depth_ = true;
         return region;
     }
-    // The whole depth of a projector, reversed or not, with r as the mapping has it: [0, 1], or the range of NDC.
+    // Makes the one of the whole depth of a projector, reversed or not, with r as the mapping has it: [0, 1], or the range of NDC.
     [[nodiscard]] GLM_CONSTEXPR TextureRegion with_depth(Conventions conventions, DepthMapping mapping) const noexcept {
         return with_depth(
             mapping == DepthMapping::ndc && conventions.depth == DepthRange::negative_one_to_one ? -1.0 : 0.0, 1.0);
@@ -97,15 +97,15 @@ private:
     bool has_depth_ = false;
 };
 
-// From min to max: a tile of a larger texture, in the units of that texture.
+// Makes the region from min to max: a tile of a larger texture, in the units of that texture.
 inline GLM_CONSTEXPR TextureRegion atlas_tile(glm::dvec2 min, glm::dvec2 max) noexcept { return {min, max}; }
 
-// [0, width] x [0, height] in texels, as GL_TEXTURE_RECTANGLE addresses its image.
+// Makes the region [0, width] x [0, height] in texels, as GL_TEXTURE_RECTANGLE addresses its image.
 inline GLM_CONSTEXPR TextureRegion rectangle_texture(double width, double height) noexcept {
     return atlas_tile(glm::dvec2(0.0, 0.0), glm::dvec2(width, height));
 }
 
-// [0, 1] x [0, 1]: all of a texture that is addressed by fractions.
+// Makes the region [0, 1] x [0, 1]: all of a texture that is addressed by fractions.
 inline GLM_CONSTEXPR TextureRegion whole_texture() noexcept { return rectangle_texture(1.0, 1.0); }
 
 // An angle that knows its unit: made by radians() or degrees() only, so that a bare number does not convert.
@@ -124,11 +124,11 @@ private:
     double radians_;
 };
 
-// The two ways to make one.
+// Make an angle of its number in that unit.
 constexpr Angle radians(double value) noexcept { return Angle(value); }
 constexpr Angle degrees(double value) noexcept { return radians(value * (std::numbers::pi / 180.0)); }
 
-// The dial: the largest |error| that the caller accepts in s and in t, in the units of the region; in r the same
+// The largest |error| that the caller accepts in s and in t, in the units of the region; in r the same
 // relative to max(1, |r|). The rounding of the nearest float is always allowed: |error| <= max(value, 1/2 ulp).
 // A value that is not positive (zero, negative, NaN) means exact.
 struct Tolerance {
@@ -137,7 +137,7 @@ struct Tolerance {
 
 inline constexpr Tolerance exact{0.0};  // the nearest float
 
-// The tolerance that is a fraction of a texel of a texture of that size, for a region of one unit. (The unit of a rectangle
+// Makes the tolerance of a fraction of a texel of a texture of that size, for a region of one unit. (The unit of a rectangle
 // texture is the texel: Tolerance{fraction}.) Exact where the size is not positive, or so small that the quotient overflows.
 constexpr Tolerance texels(double fraction, double texture_size) noexcept {
     return texture_size > 0.0 && fraction < texture_size * 1e300 ? Tolerance{fraction / texture_size} : exact;

@@ -234,7 +234,7 @@ struct ProjectionSetup {
     LensFacts lens = {};
 };
 
-// The former name, for a release.
+// The former name, until 0.5.
 template <class Space>
 using Setup = ProjectionSetup<Space>;
 
@@ -244,8 +244,8 @@ using Setup = ProjectionSetup<Space>;
 // but for what is true of it: that it lights none of the points, shows all of them less than a texel, or loses half a
 // texel (of a picture of 4096, where the texture's size is not given). A lens that mirrors says so in its facts, a model
 // may mirror. No allocation, noexcept.
-// About a microsecond for what was composed in double, microseconds where it was composed in float or has a mistake to be
-// named: at most 8 times what one with one defect costs. No mistake is named of numbers beyond 2^150 or below 2^-150.
+// Cost: about a microsecond for what was composed in double, several for what was composed in float or has a defect; the worst
+// set-up takes at most 8 times what one with a single defect does. No mistake is named of numbers beyond 2^150 or below 2^-150.
 // What it sees: of a projector alone, its matrices' own marks (transposed, exchanged, of rank below 3, mirrored, reversed
 // depth in the wrong range); with facts of the lens also its depth range, aspect and angle. With the projector, and the
 // model or the camera, which of their products a texgen matrix is, of up to two mistakes; and if it is none of them the lens
@@ -271,6 +271,10 @@ template <class Space>
 Diagnosis diagnose(const Transform<Texture, Space>& texgen,
                    const ProjectionSetup<std::type_identity_t<Space>>& setup = {}) noexcept;
 
+// Says the same of a texgen matrix that is given as planes S, T, R, Q, as glGetTexGen or planes() returns them.
+template <class Space = Object>
+Diagnosis diagnose(const std::array<glm::vec4, 4>& planes, const ProjectionSetup<Space>& setup = {}) noexcept;
+
 // Says why make_projector(lens, aim, conventions) is empty: each way in which the lens and the aim are refused.
 // Guarantee: empty where, and only where, make_projector() makes a projector. No allocation, noexcept.
 // An angle of more than a turn is taken for degrees that were passed as radians.
@@ -279,10 +283,6 @@ inline Diagnosis diagnose(const PerspectiveLens& lens, const Aim& aim, Conventio
 inline Diagnosis diagnose(const FrustumLens& lens, const Aim& aim, Conventions conventions) noexcept;
 inline Diagnosis diagnose(const OrthographicLens& lens, const Aim& aim, Conventions conventions) noexcept;
 inline Diagnosis diagnose(const PinholeLens& lens, const Aim& aim, Conventions conventions) noexcept;
-
-// Says the same of planes S, T, R, Q as glGetTexGen or planes() returns them.
-template <class Space = Object>
-Diagnosis diagnose(const std::array<glm::vec4, 4>& planes, const ProjectionSetup<Space>& setup = {}) noexcept;
 
 }  // namespace TEXGEN_NAMESPACE
 

@@ -72,7 +72,7 @@ struct FootprintExtremes {
 
 inline namespace TEXGEN_COMPILER {
 
-// What filters make of derivatives that come from elsewhere.
+// Computes the footprint of derivatives that come from elsewhere.
 // Guarantee: singular values and anisotropy within 2^-48 of themselves (of the larger singular value for the smaller; so
 // with the anisotropy, relative to its square), level within 2^-48 max(1, |level|): of any finite derivatives, while what
 // comes out is a normal number; what is beyond the largest is infinite. No allocation, noexcept.
@@ -87,7 +87,7 @@ public:
     // Guarantee: in double, about the vertex with the largest clip_w; no allocation, noexcept.
     FootprintSetup(const TriangleSetup& triangle, TexelsPerUnit texels) noexcept;
 
-    // The footprint of the fragment (x, y), empty behind the projector; the sign of q is decided exactly.
+    // Computes the footprint of the fragment (x, y), empty behind the projector; the sign of q is decided exactly.
     // Guarantee: dx and dy within error_bound() without its rounding to float. No allocation, noexcept.
     std::optional<Footprint> at(int x, int y) const noexcept;
 
@@ -96,7 +96,7 @@ public:
     // bound exists, as next to q = 0. noexcept.
     glm::dvec2 error_bound(FragmentRect rect) const noexcept;
 
-    // The extremes of the footprints over a rectangle.
+    // Finds the extremes of the footprints over a rectangle.
     // Guarantee: no fragment of the rectangle that is in front of the projector has a level, an area or an anisotropy
     // outside of these (they hold for exact footprints and for those of `exact`; a tolerance may add its share). Each is
     // reached within 1 % at some point of the rectangle (that is levels within 0.015) where q is well away from 0;
@@ -117,7 +117,7 @@ private:
     TexelsPerUnit texels_;
 };
 
-// How much a triangle is the "deer in headlights": lit by a projector that faces the camera, so that what is near to the
+// Scores how much a triangle is the "deer in headlights": lit by a projector that faces the camera, so that what is near to the
 // camera is far from the projector and gets few texels on many pixels, and what is far gets many on few.
 //
 // The area of the footprint goes with 1 / Q^3 = (w/q)^3, so between the vertices nearest to the camera and farthest from it

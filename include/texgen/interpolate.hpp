@@ -51,7 +51,7 @@ public:
     TriangleSetup(Key, const Triangle& triangle, const TextureRegion& region, Tolerance tolerance) noexcept
         : functions_(triangle, region, detail::accepted(tolerance)) {}
 
-    // The work that the fragments of a rectangle need.
+    // Tells the work that the fragments of a rectangle need.
     // Guarantee: the least that is certified to stay inside the tolerance for every fragment of the rectangle; never
     // nothing where a fragment is lit. noexcept. An empty rectangle needs nothing.
     Work work(FragmentRect rect) const noexcept;
@@ -79,8 +79,8 @@ inline namespace TEXGEN_BUILD {
 // Guarantee: in front each is within max(tolerance, 1/2 ulp) of the exact value of the given floats (r: the tolerance
 // relative to max(1, |r|)). With `exact` each is the nearest float, so that its bits depend on
 // neither the rectangle, the length, the alignment nor the build. lit = 1 inside the closed region, decided from the s
-// and t, and with a depth from the r, that are (or would be) written; where r is certainly in the depth, or nothing is lit
-// in its company, it is not computed for that. Behind, s = t = r = lit = 0, the sign of q decided exactly. For
+// and t, and with a depth from the r, that are (or would be) written; where r is certainly in the depth, or s and t leave
+// all of a part of the rectangle dark, it is not computed for that. Behind, s = t = r = lit = 0, the sign of q decided exactly. For
 // Work::nothing lit is 0 and s, t, r are not written. No allocation, noexcept.
 // Shapes: each output has width * height floats, row-major, or none (asserted). Fragments outside the triangle get the
 // values of its plane; where the interpolated 1/w is not positive nothing is promised.

@@ -1,6 +1,6 @@
 #pragma once
 
-// Floor 7: the former name of coverage.hpp, for a release.
+// Floor 7: the former name of coverage.hpp, until 0.5.
 
 #include "detail/language.hpp"
 

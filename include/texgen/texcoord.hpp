@@ -67,10 +67,10 @@ public:
     // The same points, with the caller's word that all of them lie in a box (asserted), as an engine has one of each mesh:
     // project() then bounds its errors once instead of block by block. Values are right by the same promises; `exact`
     // has the same bits. Without assertions a point that is not in the box, as a NaN, gets what nothing bounds, and spoils
-    // no other. A box with min > max or a NaN is no word.
+    // no other. A box with min > max or a NaN is ignored.
     Positions within(const Box& box) const noexcept;
 
-    // The box of that word; with min > max where there is none.
+    // The box that within() was given; min > max without one.
     const Box& bounds() const noexcept { return bounds_; }
 
     // Whether the layout is one that needs no gathering: one array of vectors, or three arrays of floats, aligned.
@@ -180,8 +180,8 @@ void generate(const Transform<Texture, Space>& texture_from_space, Positions<Spa
 // numbers (r: the tolerance relative to max(1, |r|)). With `exact` each is the nearest float, whatever the layout, the
 // count, the place or the build, as long as no product of a matrix element and a coordinate leaves 2^-900 .. 2^1000.
 // lit = 1 inside the closed region, decided from the s and t, and with a depth from the r, that are (or would be) written.
-// Behind, s = t = r = lit = 0. r costs a depth no more than itself, and points that s and t leave dark in company not even
-// that. No allocation, noexcept.
+// Behind, s = t = r = lit = 0. A depth costs at most what r costs; where s and t leave many
+// neighbours dark, r is not computed for them. No allocation, noexcept.
 // Shapes: as many outputs as positions, or none (asserted); outputs must not overlap the positions.
 // Bad input: NaN and infinity spoil their own point only; a point whose q is NaN is behind.
 // Source: Everitt, Projective Texture Mapping, section 2; the reverse projection is behind q = 0.

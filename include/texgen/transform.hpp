@@ -103,7 +103,6 @@ template <class To, class From>
 glm::dmat4 inverse_error_bound(const Transform<To, From>& transform, const Transform<From, To>& inverse) noexcept;
 
 // Inverts a rotation and a translation, by transposing: the inverse for a camera or a projector that is posed without scale.
-// It loses nothing, at any distance from the origin.
 // Guarantee: exact transposition of the rotation; the translation -R^T t within 1 double ulp of its exact value for that
 // rotation, while its terms do not cancel below 2^-50 of the largest. No allocation, noexcept.
 // Precondition, asserted to 1e-3: the transform is rigid (an orthonormal rotation and a translation).

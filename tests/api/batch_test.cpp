@@ -455,6 +455,57 @@ TEST_CASE("what doubles leave in doubt of a visibility buffer is decided as for 
     }
 }
 
+TEST_CASE(
+    "what is kept of triangles in doubt for the rows that follow is theirs, wherever and whenever they come again") {
+    constexpr glm::ivec2 sizes[] = {{5, 40}, {8, 200}, {64, 70}, {128, 90}, {200, 70}, {1024, 3}, {1500, 4}};
+    Random random(17);
+    int ties = 0, apart = 0;
+    for (int round = 0; round < 70; ++round) {
+        std::vector<Triangle> triangles;
+        FragmentRect rect{0, 0, sizes[round % 7].x, sizes[round % 7].y};
+        const bool is_far = random.coin();
+        for (int i = 0; i < 64; ++i) {
+            const Shot shot = is_far ? far_sliver(random) : ties_everywhere(random);
+            triangles.push_back(shot.triangle);
+            if (i == 0 && is_far) rect.x = shot.rect.x / 2, rect.y = shot.rect.y / 2;
+        }
+        TriangleBatch batch(support::everywhere());
+        batch.assign(triangles);
+        // Of a few triangles, some of which another takes the place of: with an id that is the same modulo 16.
+        std::uint32_t few[16];
+        for (std::uint32_t i = 0; i < 16; ++i) few[i] = i;
+        const int used = random.integer(1, 15), longest = random.coin() ? 1 : 20, change_each = random.integer(20, 600);
+        std::vector<std::uint32_t> ids(count_of(rect));
+        for (std::size_t i = 0; i < ids.size();) {
+            if (random.integer(0, change_each) == 0) {
+                std::uint32_t& changed = few[random.integer(0, used)];
+                changed = (changed + 16u) % 64u;
+                ++apart;
+            }
+            const std::uint32_t id = few[random.integer(0, used)];
+            for (int run = random.integer(1, longest); run > 0 && i < ids.size(); --run) ids[i++] = id;
+        }
+        Outputs out(ids.size(), 11u);
+        interpolate(batch, ids, rect, out.spans());
+        for (int draw = 0; draw < 300; ++draw) {
+            const std::size_t i = random.bits() % ids.size();
+            const auto at = static_cast<std::int64_t>(i);
+            const std::int64_t x = rect.x + at % rect.width, y = rect.y + at / rect.width;
+            const support::Homogeneous exact = support::ExactTriangle(triangles[ids[i]]).at(x, y);
+            const bool in_front = exact.q.sign() > 0;
+            ties += in_front && support::is_tie(exact.over_q(0)) ? 1 : 0;
+            for (std::size_t k = 0; k < 2; ++k) {
+                const bool is_right =
+                    in_front ? is_nearest(out[k][i], exact.over_q(k)) : support::same_bits(out[k][i], 0.0f);
+                CHECK_MESSAGE(is_right, support::hex(triangles[ids[i]]), " at ", x, " ", y, " of ",
+                              support::text(rect));
+            }
+        }
+    }
+    CHECK(ties > 3000);
+    CHECK(apart > 100);
+}
+
 TEST_CASE("a tie that has more bits than two doubles is decided as for each triangle alone") {
     Random random(9);
     for (int round = 0; round < 2000; ++round) {

@@ -1,7 +1,7 @@
 #pragma once
 
 // The factors of a texgen matrix, the scale-bias S, the projector's P and V, and the pose X (the model matrix M or the
-// camera's V_e^-1), their products and what rounding may change of these; and which products a matrix is at a glance.
+// camera's V_e^-1), their products and what rounding may change of these; and two mistakes that are no product: row r of the other depth range, a bias without w.
 
 #include <cmath>
 #include <limits>

@@ -32,7 +32,7 @@ inline Product in_the_world(const glm::dmat4& texgen, const glm::dmat4* pose) no
     return inverse.regular() ? given * lens_factor(inverse.matrix()) : given;
 }
 
-// S as it should be, and whether the axis of the lens goes to the corner that no bias leaves there.
+// S as it should be, and whether the axis of the lens hits (0, 0), as it does without a bias.
 struct SeenScaleBias {
     glm::dvec2 scale, bias;
     double up_along_t;  // 1 where t grows upwards, -1 downwards, 0 where that is not known

@@ -105,8 +105,8 @@ public:
         return {rows_.limit + offset_ / q, rounding_ + offset_error_ / q};
     }
 
-    // Whether the picture's side is level, over y or over z, and up, as t grows, hangs down: if it is level over both, and up
-    // along one of them, that may be the world's.
+    // Whether the picture stands on its head: its side is level, over y or over z, and t grows downwards. Not where it is level over
+    // both and t grows upwards along one, which may be the world's up.
     bool hangs_down(double up_along_t) const noexcept {
         const glm::dvec3 side = across(0) / glm::length(across(0)),
                          up = up_along_t / glm::length(across(1)) * across(1);
@@ -157,7 +157,8 @@ inline double degrees_as_radians(const Estimate& focal_length) noexcept {
     return 0.0;
 }
 
-// Where near and far may land, of a mapping and conventions: first and last as they should, or by the other range.
+// The r of the near plane, or where depth is reversed of the far one: `low` as the mapping and the conventions have it, and as a lens
+// or a scale-bias for the other depth range leaves it.
 struct DepthEnds {
     double low;
     std::array<double, 2> other_lows;

@@ -1,4 +1,4 @@
-// Boxes and spheres against linear forms. Included by lanes.hpp once per instruction set.
+// Boxes and spheres against linear forms. Included by kernels.inc.hpp once per instruction set.
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 

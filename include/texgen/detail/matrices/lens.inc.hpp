@@ -84,7 +84,7 @@ namespace TEXGEN_NAMESPACE {
 inline std::optional<ProjectorProjection> perspective(const PerspectiveLens& lens, Conventions conventions) noexcept {
     const double half_angle = 0.5 * lens.fovy.in_radians();
     if (!detail::is_half_angle(half_angle)) return std::nullopt;
-    if (!(lens.aspect > 0.0 && detail::is_finite(lens.aspect))) return std::nullopt;
+    if (!detail::is_aspect(lens.aspect)) return std::nullopt;
     if (!(lens.z_near > 0.0 && lens.z_near < lens.z_far)) return std::nullopt;
     // cos / sin and not 1 / tan: two correctly rounded functions and one division, at any angle whose half is exact.
     const double focal_length =

@@ -92,8 +92,7 @@ struct SmallTile {
     TwoRamps numerator;
     Ramp q;
     int width, height;
-    bool
-        is_in_float;  // rounded and divided in float, in which no value is in doubt; eight columns, an even number of rows
+    bool is_in_float;  // rounded and divided in float, without doubt; eight columns, an even number of rows
     float* out[2];
     float* lit;            // or null
     float min[2], max[2];  // the region
@@ -137,8 +136,8 @@ struct ChunkGroup {
     float bend[size];
     float middle[2][size], slope[2][size];
     float rule[size];
-    alignas(64) float index[longest_chunk / 2];  // of each fragment up to the middle of a chunk, from there,
-    int indexed = 0;                             // which has so many
+    alignas(64) float index[longest_chunk / 2];  // of each fragment in the first half of a chunk, from its middle
+    int indexed = 0;                             // the length of that chunk
 
     StepRule rule_of(const TileJob& job, int i) const noexcept {
         return job.steps == StepRule::undecided ? static_cast<StepRule>(static_cast<int>(rule[i])) : job.steps;

@@ -1,4 +1,4 @@
-// The plain-loop twin of vectors.inc.hpp, for compilers without vectors in the language. Included by lanes.hpp.
+// The plain-loop twin of vectors.inc.hpp, for compilers without vectors in the language. Included by kernels.inc.hpp.
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 

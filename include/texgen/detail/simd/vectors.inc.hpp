@@ -1,4 +1,4 @@
-// Vectors as GCC and Clang have them in the language. Included by lanes.hpp once per instruction set; the plain-loop
+// Vectors as GCC and Clang have them in the language. Included by kernels.inc.hpp once per instruction set; the plain-loop
 // twin of this file is loops.inc.hpp.
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {

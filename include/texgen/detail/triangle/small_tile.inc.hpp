@@ -93,7 +93,7 @@ inline SmallAnswer ask(const LitTest& lit, double tolerance, const SmallFunction
     return is_partly_dark && !may_be_dark ? SmallAnswer::partly_lit : SmallAnswer::doubt;
 }
 
-// s, t and their mask of a small tile, if one certificate serves all of it. What a value in doubt of a unit asks for is no plan.
+// s, t and their mask of a small tile, if one certificate serves all of it. A tile of one unit with a value in doubt is divided again here, without a plan.
 template <class CompiledWhereCalled = void>
 TEXGEN_APART SmallAnswer fill_small(const TriangleFunctions& triangle, const Tile& rect,
                                     const Texcoords& out) noexcept {
