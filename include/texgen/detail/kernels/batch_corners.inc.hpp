@@ -84,13 +84,15 @@ private:
     Residues dx_[3], dy_[3];
 };
 
-// What is known of fragments of a triangle each, q last: without residues grains are 0.
-template <std::size_t Numerators>
+// What is known of s, t, r if it is needed, and q at fragments of a triangle each: without residues grains are 0.
 struct CloseFragmentsAt {
+    const bool needs_r;
     bool are_sums_first;
-    CloseValues value[Numerators + 1];
-    Residues residue[Numerators + 1]{};
-    Doubles of_grain[Numerators + 1]{};
+    CloseValues value[4];
+    Residues residue[4]{};
+    Doubles of_grain[4]{};
+
+    TEXGEN_INLINE explicit CloseFragmentsAt(bool with_r) noexcept : needs_r(with_r) {}
 
     // One by one: GCC copies them in halves, which a load of the whole waits for.
     TEXGEN_INLINE CloseValues values(std::size_t n) const noexcept {
@@ -102,15 +104,15 @@ struct CloseFragmentsAt {
     template <class Terms>
     TEXGEN_INLINE void take(const VertexLanes& vertices, const Terms& terms, bool are_close) noexcept {
         are_sums_first = are_close;
-        TEXGEN_UNROLL
-        for (std::size_t n = 0; n <= Numerators; ++n) value[n] = terms.function(vertices, n < Numerators ? n : 3);
-        value[Numerators].error = value[Numerators].error + vertices.error_of_q;
+        for (std::size_t n = 0; n < 4; ++n)
+            if (n != 2 || needs_r) value[n] = terms.function(vertices, n);
+        value[3].error = value[3].error + vertices.error_of_q;
     }
     TEXGEN_INLINE void add_residues(const VertexLanes& vertices, const Doubles& x, const Doubles& y) noexcept {
         ResidueLanes lanes_of(vertices, x, y);
-        TEXGEN_UNROLL
-        for (std::size_t n = 0; n <= Numerators; ++n) {
-            const ResidueValues of = lanes_of.values(n < Numerators ? n : 3);
+        for (std::size_t n = 0; n < 4; ++n) {
+            if (n == 2 && !needs_r) continue;
+            const ResidueValues of = lanes_of.values(n);
             residue[n] = of.times(lanes_of.side);
             of_grain[n] = where(lanes_of.is_known, of.grain);
         }
@@ -121,19 +123,20 @@ struct CloseFragmentsAt {
         are_sums_first = true;
         ResidueLanes residues(vertices, x, y);
         const CornerLanes corners(vertices, residues, x, y);
-        for (std::size_t n = 0; n <= Numerators; ++n) {
-            const ResidueValues of = residues.values(n < Numerators ? n : 3);
+        for (std::size_t n = 0; n < 4; ++n) {
+            if (n == 2 && !needs_r) continue;
+            const ResidueValues of = residues.values(n);
             CloseValues at, dx, dy;
-            corners.take(n < Numerators ? n : 3, of, at, dx, dy);
-            if (n == Numerators) at.error = at.error + vertices.error_of_q;
+            corners.take(n, of, at, dx, dy);
+            if (n == 3) at.error = at.error + vertices.error_of_q;
             residue[n] = of.times(residues.side);
             of_grain[n] = where(residues.is_known, of.grain);
             value[n] = sharpened(is_first ? at : better(value[n], at), residue[n], of_grain[n]);
         }
     }
     TEXGEN_INLINE void sharpen() noexcept {
-        TEXGEN_UNROLL
-        for (std::size_t n = 0; n <= Numerators; ++n) value[n] = sharpened(value[n], residue[n], of_grain[n]);
+        for (std::size_t n = 0; n < 4; ++n)
+            if (n != 2 || needs_r) value[n] = sharpened(value[n], residue[n], of_grain[n]);
     }
 };
 

@@ -136,7 +136,6 @@ struct Learned {
 
 // Vectors of fragments that have lanes in doubt, and the triangles of those, as many as a block has: all are decided at once, by
 // what fragments of a triangle share. Few vectors, and what that leaves, are decided alone.
-template <std::size_t Numerators>
 class DoubtfulFragments {
 public:
     struct Vector {
@@ -218,8 +217,8 @@ private:
             } else if (!are_few) {
                 const BatchFunction* of_lane[lanes];
                 for (std::size_t i = 0; i < size; ++i) of_lane[i] = &functions.of[place_of(i)];
-                const LaneFunctions<Numerators> of(of_lane);
-                left = put(vector, BatchFunctionsAt<LaneFunctions<Numerators>>{of, x, y});
+                const LaneFunctions of(of_lane, job_.needs_r());
+                left = put(vector, BatchFunctionsAt<LaneFunctions>{of, x, y});
             }
             if (left != 0 && is_one_left && !are_few && !learned_.are_functions_about_corners) {
                 learned_.are_functions_about_corners = true;
@@ -260,18 +259,19 @@ private:
             const float* of_lane[lanes];
             for (std::size_t j = 0; j < static_cast<std::size_t>(lanes); ++j)
                 of_lane[j] = vertices_of(job_, learned_.id[(learned_.triangles >> (i + j) & 1u) != 0 ? i + j : first]);
-            learned_.functions.take<Numerators>(of_lane, none + left_, none + top_, none + width_, none + learned_.rows,
-                                                i, learned_.are_functions_about_corners);
+            learned_.functions.take(of_lane, job_.needs_r(), none + left_, none + top_, none + width_,
+                                    none + learned_.rows, i, learned_.are_functions_about_corners);
         }
     }
 
     // Returns the lanes that stay in doubt.
     template <class Functions>
-    TEXGEN_INLINE std::uint64_t put(const Vector& vector, const Functions& at) const noexcept {
-        CloseFragments<Numerators> fragments;
+    TEXGEN_APART std::uint64_t put(const Vector& vector, const Functions& at) const noexcept {
+        CloseFragments<3> fragments;
         CloseDivisor q;
-        q.take(at.values(Numerators));
-        fragments.divide(at, q, Numerators, job_.tolerance, true);
+        q.take(at.values(3));
+        fragments.quotient[2] = Floats{};
+        fragments.divide(at, q, job_.needs_r() ? 3 : 2, job_.tolerance, true);
         vector.out->put_where(vector.doubtful, vector.n, fragments.quotient, q.front);
         return lane_bits(vector.doubtful & narrow(fragments.doubtful));
     }
@@ -279,7 +279,7 @@ private:
     // By residues and doubles, by two doubles, and about a corner: first by what decided the vector before.
     TEXGEN_APART std::uint64_t put_closely(const float* const (&of_lane)[lanes], const Vector& vector) noexcept {
         const VertexLanes vertices(of_lane);
-        CloseFragmentsAt<Numerators> at;
+        CloseFragmentsAt at(job_.needs_r());
         std::uint64_t left = 0;
         const Learned::Way first = learned_.first;
         if (first == Learned::about_corners) {
@@ -316,10 +316,9 @@ private:
 };
 
 // A block of fragments of which these lanes of its vectors are in doubt, again. Returns those that stay so, as bits.
-template <std::size_t Numerators>
-TEXGEN_APART std::uint64_t decide_fragments(const FragmentsJob& job, const FragmentOutputs& out,
-                                            const FragmentOutputs& in_scratch, std::size_t begin, std::size_t end,
-                                            const Words* doubtful, Learned& learned) noexcept {
+TEXGEN_APART inline std::uint64_t decide_fragments(const FragmentsJob& job, const FragmentOutputs& out,
+                                                   const FragmentOutputs& in_scratch, std::size_t begin,
+                                                   std::size_t end, const Words* doubtful, Learned& learned) noexcept {
     FragmentCentres centres(job, begin);
     // A part of one row, or whole ones.
     const auto width = static_cast<std::size_t>(job.width);
@@ -327,9 +326,9 @@ TEXGEN_APART std::uint64_t decide_fragments(const FragmentsJob& job, const Fragm
     const std::size_t rows = (end - 1) / width - row + 1;
     const bool is_part = rows == 1 && width > 1024;
     const std::size_t column = is_part ? begin % width : 0;
-    DoubtfulFragments<Numerators> fragments(
-        job, learned, job.x + 0.5 + static_cast<double>(column), job.y + 0.5 + static_cast<double>(row),
-        static_cast<double>(is_part ? end - begin : width), static_cast<double>(rows));
+    DoubtfulFragments fragments(job, learned, job.x + 0.5 + static_cast<double>(column),
+                                job.y + 0.5 + static_cast<double>(row),
+                                static_cast<double>(is_part ? end - begin : width), static_cast<double>(rows));
     for (std::size_t n = begin; n < end; n += static_cast<std::size_t>(lanes), centres.advance(), ++doubtful) {
         if (!any(*doubtful)) continue;
         const FragmentIds ids(job, n);
@@ -371,8 +370,7 @@ TEXGEN_INLINE Undecided divide_all_fragments(const FragmentsJob& job, std::size_
             any_doubtful |= fragments.doubtful;
         }
         std::uint64_t undecided = 0;
-        if (any(any_doubtful))
-            undecided = decide_fragments<Numerators>(job, out, in_scratch, begin, end, doubtful, learned);
+        if (any(any_doubtful)) undecided = decide_fragments(job, out, in_scratch, begin, end, doubtful, learned);
         if (n > job.count) scratch.copy_to(out, n - size, job.count + size - n);
         if (undecided != 0) return {begin, undecided};
     }

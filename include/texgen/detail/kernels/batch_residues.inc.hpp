@@ -3,7 +3,7 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// Of a triangle about a fragment, q last: base, and by how much it grows along a row and down; of each two doubles, and an error and
+// Of a triangle about a fragment, s, t, r, q: base, and by how much it grows along a row and down; of each two doubles, and an error and
 // a grain of all. In whole vectors: the last residues are 0.
 struct alignas(64) BatchFunction {
     double part[4][8];  // high, low, error, grain
@@ -14,16 +14,16 @@ struct alignas(64) BatchFunction {
 };
 
 // Of one in each lane.
-template <std::size_t Numerators>
 struct LaneFunctions {
-    Doubles part[8 * (Numerators + 1)];
+    Doubles part[4][8];
     Residues residues[16];
 
-    TEXGEN_INLINE explicit LaneFunctions(const BatchFunction* const (&of)[lanes]) noexcept {
-        load_columns(part, 8 * (Numerators + 1), [&](std::size_t j) { return of[j]->part[0]; });
-        load_columns(residues, 3 * (Numerators + 1), [&](std::size_t j) { return of[j]->residues; });
+    TEXGEN_INLINE LaneFunctions(const BatchFunction* const (&of)[lanes], bool needs_r) noexcept {
+        for (std::size_t n = 0; n < 4; ++n)
+            if (n != 2 || needs_r) load_columns(part[n], 8, [&](std::size_t j) { return of[j]->part[n]; });
+        load_columns(residues, 12, [&](std::size_t j) { return of[j]->residues; });
     }
-    TEXGEN_INLINE const Doubles& number(std::size_t n, std::size_t j) const noexcept { return part[8 * n + j]; }
+    TEXGEN_INLINE const Doubles& number(std::size_t n, std::size_t j) const noexcept { return part[n][j]; }
     TEXGEN_INLINE const Residues& residue(std::size_t i) const noexcept { return residues[i]; }
 };
 
@@ -33,8 +33,7 @@ struct BatchFunctions {
 
     // Those from `first` on, of a triangle in each lane about a fragment, for so many columns and rows: see
     // CloseRamp::copy_to(). What residues do not know has a grain of 0. Where their terms cancel, or are said to, about corners.
-    template <std::size_t Numerators>
-    TEXGEN_APART void take(const float* const (&triangle)[lanes], const Doubles& x, const Doubles& y,
+    TEXGEN_APART void take(const float* const (&triangle)[lanes], bool needs_r, const Doubles& x, const Doubles& y,
                            const Doubles& width, const Doubles& height, std::size_t first,
                            bool about_corners = false) noexcept {
         const VertexLanes vertices(triangle);
@@ -43,33 +42,33 @@ struct BatchFunctions {
         Residues dx[3], dy[3];
         of_corners.steps(dx, dy);
         Residues residues[16]{};
-        Doubles grain[Numerators + 1];
-        for (std::size_t n = 0; n <= Numerators; ++n) {
-            const ResidueValues value = of_corners.values(n < Numerators ? n : 3);
+        Doubles grain[4];
+        for (std::size_t n = 0; n < 4; ++n) {
+            if (n == 2 && !needs_r) continue;
+            const ResidueValues value = of_corners.values(n);
             residues[3 * n] = value.times(of_corners.side);
             residues[3 * n + 1] = value.times(dx) * of_corners.one_x;
             residues[3 * n + 2] = value.times(dy) * of_corners.one_y;
             grain[n] = where(of_corners.is_known, value.grain);
         }
         store_columns(residues, [&](std::size_t j) { return of[first + j].residues; });
-        const auto error_of = [&](std::size_t n) { return n < Numerators ? Doubles{} : vertices.error_of_q; };
         if (!about_corners) {
             const CloseSteps along(vertices, 1), down(vertices, 0);
             LongWords cancel{};
-            for (std::size_t n = 0; n <= Numerators; ++n) {
-                const std::size_t k = n < Numerators ? n : 3;
-                cancel |= put(n, {close.function(vertices, k), along.function(vertices, k), down.function(vertices, k)},
-                              grain[n], width, height, error_of(n), first);
-            }
+            for (std::size_t n = 0; n < 4; ++n)
+                if (n != 2 || needs_r)
+                    cancel |=
+                        put(n, {close.function(vertices, n), along.function(vertices, n), down.function(vertices, n)},
+                            grain[n], width, height, vertices, first);
             if (!any(cancel)) return;
         }
-        take_about_corners(vertices, close, of_corners, x, y, grain, width, height, first);
+        take_about_corners(vertices, needs_r, close, of_corners, x, y, grain, width, height, first);
     }
 
 private:
     // Function n. Returns where more than one float in 2^12 would stay in doubt.
     TEXGEN_INLINE LongWords put(std::size_t n, const CloseValues (&term)[3], const Doubles& grain, const Doubles& width,
-                                const Doubles& height, const Doubles& further_error, std::size_t first) noexcept {
+                                const Doubles& height, const VertexLanes& vertices, std::size_t first) noexcept {
         const Doubles size =
             magnitude(term[0].high) + (magnitude(term[1].high) * width + magnitude(term[2].high) * height);
         const Doubles lost = term[0].error + (term[1].error * width + term[2].error * height);
@@ -81,24 +80,23 @@ private:
             part[j] = (term[j].high + rounder) - rounder;
             part[3 + j] = (term[j].high - part[j]) + term[j].low;
         }
-        part[6] = (lost + (width + height + 1.0) * unit * 0x1p-50) * 1.01 + further_error;
+        part[6] = (lost + (width + height + 1.0) * unit * 0x1p-50) * 1.01 + (n < 3 ? Doubles{} : vertices.error_of_q);
         part[7] = grain;
         store_columns(part, [&](std::size_t j) { return of[first + j].part[n]; });
         return greater(lost, size * 0x1p-36);
     }
 
-    template <std::size_t Functions>
-    TEXGEN_APART void take_about_corners(const VertexLanes& vertices, const CloseLanes& close, ResidueLanes& residues,
-                                         const Doubles& x, const Doubles& y, const Doubles (&grain)[Functions],
-                                         const Doubles& width, const Doubles& height, std::size_t first) noexcept {
+    TEXGEN_APART void take_about_corners(const VertexLanes& vertices, bool needs_r, const CloseLanes& close,
+                                         ResidueLanes& residues, const Doubles& x, const Doubles& y,
+                                         const Doubles (&grain)[4], const Doubles& width, const Doubles& height,
+                                         std::size_t first) noexcept {
         const CornerLanes corners(vertices, residues, x, y);
-        for (std::size_t n = 0; n < Functions; ++n) {
-            const bool is_q = n + 1 == Functions;
-            const std::size_t k = is_q ? 3 : n;
+        for (std::size_t n = 0; n < 4; ++n) {
+            if (n == 2 && !needs_r) continue;
             CloseValues term[3];
-            corners.take(k, residues.values(k), term[0], term[1], term[2]);
-            term[0] = better(term[0], close.function(vertices, k));
-            put(n, term, grain[n], width, height, is_q ? vertices.error_of_q : Doubles{}, first);
+            corners.take(n, residues.values(n), term[0], term[1], term[2]);
+            term[0] = better(term[0], close.function(vertices, n));
+            put(n, term, grain[n], width, height, vertices, first);
         }
     }
 };

@@ -279,10 +279,9 @@ TEXGEN_INLINE bool fill_tile(const FragmentOutputs& out, const TileShape& shape,
 
 // Tiles of the block from `first` on that are in doubt, a bit each, again; its values begin at `of_block`. From the first that stays so on
 // they have functions about corners, too. Returns those that this leaves.
-template <std::size_t Numerators>
-TEXGEN_APART std::uint64_t decide_tiles(const TilesJob& job, const FragmentOutputs& out, std::size_t first,
-                                        const int (*block)[4], std::uint64_t doubtful, std::size_t of_block,
-                                        bool about_corners = false) noexcept {
+TEXGEN_APART inline std::uint64_t decide_tiles(const TilesJob& job, const FragmentOutputs& out, std::size_t first,
+                                               const int (*block)[4], std::uint64_t doubtful, std::size_t of_block,
+                                               bool about_corners = false) noexcept {
     BatchFunctions functions;
     TileScratch scratch;
     const auto known = static_cast<std::size_t>(std::countr_zero(doubtful));  // finite, where others may be no numbers
@@ -295,8 +294,8 @@ TEXGEN_APART std::uint64_t decide_tiles(const TilesJob& job, const FragmentOutpu
             of_lane[j] = vertices_of(job, first + ((doubtful >> (i + j) & 1u) != 0 ? i + j : known));
         Words tile[4];
         load_fours(block[i], tile);
-        functions.take<Numerators>(of_lane, to_doubles(tile[0]) + 0.5, to_doubles(tile[1]) + 0.5, to_doubles(tile[2]),
-                                   to_doubles(tile[3]), i, about_corners);
+        functions.take(of_lane, job.needs_r(), to_doubles(tile[0]) + 0.5, to_doubles(tile[1]) + 0.5,
+                       to_doubles(tile[2]), to_doubles(tile[3]), i, about_corners);
     }
     std::uint64_t undecided = 0;
     std::size_t done = of_block;
@@ -314,18 +313,19 @@ TEXGEN_APART std::uint64_t decide_tiles(const TilesJob& job, const FragmentOutpu
         Words left{};
         for (std::size_t n = 0; n < shape.count && !any(left); n += static_cast<std::size_t>(lanes), walk.advance()) {
             const Doubles row = minimum(walk.y, Doubles{} + shape.last_row);
-            CloseFragments<Numerators> fragments;
+            CloseFragments<3> fragments;
             const BatchFunctionsAt<BatchFunction> at{functions.of[i], shape.is_turned ? row : walk.x,
                                                      shape.is_turned ? walk.x : row};
             CloseDivisor q;
-            q.take(at.values(Numerators));
-            fragments.divide(at, q, Numerators, job.tolerance, true);
+            q.take(at.values(3));
+            fragments.quotient[2] = Floats{};
+            fragments.divide(at, q, job.needs_r() ? 3 : 2, job.tolerance, true);
             here.put(in_scratch ? n : begin + n, fragments.quotient, q.front);
             left = narrow(fragments.doubtful);
         }
         if (in_scratch) scratch.copy_to(out, begin, shape.count);
         if (!any(left)) continue;
-        if (!about_corners) return decide_tiles<Numerators>(job, out, first, block, doubtful >> i << i, of_block, true);
+        if (!about_corners) return decide_tiles(job, out, first, block, doubtful >> i << i, of_block, true);
         undecided |= std::uint64_t{1} << i;
     }
     return undecided;
@@ -381,7 +381,7 @@ TEXGEN_INLINE Undecided divide_all_tiles(const TilesJob& job, std::size_t first,
                 in_doubt |= std::uint64_t{1} << i;
             }
         }
-        if (in_doubt != 0) doubtful |= decide_tiles<Numerators>(job, out, first, block, in_doubt, begin_of_block);
+        if (in_doubt != 0) doubtful |= decide_tiles(job, out, first, block, in_doubt, begin_of_block);
         if (doubtful != 0) return {first, doubtful};
     }
     return {job.tile_count, 0};
