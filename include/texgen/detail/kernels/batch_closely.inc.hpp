@@ -57,7 +57,7 @@ struct VertexLanes {
     LongWords has_area;  // its sign is known
     Doubles error_of_q;  // infinite elsewhere, so that all is in doubt
 
-    TEXGEN_INLINE explicit VertexLanes(const float* const (&triangle)[lanes]) noexcept {
+    TEXGEN_APART explicit VertexLanes(const float* const (&triangle)[lanes]) noexcept {
         TEXGEN_UNROLL
         for (std::size_t i = 0; i < 3; ++i)
             load_columns(vertex[i], 8, [&](std::size_t j) { return triangle[j] + i * BatchVertex::size; });
@@ -154,7 +154,7 @@ struct CloseTerms {
 // At a fragment: all are within 2^-98 of their size. Of one farther off than the corners are apart, what corner k is off corner j takes
 // the place of what it is off the fragment: E_i is the same, of terms that are less.
 struct CloseLanes : CloseTerms {
-    TEXGEN_INLINE CloseLanes(const VertexLanes& given, const Doubles& x, const Doubles& y) noexcept {
+    TEXGEN_APART CloseLanes(const VertexLanes& given, const Doubles& x, const Doubles& y) noexcept {
         // Of side i from here to its corner j, and from there or here to k.
         DifferenceLanes to_x[3], to_y[3], from_x[3], from_y[3];
         Doubles lost{}, below{};
@@ -195,7 +195,7 @@ struct CloseLanes : CloseTerms {
 
 // By how much the functions grow along a row (axis 1) or down (axis 0): E_i does by what corners j and k are apart.
 struct CloseSteps : CloseTerms {
-    TEXGEN_INLINE CloseSteps(const VertexLanes& given, std::size_t axis) noexcept {
+    TEXGEN_APART CloseSteps(const VertexLanes& given, std::size_t axis) noexcept {
         EdgeLanes edge[3];
         TEXGEN_UNROLL
         for (std::size_t i = 0; i < 3; ++i) {
@@ -248,7 +248,7 @@ struct ResidueLanes {
     Residues one_x, one_y;
     Doubles per_x, per_y;  // what 1 is in the units of x and y, as they are
 
-    TEXGEN_INLINE ResidueLanes(const VertexLanes& vertices, const Doubles& at_x, const Doubles& at_y) noexcept
+    TEXGEN_APART ResidueLanes(const VertexLanes& vertices, const Doubles& at_x, const Doubles& at_y) noexcept
         : given(vertices) {
         const auto number = [&](std::size_t i, std::size_t k) { return given.number(i, k); };
         const IntegerLanes x(number(0, 0), number(1, 0), number(2, 0), 0.5);
