@@ -1,8 +1,18 @@
 cmake_minimum_required(VERSION 3.25)
 
-# What a call of interpolate() of a triangle adds to a program, the kernels of all instruction sets included. 19 kB of it decide
-# what is in doubt, in vectors and about the tile, so that no triangle costs many times the ordinary one.
-set(allowed_bytes 63744)
+# What a call adds to a program, the kernels of all instruction sets included; README.md says these, in kB. 19 kB of a triangle's
+# decide what is in doubt, in vectors and about the tile, so that no triangle costs many times the ordinary one; most of a batch's do.
+set(arguments_of_interpolate "const TriangleSetup& setup, FragmentRect rect, Texcoords out")
+set(arguments_of_project "const WorldTexgen& texgen, Positions<World> positions, Texcoords out")
+set(arguments_of_one "const WorldTexgen& texgen, glm::vec3 position")
+set(arguments_of_coverage "const ObjectTexgen& texgen, const Box& box")
+set(arguments_of_batch "const TriangleBatch& batch, std::span<const FragmentRect> rects, Texcoords out")
+set(calls
+    "63600 interpolate.hpp Work interpolate interpolate(setup, rect, out)"
+    "100000 texcoord.hpp void project project(texgen, positions, whole_texture(), out)"
+    "8000 texcoord.hpp auto one project(texgen, world_space(position))"
+    "35000 coverage.hpp Coverage coverage coverage(texgen, whole_texture(), box)"
+    "330000 batch.hpp void batch interpolate(batch, rects, out)")
 
 find_program(size size)
 execute_process(COMMAND ${COMPILER} --version OUTPUT_VARIABLE version)
@@ -12,17 +22,22 @@ if(NOT size OR NOT version MATCHES "Free Software Foundation")
 endif()
 string(REGEX REPLACE "([^|]+)" "-I\\1" flags "${INCLUDES}")
 string(REPLACE "|" ";" flags "${flags}")
-file(WRITE ${DIRECTORY}/call.cpp "#include <texgen/interpolate.hpp>\nusing namespace texgen;\n"
-    "Work call(const TriangleSetup& setup, FragmentRect rect, Texcoords out) { return interpolate(setup, rect, out); }\n")
-execute_process(COMMAND ${COMPILER} -std=c++20 -O2 -DNDEBUG -c ${flags} call.cpp -o call.o
-    WORKING_DIRECTORY ${DIRECTORY} COMMAND_ERROR_IS_FATAL ANY)
-execute_process(COMMAND ${size} -A call.o WORKING_DIRECTORY ${DIRECTORY} OUTPUT_VARIABLE sections
-    COMMAND_ERROR_IS_FATAL ANY)
-string(REGEX MATCHALL "\n\\.text[^ ]* +[0-9]+" sections "${sections}")
-list(TRANSFORM sections REPLACE ".* " "")
-list(JOIN sections " + " sum)
-math(EXPR bytes "${sum}")
-message(STATUS "${bytes} bytes of code")
-if(bytes GREATER allowed_bytes)
-    message(FATAL_ERROR "A call of interpolate() adds more than ${allowed_bytes} bytes.")
-endif()
+foreach(call IN LISTS calls)
+    string(REGEX MATCH "^([0-9]+) ([^ ]+) ([^ ]+) ([^ ]+) (.*)$" call "${call}")
+    set(allowed_bytes ${CMAKE_MATCH_1})
+    set(name ${CMAKE_MATCH_4})
+    file(WRITE ${DIRECTORY}/${name}.cpp "#include <texgen/${CMAKE_MATCH_2}>\nusing namespace texgen;\n"
+        "${CMAKE_MATCH_3} call(${arguments_of_${name}}) { return ${CMAKE_MATCH_5}; }\n")
+    execute_process(COMMAND ${COMPILER} -std=c++20 -O2 -DNDEBUG -c ${flags} ${name}.cpp -o ${name}.o
+        WORKING_DIRECTORY ${DIRECTORY} COMMAND_ERROR_IS_FATAL ANY)
+    execute_process(COMMAND ${size} -A ${name}.o WORKING_DIRECTORY ${DIRECTORY} OUTPUT_VARIABLE sections
+        COMMAND_ERROR_IS_FATAL ANY)
+    string(REGEX MATCHALL "\n\\.text[^ ]* +[0-9]+" sections "${sections}")
+    list(TRANSFORM sections REPLACE ".* " "")
+    list(JOIN sections " + " sum)
+    math(EXPR bytes "${sum}")
+    message(STATUS "${name}: ${bytes} bytes of code")
+    if(bytes GREATER allowed_bytes)
+        message(SEND_ERROR "${name} adds more than ${allowed_bytes} bytes.")
+    endif()
+endforeach()
