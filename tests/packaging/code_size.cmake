@@ -12,7 +12,7 @@ set(calls
     "100000 texcoord.hpp void project project(texgen, positions, whole_texture(), out)"
     "8000 texcoord.hpp auto one project(texgen, world_space(position))"
     "35000 coverage.hpp Coverage coverage coverage(texgen, whole_texture(), box)"
-    "330000 batch.hpp void batch interpolate(batch, rects, out)")
+    "315000 batch.hpp void batch interpolate(batch, rects, out)")
 
 find_program(size size)
 execute_process(COMMAND ${COMPILER} --version OUTPUT_VARIABLE version)

@@ -122,7 +122,7 @@ private:
 };
 
 // What vectors in doubt say of those that follow: that they ask for the triangles of others, what decides them, and the functions
-// of these triangles in the rows from the first one on.
+// of these triangles in so wide rows from the first one on.
 struct Learned {
     enum Way { nearly, closely, about_corners };
     static constexpr double rows = 64.0;
@@ -130,7 +130,7 @@ struct Learned {
     Way first = nearly;
     unsigned triangles = 0;  // a bit for each
     std::uint32_t id[batch_block];
-    double left = 0.0, top = 0.0;  // what the functions are about
+    double left = 0.0, top = 0.0, width = 0.0;
     BatchFunctions functions;
 };
 
@@ -176,6 +176,8 @@ private:
         Vector vector;
         std::size_t triangle[lanes];  // where a lane is certain that of the first that is not
         bool is_one;                  // the first is that of all
+
+        TEXGEN_INLINE std::size_t place(std::size_t i) const noexcept { return triangle[is_one ? 0 : i]; }
     };
 
     TEXGEN_INLINE bool has(std::size_t place) const noexcept { return (triangles_ >> place & 1u) != 0; }
@@ -204,43 +206,41 @@ private:
         constexpr auto size = static_cast<std::size_t>(lanes);
         const bool are_few = count_ <= 2;
         if (!are_few && !are_functions_known()) take_functions();
-        const BatchFunctions& functions = learned_.functions;
         bool is_one_left = false;
         for (std::size_t k = 0; k < count_; ++k) {
             const Known& known = vectors_[k];
-            const Vector& vector = known.vector;
-            const Doubles x = vector.x - learned_.left, y = vector.y - learned_.top;
-            const auto place_of = [&](std::size_t i) { return known.triangle[known.is_one ? 0 : i]; };
-            std::uint64_t left = lane_bits(vector.doubtful);
-            if (!are_few && known.is_one) {
-                left = put(vector, BatchFunctionsAt<BatchFunction>{functions.of[place_of(0)], x, y});
-            } else if (!are_few) {
-                const BatchFunction* of_lane[lanes];
-                for (std::size_t i = 0; i < size; ++i) of_lane[i] = &functions.of[place_of(i)];
-                const LaneFunctions of(of_lane, job_.needs_r());
-                left = put(vector, BatchFunctionsAt<LaneFunctions>{of, x, y});
-            }
+            std::uint64_t left = are_few ? lane_bits(known.vector.doubtful) : put_together(known);
             if (left != 0 && is_one_left && !are_few && !learned_.are_functions_about_corners) {
                 learned_.are_functions_about_corners = true;
                 take_functions();
-                --k;
-                continue;
+                left = put_together(known);
             }
-            is_one_left |= left != 0;
             if (left != 0) {
+                is_one_left = true;
                 const float* of_lane[lanes];
-                for (std::size_t i = 0; i < size; ++i) of_lane[i] = vertices_of(job_, id_[place_of(i)]);
-                left = put_closely(of_lane, vector);
+                for (std::size_t i = 0; i < size; ++i) of_lane[i] = vertices_of(job_, id_[known.place(i)]);
+                left = put_closely(of_lane, known.vector);
             }
-            undecided_ |= left << vector.place;
+            undecided_ |= left << known.vector.place;
         }
         triangles_ = 0;
         count_ = 0;
     }
 
+    // By what fragments share. Returns the lanes that stay in doubt, as all do that put a vector.
+    TEXGEN_APART std::uint64_t put_together(const Known& known) const noexcept {
+        const Doubles x = known.vector.x - learned_.left, y = known.vector.y - learned_.top;
+        const BatchFunction* const functions = learned_.functions.of;
+        if (known.is_one) return put(known.vector, BatchFunctionsAt<BatchFunction>{functions[known.place(0)], x, y});
+        const BatchFunction* of_lane[lanes];
+        for (std::size_t i = 0; i < static_cast<std::size_t>(lanes); ++i) of_lane[i] = &functions[known.place(i)];
+        const LaneFunctions of(of_lane, job_.needs_r());
+        return put(known.vector, BatchFunctionsAt<LaneFunctions>{of, x, y});
+    }
+
     bool are_functions_known() const noexcept {
-        bool are_same =
-            learned_.left == left_ && learned_.top <= top_ && top_ + height_ <= learned_.top + learned_.rows;
+        bool are_same = learned_.left == left_ && learned_.width >= width_ && learned_.top <= top_ &&
+                        top_ + height_ <= learned_.top + learned_.rows;
         for (std::size_t i = 0; i < batch_block; ++i)
             are_same &= !has(i) || ((learned_.triangles >> i & 1u) != 0 && learned_.id[i] == id_[i]);
         return are_same;
@@ -253,6 +253,7 @@ private:
         learned_.triangles |= triangles_;
         learned_.left = left_;
         learned_.top = top_;
+        learned_.width = width_;
         const auto first = static_cast<std::size_t>(std::countr_zero(triangles_));
         const Doubles none{};
         for (std::size_t i = 0; i < batch_block; i += static_cast<std::size_t>(lanes)) {
@@ -264,7 +265,6 @@ private:
         }
     }
 
-    // Returns the lanes that stay in doubt.
     template <class Functions>
     TEXGEN_APART std::uint64_t put(const Vector& vector, const Functions& at) const noexcept {
         CloseFragments<3> fragments;
