@@ -507,7 +507,7 @@ TEST_CASE(
             }
         }
     }
-    CHECK(ties > 3000);
+    CHECK(ties > 2000);
     CHECK(apart > 100);
 }
 

@@ -181,6 +181,47 @@ TEST_CASE("the bounds of forms, of mixtures and of planes in double cover their 
     MESSAGE(of_form, " ", of_mixture, " ", of_plane);
 }
 
+TEST_CASE("exact sums of products, and of multiples of such sums, are exact, and their terms do not overlap") {
+    using Sum = texgen::detail::Expansion<192>;
+    Random random(5);
+    int cancelled = 0, longest = 0;
+    for (int round = 0; round < 20000; ++round) {
+        // Few bits and exponents that are near meet in carries, and cancel; many and far ones leave gaps.
+        const int bits = random.coin() ? 3 : 24, reach = random.integer(0, 2) * 40;
+        const auto draw = [&] {
+            const int mantissa = random.integer(-(1 << bits) + 1, (1 << bits) - 1);
+            return std::ldexp(static_cast<double>(mantissa), random.integer(-reach, reach));
+        };
+        Sum sum, parts[3];
+        support::Dyadic exact, exact_parts[3];
+        for (std::size_t i = 0; i < 3; ++i) {
+            for (int k = random.integer(0, 8); k > 0; --k) {
+                const double a = draw(), b = draw();
+                parts[i].add_product(a, b);
+                exact_parts[i] = exact_parts[i] + support::Dyadic(a) * support::Dyadic(b);
+            }
+            // Now and then what was there before, the other way.
+            const double factor = i == 2 && random.coin() ? -1.0 : draw();
+            const std::size_t of = i == 2 && random.coin() ? 1 : i;
+            sum.add_scaled(parts[of], factor);
+            exact = exact + exact_parts[of] * support::Dyadic(factor);
+        }
+        support::Dyadic value;
+        for (std::size_t i = 0; i < sum.count(); ++i) {
+            value = value + support::Dyadic(sum.terms()[i]);
+            const bool is_above = i == 0 || std::fabs(sum.terms()[i - 1]) < texgen::detail::last_bit(sum.terms()[i]);
+            CHECK_MESSAGE(is_above, "term ", i, " of round ", round, ": ", hex(sum.terms()[i - 1]), " below ",
+                          hex(sum.terms()[i]));
+        }
+        CHECK_MESSAGE(value == exact, "round ", round);
+        CHECK(sum.sign() == exact.sign());
+        cancelled += exact.sign() == 0;
+        longest = std::max(longest, static_cast<int>(sum.count()));
+    }
+    CHECK(cancelled > 100);
+    CHECK(longest >= 8);
+}
+
 TEST_CASE("an area that the differences in double do not see is an area") {
     const auto vertex = [](float x, float y, float s) {
         return texgen::WindowVertex{{x, y}, 1.0f, {s, 0.25f, 0.0f, 1.0f}};

@@ -18,13 +18,14 @@ namespace TEXGEN_DETAIL {
 // leave as it is (Expansion-Sum).
 inline std::size_t grow(double* terms, std::size_t count, double term, std::size_t& first) noexcept {
     if (term == 0.0) return count;
+    const std::size_t begin = first;
+    std::size_t kept = begin;
     double carry = term;
-    std::size_t kept = first;
-    for (std::size_t i = first; i < count; ++i) {
+    for (std::size_t i = begin; i < count; ++i) {
         const DoubleDouble sum = two_sum(carry, terms[i]);
         carry = sum.high;
         if (sum.low == 0.0) continue;
-        if (i == first) ++first;
+        if (i == begin) ++first;
         terms[kept++] = sum.low;
     }
     if (carry != 0.0) terms[kept++] = carry;
