@@ -1024,10 +1024,9 @@ std::vector<support::SlowInput> search(const support::Workload& workload,
     return slowest.inputs();
 }
 
-// What is above its limit once has to be so again and again, and by more than a busy machine adds for minutes: there the worst inputs,
-// which read and write more, slow down more than the ordinary ones.
+// What is above its limit once has to be so again and again, and by more than noise.
 bool is_above_limit(const support::Workload& workload, const support::SlowInput& input) {
-    const double limit = 1.05 * input.limit;
+    const double limit = support::limit::noise * input.limit;
     if (!(input.slowness.ratio() > limit)) return false;
     const support::Race race(workload);
     for (int attempt = 0; attempt < 5; ++attempt)
