@@ -13,7 +13,6 @@
 
 #include <Eigen/Core>
 #include <glm/vec2.hpp>
-#include <glm/vec4.hpp>
 
 #include "conventions.hpp"
 #include "detail/assert.hpp"

@@ -13,14 +13,6 @@ struct FormPair {
     PointForm form(std::size_t k) const noexcept { return {x[k], y[k], z[k], w[k]}; }
 };
 
-// Exactly a + b. As two_sum() of numbers.
-inline Double2 two_sum(const Double2& a, const Double2& b, Double2& error) noexcept {
-    const Double2 sum = a + b;
-    const Double2 b_part = sum - a;
-    error = (a - (sum - b_part)) + (b - b_part);
-    return sum;
-}
-
 // Two sums in two doubles each, and what they left out at most.
 struct CloseSums {
     Double2 high, low, lost;

@@ -116,7 +116,7 @@ void project_within(Kernel kernel, PointJob& job, std::size_t begin, std::size_t
     }
 }
 
-// The dial: all_float, else float_divided, else exact.
+// By tolerance: all_float, else float_divided, else exact.
 inline void project_job(const PointKernels& kernels, PointJob& points) noexcept {
     const auto exactly = [&kernels](PointJob& job, std::size_t begin, std::size_t end) {
         project_exact(kernels, job, begin, end);

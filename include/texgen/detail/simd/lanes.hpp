@@ -193,6 +193,14 @@ TEXGEN_INLINE Double2 leading_27_bits(const Double2& a) noexcept {
 
 namespace TEXGEN_DETAIL {
 
+// Exactly a + b. As two_sum() of numbers.
+inline Double2 two_sum(const Double2& a, const Double2& b, Double2& error) noexcept {
+    const Double2 sum = a + b;
+    const Double2 b_part = sum - a;
+    error = (a - (sum - b_part)) + (b - b_part);
+    return sum;
+}
+
 // Four doubles at a time, for s, t, r and q: as one vector only where the flags have such, as no other functions may hand it on.
 #if defined(TEXGEN_HAS_VECTORS) && defined(__AVX__)
 using Double4 [[gnu::vector_size(32)]] = double;

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 
 #include "../arithmetic/determinant.hpp"
 #include "../arithmetic/expansion.hpp"
@@ -140,15 +139,12 @@ public:
     }
 
 private:
-    // Exactly a - b of x and of y, as two_sum() has it.
+    // Exactly a - b of x and of y.
     struct Pair {
         Double2 high, low;
 
         Pair() = default;
-        Pair(const Double2& a, const Double2& b) noexcept : high(a - b) {
-            const Double2 b_part = high - a;
-            low = (a - (high - b_part)) - (b + b_part);
-        }
+        Pair(const Double2& a, const Double2& b) noexcept { high = two_sum(a, -b, low); }
         DoubleDouble lane(std::size_t i) const noexcept { return {high[i], low[i]}; }
     };
 

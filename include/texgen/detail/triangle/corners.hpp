@@ -3,7 +3,6 @@
 // What is known of a tile by its corner fragments: in front or behind, where its coordinates lie in the region, and how large
 // they and their errors are.
 
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
