@@ -22,7 +22,7 @@ struct ProductLanes {
 // others, and sums of what is left of exact ones 48 u^2 of all three: 2^-98 covers them.
 struct CornerLanes {
     TEXGEN_APART CornerLanes(const VertexLanes& given, const ResidueLanes& residues, const Doubles& x,
-                              const Doubles& y) noexcept
+                             const Doubles& y) noexcept
         : given_(given), residues_(residues), along_(given, 1), down_(given, 0) {
         Doubles distance[3];
         TEXGEN_UNROLL
@@ -41,7 +41,7 @@ struct CornerLanes {
 
     // Of coordinate k: at the fragment, and by how much it grows along a row and down.
     TEXGEN_APART void take(std::size_t k, const ResidueValues& values, CloseValues& base, CloseValues& dx,
-                            CloseValues& dy) const noexcept {
+                           CloseValues& dy) const noexcept {
         const Doubles grain = where(residues_.is_known, values.grain);
         dx = sharpened(along_.function(given_, k), values.times(dx_), grain * residues_.per_x);
         dy = sharpened(down_.function(given_, k), values.times(dy_), grain * residues_.per_y);

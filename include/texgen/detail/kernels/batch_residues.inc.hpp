@@ -3,8 +3,8 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// Of a triangle about a fragment, s, t, r, q: base, and by how much it grows along a row and down; of each two doubles, and an error and
-// a grain of all. In whole vectors: the last residues are 0.
+// The functions s, t, r, q of a triangle about a fragment: base, and by how much it grows along a row and down; of each two
+// doubles, and an error and a grain of all. In whole vectors: the last residues are 0. Of r only where it is needed.
 struct alignas(64) BatchFunction {
     double part[4][8];  // high, low, error, grain
     std::uint64_t residues[16];
