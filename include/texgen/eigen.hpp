@@ -118,6 +118,12 @@ Positions<Eye> eye_space(Floats&&... values) noexcept requires detail::EigenPosi
     return detail::positions_of<Eye>(values...);
 }
 
+// The same of fragments: x and y in pixels, z the depth that the buffer holds.
+template <class... Floats>
+Positions<Window> window_space(Floats&&... values) noexcept requires detail::EigenPositions<Floats...> {
+    return detail::positions_of<Window>(values...);
+}
+
 // Views the floats of a vector without gaps (VectorXf, Ref<ArrayXf>, a column of a matrix), or of a row-major matrix or array
 // that owns them (height x width fragments): an output of Texcoords, or an input of alphas.
 // Guarantee: a view as above; std::span<const float> of what is const. A vector that may have gaps does not compile.

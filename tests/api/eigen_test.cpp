@@ -224,10 +224,13 @@ TEST_CASE("each space has its own view") {
     static_assert(std::is_same_v<decltype(texgen::object_space(points)), texgen::Positions<texgen::Object>>);
     static_assert(std::is_same_v<decltype(texgen::world_space(points)), texgen::Positions<texgen::World>>);
     static_assert(std::is_same_v<decltype(texgen::eye_space(points)), texgen::Positions<texgen::Eye>>);
+    static_assert(std::is_same_v<decltype(texgen::window_space(points)), texgen::Positions<texgen::Window>>);
     static_assert(std::is_same_v<decltype(texgen::object_space(x, x, x)), texgen::Positions<texgen::Object>>);
     static_assert(std::is_same_v<decltype(texgen::eye_space(x, x, x)), texgen::Positions<texgen::Eye>>);
     CHECK(texgen::object_space(points)[3] == texgen::to_glm(points.col(3)));
     CHECK(texgen::eye_space(points)[3] == texgen::to_glm(points.col(3)));
+    CHECK(texgen::window_space(points)[3] == texgen::to_glm(points.col(3)));
+    CHECK(texgen::window_space(x, x, x)[1] == glm::vec3(x[1]));
     CHECK(texgen::object_space(x, x, x)[1] == glm::vec3(x[1]));
     CHECK(texgen::eye_space(x, x, x)[1] == glm::vec3(x[1]));
     // A single point is one, standing or lying.
