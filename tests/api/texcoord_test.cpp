@@ -504,6 +504,37 @@ TEST_CASE("a point's bits do not depend on how the positions are laid out, nor o
     }
 }
 
+TEST_CASE("a quotient that is below all floats is a zero of its sign, in company as alone") {
+    Random random(8);
+    int negative = 0;
+    for (int round = 0; round < 2000; ++round) {
+        // Some are at the middle of two subnormal floats, or next to it.
+        const double down = std::ldexp(random.uniform(0.5, 1.0), random.integer(-300, -140));
+        const glm::dmat4 matrix = glm::transpose(
+            glm::dmat4(down, 0.0, 0.0, 0.0, 0.0, down, 0.0, 0.0, 0.0, 0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 1.0));
+        std::vector<glm::vec3> points(static_cast<std::size_t>(random.integer(1, 40)));
+        for (glm::vec3& point : points)
+            for (glm::length_t k = 0; k < 3; ++k) {
+                const double middle = (2 * random.integer(-9, 9) + 1) * 0x1p-150 / down;
+                const bool is_middle = std::fabs(middle) < 0x1p100 && random.coin();
+                point[k] = is_middle ? support::to_float(middle) : random.uniform_float(-2.0, 2.0);
+            }
+        Outputs out(points.size(), 3u);
+        project(ObjectTexgen(matrix), texgen::object_space(points), everywhere(), out.spans());
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const auto alone = project(ObjectTexgen(matrix), texgen::object_space(points[i]));
+            REQUIRE(alone);
+            for (std::size_t k = 0; k < 2; ++k) {
+                const float of_alone = (*alone)[static_cast<glm::length_t>(k)];
+                negative += out[k][i] == 0.0f && std::signbit(out[k][i]) ? 1 : 0;
+                CHECK_MESSAGE(same_bits(out[k][i], of_alone), hex(points[i]), " by ", hex(matrix), ": ", hex(out[k][i]),
+                              ", alone ", hex(of_alone));
+            }
+        }
+    }
+    CHECK(negative > 1000);
+}
+
 TEST_CASE("the three spaces give the same numbers") {
     Random random(6600);
     const Batch batch = slide(random, 50);

@@ -211,8 +211,7 @@ TEXGEN_INLINE Doubles middle_of_subnormals(const Doubles& a) noexcept {
 // As nearest_quotient(): where the quotient, which errs by less than 2^-48 of it, 32 ulps, is so near the middle of two
 // floats, the sign of s - middle q decides. That is a small number beside both products, so s - middle q' is exact for the
 // leading 53 bits q' of q; and precisely the rest is summed exactly where it is but short, as it is of ties. Below `within`
-// either float will do. Integers know the middles of normal floats; those of subnormal ones are found by rounding, and all such
-// quotients are compared with theirs: farther off than that the difference is rounded, and its sign is right.
+// either float will do. Integers know the middles of normal floats; those of subnormal ones are found by rounding.
 TEXGEN_INLINE Floats nearest_quotients(const PointSum& s, const TwofoldDivisor& q, const Doubles& within,
                                        bool precisely, LongWords& is_known) noexcept {
     const Doubles quotient = where(q.in_front, s.high * q.reciprocal) + 0.0;
@@ -228,8 +227,9 @@ TEXGEN_INLINE Floats nearest_quotients(const PointSum& s, const TwofoldDivisor& 
     }
     Doubles middle = middle_near(quotient + 0x1p-900);  // of 0 it is subnormal, which takes long
     if (any(is_small)) {
-        middle = select(is_small, middle_of_subnormals(quotient), middle);
-        is_near |= is_small;
+        const Doubles of_small = middle_of_subnormals(quotient);
+        middle = select(is_small, of_small, middle);
+        is_near = (is_near & ~is_small) | (is_small & at_most(magnitude(quotient - of_small), size * 0x1p-48));
     }
     const Doubles leading_rest = (s.high - middle * q.part[0]) - middle * q.part[1];
     // All are multiples of the grains of s and of middle q, which is at least 2^-25 middle times q's. What is added in one
