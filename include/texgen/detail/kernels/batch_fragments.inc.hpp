@@ -339,15 +339,15 @@ TEXGEN_APART inline std::uint64_t decide_fragments(const FragmentsJob& job, cons
     return fragments.undecided();
 }
 
+// What is learned stands in another frame, which is large.
 template <std::size_t Numerators>
-TEXGEN_INLINE Undecided divide_all_fragments(const FragmentsJob& job, std::size_t first) noexcept {
+TEXGEN_APART Undecided divide_all_fragments(const FragmentsJob& job, std::size_t first, Learned& learned) noexcept {
     constexpr auto size = static_cast<std::size_t>(lanes);
     const FragmentOutputs out(job);
     ScratchOutputs<size> scratch;
     const FragmentOutputs in_scratch = scratch.in_place_of(out);
     FragmentCentres centres(job, first);
     const auto planes_of = [&](std::uint32_t id) { return &job.planes[id < job.triangles ? id : job.triangles]; };
-    Learned learned;
     for (std::size_t n = first; n < job.count;) {
         const std::size_t begin = n;
         const std::size_t end = job.count - begin < exact_block ? job.count : begin + exact_block;
@@ -380,7 +380,8 @@ TEXGEN_INLINE Undecided divide_all_fragments(const FragmentsJob& job, std::size_
 template <class = void>
 Undecided divide_batch_fragments(const FragmentsJob& original, std::size_t first) noexcept {
     const FragmentsJob job = original;
-    return job.needs_r() ? divide_all_fragments<3>(job, first) : divide_all_fragments<2>(job, first);
+    Learned learned;
+    return job.needs_r() ? divide_all_fragments<3>(job, first, learned) : divide_all_fragments<2>(job, first, learned);
 }
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA
