@@ -56,8 +56,9 @@ struct FragmentLanes {
         for (std::size_t k = 0; k < Numerators; ++k) {
             const Doubles error =
                 functions[BatchPlanes::of_numerator[k] + 3] * stretched + magnitude(u[k]) * relative_error;
-            quotient[k] = to_floats(u[k] - error);
-            doubtful |= bits(quotient[k]) ^ bits(to_floats(u[k] + error));
+            const RoundedEnds ends(u[k], error);
+            quotient[k] = ends.below;
+            doubtful |= ends.differ();
         }
         doubtful &= ~narrow(is_certain);
     }

@@ -106,8 +106,9 @@ TEXGEN_APART bool divide_tile(const BatchPlanes& planes, const BatchTiles& tiles
         TEXGEN_UNROLL
         for (std::size_t k = 0; k < Numerators; ++k) {
             const Doubles value = f.at(k, walk.x, y) * reciprocal;
-            quotient[k] = to_floats(value - tiles.error[k][i]);
-            doubtful |= bits(quotient[k]) ^ bits(to_floats(value + tiles.error[k][i]));
+            const RoundedEnds ends(value, tiles.error[k][i]);
+            quotient[k] = ends.below;
+            doubtful |= ends.differ();
         }
         out.put(n, quotient);
     }
@@ -130,10 +131,10 @@ struct TileColumn {
     TEXGEN_INLINE void divide(Doubles (&first)[Numerators], Doubles (&second)[Numerators]) noexcept {
         const Doubles q = value[Numerators];
         const Doubles next_q = q + step[Numerators];
-        const Doubles reciprocal = 1.0 / (q * next_q);
+        const SharedDivision division(q, next_q);
         value[Numerators] = next_q + step[Numerators];
-        divide(reciprocal * next_q, first);
-        divide(reciprocal * q, second);
+        divide(division.reciprocal[0], first);
+        divide(division.reciprocal[1], second);
     }
 };
 

@@ -146,11 +146,10 @@ struct CloseFragments {
                 take(middle.decide_by_residues(of_f, grain, of_q, q_grain, bound, nearest), nearest);
             }
             if (any(is_rough)) {
-                const Floats above = to_floats(close.u + close.error);
+                const RoundedEnds ends(close.u, close.error);
                 const LongWords is_zero = close.f.are_residues(grain) & are_zero(of_f);
-                quotient[k] = select(narrow(is_rough), select(narrow(is_zero), Floats{}, above), quotient[k]);
-                const Words differ = bits(to_floats(close.u - close.error)) ^ bits(above);
-                left &= ~is_rough | (~is_zero & are_nonzero(to_doubles(differ)));
+                quotient[k] = select(narrow(is_rough), select(narrow(is_zero), Floats{}, ends.above), quotient[k]);
+                left &= ~is_rough | (~is_zero & are_nonzero(to_doubles(ends.differ())));
             }
             doubtful |= left;
         }

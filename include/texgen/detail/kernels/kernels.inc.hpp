@@ -12,6 +12,7 @@
 
 #include "stores.inc.hpp"
 
+#include "../simd/quotients.inc.hpp"
 #include "../simd/twofold.inc.hpp"
 
 #include "doubt.inc.hpp"

@@ -26,8 +26,7 @@ TEXGEN_INLINE void store_points(const DividedOutput& output, std::size_t i, std:
     store(output.out[0] + i, value[0]);
 }
 
-// Lanes that cannot be vouched for: where value - error and value + error do not round to one float, and where it is not
-// certain on which side of the projector the point is.
+// Lanes that cannot be vouched for: of whose float it is not certain, see RoundedEnds, or on which side of the projector the point is.
 struct Doubt {
     Words rounding{};
     LongWords side{};
@@ -65,13 +64,14 @@ TEXGEN_INLINE LongWords divide_certainly(std::size_t numerators, const PointDivi
         if constexpr (Signed) quotient = where(in_front, quotient);
         Doubles error = numerator_error[k] + magnitude(quotient) * q_error;  // times q
         if constexpr (Signed) error = where(in_front, error);                // of a numerator that is no number
-        value[k] = to_floats(quotient - reciprocal * error);
-        const Floats other = to_floats(quotient + reciprocal * error);
-        Words differ = bits(value[k]) ^ bits(other);
+        const RoundedEnds ends(quotient, reciprocal * error);
+        value[k] = ends.below;
+        Words differ = ends.differ();
         if constexpr (Signed) {
             if (tolerance > 0.0 && any(differ)) {
-                const Words is_within = narrow(at_most(
-                    (to_doubles_as_rounded(other) - to_doubles_as_rounded(value[k])) * 2.0, Doubles{} + tolerance));
+                const Words is_within =
+                    narrow(at_most((to_doubles_as_rounded(ends.above) - to_doubles_as_rounded(ends.below)) * 2.0,
+                                   Doubles{} + tolerance));
                 value[k] = select(is_within, to_floats(quotient), value[k]);
                 differ &= ~is_within;
             }
@@ -122,7 +122,7 @@ TEXGEN_INLINE PointLanes load_points(const PointInput& job, std::size_t i) noexc
     return {{to_doubles(x), to_doubles(y), to_doubles(z)}};
 }
 
-// Of eight doubles a division takes longer than all else, so two vectors of points share one: 1/q = q' (1 / (q q')).
+// Of eight doubles a division takes longer than all else, so two vectors of points share one.
 inline constexpr bool divides_pairs = lanes == 8 && wide_lanes == 16;
 inline constexpr std::size_t vectors_at_once = wide_lanes / lanes;
 
@@ -141,10 +141,9 @@ TEXGEN_INLINE Doubles begin_division(const PointJob& job, const WideFloats& x, c
         },
         x, y, z);
     if constexpr (!Shares) return division[0].reciprocal * division[vectors_at_once - 1].reciprocal;
-    const Doubles of_both = 1.0 / (division[0].q * division[1].q);
-    division[0].reciprocal = of_both * division[1].q;
-    division[1].reciprocal = of_both * division[0].q;
-    return of_both;
+    const SharedDivision shared(division[0].q, division[1].q);
+    for (std::size_t i = 0; i < 2; ++i) division[i].reciprocal = shared.reciprocal[i];
+    return shared.of_both;
 }
 
 // Whether reciprocals, or those of products of two q, are between 2^-500 and 2^500, so that what shares a division is a product

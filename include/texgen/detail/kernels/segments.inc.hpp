@@ -215,11 +215,9 @@ std::size_t fill_segment_in_double_of(const SegmentJob& job, std::size_t first, 
                 const Doubles alpha = to_doubles(load<Floats>(from + i + j * width));
                 q[j] = IsAsymptotic ? alpha + pole : alpha * bend + pole;
             }
-            const Doubles product = q[0] * q[1];
-            const Doubles of_both = 1.0 / product;
-            sum = sum + product;
-            *next++ = of_both * q[1];
-            *next++ = of_both * q[0];
+            const SharedDivision division(q[0], q[1]);
+            sum = sum + division.product;
+            for (const Doubles& of_q : division.reciprocal) *next++ = of_q;
         }
         next = reciprocal;
         for (std::size_t i = begin; i < end; i += width) {

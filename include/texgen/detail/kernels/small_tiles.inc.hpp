@@ -34,14 +34,13 @@ TEXGEN_INLINE bool divide_small(const SmallTile& tile) noexcept {
         Doubles y{};
         for (int n = begin;;) {
             const Doubles q = y * q_dy + first_q, second_q = q + q_dy;
-            const Doubles of_both = 1.0 / (q * second_q);
-            const Doubles reciprocal[2] = {of_both * second_q, of_both * q};
+            const SharedDivision division(q, second_q);
             Doubles quotient[2][2];
             TEXGEN_UNROLL
             for (std::size_t k = 0; k < 2; ++k) {
                 const Doubles value = y * dy[k] + first[k];
-                quotient[0][k] = value * reciprocal[0];
-                quotient[1][k] = (value + dy[k]) * reciprocal[1];
+                quotient[0][k] = value * division.reciprocal[0];
+                quotient[1][k] = (value + dy[k]) * division.reciprocal[1];
             }
             TEXGEN_UNROLL
             for (int i = 0; i < 2; ++i) {

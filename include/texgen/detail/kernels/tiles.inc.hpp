@@ -17,7 +17,7 @@ struct TileRow {
     }
 };
 
-// One vector of quotients. In doubt, a bit for each, is where value - error and value + error do not round to one float.
+// One vector of quotients. Returns a bit for each that is in doubt.
 TEXGEN_INLINE std::uint64_t divide_vector(const TileJob& job, const TileRow& row, const Doubles& index,
                                           Doubles& reciprocal, Floats (&quotient)[2]) noexcept {
     if (!job.q_is_constant) reciprocal = 1.0 / row.q_at(job, index);
@@ -25,8 +25,9 @@ TEXGEN_INLINE std::uint64_t divide_vector(const TileJob& job, const TileRow& row
     TEXGEN_UNROLL
     for (std::size_t k = 0; k < 2; ++k) {
         const Doubles value = row.numerator_at(job, k, index) * reciprocal;
-        quotient[k] = to_floats(value - job.quotient_error[k]);
-        doubtful |= bits(quotient[k]) ^ bits(to_floats(value + job.quotient_error[k]));
+        const RoundedEnds ends(value, job.quotient_error[k]);
+        quotient[k] = ends.below;
+        doubtful |= ends.differ();
     }
     return lane_bits(doubtful);
 }
@@ -103,12 +104,11 @@ TileJob::Unit divide_in_pairs(const TileJob& job, const TileJob::Unit& first) no
                 }
                 const Doubles next_index = index + static_cast<double>(lanes);
                 const Doubles q = tile_row.q_at(job, index), next_q = tile_row.q_at(job, next_index);
-                const Doubles of_both = 1.0 / (q * next_q);
-                const Doubles reciprocal = of_both * next_q, next_reciprocal = of_both * q;
+                const SharedDivision division(q, next_q);
                 Doubles value[2], next_value[2];
                 for (std::size_t k = 0; k < 2; ++k) {
-                    value[k] = tile_row.numerator_at(job, k, index) * reciprocal;
-                    next_value[k] = tile_row.numerator_at(job, k, next_index) * next_reciprocal;
+                    value[k] = tile_row.numerator_at(job, k, index) * division.reciprocal[0];
+                    next_value[k] = tile_row.numerator_at(job, k, next_index) * division.reciprocal[1];
                     store(out[k] + x, to_floats(value[k]));
                     store(out[k] + x + lanes, to_floats(next_value[k]));
                 }

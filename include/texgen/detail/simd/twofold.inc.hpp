@@ -191,14 +191,14 @@ struct TwofoldDivisor : PointSum {
     }
 };
 
-// The same of numerators with these errors. False where a lane is in doubt, as where value - error and value + error do not
-// round to one float. 2^-49 covers what q lacks, and the roundings here.
+// The same of numerators with these errors. False where a lane is in doubt. 2^-49 covers what q lacks, and the roundings here.
 TEXGEN_INLINE bool divide_nearly(const Doubles& s, const Doubles& s_error, const TwofoldDivisor& q,
                                  Floats& value) noexcept {
     const Doubles quotient = where(q.in_front, s * q.reciprocal);
     const Doubles error = where(q.in_front, magnitude(quotient) * 0x1p-49 + q.reciprocal * (s_error * 1.001));
-    value = to_floats(quotient - error);
-    return !any(bits(value) ^ bits(to_floats(quotient + error)));
+    const RoundedEnds ends(quotient, error);
+    value = ends.below;
+    return !any(ends.differ());
 }
 
 // The middle of two floats that is next to a number below 2^-125, where floats may be subnormal and have one exponent.
