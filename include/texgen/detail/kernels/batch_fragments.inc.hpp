@@ -17,6 +17,13 @@ struct FragmentLanes {
     LongWords front;
     Words doubtful;
 
+    // Of no triangle.
+    TEXGEN_INLINE void darken() noexcept {
+        for (Floats& value : quotient) value = Floats{};
+        front = LongWords{};
+        doubtful = Words{};
+    }
+
     template <class Functions>
     TEXGEN_INLINE void divide(const Functions& functions, const Doubles& x, const Doubles& y,
                               double tolerance) noexcept {
@@ -357,7 +364,9 @@ TEXGEN_APART Undecided divide_all_fragments(const FragmentsJob& job, std::size_t
         for (; n < end; n += size, centres.advance()) {
             const FragmentIds ids(job, n);
             FragmentLanes<Numerators> fragments;
-            if (ids.are_one()) {
+            if (ids.are_one() && ids.value[0] >= job.triangles) {
+                fragments.darken();
+            } else if (ids.are_one()) {
                 fragments.divide(OneTriangle{planes_of(ids.value[0])->value}, centres.x, centres.y, job.tolerance);
             } else {
                 const BatchPlanes* of_lane[lanes];
