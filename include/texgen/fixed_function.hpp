@@ -113,7 +113,7 @@ public:
     glm::vec4 generate(const FixedFunctionVertex& vertex, const glm::mat4& modelview) const noexcept;
 
     // Generates the same bits for many vertices under one MODELVIEW, whose inverse is taken once, and only where a mode
-    // needs it. Precondition, asserted: as many outputs as vertices.
+    // needs it. Precondition, asserted: as many outputs as vertices; else nothing is written.
     void generate(std::span<const FixedFunctionVertex> vertices, const glm::mat4& modelview,
                   std::span<glm::vec4> strq) const noexcept;
 

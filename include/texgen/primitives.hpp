@@ -28,7 +28,8 @@ struct Triangle {
     WindowVertex a, b, c;
 };
 
-// The fragments [x, x + width) x [y, y + height), each at its centre; outputs are row-major, width * height.
+// The fragments [x, x + width) x [y, y + height), each at its centre; outputs are row-major, width * height. It is empty where
+// a size is not positive.
 struct FragmentRect {
     int x, y, width, height;
 };

@@ -34,12 +34,12 @@ namespace TEXGEN_NAMESPACE {
 // Divided coordinates, planar. An empty span is not computed. lit is 1 where the slide falls and 0 elsewhere: in the sides
 // of its region and, where it has one, in its depth.
 struct Texcoords {
-    std::span<float> s, t, r, lit;
+    std::span<float> s = {}, t = {}, r = {}, lit = {};
 };
 
 // Homogeneous coordinates, planar. An empty span is not computed.
 struct HomogeneousTexcoords {
-    std::span<float> s, t, r, q;
+    std::span<float> s = {}, t = {}, r = {}, q = {};
 };
 
 // A view of points with w = 1 in a known space: three arrays of floats that share a stride. It owns nothing, and reads
@@ -52,11 +52,13 @@ public:
     Positions(const float* x, const float* y, const float* z, std::size_t count, std::size_t stride_bytes) noexcept
         : x_(x), y_(y), z_(z), count_(count), stride_bytes_(stride_bytes) {}
 
-    // An array of vectors; three arrays (of one size, asserted); x, y, z that follow one another every stride_bytes.
+    // An array of vectors; three arrays (of one size, asserted; else there are no points); x, y, z that follow one another every
+    // stride_bytes.
     explicit Positions(std::span<const glm::vec3> points) noexcept
         : Positions(points.empty() ? nullptr : &points[0].x, points.size(), sizeof(glm::vec3)) {}
     explicit Positions(std::span<const float> x, std::span<const float> y, std::span<const float> z) noexcept
-        : Positions(x.data(), y.data(), z.data(), x.size(), sizeof(float)) {
+        : Positions(x.data(), y.data(), z.data(), x.size() == y.size() && x.size() == z.size() ? x.size() : 0,
+                    sizeof(float)) {
         TEXGEN_ASSERT(x.size() == y.size() && x.size() == z.size());
     }
     explicit Positions(const float* first, std::size_t count, std::size_t stride_bytes) noexcept
@@ -113,10 +115,13 @@ struct Position {
     glm::vec3 point;
 
     explicit Position(const glm::vec3& of_space) noexcept : point(of_space) {}
+    template <glm::length_t Length, class Number, glm::qualifier Q>
+    requires detail::MoreThanVec3<Length, Number>
+    explicit Position(const glm::vec<Length, Number, Q>&) = delete;
 };
 
 // Points of a space from an array of vectors, from three arrays (of one size, asserted), or from x, y, z that follow one
-// another every stride_bytes; and one point.
+// another every stride_bytes; and one point, which is a glm::vec3: what has doubles or a w does not compile.
 inline Positions<Object> object_space(std::span<const glm::vec3> points) noexcept { return Positions<Object>(points); }
 inline Positions<Object> object_space(std::span<const float> x, std::span<const float> y,
                                       std::span<const float> z) noexcept {
@@ -126,6 +131,9 @@ inline Positions<Object> object_space(const float* first, std::size_t count, std
     return Positions<Object>(first, count, stride_bytes);
 }
 inline Position<Object> object_space(const glm::vec3& point) noexcept { return Position<Object>(point); }
+template <glm::length_t Length, class Number, glm::qualifier Q>
+requires detail::MoreThanVec3<Length, Number> Position<Object> object_space(const glm::vec<Length, Number, Q>& point)
+= delete;
 
 // The same of points in the world.
 inline Positions<World> world_space(std::span<const glm::vec3> points) noexcept { return Positions<World>(points); }
@@ -137,6 +145,9 @@ inline Positions<World> world_space(const float* first, std::size_t count, std::
     return Positions<World>(first, count, stride_bytes);
 }
 inline Position<World> world_space(const glm::vec3& point) noexcept { return Position<World>(point); }
+template <glm::length_t Length, class Number, glm::qualifier Q>
+requires detail::MoreThanVec3<Length, Number> Position<World> world_space(const glm::vec<Length, Number, Q>& point)
+= delete;
 
 // The same of points in the eye's space.
 inline Positions<Eye> eye_space(std::span<const glm::vec3> points) noexcept { return Positions<Eye>(points); }
@@ -147,6 +158,9 @@ inline Positions<Eye> eye_space(const float* first, std::size_t count, std::size
     return Positions<Eye>(first, count, stride_bytes);
 }
 inline Position<Eye> eye_space(const glm::vec3& point) noexcept { return Position<Eye>(point); }
+template <glm::length_t Length, class Number, glm::qualifier Q>
+requires detail::MoreThanVec3<Length, Number> Position<Eye> eye_space(const glm::vec<Length, Number, Q>& point)
+= delete;
 
 // The same of fragments: x and y in pixels, z the depth that the buffer holds.
 inline Positions<Window> window_space(std::span<const glm::vec3> points) noexcept { return Positions<Window>(points); }
@@ -158,6 +172,9 @@ inline Positions<Window> window_space(const float* first, std::size_t count, std
     return Positions<Window>(first, count, stride_bytes);
 }
 inline Position<Window> window_space(const glm::vec3& point) noexcept { return Position<Window>(point); }
+template <glm::length_t Length, class Number, glm::qualifier Q>
+requires detail::MoreThanVec3<Length, Number> Position<Window> window_space(const glm::vec<Length, Number, Q>& point)
+= delete;
 
 inline namespace TEXGEN_BUILD {
 
@@ -231,6 +248,9 @@ inline std::optional<glm::vec2> divide(glm::vec4 strq) noexcept {
     if (!(strq.w > 0.0f)) return std::nullopt;
     return glm::vec2(strq.x / strq.w, strq.y / strq.w);
 }
+template <glm::qualifier Q>
+std::optional<glm::vec2> divide(const glm::vec<4, double, Q>& strq) =
+    delete;  // not the nearest: it would be rounded first
 
 }  // namespace TEXGEN_NAMESPACE
 

@@ -177,6 +177,7 @@ inline glm::vec4 TexGenUnit::generate(const FixedFunctionVertex& vertex, const g
 inline void TexGenUnit::generate(std::span<const FixedFunctionVertex> vertices, const glm::mat4& modelview,
                                  std::span<glm::vec4> strq) const noexcept {
     TEXGEN_ASSERT(vertices.size() == strq.size());
+    if (vertices.size() != strq.size()) return;
     const EyeSpace eye_space(modelview, *this);
     for (std::size_t i = 0; i < vertices.size(); ++i) strq[i] = generate(vertices[i], eye_space);
 }

@@ -4,6 +4,7 @@
 // accurately.
 
 #include <cmath>
+#include <type_traits>
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
@@ -14,6 +15,10 @@
 #include "../simd/jobs.hpp"
 
 namespace TEXGEN_DETAIL {
+
+// What GLM converts to a vec3 without a word, though that has less: the digits of doubles, or a w, are lost.
+template <glm::length_t Length, class Number>
+concept MoreThanVec3 = Length != 3 || !std::is_same_v<Number, float>;
 
 inline PointForm form(const glm::dmat4& matrix, int row) noexcept {
     const auto i = static_cast<glm::length_t>(row);

@@ -23,7 +23,6 @@
 #include "../arithmetic/expansion.hpp"
 #include "../arithmetic/rounding.hpp"
 #include "../arithmetic/widen.hpp"
-#include "../assert.hpp"
 #include "../culling/lit_test.hpp"
 #include "../language.hpp"
 #include "../simd/lanes.hpp"
@@ -61,9 +60,8 @@ inline Tile tile_of(const FragmentRect& rect) noexcept {
     return {rect.x, y, rect.width, rect.height};
 }
 
-// How many fragments a rectangle has, whose sides are not negative: where std::size_t cannot say it, more than any array holds.
+// How many fragments a rectangle has: where std::size_t cannot say it, more than any array holds.
 inline std::size_t count_of(const FragmentRect& rect) noexcept {
-    TEXGEN_ASSERT(rect.width >= 0 && rect.height >= 0);
     if (rect.width <= 0 || rect.height <= 0) return 0;
     constexpr std::size_t most = (std::numeric_limits<std::size_t>::max)();
     const auto width = static_cast<std::size_t>(rect.width);
