@@ -17,6 +17,7 @@
 #include "conventions.hpp"
 #include "detail/assert.hpp"
 #include "detail/culling/lit_test.hpp"
+#include "detail/held.hpp"
 #include "detail/simd/batch_lanes.hpp"
 #include "footprint.hpp"
 #include "interpolate.hpp"
@@ -67,9 +68,9 @@ private:
     TextureRegion region_;
     Tolerance tolerance_;
     detail::LitTest lit_;
-    std::size_t size_ = 0;
+    detail::HeldCount size_;
     std::vector<Triangle> triangles_;  // whole blocks and one more
-    std::vector<detail::BatchPlanes> planes_;
+    std::vector<detail::BatchPlanes, detail::AlignedAllocator<detail::BatchPlanes>> planes_;
 };
 
 }  // namespace TEXGEN_COMPILER
@@ -81,8 +82,8 @@ inline namespace TEXGEN_BUILD {
 // Guarantee: each value as interpolate(TriangleSetup, rects[i], ...) has it: with `exact` the same bits, else within the same
 // bound of the exact value. Everything is written: where nothing of a rectangle is lit, lit is 0, and s, t, r are 0 or their
 // plane's; where a triangle is refused all outputs are 0. No allocation, noexcept.
-// Shapes: as many rectangles as triangles, of no negative size, and outputs of all their fragments together, or empty ones
-// (all asserted; else nothing is written). Fragments outside a triangle get the values of its plane; where the interpolated
+// Shapes: as many rectangles as triangles, and outputs of all their fragments together, or empty ones (all asserted; else
+// nothing is written). Fragments outside a triangle get the values of its plane; where the interpolated
 // 1/w is not positive nothing is promised.
 // Cost: with its set-up a tile of 8 x 8 takes about half of what a TriangleSetup does; beyond 512 fragments it is left to
 // one, as is what is in doubt: that takes as long as some tiles of a friendly triangle.
@@ -93,9 +94,9 @@ void interpolate(const TriangleBatch& batch, std::span<const FragmentRect> rects
 // Writes the same of a visibility buffer: of fragment k of the rectangle, row by row, those of triangle ids[k].
 // Guarantee: as above for the triangle's fragment. Where ids[k] is no_triangle, or its triangle is refused, all outputs are 0.
 // A fragment that is not lit has lit = 0, and s, t, r of its triangle's plane or 0. No allocation, noexcept.
-// Shapes: width * height ids, each no_triangle or below batch.size(), and as many floats an output, or none (asserted).
+// Shapes: width * height ids, and as many floats an output, or none (asserted).
 // Cost: least where neighbours have one id; ids in any order take about twice as long.
-// Bad input: an empty rectangle does nothing; an id beyond the batch is no triangle.
+// Bad input: an empty rectangle does nothing; an id beyond the batch is no_triangle.
 template <class CompiledWhereCalled = void>
 void interpolate(const TriangleBatch& batch, std::span<const std::uint32_t> ids, FragmentRect rect,
                  Texcoords out) noexcept;

@@ -827,6 +827,37 @@ TEST_CASE("footprints of a visibility buffer are those of the runs of one id in 
     }
 }
 
+TEST_CASE("a batch that was moved from has no triangles, and takes new ones; a copy is one of its own") {
+    Random random(1412);
+    std::vector<Triangle> triangles(20);
+    for (Triangle& triangle : triangles) triangle = support::make_triangle(support::Family::friendly, random);
+    const auto values_of = [](const TriangleBatch& batch) {
+        const std::vector<std::uint32_t> ids{0, 3, 3, 7, no_triangle, 19};
+        std::vector<float> s(ids.size(), -7.0f);
+        texgen::interpolate(batch, ids, {100, 100, 6, 1}, {.s = s});
+        return s;
+    };
+    TriangleBatch batch(texgen::whole_texture());
+    batch.assign(triangles);
+    const std::vector<float> given = values_of(batch);
+    const TriangleBatch copy = batch;
+    TriangleBatch moved = std::move(batch);
+    for (const bool by_assignment : {false, true}) {
+        CAPTURE(by_assignment);
+        CHECK(moved.size() == triangles.size());
+        CHECK(values_of(moved) == given);
+        CHECK(batch.size() == 0);
+        CHECK(values_of(batch) == std::vector<float>(6, 0.0f));
+        batch.assign(std::span(triangles).first(4));
+        CHECK(batch.size() == 4);
+        CHECK(values_of(batch)[1] == given[1]);
+        batch = copy;
+        CHECK(values_of(batch) == given);
+        moved = std::move(batch);
+    }
+    CHECK(values_of(copy) == given);
+}
+
 TEST_CASE("memory is allocated only when there are more triangles than ever") {
     Random random(6);
     const Drawn drawn(random, 100);

@@ -823,3 +823,22 @@ TEST_CASE("what moved without being named is asserted, and stays as it was") {
     CHECK(
         std::all_of(scene.pairs().begin(), scene.pairs().end(), [](const LitPair& pair) { return pair.object < 29; }));
 }
+
+TEST_CASE("a scene that was moved from is empty, and sees the next arrays as a new one does") {
+    Random random(1412);
+    const Engine engine = some_engine(random, 100, 7, 10.0);
+    Scene scene, fresh;
+    scene.update(engine.view(), {});
+    fresh.update(engine.view(), {});
+    Scene moved = std::move(scene);
+    for (const bool by_assignment : {false, true}) {
+        CAPTURE(by_assignment);
+        require_same(moved, fresh);
+        CHECK(scene.pairs().empty());
+        CHECK(scene.update({}, {}).bounds_tested == 0);
+        scene.update(engine.view(), {});
+        require_same(scene, fresh);
+        moved = std::move(scene);
+    }
+    CHECK(broken_preconditions == 0);
+}

@@ -14,6 +14,7 @@
 
 #include "../../primitives.hpp"
 #include "../arithmetic/rounding.hpp"
+#include "../held.hpp"
 #include "world_forms.hpp"
 
 namespace TEXGEN_DETAIL {
@@ -136,10 +137,12 @@ private:
         place_.resize(size);
         for (std::size_t i = before; i < size; ++i) object_at_[i] = place_[i] = static_cast<std::uint32_t>(i);
         std::size_t blocks = size;
-        for (height_ = 0; height_ == 0 || blocks > 1; ++height_) {
+        std::size_t height = 0;
+        do {
             blocks = (blocks + width - 1) / width;
-            levels_[height_].resize(blocks);
-        }
+            levels_[height++].resize(blocks);
+        } while (blocks > 1);
+        height_ = height;
         for (std::size_t object = 0; object < before; object += width) mark(object_at_[object]);
         refit(height_ - 1, 0);
         forget_changes();
@@ -256,7 +259,7 @@ private:
     std::vector<std::uint32_t> object_at_;           // of each place
     std::vector<std::uint64_t> keys_, sorted_keys_;  // a Morton code, and below it the object
     std::array<std::vector<Block>, 11> levels_;      // the objects' first; 8^11 is above 2^32
-    std::size_t height_ = 0;
+    HeldCount height_;
     std::size_t moves_ = 0;  // since the last sorting began
 
     Stage stage_ = Stage::sorted;

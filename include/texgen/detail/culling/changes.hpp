@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "../assert.hpp"
+#include "../held.hpp"
 #include "../language.hpp"
 
 namespace TEXGEN_DETAIL {
@@ -18,12 +19,13 @@ public:
     void begin(std::span<const std::uint32_t> named, std::size_t count) noexcept {
         if (count > is_changed_.size()) is_changed_.resize(count, 0);
         changed_.reserve(is_changed_.capacity());
+        const std::size_t before = count_;
         // New ones first, and in order: they are appended.
-        for (std::size_t i = (std::min)(count, count_); i < (std::max)(count, count_); ++i)
+        for (std::size_t i = (std::min)(count, before); i < (std::max)(count, before); ++i)
             add(static_cast<std::uint32_t>(i));
         for (const std::uint32_t i : named) {
-            TEXGEN_ASSERT(i < count || i < count_);
-            if (i < count || i < count_) add(i);
+            TEXGEN_ASSERT(i < count || i < before);
+            if (i < count || i < before) add(i);
         }
         count_ = count;
     }
@@ -45,7 +47,7 @@ private:
 
     std::vector<std::uint32_t> changed_;
     std::vector<std::uint8_t> is_changed_;
-    std::size_t count_ = 0;
+    HeldCount count_;
 };
 
 }  // namespace TEXGEN_DETAIL
