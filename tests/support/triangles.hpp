@@ -102,7 +102,8 @@ inline texgen::FragmentRect pixel_near(const texgen::Triangle& t, Random& random
     const glm::dvec2 point =
         (weight[0] * glm::dvec2(t.a.window) + weight[1] * glm::dvec2(t.b.window) + weight[2] * glm::dvec2(t.c.window)) /
         sum;
-    return {static_cast<int>(std::floor(point.x)), static_cast<int>(std::floor(point.y)), 1, 1};
+    const auto pixel = [](double of) { return static_cast<int>(std::clamp(std::floor(of), -0x1p31, 0x1p31 - 1.0)); };
+    return {pixel(point.x), pixel(point.y), 1, 1};
 }
 
 }  // namespace support
