@@ -247,8 +247,9 @@ using Setup = ProjectionSetup<Space>;
 // Cost: about a microsecond for what was composed in double, several for what was composed in float or has a defect; the worst
 // set-up takes at most 8 times what one with a single defect does. No mistake is named of numbers beyond 2^150 or below 2^-150.
 // What it sees: of a projector alone, its matrices' own marks (transposed, exchanged, of rank below 3, mirrored, reversed
-// depth in the wrong range); with facts of the lens also its depth range, aspect and angle. With the projector, and the
-// model or the camera, which of their products a texgen matrix is, of up to two mistakes; and if it is none of them the lens
+// depth in the wrong range); with facts of the lens also an aspect, an angle or a depth range that is theirs by a
+// mistake: inverted, in another unit, for the other range. (A lens of other numbers is another lens, and not wrong.) With the
+// projector, and the model or the camera, which of their products a texgen matrix is, of up to two mistakes; and if it is none of them the lens
 // that it was made with, P' = S^-1 T X^-1 V^-1, against the projector's. Of a texgen matrix alone, the marks of its rows r
 // and q; with facts of the lens the lens in it, the scale-bias and the depth range; and without them what numbers say that
 // people write: whole degrees, or planes of two digits, which a mistake explains and nothing valid does. In float those are
