@@ -6,12 +6,16 @@ set(arguments_of_interpolate "const TriangleSetup& setup, FragmentRect rect, Tex
 set(arguments_of_project "const WorldTexgen& texgen, Positions<World> positions, Texcoords out")
 set(arguments_of_one "const WorldTexgen& texgen, glm::vec3 position")
 set(arguments_of_coverage "const ObjectTexgen& texgen, const Box& box")
+set(arguments_of_along "const Segment& segment, std::span<const float> alpha, Texcoords out")
+set(arguments_of_footprints "const FootprintSetup& setup, FragmentRect rect, Footprints out")
 set(arguments_of_batch "const TriangleBatch& batch, std::span<const FragmentRect> rects, Texcoords out")
 set(calls
     "63600 interpolate.hpp Work interpolate interpolate(setup, rect, out)"
     "100000 texcoord.hpp void project project(texgen, positions, whole_texture(), out)"
     "8000 texcoord.hpp auto one project(texgen, world_space(position))"
     "35000 coverage.hpp Coverage coverage coverage(texgen, whole_texture(), box)"
+    "62000 segment.hpp void along interpolate(segment, alpha, whole_texture(), out)"
+    "48000 footprint.hpp bool footprints footprint(setup, rect, out)"
     "315000 batch.hpp void batch interpolate(batch, rects, out)")
 
 find_program(size size)
