@@ -53,8 +53,8 @@ struct FloatRegion {
           t_max(static_cast<float>(region.max().y)) {}
 };
 
-// What it costs to leave no rect out for lying beyond a side of the region: a region without sides, and the mask compared
-// here. What is behind is still left out.
+// What it costs to leave no rect out for lying beyond a side of the region: a region without sides, and the mask
+// compared here. What is behind is still left out.
 void texgen_sides_not_skipped(const texgen::Triangle& triangle, const texgen::TextureRegion& region, Rects rects,
                               RectCoordinates& out) {
     constexpr double far_away = std::numeric_limits<float>::max();
@@ -284,7 +284,8 @@ int passes_for(const Run& run) {
     return passes;
 }
 
-// Seconds a run. They take turns, so that a change of the machine's speed meets all of them; the median of the rounds counts.
+// Seconds a run. They take turns, so that a change of the machine's speed meets all of them; the median of the rounds
+// counts.
 std::vector<double> medians_of(const std::vector<Run>& runs, int most_rounds, double enough_seconds) {
     constexpr int fewest_rounds = 5;
     std::vector<int> passes;

@@ -52,7 +52,8 @@ Comparison compare(const Workload& work, const texgen::TextureRegion& region, in
 // Nanoseconds a triangle, its set-up included, against the fragments of its rectangle, 1 to 4096: a line a method.
 std::vector<Series> times_by_size(int rounds);
 
-// From how many fragments on ours takes no longer than theirs: 0 where it never takes longer, empty where that is beyond the last.
+// From how many fragments on ours takes no longer than theirs: 0 where it never takes longer, empty where that is
+// beyond the last.
 std::optional<double> overtakes_at(const Series& ours, const Series& theirs);
 
 }  // namespace report

@@ -17,8 +17,8 @@ double cost_of(const std::string& field, const std::string& file) {
     return *value;
 }
 
-// A row of the table, as text: the seconds, those that a call adds to its header or a header's as a multiple of GLM's, and
-// the kilobytes that are added.
+// A row of the table, as text: the seconds, those that a call adds to its header or a header's as a multiple of GLM's,
+// and the kilobytes that are added.
 struct Row {
     bool is_call;
     std::string name, seconds, added, object, code;

@@ -32,13 +32,13 @@ struct DepthMap {
 // Of what is beyond the projector's near plane. The slide is the whole texture, r runs from 0 to 1.
 DepthMap make_depth_map(std::span<const Surface> surfaces, const Camera& projector, int width, int height);
 
-// From light at the near plane to dark at the far one, with a line at each tenth of r. What is beyond is red. The key says so
-// of the colours that there are.
+// From light at the near plane to dark at the far one, with a line at each tenth of r. What is beyond is red. The key
+// says so of the colours that there are.
 Picture picture_of(const DepthMap& map);
 std::string key_of(const DepthMap& map);
 
-// What r may exceed a texel's without being in shadow: one number, or what the plane of the triangle climbs to the texel's
-// corner.
+// What r may exceed a texel's without being in shadow: one number, or what the plane of the triangle climbs to the
+// texel's corner.
 struct Shadow {
     std::shared_ptr<const DepthMap> map;
     std::optional<double> constant_bias;
@@ -64,8 +64,8 @@ private:
     bool faces_projector_;  // with the side that the camera sees
 };
 
-// Of the covered fragments that the slide falls on: those that are lit by the planes of their triangles, those of them that
-// are dark by the shadow's bias, and those that the bias lets their own triangle shadow.
+// Of the covered fragments that the slide falls on: those that are lit by the planes of their triangles, those of them
+// that are dark by the shadow's bias, and those that the bias lets their own triangle shadow.
 struct ShadowCount {
     std::size_t lit = 0, lost = 0, by_themselves = 0;
 };

@@ -34,8 +34,8 @@ Failure unusable(const std::filesystem::path& file, const std::string& reason) {
     return {"cannot use " + file.string() + ": " + reason};
 }
 
-// A line that ends in a backslash goes on in the next one, but for comments, which may end in a path. Empty lines behind it
-// keep the count of lines.
+// A line that ends in a backslash goes on in the next one, but for comments, which may end in a path. Empty lines
+// behind it keep the count of lines.
 std::string with_lines_joined(const std::string& text) {
     std::istringstream lines(text);
     std::string result, line;

@@ -81,8 +81,8 @@ bool huffman_tables_fit(const std::string& jpeg) {
     }
 }
 
-// The mean of each factor x factor block of colour(x, y); a pixel counts by how much of it is in the block, and blocks at the
-// right and the bottom may be cut.
+// The mean of each factor x factor block of colour(x, y); a pixel counts by how much of it is in the block, and blocks
+// at the right and the bottom may be cut.
 template <class Colour>
 Picture reduced(int width, int height, float factor, const Colour& colour) {
     const auto blocks = [factor](int side) {

@@ -43,8 +43,8 @@ std::string encode_png(const Picture& picture);
 // With losses that the page's small pictures bear.
 std::string encode_jpeg(const Picture& picture);
 
-// At most so many pixels a side: each is the mean of what it covers, or as it is in the middle of that, where colours stand
-// for numbers.
+// At most so many pixels a side: each is the mean of what it covers, or as it is in the middle of that, where colours
+// stand for numbers.
 Picture reduced(const Picture& picture, int most);
 Picture thinned(const Picture& picture, int most);
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// A room lit by many projectors, of which most need nothing: what each rule skips, what that saves, and that the picture
-// stays the same.
+// A room lit by many projectors, of which most need nothing: what each rule skips, what that saves, and that the
+// picture stays the same.
 
 #include <cstddef>
 #include <string>

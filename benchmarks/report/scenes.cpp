@@ -196,7 +196,8 @@ Scene qcoord(const std::shared_ptr<const Picture>& slide, double aspect) {
                  .slide = slide}}};
 }
 
-// A projector that stands beside its wall. What it throws there becomes a rectangle where the slide is warped the other way.
+// A projector that stands beside its wall. What it throws there becomes a rectangle where the slide is warped the other
+// way.
 Scene keystone(const std::shared_ptr<const Picture>& slide, double aspect) {
     const texgen::Aim aim{.position = {-1.9, 2.0, 2.5}, .target = {0.5, 2.0, 0}, .up = {0, 1, 0}};
     const texgen::Projector projector = projector_of({.extent = 37}, *slide, aim, {1, 20});
@@ -295,8 +296,8 @@ Scene white_border(const Setting& setting) {
                        .slide = setting.slide}}};
 }
 
-// The projector stands at the far end of a floor and looks at the camera: where the camera sees the floor from near, the
-// slide is spread over many pixels a texel, and where it sees it from far, many texels fall on a pixel.
+// The projector stands at the far end of a floor and looks at the camera: where the camera sees the floor from near,
+// the slide is spread over many pixels a texel, and where it sees it from far, many texels fall on a pixel.
 Scene facing(double aspect) {
     const auto slide = std::make_shared<const Picture>(fine_slide());
     const texgen::Aim aim{.position = {0.8, 2.2, -9}, .target = {-0.1, 0, -2.4}, .up = {0, -1, 0}};

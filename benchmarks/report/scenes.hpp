@@ -31,8 +31,8 @@ enum class Coordinates {
     ignoring_sign_of_q,  // s/q and t/q wherever they fall: the reverse projection is not cured
 };
 
-// How the slide is looked up; or what footprints, or the reference, say of it, as colours. All but bilinear are drawn with
-// one sample a pixel.
+// How the slide is looked up; or what footprints, or the reference, say of it, as colours. All but bilinear are drawn
+// with one sample a pixel.
 enum class Sampling {
     bilinear,
     nearest,

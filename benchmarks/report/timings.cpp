@@ -73,8 +73,8 @@ const Timings* find(Build build, const std::vector<Timings>& builds, const std::
     return found == others.end() ? nullptr : &*found;
 }
 
-// As the issue that set them says it: `than` must take at least `ratio` times as long as `variant`. Without `than` it is
-// the nanoseconds that `variant` may take.
+// As the issue that set them says it: `than` must take at least `ratio` times as long as `variant`. Without `than` it
+// is the nanoseconds that `variant` may take.
 struct Promise {
     Build build;
     const char* scene;

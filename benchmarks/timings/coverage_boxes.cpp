@@ -69,8 +69,8 @@ public:
     // Lit where all are >= 0, as a user has them.
     const std::array<glm::vec4, 5>& planes(std::size_t i) const { return planes_[i]; }
 
-    // Where the planes leave no doubt in long double, the answer is theirs, or `outside` for a box none of whose corners
-    // is lit.
+    // Where the planes leave no doubt in long double, the answer is theirs, or `outside` for a box none of whose
+    // corners is lit.
     void check_boxes(std::size_t i) const {
         const glm::dmat4& m = transforms_[i].matrix();
         for (std::size_t k = 0; k < boxes_.size(); ++k) {

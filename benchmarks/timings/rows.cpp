@@ -51,7 +51,8 @@ struct Rows {
     }
 };
 
-// The rect, and the legs of the right triangle around it. q/w grows by q_ratio from the right angle to the end of leg_x.
+// The rect, and the legs of the right triangle around it. q/w grows by q_ratio from the right angle to the end of
+// leg_x.
 struct Shape {
     const char* name;
     int width, height;

@@ -27,8 +27,8 @@ namespace {
 constexpr Eigen::Index block = 256;
 constexpr std::size_t segment_count = 8;
 
-// A segment in space, and the projector's matrix. The elements and coordinates are so short that their products and sums are
-// floats: the ends' (s, t, r, q) are exact, and every option has the same segment.
+// A segment in space, and the projector's matrix. The elements and coordinates are so short that their products and
+// sums are floats: the ends' (s, t, r, q) are exact, and every option has the same segment.
 struct Projected {
     glm::mat4 texture_from_space;
     glm::vec3 a, b;

@@ -1,6 +1,6 @@
 // The worst time of each public function over the ordinary one: of the inputs that searches have found, of those that
-// searches begin with, of triangles that the near plane has cut, and of scenes from frame to frame. An input is timed in
-// turns with ordinary ones; of each the least time counts.
+// searches begin with, of triangles that the near plane has cut, and of scenes from frame to frame. An input is timed
+// in turns with ordinary ones; of each the least time counts.
 //
 //   texgen_worst [FILE]    writes lines of function|input|ordinary ns|worst ns|limit
 

@@ -1,8 +1,8 @@
 #pragma once
 
-// Floor 9: many triangles at once, for a rasteriser, a lightmap baker or a visibility buffer. They are made ready in the lanes of
-// vectors, and small tiles are divided without what a large one is surveyed for; what that leaves in doubt is done by
-// TriangleSetup, one by one.
+// Floor 9: many triangles at once, for a rasteriser, a lightmap baker or a visibility buffer. They are made ready in
+// the lanes of vectors, and small tiles are divided without what a large one is surveyed for; what that leaves in doubt
+// is done by TriangleSetup, one by one.
 
 #include "detail/language.hpp"
 
@@ -39,8 +39,9 @@ public:
         : region_(region), tolerance_(tolerance), lit_(region) {}
 
     // Makes triangles ready, in place of those that it had.
-    // Guarantee: each as TriangleSetup::of() does, in double about the vertex with the largest clip_w; nothing of the caller's is
-    // kept but copies, of 276 bytes a triangle. Memory is allocated only when the count exceeds all former ones; noexcept.
+    // Guarantee: each as TriangleSetup::of() does, in double about the vertex with the largest clip_w; nothing of the
+    // caller's is kept but copies, of 276 bytes a triangle. Memory is allocated only when the count exceeds all former
+    // ones; noexcept.
     // Shapes: as TriangleSetup::of(). Fewer than 2^32 - 1 triangles (asserted).
     // Bad input: what TriangleSetup::of() refuses is dark: all that is computed of it is 0.
     template <class CompiledWhereCalled = detail::ThisBuild>
@@ -77,23 +78,23 @@ private:
 
 inline namespace TEXGEN_BUILD {
 
-// Writes s/q, t/q and r/q of every fragment of a rectangle of each triangle, and whether it is lit: of rects[i] those of
-// triangle i, behind those of the rectangle before it.
-// Guarantee: each value as interpolate(TriangleSetup, rects[i], ...) has it: with `exact` the same bits, else within the same
-// bound of the exact value. Everything is written: where nothing of a rectangle is lit, lit is 0, and s, t, r are 0 or their
-// plane's; where a triangle is refused all outputs are 0. No allocation, noexcept.
-// Shapes: as many rectangles as triangles, and outputs of all their fragments together, or empty ones (all asserted; else
-// nothing is written). Fragments outside a triangle get the values of its plane; where the interpolated
+// Writes s/q, t/q and r/q of every fragment of a rectangle of each triangle, and whether it is lit: of rects[i] those
+// of triangle i, behind those of the rectangle before it.
+// Guarantee: each value as interpolate(TriangleSetup, rects[i], ...) has it: with `exact` the same bits, else within
+// the same bound of the exact value. Everything is written: where nothing of a rectangle is lit, lit is 0, and s, t, r
+// are 0 or their plane's; where a triangle is refused all outputs are 0. No allocation, noexcept.
+// Shapes: as many rectangles as triangles, and outputs of all their fragments together, or empty ones (all asserted;
+// else nothing is written). Fragments outside a triangle get the values of its plane; where the interpolated
 // 1/w is not positive nothing is promised.
-// Cost: with its set-up a tile of 8 x 8 takes about half of what a TriangleSetup does; beyond 512 fragments it is left to
-// one, as is what is in doubt: that takes as long as some tiles of a friendly triangle.
+// Cost: with its set-up a tile of 8 x 8 takes about half of what a TriangleSetup does; beyond 512 fragments it is left
+// to one, as is what is in doubt: that takes as long as some tiles of a friendly triangle.
 // Bad input: an empty rectangle has no values.
 template <class CompiledWhereCalled = void>
 void interpolate(const TriangleBatch& batch, std::span<const FragmentRect> rects, Texcoords out) noexcept;
 
 // Writes the same of a visibility buffer: of fragment k of the rectangle, row by row, those of triangle ids[k].
-// Guarantee: as above for the triangle's fragment. Where ids[k] is no_triangle, or its triangle is refused, all outputs are 0.
-// A fragment that is not lit has lit = 0, and s, t, r of its triangle's plane or 0. No allocation, noexcept.
+// Guarantee: as above for the triangle's fragment. Where ids[k] is no_triangle, or its triangle is refused, all outputs
+// are 0. A fragment that is not lit has lit = 0, and s, t, r of its triangle's plane or 0. No allocation, noexcept.
 // Shapes: width * height ids, and as many floats an output, or none (asserted).
 // Cost: least where neighbours have one id; ids in any order take about twice as long.
 // Bad input: an empty rectangle does nothing; an id beyond the batch is no_triangle.
@@ -102,8 +103,9 @@ void interpolate(const TriangleBatch& batch, std::span<const std::uint32_t> ids,
                  Texcoords out) noexcept;
 
 // Writes the footprints of a visibility buffer, as textureGrad takes them: of fragment k that of triangle ids[k].
-// Guarantee: as footprint() of a FootprintSetup of the triangle has it, for a rectangle of the neighbours in a row with one id.
-// Where that writes nothing, ids[k] is no_triangle or its triangle is refused, all outputs are 0. No allocation, noexcept.
+// Guarantee: as footprint() of a FootprintSetup of the triangle has it, for a rectangle of the neighbours in a row with
+// one id. Where that writes nothing, ids[k] is no_triangle or its triangle is refused, all outputs are 0. No
+// allocation, noexcept.
 // Shapes: as above.
 // Cost: a FootprintSetup for each run of one id in a row, but for those of the last few triangles.
 // Bad input: as of footprint(), and above.

@@ -20,12 +20,12 @@ enum class DepthRange { negative_one_to_one, zero_to_one };  // NDC depth of the
 enum class NdcY { up, down };                                // where y grows to in NDC
 enum class TextureOrigin { bottom_left, top_left };          // the corner of the picture that (s, t) = (0, 0) addresses
 
-// Of the world and of the projector's eye, whose x is to the right and whose y is up: a right-handed eye looks down -z, a
-// left-handed one down +z.
+// Of the world and of the projector's eye, whose x is to the right and whose y is up: a right-handed eye looks down -z,
+// a left-handed one down +z.
 enum class Handedness { right, left };
 
-// Three independent choices of a graphics API, and the world's handedness. There is no default: the caller says which ones
-// the numbers follow.
+// Three independent choices of a graphics API, and the world's handedness. There is no default: the caller says which
+// ones the numbers follow.
 struct Conventions {
     detail::Required<DepthRange> depth;
     detail::Required<NdcY> ndc_y;
@@ -42,34 +42,36 @@ inline constexpr Conventions direct3d{DepthRange::zero_to_one, NdcY::up, Texture
 inline constexpr Conventions metal{DepthRange::zero_to_one, NdcY::up, TextureOrigin::top_left, Handedness::right};
 inline constexpr Conventions vulkan{DepthRange::zero_to_one, NdcY::down, TextureOrigin::top_left, Handedness::right};
 
-// Makes the conventions of the same API in a left-handed world, as Unity's, Unreal's and that of XMMatrixLookAtLH: left_handed(direct3d).
+// Makes the conventions of the same API in a left-handed world, as Unity's, Unreal's and that of XMMatrixLookAtLH:
+// left_handed(direct3d).
 constexpr Conventions left_handed(Conventions api) noexcept {
     return {api.depth, api.ndc_y, api.origin, Handedness::left};
 }
 
-// What r holds after the division: with unit a depth in [0, 1], as Everitt's matrix has it; with ndc the projector's own
-// depth, as SGI's recipe leaves it.
+// What r holds after the division: with unit a depth in [0, 1], as Everitt's matrix has it; with ndc the projector's
+// own depth, as SGI's recipe leaves it.
 enum class DepthMapping { unit, ndc };
 
-// The closed rectangle of texture coordinates that the slide covers, and how deep its light reaches where with_depth() says
-// so: else to infinity. min() is the corner that TextureOrigin addresses.
-// A region with min() > max() in a component or in its depth, or with a NaN, contains no point, so nothing is lit in it.
-// Its functions are constexpr where GLM's are: not under GLM_FORCE_INTRINSICS. min and max stand in parentheses because
-// <windows.h> makes macros of them; where it is included, a call is (region.min)().
+// The closed rectangle of texture coordinates that the slide covers, and how deep its light reaches where with_depth()
+// says so: else to infinity. min() is the corner that TextureOrigin addresses.
+// A region with min() > max() in a component or in its depth, or with a NaN, contains no point, so nothing is lit in
+// it. Its functions are constexpr where GLM's are: not under GLM_FORCE_INTRINSICS. min and max stand in parentheses
+// because <windows.h> makes macros of them; where it is included, a call is (region.min)().
 class TextureRegion {
 public:
     constexpr const glm::dvec2&(min)() const noexcept { return min_; }
     constexpr const glm::dvec2&(max)() const noexcept { return max_; }
 
-    // Makes the region of the same rectangle that is lit only where r_min <= r <= r_max too: in a projector's volume, from its near plane to its far
-    // one, as the matrix maps them to r. An infinite limit is none.
+    // Makes the region of the same rectangle that is lit only where r_min <= r <= r_max too: in a projector's volume,
+    // from its near plane to its far one, as the matrix maps them to r. An infinite limit is none.
     [[nodiscard]] GLM_CONSTEXPR TextureRegion with_depth(double r_min = 0.0, double r_max = 1.0) const noexcept {
         TextureRegion region(min_, max_);
         region.depth_ = glm::dvec2(r_min, r_max);
         region.has_depth_ = true;
         return region;
     }
-    // Makes the one of the whole depth of a projector, reversed or not, with r as the mapping has it: [0, 1], or the range of NDC.
+    // Makes the one of the whole depth of a projector, reversed or not, with r as the mapping has it: [0, 1], or the
+    // range of NDC.
     [[nodiscard]] GLM_CONSTEXPR TextureRegion with_depth(Conventions conventions, DepthMapping mapping) const noexcept {
         return with_depth(
             mapping == DepthMapping::ndc && conventions.depth == DepthRange::negative_one_to_one ? -1.0 : 0.0, 1.0);
@@ -137,8 +139,9 @@ struct Tolerance {
 
 inline constexpr Tolerance exact{0.0};  // the nearest float
 
-// Makes the tolerance of a fraction of a texel of a texture of that size, for a region of one unit. (The unit of a rectangle
-// texture is the texel: Tolerance{fraction}.) Exact where the size is not positive, or so small that the quotient overflows.
+// Makes the tolerance of a fraction of a texel of a texture of that size, for a region of one unit. (The unit of a
+// rectangle texture is the texel: Tolerance{fraction}.) Exact where the size is not positive, or so small that the
+// quotient overflows.
 constexpr Tolerance texels(double fraction, double texture_size) noexcept {
     return texture_size > 0.0 && fraction < texture_size * 1e300 ? Tolerance{fraction / texture_size} : exact;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
-// Floor 6: how much of a box or a sphere the slide lights, within its depth where it has one. What is dark need not be drawn.
+// Floor 6: how much of a box or a sphere the slide lights, within its depth where it has one. What is dark need not be
+// drawn.
 
 #include "detail/language.hpp"
 
@@ -22,19 +23,19 @@ inline namespace TEXGEN_BUILD {
 // The points that a slide lights, prepared once for many questions, of which the functions below ask one.
 // Guarantee: `outside` and `inside` are never false: they hold for the exact values of the matrix, the region and the
 // body as they are given, and for `lit` of project() with `exact`, whose s, t and r are rounded: within a float of a
-// side, or of a limit of depth, a body is `partial`. (What a tolerance moves across a side is not looked for here.) A box
-// is `partial` only where it is so, or touches a plane through an edge or through the apex of the projector's pyramid
-// within 2^-47 of the sizes involved; the pyramid's own planes, with its sides at the floats next to the region's, are
-// decided exactly, as are the near and the far plane of a depth. (Where no r in front is in the depth, boxes about q = 0
-// may be `partial`.) A sphere is `partial` too where no plane but one through a vertex of the volume leaves it out. A
-// batch answers as the single question does. No allocation, noexcept; what is prepared is never changed, so threads may
-// share it.
+// side, or of a limit of depth, a body is `partial`. (What a tolerance moves across a side is not looked for here.) A
+// box is `partial` only where it is so, or touches a plane through an edge or through the apex of the projector's
+// pyramid within 2^-47 of the sizes involved; the pyramid's own planes, with its sides at the floats next to the
+// region's, are decided exactly, as are the near and the far plane of a depth. (Where no r in front is in the depth,
+// boxes about q = 0 may be `partial`.) A sphere is `partial` too where no plane but one through a vertex of the volume
+// leaves it out. A batch answers as the single question does. No allocation, noexcept; what is prepared is never
+// changed, so threads may share it.
 // Shape: bodies of Space, in order; both spans have one size (asserted; else nothing is
 // written).
 // Bad input: a NaN anywhere in a body, or a matrix that is not finite: partial. A box with min > max in some axis, a
 // sphere with a negative radius, an empty region (see TextureRegion) or a q that is 0 everywhere: outside. Exponents so
-// far apart that exact sums leave the range of double (elements below 2^-600 of the matrix's largest, sides of the region
-// beyond 2^+-200): partial. An infinite side of the region, or limit of its depth, is none.
+// far apart that exact sums leave the range of double (elements below 2^-600 of the matrix's largest, sides of the
+// region beyond 2^+-200): partial. An infinite side of the region, or limit of its depth, is none.
 // Source: the separating axis theorem; Gottschalk, Lin, Manocha, OBBTree, SIGGRAPH 1996.
 template <class Space>
 class LitVolume {

@@ -1,7 +1,7 @@
 #pragma once
 
-// Floor 7: what is wrong with a projector, a texgen matrix or a whole set-up, in words. It looks for marks that no valid
-// set-up can carry, so it keeps silent where it cannot know: the more it is told, the more it sees.
+// Floor 7: what is wrong with a projector, a texgen matrix or a whole set-up, in words. It looks for marks that no
+// valid set-up can carry, so it keeps silent where it cannot know: the more it is told, the more it sees.
 
 #include "detail/language.hpp"
 
@@ -37,8 +37,8 @@
 
 namespace TEXGEN_NAMESPACE {
 
-// In the order of the findings: numbers that mean nothing, why a lens or an aim is refused, how a product was made, what the
-// lens does, and last what may be no more than the consequence of those before it.
+// In the order of the findings: numbers that mean nothing, why a lens or an aim is refused, how a product was made,
+// what the lens does, and last what may be no more than the consequence of those before it.
 enum class Defect {
     not_finite,
     angle_out_of_range,
@@ -239,26 +239,28 @@ template <class Space>
 using Setup = ProjectionSetup<Space>;
 
 // Says what is wrong with a set-up, most likely first; empty where nothing is known to be.
-// Guarantee: no finding for a set-up that projector.hpp and linear.hpp can make, in double or rounded to float, under any
-// conventions, lens, pose of regular matrices (of a camera that is not given: a rigid one) and distance from the origin,
-// but for what is true of it: that it lights none of the points, shows all of them less than a texel, or loses half a
-// texel (of a picture of 4096, where the texture's size is not given). A lens that mirrors says so in its facts, a model
-// may mirror. No allocation, noexcept.
-// Cost: about a microsecond for what was composed in double, several for what was composed in float or has a defect; the worst
-// set-up takes at most 8 times what one with a single defect does. No mistake is named of numbers beyond 2^150 or below 2^-150.
-// What it sees: of a projector alone, its matrices' own marks (transposed, exchanged, of rank below 3, mirrored, reversed
-// depth in the wrong range); with facts of the lens also an aspect, an angle or a depth range that is theirs by a
-// mistake: inverted, in another unit, for the other range. (A lens of other numbers is another lens, and not wrong.) With the
-// projector, and the model or the camera, which of their products a texgen matrix is, of up to two mistakes; and if it is none of them the lens
-// that it was made with, P' = S^-1 T X^-1 V^-1, against the projector's. Of a texgen matrix alone, the marks of its rows r
-// and q; with facts of the lens the lens in it, the scale-bias and the depth range; and without them what numbers say that
-// people write: whole degrees, or planes of two digits, which a mistake explains and nothing valid does. In float those are
-// too few for a range, and for an angle unless the picture stands on its head in the world for the conventions given. Of a
-// window's fragments it looks at numbers, rank and points alone.
-// What it cannot see: mistakes that are other set-ups, until it is told what was meant. The lens from 0.1 to 100 for [0, 1],
-// under the bias of [-1, 1], is the one from 10/199.9 to 100 for [-1, 1]: any row z that is not reversed is that of some
-// lens in both ranges. NDC without a bias are a lens beside its axis, of 90 degrees one of round numbers; a pose is the view
-// from another place; and a lens along an axis of an object whose pose is not given may have been stretched with it.
+// Guarantee: no finding for a set-up that projector.hpp and linear.hpp can make, in double or rounded to float, under
+// any conventions, lens, pose of regular matrices (of a camera that is not given: a rigid one) and distance from the
+// origin, but for what is true of it: that it lights none of the points, shows all of them less than a texel, or loses
+// half a texel (of a picture of 4096, where the texture's size is not given). A lens that mirrors says so in its facts,
+// a model may mirror. No allocation, noexcept.
+// Cost: about a microsecond for what was composed in double, several for what was composed in float or has a defect;
+// the worst set-up takes at most 8 times what one with a single defect does. No mistake is named of numbers beyond
+// 2^150 or below 2^-150. What it sees: of a projector alone, its matrices' own marks (transposed, exchanged, of rank
+// below 3, mirrored, reversed depth in the wrong range); with facts of the lens also an aspect, an angle or a depth
+// range that is theirs by a mistake: inverted, in another unit, for the other range. (A lens of other numbers is
+// another lens, and not wrong.) With the projector, and the model or the camera, which of their products a texgen
+// matrix is, of up to two mistakes; and if it is none of them the lens that it was made with, P' = S^-1 T X^-1 V^-1,
+// against the projector's. Of a texgen matrix alone, the marks of its rows r and q; with facts of the lens the lens in
+// it, the scale-bias and the depth range; and without them what numbers say that people write: whole degrees, or planes
+// of two digits, which a mistake explains and nothing valid does. In float those are too few for a range, and for an
+// angle unless the picture stands on its head in the world for the conventions given. Of a window's fragments it looks
+// at numbers, rank and points alone.
+// What it cannot see: mistakes that are other set-ups, until it is told what was meant. The lens from 0.1 to 100 for
+// [0, 1], under the bias of [-1, 1], is the one from 10/199.9 to 100 for [-1, 1]: any row z that is not reversed is
+// that of some lens in both ranges. NDC without a bias are a lens beside its axis, of 90 degrees one of round numbers;
+// a pose is the view from another place; and a lens along an axis of an object whose pose is not given may have been
+// stretched with it.
 // Bad input: what is not finite is reported, and the rest is examined without it.
 // Source: Everitt, Projective Texture Mapping, (3) and (4), and what is made of them.
 template <class Space>

@@ -1,8 +1,9 @@
 #pragma once
 
-// Floor 9: Eigen users' border, not in the umbrella: matrices go across by value and say their spaces, arrays go across as
-// views. A view is made of the strides that the Eigen object reports; what has no such view (an expression, another scalar, a
-// temporary, a stride where none can be) does not compile, so nothing is copied and nothing is read at a wrong place.
+// Floor 9: Eigen users' border, not in the umbrella: matrices go across by value and say their spaces, arrays go across
+// as views. A view is made of the strides that the Eigen object reports; what has no such view (an expression, another
+// scalar, a temporary, a stride where none can be) does not compile, so nothing is copied and nothing is read at a
+// wrong place.
 
 #include "detail/language.hpp"
 
@@ -47,8 +48,8 @@ Role from_eigen(const EigenTransform& transform) noexcept {
 }
 
 // Makes an Eigen matrix of a Transform.
-// Guarantee: exact for Matrix4d and Projective3d; each element rounded once for Matrix4f and Projective3f. No allocation,
-// noexcept. Bad input: as Transform.
+// Guarantee: exact for Matrix4d and Projective3d; each element rounded once for Matrix4f and Projective3f. No
+// allocation, noexcept. Bad input: as Transform.
 template <class Target = Eigen::Matrix4d, class To, class From>
 Target to_eigen(const Transform<To, From>& transform) noexcept {
     using Scalar = typename Target::Scalar;
@@ -64,8 +65,8 @@ Target to_eigen(const Transform<To, From>& transform) noexcept {
 }
 
 // Makes an Affine3d or Affine3f of a Transform.
-// Bad input: empty where the last row is not exactly (0, 0, 0, 1), so that no projection is lost; every texgen matrix of a
-// perspective projector is such a one.
+// Bad input: empty where the last row is not exactly (0, 0, 0, 1), so that no projection is lost; every texgen matrix
+// of a perspective projector is such a one.
 template <class Target = Eigen::Affine3d, class To, class From>
 std::optional<Target> to_eigen_affine(const Transform<To, From>& transform) noexcept {
     static_assert(std::is_same_v<Target, Eigen::Affine3d> || std::is_same_v<Target, Eigen::Affine3f>,
@@ -76,7 +77,8 @@ std::optional<Target> to_eigen_affine(const Transform<To, From>& transform) noex
 }
 
 // Makes an Eigen vector of a GLM vector.
-// Guarantee: each element is kept. Shapes: glm::vec2, vec3, vec4 and dvec2, dvec3, dvec4; column vectors of as many rows.
+// Guarantee: each element is kept. Shapes: glm::vec2, vec3, vec4 and dvec2, dvec3, dvec4; column vectors of as many
+// rows.
 template <glm::length_t N, detail::FloatOrDouble Scalar, glm::qualifier Q>
 Eigen::Matrix<Scalar, static_cast<int>(N), 1> to_eigen(const glm::vec<N, Scalar, Q>& vector) noexcept {
     Eigen::Matrix<Scalar, static_cast<int>(N), 1> result;
@@ -98,9 +100,10 @@ requires detail::EigenDense<Vector> && detail::FloatOrDouble<typename Vector::Sc
 
 // Views the floats of an Eigen object as points.
 // Guarantee: they are not copied, and must outlive the view; no allocation, noexcept.
-// Shapes: points as columns of a 3 x N (Matrix3Xf, Ref, Map, middleRows<3>(i), but not block(i, 0, 3, n), whose rows are not
-// known when it is compiled; interleaved where its columns are dense, planar where
-// it is row-major), as rows of an N x 3, or as three vectors of coordinates of one size and one inner stride. Any strides.
+// Shapes: points as columns of a 3 x N (Matrix3Xf, Ref, Map, middleRows<3>(i), but not block(i, 0, 3, n), whose rows
+// are not known when it is compiled; interleaved where its columns are dense, planar where
+// it is row-major), as rows of an N x 3, or as three vectors of coordinates of one size and one inner stride. Any
+// strides.
 // Bad input: three vectors that disagree, and negative strides, are asserted; without assertions they are no points.
 template <class... Floats>
 Positions<Object> object_space(Floats&&... values) noexcept requires detail::EigenPositions<Floats...> {
@@ -125,8 +128,8 @@ Positions<Window> window_space(Floats&&... values) noexcept requires detail::Eig
     return detail::positions_of<Window>(values...);
 }
 
-// Views the floats of a vector without gaps (VectorXf, Ref<ArrayXf>, a column of a matrix), or of a row-major matrix or array
-// that owns them (height x width fragments): an output of Texcoords, or an input of alphas.
+// Views the floats of a vector without gaps (VectorXf, Ref<ArrayXf>, a column of a matrix), or of a row-major matrix or
+// array that owns them (height x width fragments): an output of Texcoords, or an input of alphas.
 // Guarantee: a view as above; std::span<const float> of what is const. A vector that may have gaps does not compile.
 template <detail::EigenSpan Floats>
 auto floats(Floats&& values) noexcept {

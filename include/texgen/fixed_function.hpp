@@ -1,7 +1,7 @@
 #pragma once
 
-// Floor 3: the texture coordinate generation of one OpenGL texture unit, as the fixed function has it: per coordinate an
-// enable, a mode, an object plane and an eye plane; and the texture matrix behind them.
+// Floor 3: the texture coordinate generation of one OpenGL texture unit, as the fixed function has it: per coordinate
+// an enable, a mode, an object plane and an eye plane; and the texture matrix behind them.
 
 #include "detail/language.hpp"
 
@@ -60,13 +60,14 @@ public:
     // Stores a plane of object space as it is: a row; object_linear gives plane . position.
     void set_object_plane(Coordinate coordinate, glm::vec4 plane) noexcept;
 
-    // Stores p M^-1, the plane of the eye's space that `plane` is under this MODELVIEW. It is a snapshot: whatever MODELVIEW
-    // becomes later, the stored plane stays. T(10, 20, 30) with p = (1, 2, 3, 4) stores (1, 2, 3, -136).
-    // Guarantee: solved in double and rounded once: each component within 0.54 float ulp of the exact one, or within 2^-60
-    // of the largest one, while the condition of M (rows and columns scaled) stays below 1e8.
-    // Shape: `plane` is a row p over the space that `modelview` takes to the eye; the stored plane is a row over the eye.
-    // Bad input: false, and the state as it was, where M is singular to working precision (by its residual, never by the
-    // size of a determinant: any uniform scale is regular), where M or p is not finite, or where a component of the
+    // Stores p M^-1, the plane of the eye's space that `plane` is under this MODELVIEW. It is a snapshot: whatever
+    // MODELVIEW becomes later, the stored plane stays. T(10, 20, 30) with p = (1, 2, 3, 4) stores (1, 2, 3, -136).
+    // Guarantee: solved in double and rounded once: each component within 0.54 float ulp of the exact one, or within
+    // 2^-60 of the largest one, while the condition of M (rows and columns scaled) stays below 1e8.
+    // Shape: `plane` is a row p over the space that `modelview` takes to the eye; the stored plane is a row over the
+    // eye.
+    // Bad input: false, and the state as it was, where M is singular to working precision (by its residual, never by
+    // the size of a determinant: any uniform scale is regular), where M or p is not finite, or where a component of the
     // result is beyond the largest float.
     // Far from the origin a float plane is itself the error; eye_linear() in linear.hpp composes in double.
     [[nodiscard]] bool set_eye_plane(Coordinate coordinate, glm::vec4 plane, const glm::mat4& modelview) noexcept;
@@ -97,18 +98,18 @@ public:
     //     normal_map      2^-48 k         with k the length of (sum_i |normal_i| |M^-1_ij|)_j under the normal scaling:
     //     reflection_map  2^-48 (1 + k)^2      |n| where nothing cancels
     //     sphere_map      2^-48 (1 + k)^2 / m  and never outside [0, 1]
-    // Another texture matrix multiplies these errors, before the rounding, and adds 2^-50 of its terms. A coordinate that
-    // is off is the vertex's own.
+    // Another texture matrix multiplies these errors, before the rounding, and adds 2^-50 of its terms. A coordinate
+    // that is off is the vertex's own.
     // Shape: `modelview` takes the vertex's object space to the eye. With e = M v, u = e.xyz / |e.xyz| (not divided by
     // e.w), n = normal M^-1 under the normal scaling, and r = u - 2 n (n . u):
     //     object_linear   object plane . v        eye_linear   eye plane . e  (no inverse is taken here)
     //     reflection_map  (s, t, r) = r           normal_map   (s, t, r) = n
     //     sphere_map      m = 2 sqrt(rx^2 + ry^2 + (rz + 1)^2), s = rx / m + 1/2, t = ry / m + 1/2
     // n uses the upper 3x3 of M^-1. For a MODELVIEW with a projective last row OpenGL leaves a choice; this is Mesa's.
-    // Bad input: m = 0, the singularity of the sphere map, gives (1/2, 1/2). A vertex at the eye has no direction: u = 0.
-    // A zero normal stays zero under normalize. Where M is singular or not finite, OpenGL leaves normals undefined:
-    // sphere_map, reflection_map and normal_map give NaN, and the other modes are not touched by it. A NaN or an infinity
-    // spoils the coordinates that are made from it (a texture matrix other than the identity mixes them).
+    // Bad input: m = 0, the singularity of the sphere map, gives (1/2, 1/2). A vertex at the eye has no direction: u =
+    // 0. A zero normal stays zero under normalize. Where M is singular or not finite, OpenGL leaves normals undefined:
+    // sphere_map, reflection_map and normal_map give NaN, and the other modes are not touched by it. A NaN or an
+    // infinity spoils the coordinates that are made from it (a texture matrix other than the identity mixes them).
     // Source: OpenGL 2.1 specification, 2.11.3, Normal Transformation, and 2.11.4, Generating Texture Coordinates.
     glm::vec4 generate(const FixedFunctionVertex& vertex, const glm::mat4& modelview) const noexcept;
 

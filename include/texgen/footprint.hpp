@@ -1,8 +1,8 @@
 #pragma once
 
-// Floor 8: footprints. What a fragment covers of the texture: the derivatives of s/q and t/q by the window's x and y, and
-// what filters make of them. Projection varies them wildly within one triangle, and where q is near 0 a difference of two
-// fragments tells nothing; so they are computed in closed form, from the set-up that interpolates.
+// Floor 8: footprints. What a fragment covers of the texture: the derivatives of s/q and t/q by the window's x and y,
+// and what filters make of them. Projection varies them wildly within one triangle, and where q is near 0 a difference
+// of two fragments tells nothing; so they are computed in closed form, from the set-up that interpolates.
 
 #include "detail/language.hpp"
 
@@ -26,8 +26,9 @@
 
 namespace TEXGEN_NAMESPACE {
 
-// How many texels one unit of s and of t spans: the size of the texture for normalised coordinates, those of an atlas_tile
-// too; 1 for a rectangle texture. Of level 0. Bad values (not positive, not finite) make what is measured in texels NaN.
+// How many texels one unit of s and of t spans: the size of the texture for normalised coordinates, those of an
+// atlas_tile too; 1 for a rectangle texture. Of level 0. Bad values (not positive, not finite) make what is measured in
+// texels NaN.
 struct TexelsPerUnit {
     double s, t;
 };
@@ -74,9 +75,9 @@ struct FootprintExtremes {
 inline namespace TEXGEN_COMPILER {
 
 // Computes the footprint of derivatives that come from elsewhere.
-// Guarantee: singular values and anisotropy within 2^-48 of themselves (of the larger singular value for the smaller; so
-// with the anisotropy, relative to its square), level within 2^-48 max(1, |level|): of any finite derivatives, while what
-// comes out is a normal number; what is beyond the largest is infinite. No allocation, noexcept.
+// Guarantee: singular values and anisotropy within 2^-48 of themselves (of the larger singular value for the smaller;
+// so with the anisotropy, relative to its square), level within 2^-48 max(1, |level|): of any finite derivatives, while
+// what comes out is a normal number; what is beyond the largest is infinite. No allocation, noexcept.
 // Shapes: units of s and t a pixel.
 // Bad input: what is not finite makes all but dx and dy NaN.
 inline Footprint footprint_of(const glm::dvec2& dx, const glm::dvec2& dy, const TexelsPerUnit& texels) noexcept;
@@ -93,14 +94,14 @@ public:
     std::optional<Footprint> at(int x, int y) const noexcept;
 
     // Bounds the error of what footprint() writes to dsdx and dsdy (x), dtdx and dtdy (y).
-    // Guarantee: |computed - exact| is at most this at every fragment of the rectangle with q > 0; infinite where no finite
-    // bound exists, as next to q = 0. noexcept.
+    // Guarantee: |computed - exact| is at most this at every fragment of the rectangle with q > 0; infinite where no
+    // finite bound exists, as next to q = 0. noexcept.
     glm::dvec2 error_bound(FragmentRect rect) const noexcept;
 
     // Finds the extremes of the footprints over a rectangle.
     // Guarantee: no fragment of the rectangle that is in front of the projector has a level, an area or an anisotropy
-    // outside of these (they hold for exact footprints and for those of `exact`; a tolerance may add its share). Each is
-    // reached within 1 % at some point of the rectangle (that is levels within 0.015) where q is well away from 0;
+    // outside of these (they hold for exact footprints and for those of `exact`; a tolerance may add its share). Each
+    // is reached within 1 % at some point of the rectangle (that is levels within 0.015) where q is well away from 0;
     // largest_level, largest_area and largest_anisotropy are infinite where q is not. Empty where all is behind the
     // projector or the rectangle is empty. A level of the Jacobian 0 is -infinity, and NaN where the texels are bad. It
     // takes as long as some tens of fragments, and never visits them. No allocation, noexcept.
@@ -118,16 +119,16 @@ private:
     TexelsPerUnit texels_;
 };
 
-// Scores how much a triangle is the "deer in headlights": lit by a projector that faces the camera, so that what is near to the
-// camera is far from the projector and gets few texels on many pixels, and what is far gets many on few.
+// Scores how much a triangle is the "deer in headlights": lit by a projector that faces the camera, so that what is
+// near to the camera is far from the projector and gets few texels on many pixels, and what is far gets many on few.
 //
-// The area of the footprint goes with 1 / Q^3 = (w/q)^3, so between the vertices nearest to the camera and farthest from it
-// the level of detail rises by 3/2 log2(w_far / w_near) for the camera, and by 3/2 log2(q_near / q_far) for the projector.
-// The latter is the score, in levels: 0 for a parallel projector, negative where the projector stands with the camera and
-// evens out what the camera does, positive where both add up; infinite where the projector's plane is reached.
-// No allocation, noexcept.
-// Bad input: NaN where a clip_w is not positive, a clip_w or q not finite, or q is not positive at the vertex nearest to
-// the camera.
+// The area of the footprint goes with 1 / Q^3 = (w/q)^3, so between the vertices nearest to the camera and farthest
+// from it the level of detail rises by 3/2 log2(w_far / w_near) for the camera, and by 3/2 log2(q_near / q_far) for the
+// projector. The latter is the score, in levels: 0 for a parallel projector, negative where the projector stands with
+// the camera and evens out what the camera does, positive where both add up; infinite where the projector's plane is
+// reached. No allocation, noexcept.
+// Bad input: NaN where a clip_w is not positive, a clip_w or q not finite, or q is not positive at the vertex nearest
+// to the camera.
 // Source: Everitt, Projective Texture Mapping; the dueling frusta of Stamminger and Drettakis, Perspective Shadow Maps,
 // SIGGRAPH 2002.
 inline double headlights(const Triangle& triangle) noexcept;
@@ -136,17 +137,17 @@ inline double headlights(const Triangle& triangle) noexcept;
 
 inline namespace TEXGEN_BUILD {
 
-// Writes the footprints of a rectangle's fragments in front of the projector. Returns whether the slide may light any of
-// its fragments; where it lights none, nothing is written, as interpolate() does not for Work::nothing.
-// Guarantee: in front of the projector the derivatives are within setup.error_bound(rect): with `exact` next to half an ulp,
-// with a tolerance within max(tolerance, that), in units of s and t a pixel. level is within 2^-16 max(1, |level| / 32) of
-// that of derivatives within the bound, anisotropy and major within 2^-16 of theirs (major relative to its length; where
-// the anisotropy is near 1 its direction means nothing). Behind, all are 0, the sign of q decided exactly. No allocation,
-// noexcept.
+// Writes the footprints of a rectangle's fragments in front of the projector. Returns whether the slide may light any
+// of its fragments; where it lights none, nothing is written, as interpolate() does not for Work::nothing.
+// Guarantee: in front of the projector the derivatives are within setup.error_bound(rect): with `exact` next to half an
+// ulp, with a tolerance within max(tolerance, that), in units of s and t a pixel. level is within 2^-16 max(1, |level|
+// / 32) of that of derivatives within the bound, anisotropy and major within 2^-16 of theirs (major relative to its
+// length; where the anisotropy is near 1 its direction means nothing). Behind, all are 0, the sign of q decided
+// exactly. No allocation, noexcept.
 // Shapes: each output has width * height floats, row-major, or none (asserted). Fragments outside the triangle get the
 // values of its plane; where the interpolated 1/w is not positive nothing is promised.
-// Bad input: an empty rectangle does nothing. With bad texels level, anisotropy and major are NaN, the derivatives right. A
-// Jacobian that is 0 has level -infinity, anisotropy 1 and major 0.
+// Bad input: an empty rectangle does nothing. With bad texels level, anisotropy and major are NaN, the derivatives
+// right. A Jacobian that is 0 has level -infinity, anisotropy 1 and major 0.
 template <class CompiledWhereCalled = void>
 bool footprint(const FootprintSetup& setup, FragmentRect rect, Footprints out) noexcept;
 

@@ -1,10 +1,11 @@
 #pragma once
 
-// Floor 7: (s, t, r) over the fragments of triangles: interpolate s, t, r, q perspective-correctly, then divide by q, per
-// fragment. Segments are in segment.hpp.
+// Floor 7: (s, t, r) over the fragments of triangles: interpolate s, t, r, q perspective-correctly, then divide by q,
+// per fragment. Segments are in segment.hpp.
 //
-// The tolerance chooses how it is computed: `exact` by a division in double with a certificate, and what that leaves in doubt by
-// exact sums; others by the first polynomial whose bound fits, else by a division in float, if that fits, else as `exact`.
+// The tolerance chooses how it is computed: `exact` by a division in double with a certificate, and what that leaves in
+// doubt by exact sums; others by the first polynomial whose bound fits, else by a division in float, if that fits, else
+// as `exact`.
 
 #include "detail/language.hpp"
 
@@ -57,8 +58,8 @@ public:
     Work work(FragmentRect rect) const noexcept;
 
     // Bounds the error of s (x) and t (y) over a rectangle.
-    // Guarantee: |computed - exact| is at most this for every fragment of the rectangle with q > 0, the rounding to float
-    // included; infinite where no finite bound exists, as next to q = 0. noexcept.
+    // Guarantee: |computed - exact| is at most this for every fragment of the rectangle with q > 0, the rounding to
+    // float included; infinite where no finite bound exists, as next to q = 0. noexcept.
     glm::dvec2 error_bound(FragmentRect rect) const noexcept;
 
     // What the rest of the library reads.
@@ -79,9 +80,9 @@ inline namespace TEXGEN_BUILD {
 // Guarantee: in front each is within max(tolerance, 1/2 ulp) of the exact value of the given floats (r: the tolerance
 // relative to max(1, |r|)). With `exact` each is the nearest float, so that its bits depend on
 // neither the rectangle, the length, the alignment nor the build. lit = 1 inside the closed region, decided from the s
-// and t, and with a depth from the r, that are (or would be) written; where r is certainly in the depth, or s and t leave
-// all of a part of the rectangle dark, it is not computed for that. Behind, s = t = r = lit = 0, the sign of q decided exactly. For
-// Work::nothing lit is 0 and s, t, r are not written. No allocation, noexcept.
+// and t, and with a depth from the r, that are (or would be) written; where r is certainly in the depth, or s and t
+// leave all of a part of the rectangle dark, it is not computed for that. Behind, s = t = r = lit = 0, the sign of q
+// decided exactly. For Work::nothing lit is 0 and s, t, r are not written. No allocation, noexcept.
 // Shapes: each output has width * height floats, row-major, or none (asserted). Fragments outside the triangle get the
 // values of its plane; where the interpolated 1/w is not positive nothing is promised.
 // Bad input: an empty rectangle does nothing.

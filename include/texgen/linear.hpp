@@ -33,8 +33,8 @@ namespace TEXGEN_NAMESPACE {
 inline WorldTexgen texture_from_world(const Projector& projector, TextureRegion region = whole_texture(),
                                       DepthMapping depth = DepthMapping::unit) noexcept;
 
-// Makes the texgen matrix of an object, T_o = S P_p V_p M. It must be made anew whenever M, V_p or P_p changes. In a vertex
-// shader, which gets rounded() and does not divide:
+// Makes the texgen matrix of an object, T_o = S P_p V_p M. It must be made anew whenever M, V_p or P_p changes. In a
+// vertex shader, which gets rounded() and does not divide:
 //
 //     strq = texture_from_object * vec4(position, 1.0);
 //
@@ -49,7 +49,8 @@ inline ObjectTexgen object_linear(const Projector& projector, const ModelMatrix&
 
 // Makes the texgen matrix of a camera's eye space, T_e = S P_p V_p V_e^-1: one matrix serves every object of the frame.
 // Guarantee: in double, as accurate as object_linear(); no allocation, noexcept.
-// Shape: the camera's eye points to homogeneous (s, t, r, q). The camera is given as its pose, V_e^-1: no inverse is taken.
+// Shape: the camera's eye points to homogeneous (s, t, r, q). The camera is given as its pose, V_e^-1: no inverse is
+// taken.
 // Bad input: as texture_from_world().
 // Source: Everitt, Projective Texture Mapping, (4).
 inline EyeTexgen eye_linear(const Projector& projector, const CameraPose& world_from_eye,
@@ -58,26 +59,29 @@ inline EyeTexgen eye_linear(const Projector& projector, const CameraPose& world_
 // Makes the texgen matrix of a projector that the camera carries, S P_p V, with V from the camera's eye space to the
 // projector's: a flashlight. It holds for all frames, wherever the camera goes; the identity is a light at the eye.
 // Guarantee: in double, 8 roundings a term at most; no allocation, noexcept.
-// Shape: the camera's eye points to homogeneous (s, t, r, q). Its planes are for glTexGen under the identity as MODELVIEW.
+// Shape: the camera's eye points to homogeneous (s, t, r, q). Its planes are for glTexGen under the identity as
+// MODELVIEW.
 // Bad input: as texture_from_world().
 // Source: Segal et al., Fast Shadows and Lighting Effects Using Texture Mapping; SGI's recipe for projective textures.
 inline EyeTexgen eye_linear(const ProjectorProjection& projection, const Transform<ProjectorEye, Eye>& view,
                             Conventions conventions, TextureRegion region = whole_texture(),
                             DepthMapping depth = DepthMapping::unit) noexcept;
 
-// Makes the texgen matrix of a camera's window, T_w = S P_p V_p (W P_c V_c)^-1: it takes a fragment of the depth buffer to the
-// slide, for decals and projectors' light that are deferred, and for a photograph on a g-buffer. In a fragment shader:
+// Makes the texgen matrix of a camera's window, T_w = S P_p V_p (W P_c V_c)^-1: it takes a fragment of the depth buffer
+// to the slide, for decals and projectors' light that are deferred, and for a photograph on a g-buffer. In a fragment
+// shader:
 //
 //     vec4 strq = texture_from_window * vec4(gl_FragCoord.xy, texelFetch(depth, ivec2(gl_FragCoord.xy), 0).r, 1.0);
 //
-// Guarantee: in double, each row solved against V_c and P_c as they are. With m the products of the factors' magnitudes on the
-// fragment, s/q is within 2^-47 (m_s + |s/q| m_q) / |q| of its exact value, as far from the origin as 1e7, while the
-// condition of V_c and of P_c (rows and columns scaled) stays below 1e8. No allocation, noexcept.
-// Shape: (x, y, depth, 1) to homogeneous (s, t, r, q) over the camera's w: q > 0 in front of the projector for all that the
-// camera sees. The depth is what the buffer holds: NDC z, or (z + 1)/2 under OpenGL's range. y grows as NDC y does: for pixels
-// from the top down (Direct3D, Metal) give the viewport {x, y + height, width, -height}; with Vulkan's y down it is as it is.
-// Bad input: empty where V_c or P_c is singular to working precision, the viewport's width or height is 0, or a number is not
-// finite. The camera's conventions are its own.
+// Guarantee: in double, each row solved against V_c and P_c as they are. With m the products of the factors' magnitudes
+// on the fragment, s/q is within 2^-47 (m_s + |s/q| m_q) / |q| of its exact value, as far from the origin as 1e7, while
+// the condition of V_c and of P_c (rows and columns scaled) stays below 1e8. No allocation, noexcept.
+// Shape: (x, y, depth, 1) to homogeneous (s, t, r, q) over the camera's w: q > 0 in front of the projector for all that
+// the camera sees. The depth is what the buffer holds: NDC z, or (z + 1)/2 under OpenGL's range. y grows as NDC y does:
+// for pixels from the top down (Direct3D, Metal) give the viewport {x, y + height, width, -height}; with Vulkan's y
+// down it is as it is.
+// Bad input: empty where V_c or P_c is singular to working precision, the viewport's width or height is 0, or a number
+// is not finite. The camera's conventions are its own.
 // Source: Everitt, Projective Texture Mapping, (4), with the window in the place of the eye.
 inline std::optional<WindowTexgen> window_linear(const Projector& projector, const Projector& camera,
                                                  const Viewport& viewport, TextureRegion region = whole_texture(),
@@ -86,15 +90,16 @@ inline std::optional<WindowTexgen> window_linear(const Projector& projector, con
 enum class DepthBuffer { unorm16, unorm24, float32 };  // what a depth is rounded to
 
 // Bounds how far s and t of a fragment may be off because the depth buffer holds a rounded depth.
-// Guarantee: s/q (x) and t/q (y) of this matrix differ by at most that between the fragment and any depth that is stored as
-// the fragment's; infinite where some of those depths are not in front of the projector. A reversed depth in float32 has small
-// depths far away, and so small errors. What the hardware rounds is taken as 0.6 of a step of the integers, as Direct3D
-// allows, and half an ulp of float, in which a shader reads it. No allocation, noexcept.
+// Guarantee: s/q (x) and t/q (y) of this matrix differ by at most that between the fragment and any depth that is
+// stored as the fragment's; infinite where some of those depths are not in front of the projector. A reversed depth in
+// float32 has small depths far away, and so small errors. What the hardware rounds is taken as 0.6 of a step of the
+// integers, as Direct3D allows, and half an ulp of float, in which a shader reads it. No allocation, noexcept.
 // Bad input: infinite for what is not finite.
 inline glm::dvec2 depth_error_bound(const WindowTexgen& texture_from_window, glm::vec3 fragment,
                                     DepthBuffer buffer) noexcept;
 
-// Returns what OpenGL stores when the rows of `planes` are given to glTexGen under that MODELVIEW: each row p becomes p M^-1.
+// Returns what OpenGL stores when the rows of `planes` are given to glTexGen under that MODELVIEW: each row p becomes p
+// M^-1.
 // Guarantee: solved and refined, so that rounded to float it is within 0.54 ulp of its largest component while the
 // condition of M (rows and columns scaled) stays below 1e8; no allocation, noexcept.
 // Shape: planes over the space that M takes to the eye. The rows of S P_p V_p under MODELVIEW = V_e give T_e.
@@ -105,13 +110,13 @@ template <class Space>
 std::optional<EyeTexgen> eye_planes_as_stored(const Transform<Texture, Space>& planes,
                                               const Transform<Eye, Space>& modelview) noexcept;
 
-// Bounds |stored - planes M^-1|, element by element, for any `stored`: what eye_planes_as_stored() answers, the same rounded
-// to float, or what glGetTexGen returned.
-// Guarantee: next to the error itself while the condition of M (rows and columns scaled) stays below 1e7. No allocation,
-// noexcept.
+// Bounds |stored - planes M^-1|, element by element, for any `stored`: what eye_planes_as_stored() answers, the same
+// rounded to float, or what glGetTexGen returned.
+// Guarantee: next to the error itself while the condition of M (rows and columns scaled) stays below 1e7. No
+// allocation, noexcept.
 // Shape: elements as in stored.matrix(), planes and M as for eye_planes_as_stored().
-// Bad input: infinite where M is refused; a NaN or an infinity of a plane, given or stored, stays in its row, as does one that
-// their products make.
+// Bad input: infinite where M is refused; a NaN or an infinity of a plane, given or stored, stays in its row, as does
+// one that their products make.
 // Source: the residual of a solution bounds its error: Higham, Accuracy and Stability of Numerical Algorithms, 7.
 template <class Space>
 glm::dmat4 eye_planes_error_bound(const Transform<Texture, Space>& planes, const Transform<Eye, Space>& modelview,

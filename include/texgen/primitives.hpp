@@ -28,8 +28,8 @@ struct Triangle {
     WindowVertex a, b, c;
 };
 
-// The fragments [x, x + width) x [y, y + height), each at its centre; outputs are row-major, width * height. It is empty where
-// a size is not positive.
+// The fragments [x, x + width) x [y, y + height), each at its centre; outputs are row-major, width * height. It is
+// empty where a size is not positive.
 struct FragmentRect {
     int x, y, width, height;
 };
@@ -46,12 +46,13 @@ struct Viewport {
 //   quadratic        q/w varies, and a certified quadratic stays inside the tolerance: no division a fragment
 //   divide           one division a fragment; every fragment is in front of the projector, inside the region and its depth
 //   divide_and_test  one division a fragment; the sign of q or the sides of the region are tested, or its depth
-// Where the region's border crosses an affine or quadratic rectangle, the mask is compared from the coordinates. Rows of less than 16
-// fragments, and rectangles of no more than 128, are divided though q/w varies: there a polynomial saves nothing.
+// Where the region's border crosses an affine or quadratic rectangle, the mask is compared from the coordinates. Rows
+// of less than 16 fragments, and rectangles of no more than 128, are divided though q/w varies: there a polynomial
+// saves nothing.
 enum class Work { nothing, affine, quadratic, divide, divide_and_test };
 
-// How much of a box or a sphere the slide lights. A point is lit where q > 0 and (s, t) is in the closed region, as real
-// numbers or as the floats that they are rounded to, which project() looks at.
+// How much of a box or a sphere the slide lights. A point is lit where q > 0 and (s, t) is in the closed region, as
+// real numbers or as the floats that they are rounded to, which project() looks at.
 //   outside  no point of the closed body is lit, in either way
 //   partial  neither of the others, or not provably one of them
 //   inside   all points are lit, in both ways

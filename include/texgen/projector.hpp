@@ -1,7 +1,7 @@
 #pragma once
 
-// Floor 2: the projector P_p V_p. Its eye has x to the right and y up; the conventions decide the rest: whether it looks down
-// -z or +z, where near and far land, and which way y points in NDC.
+// Floor 2: the projector P_p V_p. Its eye has x to the right and y up; the conventions decide the rest: whether it
+// looks down -z or +z, where near and far land, and which way y points in NDC.
 
 #include "detail/language.hpp"
 
@@ -26,8 +26,8 @@
 
 namespace TEXGEN_NAMESPACE {
 
-// A symmetric lens by its angle. z_near and z_far are distances in front of the eye, in the units of the world; z_far may
-// be infinite. reversed_depth maps near to 1 and far to the other end of the range, so that r = 1 at near.
+// A symmetric lens by its angle. z_near and z_far are distances in front of the eye, in the units of the world; z_far
+// may be infinite. reversed_depth maps near to 1 and far to the other end of the range, so that r = 1 at near.
 struct PerspectiveLens {
     Angle fovy;  // the full vertical angle, between 0 and 180 degrees, both excluded
     double aspect;
@@ -35,7 +35,8 @@ struct PerspectiveLens {
     bool reversed_depth = false;
 };
 
-// A lens by the rectangle that it sees of the near plane. left > right or bottom > top mirrors the picture, as in OpenGL.
+// A lens by the rectangle that it sees of the near plane. left > right or bottom > top mirrors the picture, as in
+// OpenGL.
 struct FrustumLens {
     double left, right, bottom, top, z_near, z_far;
 };
@@ -46,12 +47,12 @@ struct OrthographicLens {
     double left, right, bottom, top, z_near, z_far;
 };
 
-// Where the coordinates of pixels are whole: in the centres of pixels, as OpenCV counts them, so that the picture begins at
-// -0.5; or at their corners, so that the picture begins at 0 and the centre of its first pixel is (0.5, 0.5).
+// Where the coordinates of pixels are whole: in the centres of pixels, as OpenCV counts them, so that the picture
+// begins at -0.5; or at their corners, so that the picture begins at 0 and the centre of its first pixel is (0.5, 0.5).
 enum class PixelCentre { integer, half };
 
-// The lens of a calibrated camera, in pixels, y down: K = (fx skew cx; 0 fy cy; 0 0 1), and the size of the picture. z_near
-// and z_far as those of a PerspectiveLens.
+// The lens of a calibrated camera, in pixels, y down: K = (fx skew cx; 0 fy cy; 0 0 1), and the size of the picture.
+// z_near and z_far as those of a PerspectiveLens.
 struct PinholeLens {
     double fx, fy, cx, cy, width, height, z_near, z_far;
     detail::Required<PixelCentre> centre;
@@ -79,21 +80,22 @@ struct Projector {
 //     |    0      0  (far + near)/(near - far)  2 far near/(near - far) |
 //     |    0      0           -1                     0           |
 //
-// zero_to_one has far/(near - far) and far near/(near - far) in row z; y down negates row y, left-handed negates column z.
+// zero_to_one has far/(near - far) and far near/(near - far) in row z; y down negates row y, left-handed negates column
+// z.
 // Guarantee: each element within 4 double ulp (those of subnormal numbers too), for every lens that is not refused; no
 // allocation, noexcept.
 // Shape: projector eye space (looking down -z, or +z where it is left-handed) to projector clip space.
-// Bad input: empty unless 0 < fovy < 180 degrees, aspect > 0 and finite, 0 < z_near < z_far, and z_near finite. Empty, too,
-// where doubles cannot hold the matrix: an element would be infinite, or the scale of x or y 0.
+// Bad input: empty unless 0 < fovy < 180 degrees, aspect > 0 and finite, 0 < z_near < z_far, and z_near finite. Empty,
+// too, where doubles cannot hold the matrix: an element would be infinite, or the scale of x or y 0.
 // Source: Everitt, Projective Texture Mapping, P_p in (3); OpenGL 2.1 specification, 2.11 (gluPerspective's lens);
 // DirectXMath, XMMatrixPerspectiveFovLH.
 inline std::optional<ProjectorProjection> perspective(const PerspectiveLens& lens, Conventions conventions) noexcept;
 
-// Makes the projection of a lens that may be off its axis: (right + left)/(right - left) and (top + bottom)/(top - bottom)
-// stand in column z.
+// Makes the projection of a lens that may be off its axis: (right + left)/(right - left) and (top + bottom)/(top -
+// bottom) stand in column z.
 // Guarantee, shape: as perspective().
-// Bad input: empty unless all fields are finite, left != right, bottom != top, and 0 < z_near < z_far; and where doubles
-// cannot hold the matrix, as perspective().
+// Bad input: empty unless all fields are finite, left != right, bottom != top, and 0 < z_near < z_far; and where
+// doubles cannot hold the matrix, as perspective().
 // Source: OpenGL 2.1 specification, 2.11.2 (glFrustum).
 inline std::optional<ProjectorProjection> frustum(const FrustumLens& lens, Conventions conventions) noexcept;
 
@@ -104,33 +106,33 @@ inline std::optional<ProjectorProjection> frustum(const FrustumLens& lens, Conve
 // Source: OpenGL 2.1 specification, 2.11.2 (glOrtho).
 inline std::optional<ProjectorProjection> orthographic(const OrthographicLens& lens, Conventions conventions) noexcept;
 
-// Makes the projection of a calibrated camera, so that a projector throws a picture where the camera saw it. With (u, v) the
-// pixel K (R X + t), counted from the picture's edge, s is u/width, and t is v/height, or 1 - v/height where the texture's
-// origin is at the bottom. For OpenGL, with the pixel centres at half,
+// Makes the projection of a calibrated camera, so that a projector throws a picture where the camera saw it. With (u,
+// v) the pixel K (R X + t), counted from the picture's edge, s is u/width, and t is v/height, or 1 - v/height where the
+// texture's origin is at the bottom. For OpenGL, with the pixel centres at half,
 //
 //     | 2 fx/width  -2 skew/width  1 - 2 cx/width        0      |
 //     |     0        2 fy/height   2 cy/height - 1       0      |
 //
 // and the rows z and w of perspective(). With the pixel centres at integers, cx + 1/2 and cy + 1/2 stand for cx and cy.
 // Guarantee, shape: as perspective().
-// Bad input: empty unless fx, fy, width, height > 0 and 0 < z_near < z_far, and all but z_far are finite; and where doubles
-// cannot hold the matrix, as perspective().
+// Bad input: empty unless fx, fy, width, height > 0 and 0 < z_near < z_far, and all but z_far are finite; and where
+// doubles cannot hold the matrix, as perspective().
 // Source: Hartley and Zisserman, Multiple View Geometry, 6.1; OpenCV's camera model without distortion.
 inline std::optional<ProjectorProjection> pinhole(const PinholeLens& lens, Conventions conventions) noexcept;
 
-// Narrows a lens to a picture of another aspect, width over height, so that all of the picture is in the light of the lens as
-// it was, about the same axis: what remains of the light would be bars.
-// Guarantee: the fovy within 4 double ulp, the sides of a rectangle within 2^-50 of its largest; one side of the picture
-// keeps its place, and a lens of that aspect stays as it is. No allocation, noexcept.
-// Bad input: a lens that perspective(), frustum() or orthographic() refuses, where the aspect is not positive and finite, or
-// the lens is one of those.
+// Narrows a lens to a picture of another aspect, width over height, so that all of the picture is in the light of the
+// lens as it was, about the same axis: what remains of the light would be bars.
+// Guarantee: the fovy within 4 double ulp, the sides of a rectangle within 2^-50 of its largest; one side of the
+// picture keeps its place, and a lens of that aspect stays as it is. No allocation, noexcept.
+// Bad input: a lens that perspective(), frustum() or orthographic() refuses, where the aspect is not positive and
+// finite, or the lens is one of those.
 inline PerspectiveLens contain(const PerspectiveLens& lens, double aspect) noexcept;
 inline FrustumLens contain(const FrustumLens& lens, double aspect) noexcept;
 inline OrthographicLens contain(const OrthographicLens& lens, double aspect) noexcept;
 
 // Crops a picture of another aspect, width over height, to the part about its middle that fills the light of a lens.
-// Guarantee: within 2^-51 of the largest side of the picture's region; a picture of the lens's aspect stays as it is. No
-// allocation, noexcept. The picture's depth is kept.
+// Guarantee: within 2^-51 of the largest side of the picture's region; a picture of the lens's aspect stays as it is.
+// No allocation, noexcept. The picture's depth is kept.
 // Bad input: a region without points where an aspect, the picture's or the lens's, is not positive and finite.
 inline TextureRegion cover(const PerspectiveLens& lens, double aspect,
                            TextureRegion picture = whole_texture()) noexcept;
@@ -139,37 +141,38 @@ inline TextureRegion cover(const OrthographicLens& lens, double aspect,
                            TextureRegion picture = whole_texture()) noexcept;
 
 // Makes the view V_p of a projector that stands at the position and looks at the target.
-// Guarantee: each element of the rotation within 4 double ulp of 1 (2^-50) of the definition's, its rows orthonormal within
-// that, with `up` as near to the view as 2^-98 rad; the translation -R position is within 1 ulp of its exact value for the
-// rotation that is returned, at any distance from the origin and however it cancels. No allocation, noexcept.
-// Shape: world to projector eye space; the position goes to 0, the target onto the negative z axis (positive where world and
-// eye are left-handed), up has x = 0.
-// Bad input: empty where target equals position, up is zero or parallel to the view, or a number is not finite, that of the
-// translation among them.
+// Guarantee: each element of the rotation within 4 double ulp of 1 (2^-50) of the definition's, its rows orthonormal
+// within that, with `up` as near to the view as 2^-98 rad; the translation -R position is within 1 ulp of its exact
+// value for the rotation that is returned, at any distance from the origin and however it cancels. No allocation,
+// noexcept.
+// Shape: world to projector eye space; the position goes to 0, the target onto the negative z axis (positive where
+// world and eye are left-handed), up has x = 0.
+// Bad input: empty where target equals position, up is zero or parallel to the view, or a number is not finite, that of
+// the translation among them.
 // Source: Everitt, Projective Texture Mapping, V_p in (3); OpenGL utility library, gluLookAt; DirectXMath,
 // XMMatrixLookAtLH.
 inline std::optional<ProjectorView> look_at(const Aim& aim, Handedness handedness = Handedness::right) noexcept;
 
 // Makes the view of a camera that OpenCV has posed, x_camera = R x + t, with x to the right, y down and z forwards:
-// diag(1, -1, -1) [R|t], or diag(1, -1, 1) [R|t] where the world is left-handed (then R mirrors). rotation[column][row] is
-// the element of R, which cv::Rodrigues() makes of solvePnP()'s vector.
+// diag(1, -1, -1) [R|t], or diag(1, -1, 1) [R|t] where the world is left-handed (then R mirrors). rotation[column][row]
+// is the element of R, which cv::Rodrigues() makes of solvePnP()'s vector.
 // Guarantee: each element is kept exactly; no allocation, noexcept.
 // Shape: world to projector eye space.
 // Bad input: empty for what is not finite. That R is a rotation is not asked.
 inline std::optional<ProjectorView> view_from_opencv(const glm::dmat3& rotation, const glm::dvec3& translation,
                                                      Handedness handedness = Handedness::right) noexcept;
 
-// Makes the view that a mirror shows: V R, R the reflection x - 2 n (n.x + d) / |n|^2 in the plane n.x + d = 0. A projector
-// with it throws a picture that was rendered with it back onto the plane: a planar reflection.
-// Guarantee: each element within 1 double ulp of its exact value, or 2^-96 of its terms where they cancel to less, while no
-// number but 0 leaves 2^-200 .. 2^200; no allocation, noexcept.
-// Shape: world to the mirrored eye space; (n, d) over the world, n of any length. As in every mirror the handedness is the
-// other one: what was front-facing faces back, and diagnose() is told so by LensFacts::mirrored.
+// Makes the view that a mirror shows: V R, R the reflection x - 2 n (n.x + d) / |n|^2 in the plane n.x + d = 0. A
+// projector with it throws a picture that was rendered with it back onto the plane: a planar reflection.
+// Guarantee: each element within 1 double ulp of its exact value, or 2^-96 of its terms where they cancel to less,
+// while no number but 0 leaves 2^-200 .. 2^200; no allocation, noexcept.
+// Shape: world to the mirrored eye space; (n, d) over the world, n of any length. As in every mirror the handedness is
+// the other one: what was front-facing faces back, and diagnose() is told so by LensFacts::mirrored.
 // Bad input: empty where n is zero, and where the plane, the view or an element of the result is not finite.
 inline std::optional<ProjectorView> mirrored(const ProjectorView& view, const glm::dvec4& plane) noexcept;
 
-// Makes a projector of a lens and an aim, both of the conventions' handedness: empty where either is. Guarantees as those of
-// the lens and of look_at().
+// Makes a projector of a lens and an aim, both of the conventions' handedness: empty where either is. Guarantees as
+// those of the lens and of look_at().
 inline std::optional<Projector> make_projector(const PerspectiveLens& lens, const Aim& aim,
                                                Conventions conventions) noexcept;
 inline std::optional<Projector> make_projector(const FrustumLens& lens, const Aim& aim,

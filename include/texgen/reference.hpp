@@ -57,8 +57,8 @@ Vector3<Scalar> quotient(const Vector4<Scalar>& strq) {
     return {Scalar(strq[0] / strq[3]), Scalar(strq[1] / strq[3]), Scalar(strq[2] / strq[3])};
 }
 
-// The three ways to the texture coordinate of C = (1 - alpha) A + alpha B, by their numbers in the C_u note. (1) and (2)
-// are equal. (3) is not: it agrees only where A_q = B_q, at the ends, and where A and B fall on the same point.
+// The three ways to the texture coordinate of C = (1 - alpha) A + alpha B, by their numbers in the C_u note. (1) and
+// (2) are equal. (3) is not: it agrees only where A_q = B_q, at the ends, and where A and B fall on the same point.
 
 // (1), direct projection: C in space first, then C_u = ((1 - alpha) A_u + alpha B_u) / ((1 - alpha) A_q + alpha B_q).
 // Shape: the points before texture_from_space is applied, w = 1.
@@ -95,16 +95,16 @@ Vector3<Scalar> wrong_divide_then_interpolate(const Triangle& triangle, Scalar w
 }
 
 // How far interpolate() may be from the definition, before the one rounding to float. With E = interpolation_error and
-// k_i = lambda_i / w_i, s is within E (sum |k_i s_i| + |s| Q) / (|sum k_i q_i| - E Q), Q = sum |k_i q_i|; and the sign of
-// q is right where |sum k_i q_i| > E Q. Six roundings make each sum: 2 in an edge, 2 in the products, 2 in the sum.
+// k_i = lambda_i / w_i, s is within E (sum |k_i s_i| + |s| Q) / (|sum k_i q_i| - E Q), Q = sum |k_i q_i|; and the sign
+// of q is right where |sum k_i q_i| > E Q. Six roundings make each sum: 2 in an edge, 2 in the products, 2 in the sum.
 inline constexpr double interpolation_error = 0x1p-50;
 
 // The definition at the fragments of a rect, in double.
 // Guarantee: as interpolation_error says, where every difference of a window coordinate and a pixel centre is exact in
 // double: coordinates that are 0 or at least 2^-13, below 2^17. No allocation, noexcept.
-// Shape: outputs are row-major, width * height; an empty span is not computed. In front of the projector (q > 0) s, t, r
-// are the quotients, and lit is 1 where the s and t, and with a depth the r, that are (or would be) written lie in the
-// closed region, else 0.
+// Shape: outputs are row-major, width * height; an empty span is not computed. In front of the projector (q > 0) s, t,
+// r are the quotients, and lit is 1 where the s and t, and with a depth the r, that are (or would be) written lie in
+// the closed region, else 0.
 // Behind (q <= 0) all four are 0. Outside the triangle the values are those of its plane.
 // Bad input: preconditions, asserted: as strq(), and the sizes agree. NaN and infinity in a coordinate stay in that
 // coordinate; in q they make every fragment dark.

@@ -24,17 +24,19 @@ namespace TEXGEN_NAMESPACE {
 //     |  0    0    0    1  |
 //
 // In general s runs from region.min().x at clip x = -w to region.max().x at x = w; t likewise with y, upside down where
-// the y direction and the texture origin disagree; r is depth in [0, 1] (unit) or as the projector has it (ndc). A depth of
-// the region (with_depth) changes nothing.
+// the y direction and the texture origin disagree; r is depth in [0, 1] (unit) or as the projector has it (ndc). A
+// depth of the region (with_depth) changes nothing.
 // Guarantee: each element within one rounding of a double (exact for the whole texture); no allocation, noexcept.
 // Bad input: a region with NaN gives a matrix with NaN.
 // Source: Everitt, Projective Texture Mapping, (3); the same matrix with r in NDC is SGI's recipe.
 inline ScaleBias scale_bias(Conventions conventions, TextureRegion region = whole_texture(),
                             DepthMapping depth = DepthMapping::unit) noexcept;
 
-// Takes a clip coordinate to the texture as S does, without the matrix: x, y in [-w, w] become [0, w] for the whole texture.
+// Takes a clip coordinate to the texture as S does, without the matrix: x, y in [-w, w] become [0, w] for the whole
+// texture.
 // Guarantee: each component is computed in double and rounded once: within 1/2 float ulp + 2^-51 max(|min|, |max|)
-// max(|w|, |x|). The edges of the picture are exact: x = -w gives min * w and x = w gives max * w. No allocation, noexcept.
+// max(|w|, |x|). The edges of the picture are exact: x = -w gives min * w and x = w gives max * w. No allocation,
+// noexcept.
 // Shape: the projector's clip coordinates in, homogeneous (s, t, r, q) out; q = w.
 // Bad input: NaN and infinity stay in their component (w is in all of them).
 inline glm::vec4 to_texture(glm::vec4 projector_clip, Conventions conventions, TextureRegion region = whole_texture(),

@@ -61,22 +61,23 @@ struct SceneWork {
 inline namespace TEXGEN_COMPILER {
 
 // Keeps what of a scene is lit by which projector, from frame to frame.
-// Guarantee: after update() no pair is missing of which a point of the object's closed box is lit by T_o = object_linear()
-// of the engine's matrices, and pairs() are those that coverage() of T_o and the box does not call outside, with its
-// answer, whatever the numbers are. They are in the order of the objects, and for each in that of the projectors, whatever
-// happened before: two scenes that see the same arrays have the same pairs and the same matrices. Nothing of the engine's is
-// kept but copies. Memory is allocated only in an update, and only when the number of objects, of projectors or of lit
-// pairs exceeds all former ones; noexcept.
-// Cost: an update in which nothing changed does nothing. Otherwise only pairs of which a part changed are tested, through
-// a tree over the objects' bounds in the world: a changed projector costs what its light is near to, a changed object at
-// most one test a projector and level (5 for 10 000 objects), fewer where the light is far from all that changed; what is
-// found costs a T_o and a coverage(); and the lit pairs are gone through once, at about a nanosecond each. The tree is sorted
-// anew as objects change, a few objects for each: no update sorts all, but one that changes or adds as many. Memory: 250 bytes
-// an object, 1050 a projector, 170 a lit pair, up to twice that where they came one by one.
-// Bad input: where T_o, as it is computed, or a box is not finite, the pair is partial and kept, as coverage() has it: where
-// a product of finite matrices overflows, too. An empty box is never lit. Where exponents are so far apart that coverage()
-// might not say (elements beyond 2^+-200, or 2^190 apart), an object meets every projector, a projector every
-// object.
+// Guarantee: after update() no pair is missing of which a point of the object's closed box is lit by T_o =
+// object_linear() of the engine's matrices, and pairs() are those that coverage() of T_o and the box does not call
+// outside, with its answer, whatever the numbers are. They are in the order of the objects, and for each in that of the
+// projectors, whatever happened before: two scenes that see the same arrays have the same pairs and the same matrices.
+// Nothing of the engine's is kept but copies. Memory is allocated only in an update, and only when the number of
+// objects, of projectors or of lit pairs exceeds all former ones; noexcept.
+// Cost: an update in which nothing changed does nothing. Otherwise only pairs of which a part changed are tested,
+// through a tree over the objects' bounds in the world: a changed projector costs what its light is near to, a changed
+// object at most one test a projector and level (5 for 10 000 objects), fewer where the light is far from all that
+// changed; what is found costs a T_o and a coverage(); and the lit pairs are gone through once, at about a nanosecond
+// each. The tree is sorted anew as objects change, a few objects for each: no update sorts all, but one that changes or
+// adds as many. Memory: 250 bytes an object, 1050 a projector, 170 a lit pair, up to twice that where they came one by
+// one.
+// Bad input: where T_o, as it is computed, or a box is not finite, the pair is partial and kept, as coverage() has it:
+// where a product of finite matrices overflows, too. An empty box is never lit. Where exponents are so far apart that
+// coverage() might not say (elements beyond 2^+-200, or 2^190 apart), an object meets every projector, a projector
+// every object.
 // Spans that disagree in size, and an index that names nothing, are asserted; beyond the shortest nothing is
 // looked at. What changed without being named stays as it was; with assertions on, that is asserted too, as far as the
 // bounds in the world show it.
@@ -93,13 +94,14 @@ public:
     // Finds the pairs of one object, by bisection.
     std::span<const LitPair> pairs_of(std::uint32_t object) const noexcept;
 
-    // T_o of the pairs, each at its own place: those that no pair names are of no meaning. A pair keeps its place until it
-    // changes.
+    // T_o of the pairs, each at its own place: those that no pair names are of no meaning. A pair keeps its place until
+    // it changes.
     std::span<const ObjectTexgen> texgens() const noexcept { return texgens_; }
     const ObjectTexgen& texgen(const LitPair& pair) const noexcept { return texgens_[pair.texgen]; }
 
-    // Makes T_e = eye_linear() of each projector of the last update, for this camera: of those that changed since, or of all
-    // when the camera moved. Returns how many. One matrix of eye_texgens() then serves all objects of a projector.
+    // Makes T_e = eye_linear() of each projector of the last update, for this camera: of those that changed since, or
+    // of all when the camera moved. Returns how many. One matrix of eye_texgens() then serves all objects of a
+    // projector.
     std::size_t update_eye(const CameraPose& world_from_eye) noexcept;
     std::span<const EyeTexgen> eye_texgens() const noexcept { return eye_texgens_; }
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// Floor 4: texture coordinates of points. generate() gives the homogeneous (s, t, r, q) that a fragment shader divides (see
-// README.md, "In a shader"); project() divides them here, and says which points the slide falls on.
+// Floor 4: texture coordinates of points. generate() gives the homogeneous (s, t, r, q) that a fragment shader divides
+// (see README.md, "In a shader"); project() divides them here, and says which points the slide falls on.
 
 #include "detail/language.hpp"
 
@@ -31,8 +31,8 @@
 
 namespace TEXGEN_NAMESPACE {
 
-// Divided coordinates, planar. An empty span is not computed. lit is 1 where the slide falls and 0 elsewhere: in the sides
-// of its region and, where it has one, in its depth.
+// Divided coordinates, planar. An empty span is not computed. lit is 1 where the slide falls and 0 elsewhere: in the
+// sides of its region and, where it has one, in its depth.
 struct Texcoords {
     std::span<float> s = {}, t = {}, r = {}, lit = {};
 };
@@ -52,8 +52,8 @@ public:
     Positions(const float* x, const float* y, const float* z, std::size_t count, std::size_t stride_bytes) noexcept
         : x_(x), y_(y), z_(z), count_(count), stride_bytes_(stride_bytes) {}
 
-    // An array of vectors; three arrays (of one size, asserted; else there are no points); x, y, z that follow one another every
-    // stride_bytes.
+    // An array of vectors; three arrays (of one size, asserted; else there are no points); x, y, z that follow one
+    // another every stride_bytes.
     explicit Positions(std::span<const glm::vec3> points) noexcept
         : Positions(points.empty() ? nullptr : &points[0].x, points.size(), sizeof(glm::vec3)) {}
     explicit Positions(std::span<const float> x, std::span<const float> y, std::span<const float> z) noexcept
@@ -66,10 +66,10 @@ public:
 
     std::size_t size() const noexcept { return count_; }
 
-    // The same points, with the caller's word that all of them lie in a box (asserted), as an engine has one of each mesh:
-    // project() then bounds its errors once instead of block by block. Values are right by the same promises; `exact`
-    // has the same bits. Without assertions a point that is not in the box, as a NaN, gets what nothing bounds, and spoils
-    // no other. A box with min > max or a NaN is ignored.
+    // The same points, with the caller's word that all of them lie in a box (asserted), as an engine has one of each
+    // mesh: project() then bounds its errors once instead of block by block. Values are right by the same promises;
+    // `exact` has the same bits. Without assertions a point that is not in the box, as a NaN, gets what nothing bounds,
+    // and spoils no other. A box with min > max or a NaN is ignored.
     Positions within(const Box& box) const noexcept;
 
     // The box that within() was given; min > max without one.
@@ -120,8 +120,8 @@ struct Position {
     explicit Position(const glm::vec<Length, Number, Q>&) = delete;
 };
 
-// Points of a space from an array of vectors, from three arrays (of one size, asserted), or from x, y, z that follow one
-// another every stride_bytes; and one point, which is a glm::vec3: what has doubles or a w does not compile.
+// Points of a space from an array of vectors, from three arrays (of one size, asserted), or from x, y, z that follow
+// one another every stride_bytes; and one point, which is a glm::vec3: what has doubles or a w does not compile.
 inline Positions<Object> object_space(std::span<const glm::vec3> points) noexcept { return Positions<Object>(points); }
 inline Positions<Object> object_space(std::span<const float> x, std::span<const float> y,
                                       std::span<const float> z) noexcept {
@@ -196,8 +196,8 @@ void generate(const Transform<Texture, Space>& texture_from_space, Positions<Spa
 // Guarantee: in front (q > 0, decided exactly) each is within max(tolerance, 1/2 ulp) of the exact value of the given
 // numbers (r: the tolerance relative to max(1, |r|)). With `exact` each is the nearest float, whatever the layout, the
 // count, the place or the build, as long as no product of a matrix element and a coordinate leaves 2^-900 .. 2^1000.
-// lit = 1 inside the closed region, decided from the s and t, and with a depth from the r, that are (or would be) written.
-// Behind, s = t = r = lit = 0. A depth costs at most what r costs; where s and t leave many
+// lit = 1 inside the closed region, decided from the s and t, and with a depth from the r, that are (or would be)
+// written. Behind, s = t = r = lit = 0. A depth costs at most what r costs; where s and t leave many
 // neighbours dark, r is not computed for them. No allocation, noexcept.
 // Shapes: as many outputs as positions, or none (asserted); outputs must not overlap the positions.
 // Bad input: NaN and infinity spoil their own point only; a point whose q is NaN is behind.
@@ -212,8 +212,8 @@ void project(const Transform<Texture, Space>& texture_from_space, Positions<Spac
              Tolerance tolerance = exact) noexcept;
 
 // Divides one point: (s/q, t/q), empty behind the projector.
-// Guarantee: the floats that the others give with `exact`: each the nearest; empty for q <= 0, decided exactly, and for a NaN
-// q. No allocation, noexcept.
+// Guarantee: the floats that the others give with `exact`: each the nearest; empty for q <= 0, decided exactly, and for
+// a NaN q. No allocation, noexcept.
 // Source: as above.
 template <class Space>
 std::optional<glm::vec2> project(const Transform<Texture, Space>& texture_from_space,
@@ -224,7 +224,8 @@ std::optional<glm::vec2> project(const Transform<Texture, Space>& texture_from_s
 // Bounds the error of each coordinate (s, t, r, q) that generate() gives of these positions.
 // Guarantee: |computed - exact| is at most this for every position, the rounding to float included: 1/2 ulp +
 // 2^-50 sum |T_ij v_j|, where that is largest. No allocation, noexcept; it looks at every position.
-// Bad input: a NaN or an infinity of a matrix's row or of a position makes a NaN or an infinity of the bounds it reaches.
+// Bad input: a NaN or an infinity of a matrix's row or of a position makes a NaN or an infinity of the bounds it
+// reaches.
 template <class Space>
 glm::dvec4 generate_error_bound(const Transform<Texture, Space>& texture_from_space,
                                 Positions<Space> positions) noexcept;

@@ -39,8 +39,8 @@ public:
     const glm::dmat4& matrix() const noexcept { return matrix_; }
     glm::mat4 rounded() const noexcept { return glm::mat4(matrix_); }
 
-    // Returns the matrix M for v_to = v_from * M, as in HLSL's mul(v, M): the transpose of rounded(). What holds its rows one
-    // after another (row_major in HLSL, an XMFLOAT4X4) takes the memory of rounded() instead.
+    // Returns the matrix M for v_to = v_from * M, as in HLSL's mul(v, M): the transpose of rounded(). What holds its
+    // rows one after another (row_major in HLSL, an XMFLOAT4X4) takes the memory of rounded() instead.
     glm::mat4 rounded_for_row_vectors() const noexcept { return glm::transpose(rounded()); }
 
 private:
@@ -53,11 +53,11 @@ Transform<A, C> operator*(const Transform<A, B>& a_from_b, const Transform<B, C>
     return Transform<A, C>(a_from_b.matrix() * b_from_c.matrix());
 }
 
-// Makes the Transform of a matrix M that was written for row vectors, v_to = v_from * M, as Direct3D's and Unreal's are:
-// from_row_vectors<Eye, World>(view) is its transpose.
+// Makes the Transform of a matrix M that was written for row vectors, v_to = v_from * M, as Direct3D's and Unreal's
+// are: from_row_vectors<Eye, World>(view) is its transpose.
 // Guarantee: each element is kept exactly; no allocation, noexcept.
-// Shape: matrix[column][row] is the element of M, which has its translation in row 3. Of 16 floats: row after row, as an
-// XMFLOAT4X4 is in memory. (Those 16 copied into a mat4 are the transpose already: a Transform of it is right.)
+// Shape: matrix[column][row] is the element of M, which has its translation in row 3. Of 16 floats: row after row, as
+// an XMFLOAT4X4 is in memory. (Those 16 copied into a mat4 are the transpose already: a Transform of it is right.)
 // Bad input: as Transform.
 template <class To, class From>
 Transform<To, From> from_row_vectors(const glm::mat4& matrix) noexcept;
@@ -81,19 +81,19 @@ using WorldTexgen = Transform<Texture, World>;                       // S P_p V_
 using WindowTexgen = Transform<Texture, Window>;                     // T_w
 
 // Inverts a transform.
-// Guarantee: where it answers, each element of X = A^-1 is within 2 double ulp of the largest of its terms in X A X, while
-// the condition of A (rows and columns scaled) stays below 1e8, however far apart its elements are, as long as that term
-// is (likewise scaled) above 2^-900; an element without terms is 0. The answer is certified by its residual,
-// never by the size of a determinant, so any uniform scale is regular. An affine A has an exactly affine X. No allocation,
-// noexcept.
-// Bad input: empty for a matrix that is singular to working precision, is not finite, or whose inverse overflows, and where
-// an element is below 2^-900 of others in its row or column: scaling could round it.
+// Guarantee: where it answers, each element of X = A^-1 is within 2 double ulp of the largest of its terms in X A X,
+// while the condition of A (rows and columns scaled) stays below 1e8, however far apart its elements are, as long as
+// that term is (likewise scaled) above 2^-900; an element without terms is 0. The answer is certified by its residual,
+// never by the size of a determinant, so any uniform scale is regular. An affine A has an exactly affine X. No
+// allocation, noexcept.
+// Bad input: empty for a matrix that is singular to working precision, is not finite, or whose inverse overflows, and
+// where an element is below 2^-900 of others in its row or column: scaling could round it.
 // Source: the residual bounds the error of any inverse: Higham, Accuracy and Stability of Numerical Algorithms, 14.
 template <class To, class From>
 std::optional<Transform<From, To>> inverse(const Transform<To, From>& transform) noexcept;
 
-// Bounds |inverse - transform^-1|, element by element, for any `inverse`: that of inverse(), of inverse_rigid(), a rounded
-// one, or one from elsewhere.
+// Bounds |inverse - transform^-1|, element by element, for any `inverse`: that of inverse(), of inverse_rigid(), a
+// rounded one, or one from elsewhere.
 // Guarantee: next to the error itself while the condition (rows and columns scaled) stays below 1e7. No allocation,
 // noexcept; it costs about what inverse() does.
 // Shape: elements as in inverse.matrix().
@@ -102,9 +102,10 @@ std::optional<Transform<From, To>> inverse(const Transform<To, From>& transform)
 template <class To, class From>
 glm::dmat4 inverse_error_bound(const Transform<To, From>& transform, const Transform<From, To>& inverse) noexcept;
 
-// Inverts a rotation and a translation, by transposing: the inverse for a camera or a projector that is posed without scale.
-// Guarantee: exact transposition of the rotation; the translation -R^T t within 1 double ulp of its exact value for that
-// rotation, while its terms do not cancel below 2^-50 of the largest. No allocation, noexcept.
+// Inverts a rotation and a translation, by transposing: the inverse for a camera or a projector that is posed without
+// scale.
+// Guarantee: exact transposition of the rotation; the translation -R^T t within 1 double ulp of its exact value for
+// that rotation, while its terms do not cancel below 2^-50 of the largest. No allocation, noexcept.
 // Precondition, asserted to 1e-3: the transform is rigid (an orthonormal rotation and a translation).
 template <class To, class From>
 Transform<From, To> inverse_rigid(const Transform<To, From>& transform) noexcept;

@@ -151,8 +151,8 @@ TEST_CASE("up next to a difference that no doubles hold turns nothing, down to 2
     double rotation = 0.0, orthonormality = 0.0;
     std::string worst_input;
     for (int i = 0; i < 1000; ++i) {
-        // target - position is (a + b) direction and a little more; its components are rounded apart. Up is the direction and
-        // a little more, so that the products of 2^-54 cancel but for what is next to 2^-96.
+        // target - position is (a + b) direction and a little more; its components are rounded apart. Up is the
+        // direction and a little more, so that the products of 2^-54 cancel but for what is next to 2^-96.
         const glm::dvec3 direction{random.integer(1 << 25, 1 << 26), random.integer(1 << 25, 1 << 26), 0.0};
         const double a = random.integer(1 << 9, 1 << 10);
         const double b = std::ldexp(random.integer(1 << 25, 1 << 26), -62);

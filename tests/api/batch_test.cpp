@@ -77,8 +77,9 @@ Shot almost_without_area(Random& random) {
     return {triangle, {random.integer(0, 9), random.integer(0, 9), 4, 3}};
 }
 
-// A sliver 2^20 long and more at the window's edge, of a q/w that is all but constant, and a rectangle at the ends of int; or s/q is
-// half-way between two floats at every fragment there, being 0 2^24 pixels nearer, of functions of more bits than a double.
+// A sliver 2^20 long and more at the window's edge, of a q/w that is all but constant, and a rectangle at the ends of
+// int; or s/q is half-way between two floats at every fragment there, being 0 2^24 pixels nearer, of functions of more
+// bits than a double.
 Shot far_sliver(Random& random) {
     Triangle triangle = support::make_triangle(support::Family::parallel, random);
     const int axis = random.integer(0, 1), first = random.integer(0, 2);
@@ -119,7 +120,8 @@ Shot steep(Random& random) {
     return {triangle, {random.integer(0, 9), random.integer(0, 9), 8, 8}};
 }
 
-// Where pixels leave the ints u is half-way at every fragment, s = t = 2^-24 x - 127.5, but for a corner that is off its place.
+// Where pixels leave the ints u is half-way at every fragment, s = t = 2^-24 x - 127.5, but for a corner that is off
+// its place.
 Shot ties_at_the_last_int(Random& random) {
     const float off = std::ldexp(random.coin() ? 1.0f : -1.0f, random.integer(-80, -20));
     const auto corner = [](float x, float y, float u) {
@@ -129,8 +131,8 @@ Shot ties_at_the_last_int(Random& random) {
             {0x7fffffff - random.integer(0, 7), random.integer(0, 9), random.integer(1, 16), random.integer(1, 4)}};
 }
 
-// u = 1/2 + 2^-24 (a x + b y) at w = q is half-way between two floats at every fragment of the tile, or next to it: a corner may
-// be `off` the pixels' by less than a double sees in u.
+// u = 1/2 + 2^-24 (a x + b y) at w = q is half-way between two floats at every fragment of the tile, or next to it: a
+// corner may be `off` the pixels' by less than a double sees in u.
 Shot ties_everywhere(Random& random, float off = 1.0f) {
     const int dx = 2 * random.integer(0, 3) + 1, dy = 2 * random.integer(0, 3);
     const float w = std::ldexp(random.coin() ? 1.0f : 1.5f, random.integer(-3, 3));
@@ -398,7 +400,8 @@ TEST_CASE(
     "whatever tolerance a tile is divided in float for, it is within it: from far below what floats can to above") {
     Random random(7);
     for (int round = 0; round < 60; ++round) {
-        // s and t run from about -1 to 1 and 0 stands in the tile, so that the steps from the middle are all there is to round.
+        // s and t run from about -1 to 1 and 0 stands in the tile, so that the steps from the middle are all there is
+        // to round.
         const auto strq = [&](double q, double s, double t) {
             return glm::vec4(support::to_float(s * q), support::to_float(t * q), 0.0f, support::to_float(q));
         };
@@ -516,7 +519,8 @@ TEST_CASE(
 TEST_CASE("a tie that has more bits than two doubles is decided as for each triangle alone") {
     Random random(9);
     for (int round = 0; round < 2000; ++round) {
-        // The fragment is half-way between a and b, where (w_b s_a + w_a s_b) / (w_a + w_b) is the middle of two floats.
+        // The fragment is half-way between a and b, where (w_b s_a + w_a s_b) / (w_a + w_b) is the middle of two
+        // floats.
         const FragmentRect rect{random.integer(600, 1000), random.integer(600, 1000), 1, 1};
         const auto odd = [&] { return 2 * random.integer(1 << 16, 1 << 18) + 1; };
         const int w[2] = {odd(), odd()};

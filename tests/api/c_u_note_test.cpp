@@ -1,5 +1,5 @@
-// The three options of the C_u note, as properties over random segments in exact rationals. The projector looks down -z:
-// u = k x / -z from where it stands, so that s = k x and q = -z.
+// The three options of the C_u note, as properties over random segments in exact rationals. The projector looks down
+// -z: u = k x / -z from where it stands, so that s = k x and q = -z.
 
 #include <doctest/doctest.h>
 

@@ -163,7 +163,8 @@ bool is_convex(const Polygon& polygon) {
     return !(any_left && any_right);
 }
 
-// Anywhere about the slide, in front more often than not; now and then exactly on a side, at q = 0, or at the projector.
+// Anywhere about the slide, in front more often than not; now and then exactly on a side, at q = 0, or at the
+// projector.
 ClipVertex slide_vertex(Random& random, const TextureRegion& region, double spread = 1.5) {
     const glm::dvec2 size = region.max() - region.min(), middle = 0.5 * (region.min() + region.max());
     double q = random.power_of_ten(-2.0, 3.0) * (random.uniform(0.0, 1.0) < 0.7 ? 1.0 : -1.0);
@@ -188,7 +189,8 @@ ClipVertex slide_vertex(Random& random, const TextureRegion& region, double spre
     return v;
 }
 
-// An affine image of a regular polygon on the slide, at the depths of a plane: convex but for the rounding of its floats.
+// An affine image of a regular polygon on the slide, at the depths of a plane: convex but for the rounding of its
+// floats.
 Polygon slide_polygon(Random& random, const TextureRegion& region) {
     const int corners = random.integer(3, 7);
     const glm::dvec2 size = region.max() - region.min(), middle = 0.5 * (region.min() + region.max());
@@ -508,7 +510,8 @@ TEST_CASE("a vertex that one side makes is the exact intersection, each componen
 }
 
 TEST_CASE("a side next to 0 cuts where it is, whatever floats meet there") {
-    // s = 2^-400 q, from s = 0 at q = 2^127 to s = 2^-149 at q = 1: at 2^-124 of the edge, where a position of 2^26 is 0.
+    // s = 2^-400 q, from s = 0 at q = 2^127 to s = 2^-149 at q = 1: at 2^-124 of the edge, where a position of 2^26 is
+    // 0.
     const auto vertex = [](float x, float s, float q) { return ClipVertex{{x, 0.0f, 0.0f, 1.0f}, {s, 0.0f, 0.0f, q}}; };
     const Polygon polygon{vertex(0x1p26f, 0x1p-149f, 1.0f), vertex(1.0f, 0.0f, 0x1p127f), vertex(3.0f, 1.0f, 1.0f)};
     const Polygon out = clipped(polygon, atlas_tile({0x1p-400, -1.0}, {2.0, 1.0}));

@@ -1,4 +1,5 @@
-// Every combination of conventions as a table: corners, centre, near and far of the slide land where the conventions say.
+// Every combination of conventions as a table: corners, centre, near and far of the slide land where the conventions
+// say.
 
 #include "texgen/conventions.hpp"
 

@@ -628,8 +628,8 @@ TEST_CASE("no box of a hostile family is outside or inside that is not, and the 
 }
 
 TEST_CASE("a box that touches an edge of the pyramid at one point is not outside") {
-    // The apex in the origin, s = t = 0 exactly along the edge through P: rows P x A of integers have no rounding, but the
-    // plane through that edge parallel to an axis has. Each box has P on an edge parallel to the axis, and nothing
+    // The apex in the origin, s = t = 0 exactly along the edge through P: rows P x A of integers have no rounding, but
+    // the plane through that edge parallel to an axis has. Each box has P on an edge parallel to the axis, and nothing
     // beyond the plane.
     Random random(320);
     const auto integers = [&](int most) {
@@ -858,7 +858,8 @@ private:
 }  // namespace
 
 TEST_CASE("a sphere that just reaches an edge far from the origin is not outside") {
-    // s = a (x - x of the edge) and t likewise, over q = 1: the rounding of a x is far above the ulp of a small distance.
+    // s = a (x - x of the edge) and t likewise, over q = 1: the rounding of a x is far above the ulp of a small
+    // distance.
     Random random(47);
     int touching = 0;
     for (int i = 0; i < 20000; ++i) {

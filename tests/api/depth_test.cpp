@@ -1,5 +1,5 @@
-// A region with a depth: what is lit of points, segments and triangles ends where the projector's planes, or any other limits
-// of r, are; and nothing else changes.
+// A region with a depth: what is lit of points, segments and triangles ends where the projector's planes, or any other
+// limits of r, are; and nothing else changes.
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
-// The diagnosis of products that users make by hand: the mistakes of the papers' readers are named first, whatever the API,
-// the lens, the place and the precision, and what is right is not found fault with.
+// The diagnosis of products that users make by hand: the mistakes of the papers' readers are named first, whatever the
+// API, the lens, the place and the precision, and what is right is not found fault with.
 
 #include <doctest/doctest.h>
 
@@ -329,8 +329,8 @@ bool is_of_range(Mistake mistake) {
     return mistake == Mistake::lens_of_other_range || mistake == Mistake::bias_of_other_range;
 }
 
-// Whether floats have kept what the mistake changes: of depths whose far plane is infinitely far that is a distance, near
-// beside far away; of a lens as wide as half the world its angle.
+// Whether floats have kept what the mistake changes: of depths whose far plane is infinitely far that is a distance,
+// near beside far away; of a lens as wide as half the world its angle.
 bool leaves_a_trace(const Meant& m, Mistake mistake, Told told) {
     if (is_of_range(mistake) && m.kind == LensKind::infinite)
         return m.z_near > (told == Told::projector ? 1e-5 : 1e-3) * distance_of(m);
@@ -369,7 +369,8 @@ constexpr std::array mistakes{
     Mistake::radians, Mistake::lens_of_other_range, Mistake::bias_of_other_range, Mistake::bias_without_w,
     Mistake::no_bias, Mistake::pose_for_view,       Mistake::inverted_aspect,     Mistake::lens_of_other_hand};
 
-// Of the rest nothing is seen without the projector: a pose is the view of another, and a lens that looks back a turned one.
+// Of the rest nothing is seen without the projector: a pose is the view of another, and a lens that looks back a turned
+// one.
 bool needs_projector(Mistake mistake) {
     return mistake == Mistake::pose_for_view || mistake == Mistake::lens_of_other_hand;
 }

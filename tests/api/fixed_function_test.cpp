@@ -621,8 +621,8 @@ TEST_CASE("coordinates at either end of the range of float neither overflow nor 
                                 .generate({.position = {}}, scale(size, size, size));
         CHECK(n == glm::vec4(0, 0, 1, 1));
     }
-    // The inverse holds 1e38 1e44 1e44, so this normal is too long to square; its direction is not, and a reflection in it
-    // points along it.
+    // The inverse holds 1e38 1e44 1e44, so this normal is too long to square; its direction is not, and a reflection in
+    // it points along it.
     glm::mat4 steep = scale(1e-44f, 1e-44f, 1e-44f);
     steep[1][0] = 1e38f;
     steep[2][0] = 1e38f;

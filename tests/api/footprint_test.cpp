@@ -369,8 +369,8 @@ TEST_CASE("level, anisotropy and major axis are those of the exact Jacobian") {
 }
 
 TEST_CASE("where the derivatives of a row nearly vanish at one fragment, it is as right as the others") {
-    // S = x - 200.5 and Q = y - (100.5 - 2^-20): along the row Q does not vary, and both columns vanish with the distance
-    // from a point 2^-20 of a pixel from the centre of fragment (200, 100).
+    // S = x - 200.5 and Q = y - (100.5 - 2^-20): along the row Q does not vary, and both columns vanish with the
+    // distance from a point 2^-20 of a pixel from the centre of fragment (200, 100).
     Triangle triangle{};
     const std::array window{glm::vec2(0, 100), glm::vec2(400, 100), glm::vec2(200, 101)};
     const auto corner = support::vertices(triangle);
@@ -729,8 +729,8 @@ TEST_CASE("next to q = 0 and behind it the extremes say so") {
     CHECK(nearest->level > farthest->level + 8.0);
     CHECK(!setup.extremes({0, 0, 0, 5}).has_value());
 
-    // The same where q is 0 in the middle of a fragment, and only rounding could say that it is not: s and q vary with x
-    // alone, so that no part of the rectangle has other numerators.
+    // The same where q is 0 in the middle of a fragment, and only rounding could say that it is not: s and q vary with
+    // x alone, so that no part of the rectangle has other numerators.
     const Triangle root = flat({glm::vec2(0.5f, 0), glm::vec2(200.5f, 0), glm::vec2(0.5f, 200)},
                                {glm::vec3(0.5f, 0, -1), glm::vec3(0.25f, 0, 1), glm::vec3(0.5f, 0, -1)});
     const FootprintSetup at_root(setup_of(root), {256.0, 256.0});
@@ -843,8 +843,9 @@ TEST_CASE("a footprint of any finite derivatives is that of 400 bits, next to le
 }
 
 TEST_CASE("triangles that double cannot hold the differences of keep their bounds and their extremes") {
-    // Corners that differ by 2^-142 of the third's distance; a Q that grows to 2^269 over one pixel; and weights of 2^-410,
-    // of which products of two are below all doubles; and a Q of 2^-514, the square of which is below all doubles.
+    // Corners that differ by 2^-142 of the third's distance; a Q that grows to 2^269 over one pixel; and weights of
+    // 2^-410, of which products of two are below all doubles; and a Q of 2^-514, the square of which is below all
+    // doubles.
     const auto corner = [](float x, float y, float w, const glm::vec4& strq) { return WindowVertex{{x, y}, w, strq}; };
     const float tiny = 0x1.fcp-143f;
     const Triangle close{corner(-1.0f, 1.0f, 256.0f, {-1.0f, 62.0f, 2.0f, -0.0f}),
@@ -927,7 +928,8 @@ TEST_CASE("a Jacobian of rank 1 or 0, and texels that are none, get what the hea
         CHECK(one->singular_values.y == 0.0);
         CHECK(setup.extremes(rect)->largest_anisotropy == infinity_double);
     }
-    // t = 3/4 s at every corner, with all the digits that floats have for it: the rank is exact, sums of doubles are not.
+    // t = 3/4 s at every corner, with all the digits that floats have for it: the rank is exact, sums of doubles are
+    // not.
     Random random(6700);
     for (int i = 0; i < 200; ++i) {
         Triangle thin = spread_triangle(random, 4.0);

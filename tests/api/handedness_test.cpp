@@ -1,5 +1,5 @@
-// Left-handed worlds: DirectX's own formulas, from their published definitions, and the mirror that makes a right-handed
-// world of one.
+// Left-handed worlds: DirectX's own formulas, from their published definitions, and the mirror that makes a
+// right-handed world of one.
 
 #include <doctest/doctest.h>
 
@@ -158,7 +158,8 @@ TEST_CASE(
                 for (int column = 0; column < 4; ++column) {
                     const Real& element = exact[static_cast<std::size_t>(column)][static_cast<std::size_t>(row)];
                     const double error = static_cast<double>(abs(Real(view->matrix()[column][row]) - element));
-                    // The translation's terms are as long as the position; so is what the rotation's rounding does to it.
+                    // The translation's terms are as long as the position; so is what the rotation's rounding does to
+                    // it.
                     size = column < 3 ? 1.0 : glm::length(aim.position);
                     const double ulps = error / (size * 0x1p-52);
                     if (ulps > worst)

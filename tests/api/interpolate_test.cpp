@@ -73,8 +73,8 @@ Shot row_of_ties(int width, int height, Random& random) {
     return {{vertex(0, 0), vertex(1024, 0), vertex(random.integer(0, 2), 1024)}, {x, y, width, height}};
 }
 
-// Such an s at every fragment, or at every third, but the corners' y have up to 50 bits more than their x: what the functions are
-// made of is too long for two doubles.
+// Such an s at every fragment, or at every third, but the corners' y have up to 50 bits more than their x: what the
+// functions are made of is too long for two doubles.
 Shot ties_of_long_numbers(int width, int height, Random& random) {
     const int x = random.integer(-100, 100), y = random.integer(-100, 100);
     const int step = 2 * random.integer(1, 1000) + 1;
@@ -90,8 +90,8 @@ Shot ties_of_long_numbers(int width, int height, Random& random) {
             {x, y, width, height}};
 }
 
-// s/q is the same everywhere while q varies, and is so near to the middle of two floats that no bound in double can tell:
-// with an odd m of 25 bits and m q = 1 (mod 2^24), s = (m q - 1) / 2^24 is m q / 2^24 up to 2^-48 of itself.
+// s/q is the same everywhere while q varies, and is so near to the middle of two floats that no bound in double can
+// tell: with an odd m of 25 bits and m q = 1 (mod 2^24), s = (m q - 1) / 2^24 is m q / 2^24 up to 2^-48 of itself.
 Shot near_ties_with_varying_q(int width, int height, Random& random) {
     std::int64_t m = 0, q = 0, s = 0;
     do {
@@ -111,8 +111,8 @@ Shot near_ties_with_varying_q(int width, int height, Random& random) {
     return {{vertex(-7, -5), vertex(1031, 2), vertex(3, 1033)}, {x, y, width, height}};
 }
 
-// s/q grows along a row and is, at one column alone, the middle M of two floats. With q = 1 + t for t = (2 column + 1) / 2048,
-// and k = 2 column + 1, in units of 2^-25: (M - j k) (1 - t) + (2 M + j (2048 - k)) t = M (1 + t).
+// s/q grows along a row and is, at one column alone, the middle M of two floats. With q = 1 + t for t = (2 column + 1)
+// / 2048, and k = 2 column + 1, in units of 2^-25: (M - j k) (1 - t) + (2 M + j (2048 - k)) t = M (1 + t).
 Shot row_with_a_tie(int column, int width, int height, Random& random) {
     const int k = 2 * column + 1;
     std::int64_t first = 0, last = 0;
@@ -286,8 +286,8 @@ TEST_CASE("what has more bits than a residue is not what the residue says: neith
     Seen seen;
     const auto bits = [&] { return random.coin() ? random.uniform_float(1.0, 2.0) : random.uniform_float(-2.0, -1.0); };
     for (int i = 0; i < 300; ++i) {
-        // s and q are multiples of a far corner's last bit, by so many times 2^64 on the side ab; s/q is half-way between two
-        // subnormal floats.
+        // s and q are multiples of a far corner's last bit, by so many times 2^64 on the side ab; s/q is half-way
+        // between two subnormal floats.
         const float s = static_cast<float>(2 * random.integer(1, 1000) + 1) * 0x1p-149f;
         const float off = std::ldexp(1.0f, random.integer(-110, -40));
         const Triangle flat{{{0.0f, 0.5f}, 1.0f, {s, s, s, 2.0f}},

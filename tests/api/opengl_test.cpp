@@ -1,4 +1,5 @@
-// A real OpenGL as the judge of stored planes, of the five modes and of fragments. Skipped (exit 77) where there is none.
+// A real OpenGL as the judge of stored planes, of the five modes and of fragments. Skipped (exit 77) where there is
+// none.
 
 #include <doctest/doctest.h>
 
@@ -819,8 +820,8 @@ TEST_CASE("OpenGL's textureQueryLod is the level of detail, within what its diff
     CHECK(compared > 20000);
     CHECK(minified > 5000);
     CHECK(magnified > 2000);
-    // The specification lets rho be approximated by as little as the larger of m_u and m_v, half a level below; Mesa does
-    // not.
+    // The specification lets rho be approximated by as little as the larger of m_u and m_v, half a level below; Mesa
+    // does not.
     CHECK(lowest > -0.1);
     CHECK(highest < 0.02);
 }

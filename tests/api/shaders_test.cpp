@@ -1,6 +1,6 @@
 // The README's shaders, as they are written there, compiled and run by a real OpenGL and compared with what the library
-// computes for the same fragments. Skipped (exit 77) where there is none. Each shader is broken as well, in the ways that
-// users break them, and the comparison must notice.
+// computes for the same fragments. Skipped (exit 77) where there is none. Each shader is broken as well, in the ways
+// that users break them, and the comparison must notice.
 
 #include <doctest/doctest.h>
 
@@ -105,8 +105,8 @@ std::optional<texgen::Projector> projector_at(const glm::dvec3& position, const 
         texgen::Aim{.position = position, .target = target, .up = {0.0, 1.0, 0.0}}, texgen::opengl);
 }
 
-// A floor from near the camera to far away. The slide falls on it from above; or the projector stands on its far side, so
-// that the floor reaches behind it, to where the slide would be seen again without a gate.
+// A floor from near the camera to far away. The slide falls on it from above; or the projector stands on its far side,
+// so that the floor reaches behind it, to where the slide would be seen again without a gate.
 Scene random_scene(Random& random, bool reaches_behind) {
     const auto projector = reaches_behind ? projector_at({0.0, 0.0, -15.0}, {random.uniform(-1.0, 1.0), 1.0, 0.0})
                                           : projector_at({2.0, 5.0, 5.0}, {-2.0, -4.0, 0.0});
@@ -200,8 +200,8 @@ struct Fragment {
     glm::dvec3 allowed;
 };
 
-// The texel that a coordinate falls into: -1 before the texture, `size` beyond it, and nothing where either of two may be
-// right.
+// The texel that a coordinate falls into: -1 before the texture, `size` beyond it, and nothing where either of two may
+// be right.
 std::optional<int> texel(double u, double allowed) {
     const double low = std::floor((u - allowed) * size), high = std::floor((u + allowed) * size);
     if (low != high) return std::nullopt;

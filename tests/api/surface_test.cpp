@@ -1,5 +1,5 @@
-// What the projection makes of a surface, against exact values: the side that the projector sees, areas and slopes on the slide,
-// and the homography of a quadrilateral.
+// What the projection makes of a surface, against exact values: the side that the projector sees, areas and slopes on
+// the slide, and the homography of a quadrilateral.
 
 #include "texgen/surface.hpp"
 

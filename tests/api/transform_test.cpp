@@ -215,8 +215,8 @@ TEST_CASE("exactly singular matrices are refused, 2000 of 2000") {
     CHECK(determinant_is_zero < 1900);
 }
 
-// A change of one element by 2 u of itself makes it singular: then the spectral radius of |A^-1| |A| is at least 1 / 2 u,
-// and 5 u norm(|X| |A|) above 1.
+// A change of one element by 2 u of itself makes it singular: then the spectral radius of |A^-1| |A| is at least 1 / 2
+// u, and 5 u norm(|X| |A|) above 1.
 TEST_CASE("a matrix one unit of one element from an exactly singular one is singular to working precision") {
     Random random(71);
     for (int i = 0; i < 2000; ++i) {
@@ -349,8 +349,8 @@ TEST_CASE("conditioned matrices are inverted within 2 ulp of the largest term, f
     MESSAGE(worst, " ulp of the largest term at most");
 }
 
-// Elements far apart, of which many are 0, under permutations and scalings of rows and columns: what elimination leaves of
-// the small ones is noise of the large ones.
+// Elements far apart, of which many are 0, under permutations and scalings of rows and columns: what elimination leaves
+// of the small ones is noise of the large ones.
 glm::dmat4 graded_matrix(Random& random) {
     glm::dmat4 m(0.0);
     const int depth = random.integer(20, random.coin() ? 150 : 800);

@@ -1,4 +1,5 @@
-// The texgen matrix of a camera's window, T_w, against exact rationals, and what the depth buffer's precision makes of it.
+// The texgen matrix of a camera's window, T_w, against exact rationals, and what the depth buffer's precision makes of
+// it.
 
 #include <doctest/doctest.h>
 

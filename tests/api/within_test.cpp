@@ -1,5 +1,5 @@
-// Positions::within(): the caller's word on a batch changes no promise; a word that is none changes nothing, and one that is
-// broken is asserted.
+// Positions::within(): the caller's word on a batch changes no promise; a word that is none changes nothing, and one
+// that is broken is asserted.
 
 #include <cstddef>
 
@@ -103,8 +103,8 @@ Cloud seen(Random& random, std::size_t count) {
     return cloud;
 }
 
-// In front, no coordinate changing its sign, each at one point as close to a middle of two floats as doubles let it be, by sums
-// whose terms cancel.
+// In front, no coordinate changing its sign, each at one point as close to a middle of two floats as doubles let it be,
+// by sums whose terms cancel.
 Cloud next_to_ties(Random& random, std::size_t count) {
     Cloud cloud{"next to ties", glm::dmat4(0.0), {}};
     for (std::size_t i = 0; i < count; ++i) cloud.points.push_back(1.5f + 0x1p-8f * random.vector3(1.0));

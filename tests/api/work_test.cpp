@@ -1,4 +1,5 @@
-// What is skipped, what is lit, and what is said of the error: never a lit fragment lost, never a bound below the truth.
+// What is skipped, what is lit, and what is said of the error: never a lit fragment lost, never a bound below the
+// truth.
 
 #include <doctest/doctest.h>
 
@@ -45,8 +46,8 @@ std::string hex(const TextureRegion& region) {
     return region.depth() ? sides + ", depth " + hex(*region.depth()) : sides;
 }
 
-// w = 1 and q = 1, and s = r = first + i step at fragment i of every row, t likewise at every row: without an error where
-// first + 1024 step is a float.
+// w = 1 and q = 1, and s = r = first + i step at fragment i of every row, t likewise at every row: without an error
+// where first + 1024 step is a float.
 Shot ramp(glm::vec2 first, glm::vec2 step, int width, int height) {
     const auto vertex = [&](float column, float row) {
         const float s = first.x + column * step.x;

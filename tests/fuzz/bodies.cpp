@@ -1,5 +1,6 @@
-// Boxes, spheres and scenes over raw bytes: a batch answers as the single question does, a NaN leaves its own body open, no
-// corner of a body contradicts what is said of it, by the exact judge, and a scene has the pairs that asking for each gives.
+// Boxes, spheres and scenes over raw bytes: a batch answers as the single question does, a NaN leaves its own body
+// open, no corner of a body contradicts what is said of it, by the exact judge, and a scene has the pairs that asking
+// for each gives.
 
 #include <array>
 #include <cmath>

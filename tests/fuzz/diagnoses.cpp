@@ -1,6 +1,6 @@
-// The diagnosis over raw bytes: findings stand in order, each once, with their sentences; what is not finite is said, and
-// a point that is no number hides nothing of the others; a set-up that the library made has no fault but what is true of it; a
-// lens and an aim are said to be refused where no projector is made of them.
+// The diagnosis over raw bytes: findings stand in order, each once, with their sentences; what is not finite is said,
+// and a point that is no number hides nothing of the others; a set-up that the library made has no fault but what is
+// true of it; a lens and an aim are said to be refused where no projector is made of them.
 
 #include <array>
 #include <cmath>

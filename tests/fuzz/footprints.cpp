@@ -44,7 +44,8 @@ bool are_good(const TexelsPerUnit& texels) {
 
 bool is_in(double value, double least, double largest) { return value >= least && value <= largest; }
 
-// The numerators of d(s/q) and d(t/q) over q^2, exactly: S, T and Q are affine, so differences of neighbours are slopes.
+// The numerators of d(s/q) and d(t/q) over q^2, exactly: S, T and Q are affine, so differences of neighbours are
+// slopes.
 struct ExactSlopes {
     Dyadic dx[2], dy[2], q_squared;
 

@@ -167,8 +167,8 @@ void project_points(Input& input) {
         for (std::size_t i = 0; i < count; ++i)
             must(same(pairs[1 + i].x, out.s()[i]) && same(pairs[1 + i].y, out.t()[i]), "pairs are s and t");
 
-    // The same with a word on where the points lie: the bits of `exact` stay, and other values keep the tolerance. What is
-    // no number lies in no box.
+    // The same with a word on where the points lie: the bits of `exact` stay, and other values keep the tolerance. What
+    // is no number lies in no box.
     std::vector<glm::vec3> finite;
     for (const glm::vec3& point : points)
         if (fuzz::all_finite(point)) finite.push_back(point);

@@ -1,8 +1,8 @@
 #pragma once
 
 // The judge of millions of values: the homogeneous coordinates exactly, as integers times powers of two. Rationals
-// (oracle.hpp) do the same and are reduced at every step, which is too slow for that many; exact_test.cpp compares them.
-// Nothing is divided: whether a float is nearest to n/d is asked of n and d.
+// (oracle.hpp) do the same and are reduced at every step, which is too slow for that many; exact_test.cpp compares
+// them. Nothing is divided: whether a float is nearest to n/d is asked of n and d.
 
 #include <algorithm>
 #include <array>

@@ -56,8 +56,8 @@ using Integer = multiprecision::number<Backend, multiprecision::et_off>;
 
 // ---- Rationals ------------------------------------------------------------------------------------------------------
 
-// In lowest terms, the denominator positive. Of floats it is a power of two, whose common divisors Boost's own rationals
-// look for bit by bit.
+// In lowest terms, the denominator positive. Of floats it is a power of two, whose common divisors Boost's own
+// rationals look for bit by bit.
 struct Rational::Value {
     Integer numerator, denominator;
 

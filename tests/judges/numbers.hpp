@@ -1,6 +1,7 @@
 #pragma once
 
-// Exact numbers. Boost computes them, in numbers.cpp alone: its templates take longer to compile than what a test asks of them.
+// Exact numbers. Boost computes them, in numbers.cpp alone: its templates take longer to compile than what a test asks
+// of them.
 
 #include <compare>
 #include <concepts>

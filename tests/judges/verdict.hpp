@@ -1,7 +1,7 @@
 #pragma once
 
-// What the contract says of one divided coordinate: in front of the projector within the tolerance, behind it 0, and lit
-// where the written s and t, and r where it has a depth, are inside the closed region.
+// What the contract says of one divided coordinate: in front of the projector within the tolerance, behind it 0, and
+// lit where the written s and t, and r where it has a depth, are inside the closed region.
 
 #include <algorithm>
 #include <cmath>
@@ -38,8 +38,8 @@ inline bool is_outside_for_sure(const Quotient& u, double min, double max, doubl
     return size < 0x1p127 && (compare(u, min - slack) < 0 || compare(u, max + slack) > 0);
 }
 
-// A region with a side through (s, t), and with a limit of its depth through r, a unit or two beside it, or anywhere: of
-// doubles, and of floats.
+// A region with a side through (s, t), and with a limit of its depth through r, a unit or two beside it, or anywhere:
+// of doubles, and of floats.
 inline texgen::TextureRegion region_about(const Homogeneous& at, Random& random) {
     const double size = random.power_of_ten(-3.0, 3.0);
     const auto side_at = [&](const Quotient& u) {

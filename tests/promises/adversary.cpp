@@ -1,13 +1,13 @@
-// A search that tries to break what the library promises: it climbs over the bits of the inputs towards the largest share
-// of each stated bound, and towards the decisions that hang by the least. Exact integers and rationals judge. Prints, for
-// every promise, the worst input that it met; fails where a promise is broken.
+// A search that tries to break what the library promises: it climbs over the bits of the inputs towards the largest
+// share of each stated bound, and towards the decisions that hang by the least. Exact integers and rationals judge.
+// Prints, for every promise, the worst input that it met; fails where a promise is broken.
 //
 //   adversary [--seconds N] [--seed N] [--only WORD] [--towards error]
 //
 // Towards time it climbs to the inputs that a function takes longest for, as a multiple of what ordinary ones take, and
-// fails where that is above its limit (support/limits.hpp). What it prints is a line of worst_inputs.txt, behind what it
-// measured; it begins with those, and with 0 seconds they are all. Functions whose names stand behind --but, which a | separates,
-// are searched, and never fail.
+// fails where that is above its limit (support/limits.hpp). What it prints is a line of worst_inputs.txt, behind what
+// it measured; it begins with those, and with 0 seconds they are all. Functions whose names stand behind --but, which a
+// | separates, are searched, and never fail.
 //
 //   adversary --towards time [--seconds N] [--seed N] [--only WORD] [--but NAME|NAME...]
 
@@ -60,8 +60,8 @@ using texgen::Tolerance;
 
 constexpr double broken = HUGE_VAL;
 
-// The share of its bound that an error takes, or of 300 bits by which a decision was near to the other answer: above 1 the
-// promise is broken. Below 0: the input says nothing.
+// The share of its bound that an error takes, or of 300 bits by which a decision was near to the other answer: above 1
+// the promise is broken. Below 0: the input says nothing.
 using Share = double;
 constexpr Share says_nothing = -1.0;
 
@@ -981,8 +981,8 @@ Numbers begin(const support::Workload& workload, Random& random) {
     return support::detail::numbers(shot.triangle, static_cast<float>(shot.rect.x), static_cast<float>(shot.rect.y));
 }
 
-// Looks at the recorded inputs, and for some seconds climbs from the slowest of some beginnings, or from the slowest input
-// so far.
+// Looks at the recorded inputs, and for some seconds climbs from the slowest of some beginnings, or from the slowest
+// input so far.
 std::vector<support::SlowInput> search(const support::Workload& workload,
                                        const std::vector<support::RecordedInput>& recorded, double seconds,
                                        std::uint64_t seed) {

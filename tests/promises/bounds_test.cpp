@@ -1,5 +1,5 @@
-// Inputs whose roundings all go the same way, so that an error comes as near to its bound as it can: a bound that is less
-// than the roundings add up to, does not hold here.
+// Inputs whose roundings all go the same way, so that an error comes as near to its bound as it can: a bound that is
+// less than the roundings add up to, does not hold here.
 
 #include <doctest/doctest.h>
 

@@ -1,7 +1,8 @@
-// The worst that was seen of every function, in every family and build: ceilings.txt. A run may lower a ceiling, and none
-// may raise one.
+// The worst that was seen of every function, in every family and build: ceilings.txt. A run may lower a ceiling, and
+// none may raise one.
 //
-// With TEXGEN_LOWER_CEILINGS=<file> the table is written there, lowered to what this run saw, with rows of its own build.
+// With TEXGEN_LOWER_CEILINGS=<file> the table is written there, lowered to what this run saw, with rows of its own
+// build.
 
 #include <doctest/doctest.h>
 
@@ -482,8 +483,8 @@ double of_views(bool nearly_parallel, std::uint64_t seed) {
     return worst;
 }
 
-// What a float T_o loses of s and t, in texels of 4096, where projector and object stand far from the origin and near to
-// one another.
+// What a float T_o loses of s and t, in texels of 4096, where projector and object stand far from the origin and near
+// to one another.
 double of_poses(double distance, std::uint64_t seed) {
     Random random(seed);
     double worst = 0.0;

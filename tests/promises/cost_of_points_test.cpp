@@ -1,5 +1,5 @@
-// The worst points and segments cost at most eight times what ordinary ones do: as many of them, laid out alike, with the
-// same outputs.
+// The worst points and segments cost at most eight times what ordinary ones do: as many of them, laid out alike, with
+// the same outputs.
 
 #include <doctest/doctest.h>
 
@@ -106,8 +106,8 @@ TEST_CASE("the worst points cost eight times ordinary ones at most, ten within a
                 // Of few points a seventh, in turn.
                 if (count < 1024 && turn++ % 7 != 0) continue;
                 for (const double tolerance : {0.0, 0x1p-21}) {
-                    // Within a tolerance the ordinary ones are floats alone: of one coordinate 8.7 was seen where q cancels, of
-                    // both 8.1 where s is infinite.
+                    // Within a tolerance the ordinary ones are floats alone: of one coordinate 8.7 was seen where q
+                    // cancels, of both 8.1 where s is infinite.
                     const double most =
                         (tolerance > 0.0 ? 10.0 * support::limit::times_by_vectors() : limit) * support::limit::noise;
                     const double cost =

@@ -1,5 +1,5 @@
-// What triangles cost: no input of a function takes many times the ordinary one's time. Ratios of times that were taken in
-// turn, as users compile them.
+// What triangles cost: no input of a function takes many times the ordinary one's time. Ratios of times that were taken
+// in turn, as users compile them.
 
 #include <doctest/doctest.h>
 
@@ -145,8 +145,8 @@ TEST_CASE("a triangle whose cut corner comes first costs what it costs with the 
 }
 
 TEST_CASE("fragments that all lie between two floats cost at most 8 times the ordinary ones") {
-    // s = 1/2 + (2 i + 1) 2^-25 at fragment i of every row, with parallel views; then with the row's own 1 / (q/w), and with a
-    // corner a hair beside its place.
+    // s = 1/2 + (2 i + 1) 2^-25 at fragment i of every row, with parallel views; then with the row's own 1 / (q/w), and
+    // with a corner a hair beside its place.
     constexpr float unit = 0x1p-25f;
     for (const auto& [width, height] : {std::array{8, 8}, std::array{64, 4}, std::array{64, 64}}) {
         const FragmentRect rect{0, 0, width, height};

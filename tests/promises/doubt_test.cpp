@@ -1,5 +1,5 @@
-// Points and segments on which one double does not suffice: their values are those of exact numbers, in vectors as one by
-// one.
+// Points and segments on which one double does not suffice: their values are those of exact numbers, in vectors as one
+// by one.
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
-// What callers are told of errors: never below the error, at most a hundred times above it in the median, and infinite or
-// no number where no bound exists.
+// What callers are told of errors: never below the error, at most a hundred times above it in the median, and infinite
+// or no number where no bound exists.
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
-// With subnormal numbers taken as 0 decisions stay as they are, and errors within what detail/arithmetic/rounding.hpp says. The judge
-// works in the default state.
+// With subnormal numbers taken as 0 decisions stay as they are, and errors within what detail/arithmetic/rounding.hpp
+// says. The judge works in the default state.
 
 #include <doctest/doctest.h>
 
@@ -174,7 +174,8 @@ TEST_CASE("sums that decide have the same bits, and bounds in double hold") {
             ++(expected.low == 0.0 ? close : far_apart);
             cancelled += std::fabs(expected.high) < 0x1p-40 * std::fabs(a);
 
-            // One large term, a little above a power of two, and small ones that are rounded away, or up to its next double.
+            // One large term, a little above a power of two, and small ones that are rounded away, or up to its next
+            // double.
             const double small = random.coin() ? 0x1p-70 : -0x1p-70;
             glm::dmat4 matrix(0.0);
             matrix[0][0] = random.uniform(1.0, 1.0 + 0x1p-10);

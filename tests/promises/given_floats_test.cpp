@@ -1,6 +1,6 @@
 // A caller that rounds to float in the same breath gets the results of those floats. Compilers have been seen to inline
-// both sides and forget the rounding (see detail/arithmetic/widen.hpp), so each function is asked twice: with floats that are rounded
-// in place, and with the same floats by way of memory. Both must give the same bits.
+// both sides and forget the rounding (see detail/arithmetic/widen.hpp), so each function is asked twice: with floats
+// that are rounded in place, and with the same floats by way of memory. Both must give the same bits.
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
-// Rectangles as wide and as high as an int says. Where the machine cannot map arrays that are longer than memory there is
-// nothing to test.
+// Rectangles as wide and as high as an int says. Where the machine cannot map arrays that are longer than memory there
+// is nothing to test.
 
 #include <doctest/doctest.h>
 
@@ -38,7 +38,8 @@ Triangle triangle() {
             .c = {{0.0f, size}, 1.0f, {0.5f, 0.0f, 0.5f, 2.0f}}};
 }
 
-// A row, or column, that ends as an int does, from the middle of two others on; its last floats have values of no others.
+// A row, or column, that ends as an int does, from the middle of two others on; its last floats have values of no
+// others.
 TileJob job_of(int width, int height, std::span<float> out) {
     TileJob job{};
     job.width = width;

@@ -1,5 +1,5 @@
-// Inputs whose exact value is so near to the middle of two floats that no double can tell the side: near_ties.txt, found
-// by adversary.cpp. A bound on a rounding error that is too small decides some of them wrongly.
+// Inputs whose exact value is so near to the middle of two floats that no double can tell the side: near_ties.txt,
+// found by adversary.cpp. A bound on a rounding error that is too small decides some of them wrongly.
 
 #include <doctest/doctest.h>
 
@@ -73,8 +73,8 @@ Answer of_triangle(const std::vector<double>& n, std::size_t count) {
     return answer;
 }
 
-// What stands beside the float of that fragment: within the tolerance, as a part of the quotient, or on a side of the region; in
-// tiles of one unit and of more. A mask alone is that of its coordinates.
+// What stands beside the float of that fragment: within the tolerance, as a part of the quotient, or on a side of the
+// region; in tiles of one unit and of more. A mask alone is that of its coordinates.
 void check_beside(const texgen::Triangle& triangle, const Answer& nearest, const std::string& line) {
     constexpr double beyond = 1e30;
     const glm::dvec2 value(nearest.out[0][0], nearest.out[1][0]);

@@ -216,8 +216,8 @@ TEST_CASE("a tolerance at which a certificate just holds, or just fails, is kept
 
 TEST_CASE(
     "a tolerance that the rounding of a polynomial uses up is kept where coordinates are larger than in the middle") {
-    // s and t grow from 0 in the middle to 1 at the ends, almost evenly, so that only the rounding of the coefficients and
-    // of the last sum tells the chunks apart.
+    // s and t grow from 0 in the middle to 1 at the ends, almost evenly, so that only the rounding of the coefficients
+    // and of the last sum tells the chunks apart.
     Random random(2500);
     Tally tally;
     int tried = 0;

@@ -25,7 +25,8 @@ inline double narrowed_angle_error(const texgen::PerspectiveLens& lens, const te
     return error_in_ulps(contained.fovy.in_radians(), 2 * atan(tangent));
 }
 
-// [low, high] at that fraction about its middle, exactly, against what was computed; in units of 2^-53 of the largest side.
+// [low, high] at that fraction about its middle, exactly, against what was computed; in units of 2^-53 of the largest
+// side.
 inline double narrowing_error(double low, double high, const Rational& fraction, double new_low, double new_high,
                               double unit) {
     const Rational middle = (exactly(low) + exactly(high)) / 2, half = fraction * (exactly(high) - exactly(low)) / 2;

@@ -1,7 +1,7 @@
 #pragma once
 
-// Points and segments on which one double does not suffice: exact ties, cancelling sums, numbers that are none. What they
-// cost beside ordinary ones, and what becomes of them, are tests of their own.
+// Points and segments on which one double does not suffice: exact ties, cancelling sums, numbers that are none. What
+// they cost beside ordinary ones, and what becomes of them, are tests of their own.
 
 #include <algorithm>
 #include <cmath>
@@ -42,8 +42,8 @@ inline Cloud ordinary_cloud(std::size_t count, Random& random) {
     return cloud;
 }
 
-// Whose sums have terms of many sizes: s and t are middles of floats times q everywhere, or multiples of a q of which only the
-// least term is left.
+// Whose sums have terms of many sizes: s and t are middles of floats times q everywhere, or multiples of a q of which
+// only the least term is left.
 inline std::vector<Cloud> clouds_of_long_sums(std::size_t count, Random& random) {
     const auto multiples_of = [](const glm::dvec4& q, double s, double t) {
         return matrix_of_rows(s * q, t * q, (s + 1.0) * q, q);

@@ -1,4 +1,5 @@
-// What the tests of the fixed function ask about: every coordinate, mode and scaling, and the slide projector of the README.
+// What the tests of the fixed function ask about: every coordinate, mode and scaling, and the slide projector of the
+// README.
 
 #pragma once
 

@@ -50,7 +50,8 @@ inline constexpr std::uint64_t flushing = 0;
 // Whether this machine has the state.
 inline bool has(const FloatState& state) { return !state.flushes || detail::can_flush; }
 
-// Calls body() in the state, and puts the old one back. The call goes through memory, so that no arithmetic moves across.
+// Calls body() in the state, and puts the old one back. The call goes through memory, so that no arithmetic moves
+// across.
 template <class Body>
 void under(const FloatState& state, const Body& body) {
     void (*volatile const call)(const void*) = [](const void* any) { (*static_cast<const Body*>(any))(); };

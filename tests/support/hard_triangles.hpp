@@ -93,8 +93,8 @@ inline Shot with_root(int coordinate, Random& random) {
     return {triangle, rect_at_root(triangle, coordinate, random)};
 }
 
-// q is exactly 0 in one column of fragments (or one row), or next to it: w = 1, and q/w an affine function of the window
-// with small numbers.
+// q is exactly 0 in one column of fragments (or one row), or next to it: w = 1, and q/w an affine function of the
+// window with small numbers.
 inline Shot exact_root(Random& random) {
     texgen::Triangle triangle{};
     do {
@@ -269,8 +269,9 @@ inline double spread(const texgen::Triangle& triangle, float (*value)(const texg
 
 }  // namespace detail
 
-// s/q is the middle M of two floats at one column, from 993 to 1023, hundreds to thousands of times that at column 0, and a
-// function of more bits than a double. With q = 1 + t for t = (2 column + 1) / 2048 and k = 2 column + 1, in units of 2^-25,
+// s/q is the middle M of two floats at one column, from 993 to 1023, hundreds to thousands of times that at column 0,
+// and a function of more bits than a double. With q = 1 + t for t = (2 column + 1) / 2048 and k = 2 column + 1, in
+// units of 2^-25,
 //   (M - j k) (1 - t) + (2 M + j (2048 - k)) t = M (1 + t):
 // the first is a float as it is a multiple of 2^13, and the second as it is below 2^24.
 inline Shot steep_row_with_a_tie(int column, Random& random) {

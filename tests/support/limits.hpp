@@ -17,12 +17,12 @@ inline constexpr double touching = 10.0;             // a body that touches a si
 inline constexpr double all_sizes = 24.0;            // the sign of a determinant of numbers that are 256 times apart
 inline constexpr double frame = 200.0;               // of Scene::update, over the median frame
 
-// Without AVX-512 what is in doubt is decided in vectors of half as many doubles, and with more instructions, and ordinary inputs are
-// floats that lose less: there limits of any inputs are as many times these.
+// Without AVX-512 what is in doubt is decided in vectors of half as many doubles, and with more instructions, and
+// ordinary inputs are floats that lose less: there limits of any inputs are as many times these.
 inline double times_by_vectors() { return has_avx512() ? 1.0 : 1.5; }
 
-// What a busy machine, or where arrays happen to stand in memory, adds for minutes to the worst inputs, which read and write more than
-// the ordinary ones.
+// What a busy machine, or where arrays happen to stand in memory, adds for minutes to the worst inputs, which read and
+// write more than the ordinary ones.
 inline constexpr double noise = 1.05;
 }  // namespace limit
 

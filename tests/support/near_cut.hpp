@@ -1,7 +1,7 @@
 #pragma once
 
-// Triangles that the camera's near plane has just cut, with a rectangle of fragments inside: a corner of theirs lies ten
-// thousands to millions of pixels away, with a clip w that is next to the near distance.
+// Triangles that the camera's near plane has just cut, with a rectangle of fragments inside: a corner of theirs lies
+// ten thousands to millions of pixels away, with a clip w that is next to the near distance.
 
 #include <algorithm>
 #include <array>

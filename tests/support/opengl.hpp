@@ -1,7 +1,7 @@
 #pragma once
 
-// A real OpenGL, headless: EGL's surfaceless platform and the compatibility profile. Everything is loaded at run time and
-// declared here, so that neither headers nor libraries of OpenGL are needed to build the tests. There is no default
+// A real OpenGL, headless: EGL's surfaceless platform and the compatibility profile. Everything is loaded at run time
+// and declared here, so that neither headers nor libraries of OpenGL are needed to build the tests. There is no default
 // framebuffer; drawing goes to a target of four floats a pixel.
 
 #if __has_include(<dlfcn.h>)
@@ -150,8 +150,8 @@ public:
         Disable(rescale_normal);
     }
 
-    // A program of these shaders, the fixed functions for vertices where there is none; 0 where one does not compile, and
-    // reason() has the log. Vec3 `position` is what Vertex3fv gives.
+    // A program of these shaders, the fixed functions for vertices where there is none; 0 where one does not compile,
+    // and reason() has the log. Vec3 `position` is what Vertex3fv gives.
     unsigned program(const char* vertex_source, const char* fragment_source) const {
         const unsigned result = CreateProgram();
         for (const auto& [kind, source] :

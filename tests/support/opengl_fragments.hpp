@@ -19,8 +19,8 @@ inline double twice_area(const texgen::Triangle& t) {
     return ab.x * ac.y - ab.y * ac.x;
 }
 
-// OpenGL interpolates s/w, t/w, r/w and q/w by planes in float, so its errors are measured against the largest of the three
-// vertices: max |f_i / w_i|, times the w of the fragment. The error of u = s/q may be
+// OpenGL interpolates s/w, t/w, r/w and q/w by planes in float, so its errors are measured against the largest of the
+// three vertices: max |f_i / w_i|, times the w of the fragment. The error of u = s/q may be
 // tolerance * (S + |u| Q) / |q|: next to nothing is asked of a fragment at q = 0, and none is left out.
 inline glm::dvec4 largest_terms(const texgen::Triangle& triangle, double x, double y) {
     const std::array<const texgen::WindowVertex*, 3> vertices{&triangle.a, &triangle.b, &triangle.c};

@@ -94,9 +94,9 @@ private:
     std::vector<SlowInput> inputs_;
 };
 
-// Triangles that the near plane has cut, each in all orders of its corners: the slowest of them, the one that 99 of 100 do
-// not exceed, and the slowest order of a triangle's corners over its fastest. One of 60 tiles of theirs is crossed by q = 0, which has
-// a limit of its own: the slowest of those stands apart.
+// Triangles that the near plane has cut, each in all orders of its corners: the slowest of them, the one that 99 of 100
+// do not exceed, and the slowest order of a triangle's corners over its fastest. One of 60 tiles of theirs is crossed
+// by q = 0, which has a limit of its own: the slowest of those stands apart.
 struct NearCutTimes {
     Slowness slowest, of_99_in_100, rotation, crossed;
 };

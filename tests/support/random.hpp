@@ -12,8 +12,8 @@
 
 namespace support {
 
-// The nearest float, by way of memory: under -mavx, g++ 12 folds four (double)(float)x side by side to x (its vectorised
-// form), so that code which is inlined after the rounding goes on with numbers that no float holds.
+// The nearest float, by way of memory: under -mavx, g++ 12 folds four (double)(float)x side by side to x (its
+// vectorised form), so that code which is inlined after the rounding goes on with numbers that no float holds.
 inline float to_float(double value) {
     const volatile float rounded = static_cast<float>(value);
     return rounded;

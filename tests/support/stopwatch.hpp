@@ -53,8 +53,8 @@ inline double nanoseconds_of_products(double first, double second) {
 
 }  // namespace detail
 
-// Some machines interrupt themselves for whatever has a subnormal number, for a hundred cycles and more: there they count as 0, so
-// that the library is timed, and not the machine.
+// Some machines interrupt themselves for whatever has a subnormal number, for a hundred cycles and more: there they
+// count as 0, so that the library is timed, and not the machine.
 inline const FloatState& timed_state() {
     static const bool are_slow =
         detail::nanoseconds_of_products(0x1p-600, 0x1p-430) > 8.0 * detail::nanoseconds_of_products(1.5, 0x1p-430);
@@ -88,8 +88,8 @@ inline std::vector<double> least_times(const std::vector<Calls>& all, int turns,
     return least;
 }
 
-// The time of worst() over that of ordinary(), which do equally many elements, run in turns of about a millisecond; taken
-// again while it is above the limit, which noise may do to one. Far below it, a look is enough.
+// The time of worst() over that of ordinary(), which do equally many elements, run in turns of about a millisecond;
+// taken again while it is above the limit, which noise may do to one. Far below it, a look is enough.
 template <class Ordinary, class Worst>
 double worst_over_ordinary_within(double limit, Ordinary&& ordinary, Worst&& worst) {
     const std::vector<Calls> both{calls_of([&] { ordinary(); }), calls_of([&] { worst(); })};

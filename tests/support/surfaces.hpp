@@ -1,7 +1,7 @@
 #pragma once
 
-// Triangles as the projector sees them, quadrilaterals, and what is exactly true of both. The hard ones are edge on, next to it,
-// or next to a triangle, up to a bit.
+// Triangles as the projector sees them, quadrilaterals, and what is exactly true of both. The hard ones are edge on,
+// next to it, or next to a triangle, up to a bit.
 
 #include <algorithm>
 #include <array>
@@ -85,7 +85,8 @@ inline Corners corners_of(CornerFamily family, Random& random) {
             break;
         }
         case CornerFamily::far_corner: {
-            // One is so far to the side that the others decide by what no two doubles hold beside it: it cancels wholly.
+            // One is so far to the side that the others decide by what no two doubles hold beside it: it cancels
+            // wholly.
             corners[0].x = std::ldexp(corners[0].x, random.integer(20, 120));
             const float unit = std::ldexp(1.0f, random.integer(-4, 4));
             corners[2].y = unit * corners[1].y;
@@ -220,8 +221,8 @@ inline texgen::TextureRegion region_of(bool is_whole, Random& random) {
     return texgen::atlas_tile(least, {random.uniform(1.0, 3.0), random.uniform(1.0, 3.0)});
 }
 
-// How far the elements of a keystone are from those of the exact homography, the largest of them: as a share of the magnitudes
-// of their two terms, or of 2^-1000.
+// How far the elements of a keystone are from those of the exact homography, the largest of them: as a share of the
+// magnitudes of their two terms, or of 2^-1000.
 inline double keystone_error(const texgen::WindowTexgen& keystone, const Quadrilateral& corners,
                              const texgen::TextureRegion& region) {
     const std::array<Rational, 4> q = exact_q(corners).value();

@@ -1,7 +1,8 @@
 #pragma once
 
-// Every public function as a workload: a call with an ordinary input, and with inputs that are meant to take long. An input
-// is a list of numbers, floats first and doubles after them, so that a search can change their bits and print them.
+// Every public function as a workload: a call with an ordinary input, and with inputs that are meant to take long. An
+// input is a list of numbers, floats first and doubles after them, so that a search can change their bits and print
+// them.
 
 #include <algorithm>
 #include <array>
@@ -198,8 +199,8 @@ inline glm::dmat4 drawn_texgen(Random& random) {
 // ---- Numbers of a scene --------------------------------------------------------------------------------------------
 
 // What the limits are about: positions and coordinates of a world, of a camera and of slides as they are. Beyond, where
-// floats of all sizes meet in one sum, ties may differ from their middle by less than two doubles hold, and are decided one
-// by one.
+// floats of all sizes meet in one sum, ties may differ from their middle by less than two doubles hold, and are decided
+// one by one.
 template <class Number>
 bool is_between(Number value, double least, double largest) {
     const double size = std::fabs(static_cast<double>(value));
@@ -366,7 +367,8 @@ inline Numbers ordinary_strq(Random& random) {
     return numbers(q * random.uniform_float(0.2, 0.8), q * random.uniform_float(0.2, 0.8), 0.5f * q, q);
 }
 
-// ---- Segments --------------------------------------------------------------------------------------------------------
+// ---- Segments
+// --------------------------------------------------------------------------------------------------------
 
 inline Numbers ordinary_segment(Random& random) {
     Numbers n = ordinary_strq(random);
@@ -424,7 +426,8 @@ inline Calls segment_bound_calls(const Numbers& n) {
     return calls_of([segment = segment_of(n)] { keep(texgen::error_bound(segment, tolerance)); });
 }
 
-// ---- Triangles -------------------------------------------------------------------------------------------------------
+// ---- Triangles
+// -------------------------------------------------------------------------------------------------------
 
 // Seven numbers a corner, and the first fragment of the rectangle.
 inline Numbers ordinary_triangle(Random& random) {
@@ -578,7 +581,8 @@ texgen::Texcoords outputs_for(std::vector<float> (&out)[8]) {
     if constexpr (Of == OutputsOf::s_t_r) return {.s = out[0], .t = out[1], .r = out[2], .lit = {}};
     return {.s = {}, .t = {}, .r = {}, .lit = out[0]};
 }
-// A batch of `Count` of them, made ready and divided; or with others among them, of which one is dark and one is refused.
+// A batch of `Count` of them, made ready and divided; or with others among them, of which one is dark and one is
+// refused.
 template <int Width, int Height, std::size_t Count, bool IsExact, OutputsOf Of = OutputsOf::s_t, bool HasOthers = false>
 Calls batch_calls(const Numbers& n) {
     const auto call = tile_call<Width, Height, IsExact>(n, region_for<Of>());
@@ -691,7 +695,8 @@ double triangle_limit(const Numbers& n) {
     return largest > 100.0f * least ? limit::near_plane : limit::any;
 }
 
-// ---- Footprints ------------------------------------------------------------------------------------------------------
+// ---- Footprints
+// ------------------------------------------------------------------------------------------------------
 
 template <int Width, int Height, bool IsExact, class Ask>
 Calls footprint_calls_of(const Numbers& n, Ask ask) {
@@ -736,7 +741,8 @@ inline Calls footprint_of_calls(const Numbers& n) {
                      texels = texgen::TexelsPerUnit{n[4], n[5]}] { keep(texgen::footprint_of(dx, dy, texels)); });
 }
 
-// ---- Surfaces --------------------------------------------------------------------------------------------------------
+// ---- Surfaces
+// --------------------------------------------------------------------------------------------------------
 
 inline Numbers ordinary_corners(Random& random) {
     Numbers n;
@@ -821,7 +827,8 @@ Calls quadrilateral_calls(const Numbers& n) {
     });
 }
 
-// ---- Bodies ----------------------------------------------------------------------------------------------------------
+// ---- Bodies
+// ----------------------------------------------------------------------------------------------------------
 
 inline constexpr std::size_t bodies = 256;
 inline constexpr std::size_t body_pattern = 4;
@@ -876,7 +883,8 @@ inline Numbers draw_spheres(Random& random) {
 inline constexpr Hostile hostile_spheres{draw_spheres,
                                          "drawn: spheres of any numbers, under an aligned projector or any matrix"};
 
-// Bodies of a world, and a matrix as cameras of such sizes make it, where a sine that is 0 may be 2^-54. (As is_of_a_scene().)
+// Bodies of a world, and a matrix as cameras of such sizes make it, where a sine that is 0 may be 2^-54. (As
+// is_of_a_scene().)
 inline bool are_of_a_scene(const Numbers& n) {
     const auto body_end = n.end() - 16;
     return std::all_of(n.begin(), body_end, [](double x) { return is_between(x, 0x1p-20, 0x1p20); }) &&
@@ -983,7 +991,8 @@ Calls planes_calls(const Numbers& n) {
     return calls_of([texgen, region] { keep(texgen::clip_planes(texgen, region)); });
 }
 
-// ---- Clipping ----------------------------------------------------------------------------------------------------------
+// ---- Clipping
+// ----------------------------------------------------------------------------------------------------------
 
 inline Numbers ordinary_polygon(Random& random) {
     Numbers n;
@@ -1021,7 +1030,8 @@ inline Calls to_window_calls(const Numbers& n) {
     return calls_of([position, strq] { keep(texgen::to_window({position, strq}, {0, 0, 1024, 768})); });
 }
 
-// ---- Matrices -----------------------------------------------------------------------------------------------------------
+// ---- Matrices
+// -----------------------------------------------------------------------------------------------------------
 
 inline Numbers ordinary_matrix(Random& random) {
     glm::dmat4 m = random.rigid(10.0);
@@ -1238,7 +1248,8 @@ Calls lens_calls(const Numbers& n) {
     });
 }
 
-// ---- OpenGL's fixed function -------------------------------------------------------------------------------------------
+// ---- OpenGL's fixed function
+// -------------------------------------------------------------------------------------------
 
 inline Numbers ordinary_vertex(Random& random) {
     Numbers n = numbers(rounded(random.rigid(5.0)), random.vector4(1.0));
@@ -1304,7 +1315,8 @@ inline Calls unit_batch_calls(const Numbers& n) {
     });
 }
 
-// ---- Diagnosis ---------------------------------------------------------------------------------------------------------
+// ---- Diagnosis
+// ---------------------------------------------------------------------------------------------------------
 
 // A projection, a view, a model, and what claims to be their texgen matrix.
 inline Numbers setup_of(const texgen::Projector& projector, const texgen::ModelMatrix& model,
@@ -1370,7 +1382,8 @@ Calls diagnose_calls(const Numbers& n) {
 
 }  // namespace detail
 
-// ---- All of them -------------------------------------------------------------------------------------------------------
+// ---- All of them
+// -------------------------------------------------------------------------------------------------------
 
 inline const std::array workloads{
     Workload{"project, exact, 1024 points", 24, detail::ordinary_points, detail::hostile_points,

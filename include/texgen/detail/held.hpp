@@ -30,8 +30,8 @@ private:
     std::size_t count_ = 0;
 };
 
-// Memory for what is aligned beyond the ordinary. clang++ 14 with the library of g++ 12 forgets that in C++23 where it is
-// std::allocator's.
+// Memory for what is aligned beyond the ordinary. clang++ 14 with the library of g++ 12 forgets that in C++23 where it
+// is std::allocator's.
 template <class Value>
 struct AlignedAllocator {
     using value_type = Value;

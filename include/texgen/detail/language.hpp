@@ -1,21 +1,21 @@
 #pragma once
 
-// What the library asks of the language and its libraries: every public header includes this first. An #error would be one
-// of a thousand, as the compiler would read on; an include that is nowhere ends the compilation.
+// What the library asks of the language and its libraries: every public header includes this first. An #error would be
+// one of a thousand, as the compiler would read on; an include that is nowhere ends the compilation.
 #if (defined(_MSVC_LANG) ? _MSVC_LANG : __cplusplus) <= 201703L
 #include <texgen needs C++20: compile with -std=c++20 or later, MSVC with /std:c++20 or later>
 #endif
 
 #include <glm/vec2.hpp>
 
-// No macro of clang++ tells of -funsafe-math-optimizations, nor since 22 of -ffp-model=fast: from here on a file's arithmetic
-// is as written, for which the bounds are proved. Before 18 it has no such word for reciprocals.
+// No macro of clang++ tells of -funsafe-math-optimizations, nor since 22 of -ffp-model=fast: from here on a file's
+// arithmetic is as written, for which the bounds are proved. Before 18 it has no such word for reciprocals.
 #if defined(__clang__) && __clang_major__ >= 18
 #pragma clang fp reassociate(off) reciprocal(off)
 #endif
 
-// All of the library stands in this namespace. What GLM aligns by default has another layout: files that do and files that
-// do not link into one program, each with types and functions of its own.
+// All of the library stands in this namespace. What GLM aligns by default has another layout: files that do and files
+// that do not link into one program, each with types and functions of its own.
 #if defined(GLM_FORCE_DEFAULT_ALIGNED_GENTYPES) && GLM_CONFIG_ALIGNED_GENTYPES == GLM_ENABLE
 #define TEXGEN_NAMESPACE texgen::inline aligned_gentypes
 static_assert(glm::defaultp == glm::aligned_highp, "GLM was configured otherwise when it was included first");
@@ -24,9 +24,9 @@ static_assert(glm::defaultp == glm::aligned_highp, "GLM was configured otherwise
 static_assert(glm::defaultp == glm::packed_highp, "GLM was configured otherwise when it was included first");
 #endif
 
-// The compiler's name, for an inline namespace around all that makes closures or takes them. Compilers agree on the name of a
-// closure's type, and of what takes it, but not on its layout; so what one compiler made must not be linked to what another
-// did, as the linker else may with the functions of a header.
+// The compiler's name, for an inline namespace around all that makes closures or takes them. Compilers agree on the
+// name of a closure's type, and of what takes it, but not on its layout; so what one compiler made must not be linked
+// to what another did, as the linker else may with the functions of a header.
 
 #define TEXGEN_JOINED(name, version) name##version
 #define TEXGEN_NAMED(name, version) TEXGEN_JOINED(name, version)
@@ -40,8 +40,8 @@ static_assert(glm::defaultp == glm::packed_highp, "GLM was configured otherwise 
 #define TEXGEN_COMPILER other_compiler
 #endif
 
-// Functions that are compiled apart: what is rare, so that it costs the rest no registers, and what only ties need, so that it
-// costs the rest no room.
+// Functions that are compiled apart: what is rare, so that it costs the rest no registers, and what only ties need, so
+// that it costs the rest no room.
 #if defined(__GNUC__) || defined(__clang__)
 #define TEXGEN_APART [[gnu::noinline]]
 #define TEXGEN_RARE [[gnu::noinline, gnu::cold]]

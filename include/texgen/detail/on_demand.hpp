@@ -1,7 +1,7 @@
 #pragma once
 
-// A value that is made where it is first needed, if ever. std::optional would serve, but each type of it takes every user four
-// times as long to compile: it is for results.
+// A value that is made where it is first needed, if ever. std::optional would serve, but each type of it takes every
+// user four times as long to compile: it is for results.
 
 #include <new>
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// What the definitions are made of: floats as given, mixtures, and the barycentrics of the window. It shares nothing with the
-// fast path.
+// What the definitions are made of: floats as given, mixtures, and the barycentrics of the window. It shares nothing
+// with the fast path.
 
 #include <cmath>
 
@@ -16,8 +16,8 @@ namespace TEXGEN_NAMESPACE::reference {
 inline namespace TEXGEN_COMPILER {
 namespace detail {
 
-// The float that was given: a volatile, since g++ 12 takes (double)(float)x of neighbours for x where it inlines a caller
-// that rounds.
+// The float that was given: a volatile, since g++ 12 takes (double)(float)x of neighbours for x where it inlines a
+// caller that rounds.
 template <class Scalar>
 Scalar exactly(float value) {
     const volatile float given = value;

@@ -1,5 +1,6 @@
-// The inverse of a matrix that is next to singular is what sums find that are compensated: a compiler that reorders sums takes
-// what compensates them for 0. The matrices are products of integers with determinant 1, so that the inverses are known.
+// The inverse of a matrix that is next to singular is what sums find that are compensated: a compiler that reorders
+// sums takes what compensates them for 0. The matrices are products of integers with determinant 1, so that the
+// inverses are known.
 
 #include <cmath>
 #include <cstdint>

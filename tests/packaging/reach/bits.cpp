@@ -1,7 +1,7 @@
 // What the exact tier gives must not depend on the compiler, its flags, the machine or the kernel: a digest of the bits
 // of many results, against the one that is written here; and so of what is decided exactly, and of inverses as they are
-// rounded. The inputs are integers times powers of two, so that they are the same floats everywhere, and of three kinds in
-// turn: any; with a constant q and few bits, so that values stand in the
+// rounded. The inputs are integers times powers of two, so that they are the same floats everywhere, and of three kinds
+// in turn: any; with a constant q and few bits, so that values stand in the
 // middle of two floats; small, so that q is 0 now and then.
 
 #include <array>

@@ -1,5 +1,5 @@
-// Results of everything public that must not depend on how the user configured GLM, nor on what else is in the program, in
-// hexadecimal, one a line.
+// Results of everything public that must not depend on how the user configured GLM, nor on what else is in the program,
+// in hexadecimal, one a line.
 
 #include <array>
 #include <cstddef>

@@ -1,8 +1,8 @@
 // All headers that need no Eigen, in one file: for compilers and dialects that the tests of their results do not reach.
 
 #ifdef _WIN32
-// It makes macros of short words; of min and max too, where the standard library stands it. MinGW's does not, and so comes
-// first here.
+// It makes macros of short words; of min and max too, where the standard library stands it. MinGW's does not, and so
+// comes first here.
 #include <windows.h>
 
 #include <bits/stdc++.h>

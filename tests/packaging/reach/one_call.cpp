@@ -1,6 +1,6 @@
-// Programs of one call each, as a new user writes them: what the call writes are local variables, of which nothing else takes
-// the address, and they are printed by value. A compiler that loses sight of them in the call, as GCC 12 may (its bug
-// 115033), prints what they held before. Every public function that writes through a span is called.
+// Programs of one call each, as a new user writes them: what the call writes are local variables, of which nothing else
+// takes the address, and they are printed by value. A compiler that loses sight of them in the call, as GCC 12 may (its
+// bug 115033), prints what they held before. Every public function that writes through a span is called.
 //
 // The calls are macros: the text of each is a part of every program. A function would hide what the compiler may lose.
 
@@ -47,7 +47,8 @@ constexpr Triangle triangle{{{0.0f, 0.0f}, 1.0f, {0.1f, 0.2f, 0.3f, 1.0f}},
                             {{40.0f, 0.0f}, 3.0f, {2.9f, 0.5f, 0.75f, 2.0f}},
                             {{0.0f, 30.0f}, 2.0f, {0.5f, 1.5f, 0.25f, 1.5f}}};
 
-// ---- What is called, with `count` values an output, of four coordinates as `mask` says ---------------------------------
+// ---- What is called, with `count` values an output, of four coordinates as `mask` says
+// ---------------------------------
 
 #define GIVEN(bit) (mask >> (bit)&1) != 0 ? count : 0
 #define SPANS(s, t, r, lit) \
@@ -169,8 +170,8 @@ constexpr Triangle triangle{{{0.0f, 0.0f}, 1.0f, {0.1f, 0.2f, 0.3f, 1.0f}},
 
 constexpr float unwritten = 7.0f;
 
-// Whether all builds compute the same bits: not within a tolerance, nor of what filters make of derivatives. Those are printed
-// with a digit, of a sum that is 0.0015 away from where the digit changes, so that none depends on the build.
+// Whether all builds compute the same bits: not within a tolerance, nor of what filters make of derivatives. Those are
+// printed with a digit, of a sum that is 0.0015 away from where the digit changes, so that none depends on the build.
 bool same_bits = true;
 
 void print(float value) {
@@ -190,7 +191,8 @@ void run(const char* name, unsigned mask, void (*program)(Tolerance), Tolerance 
     std::printf("\n");
 }
 
-// Compilers lost variables that are one by one: of those each set of outputs is asked for, of others each alone and all.
+// Compilers lost variables that are one by one: of those each set of outputs is asked for, of others each alone and
+// all.
 using AllMasks = std::integer_sequence<unsigned, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15>;
 using SomeMasks = std::integer_sequence<unsigned, 1, 2, 4, 8, 15>;
 

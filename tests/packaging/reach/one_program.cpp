@@ -1,5 +1,5 @@
-// Calls what other objects define: main() of glm.cpp by other names. With libraries as arguments, `library function` each,
-// it loads them first, so that each takes from those before it what they have too.
+// Calls what other objects define: main() of glm.cpp by other names. With libraries as arguments, `library function`
+// each, it loads them first, so that each takes from those before it what they have too.
 
 #include <cstdio>
 

@@ -1,6 +1,7 @@
 #pragma once
 
-// Determinants whose terms may cancel to the last bit: in double or in two doubles where a bound decides, else as exact sums.
+// Determinants whose terms may cancel to the last bit: in double or in two doubles where a bound decides, else as exact
+// sums.
 
 #include <limits>
 

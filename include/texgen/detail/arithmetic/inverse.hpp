@@ -34,31 +34,33 @@ inline glm::dmat4 absolute(const glm::dmat4& m) noexcept {
     return {absolute(m[0]), absolute(m[1]), absolute(m[2]), absolute(m[3])};
 }
 
-// An element other than 0 that scaling makes smaller could be rounded there, and B would be another matrix: one of rank 3
-// could look regular.
+// An element other than 0 that scaling makes smaller could be rounded there, and B would be another matrix: one of rank
+// 3 could look regular.
 inline constexpr double least_scaled = 0x1p-900;
 
 class CertifiedInverse {
 public:
     // The matrix is first scaled by powers of two, B = R A C, so that rows and columns are near 1: this is exact and
     // makes every later decision independent of uniform and of diagonal scale. X ~ B^-1 is one elimination and steps of
-    // refinement with a doubled residual: two, and more where elements are far apart, until each is as good as its terms.
+    // refinement with a doubled residual: two, and more where elements are far apart, until each is as good as its
+    // terms.
     explicit CertifiedInverse(const glm::dmat4& matrix) noexcept;
 
-    // Whether norm(I - B X) + 5 u norm(|X| |B|) for the X of the elimination is below 1, which proves that A is regular. For
-    // an exactly singular A it is at least 1 for every X: with y B = 0, y (I - B X) = y. False for what is not finite.
+    // Whether norm(I - B X) + 5 u norm(|X| |B|) for the X of the elimination is below 1, which proves that A is
+    // regular. For an exactly singular A it is at least 1 for every X: with y B = 0, y (I - B X) = y. False for what is
+    // not finite.
     bool regular() const noexcept { return beta_ < 1.0; }
 
     // A^-1 = C X R; each element within 2 ulp of the largest of its terms in A^-1 A A^-1 while the condition of B stays
-    // below 1e8 and its terms, in X B X, above least_scaled. Half an ulp of its own may be all of that: as B X = 1 has four
-    // terms, one of X B X is at least a quarter of it.
+    // below 1e8 and its terms, in X B X, above least_scaled. Half an ulp of its own may be all of that: as B X = 1 has
+    // four terms, one of X B X is at least a quarter of it.
     glm::dmat4 matrix() const noexcept;
 
     // row A^-1, solved and refined by itself: the product of row and a rounded inverse could cancel.
     glm::dvec4 solve_row(const glm::dvec4& row) const noexcept;
 
-    // A bound on |solution - rows A^-1|, element by element, for any solution: solve_row()'s, or matrix() for the rows of
-    // the identity, or one from elsewhere. A NaN or an infinity stays one; infinite where A is not regular.
+    // A bound on |solution - rows A^-1|, element by element, for any solution: solve_row()'s, or matrix() for the rows
+    // of the identity, or one from elsewhere. A NaN or an infinity stays one; infinite where A is not regular.
     glm::dmat4 error_of(const glm::dmat4& solution, const glm::dmat4& rows) const noexcept;
     glm::dvec4 error_of(const glm::dvec4& solution, const glm::dvec4& row) const noexcept {
         return error_of_row(solution, row, contraction());
@@ -71,7 +73,8 @@ private:
         return add_product(add_product(half, -row.z, column.z), -row.w, column.w).high;
     }
 
-    // The same and a bound on its error: one rounding, four sums within 2^-102 of the terms, and products that underflow.
+    // The same and a bound on its error: one rounding, four sums within 2^-102 of the terms, and products that
+    // underflow.
     static Bounded bounded_residual_of(const glm::dvec4& row, const glm::dvec4& column, double start) noexcept {
         const double value = residual_of(row, column, start);
         const double magnitude = std::fabs(start) + glm::dot(absolute(row), absolute(column));
@@ -123,8 +126,8 @@ private:
         return true;
     }
 
-    // An element of B^-1 is a cofactor over the determinant. Where a factor of each of the cofactor's products is 0 so is the
-    // element; what elimination has left there would never be small beside terms that are 0.
+    // An element of B^-1 is a cofactor over the determinant. Where a factor of each of the cofactor's products is 0 so
+    // is the element; what elimination has left there would never be small beside terms that are 0.
     void clear_what_has_no_terms() noexcept {
         for (glm::length_t i = 0; i < 4; ++i) {
             for (glm::length_t j = 0; j < 4; ++j) {
@@ -163,10 +166,10 @@ private:
         return residual_norm + 5.0 * unit_roundoff_double * product_norm;
     }
 
-    // Whether each element is within 2 ulp of the largest of its terms in X B X. With R = I - B X, X lacks X R + X R^2 + ...
-    // Where no element of R is above 2^-10, the sum of all powers of |R| is at most 1.1 (|R| + |R|^2 + |R|^3), element by
-    // element: a path of more than 3 steps between 4 places goes in a circle. The error of R itself, 2^-100 of the terms of
-    // I and B X, adds as little to X as that.
+    // Whether each element is within 2 ulp of the largest of its terms in X B X. With R = I - B X, X lacks X R + X R^2
+    // + ... Where no element of R is above 2^-10, the sum of all powers of |R| is at most 1.1 (|R| + |R|^2 + |R|^3),
+    // element by element: a path of more than 3 steps between 4 places goes in a circle. The error of R itself, 2^-100
+    // of the terms of I and B X, adds as little to X as that.
     bool is_as_good_as_its_terms(const glm::dmat4& residual) const noexcept {
         const glm::dmat4 r = absolute(residual);
         const glm::dmat4 powers = r + r * (r + r * r);
@@ -198,9 +201,9 @@ private:
         return largest;
     }
 
-    // As in solve_row(), y B = target. With rho = target - y B and R = I - B X, what y lacks is rho B^-1 = d (I - R)^-1 with
-    // d = rho X. Each |d R|_j is at most max|d| r, r the largest sum of a column of |R|: so |y_j - exact| <= |d_j| +
-    // max|d| r / (1 - r).
+    // As in solve_row(), y B = target. With rho = target - y B and R = I - B X, what y lacks is rho B^-1 = d (I - R)^-1
+    // with d = rho X. Each |d R|_j is at most max|d| r, r the largest sum of a column of |R|: so |y_j - exact| <= |d_j|
+    // + max|d| r / (1 - r).
     glm::dvec4 error_of_row(const glm::dvec4& solution, const glm::dvec4& row, double contraction) const noexcept {
         if (!(contraction < 1.0)) return glm::dvec4(std::numeric_limits<double>::infinity());
         const glm::dvec4 scaled_solution = times_powers_of_two(solution, -row_exponent_);

@@ -17,7 +17,8 @@
 namespace TEXGEN_DETAIL {
 
 // Whether every real number within `error` of `value` rounds to one float; then that float is the nearest of them all.
-// Source: Ziv, Fast evaluation of elementary mathematical functions with correctly rounded last bit, ACM TOMS 17 (1991).
+// Source: Ziv, Fast evaluation of elementary mathematical functions with correctly rounded last bit, ACM TOMS 17
+// (1991).
 inline bool rounds_alone(double value, double error) noexcept {
     const auto low = bit_cast<std::uint32_t>(static_cast<float>(value - error));
     const auto high = bit_cast<std::uint32_t>(static_cast<float>(value + error));
@@ -33,8 +34,8 @@ inline double middle_of(float low, float high) noexcept {
     return 0.5 * unbounded(low) + 0.5 * unbounded(high);
 }
 
-// The float nearest to a number, ties to even; infinity beyond the range. The number is within error <= 2^-26 |value| of a
-// value, and sign_beyond(m) is the sign of what it is more than m, the middle of two floats.
+// The float nearest to a number, ties to even; infinity beyond the range. The number is within error <= 2^-26 |value|
+// of a value, and sign_beyond(m) is the sign of what it is more than m, the middle of two floats.
 template <class SignBeyond>
 float nearest_to(double value, double error, const SignBeyond& sign_beyond) noexcept {
     if (!(std::fabs(value) < 0x1p129)) return static_cast<float>(value);

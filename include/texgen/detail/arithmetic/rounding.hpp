@@ -4,8 +4,8 @@
 // from these, where the rounding happens.
 //
 // Promises are for rounding to nearest, the direction that a program starts in; the library changes no state. Where
-// subnormal numbers are taken as 0 (FTZ and DAZ on x86, FZ on Arm), a float below 2^-126 counts as 0, and is written as 0;
-// everything else has the same bits.
+// subnormal numbers are taken as 0 (FTZ and DAZ on x86, FZ on Arm), a float below 2^-126 counts as 0, and is written as
+// 0; everything else has the same bits.
 
 #include <bit>
 #include <cmath>
@@ -79,8 +79,8 @@ inline double leading_29_bits(double value) noexcept {
     return bit_cast<double>(bit_cast<std::uint64_t>(value) & ~std::uint64_t{0xffffff});
 }
 
-// The relative error of n roundings in sequence is at most gamma(n) = n u / (1 - n u). Here u is twice the unit roundoff:
-// a factor of 2 is room. Source: Higham, Accuracy and Stability of Numerical Algorithms, lemma 3.1.
+// The relative error of n roundings in sequence is at most gamma(n) = n u / (1 - n u). Here u is twice the unit
+// roundoff: a factor of 2 is room. Source: Higham, Accuracy and Stability of Numerical Algorithms, lemma 3.1.
 constexpr double gamma(int n) noexcept {
     constexpr double u = 2.0 * unit_roundoff_double;
     return n * u / (1.0 - n * u);
@@ -130,8 +130,8 @@ inline DoubleDouble two_product(double a, double b) noexcept {
 
 inline DoubleDouble operator-(const DoubleDouble& a) noexcept { return {-a.high, -a.low}; }
 
-// a + b within 2^-103 (|a| + |b|), and a b within 2^-103 |a b|. Source: Joldes, Muller, Popescu, Tight and Rigorous Error
-// Bounds for Basic Building Blocks of Double-Word Arithmetic, ACM TOMS 44 (2017).
+// a + b within 2^-103 (|a| + |b|), and a b within 2^-103 |a b|. Source: Joldes, Muller, Popescu, Tight and Rigorous
+// Error Bounds for Basic Building Blocks of Double-Word Arithmetic, ACM TOMS 44 (2017).
 inline DoubleDouble sum(const DoubleDouble& a, const DoubleDouble& b) noexcept {
     const DoubleDouble exact = two_sum(a.high, b.high);
     return quick_two_sum(exact.high, exact.low + (a.low + b.low));

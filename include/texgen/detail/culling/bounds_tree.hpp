@@ -148,10 +148,10 @@ private:
         forget_changes();
     }
 
-    // Neighbours in the world become neighbours in the tree, by the Morton code of their middle. That is done in slices, of
-    // some steps for each object that moves, and so at most once for as many moves as there are objects: the extent of the
-    // world, the codes, a radix sort by their bytes, and at last place after place gets its object. Meanwhile the tree is as
-    // right as ever, whatever stands where.
+    // Neighbours in the world become neighbours in the tree, by the Morton code of their middle. That is done in
+    // slices, of some steps for each object that moves, and so at most once for as many moves as there are objects: the
+    // extent of the world, the codes, a radix sort by their bytes, and at last place after place gets its object.
+    // Meanwhile the tree is as right as ever, whatever stands where.
     enum class Stage { measure, encode, sort_by_byte, place, sorted };
     static constexpr std::size_t steps_a_move = 12;
     static constexpr std::size_t code_bytes = 4;

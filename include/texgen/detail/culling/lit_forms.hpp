@@ -4,10 +4,10 @@
 //
 //   T_s v - min.x T_q v >= 0,  max.x T_q v - T_s v >= 0,  the same for t,  and  T_q v > 0,
 //
-// which are the four sides of a pyramid (of a prism, where T_q is constant) and the plane of its apex; and T_r likewise, where
-// the region has a depth: the near and the far plane. What is asked of these forms is asked of their exact values, with the
-// matrix as it is given. The sides are those beyond which nothing is lit, its rounding to float included; where all is lit,
-// the inner sides say (see RoundedSide).
+// which are the four sides of a pyramid (of a prism, where T_q is constant) and the plane of its apex; and T_r
+// likewise, where the region has a depth: the near and the far plane. What is asked of these forms is asked of their
+// exact values, with the matrix as it is given. The sides are those beyond which nothing is lit, its rounding to float
+// included; where all is lit, the inner sides say (see RoundedSide).
 
 #include <array>
 #include <cmath>
@@ -52,8 +52,8 @@ public:
     // Whether every point is dark: the region is empty or q is 0 everywhere.
     bool light_nothing() const noexcept { return lights_nothing_; }
 
-    // Whether bodies have to be asked about: not where every point is dark, nor for numbers that are not finite or exponents so
-    // far apart that an exact sum could leave the range of double.
+    // Whether bodies have to be asked about: not where every point is dark, nor for numbers that are not finite or
+    // exponents so far apart that an exact sum could leave the range of double.
     bool can_say() const noexcept { return is_usable_ && !lights_nothing_; }
 
     // The forms, each times a positive number that brings its largest a near to 1.
@@ -100,8 +100,8 @@ public:
     }
 
 private:
-    // A power of two takes the largest element to 1: nothing changes but the range of the exponents. r is 0 where there is no
-    // depth.
+    // A power of two takes the largest element to 1: nothing changes but the range of the exponents. r is 0 where there
+    // is no depth.
     bool take_matrix(const glm::dmat4& matrix) noexcept {
         const double of_r = count_ == forms_without_depth ? 0.0 : 1.0;
         const double is_taken[4] = {1.0, 1.0, of_r, 1.0};
@@ -125,8 +125,8 @@ private:
         return least * scale >= 0x1p-600;
     }
 
-    // An infinite side is none, and q takes its place: it is one of the forms all the same. An inner side that no float is
-    // inside of is where -q is not below 0: nowhere in front. A max is the mirrored min.
+    // An infinite side is none, and q takes its place: it is one of the forms all the same. An inner side that no float
+    // is inside of is where -q is not below 0: nowhere in front. A max is the mirrored min.
     bool take_sides(const TextureRegion& region) noexcept {
         for (FormWeights* weights : {&outer_, &inner_}) {
             *weights = {};
@@ -157,8 +157,9 @@ private:
         return k < 2 ? 0 : k < q ? 1 : k == q ? 3 : 2;
     }
 
-    // A coefficient is the sum of three numbers. What is cancelled in the first sum leaves nothing, so that all.high is nearly
-    // all of it: that has its sign, is 0 only if it is 0, and the terms have no more in magnitude but for 2^-49 of it.
+    // A coefficient is the sum of three numbers. What is cancelled in the first sum leaves nothing, so that all.high is
+    // nearly all of it: that has its sign, is 0 only if it is 0, and the terms have no more in magnitude but for 2^-49
+    // of it.
     void take_at_vertex(std::size_t k, const FormWeights& weights, bool is_largest, FormAtVertex& form) const noexcept {
         const double own = k == q ? 0.0 : weights.of[coordinate_of(k)][k], of_q = weights.of_q[k];
         form.term_count = 0;

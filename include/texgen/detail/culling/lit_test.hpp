@@ -19,10 +19,10 @@ inline bool is_inside(float s, float t, const float (&min)[2], const float (&max
     return s >= min[0] && s <= max[0] && t >= min[1] && t <= max[1];
 }
 
-// What rounding makes of a side of a region. A number beyond `outer` is not inside the side, nor is the float that it is
-// rounded to; one not beyond `inner` is, and so is its float: they are the last float outside and the first one inside, as
-// rounding keeps the order and keeps floats. Next to 0 both leave room for subnormal floats that count as 0. An infinite
-// side stays where it is; one beyond all floats has no `outer`.
+// What rounding makes of a side of a region. A number beyond `outer` is not inside the side, nor is the float that it
+// is rounded to; one not beyond `inner` is, and so is its float: they are the last float outside and the first one
+// inside, as rounding keeps the order and keeps floats. Next to 0 both leave room for subnormal floats that count as 0.
+// An infinite side stays where it is; one beyond all floats has no `outer`.
 struct RoundedSide {
     double outer, inner;
 

@@ -11,8 +11,8 @@ struct ClipDistance {
         if (reversed_depth) return {-1.0, 1.0, 0.0};
         return {1.0, range == DepthRange::negative_one_to_one ? 1.0 : 0.0, 0.0};
     }
-    // In front of the eye, w > 0: the smallest float is the first. (As a double: where subnormal floats count as 0 it would
-    // be 0.)
+    // In front of the eye, w > 0: the smallest float is the first. (As a double: where subnormal floats count as 0 it
+    // would be 0.)
     static ClipDistance from_eye() noexcept { return {0.0, 1.0, 0x1p-149}; }
 
     double operator()(const ClipVertex& vertex) const noexcept {
@@ -120,8 +120,8 @@ inline std::size_t clip_to_near(std::span<const ClipVertex> polygon, std::span<C
     };
     const std::size_t count = detail::cut_convex(out, polygon.size(), near_plane, cut_at_near);
 
-    // The terms of w are at most 2^20 of it, so that double errs by 2^-33 of it and the nearest float is the w aimed at;
-    // for the same reason z stays in front of the near plane, as that of both ends is.
+    // The terms of w are at most 2^20 of it, so that double errs by 2^-33 of it and the nearest float is the w aimed
+    // at; for the same reason z stays in front of the near plane, as that of both ends is.
     const auto cut_before_eye = [](const ClipVertex& inside, const ClipVertex& outside) {
         const double w = detail::widened(detail::just_in_front(inside.position.w));
         return detail::between(w - detail::widened(outside.position.w), inside, detail::widened(inside.position.w) - w,

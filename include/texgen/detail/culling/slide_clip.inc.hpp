@@ -39,7 +39,8 @@ public:
         return sum;
     }
 
-    // A rounded sum has its sign, and what is below the product's error has no rounding: there that of the product decides.
+    // A rounded sum has its sign, and what is below the product's error has no rounding: there that of the product
+    // decides.
     int sign(const ClipVertex& vertex) const noexcept {
         const double product = of_q(vertex);
         double value = own(vertex) + product;
@@ -52,8 +53,8 @@ private:
     double own(const ClipVertex& vertex) const noexcept { return sign_ * widened(vertex.strq[coordinate_]); }
     double of_q(const ClipVertex& vertex) const noexcept { return per_q_ * widened(vertex.strq.w); }
 
-    // So that no product with floats, which have |u/q| in [2^-277, 2^277] or 0, leaves the range of double. (A side beyond
-    // 2^1000, as an infinite one, moves no vertex by what a float shows.)
+    // So that no product with floats, which have |u/q| in [2^-277, 2^277] or 0, leaves the range of double. (A side
+    // beyond 2^1000, as an infinite one, moves no vertex by what a float shows.)
     static double unit_of(double side) noexcept {
         const double size = std::fabs(side);
         if (size > 0x1p300) return 0x1p-600;
@@ -120,8 +121,8 @@ private:
     SlideDistance::Close of_inside_, of_outside_;
 };
 
-// The same from the begin. With weights v^ = v + e, |e| <= E, the numerator errs by E_o |inside| + E_i |outside| and by three
-// roundings, the quotient by that and E_i + E_o of it, over the difference, and by its own.
+// The same from the begin. With weights v^ = v + e, |e| <= E, the numerator errs by E_o |inside| + E_i |outside| and by
+// three roundings, the quotient by that and E_i + E_o of it, over the difference, and by its own.
 inline ClipVertex cut_at(const SlideDistance& side, const ClipVertex& inside, const ClipVertex& outside) noexcept {
     const Bounded of_inside = side(inside);
     const Bounded of_outside = side(outside);
@@ -153,9 +154,9 @@ inline ClipVertex cut_at(const SlideDistance& side, const ClipVertex& inside, co
     return result;
 }
 
-// Cuts the polygon in storage[0, count) edge by edge and returns the new count; 0 where nothing is inside but corners on the
-// side, or where storage has no room. sign() is that of the distance of a vertex; cut() as for cut_convex. It is read from
-// the end of the storage on, so that what is written at its begin grows into the room that is free.
+// Cuts the polygon in storage[0, count) edge by edge and returns the new count; 0 where nothing is inside but corners
+// on the side, or where storage has no room. sign() is that of the distance of a vertex; cut() as for cut_convex. It is
+// read from the end of the storage on, so that what is written at its begin grows into the room that is free.
 template <class Sign, class Cut>
 std::size_t cut_edges(std::span<ClipVertex> storage, std::size_t count, const Sign& sign, const Cut& cut) noexcept {
     std::size_t inside = 0;

@@ -19,8 +19,9 @@ inline void copy_floats(const Sphere& sphere, float* to, std::size_t distance) n
     to[3 * distance] = sphere.radius;
 }
 
-// Classifies bodies of `Floats` floats each by a kernel, and has `decide` say what that leaves open, which is gathered until it
-// fills vectors. Floats of bodies that do not follow one another, as where the user aligns GLM's vectors, are copied.
+// Classifies bodies of `Floats` floats each by a kernel, and has `decide` say what that leaves open, which is gathered
+// until it fills vectors. Floats of bodies that do not follow one another, as where the user aligns GLM's vectors, are
+// copied.
 template <std::size_t Floats, class Body, class Decide>
 void classify_many(const LitForms& forms, const FloatForms& float_forms, std::span<const Body> bodies,
                    std::span<Coverage> out, Classify classify, const Decide& decide) noexcept {
@@ -85,8 +86,8 @@ inline Coverage coverage_without_forms(const LitForms& forms, const Sphere& sphe
 
 inline namespace TEXGEN_BUILD {
 
-// One sphere. What is clear of all bounds by twice as much the kernel says as well, where roundings differ by less than one;
-// where the centre is in front of all forms, no edge is asked. slope_of() says how long the lanes' |a| are.
+// One sphere. What is clear of all bounds by twice as much the kernel says as well, where roundings differ by less than
+// one; where the centre is in front of all forms, no edge is asked. slope_of() says how long the lanes' |a| are.
 template <class SlopeOf, class MakeUnit>
 Coverage coverage_of(const LitForms& forms, const FormLanes& lanes, const SlopeOf& slope_of, const MakeUnit& make_unit,
                      const Sphere& sphere) noexcept {

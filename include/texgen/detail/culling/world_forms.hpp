@@ -1,7 +1,7 @@
 #pragma once
 
-// Where objects are in the world, and what a projector lights of it at most. What is outside there is dark for certain; what
-// is not is asked about again in the object's own space.
+// Where objects are in the world, and what a projector lights of it at most. What is outside there is dark for certain;
+// what is not is asked about again in the object's own space.
 
 #include <array>
 #include <cmath>
@@ -22,12 +22,12 @@
 
 namespace TEXGEN_DETAIL {
 
-// How many times the smallest element that is not 0 the largest is; infinite where an element is beyond 2^+-200, so that
-// a product of three matrices neither overflows nor underflows. Without a depth r is in no form, and may be small.
+// How many times the smallest element that is not 0 the largest is; infinite where an element is beyond 2^+-200, so
+// that a product of three matrices neither overflows nor underflows. Without a depth r is in no form, and may be small.
 //
-// Each element of such a product, rounded, is a multiple of the product of the factors' last bits. So where the quotients of
-// M, and of S P and V together, are no larger than these, no element of T_o that is not 0 is below 2^-600 of the largest,
-// and coverage() of it is decided.
+// Each element of such a product, rounded, is a multiple of the product of the factors' last bits. So where the
+// quotients of M, and of S P and V together, are no larger than these, no element of T_o that is not 0 is below 2^-600
+// of the largest, and coverage() of it is decided.
 inline double range_of(const glm::dmat4& m, bool without_r = false) noexcept {
     double smallest = 0x1p200;
     double largest = 0x1p-200;
@@ -47,8 +47,8 @@ inline constexpr double object_range = 0x1p240;
 inline constexpr double projector_range = 0x1p190;
 static_assert(object_range * projector_range * 0x1p165 < 0x1p600);  // three times 53 bits, two sums of four, and 2
 
-// a . (x, y, z) + d, known to within error_a size + error_d when it is computed in double in any order, where the size of a
-// point is |x| + |y| + |z|.
+// a . (x, y, z) + d, known to within error_a size + error_d when it is computed in double in any order, where the size
+// of a point is |x| + |y| + |z|.
 struct LinearForm {
     std::array<double, 3> a;
     double d;
@@ -98,14 +98,14 @@ inline WorldBounds world_bounds(const glm::dmat4& m, const Box& box) noexcept {
 
 // The forms of a slide in the world (q, and the sides as u - min q and max q - u), with room for what any T_o that is
 // composed in double may differ by. With T = S P V, computed in double, each element of T, of T_o = (S P)(V M) and of a
-// form errs by at most gamma(16) of the same product of magnitudes, and so does the form's value at M v: in all by less than
-// slack = gamma(64) (|S P| |V|)_form (size, size, size, 1). What rounding makes of a side (see RoundedSide) moves the form
-// by at most its width times |T_q| |v|, which is part of the slack. Where a form is below -slack over the bounds, so is that
-// of T_o over the box, and where all are above slack, so are those.
+// form errs by at most gamma(16) of the same product of magnitudes, and so does the form's value at M v: in all by less
+// than slack = gamma(64) (|S P| |V|)_form (size, size, size, 1). What rounding makes of a side (see RoundedSide) moves
+// the form by at most its width times |T_q| |v|, which is part of the slack. Where a form is below -slack over the
+// bounds, so is that of T_o over the box, and where all are above slack, so are those.
 class WorldForms {
 public:
-    // texture_from_eye is S P. Where coverage() may not be able to say, the forms say nothing; nor does that of an infinite
-    // side.
+    // texture_from_eye is S P. Where coverage() may not be able to say, the forms say nothing; nor does that of an
+    // infinite side.
     WorldForms(const glm::dmat4& texture_from_eye, const glm::dmat4& view, const TextureRegion& region) noexcept {
         const glm::dmat4 matrix = texture_from_eye * view;
         const bool without_r = !region.depth();
@@ -121,8 +121,8 @@ public:
         }
     }
 
-    // outside and inside for certain. A form over bounds is its value in the middle, give or take that of half the extents;
-    // the rounding of those is part of the slack.
+    // outside and inside for certain. A form over bounds is its value in the middle, give or take that of half the
+    // extents; the rounding of those is part of the slack.
     Coverage coverage(const WorldBounds& bounds) const noexcept {
         if (bounds.size < 0.0) return Coverage::outside;
         double middle[3];
@@ -148,8 +148,8 @@ public:
     }
 
 private:
-    // sign (row - bound q), times a power of two: the sum of the magnitudes becomes about 1. The given side is between the
-    // outer and the inner one, and may be off by that.
+    // sign (row - bound q), times a power of two: the sum of the magnitudes becomes about 1. The given side is between
+    // the outer and the inner one, and may be off by that.
     static void set(LinearForm& form, const glm::dmat4& matrix, const glm::dmat4& magnitude,
                     const SlidePlane& plane) noexcept {
         const RoundedSide side = RoundedSide::of(plane);

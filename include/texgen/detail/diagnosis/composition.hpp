@@ -51,8 +51,8 @@ inline constexpr std::array<FactorOrder, 23> wrong_orders{
 using ProductRow = ProductOf<glm::dvec4>;
 using ProductColumns = ProductOf<glm::dmat2x4>;
 
-// What a matrix makes of two directions, seen along a row: few numbers, which tell products apart that are far from it. A
-// row or column that says nothing is not in them, and the others weigh about the same.
+// What a matrix makes of two directions, seen along a row: few numbers, which tell products apart that are far from it.
+// A row or column that says nothing is not in them, and the others weigh about the same.
 class Glance {
 public:
     Glance(const glm::dmat4& given, bool was_transposed) noexcept
@@ -73,8 +73,8 @@ public:
     const ProductRow& row() const noexcept { return row_; }
     const ProductColumns& columns() const noexcept { return columns_; }
 
-    // Whether a multiple of the product may be what was given, composed in whatever way: two numbers g that are k times p,
-    // each within its share of the magnitudes m, differ in g0 p1 - g1 p0 by no more than g0 m1 + g1 m0.
+    // Whether a multiple of the product may be what was given, composed in whatever way: two numbers g that are k times
+    // p, each within its share of the magnitudes m, differ in g0 p1 - g1 p0 by no more than g0 m1 + g1 m0.
     bool may_give(const ProductRow& left, const ProductColumns& right) const noexcept {
         constexpr double share = 1.01 * composed_in_float.of_magnitude;
         const auto [value, magnitude] = left * right;

@@ -45,8 +45,8 @@ inline bool is_in_float(const glm::dmat4& m) noexcept {
 // What a matrix of its kind may be off by, relative to its elements.
 inline double rounding_of(const glm::dmat4& m) noexcept { return is_in_float(m) ? 0x1p-22 : 0x1p-44; }
 
-// What its rounding is relative to, where no more is known: the magnitudes of the elements that are no round numbers. Of a
-// constant that is known only where no axis of the row is round: else it may have many bits, and be exact.
+// What its rounding is relative to, where no more is known: the magnitudes of the elements that are no round numbers.
+// Of a constant that is known only where no axis of the row is round: else it may have many bits, and be exact.
 inline glm::dmat4 rounded_magnitudes(const glm::dmat4& m) noexcept {
     glm::dmat4 result(0.0);
     for (glm::length_t row = 0; row < 4; ++row) {
@@ -64,8 +64,8 @@ inline glm::dmat4 rounded_magnitudes(const glm::dmat4& m) noexcept {
 }
 
 // A determinant of three rows and three columns, and whether it stands out of the rounding of the elements and of its
-// own: with its cofactors C, an error e_ij of the elements changes it by sum e_ij C_ij at first order. That does not depend
-// on the scale of any row or column.
+// own: with its cofactors C, an error e_ij of the elements changes it by sum e_ij C_ij at first order. That does not
+// depend on the scale of any row or column.
 struct Minor {
     double value;
     bool stands_out;
@@ -89,8 +89,8 @@ inline Minor minor_of(const glm::dmat4& m, const std::array<glm::length_t, 3>& r
 
 inline constexpr std::array<glm::length_t, 3> axes{0, 1, 2};
 
-// Whether three rows have rank 3. Valid ones do by their axes, or by two axes and the constants where light is parallel;
-// translations enter neither.
+// Whether three rows have rank 3. Valid ones do by their axes, or by two axes and the constants where light is
+// parallel; translations enter neither.
 inline bool are_independent(const glm::dmat4& m, const std::array<glm::length_t, 3>& rows) noexcept {
     return minor_of(m, rows, axes).stands_out || minor_of(m, rows, {0, 1, 3}).stands_out ||
            minor_of(m, rows, {0, 2, 3}).stands_out || minor_of(m, rows, {1, 2, 3}).stands_out;
@@ -125,8 +125,8 @@ inline bool is_lens_transposed(const glm::dmat4& p) noexcept {
     return perspective || (is_affine_transposed(p) && is_lens(glm::transpose(p)));
 }
 
-// Whether the lens looks down the other axis than eyes of that handedness do. Parallel light does not say where it looks; and
-// where both axes of the picture are turned round as well, the matrix has the other sign.
+// Whether the lens looks down the other axis than eyes of that handedness do. Parallel light does not say where it
+// looks; and where both axes of the picture are turned round as well, the matrix has the other sign.
 inline bool mistakes_handedness(const glm::dmat4& p, Handedness handedness, double width, double height) noexcept {
     const bool is_left = p[2].w > 0.0;
     return is_perspective(p) && is_left != (handedness == Handedness::left) && (width > 0.0 || height > 0.0);
@@ -170,8 +170,8 @@ inline bool mistakes_unit(double focal_length, const Angle& fovy) noexcept {
     return std::fabs(std::sin(0.5 * turned)) <= 0x1p-16 || is_of(degrees(fovy.in_radians()).in_radians());
 }
 
-// Row r against row q. Every lens has (0, 0, e, f) in row z and (0, 0, w, h) in row w, so that r = limit q + constant, the
-// scale-bias included, and an affine pose on the right keeps it: the directions of the two rows are parallel. A
+// Row r against row q. Every lens has (0, 0, e, f) in row z and (0, 0, w, h) in row w, so that r = limit q + constant,
+// the scale-bias included, and an affine pose on the right keeps it: the directions of the two rows are parallel. A
 // transposed matrix or a wrong order loses it. (An oblique near plane has it not: that needs its projector.)
 struct DepthRows {
     bool are_parallel;
@@ -200,7 +200,8 @@ inline bool is_opengl_default(const glm::dmat4& m) noexcept {
 }
 
 // Whether the picture is mirrored in the world: to the right, up and forwards, as s, t and q say it, have no positive
-// determinant in a left-handed one, or have one in a right-handed one. Parallel light does not say which way is forwards.
+// determinant in a left-handed one, or have one in a right-handed one. Parallel light does not say which way is
+// forwards.
 inline bool is_mirrored(const glm::dmat4& texgen, const glm::dmat4& world_from_space,
                         Conventions conventions) noexcept {
     const Minor picture = minor_of(texgen, {0, 1, 3}, axes);

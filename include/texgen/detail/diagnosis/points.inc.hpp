@@ -24,12 +24,13 @@ struct Picture {
 // that the set-up composes.
 struct Examined {
     std::optional<glm::dmat4> texgen, right;  // right: what the set-up composes, where texgen is that but for rounding
-    // What floats lose of the texgen matrix, element by element: half the bound on their rounding, where they are rounded.
+    // What floats lose of the texgen matrix, element by element: half the bound on their rounding, where they are
+    // rounded.
     glm::dmat4 lost{0.0};
 };
 
-// What is lost of s and t at every point that is lit: that of the rows' constants, where q is largest, on the far plane.
-// 0 where that is infinitely far, or row r does not say.
+// What is lost of s and t at every point that is lit: that of the rows' constants, where q is largest, on the far
+// plane. 0 where that is infinitely far, or row r does not say.
 inline double least_error_in_texels(const Examined& examined, const Picture& picture, DepthMapping depth) noexcept {
     const glm::dmat4& texgen = *examined.texgen;
     const DepthRows rows = depth_rows(texgen);

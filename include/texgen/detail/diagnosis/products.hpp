@@ -1,7 +1,8 @@
 #pragma once
 
 // The factors of a texgen matrix, the scale-bias S, the projector's P and V, and the pose X (the model matrix M or the
-// camera's V_e^-1), their products and what rounding may change of these; and two mistakes that are no product: row r of the other depth range, a bias without w.
+// camera's V_e^-1), their products and what rounding may change of these; and two mistakes that are no product: row r
+// of the other depth range, a bias without w.
 
 #include <cmath>
 #include <limits>
@@ -51,8 +52,8 @@ inline constexpr Closeness rounded_once{0x1p-23, 0x1p-44};
 // Three products in float of factors rounded to float err by 16 * 2^-24 at most; a float inverse may be among them.
 inline constexpr Closeness composed_in_float{0.0, 0x1p-16};
 
-// k where `given` is k times the product, in the rows (and, of what was read transposed, the columns) in which it is not
-// zero: planes that were never written say nothing. 0 where it is not.
+// k where `given` is k times the product, in the rows (and, of what was read transposed, the columns) in which it is
+// not zero: planes that were never written say nothing. 0 where it is not.
 class Multiple {
 public:
     Multiple(const Product& product, const glm::dmat4& given, bool was_transposed = false) noexcept
@@ -112,7 +113,8 @@ struct Composition {
     double multiple = 1.0;
 };
 
-// Numbers that no scene has would cost time (subnormal ones) or products their range: small ones are 0, large ones none.
+// Numbers that no scene has would cost time (subnormal ones) or products their range: small ones are 0, large ones
+// none.
 inline glm::dmat4 as_in_scenes(glm::dmat4 m) noexcept {
     for (glm::length_t column = 0; column < 4; ++column) {
         for (glm::length_t row = 0; row < 4; ++row) {
@@ -169,9 +171,9 @@ inline Product right_composition(const Factors& factors) noexcept {
     return scale_bias_factor(factors, {}) * lens_factor(factors.projection) * pose_product(factors);
 }
 
-// Whether rows s, t and q are right, and row r = a z + b w is that of a lens or a scale-bias for the other range. Where the
-// right one is within the rounding of a product in float, the rounding of the other rows says how large it is: row r must be
-// well beyond it, and the other range's within it.
+// Whether rows s, t and q are right, and row r = a z + b w is that of a lens or a scale-bias for the other range. Where
+// the right one is within the rounding of a product in float, the rounding of the other rows says how large it is: row
+// r must be well beyond it, and the other range's within it.
 inline bool is_of_other_range(const glm::dmat4& texgen, const glm::dmat4& scale_bias, const Product& right) noexcept {
     if (is_zero_row(texgen, 2)) return false;
     glm::dmat4 other_rows = texgen;
@@ -206,8 +208,8 @@ inline bool is_of_other_range(const glm::dmat4& texgen, const glm::dmat4& scale_
     return false;
 }
 
-// Whether the matrix is clip * scale + bias, the bias not times w: of x and y, and of z and w or not. Scale and bias are those
-// of S or 1/2, in either direction of t; the sum of a glm::mat4 and a number has the bias in every column.
+// Whether the matrix is clip * scale + bias, the bias not times w: of x and y, and of z and w or not. Scale and bias
+// are those of S or 1/2, in either direction of t; the sum of a glm::mat4 and a number has the bias in every column.
 inline bool is_bias_without_w(const glm::dmat4& texgen, const Factors& factors) noexcept {
     // Of parallel light w is 1.
     if (!is_perspective(factors.projection)) return false;

@@ -1,5 +1,5 @@
-// What diagnose.hpp says of a texgen matrix that no order and no use of its factors gives: what else it was made of, and the
-// lens that is seen through it, P' = S^-1 T X^-1 V^-1.
+// What diagnose.hpp says of a texgen matrix that no order and no use of its factors gives: what else it was made of,
+// and the lens that is seen through it, P' = S^-1 T X^-1 V^-1.
 
 namespace TEXGEN_DETAIL {
 
@@ -41,8 +41,8 @@ inline bool has_pose_for_view(const glm::dmat4& texgen, const Factors& factors) 
     return Multiple(right_composition(with_pose), texgen).within(composed_in_float) > 0.0;
 }
 
-// P', the projection that a texgen matrix has in it, of a w as large as that of P; what rounding can have left of a zero is
-// 0. Empty where V X is singular, or so much is left that it is no lens.
+// P', the projection that a texgen matrix has in it, of a w as large as that of P; what rounding can have left of a
+// zero is 0. Empty where V X is singular, or so much is left that it is no lens.
 inline std::optional<glm::dmat4> lens_within(const glm::dmat4& texgen, const Factors& factors) noexcept {
     const Product pose = pose_product(factors);
     const CertifiedInverse inverse(pose.value);

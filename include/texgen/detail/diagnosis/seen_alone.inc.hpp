@@ -1,10 +1,10 @@
-// What diagnose.hpp says of a texgen matrix whose projector is not given. Rows s, t and q of a perspective have the lens in
-// them, whatever its view: lengths and angles do not change under rotations.
+// What diagnose.hpp says of a texgen matrix whose projector is not given. Rows s, t and q of a perspective have the
+// lens in them, whatever its view: lengths and angles do not change under rotations.
 
 namespace TEXGEN_DETAIL {
 
-// Whether near or far, where they are known, land on an end of the other range, or infinity lands where they say it does
-// there: that holds in any units.
+// Whether near or far, where they are known, land on an end of the other range, or infinity lands where they say it
+// does there: that holds in any units.
 inline bool lands_on_other_range(const SeenLens& lens, const DepthEnds& ends, const LensFacts& facts,
                                  bool is_placed) noexcept {
     for (const auto& distance : {facts.z_near, facts.z_far}) {
@@ -51,8 +51,8 @@ inline SeenScaleBias seen_scale_bias(const SetupMatrices& setup) noexcept {
     return {{std::fabs(s[0].x), std::fabs(s[1].y)}, {s[3].x, s[3].y}, up_along_t};
 }
 
-// Whether a lens whose axis goes to the picture's corner is the quarter of another, or the whole that has no bias, by r: which
-// makes near round. Empty where r has no bias, or is not known to have one.
+// Whether a lens whose axis goes to the picture's corner is the quarter of another, or the whole that has no bias, by
+// r: which makes near round. Empty where r has no bias, or is not known to have one.
 struct RoundNear {
     bool of_quarter, of_whole;
 };
@@ -65,8 +65,8 @@ inline std::optional<RoundNear> round_near(const SeenLens& lens, const SetupMatr
     return RoundNear{of_quarter > enough_bits, !(of_quarter > 0.0) && roundness(lens.distance_of(-1.0)) > enough_bits};
 }
 
-// Says what the lens that is seen shows. What is known of the lens decides; where nothing is, only numbers that are round
-// with a mistake, and are not without it, speak for one: they are what people write.
+// Says what the lens that is seen shows. What is known of the lens decides; where nothing is, only numbers that are
+// round with a mistake, and are not without it, speak for one: they are what people write.
 inline void examine_seen_lens(const SeenLens& lens, const SetupMatrices& setup, const LensFacts& facts,
                               Diagnosis& diagnosis) noexcept {
     const SeenScaleBias s = seen_scale_bias(setup);
@@ -117,8 +117,8 @@ inline void examine_seen_lens(const SeenLens& lens, const SetupMatrices& setup, 
         diagnosis.add(Defect::depth_range_mismatch);
 }
 
-// Of a matrix whose rows r and q are none of a lens: whether they are when 1/2 is taken from every element, as it is added to
-// a glm::mat4.
+// Of a matrix whose rows r and q are none of a lens: whether they are when 1/2 is taken from every element, as it is
+// added to a glm::mat4.
 inline bool has_bias_in_every_column(const glm::dmat4& texgen, const glm::dmat4* pose) noexcept {
     const SeenLens lens(in_the_world(texgen - 0.5, pose), rounding_of(texgen));
     return lens.is_lens() && lens.is_centred_on(glm::dvec2(0.0));

@@ -1,7 +1,7 @@
 #pragma once
 
-// The lens that is seen in a texgen matrix or a projection, whatever its view, and what round numbers say of it: those that
-// people write stand out of all others.
+// The lens that is seen in a texgen matrix or a projection, whatever its view, and what round numbers say of it: those
+// that people write stand out of all others.
 
 #include <array>
 #include <cmath>
@@ -28,8 +28,8 @@ struct Estimate {
     double value, error;
 };
 
-// How unlikely it is that the number is by chance as near to a round one, of few digits, as it is: in bits; 0 where it is
-// none. Of 1, 2 and 5, of one digit, and of two there are 3, 9 and 90 in a decade.
+// How unlikely it is that the number is by chance as near to a round one, of few digits, as it is: in bits; 0 where it
+// is none. Of 1, 2 and 5, of one digit, and of two there are 3, 9 and 90 in a decade.
 inline double roundness(const Estimate& number, int most_digits = 2) noexcept {
     const auto bits = [&](double in_a_decade) { return -std::log2(in_a_decade * 8.0 / 2.3 * number.error); };
     if (!(number.value > 0x1p-100 && number.value < 0x1p100)) return 0.0;
@@ -105,8 +105,8 @@ public:
         return {rows_.limit + offset_ / q, rounding_ + offset_error_ / q};
     }
 
-    // Whether the picture stands on its head: its side is level, over y or over z, and t grows downwards. Not where it is level over
-    // both and t grows upwards along one, which may be the world's up.
+    // Whether the picture stands on its head: its side is level, over y or over z, and t grows downwards. Not where it
+    // is level over both and t grows upwards along one, which may be the world's up.
     bool hangs_down(double up_along_t) const noexcept {
         const glm::dvec3 side = across(0) / glm::length(across(0)),
                          up = up_along_t / glm::length(across(1)) * across(1);
@@ -141,7 +141,8 @@ inline bool is_of_round_angle(const Estimate& focal_length) noexcept {
     return std::fabs(focal_length.value * std::sin(half) - std::cos(half)) <= focal_length.error * std::cos(half);
 }
 
-// The number of whole degrees that make that focal length, but for its sign, if they are taken for radians; 0 where none do.
+// The number of whole degrees that make that focal length, but for its sign, if they are taken for radians; 0 where
+// none do.
 inline double degrees_as_radians(const Estimate& focal_length) noexcept {
     constexpr double turn = 2.0 * std::numbers::pi;
     const double step = focal_length.error < 0x1p-30 ? 1.0 : 5.0;
@@ -157,8 +158,8 @@ inline double degrees_as_radians(const Estimate& focal_length) noexcept {
     return 0.0;
 }
 
-// The r of the near plane, or where depth is reversed of the far one: `low` as the mapping and the conventions have it, and as a lens
-// or a scale-bias for the other depth range leaves it.
+// The r of the near plane, or where depth is reversed of the far one: `low` as the mapping and the conventions have it,
+// and as a lens or a scale-bias for the other depth range leaves it.
 struct DepthEnds {
     double low;
     std::array<double, 2> other_lows;
@@ -169,8 +170,8 @@ inline std::optional<DepthEnds> depth_ends(DepthMapping depth, const std::option
     return conventions ? std::optional(DepthEnds{-1.0, {0.0, 0.0}}) : std::nullopt;
 }
 
-// Whether near and far are round numbers if the range is the other one, and near is none as it is: what floats are not exact
-// enough to say. Of an object that is scaled, who knows by how much, a third, a seventh or a ninth is as round.
+// Whether near and far are round numbers if the range is the other one, and near is none as it is: what floats are not
+// exact enough to say. Of an object that is scaled, who knows by how much, a third, a seventh or a ninth is as round.
 inline bool is_round_in_other_range(const SeenLens& lens, const DepthEnds& ends, bool knows_unit) noexcept {
     constexpr double enough_bits = 24.0;
     const Estimate z_near = lens.distance_of(ends.low);
@@ -182,8 +183,8 @@ inline bool is_round_in_other_range(const SeenLens& lens, const DepthEnds& ends,
     return false;
 }
 
-// Whether the angle is that of whole degrees which were taken for radians. Where floats do not say it beyond doubt, the picture
-// stands on its head, as a tangent below 0 makes it.
+// Whether the angle is that of whole degrees which were taken for radians. Where floats do not say it beyond doubt, the
+// picture stands on its head, as a tangent below 0 makes it.
 inline bool is_of_degrees_as_radians(const SeenLens& lens, double focal_length, double up_along_t) noexcept {
     const double error = lens.error_of_focal_length();
     const bool hangs_down = lens.hangs_down(up_along_t);

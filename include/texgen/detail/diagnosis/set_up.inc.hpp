@@ -59,8 +59,8 @@ inline glm::dmat4 smaller_elements(const glm::dmat4& a, const glm::dmat4& b) noe
     return result;
 }
 
-// What floats lose of the matrix where the product is known: nothing of elements that are its own. The rounding of others
-// moves the multiple that fits best, so that one of few bits next to it is taken for what was meant.
+// What floats lose of the matrix where the product is known: nothing of elements that are its own. The rounding of
+// others moves the multiple that fits best, so that one of few bits next to it is taken for what was meant.
 inline glm::dmat4 lost_of(const glm::dmat4& texgen, const Product& right) noexcept {
     const double fitted = Multiple(right, texgen).within(composed_in_float);
     const double large = 0x1p37 * fitted;

@@ -1,11 +1,12 @@
-// What doubles leave in doubt of a batch's fragments, to twice their precision: the edge functions from the differences between
-// the fragment and the vertices, as in triangle/close_planes.hpp, a triangle in each lane. Included by batch.inc.hpp. For rounding
-// to nearest; only exact products are added to what their sum is compared with, so that contraction changes nothing.
+// What doubles leave in doubt of a batch's fragments, to twice their precision: the edge functions from the differences
+// between the fragment and the vertices, as in triangle/close_planes.hpp, a triangle in each lane. Included by
+// batch.inc.hpp. For rounding to nearest; only exact products are added to what their sum is compared with, so that
+// contraction changes nothing.
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// A difference: the leading 26 bits of the double next to it, the others, and what that lacks. Of two such products all but that of
-// the others are exact.
+// A difference: the leading 26 bits of the double next to it, the others, and what that lacks. Of two such products all
+// but that of the others are exact.
 struct DifferenceLanes {
     Doubles high, low, lost;
 
@@ -20,7 +21,8 @@ struct DifferenceLanes {
 struct EdgeLanes {
     Doubles high, low, size;
 
-    // What two differences span: within 2^-98 of the size. Not short are differences that have a low part, or have lost one.
+    // What two differences span: within 2^-98 of the size. Not short are differences that have a low part, or have lost
+    // one.
     TEXGEN_INLINE void set(const DifferenceLanes& to_x, const DifferenceLanes& to_y, const DifferenceLanes& from_x,
                            const DifferenceLanes& from_y, bool is_short, bool is_lost) noexcept {
         const Doubles left = to_x.high * from_y.high;
@@ -151,8 +153,8 @@ struct CloseTerms {
     }
 };
 
-// At a fragment: all are within 2^-98 of their size. Of one farther off than the corners are apart, what corner k is off corner j takes
-// the place of what it is off the fragment: E_i is the same, of terms that are less.
+// At a fragment: all are within 2^-98 of their size. Of one farther off than the corners are apart, what corner k is
+// off corner j takes the place of what it is off the fragment: E_i is the same, of terms that are less.
 struct CloseLanes : CloseTerms {
     TEXGEN_APART CloseLanes(const VertexLanes& given, const Doubles& x, const Doubles& y) noexcept {
         // Of side i from here to its corner j, and from there or here to k.
@@ -239,8 +241,8 @@ struct ResidueValues {
     }
 };
 
-// The functions of a triangle in each lane at a fragment as integers modulo 2^64, as PlaneResidues in triangle/close_planes.hpp has
-// them.
+// The functions of a triangle in each lane at a fragment as integers modulo 2^64, as PlaneResidues in
+// triangle/close_planes.hpp has them.
 struct ResidueLanes {
     const VertexLanes& given;
     Residues side[3];    // with the weights
@@ -322,9 +324,9 @@ private:
     bool are_large_;  // some numbers are
 };
 
-// The functions of a triangle in each lane at a fragment, in double, of which corner k is taken off corner j as one far away has it
-// in CloseLanes. With u = 2^-53 the differences are within u, an edge function 4 u of the sizes of its terms, times its weight 6 u,
-// the sum of three 9 u of theirs, and the sizes themselves 7 u.
+// The functions of a triangle in each lane at a fragment, in double, of which corner k is taken off corner j as one far
+// away has it in CloseLanes. With u = 2^-53 the differences are within u, an edge function 4 u of the sizes of its
+// terms, times its weight 6 u, the sum of three 9 u of theirs, and the sizes themselves 7 u.
 struct NearLanes {
     Doubles term[3], size[3];
 
@@ -349,8 +351,8 @@ struct NearLanes {
     }
 };
 
-// Where the grain is coarse enough, one integer times it that has the residue is next to a value: what the leading part is rounded
-// to is within `reach`, or a grain, of it. Of their difference, the rest, 2^-50 is lost, or nothing.
+// Where the grain is coarse enough, one integer times it that has the residue is next to a value: what the leading part
+// is rounded to is within `reach`, or a grain, of it. Of their difference, the rest, 2^-50 is lost, or nothing.
 TEXGEN_INLINE CloseValues sharpened(const CloseValues& f, const Residues& residue, const Doubles& grain) noexcept {
     const Doubles reach = magnitude(f.high) * 0x1p-48 + f.error;
     const LongWords is_one = greater(grain * 0x1p60, reach);

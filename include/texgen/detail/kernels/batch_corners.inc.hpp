@@ -1,5 +1,6 @@
-// The functions of a batch's triangles far off slivers, where the terms of batch_closely.inc.hpp cancel: about a corner, where but one of
-// them is not 0, and from coefficients that residues have sharpened. Included by batch.inc.hpp.
+// The functions of a batch's triangles far off slivers, where the terms of batch_closely.inc.hpp cancel: about a
+// corner, where but one of them is not 0, and from coefficients that residues have sharpened. Included by
+// batch.inc.hpp.
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
@@ -17,9 +18,9 @@ struct ProductLanes {
     }
 };
 
-// With C the corner next to a fragment p, F(p) = F(C) + F_x (p - C).x + F_y (p - C).y, F(C) = area w_j w_k f_C. The area, F_x and F_y
-// have 96 bits of what they cancel from, or by residues 144. With u = 2^-53 the products here lack 12 u^2 of F(C) and 9 u^2 of the
-// others, and sums of what is left of exact ones 48 u^2 of all three: 2^-98 covers them.
+// With C the corner next to a fragment p, F(p) = F(C) + F_x (p - C).x + F_y (p - C).y, F(C) = area w_j w_k f_C. The
+// area, F_x and F_y have 96 bits of what they cancel from, or by residues 144. With u = 2^-53 the products here lack 12
+// u^2 of F(C) and 9 u^2 of the others, and sums of what is left of exact ones 48 u^2 of all three: 2^-98 covers them.
 struct CornerLanes {
     TEXGEN_APART CornerLanes(const VertexLanes& given, const ResidueLanes& residues, const Doubles& x,
                              const Doubles& y) noexcept

@@ -10,7 +10,8 @@ struct OneTriangle {
 
 TEXGEN_INLINE bool all(const LongWords& mask) noexcept { return lane_bits(mask) == (std::uint64_t{1} << lanes) - 1; }
 
-// A vector of fragments at (x, y): quotients, where they are in front, and the lanes in doubt, of their side or their value.
+// A vector of fragments at (x, y): quotients, where they are in front, and the lanes in doubt, of their side or their
+// value.
 template <std::size_t Numerators>
 struct FragmentLanes {
     Floats quotient[Numerators];
@@ -129,8 +130,8 @@ private:
     double first_, column_;  // of the first fragment: its number, and its column
 };
 
-// What vectors in doubt say of those that follow: that they ask for the triangles of others, what decides them, and the functions
-// of these triangles in so wide rows from the first one on.
+// What vectors in doubt say of those that follow: that they ask for the triangles of others, what decides them, and the
+// functions of these triangles in so wide rows from the first one on.
 struct Learned {
     enum Way { nearly, closely, about_corners };
     static constexpr double rows = 64.0;
@@ -142,8 +143,8 @@ struct Learned {
     BatchFunctions functions;
 };
 
-// Vectors of fragments that have lanes in doubt, and the triangles of those, as many as a block has: all are decided at once, by
-// what fragments of a triangle share. Few vectors, and what that leaves, are decided alone.
+// Vectors of fragments that have lanes in doubt, and the triangles of those, as many as a block has: all are decided at
+// once, by what fragments of a triangle share. Few vectors, and what that leaves, are decided alone.
 class DoubtfulFragments {
 public:
     struct Vector {

@@ -1,10 +1,11 @@
-// The functions of a batch's triangles over tiles and runs that doubles leave in doubt, to twice their precision and as integers
-// modulo 2^64, as in triangle/close_planes.hpp, a triangle in each lane. Included by batch.inc.hpp.
+// The functions of a batch's triangles over tiles and runs that doubles leave in doubt, to twice their precision and as
+// integers modulo 2^64, as in triangle/close_planes.hpp, a triangle in each lane. Included by batch.inc.hpp.
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// The functions s, t, r, q of a triangle about a fragment: base, and by how much it grows along a row and down; of each two
-// doubles, and an error and a grain of all. In whole vectors: the last residues are 0. Of r only where it is needed.
+// The functions s, t, r, q of a triangle about a fragment: base, and by how much it grows along a row and down; of each
+// two doubles, and an error and a grain of all. In whole vectors: the last residues are 0. Of r only where it is
+// needed.
 struct alignas(64) BatchFunction {
     double part[4][8];  // high, low, error, grain
     std::uint64_t residues[16];
@@ -32,7 +33,8 @@ struct BatchFunctions {
     BatchFunction of[batch_block];
 
     // Those from `first` on, of a triangle in each lane about a fragment, for so many columns and rows: see
-    // CloseRamp::copy_to(). What residues do not know has a grain of 0. Where their terms cancel, or are said to, about corners.
+    // CloseRamp::copy_to(). What residues do not know has a grain of 0. Where their terms cancel, or are said to, about
+    // corners.
     TEXGEN_APART void take(const float* const (&triangle)[lanes], bool needs_r, const Doubles& x, const Doubles& y,
                            const Doubles& width, const Doubles& height, std::size_t first,
                            bool about_corners = false) noexcept {

@@ -6,7 +6,8 @@ TEXGEN_INLINE Doubles load_lanes(const double* from) noexcept { return load<Doub
 TEXGEN_INLINE Doubles load_lanes(const float* from) noexcept { return to_doubles(load<Floats>(from)); }
 TEXGEN_INLINE Residues load_lanes(const std::uint64_t* from) noexcept { return load<Residues>(from); }
 
-// The first `count` numbers, in whole vectors, that stand at from(j) for lane j. The last first: with q a division begins.
+// The first `count` numbers, in whole vectors, that stand at from(j) for lane j. The last first: with q a division
+// begins.
 template <class Vector, std::size_t Size, class From>
 TEXGEN_INLINE void load_columns(Vector (&columns)[Size], std::size_t count, const From& from) noexcept {
     TEXGEN_UNROLL
@@ -41,7 +42,8 @@ TEXGEN_INLINE void store_columns(const Vector (&columns)[Size], const To& to) no
 struct TriangleLanes {
     Doubles vertex[3][8];
 
-    // Numbers that are positive are in the order of their bits; others are refused in any order. No branch: it would be random.
+    // Numbers that are positive are in the order of their bits; others are refused in any order. No branch: it would be
+    // random.
     TEXGEN_INLINE explicit TriangleLanes(const float* triangles) noexcept {
         const float* first[lanes];
         std::size_t turns[lanes];
@@ -62,8 +64,8 @@ private:
     static constexpr std::size_t of_turned[5] = {0, BatchVertex::size, 2 * BatchVertex::size, 0, BatchVertex::size};
 };
 
-// As TrianglePlanes, with the same operations in the same order: what they err by is said there. Where the sign of the area is
-// in doubt, or a number is not one, the error of q is infinite: those lanes are returned.
+// As TrianglePlanes, with the same operations in the same order: what they err by is said there. Where the sign of the
+// area is in doubt, or a number is not one, the error of q is infinite: those lanes are returned.
 TEXGEN_INLINE LongWords set_up_lanes(const float* triangles, BatchPlanes* planes) noexcept {
     const TriangleLanes given(triangles);
     const Doubles* const a = given.vertex[0];
@@ -120,7 +122,8 @@ TEXGEN_INLINE LongWords set_up_lanes(const float* triangles, BatchPlanes* planes
                                                            b_and_a * b_dy_terms + c_and_a * c_dy_terms));
         all_slopes = all_slopes + function[1];
     }
-    // What is not finite of a weight or of strq is in that sum, or makes a NaN of it; what is not of the window in the area.
+    // What is not finite of a weight or of strq is in that sum, or makes a NaN of it; what is not of the window in the
+    // area.
     const LongWords is_known = greater(magnitude(area), area_terms * gamma(4)) & greater(a[2], 0.0) &
                                greater(b[2], 0.0) & greater(c[2], 0.0) &
                                at_most(magnitude(all_slopes), Doubles{} + 0x1p1000);
@@ -160,8 +163,8 @@ struct BatchLanes {
     TEXGEN_INLINE const Doubles& operator[](std::size_t k) const noexcept { return value[k]; }
 };
 
-// The columns and rows of a vector of fragments, which follow one another row by row. Half of one more keeps the quotient by
-// the width away from the integers.
+// The columns and rows of a vector of fragments, which follow one another row by row. Half of one more keeps the
+// quotient by the width away from the integers.
 template <class Vector, class Scalar>
 struct FragmentWalk {
     Vector number, x, y;  // number: half of one more

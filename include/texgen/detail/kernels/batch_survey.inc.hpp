@@ -2,8 +2,8 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// Of a block of tiles what their kernels need: numerators, q and bounds for the quotients in double; in float, about the middle
-// of the tile, u + (dx x + dy y) / (1 + bend_x x + bend_y y).
+// Of a block of tiles what their kernels need: numerators, q and bounds for the quotients in double; in float, about
+// the middle of the tile, u + (dx x + dy y) / (1 + bend_x x + bend_y y).
 struct BatchTiles {
     double base[3][batch_block], q[batch_block], error[3][batch_block];
     double ulps[batch_block];  // what quotients are within, of their own, a power of two
@@ -19,8 +19,9 @@ struct BatchTiles {
     TEXGEN_INLINE std::uint64_t all(Kind kind) const noexcept { return kinds >> (kind * batch_block) & 0xff; }
 };
 
-// A tile in each lane: its first fragment, from the vertex that its functions are about; the steps to its last column and row; by
-// how much more the functions may err there than at the vertices; and what a sum for each of its vectors is rounded by.
+// A tile in each lane: its first fragment, from the vertex that its functions are about; the steps to its last column
+// and row; by how much more the functions may err there than at the vertices; and what a sum for each of its vectors is
+// rounded by.
 struct TileLanes {
     Doubles x, y, right, bottom, stretch, sums;
 
@@ -40,8 +41,9 @@ struct TileLanes {
     }
 };
 
-// A linear function of the window over a tile: at its corner fragments, and a bound on its error. At a fragment of the first
-// vectors two products, of at most twice its size, and two sums are rounded, by 6 u of it; and one sum for each vector below.
+// A linear function of the window over a tile: at its corner fragments, and a bound on its error. At a fragment of the
+// first vectors two products, of at most twice its size, and two sums are rounded, by 6 u of it; and one sum for each
+// vector below.
 struct TileFunction {
     Doubles dx, dy, at[4], least, largest, size, error;
 
@@ -63,8 +65,8 @@ struct TileFunction {
     }
 };
 
-// Tiles all of whose fragments in front are beyond a side of the region, with the margins of coverage_of() in triangle/corners.hpp.
-// `outwards` is -1 for the lower side and 1 for the upper one.
+// Tiles all of whose fragments in front are beyond a side of the region, with the margins of coverage_of() in
+// triangle/corners.hpp. `outwards` is -1 for the lower side and 1 for the upper one.
 TEXGEN_INLINE LongWords are_beyond(const TileFunction& f, const TileFunction& q, double bound, double outwards,
                                    double tolerance) noexcept {
     const double size = std::fabs(bound);
@@ -76,9 +78,9 @@ TEXGEN_INLINE LongWords are_beyond(const TileFunction& f, const TileFunction& q,
     return greater(TileFunction::least_of(g) * (1.0 - gamma(4)), margin);
 }
 
-// In float a tile is what a chunk is (chunks.inc.hpp), in two directions. With r = 2^-24 the numerator of a step D carries 3 r D,
-// x of the denominator 3 r X, X being its largest, so that the step has 3 r X / (1 - X) D of it; the polynomial adds 3 r D (a
-// division 2 r D), the product r D, and the value r D + 2 r |u|.
+// In float a tile is what a chunk is (chunks.inc.hpp), in two directions. With r = 2^-24 the numerator of a step D
+// carries 3 r D, x of the denominator 3 r X, X being its largest, so that the step has 3 r X / (1 - X) D of it; the
+// polynomial adds 3 r D (a division 2 r D), the product r D, and the value r D + 2 r |u|.
 // Where the middle is in the region no tile is dark: returns the tiles of which no more need be known.
 template <std::size_t Numerators>
 TEXGEN_INLINE LongWords prepare_in_float(const BatchJob& job, const BatchPlanes* of_tiles, const int (*block)[4],
@@ -136,8 +138,8 @@ TEXGEN_INLINE LongWords prepare_in_float(const BatchJob& job, const BatchPlanes*
     return is_float & is_inside;
 }
 
-// The bounds are those of triangle/corners.hpp: the roundings of a quotient, four more than there where two share a division,
-// and of its bound are below 10 u.
+// The bounds are those of triangle/corners.hpp: the roundings of a quotient, four more than there where two share a
+// division, and of its bound are below 10 u.
 template <std::size_t Numerators>
 TEXGEN_APART void prepare(const BatchJob& job, const BatchPlanes* of_tiles, const int (*block)[4], std::size_t first,
                           BatchTiles& tiles) noexcept {
@@ -161,8 +163,8 @@ TEXGEN_APART void prepare(const BatchJob& job, const BatchPlanes* of_tiles, cons
             (f.error + largest * q.error) * (reciprocal * 1.0001) + largest * (10.0 * unit_roundoff_double);
         store(&tiles.base[k][first], f.at[0]);
         store(&tiles.error[k][first], error);
-        // Where numerators have one sign, a lower bound on what is above 2^-125 of the quotients, times q: they are normal floats,
-        // and an ulp of one in double is 2^-53 of it at least.
+        // Where numerators have one sign, a lower bound on what is above 2^-125 of the quotients, times q: they are
+        // normal floats, and an ulp of one in double is 2^-53 of it at least.
         const Doubles least = (maximum(f.least, f.largest * -1.0) - f.error) - q.largest * 0x1p-125;
         const LongWords is_normal = greater(least, 0.0);
         ulps = maximum(ulps, where(is_normal, error * q.largest / least * (0x1p53 * 1.001)));

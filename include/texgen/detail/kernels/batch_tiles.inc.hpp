@@ -13,7 +13,8 @@ struct TileShape {
     double per_width = 1.0, last_row = 0.0;
     bool is_whole = false;          // its rows are whole vectors, or vectors have whole rows
     bool has_wide_columns = false;  // wide vectors have whole rows
-    // The columns and rows of the first vector, by how many rows the next is below it, and the same in float about the middle.
+    // The columns and rows of the first vector, by how many rows the next is below it, and the same in float about the
+    // middle.
     Doubles x{}, y{};
     double rows = 1.0;
     WideFloats wide_x{}, wide_y{};
@@ -89,7 +90,8 @@ struct TileFunctions {
     }
 };
 
-// Quotients in double, rounded with a certificate. False where a value is in doubt. Apart, so that its loop has all registers.
+// Quotients in double, rounded with a certificate. False where a value is in doubt. Apart, so that its loop has all
+// registers.
 template <std::size_t Numerators>
 TEXGEN_APART bool divide_tile(const BatchPlanes& planes, const BatchTiles& tiles, std::size_t i, const TileShape& shape,
                               const TileOutputs<Numerators>& original) noexcept {
@@ -255,8 +257,8 @@ TEXGEN_INLINE bool divide_tile_by_tier(const BatchPlanes& planes, const BatchTil
     return true;
 }
 
-// A tile's values to its place in the outputs, from `begin` on; by way of scratch where whole vectors might reach beyond what may
-// be written.
+// A tile's values to its place in the outputs, from `begin` on; by way of scratch where whole vectors might reach
+// beyond what may be written.
 template <std::size_t Numerators, class Divide>
 TEXGEN_INLINE bool fill_tile(const FragmentOutputs& out, const TileShape& shape, std::size_t begin, bool in_scratch,
                              TileScratch& scratch, const Divide& divide) noexcept {
@@ -278,8 +280,8 @@ TEXGEN_INLINE bool fill_tile(const FragmentOutputs& out, const TileShape& shape,
     return is_certain;
 }
 
-// Tiles of the block from `first` on that are in doubt, a bit each, again; its values begin at `of_block`. From the first that stays so on
-// they have functions about corners, too. Returns those that this leaves.
+// Tiles of the block from `first` on that are in doubt, a bit each, again; its values begin at `of_block`. From the
+// first that stays so on they have functions about corners, too. Returns those that this leaves.
 TEXGEN_APART inline std::uint64_t decide_tiles(const TilesJob& job, const FragmentOutputs& out, std::size_t first,
                                                const int (*block)[4], std::uint64_t doubtful, std::size_t of_block,
                                                bool about_corners = false) noexcept {

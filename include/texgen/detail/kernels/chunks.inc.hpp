@@ -8,15 +8,15 @@ namespace TEXGEN_DETAIL::TEXGEN_ISA {
 // 1 / (1 - x^2) = (1 + x^2) (1 + x^4) ..., which times 1 - x has a relative error of x^(2^n) after n factors, that one
 // included: two or three, until a division is cheaper. (A line or a parabola saves nothing beside the stores.)
 //
-// With h the largest |i|, X = |b| h <= 3/4 and S = 1 + X + 4 X^2 >= 1/(1 - X), no step |d i / (1 + x)| is above h |d| / (1 - X),
-// which is at most D = h |d| S. In float, with r = 2^-24, the largest errs by 2 r X/(1 - X) of itself by the roundings of b and
-// of x; d and its product add 2 r. With a division x^2 adds r X^2/(1 - X^2), 1 - x^2 and the quotient 2 r, y x, of which the
-// step is a sum, r X/(1 + X), and that sum r; factors, where X <= 1/4, add 0.1 r more than all that. So with the last sum's
-// share it errs by (6.1 + 2 X/(1 - X) + X/(1 - X^2)) r of itself, and that is less than (6.4 + 24 X^4) r D. u adds 2 r |u|,
-// by its rounding and the last sum's. Subnormals, or what is flushed to zero, add less than 2^-116; the doubles
-// (e_F + (|u| + D) e_Q) / Q.
-// As names: bend is b, extent X, reach D; room is what a chunk leaves of the tolerance for the remainder of its factors,
-// x^(2^n) D.
+// With h the largest |i|, X = |b| h <= 3/4 and S = 1 + X + 4 X^2 >= 1/(1 - X), no step |d i / (1 + x)| is above h |d| /
+// (1 - X), which is at most D = h |d| S. In float, with r = 2^-24, the largest errs by 2 r X/(1 - X) of itself by the
+// roundings of b and of x; d and its product add 2 r. With a division x^2 adds r X^2/(1 - X^2), 1 - x^2 and the
+// quotient 2 r, y x, of which the step is a sum, r X/(1 + X), and that sum r; factors, where X <= 1/4, add 0.1 r more
+// than all that. So with the last sum's share it errs by (6.1 + 2 X/(1 - X) + X/(1 - X^2)) r of itself, and that is
+// less than (6.4 + 24 X^4) r D. u adds 2 r |u|, by its rounding and the last sum's. Subnormals, or what is flushed to
+// zero, add less than 2^-116; the doubles (e_F + (|u| + D) e_Q) / Q.
+// As names: bend is b, extent X, reach D; room is what a chunk leaves of the tolerance for the remainder of its
+// factors, x^(2^n) D.
 
 // The rest of a chunk's error, of s or of t, or of both: u, reach, 1 / Q and X^4 at their largest.
 template <class Number, class Error, class Extent>
@@ -80,8 +80,8 @@ void weigh_chunks(const TileJob& job, ChunkGroup& group, int chunks_of_row, int 
     }
 }
 
-// A chunk of no less than a vector, from both ends: what begins before the middle ends behind it. The indices are loaded, as
-// that is what arithmetic leaves idle.
+// A chunk of no less than a vector, from both ends: what begins before the middle ends behind it. The indices are
+// loaded, as that is what arithmetic leaves idle.
 TEXGEN_INLINE void fill_vectors(StepRule rule, const WideFloats& bend, const WideFloats (&middle)[2],
                                 const WideFloats (&slope)[2], const float* index, float* s, float* t,
                                 int count) noexcept {
@@ -104,8 +104,8 @@ TEXGEN_INLINE void fill_vectors(StepRule rule, const WideFloats& bend, const Wid
     }
 }
 
-// The group's chunks from `first` to `end`, of one rule, which begin at x of the row, and their mask. Those of less than a vector,
-// ends of rows, are written beside it.
+// The group's chunks from `first` to `end`, of one rule, which begin at x of the row, and their mask. Those of less
+// than a vector, ends of rows, are written beside it.
 template <class CompiledWhereCalled = void>
 void fill_chunks(const TileJob& job, const RowOutputs& row, ChunkGroup& group, int first, int end, int x) noexcept {
     const StepRule rule = group.rule_of(job, first);

@@ -1,5 +1,5 @@
-// What doubles leave in doubt of a vector of fragments, decided by what is known besides of their functions. Included by
-// kernels.inc.hpp.
+// What doubles leave in doubt of a vector of fragments, decided by what is known besides of their functions. Included
+// by kernels.inc.hpp.
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
@@ -7,15 +7,16 @@ namespace TEXGEN_DETAIL::TEXGEN_ISA {
 struct CloseValues {
     Doubles high, low, error;
 
-    // Where its residue times the grain, of all lanes or of each, is all of it; of 0 any grain is, and of nothing else 0.
+    // Where its residue times the grain, of all lanes or of each, is all of it; of 0 any grain is, and of nothing else
+    // 0.
     template <class Grain>
     TEXGEN_INLINE LongWords are_residues(const Grain& grain) const noexcept {
         return at_most(magnitude(high + low) + error, Doubles{} + grain * 0x1p62);
     }
 };
 
-// The nearer float where a quotient is so near the middle m of two that the sign of F - m Q decides: of what two doubles hold of
-// it, or of its residue, where that says all of it.
+// The nearer float where a quotient is so near the middle m of two that the sign of F - m Q decides: of what two
+// doubles hold of it, or of its residue, where that says all of it.
 struct CloseMiddle {
     Doubles middle, unit;  // middle is a multiple of unit, and within 2^25 of them
 
@@ -33,7 +34,8 @@ struct CloseMiddle {
         return to_floats(middle + where(~is_tie, with_sign_of(unit * 0.25, sign)));
     }
 
-    // By two doubles: where F - m Q is larger than its error, or that is less than half a grain. Returns the lanes that this decides.
+    // By two doubles: where F - m Q is larger than its error, or that is less than half a grain. Returns the lanes that
+    // this decides.
     template <class Grain>
     TEXGEN_INLINE LongWords decide_by_sums(const CloseValues& f, const CloseValues& q, const Grain& f_grain,
                                            const Grain& q_grain, Floats& value) const noexcept {
@@ -99,8 +101,8 @@ struct CloseQuotient {
     TEXGEN_INLINE LongWords is_rough() const noexcept { return ~greater(size * 0x1p-27, error); }
 };
 
-// A vector of fragments, again. `at` knows its functions there, q as the last, and whether its two doubles say more than residues do
-// and so are asked first. Where no lane is next to a middle, as of zeros, they
+// A vector of fragments, again. `at` knows its functions there, q as the last, and whether its two doubles say more
+// than residues do and so are asked first. Where no lane is next to a middle, as of zeros, they
 // may be skipped, for which a tile's kernel has no room.
 template <std::size_t Numerators, bool SkipsMiddles = true>
 struct CloseFragments {

@@ -4,7 +4,8 @@ namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
 TEXGEN_INLINE const WideFloats& to_floats(const WideFloats& values) noexcept { return values; }
 
-// A row is done in vectors of `count` fragments, as many as there are up to the lanes; the last overlaps the one before.
+// A row is done in vectors of `count` fragments, as many as there are up to the lanes; the last overlaps the one
+// before.
 TEXGEN_INLINE int start_of_vector(int x, int count, int width) noexcept {
     return x + count <= width ? x : width - count;
 }
@@ -81,15 +82,16 @@ TEXGEN_INLINE WideFloats half_log2_of_quotient(const WideFloats& a, const WideFl
     return series * s + to_numbers(exponent(a) - exponent(b)) * 0x1p-24f;
 }
 
-// 1 / sqrt(x) within 2^-22 of itself, for normal numbers, and finite for 0: Newton's iteration from a guess within 3.5 %.
+// 1 / sqrt(x) within 2^-22 of itself, for normal numbers, and finite for 0: Newton's iteration from a guess within 3.5
+// %.
 TEXGEN_INLINE WideFloats inverse_square_root(const WideFloats& x) noexcept {
     WideFloats y = from_bits((WideWords{} + 0x5f3759df) - halved(signed_bits(x)));
     for (int i = 0; i < 3; ++i) y = y * (1.5f - (x * 0.5f * y) * y);
     return y;
 }
 
-// Rows from `first` on, up to the first with a fragment whose derivatives are too small for the floats here (it is written
-// all the same); the height if there is none.
+// Rows from `first` on, up to the first with a fragment whose derivatives are too small for the floats here (it is
+// written all the same); the height if there is none.
 template <bool InFloat, bool Shape>
 TEXGEN_INLINE int filter_rows(const FootprintJob& job, int first) noexcept {
     constexpr int smallest = bit_cast<int>(FootprintJob::smallest_square);

@@ -1,6 +1,6 @@
-// The inner loops, a file a concern, and the tables of them. Included by instruction_sets.inc.hpp once per instruction set, inside
-// that set's target region, so that one source serves all of them. A kernel gets plain numbers; the only decisions that it makes
-// are how a chunk of a row is divided and what is in doubt.
+// The inner loops, a file a concern, and the tables of them. Included by instruction_sets.inc.hpp once per instruction
+// set, inside that set's target region, so that one source serves all of them. A kernel gets plain numbers; the only
+// decisions that it makes are how a chunk of a row is divided and what is in doubt.
 
 #ifdef TEXGEN_HAS_VECTORS
 #include "../simd/vectors.inc.hpp"

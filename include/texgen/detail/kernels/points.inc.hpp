@@ -13,8 +13,8 @@ TEXGEN_INLINE void load_points(const PointInput& job, std::size_t i, Vector& x, 
     }
 }
 
-// Stores a vector of results from index i on, and their mask: inside the region and in front. Here and below `numerators`
-// is a constant where it is quick to have one.
+// Stores a vector of results from index i on, and their mask: inside the region and in front. Here and below
+// `numerators` is a constant where it is quick to have one.
 template <class Vector, class Mask>
 TEXGEN_INLINE void store_points(const DividedOutput& output, std::size_t i, std::size_t numerators,
                                 const Vector (&value)[2], const Mask& in_front) noexcept {
@@ -26,7 +26,8 @@ TEXGEN_INLINE void store_points(const DividedOutput& output, std::size_t i, std:
     store(output.out[0] + i, value[0]);
 }
 
-// Lanes that cannot be vouched for: of whose float it is not certain, see RoundedEnds, or on which side of the projector the point is.
+// Lanes that cannot be vouched for: of whose float it is not certain, see RoundedEnds, or on which side of the
+// projector the point is.
 struct Doubt {
     Words rounding{};
     LongWords side{};
@@ -40,13 +41,13 @@ struct PointDivision {
     Doubles numerator[2], q, reciprocal;
 };
 
-// numerator[k] / q with these errors, of all or of each lane. With Signed, q has either sign, and lanes that are certainly
-// behind give 0; else all are in front; and in no doubt where both floats are inside the tolerance. Returns the mask of the
-// lanes in front.
-// With u = 2^-53, r = 1/q, and S and Q the sums of terms, numerator and q err by 4.01 u S and 4.01 u Q, and their errors are
-// given as 9.9 u S and 9.9 u Q at least. So in front the quotient errs by r (4.01 u S + |quotient| 4.01 u Q); its roundings,
-// as it is less than r S, by u r S each: one of the product, three of r where two q share a division, and one of what becomes
-// a float.
+// numerator[k] / q with these errors, of all or of each lane. With Signed, q has either sign, and lanes that are
+// certainly behind give 0; else all are in front; and in no doubt where both floats are inside the tolerance. Returns
+// the mask of the lanes in front.
+// With u = 2^-53, r = 1/q, and S and Q the sums of terms, numerator and q err by 4.01 u S and 4.01 u Q, and their
+// errors are given as 9.9 u S and 9.9 u Q at least. So in front the quotient errs by r (4.01 u S + |quotient| 4.01 u
+// Q); its roundings, as it is less than r S, by u r S each: one of the product, three of r where two q share a
+// division, and one of what becomes a float.
 template <bool Signed>
 TEXGEN_INLINE LongWords divide_certainly(std::size_t numerators, const PointDivision& of,
                                          const Doubles (&numerator_error)[2], const Doubles& q_error, double tolerance,
@@ -146,8 +147,8 @@ TEXGEN_INLINE Doubles begin_division(const PointJob& job, const WideFloats& x, c
     return shared.of_both;
 }
 
-// Whether reciprocals, or those of products of two q, are between 2^-500 and 2^500, so that what shares a division is a product
-// of numbers in range. The sum tells of what the least of them forgets, a NaN, and is no less than the largest.
+// Whether reciprocals, or those of products of two q, are between 2^-500 and 2^500, so that what shares a division is a
+// product of numbers in range. The sum tells of what the least of them forgets, a NaN, and is no less than the largest.
 struct ReciprocalRange {
     Doubles least = Doubles{} + 1.0, sum{};
 
@@ -160,8 +161,8 @@ struct ReciprocalRange {
     }
 };
 
-// A block of points of a job that knows its ulps. Returns whether all is certain (it is written all the same). A point that is
-// not in the job's box may spoil the one that shares its division, and only so any other: the range tells.
+// A block of points of a job that knows its ulps. Returns whether all is certain (it is written all the same). A point
+// that is not in the job's box may spoil the one that shares its division, and only so any other: the range tells.
 template <std::size_t Numerators>
 TEXGEN_INLINE bool fill_bounded_block(const PointJob& job, std::size_t begin, std::size_t end) noexcept {
     Distances distance = far_from_middles();
@@ -187,7 +188,8 @@ TEXGEN_INLINE bool fill_bounded_block(const PointJob& job, std::size_t begin, st
 }
 
 // A block of points, with errors that hold for all of it. Returns what is in doubt (it is written all the same).
-// All divisions are begun before the first result is asked for: instructions that wait for one keep others from being begun.
+// All divisions are begun before the first result is asked for: instructions that wait for one keep others from being
+// begun.
 template <bool Signed, std::size_t Numerators>
 TEXGEN_INLINE Doubt fill_points_block(const PointJob& job, std::size_t begin, std::size_t end) noexcept {
     PointExtent extent;
@@ -239,8 +241,8 @@ struct PointTerms {
     }
 };
 
-// Does a block again, from each_lane on at least. What a vector needs beyond that, those that follow get at once, up to eight blocks.
-// Returns what stays in doubt, bit i for point begin + i.
+// Does a block again, from each_lane on at least. What a vector needs beyond that, those that follow get at once, up to
+// eight blocks. Returns what stays in doubt, bit i for point begin + i.
 TEXGEN_INLINE std::uint64_t fill_block_again(const PointJob& job, const PointTerms& terms, std::size_t begin,
                                              std::size_t end, Effort& effort) noexcept {
     const std::size_t numerators = job.numerators == 2 ? 2 : 1;  // never 0: GCC 12 fails on a loop that may be none
@@ -271,7 +273,8 @@ TEXGEN_INLINE std::uint64_t fill_block_again(const PointJob& job, const PointTer
             if (is_decided) effort = {};
             effort.rung = is_decided ? Rung::each_lane : Rung::closely;
         }
-        // q alone in two doubles: what it loses is small beside it unless ties, or q = 0, ask for the last bits of coordinates.
+        // q alone in two doubles: what it loses is small beside it unless ties, or q = 0, ask for the last bits of
+        // coordinates.
         while (!is_decided && !effort.are_ties) {
             TwofoldDivisor q(terms.q.at(at, sizes, effort.precisely[2]));
             q.in_front &= ~are_dark;
@@ -318,8 +321,8 @@ TEXGEN_INLINE std::size_t end_of_block(std::size_t count, std::size_t begin, std
     return next < count ? next : count;
 }
 
-// Does blocks from `begin` on again, as long as they need what the first one did, and the first of eight sees whether it does.
-// Returns where the next begins, or that with values which stay in doubt.
+// Does blocks from `begin` on again, as long as they need what the first one did, and the first of eight sees whether
+// it does. Returns where the next begins, or that with values which stay in doubt.
 template <class CompiledWhereCalled = void>
 TEXGEN_APART Undecided fill_points_again(const PointJob& original, std::size_t begin, Effort& effort) noexcept {
     std::size_t end = end_of_block(original.count, begin, exact_block);
@@ -343,10 +346,10 @@ TEXGEN_APART Undecided fill_points_again(const PointJob& original, std::size_t b
     }
 }
 
-// Most points are all in front and in no doubt, four blocks at once; blocks of which one is not are done again one by one, and
-// those that follow are taken for what it was, seven of them.
-// The job is copied, here and below, so that the compiler knows that no store changes it: nothing that the loop reads may be
-// reached from elsewhere.
+// Most points are all in front and in no doubt, four blocks at once; blocks of which one is not are done again one by
+// one, and those that follow are taken for what it was, seven of them.
+// The job is copied, here and below, so that the compiler knows that no store changes it: nothing that the loop reads
+// may be reached from elsewhere.
 template <std::size_t Numerators>
 TEXGEN_INLINE Undecided fill_points_exact_of(const PointJob& original, std::size_t first) noexcept {
     const PointJob job = original;

@@ -43,8 +43,8 @@ struct FormsInDouble {
     }
 };
 
-// Whether the errors of quotients in float are inside a tolerance in all lanes, by FloatDivision::error(): in float itself,
-// whose roundings, 16 units each at most, the factors cover. A NaN is not inside.
+// Whether the errors of quotients in float are inside a tolerance in all lanes, by FloatDivision::error(): in float
+// itself, whose roundings, 16 units each at most, the factors cover. A NaN is not inside.
 TEXGEN_INLINE bool are_within(const FloatDivision& division, const PointForm& numerator, const PointForm& q_form,
                               const PointExtent& extent, const WideWords& least_q, const WideWords& largest,
                               double tolerance) noexcept {
@@ -65,11 +65,11 @@ TEXGEN_INLINE bool are_within(const FloatDivision& division, const PointForm& nu
     return !any(~is_within);
 }
 
-// Divided in float, in blocks of float_block points and then more. The largest |v_j| bound the terms of the forms, and with the
-// largest quotient and the least q, found on the way, the error of every point: see FloatDivision. Returns where the first block
-// begins that is not inside the tolerance (it is written all the same), or the count. A NaN makes the largest quotient
-// one, and fails. The job is copied for the loops, field by field: what was written by fields is waited for when it is read
-// whole, as it would be were its forms, which are found by their number, in the copy.
+// Divided in float, in blocks of float_block points and then more. The largest |v_j| bound the terms of the forms, and
+// with the largest quotient and the least q, found on the way, the error of every point: see FloatDivision. Returns
+// where the first block begins that is not inside the tolerance (it is written all the same), or the count. A NaN makes
+// the largest quotient one, and fails. The job is copied for the loops, field by field: what was written by fields is
+// waited for when it is read whole, as it would be were its forms, which are found by their number, in the copy.
 template <template <std::size_t> class Forms, std::size_t Numerators>
 TEXGEN_INLINE std::size_t fill_points_within_of(const PointJob& original, std::size_t first) noexcept {
     constexpr bool in_float = std::is_same_v<Forms<1>, FormsInFloat<1>>;
@@ -96,8 +96,8 @@ TEXGEN_INLINE std::size_t fill_points_within_of(const PointJob& original, std::s
         size_of_block = 4 * float_block;
         PointExtent extent;
         WideWords largest[Numerators] = {};
-        // The bits of positive floats have their order; those of a negative one, and of -0, are below them all. A q that
-        // overflowed in float would go unnoticed, not being the least; its terms tell.
+        // The bits of positive floats have their order; those of a negative one, and of -0, are below them all. A q
+        // that overflowed in float would go unnoticed, not being the least; its terms tell.
         WideWords least_q = signed_bits(WideFloats{} + 0x1p100f);
         for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(wide_lanes)) {
             load_points(job, i, x, y, z);

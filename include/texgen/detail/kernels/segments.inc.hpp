@@ -19,8 +19,8 @@ struct MixtureLanes {
     TEXGEN_INLINE explicit MixtureLanes(const Mixture& of) noexcept
         : base(Doubles{} + of.base), step(Doubles{} + of.step), rest(Doubles{} + of.rest), kind(of.kind) {}
 
-    // Exactly, but where an alpha is among inexact_alpha. The first term is a multiple of the second's ulp, so that the quick
-    // sum is exact too, but where the ends are far apart.
+    // Exactly, but where an alpha is among inexact_alpha. The first term is a multiple of the second's ulp, so that the
+    // quick sum is exact too, but where the ends are far apart.
     template <bool IsShort>
     TEXGEN_INLINE ExactSum exactly_at(const Doubles& alpha) const noexcept {
         const Doubles part = alpha * step;
@@ -101,8 +101,8 @@ Undecided fill_segment_closely(const SegmentJob& job, std::size_t first) noexcep
             for (std::size_t k = 0; k < Numerators; ++k) quotient[k] = s[k].high * reciprocal + 0x1p-900;
             const Distances distance = nearer(far_from_middles(), quotient[0], quotient[Numerators - 1], 7);
             const bool are_near = any_zero(distance);
-            // Where the float may be subnormal, and that is next to the middle of two. Elsewhere middle_near() serves: the middles of
-            // subnormal floats are among the floats that it would have next to it.
+            // Where the float may be subnormal, and that is next to the middle of two. Elsewhere middle_near() serves:
+            // the middles of subnormal floats are among the floats that it would have next to it.
             LongWords is_small[2] = {};
             bool are_small = false;
             if (has_subnormal) {
@@ -127,7 +127,8 @@ Undecided fill_segment_closely(const SegmentJob& job, std::size_t first) noexcep
                 TEXGEN_UNROLL
                 for (std::size_t k = 0; k < Numerators; ++k) value[k] = to_floats(where(in_front, quotient[k]));
             } else if (!are_small && are_finite && are_exact()) {
-                // The sign of s - middle q decides everywhere, and is exact near the middle, as q.low() is 0 and the sums are exact.
+                // The sign of s - middle q decides everywhere, and is exact near the middle, as q.low() is 0 and the
+                // sums are exact.
                 TEXGEN_UNROLL
                 for (std::size_t k = 0; k < Numerators; ++k) {
                     const Doubles middle = middle_near(quotient[k]);
@@ -174,8 +175,8 @@ Undecided fill_segment_exact(const SegmentJob& job, std::size_t first) noexcept 
     return job.are_short ? fill_segment_closely<1, true>(job, first) : fill_segment_closely<1, false>(job, first);
 }
 
-// Values in front by fill(job, begin, end), which is the first value that it does not vouch for or the end; with their mask,
-// where one is asked for.
+// Values in front by fill(job, begin, end), which is the first value that it does not vouch for or the end; with their
+// mask, where one is asked for.
 template <class CompiledWhereCalled = void>
 TEXGEN_INLINE std::size_t fill_in_front(std::size_t (*fill)(const SegmentJob&, std::size_t, std::size_t) noexcept,
                                         const SegmentJob& job, std::size_t first) noexcept {
@@ -190,8 +191,8 @@ TEXGEN_INLINE std::size_t fill_in_front(std::size_t (*fill)(const SegmentJob&, s
     return job.count;
 }
 
-// Two vectors by one division, all of it in front: an alpha that is no number spoils its neighbour. The divisions of a block go
-// first: they take long, and what waits for one has little room to wait in.
+// Two vectors by one division, all of it in front: an alpha that is no number spoils its neighbour. The divisions of a
+// block go first: they take long, and what waits for one has little room to wait in.
 template <std::size_t Numerators, bool IsAsymptotic>
 std::size_t fill_segment_in_double_of(const SegmentJob& job, std::size_t first, std::size_t count) noexcept {
     float* const out[2] = {job.out[0], job.out[Numerators - 1]};
@@ -249,8 +250,8 @@ std::size_t fill_segment_in_double(const SegmentJob& job, std::size_t first) noe
                          job, first);
 }
 
-// The same in float. The step of the steeper coordinate is what is divided by two vectors, and the other's a share of it: a
-// product less, and of fewer sums that compilers fuse with products, which wait for stores.
+// The same in float. The step of the steeper coordinate is what is divided by two vectors, and the other's a share of
+// it: a product less, and of fewer sums that compilers fuse with products, which wait for stores.
 template <std::size_t Numerators>
 std::size_t fill_segment_all_float_of(const SegmentJob& job, std::size_t first, std::size_t count) noexcept {
     const float* const from = job.alpha;

@@ -1,5 +1,5 @@
-// The planes that the theorem of separating axes asks about, beside the sides, q and the limits of depth: made, a lane a form,
-// and asked about one box or many. Included by kernels.inc.hpp.
+// The planes that the theorem of separating axes asks about, beside the sides, q and the limits of depth: made, a lane
+// a form, and asked about one box or many. Included by kernels.inc.hpp.
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
@@ -13,8 +13,8 @@ struct FormColumns {
     }
 };
 
-// The sum of N forms with weights >= 0, where they make a plane. Each coefficient is rounded, as are its product and the sums,
-// and those of a box; no a is above 2. What no form uses stays 0, and nothing else does.
+// The sum of N forms with weights >= 0, where they make a plane. Each coefficient is rounded, as are its product and
+// the sums, and those of a box; no a is above 2. What no form uses stays 0, and nothing else does.
 template <std::size_t N>
 TEXGEN_INLINE void add_plane(SeparatingForms& planes, const FormColumns* const (&form)[N], const Doubles (&weight)[N],
                              const LongWords& is_plane, std::size_t but_axis, std::size_t i) noexcept {
@@ -68,8 +68,9 @@ TEXGEN_INLINE void add_edges(SeparatingForms& planes, const FormLanes& forms, st
     }
 }
 
-// The planes through a vertex, where three forms meet, and across an axis: as f, g and h have no other point in common, the
-// products across g x h, h x f and f x g are their weights, where they have one sign. Rounded weights serve as well.
+// The planes through a vertex, where three forms meet, and across an axis: as f, g and h have no other point in common,
+// the products across g x h, h x f and f x g are their weights, where they have one sign. Rounded weights serve as
+// well.
 template <class CompiledWhereCalled = void>
 TEXGEN_INLINE void add_vertices(SeparatingForms& planes, const FormLanes& forms) noexcept {
     FormColumns f, g, h;
@@ -95,9 +96,9 @@ TEXGEN_INLINE void add_vertices(SeparatingForms& planes, const FormLanes& forms)
     }
 }
 
-// The planes through the apex that have x, y or z alone, a lane each. alpha T_s + beta T_t + gamma T_q with the cofactors of that
-// column of the 3x3 of the rows has no coefficient in the two others, and where alpha s + beta t + gamma has one sign
-// at the corners of the region, it has it in all of the pyramid.
+// The planes through the apex that have x, y or z alone, a lane each. alpha T_s + beta T_t + gamma T_q with the
+// cofactors of that column of the 3x3 of the rows has no coefficient in the two others, and where alpha s + beta t +
+// gamma has one sign at the corners of the region, it has it in all of the pyramid.
 template <class CompiledWhereCalled = void>
 TEXGEN_INLINE void add_axes(SeparatingForms& planes, const glm::dmat4& matrix, const double* side) noexcept {
     constexpr double infinity = std::numeric_limits<double>::infinity();

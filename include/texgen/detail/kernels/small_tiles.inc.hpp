@@ -2,9 +2,9 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// Two rows share a division of doubles, of an odd number of them the last two, and a short single row is both; integers are asked
-// whether a value is in doubt. A long one is cut into rows as wide as a vector, of which the last may begin in the one before. What a
-// vector writes beyond its row is written again by those that follow.
+// Two rows share a division of doubles, of an odd number of them the last two, and a short single row is both; integers
+// are asked whether a value is in doubt. A long one is cut into rows as wide as a vector, of which the last may begin
+// in the one before. What a vector writes beyond its row is written again by those that follow.
 TEXGEN_INLINE bool divide_small(const SmallTile& tile) noexcept {
     const auto& [f_base, f_dx, f_dy] = tile.numerator;
     const Ramp& of_q = tile.q;

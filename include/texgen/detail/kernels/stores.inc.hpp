@@ -2,8 +2,9 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// Whether a mask of points is asked for, their layout and that of their coordinates are looked at vector by vector: a branch
-// that is always the same costs next to nothing, and a loop for each combination would be most of what a user compiles.
+// Whether a mask of points is asked for, their layout and that of their coordinates are looked at vector by vector: a
+// branch that is always the same costs next to nothing, and a loop for each combination would be most of what a user
+// compiles.
 
 // A mask of what is inside the region of an output.
 template <class Output, class Vector>
@@ -33,8 +34,8 @@ TEXGEN_INLINE void store_some(float* to, int count, const Vector& values) noexce
     }
 }
 
-// The mask of `count` fragments or values in front, from the coordinates that stand there: so the loops that compute them ask for no mask.
-// A last vector is one that ends with them.
+// The mask of `count` fragments or values in front, from the coordinates that stand there: so the loops that compute
+// them ask for no mask. A last vector is one that ends with them.
 template <class Vector>
 TEXGEN_INLINE bool light_in(const float (&min)[2], const float (&max)[2], const float* s, const float* t, float* lit,
                             std::int64_t count) noexcept {

@@ -1,5 +1,5 @@
-// The inner loops of a tile: the quotients in double, and those that stay in doubt to twice the precision of double. Included
-// by kernels.inc.hpp.
+// The inner loops of a tile: the quotients in double, and those that stay in doubt to twice the precision of double.
+// Included by kernels.inc.hpp.
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
@@ -43,8 +43,8 @@ TEXGEN_INLINE std::uint64_t rotated(std::uint64_t bits, int count) noexcept {
     return bits << count | bits >> (-count & 63);
 }
 
-// Divides a part of a row, or whole rows. Which fragments are in doubt (they are written all the same). What a last vector writes
-// beyond its row is written again by those that follow, and may only cause a doubt too many.
+// Divides a part of a row, or whole rows. Which fragments are in doubt (they are written all the same). What a last
+// vector writes beyond its row is written again by those that follow, and may only cause a doubt too many.
 template <class CompiledWhereCalled = void>
 std::uint64_t divide_tile(const TileJob& job, const TileJob::Unit& part) noexcept {
     const auto [x_begin, x_end, y_begin, y_end] = part;
@@ -78,9 +78,10 @@ std::uint64_t divide_tile(const TileJob& job, const TileJob::Unit& part) noexcep
     return rotated(doubtful, static_cast<int>(count % 64));
 }
 
-// The same of a job that knows its ulps, unit by unit of its rows: pairs of vectors share a division, which adds two roundings to a
-// quotient, and integers are asked whether it is in doubt. Returns the first unit that is. The last pair of a row ends with it,
-// and may begin in the unit before, which was certain in here: the first unit is no shorter than a pair.
+// The same of a job that knows its ulps, unit by unit of its rows: pairs of vectors share a division, which adds two
+// roundings to a quotient, and integers are asked whether it is in doubt. Returns the first unit that is. The last pair
+// of a row ends with it, and may begin in the unit before, which was certain in here: the first unit is no shorter than
+// a pair.
 inline constexpr int pair = 2 * lanes;
 template <class CompiledWhereCalled = void>
 TileJob::Unit divide_in_pairs(const TileJob& job, const TileJob::Unit& first) noexcept {
@@ -161,8 +162,9 @@ TEXGEN_INLINE bool are_sided(const CloseFunctions& functions, const CloseFunctio
     return !any(at_most(certainly, Doubles{}) & greater(possibly, 0.0));
 }
 
-// The fragments of a unit that are asked, as many at once as a vector has, wherever they stand: those of a column, or a few that
-// are left, share vectors; more than half of a unit is asked as all of it. One numerator alone stands in both places.
+// The fragments of a unit that are asked, as many at once as a vector has, wherever they stand: those of a column, or a
+// few that are left, share vectors; more than half of a unit is asked as all of it. One numerator alone stands in both
+// places.
 template <class CompiledWhereCalled = void>
 std::uint64_t fill_tile_closely(const TileJob& job, const CloseFunctions& functions, TileJob::Unit unit,
                                 std::uint64_t asked) noexcept {

@@ -2,9 +2,9 @@
 
 namespace TEXGEN_DETAIL {
 
-// row . point for a row of a rotation, within 1 ulp however its terms cancel: far from the origin they do. They are brought to
-// where neither they nor their last bits leave the range. Two terms that cancel leave 0, or 2^-106 of themselves: one that is
-// 2^-200 of the largest counts where all others leave 0.
+// row . point for a row of a rotation, within 1 ulp however its terms cancel: far from the origin they do. They are
+// brought to where neither they nor their last bits leave the range. Two terms that cancel leave 0, or 2^-106 of
+// themselves: one that is 2^-200 of the largest counts where all others leave 0.
 inline double rotated(const glm::dvec3& row, const glm::dvec3& point) noexcept {
     constexpr int none = -10000;  // less than any
     int exponent[3], largest = none;

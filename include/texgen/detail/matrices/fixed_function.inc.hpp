@@ -134,9 +134,9 @@ inline void TexGenUnit::set_normal_scaling(NormalScaling scaling) noexcept {
 inline glm::vec4 TexGenUnit::generate(const FixedFunctionVertex& vertex, const EyeSpace& eye_space) const noexcept {
     const glm::dvec4 eye = eye_space.wants_position() ? eye_space.position(vertex.position) : glm::dvec4(0.0);
 
-    // The reflection is held as r 4^-k with n 2^-k near 1 at most, because a normal under a tiny scale can be too long to
-    // square. r + (0, 0, 1) is m/2 long, so its direction halved is what the sphere map adds to 1/2: no square root of a
-    // difference, and zero where m is.
+    // The reflection is held as r 4^-k with n 2^-k near 1 at most, because a normal under a tiny scale can be too long
+    // to square. r + (0, 0, 1) is m/2 long, so its direction halved is what the sphere map adds to 1/2: no square root
+    // of a difference, and zero where m is.
     glm::dvec3 normal(0.0), scaled_reflection(0.0), sphere(0.0);
     int exponent = 0;
     if (eye_space.wants_normal()) {

@@ -2,8 +2,8 @@
 
 namespace TEXGEN_DETAIL {
 
-// What lenses need of two numbers: their sum and difference, both in halves where a sum could leave the range. (Elsewhere
-// halves would lose the last bit of subnormal numbers.)
+// What lenses need of two numbers: their sum and difference, both in halves where a sum could leave the range.
+// (Elsewhere halves would lose the last bit of subnormal numbers.)
 class LensExtent {
 public:
     LensExtent(double from, double to) noexcept : unit_(larger(std::fabs(from), std::fabs(to)) < 0x1p1000 ? 1.0 : 0.5) {
@@ -53,7 +53,8 @@ inline std::optional<ProjectorProjection> checked_projection(glm::dmat4 matrix, 
     return usable ? std::optional(ProjectorProjection(matrix)) : std::nullopt;
 }
 
-// The perspective matrix of the focal lengths on the diagonal, the skew beside them, and the off-axis terms in column z.
+// The perspective matrix of the focal lengths on the diagonal, the skew beside them, and the off-axis terms in column
+// z.
 inline std::optional<ProjectorProjection> checked_perspective(const glm::dvec2& focal_length, double skew,
                                                               const glm::dvec2& off_axis, const DepthRow& depth,
                                                               Conventions conventions) noexcept {
@@ -66,8 +67,8 @@ inline std::optional<ProjectorProjection> checked_perspective(const glm::dvec2& 
     return checked_projection(matrix, conventions);
 }
 
-// 1 - 2 centre / size, where the centre is counted from the middle of the first pixel, or from its edge. Nothing is rounded
-// before the sum; it is one of quarters where it could leave the range.
+// 1 - 2 centre / size, where the centre is counted from the middle of the first pixel, or from its edge. Nothing is
+// rounded before the sum; it is one of quarters where it could leave the range.
 inline double off_axis_term(double centre, double size, PixelCentre convention) noexcept {
     const double unit = larger(std::fabs(centre), size) < 0x1p1000 ? 1.0 : 0.25;
     Expansion<3> sum;

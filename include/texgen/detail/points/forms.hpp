@@ -1,7 +1,7 @@
 #pragma once
 
-// A row of a texgen matrix as a linear form of points with w = 1, and its value at one point: with a bound, exactly, and
-// accurately.
+// A row of a texgen matrix as a linear form of points with w = 1, and its value at one point: with a bound, exactly,
+// and accurately.
 
 #include <cmath>
 #include <type_traits>
@@ -44,8 +44,8 @@ inline Expansion<8> exactly_at(const PointForm& form, const glm::dvec3& v) noexc
     return sum;
 }
 
-// With an error that is small beside the value: from the exact sum where the terms cancel. A NaN or an infinity stays one
-// in the error.
+// With an error that is small beside the value: from the exact sum where the terms cancel. A NaN or an infinity stays
+// one in the error.
 inline Bounded accurately_at(const PointForm& form, const glm::dvec3& v) noexcept {
     const Bounded close = value_at(form, v);
     if (std::fabs(close.value) > 0x1p20 * close.error || !(close.error < 0x1p1000)) return close;

@@ -1,5 +1,5 @@
-// One point: in double with a bound on its error; what that leaves in doubt in two doubles, and what those leave by exact sums.
-// Included by texcoord.hpp.
+// One point: in double with a bound on its error; what that leaves in doubt in two doubles, and what those leave by
+// exact sums. Included by texcoord.hpp.
 
 namespace TEXGEN_DETAIL {
 
@@ -119,8 +119,8 @@ private:
     bool is_whole_ = true;
 };
 
-// The floats nearest to two numerators over q at a point of floats, every decision exact, in two doubles where they suffice.
-// False where q is not positive, or is no number.
+// The floats nearest to two numerators over q at a point of floats, every decision exact, in two doubles where they
+// suffice. False where q is not positive, or is no number.
 inline bool divide_closely(const FormPair& numerators, const PointForm& q_form, const glm::dvec3& v,
                            float (&value)[2]) noexcept {
     constexpr double enough = 0x1p-51;
@@ -186,10 +186,10 @@ struct PointQuotients {
 };
 inline bool is_well_above_0(const Bounded& q) noexcept { return q.value > 0x1p20 * q.error; }
 
-// The same beside a tie, from quotients within error of their values: |s - middle q| is at most 2.0001 q error, so where that is
-// 2^-44 of the quotient, with a middle of 25 digits times 2^f and q below 2^(e + 1), less than 2^(e - 16 + f). A template, as
-// files of one program may differ in the widest integer. (Beside a q below 2^-600 elements of the matrix may be subnormal,
-// which are no digits.)
+// The same beside a tie, from quotients within error of their values: |s - middle q| is at most 2.0001 q error, so
+// where that is 2^-44 of the quotient, with a middle of 25 digits times 2^f and q below 2^(e + 1), less than 2^(e - 16
+// + f). A template, as files of one program may differ in the widest integer. (Beside a q below 2^-600 elements of the
+// matrix may be subnormal, which are no digits.)
 template <class Integer>
 TEXGEN_APART bool divide_beside_ties(const FormPair& numerators, const PointForm& q_form, const glm::dvec3& v,
                                      float (&value)[2]) noexcept {

@@ -1,5 +1,5 @@
-// The caller's arrays: which of them are computed, and how a kernel's results get there, of points and of values along a
-// segment. Included by texcoord.hpp.
+// The caller's arrays: which of them are computed, and how a kernel's results get there, of points and of values along
+// a segment. Included by texcoord.hpp.
 
 namespace TEXGEN_DETAIL {
 
@@ -8,9 +8,9 @@ inline bool is_computed(const std::span<float>& output, std::size_t count) noexc
     return !output.empty() && output.size() == count;
 }
 
-// The array of an output that is computed, or null. The span comes by reference, here and everywhere: where a function takes
-// it by value, out of an aggregate that the caller has by reference, and returns its pointer, GCC 12 at -O2 and -Os
-// forgets that what it points to is written, and the user's variables keep what they held (bug 115033 of GCC).
+// The array of an output that is computed, or null. The span comes by reference, here and everywhere: where a function
+// takes it by value, out of an aggregate that the caller has by reference, and returns its pointer, GCC 12 at -O2 and
+// -Os forgets that what it points to is written, and the user's variables keep what they held (bug 115033 of GCC).
 inline float* array_of(const std::span<float>& output, std::size_t count) noexcept {
     return is_computed(output, count) ? output.data() : nullptr;
 }
@@ -50,8 +50,8 @@ struct PointOutputs {
     }
 };
 
-// Calls group(first, numerators, outputs) for the coordinates that are computed together: s and t where both are asked for
-// or the mask is, either one alone, and r, which takes from the mask what a depth does not hold.
+// Calls group(first, numerators, outputs) for the coordinates that are computed together: s and t where both are asked
+// for or the mask is, either one alone, and r, which takes from the mask what a depth does not hold.
 template <class Group>
 void for_each_group(const Texcoords& out, std::size_t count, const LitTest& region, const Group& group) noexcept {
     float* const s = array_of(out.s, count);
@@ -68,8 +68,8 @@ void for_each_group(const Texcoords& out, std::size_t count, const LitTest& regi
         group(2, 1, PointOutputs{{r}, darkened, nullptr, region.r_min(), region.r_max()});
 }
 
-// The part of the points or values that one job does: `count`, padded to `whole`, a multiple of point_quantum; the results belong
-// at `first`.
+// The part of the points or values that one job does: `count`, padded to `whole`, a multiple of point_quantum; the
+// results belong at `first`.
 struct JobPart {
     std::size_t first, count, whole;
 };
@@ -101,8 +101,8 @@ void darken_part(Job job, const PointOutputs& out, const JobPart& part, const Ru
     }
 }
 
-// Where the results of a part go, if all have a place of their own. The job is changed in place: copies of what has just been
-// written, in other sizes, wait for it.
+// Where the results of a part go, if all have a place of their own. The job is changed in place: copies of what has
+// just been written, in other sizes, wait for it.
 template <class Job>
 TEXGEN_INLINE bool is_placed(Job& job, const PointOutputs& out, const JobPart& part) noexcept {
     if (part.count != part.whole || !out.are_complete(job.numerators)) return false;

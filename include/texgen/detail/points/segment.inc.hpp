@@ -34,8 +34,8 @@ inline void interpolate_one(const SegmentJob& job, std::size_t i) noexcept {
     if (job.lit != nullptr) job.lit[i] = in_front && is_inside(value[0], value[1], job.min, job.max) ? 1.0f : 0.0f;
 }
 
-// Whether none is less than 0 or more than 1. Their bits say so quickly, but where there is a -0 or what is no number; by sixteen GCC
-// 12 does it in vectors at -O2 too.
+// Whether none is less than 0 or more than 1. Their bits say so quickly, but where there is a -0 or what is no number;
+// by sixteen GCC 12 does it in vectors at -O2 too.
 inline bool are_from_0_to_1(std::span<const float> alpha) noexcept {
     std::uint32_t signs = 0;
     const auto look_at = [&](float a) {
@@ -83,8 +83,8 @@ inline Mixture mixture_of(double a, double b) noexcept {
     return {a + 0.0, leading, step.high - leading, leading == step.high ? Mixture::is_short : Mixture::is_long};
 }
 
-// The sum a + alpha (b - a) in double is within so many ulps. Of a short mixture it is rounded once, of others the step and the
-// product too, which may be as large as the larger end.
+// The sum a + alpha (b - a) in double is within so many ulps. Of a short mixture it is rounded once, of others the step
+// and the product too, which may be as large as the larger end.
 inline double ulps_of_sum(double a, double b) noexcept {
     if (mixture_of(a, b).kind == Mixture::is_short) return 1.0;
     const double ratio = larger(std::fabs(a), std::fabs(b)) / smaller(std::fabs(a), std::fabs(b));
@@ -103,10 +103,10 @@ inline bool is_quick_about_asymptote(const Asymptote& about, const EndQuotients&
     return ulps < quick_ulps;
 }
 
-// Where sums a + alpha (b - a) can have a quotient that is no normal float: for alphas in (0, last], or all where that is 2; 0
-// where they cannot. Between ends of one sign a sum is no less than the lesser. Of both signs, neither end 0, it is 0 or more than
-// 2^-49 of lesser^2 / larger: alpha is then no less than a half of their ratio, or the sum more than half of a, and it is a
-// multiple of alpha's last bit, 2^-24 of it at least, times that of the lesser.
+// Where sums a + alpha (b - a) can have a quotient that is no normal float: for alphas in (0, last], or all where that
+// is 2; 0 where they cannot. Between ends of one sign a sum is no less than the lesser. Of both signs, neither end 0,
+// it is 0 or more than 2^-49 of lesser^2 / larger: alpha is then no less than a half of their ratio, or the sum more
+// than half of a, and it is a multiple of alpha's last bit, 2^-24 of it at least, times that of the lesser.
 inline double last_subnormal_alpha(double a, double b, double least_normal) noexcept {
     const double lesser = smaller(std::fabs(a), std::fabs(b));
     const double larger_one = larger(std::fabs(a), std::fabs(b));
@@ -196,9 +196,9 @@ TEXGEN_INLINE void prepare_job(SegmentJob& job, const Segment& segment, int firs
     job.is_quick = !job.is_in_float && prepare_in_double(job);
 }
 
-// What fill_exact needs. The terms of a mixture in two doubles are multiples of alpha's last bit times that of the lesser end,
-// 2^-48 of their product at least: where alpha is not too small, what the first sum leaves and the rest need no more than 53
-// bits above that.
+// What fill_exact needs. The terms of a mixture in two doubles are multiples of alpha's last bit times that of the
+// lesser end, 2^-48 of their product at least: where alpha is not too small, what the first sum leaves and the rest
+// need no more than 53 bits above that.
 inline void prepare_exact(SegmentJob& job) noexcept {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     double inexact = 0.0;
@@ -216,8 +216,8 @@ inline void prepare_exact(SegmentJob& job) noexcept {
     job.inexact_alpha = static_cast<float>(smaller(inexact, 2.0));
 }
 
-// The nearest floats from value i on, where quotients in double decide nothing: in two doubles, with the rest of sixteen blocks;
-// what that cannot decide value by value.
+// The nearest floats from value i on, where quotients in double decide nothing: in two doubles, with the rest of
+// sixteen blocks; what that cannot decide value by value.
 inline void interpolate_in_double(const SegmentKernels& kernels, SegmentJob& job, std::size_t i) noexcept {
     constexpr std::size_t part = 16 * exact_block;
     const std::size_t count = job.count;

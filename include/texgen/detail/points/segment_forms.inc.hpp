@@ -1,4 +1,5 @@
-// What a segment is divided as: its ends, the forms about them and about the asymptote, and their errors. Included by segment.hpp.
+// What a segment is divided as: its ends, the forms about them and about the asymptote, and their errors. Included by
+// segment.hpp.
 
 namespace TEXGEN_DETAIL {
 inline namespace TEXGEN_BUILD {
@@ -63,9 +64,10 @@ struct Asymptote {
                all_less(u.sum() + magnitude(base), double2_of(0x1p60, 0x1p60));
     }
 
-    // The error of that in unit roundoffs of double. D, its reciprocal and their products round p by 3, which is at most
-    // max(1, Q0 / Q1) times the divisor, U by 4 and d by 7. Those of p and d, one for the sum, three for a reciprocal that two
-    // vectors share, and one for the product are of u - U, which is largest at an end; the last sum is of u.
+    // The error of that in unit roundoffs of double. D, its reciprocal and their products round p by 3, which is at
+    // most max(1, Q0 / Q1) times the divisor, U by 4 and d by 7. Those of p and d, one for the sum, three for a
+    // reciprocal that two vectors share, and one for the product are of u - U, which is largest at an end; the last sum
+    // is of u.
     Double2 error(const EndQuotients& u) const noexcept {
         const Double2 part = larger(magnitude(u.at_a - base), magnitude(u.at_b - base));
         return (part * (12.0 + 3.0 * ratio) + magnitude(base) * 4.0 + u.largest()) * 1.01;
@@ -91,10 +93,10 @@ struct LesserEnd {
         return ratio < 0x1p60 && all_less(u.sum(), double2_of(0x1p60, 0x1p60));
     }
 
-    // The error of that in float, in whose unit roundoffs 1 - alpha, b, its product and the sum, the product of two sums, what it
-    // divides, the products with the other sum and with i, d, the share of the other d and its product are rounded by 11 of the
-    // step at most; u0 and the last sum once each. A share of d, and what of d two vectors divide, may be less than all normal
-    // floats: that times what is less than 2^60 is lost of each.
+    // The error of that in float, in whose unit roundoffs 1 - alpha, b, its product and the sum, the product of two
+    // sums, what it divides, the products with the other sum and with i, d, the share of the other d and its product
+    // are rounded by 11 of the step at most; u0 and the last sum once each. A share of d, and what of d two vectors
+    // divide, may be less than all normal floats: that times what is less than 2^60 is lost of each.
     Double2 error(const EndQuotients& u) const noexcept {
         return (u.largest() * 2.0 + magnitude(u.at_a - u.at_b) * 12.0) * 1.001 * unit_roundoff_float + 0x1p-64;
     }

@@ -83,7 +83,8 @@ inline void take_bounds(PointJob& job, const Box& box) noexcept {
         const double quotient = larger(-s.least, s.largest) / q.least * (1.0 + gamma(2));
         const double of_float = all_float.error(s.terms, q.terms, size.x + size.y + size.z + 1.0, q.least, quotient);
         job.is_certified = job.is_certified && is_float(form) && of_float <= job.tolerance;
-        // Of itself a quotient errs by e_s / |s| + e_q / q and four roundings, and an ulp of it is at least 2^-53 of it.
+        // Of itself a quotient errs by e_s / |s| + e_q / q and four roundings, and an ulp of it is at least 2^-53 of
+        // it.
         const double least = larger(s.least, -s.largest);  // negative where the sign changes
         const double share = (s.terms / least + q.terms / q.least) * gamma(5);
         ulps = larger(ulps, least > 0x1p-124 * q.largest ? share * 0x1.01p53 + 4.0 : quick_ulps);

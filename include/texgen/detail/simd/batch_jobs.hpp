@@ -28,8 +28,8 @@ struct BatchVertex {
     static constexpr std::size_t strq = size - 4;
 };
 
-// The linear functions of a triangle (triangle/planes.hpp), each as base, dx, dy about the vertex of the largest w and e: their
-// errors x and y from there are at most e (1 + |x| per_reach[0] + |y| per_reach[1]).
+// The linear functions of a triangle (triangle/planes.hpp), each as base, dx, dy about the vertex of the largest w and
+// e: their errors x and y from there are at most e (1 + |x| per_reach[0] + |y| per_reach[1]).
 // In whole vectors: the last four are 0.
 struct alignas(64) BatchPlanes {
     static constexpr std::size_t s = 0, t = 4, q = 8, origin = 12, per_reach = 14, r = 16, count = 24;
@@ -41,10 +41,12 @@ struct alignas(64) BatchPlanes {
 // Of the magnitudes of a plane's terms, see TrianglePlanes::error().
 inline constexpr double batch_plane_error = 1.0001 * gamma(20);
 
-// Tiles of more fragments are left to a TriangleSetup, which costs little beside them and resumes where one is in doubt.
+// Tiles of more fragments are left to a TriangleSetup, which costs little beside them and resumes where one is in
+// doubt.
 inline constexpr std::size_t largest_batch_tile = 512;
 
-// An output is null, or an array of `count` floats; r is computed where it has one, and where the mask is to have a depth.
+// An output is null, or an array of `count` floats; r is computed where it has one, and where the mask is to have a
+// depth.
 struct BatchJob {
     const BatchPlanes* planes;
     const float* vertices;
@@ -65,7 +67,8 @@ struct TilesJob : BatchJob {
     std::size_t tile_count;
 };
 
-// Triangle ids[k] of `triangles` at fragment k of a rectangle; any other id is no triangle, as planes[triangles] has it.
+// Triangle ids[k] of `triangles` at fragment k of a rectangle; any other id is no triangle, as planes[triangles] has
+// it.
 struct FragmentsJob : BatchJob {
     const std::uint32_t* ids;
     std::uint32_t triangles;

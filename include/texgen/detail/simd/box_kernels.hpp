@@ -22,16 +22,17 @@ inline constexpr std::size_t first_of_edge[max_edges] = {0, 0, 1, 1, 0, 0, 1, 1,
 inline constexpr std::size_t second_of_edge[max_edges] = {2, 3, 2, 3, 5, 6, 5, 6, 5, 6, 5, 6};
 constexpr std::size_t edge_count(std::size_t form_count) noexcept { return form_count < max_forms ? 4 : max_edges; }
 
-// A lane a form; those behind the last form are q's. Form k is of[0] T_s + of[1] T_t + of[2] T_r + of_q T_q, where one of the
-// three weights at most is not 0, but 1 or -1, and of_q is a float. Its inner side has others.
+// A lane a form; those behind the last form are q's. Form k is of[0] T_s + of[1] T_t + of[2] T_r + of_q T_q, where one
+// of the three weights at most is not 0, but 1 or -1, and of_q is a float. Its inner side has others.
 inline constexpr std::size_t form_lanes = 8;
 struct FormWeights {
     double of[3][form_lanes], of_q[form_lanes];
 };
 
-// a . (x, y, z) + d, each coefficient rounded so that its sign is right and it is 0 only if it is 0, times a power of two that
-// brings the largest a of a form near to 1; in double it errs by at most error_a * size + error_d. Its inner side is less by
-// narrowing * T_q, and T_q at points of a size, the sum of their magnitudes, is at most largest_q * size + last_q.
+// a . (x, y, z) + d, each coefficient rounded so that its sign is right and it is 0 only if it is 0, times a power of
+// two that brings the largest a of a form near to 1; in double it errs by at most error_a * size + error_d. Its inner
+// side is less by narrowing * T_q, and T_q at points of a size, the sum of their magnitudes, is at most largest_q *
+// size + last_q.
 struct FormLanes {
     double a[3][form_lanes], d[form_lanes], narrowing[form_lanes], error_a[form_lanes], error_d[form_lanes];
     double largest_q, last_q;
@@ -42,8 +43,9 @@ struct FormLanes {
 struct UnitForms : FormLanes {};
 
 // The same in float, twice the value each, a lane a form, with one bound for all: over a body each errs by less than
-// error_per_size * size + error, where the size of a box is the sum of |min + max| and max - min of its coordinates, that of
-// a sphere twice the sum of |x|, |y|, |z| and four times its radius. The lanes behind the last form are those of q.
+// error_per_size * size + error, where the size of a box is the sum of |min + max| and max - min of its coordinates,
+// that of a sphere twice the sum of |x|, |y|, |z| and four times its radius. The lanes behind the last form are those
+// of q.
 struct FloatForms {
     float a[3][form_lanes], magnitude_of_a[3][form_lanes];
     float twice_d[form_lanes];
@@ -52,18 +54,19 @@ struct FloatForms {
     float error_per_size, error;
 };
 
-// The planes beside the slide's own: of 4 edges, or 12 where there is a depth, and of 8 vertices, for each axis, and of the apex;
-// in whole vectors. A coordinate whose coefficient is exactly 0 is not used: there a box may be infinite. d holds its own error,
-// and `error` is that of a point of size 1.
+// The planes beside the slide's own: of 4 edges, or 12 where there is a depth, and of 8 vertices, for each axis, and of
+// the apex; in whole vectors. A coordinate whose coefficient is exactly 0 is not used: there a box may be infinite. d
+// holds its own error, and `error` is that of a point of size 1.
 inline constexpr std::size_t max_separating = 3 * 16 + 8 + 3 * 8;
 struct SeparatingForms {
     double a[3][max_separating], d[max_separating], error[max_separating];
     std::size_t count;
 };
 
-// A form at the vertex of a box where it is largest, or least: its four coefficients, each rounded once, and the rows of the box
-// that the first three are of: min, max, 1, and 0 where a coefficient is 0, which is of no use where a box is infinite. `term`
-// is the same as an exact sum, of factors with so few digits that the product with any float is a double.
+// A form at the vertex of a box where it is largest, or least: its four coefficients, each rounded once, and the rows
+// of the box that the first three are of: min, max, 1, and 0 where a coefficient is 0, which is of no use where a box
+// is infinite. `term` is the same as an exact sum, of factors with so few digits that the product with any float is a
+// double.
 struct FormAtVertex {
     static constexpr std::size_t row_of_1 = 6, row_of_0 = 7, max_terms = 3 * 6 + 3 + 1;
     struct Term {
@@ -76,8 +79,8 @@ struct FormAtVertex {
     std::size_t term_count;
 };
 
-// The forms for boxes that floats leave in doubt, where they are largest, and the inner ones where they are least. A point is
-// outside where one is below 0, or q is 0.
+// The forms for boxes that floats leave in doubt, where they are largest, and the inner ones where they are least. A
+// point is outside where one is below 0, or q is 0.
 struct DoubleForms {
     struct Form {
         FormAtVertex largest, least;
@@ -86,8 +89,8 @@ struct DoubleForms {
     std::size_t count = 0;
 };
 
-// What the forms say of a body: the number of a Coverage (0 outside, 1 partial, 2 inside); where that is not the last word 4
-// more: a further plane may separate what is partial, or there is doubt.
+// What the forms say of a body: the number of a Coverage (0 outside, 1 partial, 2 inside); where that is not the last
+// word 4 more: a further plane may separate what is partial, or there is doubt.
 inline constexpr int open_body = 4;
 inline constexpr int body_in_doubt = open_body + 3;
 inline constexpr int body_not_outside = open_body + 0;  // in doubt is only whether one box is inside
@@ -99,8 +102,8 @@ inline constexpr std::size_t body_quantum = 16;
 // Bodies that floats leave open, planar: min and max of boxes, centre and radius of spheres.
 using OpenRow = float[body_quantum];
 
-// Each table is compiled where it is asked for: a program has what its questions need. The forms are made in double and, for
-// many bodies, in float.
+// Each table is compiled where it is asked for: a program has what its questions need. The forms are made in double
+// and, for many bodies, in float.
 struct FormKernels {
     // `narrowing` is given as it is without a scale.
     void (*weigh)(const glm::dmat4& matrix, const FormWeights& weights, FormLanes& forms) noexcept;
@@ -114,8 +117,8 @@ struct UnitFormKernels {
     void (*make)(const FormLanes& forms, const double* slopes, UnitForms& result) noexcept;
 };
 
-// Further forms that are >= 0 wherever all of a slide's are, each a combination of those with weights that are exactly >= 0.
-// Where one of them is negative over all of a convex body, nothing of the body is lit.
+// Further forms that are >= 0 wherever all of a slide's are, each a combination of those with weights that are exactly
+// >= 0. Where one of them is negative over all of a convex body, nothing of the body is lit.
 struct SeparatingFormKernels {
     void (*make)(const FormLanes& forms, const glm::dmat4& matrix, const double* side, std::size_t form_count,
                  SeparatingForms& planes) noexcept;
@@ -123,7 +126,8 @@ struct SeparatingFormKernels {
 
 // One box.
 struct BoxKernels {
-    // What doubles are certain of. Empty boxes are in doubt, as are those of which a coordinate in use is no finite number.
+    // What doubles are certain of. Empty boxes are in doubt, as are those of which a coordinate in use is no finite
+    // number.
     int (*classify)(const FormLanes& forms, const float* min, const float* max) noexcept;
     // What the forms say of a box that has points, exactly; classify() has said what needs no question.
     int (*decide)(int answer, const glm::dmat4& matrix, const FormWeights& outer, const FormWeights& inner,
@@ -132,14 +136,14 @@ struct BoxKernels {
     bool (*is_separated)(const SeparatingForms& planes, const float* min, const float* max) noexcept;
 };
 
-// What floats are certain of. A box is six floats, min first; a sphere four, the radius last. NaN, infinities, empty boxes
-// and negative radii are in doubt.
+// What floats are certain of. A box is six floats, min first; a sphere four, the radius last. NaN, infinities, empty
+// boxes and negative radii are in doubt.
 using Classify = void (*)(const FloatForms& forms, const float* bodies, std::size_t count, int* classes) noexcept;
 
 struct BoxBatchKernels {
     Classify classify;
-    // What doubles are certain of, and where they are not, exact sums; without forms all are partial. Those that a plane
-    // separates are outside. What has no points is in doubt.
+    // What doubles are certain of, and where they are not, exact sums; without forms all are partial. Those that a
+    // plane separates are outside. What has no points is in doubt.
     void (*decide)(const DoubleForms* forms, const SeparatingForms& planes, const OpenRow* boxes, std::size_t count,
                    int* classes) noexcept;
 };

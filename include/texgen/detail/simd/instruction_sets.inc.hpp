@@ -1,5 +1,5 @@
-// TEXGEN_KERNELS once per instruction set, inside that set's target region. Included by lanes.hpp, and by what has kernels that
-// not all files pay for (batch_lanes.hpp).
+// TEXGEN_KERNELS once per instruction set, inside that set's target region. Included by lanes.hpp, and by what has
+// kernels that not all files pay for (batch_lanes.hpp).
 
 // Vector arguments never cross a call that is not inlined, so their calling convention does not matter.
 #ifdef TEXGEN_HAS_VECTORS

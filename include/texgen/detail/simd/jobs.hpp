@@ -1,7 +1,7 @@
 #pragma once
 
-// What the kernels for tiles, points, segments and footprints are given and what they return (for boxes see box_kernels.hpp):
-// plain numbers and arrays, so that a table of kernels serves files of all compilers and flags.
+// What the kernels for tiles, points, segments and footprints are given and what they return (for boxes see
+// box_kernels.hpp): plain numbers and arrays, so that a table of kernels serves files of all compilers and flags.
 
 #include <cstddef>
 #include <cstdint>
@@ -128,8 +128,8 @@ struct RowOutputs {
     }
 };
 
-// Chunks that follow one another, over the ends of rows too: their coefficients, and where they are not chosen for all of
-// the job, what their certificates need.
+// Chunks that follow one another, over the ends of rows too: their coefficients, and where they are not chosen for all
+// of the job, what their certificates need.
 struct ChunkGroup {
     static constexpr int size = 16;
 
@@ -144,17 +144,19 @@ struct ChunkGroup {
     }
 };
 
-// The same functions of a tile to twice the precision: each is high + low, within `error` of the exact one. The coefficients of
-// high are multiples of a unit in which no value of the tile needs more than 52 bits, so that its arithmetic is exact; those of
-// low are what is left below the unit. The exact value is an integer times `grain` (0 where that is not known), and the residue is
-// that integer modulo 2^64: what is certainly less than 2^62 grains is known exactly by it.
+// The same functions of a tile to twice the precision: each is high + low, within `error` of the exact one. The
+// coefficients of high are multiples of a unit in which no value of the tile needs more than 52 bits, so that its
+// arithmetic is exact; those of low are what is left below the unit. The exact value is an integer times `grain` (0
+// where that is not known), and the residue is that integer modulo 2^64: what is certainly less than 2^62 grains is
+// known exactly by it.
 struct CloseFunction {
     Ramp high, low;
     double error, grain;
     RampOf<std::uint64_t> residue;
 };
-// A side of a region and the one across from it, for a mask alone. With c = F - middle Q a fragment in front is lit where half Q - |c| is
-// above margin + margin_by_q Q, and dark where it is below minus that; between them its float matters, or the tolerance.
+// A side of a region and the one across from it, for a mask alone. With c = F - middle Q a fragment in front is lit
+// where half Q - |c| is above margin + margin_by_q Q, and dark where it is below minus that; between them its float
+// matters, or the tolerance.
 struct MaskSide {
     double middle, half, margin, margin_by_q;
 };
@@ -234,7 +236,8 @@ struct SegmentJob : DividedOutput {
     // For both, where all is in front. In double about what it is where q is infinite,
     //   base + slope / (alpha + pole),
     // or (base + slope alpha) / (pole + bend alpha); and in float, about the end where q is less,
-    // base + slope i / (1 + bend i), i the alpha from there: the slope of one coordinate is `step`, that of the other a share of it.
+    // base + slope i / (1 + bend i), i the alpha from there: the slope of one coordinate is `step`, that of the other a
+    // share of it.
     bool is_asymptotic;
     bool about_b;
     double base[2], slope[2], pole, bend;
@@ -291,11 +294,12 @@ struct FootprintJob {
 struct TileKernels {
     // Whether no value is in doubt.
     bool (*fill_small)(const SmallTile&) noexcept;
-    // What of a part is in doubt, of a unit a bit for each fragment, row by row; and the first unit from `first` on that is, of a job
-    // that knows its ulps.
+    // What of a part is in doubt, of a unit a bit for each fragment, row by row; and the first unit from `first` on
+    // that is, of a job that knows its ulps.
     std::uint64_t (*divide)(const TileJob&, const TileJob::Unit& part) noexcept;
     TileJob::Unit (*divide_in_pairs)(const TileJob&, const TileJob::Unit& first) noexcept;
-    // Makes a group of `count` chunks from one of row y on; and fills some of it that have one rule, from x of a row on.
+    // Makes a group of `count` chunks from one of row y on; and fills some of it that have one rule, from x of a row
+    // on.
     void (*weigh_chunks)(const TileJob&, ChunkGroup&, int chunks_of_row, int y, int chunk, int count) noexcept;
     void (*fill_chunks)(const TileJob&, const RowOutputs&, ChunkGroup&, int first, int end, int x) noexcept;
     // What is asked of a unit on either side of the projector: bits as above, as for those that stay in doubt.
@@ -320,8 +324,8 @@ struct PointKernels {
 
 struct SegmentKernels {
     Undecided (*fill_exact)(const SegmentJob&, std::size_t first) noexcept;
-    // The first value from `first` on of a block of float_block with one near the middle of two floats, or with an alpha that is
-    // no number or too small, or the count.
+    // The first value from `first` on of a block of float_block with one near the middle of two floats, or with an
+    // alpha that is no number or too small, or the count.
     std::size_t (*fill_in_double)(const SegmentJob&, std::size_t first) noexcept;
     // The first value from `first` on of a block of float_block with an alpha that is no number, or the count.
     std::size_t (*fill_all_float)(const SegmentJob&, std::size_t first) noexcept;

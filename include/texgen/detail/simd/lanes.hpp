@@ -1,11 +1,13 @@
 #pragma once
 
-// Which vectors the inner loops run on. The only file with #if on instruction sets, with instruction_sets.inc.hpp beside it.
+// Which vectors the inner loops run on. The only file with #if on instruction sets, with instruction_sets.inc.hpp
+// beside it.
 //
-// With GCC 12 or Clang the kernels are written on the vectors of the language, and compiled once for the instruction set of
-// the flags and, on x86-64, once more for AVX2 and for AVX-512; the machine decides which runs. A table of kernels is
-// reached by chosen<Table>(), and compiled only in files that call something which needs it: so all ways there are
-// templates, those without another parameter by one that says so, `class CompiledWhereCalled = void`. Macros of the user:
+// With GCC 12 or Clang the kernels are written on the vectors of the language, and compiled once for the instruction
+// set of the flags and, on x86-64, once more for AVX2 and for AVX-512; the machine decides which runs. A table of
+// kernels is reached by chosen<Table>(), and compiled only in files that call something which needs it: so all ways
+// there are templates, those without another parameter by one that says so, `class CompiledWhereCalled = void`. Macros
+// of the user:
 //   TEXGEN_SCALAR            plain loops, as for every other compiler
 //   TEXGEN_NO_DISPATCH       only the instruction set of the flags
 //   TEXGEN_SEPARATE_KERNELS  the kernels are compiled in one file for all others of the same compiler and flags: in the
@@ -27,8 +29,8 @@
 #include "box_kernels.hpp"
 #include "jobs.hpp"
 
-// TEXGEN_BUILD names the compiler and what the flags decide. Every function that reaches the kernels stands in an inline
-// namespace of that name, so that translation units of different ones link, each with its own kernels.
+// TEXGEN_BUILD names the compiler and what the flags decide. Every function that reaches the kernels stands in an
+// inline namespace of that name, so that translation units of different ones link, each with its own kernels.
 #if !defined(TEXGEN_SCALAR) && (defined(__GNUC__) || defined(__clang__)) && defined(__has_builtin)
 #if __has_builtin(__builtin_shufflevector)
 #define TEXGEN_HAS_VECTORS
@@ -112,10 +114,10 @@ inline bool all_less(const Double2& a, const Double2& b) noexcept { return a[0] 
 
 #define TEXGEN_INLINE [[gnu::always_inline]] inline
 
-// What the compilers have different words for: a loop over an array of vectors, which GCC keeps, and so the array in memory,
-// below -O3; doubles of as many floats or integers as 64, 32 or 16 bytes hold, which GCC 12 converts the generic way in parts; all of sixteen
-// lanes, of which a mask has a sign to GCC; a masked or, of 512 bits two instructions to GCC 12; and which of sixteen lanes of a
-// mask have any of these bits.
+// What the compilers have different words for: a loop over an array of vectors, which GCC keeps, and so the array in
+// memory, below -O3; doubles of as many floats or integers as 64, 32 or 16 bytes hold, which GCC 12 converts the
+// generic way in parts; all of sixteen lanes, of which a mask has a sign to GCC; a masked or, of 512 bits two
+// instructions to GCC 12; and which of sixteen lanes of a mask have any of these bits.
 #ifdef __clang__
 #define TEXGEN_UNROLL
 #define TEXGEN_DOUBLES_64(values) __builtin_convertvector(values, Doubles)
@@ -201,7 +203,8 @@ inline Double2 two_sum(const Double2& a, const Double2& b, Double2& error) noexc
     return sum;
 }
 
-// Four doubles at a time, for s, t, r and q: as one vector only where the flags have such, as no other functions may hand it on.
+// Four doubles at a time, for s, t, r and q: as one vector only where the flags have such, as no other functions may
+// hand it on.
 #if defined(TEXGEN_HAS_VECTORS) && defined(__AVX__)
 using Double4 [[gnu::vector_size(32)]] = double;
 TEXGEN_INLINE Double4 magnitude(const Double4& a) noexcept {

@@ -2,14 +2,14 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// Where a number lies within so many of its ulps, 1 less than a power of two, of the middle of two normal floats (or one
-// more beyond it), and that middle.
+// Where a number lies within so many of its ulps, 1 less than a power of two, of the middle of two normal floats (or
+// one more beyond it), and that middle.
 TEXGEN_INLINE LongWords are_near_middles(const Doubles& a, std::int64_t ulps) noexcept {
     return ((__builtin_bit_cast(Residues, a) + static_cast<std::uint64_t>(ulps - 0x10000000)) &
             static_cast<std::uint64_t>(0x1ffffffe - 2 * ulps)) == 0;
 }
-// The low words of a and b, or the high ones, in whatever order. Shuffled as floats within 16 bytes: of words GCC takes what
-// crosses them.
+// The low words of a and b, or the high ones, in whatever order. Shuffled as floats within 16 bytes: of words GCC takes
+// what crosses them.
 template <bool AreHigh, int... Lane>
 TEXGEN_INLINE WideResidues words_of(const Doubles& a, const Doubles& b, std::integer_sequence<int, Lane...>) noexcept {
     constexpr int word = AreHigh == (std::endian::native == std::endian::little) ? 1 : 0;
@@ -21,8 +21,8 @@ TEXGEN_INLINE Doubles middle_near(const Doubles& a) noexcept {
     return masked_or(a, ~0x1fffffffLL, __builtin_bit_cast(Doubles, LongWords{} + 0x10000000));
 }
 
-// How far numbers of two vectors at a time are from such middles: 0 for each place where one was near; the low words decide. A mask
-// where there are masks.
+// How far numbers of two vectors at a time are from such middles: 0 for each place where one was near; the low words
+// decide. A mask where there are masks.
 #if TEXGEN_LANE_BYTES == 64
 using Distances = std::uint16_t;
 TEXGEN_INLINE Distances far_from_middles() noexcept { return 0xffff; }

@@ -1,5 +1,5 @@
-// What quotients share wherever they are made: two divisors' one division, and what an error leaves of a float. Included by
-// kernels.inc.hpp.
+// What quotients share wherever they are made: two divisors' one division, and what an error leaves of a float.
+// Included by kernels.inc.hpp.
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// The tiers: how values are computed, the dearest way first, and what bounds their errors. What a tier's bound does not cover
-// goes to a dearer one.
+// The tiers: how values are computed, the dearest way first, and what bounds their errors. What a tier's bound does not
+// cover goes to a dearer one.
 //
 //   exact           in double, with a certificate: the nearest float. What that leaves in doubt is decided closely, in two
 //                   doubles; and what those leave, one by one, by exact sums
@@ -19,8 +19,8 @@
 
 namespace TEXGEN_DETAIL {
 
-// The error of a division in float: the forms of s and q err by form_error of their terms, and what is rounded after them
-// adds `roundings` of the quotient.
+// The error of a division in float: the forms of s and q err by form_error of their terms, and what is rounded after
+// them adds `roundings` of the quotient.
 struct FloatDivision {
     double form_error, roundings;
 
@@ -37,13 +37,13 @@ struct FloatDivision {
     }
 };
 
-// With u = 2^-24: rounded coefficients and four terms, 5 u; the reciprocal and the product, 2 u. And forms in double, with
-// four roundings to float: of both, of the reciprocal and of the product.
+// With u = 2^-24: rounded coefficients and four terms, 5 u; the reciprocal and the product, 2 u. And forms in double,
+// with four roundings to float: of both, of the reciprocal and of the product.
 inline constexpr FloatDivision all_float{5.01 * unit_roundoff_float, 2.01 * unit_roundoff_float};
 inline constexpr FloatDivision float_divided{gamma(5), 4.01 * unit_roundoff_float};
 
-// How the steps i / (1 + x) of a chunk are computed: with 2 or 3 factors of 1 / (1 + x) = (1 - x) (1 + x^2) (1 + x^4) ...,
-// which leaves x^4 or x^8 of them; by a division; or not, as no bound holds. Undecided: chunk by chunk.
+// How the steps i / (1 + x) of a chunk are computed: with 2 or 3 factors of 1 / (1 + x) = (1 - x) (1 + x^2) (1 + x^4)
+// ..., which leaves x^4 or x^8 of them; by a division; or not, as no bound holds. Undecided: chunk by chunk.
 enum class StepRule { undecided, degree4, degree8, divide, none };
 
 }  // namespace TEXGEN_DETAIL

@@ -35,8 +35,8 @@ TEXGEN_INLINE Doubles value_at(const PointForm& form, const PointLanes& point) n
     return point.v[0] * form.x + (point.v[1] * form.y + (point.v[2] * form.z + form.w));
 }
 
-// The last bits that are set of numbers that are not negative, of at most 51: of what has one more in front, which 1 has, too. Of 0
-// that of no other number.
+// The last bits that are set of numbers that are not negative, of at most 51: of what has one more in front, which 1
+// has, too. Of 0 that of no other number.
 TEXGEN_INLINE Doubles last_bits(const Doubles& size) noexcept {
     const Doubles longer = size + power_of_two_below(size) * 4.0;
     return select(greater(size, 0.0), longer - without_last_bit(longer), Doubles{} + 0x1p500);
@@ -89,10 +89,10 @@ struct TwofoldForm {
         return (of.size[0] * size[0] + (of.size[1] * size[1] + (of.size[2] * size[2] + size_of_w))) * gamma(5);
     }
 
-    // Of points that are numbers: a coordinate without a coefficient is not looked at. With T the sum of the terms' magnitudes,
-    // what is left of the sum are six terms of less than 2^-50 T together, and precisely what is left of their sum five of less
-    // than 2^-101 T. The last are added in one double, but for five roundings: exactly where their grain, if it is asked, is at
-    // least 2^-102 T, as that of numbers of about one size is, or 2^-152 T.
+    // Of points that are numbers: a coordinate without a coefficient is not looked at. With T the sum of the terms'
+    // magnitudes, what is left of the sum are six terms of less than 2^-50 T together, and precisely what is left of
+    // their sum five of less than 2^-101 T. The last are added in one double, but for five roundings: exactly where
+    // their grain, if it is asked, is at least 2^-102 T, as that of numbers of about one size is, or 2^-152 T.
     template <class... Grains>
     TEXGEN_INLINE PointSum at(const PointLanes& at, const PointSizes& of, bool precisely,
                               const Grains&... grains) const noexcept {
@@ -147,12 +147,12 @@ struct TwofoldForm {
     }
 };
 
-// Numbers with the signs of exact sums of up to 26 terms, which are lost, in these lanes; sigma is a power of two, at least twice
-// the sum of their magnitudes. What is added to sigma stays between a half and twice of it: without sigma it is a multiple of
-// 2^-53 sigma, and leaves at most that of each term, of all less than a quarter of the next sigma, 2^-46 sigma. The sum so far
-// is at most half the next sigma, and with what is added there an exact multiple again, or has the sign of all that follows.
-// What two sigmas leave, of each term at most 2^-7 of a third one, is taken as it is summed in double, rounded 25 times, unless it
-// cancels, too.
+// Numbers with the signs of exact sums of up to 26 terms, which are lost, in these lanes; sigma is a power of two, at
+// least twice the sum of their magnitudes. What is added to sigma stays between a half and twice of it: without sigma
+// it is a multiple of 2^-53 sigma, and leaves at most that of each term, of all less than a quarter of the next sigma,
+// 2^-46 sigma. The sum so far is at most half the next sigma, and with what is added there an exact multiple again, or
+// has the sign of all that follows. What two sigmas leave, of each term at most 2^-7 of a third one, is taken as it is
+// summed in double, rounded 25 times, unless it cancels, too.
 // Source: Rump, Ogita, Oishi, Accurate Floating-Point Summation I, SIAM J. Sci. Comput. 31 (2008), ExtractVector.
 TEXGEN_INLINE Doubles signed_sum(Doubles* term, std::size_t count, Doubles sigma, const LongWords& asked) noexcept {
     Doubles sum{};
@@ -191,7 +191,8 @@ struct TwofoldDivisor : PointSum {
     }
 };
 
-// The same of numerators with these errors. False where a lane is in doubt. 2^-49 covers what q lacks, and the roundings here.
+// The same of numerators with these errors. False where a lane is in doubt. 2^-49 covers what q lacks, and the
+// roundings here.
 TEXGEN_INLINE bool divide_nearly(const Doubles& s, const Doubles& s_error, const TwofoldDivisor& q,
                                  Floats& value) noexcept {
     const Doubles quotient = where(q.in_front, s * q.reciprocal);
@@ -209,9 +210,10 @@ TEXGEN_INLINE Doubles middle_of_subnormals(const Doubles& a) noexcept {
 
 // The floats nearest to s / q in front, 0 elsewhere; `is_known` loses the lanes in front where that is in doubt.
 // As nearest_quotient(): where the quotient, which errs by less than 2^-48 of it, 32 ulps, is so near the middle of two
-// floats, the sign of s - middle q decides. That is a small number beside both products, so s - middle q' is exact for the
-// leading 53 bits q' of q; and precisely the rest is summed exactly where it is but short, as it is of ties. Below `within`
-// either float will do. Integers know the middles of normal floats; those of subnormal ones are found by rounding.
+// floats, the sign of s - middle q decides. That is a small number beside both products, so s - middle q' is exact for
+// the leading 53 bits q' of q; and precisely the rest is summed exactly where it is but short, as it is of ties. Below
+// `within` either float will do. Integers know the middles of normal floats; those of subnormal ones are found by
+// rounding.
 TEXGEN_INLINE Floats nearest_quotients(const PointSum& s, const TwofoldDivisor& q, const Doubles& within,
                                        bool precisely, LongWords& is_known) noexcept {
     const Doubles quotient = where(q.in_front, s.high * q.reciprocal) + 0.0;
@@ -232,9 +234,9 @@ TEXGEN_INLINE Floats nearest_quotients(const PointSum& s, const TwofoldDivisor& 
         is_near = (is_near & ~is_small) | (is_small & at_most(magnitude(quotient - of_small), size * 0x1p-48));
     }
     const Doubles leading_rest = (s.high - middle * q.part[0]) - middle * q.part[1];
-    // All are multiples of the grains of s and of middle q, which is at least 2^-25 middle times q's. What is added in one
-    // double, less than 2^-47 s or precisely 2^-77 s, is exact where they are this near to it; else four roundings are lost,
-    // quickly of less than 2^-51 s.
+    // All are multiples of the grains of s and of middle q, which is at least 2^-25 middle times q's. What is added in
+    // one double, less than 2^-47 s or precisely 2^-77 s, is exact where they are this near to it; else four roundings
+    // are lost, quickly of less than 2^-51 s.
     const auto lost_beyond = [&](double range) {
         const LongWords is_exact = at_most(size_of_s, s.grain * range) & at_most(q.high, q.grain * (range * 0x1p-25));
         return where(~is_exact, size_of_s * (4.0 / range));

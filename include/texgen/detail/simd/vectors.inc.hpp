@@ -1,5 +1,5 @@
-// Vectors as GCC and Clang have them in the language. Included by kernels.inc.hpp once per instruction set; the plain-loop
-// twin of this file is loops.inc.hpp.
+// Vectors as GCC and Clang have them in the language. Included by kernels.inc.hpp once per instruction set; the
+// plain-loop twin of this file is loops.inc.hpp.
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
@@ -88,8 +88,8 @@ TEXGEN_INLINE Doubles masked_or(const Doubles& a, long long bits, const Doubles&
 #endif
 }
 
-// A number that is an integer of less than 2^63, and what is asked of residues. AVX2 converts one after another: the low bits of a sum
-// with 0x1.8p52 are those of an integer below 2^51.
+// A number that is an integer of less than 2^63, and what is asked of residues. AVX2 converts one after another: the
+// low bits of a sum with 0x1.8p52 are those of an integer below 2^51.
 TEXGEN_INLINE Residues to_residues(const Doubles& integers) noexcept {
 #if TEXGEN_LANE_BYTES == 32
     constexpr double rounder = 0x1.8p52;
@@ -303,7 +303,8 @@ TEXGEN_INLINE void store_interleaved(float* to, const Vector& a, const Vector& b
     store_interleaved(to + 2 * n, zipped<n / 2>(a, c, Lanes()), zipped<n / 2>(b, d, Lanes()));
 }
 
-// Lane i of vector k becomes lane k of vector i: in blocks of 16 bytes, then block by block, since what crosses them is dear.
+// Lane i of vector k becomes lane k of vector i: in blocks of 16 bytes, then block by block, since what crosses them is
+// dear.
 template <int First, int Block, class Vector, int... Lane>
 TEXGEN_INLINE Vector zipped_in_blocks(const Vector& a, const Vector& b, std::integer_sequence<int, Lane...>) noexcept {
     return __builtin_shufflevector(a, b,

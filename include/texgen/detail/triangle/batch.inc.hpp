@@ -79,8 +79,8 @@ inline void describe(BatchJob& job, const TriangleBatch& batch, const Texcoords&
     job.r_max = batch.lit().r_max();
 }
 
-// Calls run(triangle, row part, first fragment) for the runs of one id in a row among `count` fragments from `first` on, of
-// those that is_wanted(fragment).
+// Calls run(triangle, row part, first fragment) for the runs of one id in a row among `count` fragments from `first`
+// on, of those that is_wanted(fragment).
 template <class IsWanted, class Run>
 void for_each_run(std::span<const std::uint32_t> ids, const FragmentRect& rect, std::size_t first, std::size_t count,
                   const IsWanted& is_wanted, const Run& run) noexcept {

@@ -1,10 +1,11 @@
 #pragma once
 
-// The linear functions of a triangle to twice the precision of double, about the first fragment of a tile: for tiles where
-// the planes cancel (a corner far outside of the window, q next to 0) and for quotients next to the middle of two floats.
+// The linear functions of a triangle to twice the precision of double, about the first fragment of a tile: for tiles
+// where the planes cancel (a corner far outside of the window, q next to 0) and for quotients next to the middle of two
+// floats.
 //
-// F = sum E_i c_i as in planes.hpp, but from the differences between the fragment and the corners: what is large at a far
-// corner never enters.
+// F = sum E_i c_i as in planes.hpp, but from the differences between the fragment and the corners: what is large at a
+// far corner never enters.
 
 #include <cmath>
 #include <cstddef>
@@ -27,7 +28,8 @@ TEXGEN_RARE inline bool take_multiples(Ramp& ramp, double error, double grain) n
     return true;
 }
 
-// base + i dx + j dy: these three terms. Within `error` of the exact value at every fragment of the tile that it was made for.
+// base + i dx + j dy: these three terms. Within `error` of the exact value at every fragment of the tile that it was
+// made for.
 struct CloseRamp {
     DoubleDouble term[3];
     double error;
@@ -41,8 +43,8 @@ struct CloseRamp {
         return std::fabs(term[0].high) + tile.width * std::fabs(term[1].high) + tile.height * std::fabs(term[2].high);
     }
 
-    // As high and low parts, see CloseFunction. The coefficients of low are at most half a unit: they, two products and two
-    // sums are rounded in double, 6 u of half of width + height + 1 units: less than 2^-50 of those.
+    // As high and low parts, see CloseFunction. The coefficients of low are at most half a unit: they, two products and
+    // two sums are rounded in double, 6 u of half of width + height + 1 units: less than 2^-50 of those.
     TEXGEN_APART void copy_to(const Tile& tile, CloseFunction& result) const noexcept {
         const double unit = unit_for(tile);
         const double rounder = 0x1.8p52 * unit;
@@ -165,8 +167,9 @@ TEXGEN_RARE inline std::uint64_t residue_of(double number) noexcept {
     return 2 * static_cast<std::uint64_t>(static_cast<std::int64_t>(0.5 * std::fmod(number, 0x1p64)));
 }
 
-// The functions of a tile where it is in doubt: of the planes as they are, or close, and with residues or not. Those cost less
-// than two doubles, and decide where the planes are exact or err by less than residues know: not next to q = 0.
+// The functions of a tile where it is in doubt: of the planes as they are, or close, and with residues or not. Those
+// cost less than two doubles, and decide where the planes are exact or err by less than residues know: not next to q =
+// 0.
 struct DoubtfulFunctions : CloseFunctions {
     bool residues_first = false;
 };
@@ -175,16 +178,17 @@ struct DoubtfulJob {
     DoubtfulFunctions functions;
 };
 
-// Whether sums decide ties too, if they err by `share` of what functions do now: by less than half a grain of F - m Q, where m is a
-// multiple of 2^-25 of itself.
+// Whether sums decide ties too, if they err by `share` of what functions do now: by less than half a grain of F - m Q,
+// where m is a multiple of 2^-25 of itself.
 TEXGEN_RARE inline bool are_decided_by_sums(const CloseFunctions& functions, double share) noexcept {
     const auto& [first, second, q] = functions.function;
     return 4.0 * share * first.error < first.grain && 4.0 * share * second.error < second.grain &&
            0x1p27 * share * q.error < q.grain;
 }
 
-// Whether quotients of a tile well in front are decided by residues, of numerators as large as their errors let expect. Planes that
-// are multiples of their grains become exact: the error that is left is of what is computed of them, 2^-98 of the values.
+// Whether quotients of a tile well in front are decided by residues, of numerators as large as their errors let expect.
+// Planes that are multiples of their grains become exact: the error that is left is of what is computed of them, 2^-98
+// of the values.
 TEXGEN_RARE inline bool are_decided_by_residues(CloseFunctions& functions) noexcept {
     for (CloseFunction& f : functions.function)
         if (take_multiples(f.high, f.error, f.grain)) f.error *= 0x1p-50;
@@ -237,8 +241,8 @@ TEXGEN_RARE inline bool take_exact_quotients(const CloseFunctions& functions, Ti
     return is_any_exact;
 }
 
-// Powers of two of which the functions of a triangle are multiples at every fragment: products and sums of floats are multiples
-// of the products of their last bits.
+// Powers of two of which the functions of a triangle are multiples at every fragment: products and sums of floats are
+// multiples of the products of their last bits.
 class PlaneGrains {
 public:
     explicit PlaneGrains(const TrianglePlanes& planes) noexcept : planes_(planes) {
@@ -260,8 +264,8 @@ private:
     const TrianglePlanes& planes_;
 };
 
-// The linear functions of a triangle in these grains, modulo 2^64: so the lowest digits are known of what two doubles have the
-// leading ones of.
+// The linear functions of a triangle in these grains, modulo 2^64: so the lowest digits are known of what two doubles
+// have the leading ones of.
 class PlaneResidues {
 public:
     PlaneResidues(const TrianglePlanes& planes, const Tile& tile) noexcept
@@ -323,7 +327,8 @@ public:
         return result;
     }
 
-    // At one fragment: with a small error beside the value, where 2^62 grains are more than that is without the residue.
+    // At one fragment: with a small error beside the value, where 2^62 grains are more than that is without the
+    // residue.
     Bounded at(std::int64_t x, std::int64_t y) const noexcept {
         const DoubleDouble close = moved_to(x, y).term[0];
         const double value = close.high + close.low;

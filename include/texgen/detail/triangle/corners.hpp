@@ -1,7 +1,7 @@
 #pragma once
 
-// What is known of a tile by its corner fragments: in front or behind, where its coordinates lie in the region, and how large
-// they and their errors are.
+// What is known of a tile by its corner fragments: in front or behind, where its coordinates lie in the region, and how
+// large they and their errors are.
 
 #include <cmath>
 #include <cstddef>
@@ -50,8 +50,8 @@ struct Corners {
 
     bool all_behind() const noexcept { return largest_q <= -q_error; }
     bool all_in_front() const noexcept { return least_q > q_error; }
-    // Whether so little is left of the functions' terms that many quotients would be in doubt: the planes are about a corner.
-    // Where q has both signs there is doubt beside q = 0 in any case.
+    // Whether so little is left of the functions' terms that many quotients would be in doubt: the planes are about a
+    // corner. Where q has both signs there is doubt beside q = 0 in any case.
     bool cancel() const noexcept {
         constexpr double share = 0x1p-36;
         const double size = least_q > q_error ? least_q : larger(-least_q, largest_q);
@@ -60,22 +60,23 @@ struct Corners {
     // Far enough in front that the relative error of q is below 2^-24.
     bool well_in_front() const noexcept { return least_q > 0x1p24 * q_error; }
 
-    // Whether one error bound serves all quotients: beyond a ratio of 2^12 that of the largest would make the smallest ones
-    // doubtful. And whether two q have a product, as they share a division.
+    // Whether one error bound serves all quotients: beyond a ratio of 2^12 that of the largest would make the smallest
+    // ones doubtful. And whether two q have a product, as they share a division.
     bool has_one_error() const noexcept {
         return well_in_front() && least_q > 0x1p-12 * largest_q && least_q > 0x1p-500 && largest_q < 0x1p500;
     }
 
-    // What of a tile is next to q = 0, along the side by which q varies more: before and after that it is behind, or q is no less
-    // than a fourth of its largest. All, if that is nothing; but where it is not few fragments, nothing in the middle of the
-    // longer side.
+    // What of a tile is next to q = 0, along the side by which q varies more: before and after that it is behind, or q
+    // is no less than a fourth of its largest. All, if that is nothing; but where it is not few fragments, nothing in
+    // the middle of the longer side.
     static constexpr int few = 4 * TileJob::unit_size;
     TEXGEN_RARE Stretch next_to_zero(const Tile& tile) const noexcept {
         const bool across_width = std::fabs(q_ramp.dx) * tile.width >= std::fabs(q_ramp.dy) * tile.height;
         const int size = across_width ? tile.width : tile.height;
         const double step = across_width ? q_ramp.dx : q_ramp.dy;
         const double per_step = 1.0 / std::fabs(step);
-        // Counted from where q is least: it is at most largest_q - (size - 1 - i) |step|, and at least least_q + i |step|.
+        // Counted from where q is least: it is at most largest_q - (size - 1 - i) |step|, and at least least_q + i
+        // |step|.
         const auto index = [size](double i) { return i > 0.0 ? (i < size ? static_cast<int>(i) : size) : 0; };
         int begin = index(size - 1 - (largest_q + q_error) * per_step);
         int end = index((0x1p-2 * largest_q - least_q) * per_step + 1.0);
@@ -91,8 +92,8 @@ struct Corners {
         return step < 0.0 ? Stretch{across_width, size - end, size - begin} : Stretch{across_width, begin, end};
     }
 
-    // The largest |F/Q| of a tile in front. Where Q varies little the quotient of the bounds will do; else the corners have
-    // it, u = F/Q being monotone along every line.
+    // The largest |F/Q| of a tile in front. Where Q varies little the quotient of the bounds will do; else the corners
+    // have it, u = F/Q being monotone along every line.
     TEXGEN_APART Double2 largest_quotient() const noexcept {
         if (largest_q < 1.25 * least_q) return (largest_numerator + numerator_error) * reciprocal;
         Double2 size[4];
@@ -102,24 +103,25 @@ struct Corners {
         return larger(larger(size[0], size[1]), larger(size[2], size[3])) * reciprocal;
     }
 
-    // The error of F/Q in double for a tile well in front: as in certain_quotient(), where it is worst. A division for two q has
-    // two more roundings: their product, its reciprocal, that times the other q, and the quotient, before it is moved by its error.
+    // The error of F/Q in double for a tile well in front: as in certain_quotient(), where it is worst. A division for
+    // two q has two more roundings: their product, its reciprocal, that times the other q, and the quotient, before it
+    // is moved by its error.
     Double2 quotient_error(const Double2& largest) const noexcept {
         return (numerator_error + largest * q_error) * (1.0001 * reciprocal) + largest * (6.0 * unit_roundoff_double);
     }
 
-    // The error of F/Q with F and Q rounded to float, then the reciprocal and the product. With 2^-21 <= Q <= 2 a float of
-    // F that is subnormal, or flushed to zero, adds less than 2^-104.
+    // The error of F/Q with F and Q rounded to float, then the reciprocal and the product. With 2^-21 <= Q <= 2 a float
+    // of F that is subnormal, or flushed to zero, adds less than 2^-104.
     Double2 float_divided_error() const noexcept {
         const Double2 largest = largest_quotient();
         return largest * float_divided.roundings + 0x1p-104 + quotient_error(largest);
     }
 
-    // How many of its own ulps the error of a quotient in double is at most, two more roundings included, as 1 less than a power
-    // of two: the middles of floats are doubles whose last 29 bits are 2^28, so of a quotient that is farther from those the
-    // nearest float is certain. 0 where that is too many, or a quotient may be no normal float. Of a tile well in front, where no
-    // numerator changes its sign, so that the corners have the least |F|: F/Q errs by e_F / |F| + e_Q / Q of itself and six
-    // roundings, and an ulp of it is at least 2^-53 of it.
+    // How many of its own ulps the error of a quotient in double is at most, two more roundings included, as 1 less
+    // than a power of two: the middles of floats are doubles whose last 29 bits are 2^28, so of a quotient that is
+    // farther from those the nearest float is certain. 0 where that is too many, or a quotient may be no normal float.
+    // Of a tile well in front, where no numerator changes its sign, so that the corners have the least |F|: F/Q errs by
+    // e_F / |F| + e_Q / Q of itself and six roundings, and an ulp of it is at least 2^-53 of it.
     std::int32_t ulps_of_quotients() const noexcept {
         const auto& f = numerator;
         const Double2 least =
@@ -164,8 +166,8 @@ TEXGEN_APART inline Corners corners_of(const TrianglePlanes& planes, const Plane
     return corners;
 }
 
-// Each coefficient is rounded to double; its product with an index, which is less than the width or the height, and two sums are
-// rounded once each.
+// Each coefficient is rounded to double; its product with an index, which is less than the width or the height, and two
+// sums are rounded once each.
 TEXGEN_RARE inline void take_corners(Corners& corners, const CloseRamps& close) noexcept {
     const auto& [s, t, q] = close.function;
     const auto high = [](const DoubleDouble& of_s, const DoubleDouble& of_t) {
@@ -191,10 +193,11 @@ TEXGEN_RARE inline void take_planes(const Corners& at, CloseFunctions& functions
     functions.function[CloseFunctions::q].error = at.q_error;
 }
 
-// How much of all fragments in front, if there are any, is between two bounds of the one numerator and two of the other: G = F -
-// bound Q is positive above a bound and negative below it, and the corners have the least and the largest. The float that is
-// written may be on the other side than the exact value, by an ulp, by the tolerance (twice that leaves room), or as a 0 that
-// was subnormal: so the answer must hold with that much slack, and with room for what F, Q and G are rounded by.
+// How much of all fragments in front, if there are any, is between two bounds of the one numerator and two of the
+// other: G = F - bound Q is positive above a bound and negative below it, and the corners have the least and the
+// largest. The float that is written may be on the other side than the exact value, by an ulp, by the tolerance (twice
+// that leaves room), or as a 0 that was subnormal: so the answer must hold with that much slack, and with room for what
+// F, Q and G are rounded by.
 inline Coverage coverage_of(const Corners& at, const Double2& min, const Double2& max, double tolerance) noexcept {
     struct Side {
         Double2 least, largest, margin;
@@ -233,9 +236,10 @@ inline Coverage st_coverage_apart(const Corners& at, const LitTest& lit, double 
                           tolerance);
 }
 
-// The sides of a mask alone, with the margins of coverage_of(): what is known of the functions later errs by less. Q is at most what is
-// computed and its error. Roundings, here and where a fragment is asked, are some 2^-50 of c and of the bounds times q: nothing to
-// margins of 2^-22 of those, or to a c that is larger. Bounds that are not finite leave all to the floats.
+// The sides of a mask alone, with the margins of coverage_of(): what is known of the functions later errs by less. Q is
+// at most what is computed and its error. Roundings, here and where a fragment is asked, are some 2^-50 of c and of the
+// bounds times q: nothing to margins of 2^-22 of those, or to a c that is larger. Bounds that are not finite leave all
+// to the floats.
 TEXGEN_RARE inline void take_sides(const LitTest& lit, CloseFunctions& functions) noexcept {
     const double q_error = functions.function[CloseFunctions::q].error;
     for (std::size_t k = 0; k < 2; ++k) {
@@ -249,8 +253,8 @@ TEXGEN_RARE inline void take_sides(const LitTest& lit, CloseFunctions& functions
     }
 }
 
-// Of a depth, where the numerators are r twice. For an infinite limit stands what is rounded to infinity; but where it is none a
-// number that no quotient of a triangle's comes near. A NaN stays one.
+// Of a depth, where the numerators are r twice. For an infinite limit stands what is rounded to infinity; but where it
+// is none a number that no quotient of a triangle's comes near. A NaN stays one.
 inline Coverage r_coverage(const Corners& at, const LitTest& lit, double tolerance) noexcept {
     constexpr double none = 0x1p500, infinite = 0x1p128;
     const double min = larger(-none, smaller(infinite, widened(lit.r_min())));

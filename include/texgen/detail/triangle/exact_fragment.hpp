@@ -16,8 +16,8 @@
 
 namespace TEXGEN_DETAIL {
 
-// The functions at one fragment, exactly: F = sum G_i f_i with G_i = E_i w_j w_k, but for the planes' common factor, or for any
-// positive one.
+// The functions at one fragment, exactly: F = sum G_i f_i with G_i = E_i w_j w_k, but for the planes' common factor, or
+// for any positive one.
 class ExactFragment {
 public:
     // 8 products are 16 doubles, times a weight 32; three such times a value are 192.
@@ -97,9 +97,10 @@ private:
     Sum weighted_[3];
 };
 
-// For two numerators and q over a tile, where their terms cancel even two doubles: from exact growths, within 2^-104 of each, about
-// the first corner, where but one term is not 0: F(A) = area w_b w_c f_A. Products and sums, and what these are moved by within the
-// tile, take less than 2^-97 of the three. Where that corner is so far away that it says less, the value stays.
+// For two numerators and q over a tile, where their terms cancel even two doubles: from exact growths, within 2^-104 of
+// each, about the first corner, where but one term is not 0: F(A) = area w_b w_c f_A. Products and sums, and what these
+// are moved by within the tile, take less than 2^-97 of the three. Where that corner is so far away that it says less,
+// the value stays.
 TEXGEN_RARE inline void take_exact_growths(const TrianglePlanes& planes, glm::length_t first, glm::length_t second,
                                            CloseRamps& ramps) noexcept {
     const DoubleDouble x = two_sum(static_cast<double>(ramps.tile.x) + 0.5, -planes.corner(0).x);  // integers

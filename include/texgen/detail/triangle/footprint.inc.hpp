@@ -6,8 +6,8 @@ inline bool is_usable(const TexelsPerUnit& texels) noexcept {
     return texels.s > 0x1p-200 && texels.s < 0x1p200 && texels.t > 0x1p-200 && texels.t < 0x1p200;
 }
 
-// All of a footprint from J and det J, which has digits that J has lost where J is almost singular: determinant(unit) is
-// unit^2 det J, for a power of two that brings J near 1. So no square leaves the range of double.
+// All of a footprint from J and det J, which has digits that J has lost where J is almost singular: determinant(unit)
+// is unit^2 det J, for a power of two that brings J near 1. So no square leaves the range of double.
 template <class Determinant>
 Footprint footprint_of(const glm::dvec2& dx, const glm::dvec2& dy, const Determinant& determinant,
                        const TexelsPerUnit& texels) noexcept {
@@ -156,8 +156,8 @@ inline std::optional<Footprint> FootprintSetup::at(int x, int y) const noexcept 
     });
 }
 
-// A numerator N = N^ + e over (Q^ + f)^2: the error is at most (e + 2 |f| |N|/Q) / Q^2 but for squares of f/Q, below 2^-23
-// where the tile is well in front. Rounding adds 4 u |N|/Q^2, and half an ulp.
+// A numerator N = N^ + e over (Q^ + f)^2: the error is at most (e + 2 |f| |N|/Q) / Q^2 but for squares of f/Q, below
+// 2^-23 where the tile is well in front. Rounding adds 4 u |N|/Q^2, and half an ulp.
 inline glm::dvec2 FootprintSetup::error_bound(FragmentRect rect) const noexcept {
     if (rect.width <= 0 || rect.height <= 0) return {0.0, 0.0};
     const detail::Tile tile = detail::tile_of(rect);

@@ -89,8 +89,8 @@ inline RangeOfQ range_of_q(const FootprintField& field, const WindowPolygon& pol
     return range;
 }
 
-// The largest |a + k b|^2 / (c + k d)^4 for k in [0, 1], where the denominator is not 0: at an end, or where the derivative
-// vanishes, d b.b k^2 + (3 d a.b - c b.b) k + 2 d a.a - c a.b = 0.
+// The largest |a + k b|^2 / (c + k d)^4 for k in [0, 1], where the denominator is not 0: at an end, or where the
+// derivative vanishes, d b.b k^2 + (3 d a.b - c b.b) k + 2 d a.a - c a.b = 0.
 inline double largest_along(const glm::dvec2& a, const glm::dvec2& b, double c, double d) noexcept {
     double largest = 0.0;
     const auto consider = [&](double k) {
@@ -160,8 +160,8 @@ private:
 };
 
 // The largest Q of the polygon where N = max(|X|, |Y|) is at most n, as a function of n: concave, as N is convex and Q
-// affine. The least of rho = N / Q^2 is that of n / Q(n)^2, and a few values of Q(n) enclose it: between two of them the
-// function is below the lines through the pairs of values on either side.
+// affine. The least of rho = N / Q^2 is that of n / Q(n)^2, and a few values of Q(n) enclose it: between two of them
+// the function is below the lines through the pairs of values on either side.
 class LargestQ {
 public:
     // n is right to within rounding, as is q; -infinity where N is nowhere so small.
@@ -238,8 +238,8 @@ private:
         return largest_q > 0.0 ? least_n * least_n / (square * square) : infinity;
     }
 
-    // Upper bounds on the function's slope behind sample i, and lower ones before it, from its other neighbour: where that
-    // is, and what it has, is rounded.
+    // Upper bounds on the function's slope behind sample i, and lower ones before it, from its other neighbour: where
+    // that is, and what it has, is rounded.
     double slope_before(std::size_t i) const noexcept {
         if (i == 0 || !(samples_[i - 1].q > -infinity)) return infinity;
         const double run = samples_[i].n - samples_[i - 1].n - rounding_at(i);
@@ -292,8 +292,8 @@ inline double least_square_of_rho(const FootprintField& field, const WindowPolyg
     }
 }
 
-// The largest ratio of the singular values times |D|, for a polygon in front: L^2 / Q is convex, as the square of a convex
-// function over an affine one, so a corner has it.
+// The largest ratio of the singular values times |D|, for a polygon in front: L^2 / Q is convex, as the square of a
+// convex function over an affine one, so a corner has it.
 inline double largest_anisotropy(const FootprintField& field, const WindowPolygon& polygon) noexcept {
     double largest = 0.0;
     for (std::size_t i = 0; i < polygon.count(); ++i)

@@ -108,9 +108,10 @@ private:
         return static_cast<int>(bit_cast<std::uint64_t>(power_of_two) >> 52) - 1023;
     }
 
-    // Whether columns of J Q^2 and Q in float are within 2^-19 of themselves, which leaves level, anisotropy and major within
-    // 2^-16. With u = 2^-24 base, slope, product and sum of a component N are rounded: u (2 |N| + 2 |twist| width), where |N|
-    // is at most about 1; and one of the columns is nowhere shorter than at the first fragment less what the twist takes.
+    // Whether columns of J Q^2 and Q in float are within 2^-19 of themselves, which leaves level, anisotropy and major
+    // within 2^-16. With u = 2^-24 base, slope, product and sum of a component N are rounded: u (2 |N| + 2 |twist|
+    // width), where |N| is at most about 1; and one of the columns is nowhere shorter than at the first fragment less
+    // what the twist takes.
     static bool float_serves_filters(const Tile& tile, const Corners& at, const Slope::Terms (&texels)[2]) noexcept {
         constexpr double u = 1.001 * unit_roundoff_float;
         const auto length = [](double s, double t) { return std::sqrt(s * s + t * t); };
@@ -122,8 +123,8 @@ private:
         return error <= 0x1p-19 * least && q_error <= 0x1p-19 * at.least_q;
     }
 
-    // The error of N/Q^2 in float, with u = 2^-24: base, slope, product and sum of both are rounded, then the reciprocal,
-    // its square and the product.
+    // The error of N/Q^2 in float, with u = 2^-24: base, slope, product and sum of both are rounded, then the
+    // reciprocal, its square and the product.
     bool float_fits(const Tile& tile, const Corners& at, const double (&numerator)[2]) const noexcept {
         constexpr double u = 1.001 * unit_roundoff_float;
         const double tolerance = functions_.triangle.tolerance;

@@ -15,8 +15,8 @@ TEXGEN_APART void interpolate_alone(const TileKernels& kernels, const TriangleFu
     interpolator.interpolate(rect, plan);
 }
 
-// Takes the light of a tile's fragments whose r, which nobody asked for, is beyond the depth, which cuts it. It is halved until
-// the buffer holds it; of a half where nothing is lit, or all is in the depth, r is not computed.
+// Takes the light of a tile's fragments whose r, which nobody asked for, is beyond the depth, which cuts it. It is
+// halved until the buffer holds it; of a half where nothing is lit, or all is in the depth, r is not computed.
 template <class CompiledWhereCalled = void>
 TEXGEN_RARE inline void darken_beyond_depth(const TileKernels& kernels, const TriangleFunctions& triangle,
                                             const Tile& rect, const Tile& tile, const std::span<float>& buffer,

@@ -78,7 +78,8 @@ private:
         fill(tile, at, plan);
     }
 
-    // Where floats round the largest quotient by more than the tolerance its chunk is not served, and mostly no other one.
+    // Where floats round the largest quotient by more than the tolerance its chunk is not served, and mostly no other
+    // one.
     TEXGEN_RARE bool are_floats_apart(const Corners& at) const noexcept {
         const Double2 rounded = at.largest_quotient() * unit_roundoff_float;
         return !(larger(rounded[0], rounded[1]) < triangle_.tolerance);
@@ -112,7 +113,8 @@ private:
         return result;
     }
 
-    // In two doubles, and where their terms cancel, or leave doubt, from exact growths, which cost what one fragment alone does.
+    // In two doubles, and where their terms cancel, or leave doubt, from exact growths, which cost what one fragment
+    // alone does.
     TEXGEN_RARE void take_close(const Tile& tile, CloseFunctions& functions, bool leave_doubt) noexcept {
         if ((leave_doubt || close_ramps(tile).cancel()) && !are_exact_) {
             take_exact_growths(triangle_.planes, coordinate_of(0), coordinate_of(1), *close_);
@@ -133,13 +135,14 @@ private:
         return fragments > (tile.count() < TileJob::unit_size ? tile.count() : TileJob::unit_size) / 4;
     }
 
-    // So few that all of the tile's, if others have as many, do not repay exact growths, which cost what two cost alone.
+    // So few that all of the tile's, if others have as many, do not repay exact growths, which cost what two cost
+    // alone.
     static bool are_few(int fragments, const Tile& tile) noexcept {
         return fragments * tile.count() <= 4 * TileJob::unit_size && fragments <= 2;
     }
 
-    // More of them, if there is more: residues first for ties, which have company, and alone where sums would not decide them, or
-    // fragments are few, which do not repay two doubles.
+    // More of them, if there is more: residues first for ties, which have company, and alone where sums would not
+    // decide them, or fragments are few, which do not repay two doubles.
     static constexpr int few_ties = 16;
     TEXGEN_RARE bool sharpen(const Tile& tile, DoubtfulFunctions& functions, int fragments) noexcept {
         const bool have_both = functions.are_close && functions.have_residues;
@@ -159,8 +162,8 @@ private:
         return true;
     }
 
-    // A unit's fragments with what is known of the functions, and with more while that leaves doubt; the rest one by one. Whether all
-    // of 64 fragments were in doubt.
+    // A unit's fragments with what is known of the functions, and with more while that leaves doubt; the rest one by
+    // one. Whether all of 64 fragments were in doubt.
     TEXGEN_APART bool fill_closely(const Tile& tile, const TileJob& job, DoubtfulFunctions& functions,
                                    const TileJob::Unit& unit, std::uint64_t asked = ~std::uint64_t{0}) noexcept {
         std::uint64_t doubtful = kernels_.fill_closely(job, functions, unit, asked);
@@ -181,7 +184,8 @@ private:
         return sides != Coverage::partial;
     }
 
-    // A tile behind is cleared. Of one in doubt what is next to q = 0 is divided closely, if those are few; else it is halved.
+    // A tile behind is cleared. Of one in doubt what is next to q = 0 is divided closely, if those are few; else it is
+    // halved.
     TEXGEN_RARE void split(const Tile& tile, const Corners& at) noexcept {
         if (at.all_behind()) return clear(tile);
         if (tile.count() <= TileJob::unit_size) return fill_closely(tile);
@@ -202,7 +206,8 @@ private:
         TileJob job = make_job(tile, at);
         const Double2 largest = at.largest_quotient();
         const Double2 error = at.quotient_error(largest);
-        // The float next to a quotient in double errs by half an ulp more, of 2^-24 of it, or by what is flushed to zero.
+        // The float next to a quotient in double errs by half an ulp more, of 2^-24 of it, or by what is flushed to
+        // zero.
         const Double2 written = error * 1.001 + (largest * (1.0001 * unit_roundoff_float) + 0x1p-125);
         TEXGEN_UNROLL
         for (std::size_t k = 0; k < 2; ++k) job.quotient_error[k] = written[k] <= triangle_.tolerance ? 0.0 : error[k];
@@ -224,15 +229,16 @@ private:
         if (is_constant(functions.function[CloseFunctions::q].high) && sharpen(tile, functions, TileJob::unit_size) &&
             tile.width + tile.height > 4 && take_exact_quotients(functions, job))
             unit = detail::fill_exact(kernels_, job, unit, TileJob::unit_size, doubtful);
-        // Doubt has company: four times as many units at once after each of which most is in doubt, and some after one that was all.
+        // Doubt has company: four times as many units at once after each of which most is in doubt, and some after one
+        // that was all.
         for (int many = 1; !job.is_done(unit);) {
             const bool may_get_closer = !functions.are_close && are_many(std::popcount(doubtful), tile);
             for (int i = 0; i < many && !job.is_done(unit);
                  ++i, unit = job.unit_after(unit), doubtful = ~std::uint64_t{0})
                 if (fill_closely(tile, job, functions, unit, doubtful)) many = many < 4 ? 4 : many;
             if (job.is_done(unit)) return;
-            // What two doubles are rounded to errs by less than the planes: where those leave much doubt, and once they are known or
-            // the planes fail again.
+            // What two doubles are rounded to errs by less than the planes: where those leave much doubt, and once they
+            // are known or the planes fail again.
             bool is_closer = may_get_closer && functions.are_close;
             if (!is_closer) {
                 unit = detail::fill_exact(kernels_, job, unit, TileJob::unit_size, doubtful);
@@ -249,7 +255,8 @@ private:
         }
     }
 
-    // A small tile, by one job for all that there are: with the planes as they are, and closely only if that leaves doubt.
+    // A small tile, by one job for all that there are: with the planes as they are, and closely only if that leaves
+    // doubt.
     TEXGEN_RARE void fill_closely(const Tile& tile) noexcept {
         if (is_one()) return fill_one(tile.x, tile.y);
         if (tile.count() > TileJob::unit_size) {

@@ -90,8 +90,8 @@ TEXGEN_APART inline void fill_rows(const std::span<float>& output, const Tile& r
     }
 }
 
-// The derivatives of f/q by x and y, times Q^2, as functions of p - a. With mu_ij = (f_i q_j - f_j q_i) times the weights
-// of i and j, and twice the signed area,
+// The derivatives of f/q by x and y, times Q^2, as functions of p - a. With mu_ij = (f_i q_j - f_j q_i) times the
+// weights of i and j, and twice the signed area,
 //   d(f/q)/dx Q^2 = F_x Q - F Q_x = -area (mu_ab (c - p).y + mu_bc (a - p).y + mu_ca (b - p).y)
 //   d(f/q)/dy Q^2 = F_y Q - F Q_y =  area (mu_ab (c - p).x + mu_bc (a - p).x + mu_ca (b - p).x):
 // the one does not depend on x, nor the other on y. `magnitude` is the same with the absolute values of all terms.
@@ -156,11 +156,11 @@ public:
         take(all.magnitude, st.magnitude, q.magnitude);
     }
 
-    // The slope of one coordinate, 0 to 2 for s, t, r. Each mu carries 3 u: products of two floats are exact, so s and t
-    // that are large everywhere cancel without harm. The area carries 4 u, a difference of points 1 u, products and sums
-    // 5 u: gamma(16) of the magnitudes covers the values, and a step from the first vertex. A weight times the area is at
-    // most 2, so only the last product of a mu may be below the normal numbers, and errs by 2^-1074 there, as what it is
-    // multiplied by does; gamma(16) 2^-1020 covers both.
+    // The slope of one coordinate, 0 to 2 for s, t, r. Each mu carries 3 u: products of two floats are exact, so s and
+    // t that are large everywhere cancel without harm. The area carries 4 u, a difference of points 1 u, products and
+    // sums 5 u: gamma(16) of the magnitudes covers the values, and a step from the first vertex. A weight times the
+    // area is at most 2, so only the last product of a mu may be below the normal numbers, and errs by 2^-1074 there,
+    // as what it is multiplied by does; gamma(16) 2^-1020 covers both.
     Slope slope(glm::length_t coordinate) const noexcept {
         const WindowVertex* const corner[] = {&triangle_.a, &triangle_.b, &triangle_.c};
         const double area = twice_area();
@@ -182,8 +182,9 @@ public:
              size_ab * std::fabs(to_c_.x) + size_ca * std::fabs(to_b_.x) + least, size_ab + std::fabs(bc) + size_ca}};
     }
 
-    // The Jacobian determinant of (s/q, t/q), times Q^3: the same everywhere. With M the matrix of the corners' (s, t, q),
-    // the planes are M times the edge functions, whose determinant is area^2. Within 2^-46 of itself; its sign is exact.
+    // The Jacobian determinant of (s/q, t/q), times Q^3: the same everywhere. With M the matrix of the corners' (s, t,
+    // q), the planes are M times the edge functions, whose determinant is area^2. Within 2^-46 of itself; its sign is
+    // exact.
     double jacobian_determinant() const noexcept {
         const auto row = [](const WindowVertex& corner) {
             return glm::dvec3(widened(corner.strq.y), widened(corner.strq.w), widened(corner.strq.x));
@@ -195,7 +196,8 @@ public:
         return (std::fabs(sum) > 0x1p-4 * size ? sum : determinant.exactly().estimate()) * scale;
     }
 
-    // What F is made of, c_i = value weight: a coordinate of corner i, and w_j w_k times the common factor; both are exact.
+    // What F is made of, c_i = value weight: a coordinate of corner i, and w_j w_k times the common factor; both are
+    // exact.
     const WindowVertex& vertex(std::size_t i) const noexcept {
         return i == 0 ? triangle_.a : i == 1 ? triangle_.b : triangle_.c;
     }
@@ -272,8 +274,8 @@ private:
              b_and_a * c_x + c_and_a * b_x}};
     }
 
-    // A corner where the camera's w is small may be far outside of the window, where F is large: the planes stand about the
-    // one where w is largest.
+    // A corner where the camera's w is small may be far outside of the window, where F is large: the planes stand about
+    // the one where w is largest.
     static Triangle about_farthest(const Triangle& triangle) noexcept {
         const auto& [a, b, c] = triangle;
         if (b.clip_w > a.clip_w && b.clip_w >= c.clip_w) return {b, c, a};
@@ -285,7 +287,8 @@ private:
         return {widened(vertex.window.x), widened(vertex.window.y)};
     }
 
-    // Two floats at a time: only the exponent of one that is not finite is all ones, so that 1 more carries to the sign.
+    // Two floats at a time: only the exponent of one that is not finite is all ones, so that 1 more carries to the
+    // sign.
     bool are_finite() const noexcept {
         std::uint64_t sum = 0;
         for (const WindowVertex* vertex : {&triangle_.a, &triangle_.b, &triangle_.c}) {

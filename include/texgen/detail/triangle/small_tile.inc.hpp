@@ -1,18 +1,20 @@
-// Small tiles that need no more than one certificate from their corners: no plan, no chunks, no job of many fields. Included by
-// interpolate.hpp.
+// Small tiles that need no more than one certificate from their corners: no plan, no chunks, no job of many fields.
+// Included by interpolate.hpp.
 
 namespace TEXGEN_DETAIL {
 inline namespace TEXGEN_BUILD {
 
-// Rows that are shorter than vectors are gathered in a buffer, which has a unit. Of many fragments one may well be in doubt, which
-// has all of them divided again; and in long rows vectors that follow one another share a division at less cost.
+// Rows that are shorter than vectors are gathered in a buffer, which has a unit. Of many fragments one may well be in
+// doubt, which has all of them divided again; and in long rows vectors that follow one another share a division at less
+// cost.
 inline bool is_small(const Tile& tile, double tolerance) noexcept {
     constexpr int longest_vector = 8;
     const int most = tile.width < longest_vector ? TileJob::unit_size : tile.width <= 64 ? 4096 : 512;
     return tile.count() <= most && (tolerance == 0.0 || !pays_for_chunks(tile));
 }
 
-// Where a tile begins from the vertex that the planes are about, how far it reaches from there at least, and its last column and row.
+// Where a tile begins from the vertex that the planes are about, how far it reaches from there at least, and its last
+// column and row.
 struct SmallPlace {
     double x, y, reach_x, reach_y, right, bottom;
 
@@ -25,8 +27,9 @@ struct SmallPlace {
           bottom(rect.height - 1.0) {}
 };
 
-// A linear function over the tile: at its first fragment, its steps to the last column and row, and a bound on its error, see
-// TrianglePlanes::ramp() and error(). A row's product and sums add less than 6 u to its 20 u of the magnitude, for which gamma has room.
+// A linear function over the tile: at its first fragment, its steps to the last column and row, and a bound on its
+// error, see TrianglePlanes::ramp() and error(). A row's product and sums add less than 6 u to its 20 u of the
+// magnitude, for which gamma has room.
 template <class Number>
 struct SmallFunction {
     Number base, right, bottom, error;
@@ -51,14 +54,14 @@ Number largest_of(const Number& base, const Number& right, const Number& bottom)
     return larger(of_row, of_row + bottom);
 }
 
-// Whether all of it is lit, or certainly a part, and far enough from q = 0 and from 0 that one bound serves all quotients. The
-// sides are those of coverage_of() with twice its margins, so that nothing is said of a tile of which that says something else.
-// Exact: F errs by less than 2^-41.5 of itself and q by 2^-44, and four roundings follow: within SmallTile::ulps; F is above 2^-124 q,
-// so the floats are normal.
-// In float, with u = 2^-24 and b the steps to the last row, of which y is at most half: F is rounded with its column, its step,
-// the product with y, and the sum, by u (2 F + 1.5 b), as is q, and the reciprocal and the product round by 2 u. Of a quotient that
-// is at most `greatest` this is 6 u greatest + 1.5 u (b_F + greatest b_q) / q, and what floats below 2^-126 lose is less than
-// 2^-100.
+// Whether all of it is lit, or certainly a part, and far enough from q = 0 and from 0 that one bound serves all
+// quotients. The sides are those of coverage_of() with twice its margins, so that nothing is said of a tile of which
+// that says something else. Exact: F errs by less than 2^-41.5 of itself and q by 2^-44, and four roundings follow:
+// within SmallTile::ulps; F is above 2^-124 q, so the floats are normal.
+// In float, with u = 2^-24 and b the steps to the last row, of which y is at most half: F is rounded with its column,
+// its step, the product with y, and the sum, by u (2 F + 1.5 b), as is q, and the reciprocal and the product round by 2
+// u. Of a quotient that is at most `greatest` this is 6 u greatest + 1.5 u (b_F + greatest b_q) / q, and what floats
+// below 2^-126 lose is less than 2^-100.
 enum class SmallAnswer { doubt, lit, partly_lit };
 inline SmallAnswer ask(const LitTest& lit, double tolerance, const SmallFunction<Double2>& f,
                        const SmallFunction<double>& q, SmallTile& tile) noexcept {
@@ -93,7 +96,8 @@ inline SmallAnswer ask(const LitTest& lit, double tolerance, const SmallFunction
     return is_partly_dark && !may_be_dark ? SmallAnswer::partly_lit : SmallAnswer::doubt;
 }
 
-// s, t and their mask of a small tile, if one certificate serves all of it. A tile of one unit with a value in doubt is divided again here, without a plan.
+// s, t and their mask of a small tile, if one certificate serves all of it. A tile of one unit with a value in doubt is
+// divided again here, without a plan.
 template <class CompiledWhereCalled = void>
 TEXGEN_APART SmallAnswer fill_small(const TriangleFunctions& triangle, const Tile& rect,
                                     const Texcoords& out) noexcept {

@@ -8,8 +8,8 @@ inline FloatDeterminant slide_determinant(const glm::dvec4& a, const glm::dvec4&
 }
 
 // The corners of a strictly convex quadrilateral, with the areas that say what its q are. Of homogeneous corners P_i =
-// (x, y, 1) the homography takes T_i = (s, t, 1) to area_i P_i, as area_0 P_0 - area_1 P_1 + area_2 P_2 - area_3 P_3 = 0 and
-// T_0 - T_1 + T_2 - T_3 = 0: q_i is 1 / area_i, up to a factor.
+// (x, y, 1) the homography takes T_i = (s, t, 1) to area_i P_i, as area_0 P_0 - area_1 P_1 + area_2 P_2 - area_3 P_3 =
+// 0 and T_0 - T_1 + T_2 - T_3 = 0: q_i is 1 / area_i, up to a factor.
 class ConvexQuadrilateral {
 public:
     explicit ConvexQuadrilateral(const std::array<glm::dvec2, 4>& corners) noexcept : corner_(corners) {
@@ -30,8 +30,8 @@ public:
 
     double q(std::size_t i) const noexcept { return least_area_ / area_[i]; }
 
-    // The linear function that is 0 on a side and q on the opposite one: x, y and a constant. q may be as small as 2^-1700, and
-    // the rest as large as 2^900: no product leaves the doubles before all of it does.
+    // The linear function that is 0 on a side and q on the opposite one: x, y and a constant. q may be as small as
+    // 2^-1700, and the rest as large as 2^900: no product leaves the doubles before all of it does.
     glm::dvec3 from_side(std::size_t i) const noexcept {
         const glm::dvec2 &from = corner_[i], &to = corner_[(i + 1) % 4];
         const glm::dvec3 line(from.y - to.y, to.x - from.x, difference_of_products(from.x, to.y, to.x, from.y));

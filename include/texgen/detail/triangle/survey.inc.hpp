@@ -1,10 +1,11 @@
-// What is known of a tile before it is divided, what it gets, and the bodies of TriangleSetup. Included by interpolate.hpp.
+// What is known of a tile before it is divided, what it gets, and the bodies of TriangleSetup. Included by
+// interpolate.hpp.
 
 namespace TEXGEN_DETAIL {
 inline namespace TEXGEN_BUILD {
 
-// What a tile gets: the work; under a tolerance the length of its chunks (0: none), and the rule that serves them all with a
-// bound on the error of s and of t, if there is one (chunks.inc.hpp).
+// What a tile gets: the work; under a tolerance the length of its chunks (0: none), and the rule that serves them all
+// with a bound on the error of s and of t, if there is one (chunks.inc.hpp).
 struct Plan {
     Work work;
     int chunk;
@@ -45,9 +46,10 @@ inline Plan plan_without_survey(const Tile& tile, const Corners& at) noexcept {
             Coverage::partial,   Coverage::inside};
 }
 
-// The cheapest rule that serves every chunk of a tile well in front, and the error that it leaves; less work than a division
-// is said of it then, and affine where a line would do. The bound is that of the kernel with each of its terms at its
-// largest. A step of i is i (F_x Q - F Q_x) over the Q at both of its ends, and that difference is constant along a row.
+// The cheapest rule that serves every chunk of a tile well in front, and the error that it leaves; less work than a
+// division is said of it then, and affine where a line would do. The bound is that of the kernel with each of its terms
+// at its largest. A step of i is i (F_x Q - F Q_x) over the Q at both of its ends, and that difference is constant
+// along a row.
 inline void choose_steps(Plan& plan, const Corners& at, double tolerance) noexcept {
     const double half = 0.5 * (plan.chunk - 1);
     const double extent = 1.001 * half * std::fabs(at.q_ramp.dx) * at.reciprocal;
@@ -78,14 +80,15 @@ inline void choose_steps(Plan& plan, const Corners& at, double tolerance) noexce
     if (plan.work != Work::affine) plan.work = is_affine ? Work::affine : Work::quadratic;
 }
 
-// How much of a tile is between the limits of the region's depth: by the planes as they are, as no more than their leading
-// digits are asked.
+// How much of a tile is between the limits of the region's depth: by the planes as they are, as no more than their
+// leading digits are asked.
 TEXGEN_APART inline Coverage depth_coverage(const TriangleFunctions& triangle, const Tile& tile) noexcept {
     const Corners at = corners_of(triangle.planes, triangle.planes.plane_twice(2), triangle.q, tile);
     return r_coverage(at, triangle.lit, triangle.tolerance);
 }
 
-// In place: a copy of what was just written field by field would wait for it, as would a comparison of two such fields at once.
+// In place: a copy of what was just written field by field would wait for it, as would a comparison of two such fields
+// at once.
 inline void choose_plan(const TriangleFunctions& triangle, const Tile& tile, const Corners& at, Plan& plan) noexcept {
     plan.work = Work::nothing;
     plan.chunk = 0;

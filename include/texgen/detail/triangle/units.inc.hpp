@@ -3,9 +3,9 @@
 namespace TEXGEN_DETAIL {
 inline namespace TEXGEN_BUILD {
 
-// Does the units from the given one on up to the first with fragments in doubt, and says which. Where none is, more and more of them
-// are done at once, `most` fragments at most, and one by one after what is in doubt then; or all in pairs, but those that are in
-// doubt then.
+// Does the units from the given one on up to the first with fragments in doubt, and says which. Where none is, more and
+// more of them are done at once, `most` fragments at most, and one by one after what is in doubt then; or all in pairs,
+// but those that are in doubt then.
 inline TileJob::Unit fill_exact(const TileKernels& kernels, const TileJob& job, TileJob::Unit unit, int most,
                                 std::uint64_t& doubtful) noexcept {
     for (int size = TileJob::unit_size; !job.is_done(unit);) {
@@ -26,8 +26,8 @@ inline TileJob::Unit fill_exact(const TileKernels& kernels, const TileJob& job, 
     return unit;
 }
 
-// Does the job from `first` on. Chunks that no rule serves, a part of one row or whole rows, are handed to `refuse`, unless they are
-// filled.
+// Does the job from `first` on. Chunks that no rule serves, a part of one row or whole rows, are handed to `refuse`,
+// unless they are filled.
 template <class Refuse>
 void fill_polynomial(const TileKernels& kernels, const TileJob& job, TileJob::Unit first,
                      const Refuse& refuse) noexcept {
@@ -43,8 +43,8 @@ void fill_polynomial(const TileKernels& kernels, const TileJob& job, TileJob::Un
         const int count = left < group.size ? static_cast<int>(left) : group.size;
         kernels.weigh_chunks(job, group, per_row, y, chunk, count);
         for (int i = 0, end; i < count; i = end) {
-            // Chunks of a rule that follow one another are filled at once; where the rows of the outputs follow one another, and
-            // consist of whole chunks, over the ends of rows.
+            // Chunks of a rule that follow one another are filled at once; where the rows of the outputs follow one
+            // another, and consist of whole chunks, over the ends of rows.
             const StepRule rule = group.rule_of(job, i);
             const bool is_refused = rule == StepRule::none;
             const bool is_seamless = job.is_contiguous && whole_chunks * longest == width && !is_refused;
