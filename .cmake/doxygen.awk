@@ -27,6 +27,7 @@ function write_description(code) {
 
 # Members of one declaration, one by one: Doxygen would describe the first alone.
 function write_names(code,  type, behind, names, n, i) {
+    gsub(/ = [{][}]/, "", code)
     if (!is_described[depth] || code !~ /^ +[^(={]* [a-z_]+(, [a-z_]+)+;/) return 0
     behind = code ~ / \/\/ / ? code : ""
     sub(/.* \/\/ /, "  ///< ", behind)

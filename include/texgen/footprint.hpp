@@ -57,8 +57,8 @@ struct Footprint {
 
 // Planar; an empty span is not computed. The derivatives are named as GLSL would: dsdx is d(s/q)/dx.
 struct Footprints {
-    std::span<float> dsdx = {}, dtdx = {}, dsdy = {}, dtdy = {}, level = {}, anisotropy = {}, major_s = {},
-                     major_t = {};
+    std::span<float> dsdx = {}, dtdx = {}, dsdy = {}, dtdy = {};
+    std::span<float> level = {}, anisotropy = {}, major_s = {}, major_t = {};
 };
 
 // Over the fragments in front of the projector.

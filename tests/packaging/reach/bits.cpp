@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
-#include <memory>
 #include <vector>
 
 #ifdef WITH_BATCHES
@@ -216,8 +215,8 @@ bool same_in_a_batch([[maybe_unused]] const InBatch& given) {
     bool is_same = true;
 #ifdef WITH_BATCHES
     // Somewhere else each time.
-    static std::vector<std::unique_ptr<char[]>> others;
-    if (others.size() < 16) others.push_back(std::make_unique<char[]>(24));
+    static std::vector<std::vector<char>> others;
+    if (others.size() < 16) others.emplace_back(24);
     texgen::TriangleBatch batch(boundless);
     batch.assign(given.triangle);
     is_same = is_same && reinterpret_cast<std::uintptr_t>(batch.planes()) % alignof(decltype(*batch.planes())) == 0;
