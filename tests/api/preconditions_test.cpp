@@ -152,9 +152,9 @@ TEST_CASE("answers of another count than the bodies are asserted, and stay as th
         const std::vector<texgen::Box> boxes(count, texgen::Box{glm::vec3(0), glm::vec3(1)});
         const std::vector<texgen::Sphere> spheres(count, texgen::Sphere{glm::vec3(0), 1.0f});
         const auto check = [&](const auto& bodies) {
-            check_nothing_is_written(count, Coverage::inside,
+            check_nothing_is_written(count, Coverage::outside,
                                      [&](std::span<Coverage> out) { volume.coverage(bodies, out); });
-            check_nothing_is_written(count, Coverage::inside, [&](std::span<Coverage> out) {
+            check_nothing_is_written(count, Coverage::outside, [&](std::span<Coverage> out) {
                 texgen::coverage(some_texgen(), whole_texture(), bodies, out);
             });
         };
