@@ -180,8 +180,9 @@ TEST_CASE(
     texgen::interpolate(*triangle, whole, {.s = alone});
     constexpr int least = -2147483647 - 1;
     broken_preconditions = 0;
-    for (const auto& [width, height] : {std::pair(0, 4), std::pair(4, 0), std::pair(-1, 8), std::pair(8, -1),
-                                        std::pair(-8, -8), std::pair(least, least), std::pair(least, 1)}) {
+    for (const auto& size : {std::pair(0, 4), std::pair(4, 0), std::pair(-1, 8), std::pair(8, -1), std::pair(-8, -8),
+                             std::pair(least, least), std::pair(least, 1)}) {
+        const int width = size.first, height = size.second;
         CAPTURE(width);
         CAPTURE(height);
         const texgen::FragmentRect empty{3, 4, width, height};
