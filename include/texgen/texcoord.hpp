@@ -57,10 +57,7 @@ public:
     explicit Positions(std::span<const glm::vec3> points) noexcept
         : Positions(points.empty() ? nullptr : &points[0].x, points.size(), sizeof(glm::vec3)) {}
     explicit Positions(std::span<const float> x, std::span<const float> y, std::span<const float> z) noexcept
-        : Positions(x.data(), y.data(), z.data(), x.size() == y.size() && x.size() == z.size() ? x.size() : 0,
-                    sizeof(float)) {
-        TEXGEN_ASSERT(x.size() == y.size() && x.size() == z.size());
-    }
+        : Positions(x.data(), y.data(), z.data(), common_size(x, y, z), sizeof(float)) {}
     explicit Positions(const float* first, std::size_t count, std::size_t stride_bytes) noexcept
         : Positions(first, first + (count != 0 ? 1 : 0), first + (count != 0 ? 2 : 0), count, stride_bytes) {}
 
@@ -92,6 +89,12 @@ public:
     }
 
 private:
+    static std::size_t common_size(std::span<const float> x, std::span<const float> y,
+                                   std::span<const float> z) noexcept {
+        const bool is_common = x.size() == y.size() && x.size() == z.size();
+        TEXGEN_ASSERT(is_common);
+        return is_common ? x.size() : 0;
+    }
     static bool is_aligned(const float* first) noexcept {
         return reinterpret_cast<std::uintptr_t>(first) % alignof(float) == 0;
     }
@@ -115,9 +118,8 @@ struct Position {
     glm::vec3 point;
 
     explicit Position(const glm::vec3& of_space) noexcept : point(of_space) {}
-    template <glm::length_t Length, class Number, glm::qualifier Q>
-    requires detail::MoreThanVec3<Length, Number>
-    explicit Position(const glm::vec<Length, Number, Q>&) = delete;
+    template <detail::MoreThanVec3 Vector>
+    explicit Position(const Vector&) = delete;
 };
 
 // Points of a space from an array of vectors, from three arrays (of one size, asserted), or from x, y, z that follow
@@ -131,9 +133,8 @@ inline Positions<Object> object_space(const float* first, std::size_t count, std
     return Positions<Object>(first, count, stride_bytes);
 }
 inline Position<Object> object_space(const glm::vec3& point) noexcept { return Position<Object>(point); }
-template <glm::length_t Length, class Number, glm::qualifier Q>
-requires detail::MoreThanVec3<Length, Number> Position<Object> object_space(const glm::vec<Length, Number, Q>& point)
-= delete;
+template <detail::MoreThanVec3 Vector>
+Position<Object> object_space(const Vector& point) = delete;
 
 // The same of points in the world.
 inline Positions<World> world_space(std::span<const glm::vec3> points) noexcept { return Positions<World>(points); }
@@ -145,9 +146,8 @@ inline Positions<World> world_space(const float* first, std::size_t count, std::
     return Positions<World>(first, count, stride_bytes);
 }
 inline Position<World> world_space(const glm::vec3& point) noexcept { return Position<World>(point); }
-template <glm::length_t Length, class Number, glm::qualifier Q>
-requires detail::MoreThanVec3<Length, Number> Position<World> world_space(const glm::vec<Length, Number, Q>& point)
-= delete;
+template <detail::MoreThanVec3 Vector>
+Position<World> world_space(const Vector& point) = delete;
 
 // The same of points in the eye's space.
 inline Positions<Eye> eye_space(std::span<const glm::vec3> points) noexcept { return Positions<Eye>(points); }
@@ -158,9 +158,8 @@ inline Positions<Eye> eye_space(const float* first, std::size_t count, std::size
     return Positions<Eye>(first, count, stride_bytes);
 }
 inline Position<Eye> eye_space(const glm::vec3& point) noexcept { return Position<Eye>(point); }
-template <glm::length_t Length, class Number, glm::qualifier Q>
-requires detail::MoreThanVec3<Length, Number> Position<Eye> eye_space(const glm::vec<Length, Number, Q>& point)
-= delete;
+template <detail::MoreThanVec3 Vector>
+Position<Eye> eye_space(const Vector& point) = delete;
 
 // The same of fragments: x and y in pixels, z the depth that the buffer holds.
 inline Positions<Window> window_space(std::span<const glm::vec3> points) noexcept { return Positions<Window>(points); }
@@ -172,9 +171,8 @@ inline Positions<Window> window_space(const float* first, std::size_t count, std
     return Positions<Window>(first, count, stride_bytes);
 }
 inline Position<Window> window_space(const glm::vec3& point) noexcept { return Position<Window>(point); }
-template <glm::length_t Length, class Number, glm::qualifier Q>
-requires detail::MoreThanVec3<Length, Number> Position<Window> window_space(const glm::vec<Length, Number, Q>& point)
-= delete;
+template <detail::MoreThanVec3 Vector>
+Position<Window> window_space(const Vector& point) = delete;
 
 inline namespace TEXGEN_BUILD {
 
@@ -249,9 +247,9 @@ inline std::optional<glm::vec2> divide(glm::vec4 strq) noexcept {
     if (!(strq.w > 0.0f)) return std::nullopt;
     return glm::vec2(strq.x / strq.w, strq.y / strq.w);
 }
+// Not of doubles, which would be rounded first.
 template <glm::qualifier Q>
-std::optional<glm::vec2> divide(const glm::vec<4, double, Q>& strq) =
-    delete;  // not the nearest: it would be rounded first
+std::optional<glm::vec2> divide(const glm::vec<4, double, Q>& strq) = delete;
 
 }  // namespace TEXGEN_NAMESPACE
 

@@ -11,7 +11,6 @@ inline std::size_t broken_preconditions = 0;
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
-#include <iterator>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -71,6 +70,32 @@ texgen::Transform<texgen::Texture, texgen::World> some_texgen() {
     return texgen::Transform<texgen::Texture, texgen::World>(glm::dmat4(1));
 }
 
+template <class Vector>
+concept InObjectSpace = requires(Vector v) {
+    texgen::object_space(v);
+};
+template <class Vector>
+concept InWorldSpace = requires(Vector v) {
+    texgen::world_space(v);
+};
+template <class Vector>
+concept InEyeSpace = requires(Vector v) {
+    texgen::eye_space(v);
+};
+template <class Vector>
+concept InWindowSpace = requires(Vector v) {
+    texgen::window_space(v);
+};
+template <class Vector>
+concept AreCoordinates = std::is_constructible_v<texgen::Position<texgen::World>, Vector>;
+template <class Vector>
+constexpr int ways_to_make_a_point =
+    InObjectSpace<Vector> + InWorldSpace<Vector> + InEyeSpace<Vector> + InWindowSpace<Vector> + AreCoordinates<Vector>;
+template <class Vector>
+concept IsDivided = requires(Vector v) {
+    texgen::divide(v);
+};
+
 }  // namespace
 
 TEST_CASE("outputs of another length than the points or values are asserted, and stay as they are") {
@@ -129,13 +154,16 @@ TEST_CASE("outputs of another length than the rectangle are asserted, and stay a
             check_nothing_is_written(count, untouched, [&](std::span<float> out) {
                 texgen::interpolate(batch, std::span(&rect, 1), {out, out, out, out});
             });
+            std::vector<float> right(count, untouched);
+            check_nothing_is_written(1, rect, [&](std::span<texgen::FragmentRect> other_rects) {
+                texgen::interpolate(batch, other_rects, {.s = right});
+            });
             check_nothing_is_written(count, untouched, [&](std::span<float> out) {
                 texgen::interpolate(batch, ids, rect, {out, out, out, out});
             });
             check_nothing_is_written(count, untouched, [&](std::span<float> out) {
                 texgen::footprint(batch, ids, rect, {256, 256}, {.dsdx = out, .level = out});
             });
-            std::vector<float> right(count, untouched);
             check_nothing_is_written(count, std::uint32_t{0}, [&](std::span<std::uint32_t> other_ids) {
                 texgen::interpolate(batch, other_ids, rect, {.s = right});
                 texgen::footprint(batch, other_ids, rect, {256, 256}, {.level = right});
@@ -167,6 +195,31 @@ TEST_CASE("answers of another count than the bodies are asserted, and stay as th
     }
 }
 
+TEST_CASE("room for fewer vertices than a cut may leave is asserted, and stays as it is") {
+    const texgen::ClipVertex untouched{glm::vec4(-7), glm::vec4(-7)};
+    // Cut by the near plane, and by a side of the slide.
+    const texgen::ClipVertex polygon[] = {
+        {{0, 0, -2, 1}, {-1, 0, 0, 1}}, {{4, 0, 2, 3}, {2, 0, 0, 1}}, {{0, 4, 2, 3}, {0, 2, 0, 1}}};
+    for (std::size_t room = 0; room <= 8; ++room) {
+        CAPTURE(room);
+        const auto check = [&](std::size_t needed, const auto& clip) {
+            std::vector<texgen::ClipVertex> out(8, untouched);
+            broken_preconditions = 0;
+            const std::size_t count = clip(std::span(out).first(room));
+            CHECK((broken_preconditions == 0) == (room >= needed));
+            CHECK((count != 0) == (room >= needed));
+            const std::size_t written = room >= needed ? room : 0;
+            CHECK(std::all_of(out.begin() + static_cast<std::ptrdiff_t>(written), out.end(),
+                              [](const texgen::ClipVertex& vertex) { return vertex.position == glm::vec4(-7); }));
+        };
+        check(4, [&](std::span<texgen::ClipVertex> out) {
+            return texgen::clip_to_near(polygon, out, texgen::DepthRange::negative_one_to_one);
+        });
+        check(8,
+              [&](std::span<texgen::ClipVertex> out) { return texgen::clip_to_slide(polygon, whole_texture(), out); });
+    }
+}
+
 TEST_CASE(
     "a rectangle of no fragments is empty, whatever the sign of its sizes: nothing is asked, asserted or written") {
     const auto triangle = texgen::TriangleSetup::of(some_triangle(), whole_texture());
@@ -191,6 +244,7 @@ TEST_CASE(
         CHECK_FALSE(texgen::footprint(footprint, empty, {.level = s}));
         CHECK_FALSE(footprint.extremes(empty).has_value());
         CHECK(triangle->work(empty) == texgen::Work::nothing);
+        CHECK(triangle->error_bound(empty) == triangle->error_bound({0, 0, 0, 0}));
         const std::vector<std::uint32_t> ids(3, 0u);
         texgen::interpolate(batch, ids, empty, {.s = s});
         texgen::footprint(batch, ids, empty, {256, 256}, {.level = s});
@@ -205,29 +259,9 @@ TEST_CASE(
 }
 
 TEST_CASE("a point or a homogeneous coordinate that a float vector would cut short does not compile") {
-    const auto is_point =
-                   [](const auto&of) {
-                       using Vector = std::remove_cvref_t<decltype(of)>;
-                       const bool results[] = {requires(Vector v){texgen::object_space(v);
-                   },
-               requires(Vector v) {
-        texgen::world_space(v);
-    }
-    , requires(Vector v) { texgen::eye_space(v); }
-    , requires(Vector v) { texgen::window_space(v); }
-    , std::is_constructible_v<texgen::Position<texgen::World>, Vector>
-};
-return std::count(std::begin(results), std::end(results), true);
-}
-;
-CHECK(is_point(glm::vec3()) == 5);
-CHECK(is_point(glm::dvec3()) == 0);
-CHECK(is_point(glm::ivec3()) == 0);
-CHECK(is_point(glm::vec4()) == 0);
-CHECK(is_point(glm::dvec4()) == 0);
-const auto is_divided = [](const auto& of) {
-    return requires(std::remove_cvref_t<decltype(of)> v) { texgen::divide(v); };
-};
-CHECK(is_divided(glm::vec4()));
-CHECK_FALSE(is_divided(glm::dvec4()));
+    static_assert(ways_to_make_a_point<glm::vec3> == 5 && ways_to_make_a_point<glm::vec<3, float, glm::lowp>> == 5);
+    static_assert(ways_to_make_a_point<glm::dvec3> == 0 && ways_to_make_a_point<glm::ivec3> == 0);
+    static_assert(ways_to_make_a_point<glm::vec4> == 0 && ways_to_make_a_point<glm::dvec4> == 0);
+    static_assert(IsDivided<glm::vec4> && !IsDivided<glm::dvec4>);
+    CHECK(texgen::world_space({1, 2, 3}).point == glm::vec3(1, 2, 3));
 }

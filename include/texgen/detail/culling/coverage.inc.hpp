@@ -75,14 +75,10 @@ Coverage LitVolume<Space>::coverage(const Sphere& sphere) const noexcept {
 
 template <class Space>
 void LitVolume<Space>::coverage(std::span<const Box> boxes, std::span<Coverage> out) const noexcept {
-    TEXGEN_ASSERT(boxes.size() == out.size());
-    if (boxes.size() != out.size()) return;
     detail::cover(forms_, float_forms_, separating_, boxes, out);
 }
 template <class Space>
 void LitVolume<Space>::coverage(std::span<const Sphere> spheres, std::span<Coverage> out) const noexcept {
-    TEXGEN_ASSERT(spheres.size() == out.size());
-    if (spheres.size() != out.size()) return;
     detail::cover(forms_, float_forms_, unit_forms_, spheres, out);
 }
 
@@ -110,8 +106,6 @@ void coverage(const Transform<Texture, Space>& texture_from_space, const Texture
 template <class Space>
 void coverage(const Transform<Texture, Space>& texture_from_space, const TextureRegion& region,
               std::span<const Sphere> spheres, std::span<Coverage> out) noexcept {
-    TEXGEN_ASSERT(spheres.size() == out.size());
-    if (spheres.size() != out.size()) return;
     const detail::LitForms forms(texture_from_space.matrix(), region, detail::chosen<detail::FormKernels>());
     detail::cover(forms, forms.in_float(detail::chosen<detail::FloatFormKernels>()),
                   forms.unit(detail::chosen<detail::UnitFormKernels>()), spheres, out);

@@ -28,6 +28,8 @@ void classify_many(const LitForms& forms, const FloatForms& float_forms, std::sp
     constexpr std::size_t chunk = 16 * body_quantum;
     constexpr bool is_dense = sizeof(Body) == Floats * sizeof(float);
     constexpr std::size_t copied = is_dense ? body_quantum : chunk;
+    TEXGEN_ASSERT(bodies.size() == out.size());
+    if (bodies.size() != out.size()) return;
     if (!forms.can_say()) {
         for (std::size_t i = 0; i < bodies.size(); ++i) out[i] = coverage_without_forms(forms, bodies[i]);
         return;

@@ -17,8 +17,12 @@
 namespace TEXGEN_DETAIL {
 
 // What GLM converts to a vec3 without a word, though that has less: the digits of doubles, or a w, are lost.
-template <glm::length_t Length, class Number>
-concept MoreThanVec3 = Length != 3 || !std::is_same_v<Number, float>;
+template <class Vector>
+inline constexpr bool is_more_than_vec3 = false;
+template <glm::length_t Length, class Number, glm::qualifier Q>
+inline constexpr bool is_more_than_vec3<glm::vec<Length, Number, Q>> = Length != 3 || !std::is_same_v<Number, float>;
+template <class Vector>
+concept MoreThanVec3 = is_more_than_vec3<Vector>;
 
 inline PointForm form(const glm::dmat4& matrix, int row) noexcept {
     const auto i = static_cast<glm::length_t>(row);
