@@ -431,7 +431,7 @@ MUTANTS = [
           "batch_test")),
     *_of("detail/kernels/batch_fragments.inc.hpp",
          ("fragments step beyond their row", "column_ + lanes <= width_", "column_ <= width_", "batch_test"),
-         ("the first triangle is none", "if (id < job.triangles)\n", "if (id > 0 && id < job.triangles)\n", "batch_test"),
+         ("the first triangle is none", "ids.value[0] >= job.triangles", "ids.value[0] + 1 >= job.triangles", "batch_test"),
          ("fragments are never in doubt",
           "            doubtful |= ends.differ();\n",
           "", "batch_test"),

@@ -349,6 +349,7 @@ TEXGEN_APART Undecided divide_all_fragments(const FragmentsJob& job, std::size_t
     ScratchOutputs<size> scratch;
     const FragmentOutputs in_scratch = scratch.in_place_of(out);
     FragmentCentres centres(job, first);
+    const auto planes_of = [&](std::uint32_t id) { return &job.planes[id < job.triangles ? id : job.triangles]; };
     for (std::size_t n = first; n < job.count;) {
         const std::size_t begin = n;
         const std::size_t end = job.count - begin < exact_block ? job.count : begin + exact_block;
@@ -356,16 +357,15 @@ TEXGEN_APART Undecided divide_all_fragments(const FragmentsJob& job, std::size_t
         Words* next = doubtful;
         for (; n < end; n += size, centres.advance()) {
             const FragmentIds ids(job, n);
-            FragmentLanes<Numerators> fragments{};  // dark, as of no triangle
-            if (ids.are_one()) {
-                const std::uint32_t id = ids.value[0];
-                if (id < job.triangles)
-                    fragments.divide(OneTriangle{job.planes[id].value}, centres.x, centres.y, job.tolerance);
+            FragmentLanes<Numerators> fragments;
+            if (ids.are_one() && ids.value[0] >= job.triangles) {
+                fragments = FragmentLanes<Numerators>{};
+            } else if (ids.are_one()) {
+                fragments.divide(OneTriangle{planes_of(ids.value[0])->value}, centres.x, centres.y, job.tolerance);
             } else {
                 const BatchPlanes* of_lane[lanes];
                 TEXGEN_UNROLL
-                for (std::size_t i = 0; i < size; ++i)
-                    of_lane[i] = &job.planes[ids.value[i] < job.triangles ? ids.value[i] : job.triangles];
+                for (std::size_t i = 0; i < size; ++i) of_lane[i] = planes_of(ids.value[i]);
                 fragments.divide(BatchLanes(of_lane, Numerators == 3), centres.x, centres.y, job.tolerance);
             }
             const FragmentOutputs& to = ids.is_whole ? out : in_scratch;
