@@ -35,7 +35,7 @@ struct Row {
     double ordinary, worst, limit;
 };
 
-// ---- What searches found, and what they begin with ------------------------------------------------------------------
+// What searches found, and what they begin with
 
 void add_rows(const Workload& workload, const std::vector<support::RecordedInput>& recorded, std::vector<Row>& rows) {
     const support::Race race(workload);
@@ -52,7 +52,7 @@ void add_rows(const Workload& workload, const std::vector<support::RecordedInput
         rows.push_back({workload.function, input.words, input.slowness.ordinary, input.slowness.hostile, input.limit});
 }
 
-// ---- Triangles that the near plane has cut --------------------------------------------------------------------------
+// Triangles that the near plane has cut
 
 void add_near_cuts(const Workload& workload, std::vector<Row>& rows) {
     constexpr int triangles = 240;
@@ -67,7 +67,7 @@ void add_near_cuts(const Workload& workload, std::vector<Row>& rows) {
     add("the slowest order of the corners of one of those over the fastest", times.rotation, support::limit::rotation);
 }
 
-// ---- Scenes ---------------------------------------------------------------------------------------------------------
+// Scenes
 
 // Objects of about a unit on a plain, and a spotlight above it.
 class Plain {

@@ -800,7 +800,7 @@ TEST_CASE("of a projector alone the numbers that people write name the wrong uni
     CHECK(ranges >= 950);
 }
 
-// ---- Why there is no projector --------------------------------------------------------------------------------------
+// Why there is no projector
 
 namespace {
 

@@ -68,7 +68,7 @@ bool same_bits(const glm::vec4& a, const glm::vec4& b) {
     return true;
 }
 
-// ---- The same mathematics in other numbers: an exact inverse in rationals, the modes in long double. ----
+// The same mathematics in other numbers: an exact inverse in rationals, the modes in long double.
 
 using support::RationalMatrix;
 
@@ -162,7 +162,7 @@ EyeVectors eye_vectors(const FixedFunctionVertex& vertex, const glm::mat4& model
     return result;
 }
 
-// ---- State ----
+// State
 
 TEST_CASE("a new unit has OpenGL's defaults: all off, eye linear, planes S and T of the identity, R and Q zero") {
     const TexGenUnit unit;
@@ -232,7 +232,7 @@ TEST_CASE("values outside the enumerations are refused or ignored") {
     CHECK(unit.generate(vertex, identity) == before);
 }
 
-// ---- Eye planes ----
+// Eye planes
 
 TEST_CASE("an eye plane is multiplied by the inverse of the MODELVIEW that is current when it is specified") {
     TexGenUnit unit;
@@ -458,7 +458,7 @@ TEST_CASE("the rows of S P_p V_p under MODELVIEW = V_e, and of S P_p under V_e V
     }
 }
 
-// ---- Values ----
+// Values
 
 TEST_CASE("each coordinate has its own enable and its own mode; one that is off keeps the vertex's own") {
     TexGenUnit unit;
@@ -770,7 +770,7 @@ TEST_CASE("SGI's recipe, projector in the texture matrix and identity eye planes
     }
 }
 
-// ---- Bad values ----
+// Bad values
 
 TEST_CASE("a NaN or an infinity spoils the coordinates that are made from it, and no other") {
     for (const float bad : {nan_float, infinity_float}) {

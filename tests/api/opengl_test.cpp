@@ -159,7 +159,7 @@ glm::mat4 random_modelview(Random& random, Kind kind, double distance) {
     return rounded(m);
 }
 
-// ---- State ----
+// State
 
 TEST_CASE("a new TexGenUnit is what glGetTexGen returns in a new context") {
     const gl::Context& g = opengl();
@@ -271,7 +271,7 @@ TEST_CASE("OpenGL stores Everitt's (4) for the rows of S P_p V_p under V_e, and 
     }
 }
 
-// ---- Vertices ----
+// Vertices
 
 TEST_CASE(
     "the linear modes are OpenGL's at vertices, per coordinate, off coordinates and the texture matrix included") {
@@ -440,7 +440,7 @@ TEST_CASE("SGI's recipe, the projector in the texture matrix, is OpenGL's") {
     }
 }
 
-// ---- Fragments ----
+// Fragments
 
 // Texture coordinates of every fragment of a triangle whose vertices are at these window positions and have these
 // clip-space w; -1e30 where there is no fragment.
@@ -686,7 +686,7 @@ TEST_CASE("a floor under a slide, drawn with OpenGL's own transforms and eye-lin
     CHECK(result.behind > 0);
 }
 
-// ---- Footprints ----
+// Footprints
 
 constexpr int slide_width = 512, slide_height = 128;
 

@@ -35,7 +35,7 @@ constexpr std::size_t pixel_count = static_cast<std::size_t>(width) * static_cas
 const glm::vec3 surface(0.5f, 0.75f, 1.0f), border(0.125f, 0.25f, 3.0f);
 constexpr float bias = 0.002f;
 
-// ---- The README's text ----
+// The README's text
 
 enum Shader : std::size_t { vertex, slide, gradients, shadow, deferred, shader_count };
 
@@ -88,7 +88,7 @@ TEST_CASE("the lines of GLSL in the headers are those of the README") {
     CHECK(lines == 4);
 }
 
-// ---- What is drawn ----
+// What is drawn
 
 // A triangle of an object, and what falls on it.
 struct Scene {
@@ -160,7 +160,7 @@ std::vector<glm::vec4> draw(const gl::Context& g, const Scene& scene, unsigned p
     return g.pixels();
 }
 
-// ---- Textures ----
+// Textures
 
 constexpr int size = 64, detailed = 1024;
 constexpr std::size_t texel_count = static_cast<std::size_t>(size) * static_cast<std::size_t>(size);
@@ -190,7 +190,7 @@ void bind_slide(const gl::Context& g) {
     REQUIRE(g.GetError() == gl::no_error);
 }
 
-// ---- The comparison ----
+// The comparison
 
 // A fragment, and by how much OpenGL's coordinates may differ from it.
 struct Fragment {
@@ -429,7 +429,7 @@ TEST_CASE("the README's shadow compares r as the library computes it") {
 
 }  // namespace
 
-// ---- Deferred ----
+// Deferred
 
 // A floor that a camera has drawn into a depth buffer, and a projector that it reaches behind.
 struct DeferredScene {

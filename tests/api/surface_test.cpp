@@ -64,7 +64,7 @@ int facing_triangles() {
 
 std::string hex(const Corners& corners) { return hex(corners[0]) + " " + hex(corners[1]) + " " + hex(corners[2]); }
 
-// ---- Quadrilaterals ------------------------------------------------------------------------------------------------
+// Quadrilaterals
 
 std::string hex(const Quadrilateral& corners) {
     return hex(corners[0]) + " " + hex(corners[1]) + " " + hex(corners[2]) + " " + hex(corners[3]);

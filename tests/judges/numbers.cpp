@@ -54,7 +54,7 @@ using Integer = multiprecision::number<Backend, multiprecision::et_off>;
 
 }  // namespace
 
-// ---- Rationals ------------------------------------------------------------------------------------------------------
+// Rationals
 
 // In lowest terms, the denominator positive. Of floats it is a power of two, whose common divisors Boost's own
 // rationals look for bit by bit.
@@ -148,7 +148,7 @@ std::ostream& operator<<(std::ostream& stream, const Rational& value) {
     return stream << value.value().numerator << '/' << value.value().denominator;
 }
 
-// ---- Dyadic numbers -------------------------------------------------------------------------------------------------
+// Dyadic numbers
 
 struct Dyadic::Mantissa {
     Integer number;
@@ -204,7 +204,7 @@ Dyadic operator-(const Dyadic& a, const Dyadic& b) {
     return Dyadic({std::move(difference)}, exponent);
 }
 
-// ---- Reals ----------------------------------------------------------------------------------------------------------
+// Reals
 
 struct Real::Value {
     multiprecision::number<multiprecision::cpp_bin_float<400, multiprecision::digit_base_2>, multiprecision::et_off>

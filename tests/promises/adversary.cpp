@@ -75,7 +75,7 @@ struct Promise {
     Share (*share)(const Numbers&);
 };
 
-// ---- The inputs ------------------------------------------------------------------------------------------------
+// The inputs
 
 glm::vec4 floats4(const Numbers& n, std::size_t i) {
     return {static_cast<float>(n[i]), static_cast<float>(n[i + 1]), static_cast<float>(n[i + 2]),
@@ -148,7 +148,7 @@ Numbers moved(std::size_t floats, Numbers numbers, Random& random) {
     return numbers;
 }
 
-// ---- The shares ------------------------------------------------------------------------------------------------
+// The shares
 
 // A decision: the smaller the distance from the other answer, relative to its terms, the nearer; on the border itself
 // there is only one answer.
@@ -740,7 +740,7 @@ Numbers begin_depth(Random& random) {
     return n;
 }
 
-// ---- Surfaces --------------------------------------------------------------------------------------------------
+// Surfaces
 
 support::Corners surface_of(const Numbers& n) { return {floats4(n, 0), floats4(n, 4), floats4(n, 8)}; }
 Numbers begin_surface(Random& random) {
@@ -936,7 +936,7 @@ const std::array promises{
     Promise{"keystone: 2^-48 of its terms, a decision", 0, support::detail::draw_quadrilateral, keystone_share},
 };
 
-// ---- The search ------------------------------------------------------------------------------------------------
+// The search
 
 struct Find {
     Share share = says_nothing;
@@ -971,7 +971,7 @@ Find search(const Promise& promise, double seconds, std::uint64_t seed) {
     return best;
 }
 
-// ---- Towards time ----------------------------------------------------------------------------------------------
+// Towards time
 
 // Where a climb begins: the hard families of triangles serve as well.
 Numbers begin(const support::Workload& workload, Random& random) {

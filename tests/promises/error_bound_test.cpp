@@ -80,7 +80,7 @@ Tolerance any_tolerance(Random& random) {
     }
 }
 
-// ---- Segments and points -----------------------------------------------------------------------------------------
+// Segments and points
 
 float signed_power(Random& random, double low, double high) {
     return support::to_float((random.coin() ? 1.0 : -1.0) * random.power_of_ten(low, high));
@@ -207,7 +207,7 @@ std::vector<glm::vec3> points_of(const PointFamily& family, Random& random) {
     return points;
 }
 
-// ---- Matrices ----------------------------------------------------------------------------------------------------
+// Matrices
 
 glm::dmat4 any_matrix(Random& random) {
     glm::dmat4 m(0.0);

@@ -130,7 +130,7 @@ Numbers numbers(const Parts&... parts) {
 inline double always(const Numbers&) { return limit::any; }
 inline double of_touching(const Numbers&) { return limit::touching; }
 
-// ---- Numbers without a meaning -----------------------------------------------------------------------------------
+// Numbers without a meaning
 
 inline double any_float(Random& random) {
     const double sign = random.coin() ? 1.0 : -1.0;
@@ -158,7 +158,7 @@ Numbers any_numbers(Random& random) {
 template <std::size_t Count>
 inline constexpr Hostile hostile_numbers{any_numbers<Count>, "drawn: any numbers"};
 
-// ---- Projectors -----------------------------------------------------------------------------------------------------
+// Projectors
 
 inline texgen::Aim ordinary_aim(Random& random) {
     const glm::dvec3 position = 4.0 * random.direction();
@@ -196,7 +196,7 @@ inline glm::dmat4 drawn_texgen(Random& random) {
     }
 }
 
-// ---- Numbers of a scene --------------------------------------------------------------------------------------------
+// Numbers of a scene
 
 // What the limits are about: positions and coordinates of a world, of a camera and of slides as they are. Beyond, where
 // floats of all sizes meet in one sum, ties may differ from their middle by less than two doubles hold, and are decided
@@ -224,7 +224,7 @@ inline bool is_of_a_scene(const glm::dmat4& matrix) {
     return all;
 }
 
-// ---- Points --------------------------------------------------------------------------------------------------------
+// Points
 
 inline constexpr std::size_t pattern = 8;
 
@@ -367,8 +367,7 @@ inline Numbers ordinary_strq(Random& random) {
     return numbers(q * random.uniform_float(0.2, 0.8), q * random.uniform_float(0.2, 0.8), 0.5f * q, q);
 }
 
-// ---- Segments
-// --------------------------------------------------------------------------------------------------------
+// Segments
 
 inline Numbers ordinary_segment(Random& random) {
     Numbers n = ordinary_strq(random);
@@ -426,8 +425,7 @@ inline Calls segment_bound_calls(const Numbers& n) {
     return calls_of([segment = segment_of(n)] { keep(texgen::error_bound(segment, tolerance)); });
 }
 
-// ---- Triangles
-// -------------------------------------------------------------------------------------------------------
+// Triangles
 
 // Seven numbers a corner, and the first fragment of the rectangle.
 inline Numbers ordinary_triangle(Random& random) {
@@ -695,8 +693,7 @@ double triangle_limit(const Numbers& n) {
     return largest > 100.0f * least ? limit::near_plane : limit::any;
 }
 
-// ---- Footprints
-// ------------------------------------------------------------------------------------------------------
+// Footprints
 
 template <int Width, int Height, bool IsExact, class Ask>
 Calls footprint_calls_of(const Numbers& n, Ask ask) {
@@ -741,8 +738,7 @@ inline Calls footprint_of_calls(const Numbers& n) {
                      texels = texgen::TexelsPerUnit{n[4], n[5]}] { keep(texgen::footprint_of(dx, dy, texels)); });
 }
 
-// ---- Surfaces
-// --------------------------------------------------------------------------------------------------------
+// Surfaces
 
 inline Numbers ordinary_corners(Random& random) {
     Numbers n;
@@ -827,8 +823,7 @@ Calls quadrilateral_calls(const Numbers& n) {
     });
 }
 
-// ---- Bodies
-// ----------------------------------------------------------------------------------------------------------
+// Bodies
 
 inline constexpr std::size_t bodies = 256;
 inline constexpr std::size_t body_pattern = 4;
@@ -991,8 +986,7 @@ Calls planes_calls(const Numbers& n) {
     return calls_of([texgen, region] { keep(texgen::clip_planes(texgen, region)); });
 }
 
-// ---- Clipping
-// ----------------------------------------------------------------------------------------------------------
+// Clipping
 
 inline Numbers ordinary_polygon(Random& random) {
     Numbers n;
@@ -1030,8 +1024,7 @@ inline Calls to_window_calls(const Numbers& n) {
     return calls_of([position, strq] { keep(texgen::to_window({position, strq}, {0, 0, 1024, 768})); });
 }
 
-// ---- Matrices
-// -----------------------------------------------------------------------------------------------------------
+// Matrices
 
 inline Numbers ordinary_matrix(Random& random) {
     glm::dmat4 m = random.rigid(10.0);
@@ -1183,7 +1176,7 @@ inline Calls update_eye_calls(const Numbers& n) {
     });
 }
 
-// ---- Projectors' own functions --------------------------------------------------------------------------------------
+// Projectors' own functions
 
 inline Numbers ordinary_look(Random& random) {
     const texgen::Aim aim = ordinary_aim(random);
@@ -1248,8 +1241,7 @@ Calls lens_calls(const Numbers& n) {
     });
 }
 
-// ---- OpenGL's fixed function
-// -------------------------------------------------------------------------------------------
+// OpenGL's fixed function
 
 inline Numbers ordinary_vertex(Random& random) {
     Numbers n = numbers(rounded(random.rigid(5.0)), random.vector4(1.0));
@@ -1315,8 +1307,7 @@ inline Calls unit_batch_calls(const Numbers& n) {
     });
 }
 
-// ---- Diagnosis
-// ---------------------------------------------------------------------------------------------------------
+// Diagnosis
 
 // A projection, a view, a model, and what claims to be their texgen matrix.
 inline Numbers setup_of(const texgen::Projector& projector, const texgen::ModelMatrix& model,
@@ -1382,8 +1373,7 @@ Calls diagnose_calls(const Numbers& n) {
 
 }  // namespace detail
 
-// ---- All of them
-// -------------------------------------------------------------------------------------------------------
+// All of them
 
 inline const std::array workloads{
     Workload{"project, exact, 1024 points", 24, detail::ordinary_points, detail::hostile_points,

@@ -25,7 +25,7 @@ namespace {
 
 using namespace texgen;
 
-// ---- What is read ----------------------------------------------------------------------------------------------
+// What is read
 
 glm::dmat4 matrix() {
     return {0.75, 0.125, 0.0, 0.0625, 0.0, 0.5, 0.25, 0.125, 0.25, 0.0, 0.5, 0.0625, 0.125, 0.25, 0.375, 1.0};
@@ -47,7 +47,7 @@ constexpr Triangle triangle{{{0.0f, 0.0f}, 1.0f, {0.1f, 0.2f, 0.3f, 1.0f}},
                             {{40.0f, 0.0f}, 3.0f, {2.9f, 0.5f, 0.75f, 2.0f}},
                             {{0.0f, 30.0f}, 2.0f, {0.5f, 1.5f, 0.25f, 1.5f}}};
 
-// ---- What is called, with `count` values an output, of four coordinates as `mask` says --------------------------
+// What is called, with `count` values an output, of four coordinates as `mask` says
 
 #define GIVEN(bit) (mask >> (bit)&1) != 0 ? count : 0
 #define SPANS(s, t, r, lit) \
@@ -165,7 +165,7 @@ constexpr Triangle triangle{{{0.0f, 0.0f}, 1.0f, {0.1f, 0.2f, 0.3f, 1.0f}},
 #define VOLUME_AND_BOXES(out) VOLUME(Box, box, out)
 #define VOLUME_AND_SPHERES(out) VOLUME(Sphere, sphere, out)
 
-// ---- Where a program keeps its outputs -------------------------------------------------------------------------
+// Where a program keeps its outputs
 
 constexpr float unwritten = 7.0f;
 
