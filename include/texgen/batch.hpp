@@ -18,6 +18,7 @@
 #include "detail/assert.hpp"
 #include "detail/culling/lit_test.hpp"
 #include "detail/held.hpp"
+#include "detail/inside.hpp"
 #include "detail/simd/batch_lanes.hpp"
 #include "footprint.hpp"
 #include "interpolate.hpp"
@@ -56,12 +57,9 @@ public:
     const TextureRegion& region() const noexcept { return region_; }
     Tolerance tolerance() const noexcept { return tolerance_; }
 
-    // What the rest of the library reads.
-    const Triangle& triangle(std::size_t i) const noexcept { return triangles_[i]; }
-    const detail::BatchPlanes* planes() const noexcept { return planes_.data(); }
-    const detail::LitTest& lit() const noexcept { return lit_; }
-
 private:
+    friend detail::Inside;
+
     void take(std::span<const Triangle> triangles) noexcept;
     template <class CompiledWhereCalled>
     void set_up() noexcept;

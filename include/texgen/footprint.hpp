@@ -17,6 +17,7 @@
 
 #include "conventions.hpp"
 #include "detail/arithmetic/nearest.hpp"
+#include "detail/inside.hpp"
 #include "detail/simd/lanes.hpp"
 #include "detail/triangle/footprint_extremes.hpp"
 #include "detail/triangle/slopes.hpp"
@@ -110,11 +111,9 @@ public:
     // The same for all fragments inside the triangle.
     std::optional<FootprintExtremes> extremes() const noexcept;
 
-    // What the rest of the library reads.
-    const detail::FootprintFunctions& functions() const noexcept { return functions_; }
-    const TexelsPerUnit& texels() const noexcept { return texels_; }
-
 private:
+    friend detail::Inside;
+
     detail::FootprintFunctions functions_;
     TexelsPerUnit texels_;
 };

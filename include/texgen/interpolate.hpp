@@ -22,6 +22,7 @@
 #include "conventions.hpp"
 #include "detail/arithmetic/nearest.hpp"
 #include "detail/culling/lit_test.hpp"
+#include "detail/inside.hpp"
 #include "detail/on_demand.hpp"
 #include "detail/simd/lanes.hpp"
 #include "detail/triangle/close_planes.hpp"
@@ -62,10 +63,9 @@ public:
     // float included; infinite where no finite bound exists, as next to q = 0. noexcept.
     glm::dvec2 error_bound(FragmentRect rect) const noexcept;
 
-    // What the rest of the library reads.
-    const detail::TriangleFunctions& functions() const noexcept { return functions_; }
-
 private:
+    friend detail::Inside;
+
     detail::TriangleFunctions functions_;
 };
 

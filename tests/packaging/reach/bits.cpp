@@ -219,7 +219,9 @@ bool same_in_a_batch([[maybe_unused]] const InBatch& given) {
     if (others.size() < 16) others.emplace_back(24);
     texgen::TriangleBatch batch(boundless);
     batch.assign(given.triangle);
-    is_same = is_same && reinterpret_cast<std::uintptr_t>(batch.planes()) % alignof(decltype(*batch.planes())) == 0;
+    is_same = is_same && reinterpret_cast<std::uintptr_t>(texgen::detail::Inside::planes(batch)) %
+                                 alignof(decltype(*texgen::detail::Inside::planes(batch))) ==
+                             0;
     Outputs all(given.alone[0].count + given.alone[1].count);
     if (all.count <= most) {
         interpolate(batch, given.rect, all.spans());

@@ -56,27 +56,32 @@ void clear(Outputs& out) noexcept {
 
 inline namespace TEXGEN_BUILD {
 
+inline std::optional<TriangleSetup> set_up(const TriangleBatch& batch, std::size_t triangle) noexcept {
+    return TriangleSetup::of(Inside::triangle(batch, triangle), batch.region(), batch.tolerance());
+}
+
 // A rectangle of one triangle with fragments, by its own set-up.
 template <class CompiledWhereCalled = void>
 void interpolate_apart(const TriangleBatch& batch, std::size_t triangle, const Tile& tile, Texcoords out) noexcept {
-    const auto setup = TriangleSetup::of(batch.triangle(triangle), batch.region(), batch.tolerance());
+    const auto setup = set_up(batch, triangle);
     if (!setup || interpolate_tile(*setup, tile, out) == Work::nothing) clear(out);
 }
 
 // What every kernel is given of a batch.
 inline void describe(BatchJob& job, const TriangleBatch& batch, const Texcoords& out, std::size_t count) noexcept {
-    job.planes = batch.planes();
-    job.vertices = &batch.triangle(0).a.window.x;
+    job.planes = Inside::planes(batch);
+    job.vertices = &Inside::triangle(batch, 0).a.window.x;
     job.tolerance = accepted(batch.tolerance());
     job.out[0] = array_of(out.s, count);
     job.out[1] = array_of(out.t, count);
     job.out[2] = array_of(out.r, count);
     job.lit = array_of(out.lit, count);
     job.count = count;
-    batch.lit().copy_to(job.min, job.max);
-    job.has_depth = batch.lit().has_depth();
-    job.r_min = batch.lit().r_min();
-    job.r_max = batch.lit().r_max();
+    const LitTest& lit = Inside::lit(batch);
+    lit.copy_to(job.min, job.max);
+    job.has_depth = lit.has_depth();
+    job.r_min = lit.r_min();
+    job.r_max = lit.r_max();
 }
 
 // Calls run(triangle, row part, first fragment) for the runs of one id in a row among `count` fragments from `first`
@@ -227,8 +232,7 @@ void footprint(const TriangleBatch& batch, std::span<const std::uint32_t> ids, F
             if (id != known) {
                 setup.reset();
                 if (id < batch.size())
-                    if (const auto triangle = TriangleSetup::of(batch.triangle(id), batch.region(), batch.tolerance()))
-                        setup.emplace(*triangle, texels);
+                    if (const auto triangle = detail::set_up(batch, id)) setup.emplace(*triangle, texels);
                 known = id;
             }
             if (!setup || !detail::footprint_tile(*setup, part, here)) detail::clear(here);

@@ -148,7 +148,7 @@ inline Footprint footprint_of(const glm::dvec2& dx, const glm::dvec2& dy, const 
 }
 
 inline FootprintSetup::FootprintSetup(const TriangleSetup& triangle, TexelsPerUnit texels) noexcept
-    : functions_(triangle.functions()), texels_(texels) {}
+    : functions_(detail::Inside::functions(triangle)), texels_(texels) {}
 
 inline std::optional<Footprint> FootprintSetup::at(int x, int y) const noexcept {
     return detail::footprint_at(functions_, texels_, x, y, [&] {

@@ -173,10 +173,10 @@ private:
 // The footprints of a rectangle, for outputs that are computed.
 template <class CompiledWhereCalled = void>
 inline bool footprint_tile(const FootprintSetup& setup, const Tile& tile, const Footprints& out) noexcept {
-    const FootprintFunctions& functions = setup.functions();
+    const FootprintFunctions& functions = Inside::functions(setup);
     const TileSurvey found = survey(functions.triangle, tile);
     if (found.plan.work == Work::nothing) return false;
-    TileFootprinter<>(chosen<FootprintKernels>(), functions, setup.texels(), tile, out).fill_all(tile, found.at);
+    TileFootprinter<>(chosen<FootprintKernels>(), functions, Inside::texels(setup), tile, out).fill_all(tile, found.at);
     return true;
 }
 

@@ -60,7 +60,7 @@ TEXGEN_APART void finish_depth(const TileKernels& kernels, const TriangleFunctio
 // The fragments of a rectangle, for outputs that are computed.
 template <class CompiledWhereCalled = void>
 inline Work interpolate_tile(const TriangleSetup& setup, const Tile& tile, const Texcoords& out) noexcept {
-    const TriangleFunctions& triangle = setup.functions();
+    const TriangleFunctions& triangle = Inside::functions(setup);
     TileSurvey found = survey(triangle, tile);
     const Plan& plan = found.plan;
     if (plan.work == Work::nothing) {
@@ -101,7 +101,7 @@ TEXGEN_INLINE Work interpolate(const TriangleSetup& setup, FragmentRect rect, Te
     if (count == 0) return Work::nothing;
     detail::take_computed(out, count);
     const detail::Tile tile = detail::tile_of(rect);
-    const detail::TriangleFunctions& triangle = setup.functions();
+    const detail::TriangleFunctions& triangle = detail::Inside::functions(setup);
     Coverage depth = Coverage::inside;
     detail::SmallAnswer answer = detail::SmallAnswer::doubt;
     if (detail::is_small(tile, triangle.tolerance)) {
