@@ -309,7 +309,7 @@ MUTANTS = [
     *_of("detail/triangle/interpolator.inc.hpp",
          ("floats beyond the tolerance are accepted", "largest * (1.0001 * unit_roundoff_float)",
           "largest * (0.25 * unit_roundoff_float)", "near_ties_test"),
-         ("the chunks' certificate has no margin of its own", "job.least_q = 0x1p24 * at.q_error;",
+         ("the chunks' certificate has no margin of its own", "job.least_q = well_in_front * at.q_error;",
           "job.least_q = -1.0;", "tolerance_test work_test",
           {"survives": "Where q is not above its error the bound's term |u| e_Q / Q is above |u| itself: nothing passes but a "
                        "chunk whose coordinates are 0."}),
@@ -426,7 +426,7 @@ MUTANTS = [
     *_of("detail/kernels/batch_residues.inc.hpp",
          ("the steps of a tile's functions change places", "along(vertices, 1), down(vertices, 0)", "along(vertices, 0), down(vertices, 1)",
           "batch_test"),
-         ("what cancels in a tile is left to a set-up", "greater(lost, size * 0x1p-36)", "greater(lost, size)", "batch_test"),
+         ("what cancels in a tile is left to a set-up", "greater(lost, size * cancelled_share)", "greater(lost, size)", "batch_test"),
          ("a batch's residues are of the pixel's corner", "ResidueLanes of_corners(vertices, x, y)", "ResidueLanes of_corners(vertices, x + 0.5, y)",
           "batch_test")),
     *_of("detail/kernels/batch_fragments.inc.hpp",

@@ -28,7 +28,7 @@ struct FragmentLanes {
         const Doubles q =
             functions[BatchPlanes::q] + (functions[BatchPlanes::q + 1] * p_x + functions[BatchPlanes::q + 2] * p_y);
         const Doubles q_error = functions[BatchPlanes::q + 3] * stretch;
-        front = greater(q, q_error * 0x1p24);
+        front = greater(q, q_error * well_in_front);
         const Doubles reciprocal = where(front, 1.0 / q);
         const Doubles stretched = stretch * (reciprocal * 1.0001);
         Doubles u[Numerators], largest{}, largest_error{};

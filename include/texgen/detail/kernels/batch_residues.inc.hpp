@@ -85,7 +85,7 @@ private:
         part[6] = (lost + (width + height + 1.0) * unit * 0x1p-50) * 1.01 + (n < 3 ? Doubles{} : vertices.error_of_q);
         part[7] = grain;
         store_columns(part, [&](std::size_t j) { return of[first + j].part[n]; });
-        return greater(lost, size * 0x1p-36);
+        return greater(lost, size * cancelled_share);
     }
 
     TEXGEN_APART void take_about_corners(const VertexLanes& vertices, bool needs_r, const CloseLanes& close,

@@ -148,9 +148,9 @@ TEXGEN_APART void prepare(const BatchJob& job, const BatchPlanes* of_tiles, cons
     const Doubles* const value = planes.value;
     const TileFunction q(&value[BatchPlanes::q], tile);
     const Doubles reciprocal = 1.0 / (q.least - q.error);
-    const LongWords well_in_front = greater(q.least, q.error * 0x1p24);
+    const LongWords in_front = greater(q.least, q.error * well_in_front);
     store(&tiles.q[first], q.at[0]);
-    const LongWords is_exact = well_in_front & greater(q.least, q.largest * 0x1p-12);
+    const LongWords is_exact = in_front & greater(q.least, q.largest * share_for_one_error);
     LongWords is_dark = greater(q.largest * -1.0, q.error);
     Doubles ulps = Doubles{} + 4.0;
     // The product of two, and its reciprocal, are normal numbers.

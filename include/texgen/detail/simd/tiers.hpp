@@ -42,6 +42,15 @@ struct FloatDivision {
 inline constexpr FloatDivision all_float{5.01 * unit_roundoff_float, 2.01 * unit_roundoff_float};
 inline constexpr FloatDivision float_divided{gamma(5), 4.01 * unit_roundoff_float};
 
+// q is well in front where it is so many times its error: what it errs by is below 2^-24 of it.
+inline constexpr double well_in_front = 0x1p24;
+// One error bound serves all quotients of a tile whose least q is above this share of the largest: beyond, that of the
+// largest quotient would make the smallest ones doubtful.
+inline constexpr double share_for_one_error = 0x1p-12;
+// Functions cancel where they err by more than this share of what is left of them: more than one float in 2^12 would be
+// in doubt.
+inline constexpr double cancelled_share = 0x1p-36;
+
 // How the steps i / (1 + x) of a chunk are computed: with 2 or 3 factors of 1 / (1 + x) = (1 - x) (1 + x^2) (1 + x^4)
 // ..., which leaves x^4 or x^8 of them; by a division; or not, as no bound holds. Undecided: chunk by chunk.
 enum class StepRule { undecided, degree4, degree8, divide, none };

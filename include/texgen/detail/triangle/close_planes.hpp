@@ -15,6 +15,7 @@
 #include "../arithmetic/expansion.hpp"
 #include "../arithmetic/rounding.hpp"
 #include "../simd/lanes.hpp"
+#include "../simd/tiers.hpp"
 #include "planes.hpp"
 
 namespace TEXGEN_DETAIL {
@@ -81,10 +82,9 @@ struct CloseRamps {
         return result;
     }
 
-    // Where more than one float in 2^12 would stay in doubt.
     TEXGEN_RARE bool cancel() const noexcept {
         for (const CloseRamp& ramp : function)
-            if (ramp.error > 0x1p-36 * ramp.size_over(tile) + 0x1p-700) return true;
+            if (ramp.error > cancelled_share * ramp.size_over(tile) + 0x1p-700) return true;
         return false;
     }
 
@@ -333,7 +333,7 @@ public:
         const DoubleDouble close = moved_to(x, y).term[0];
         const double value = close.high + close.low;
         const double error = ramp_.error + 0x1p-52 * std::fabs(value);
-        if (std::fabs(value) > 0x1p24 * error || !(std::fabs(value) + error < 0x1p62 * exact_.grain))
+        if (std::fabs(value) > well_in_front * error || !(std::fabs(value) + error < 0x1p62 * exact_.grain))
             return {value, error};
         const std::uint64_t residue = exact_.residue.base +
                                       static_cast<std::uint64_t>(x - tile_.x) * exact_.residue.dx +

@@ -14,6 +14,7 @@
 #include "../culling/lit_test.hpp"
 #include "../language.hpp"
 #include "../simd/lanes.hpp"
+#include "../simd/tiers.hpp"
 #include "close_planes.hpp"
 #include "planes.hpp"
 
@@ -53,18 +54,13 @@ struct Corners {
     // Whether so little is left of the functions' terms that many quotients would be in doubt: the planes are about a
     // corner. Where q has both signs there is doubt beside q = 0 in any case.
     bool cancel() const noexcept {
-        constexpr double share = 0x1p-36;
         const double size = least_q > q_error ? least_q : larger(-least_q, largest_q);
-        return q_error > share * size || any_less(largest_numerator * share, numerator_error);
+        return q_error > cancelled_share * size || any_less(largest_numerator * cancelled_share, numerator_error);
     }
-    // Far enough in front that the relative error of q is below 2^-24.
-    bool well_in_front() const noexcept { return least_q > 0x1p24 * q_error; }
-
-    // Whether one error bound serves all quotients: beyond a ratio of 2^12 that of the largest would make the smallest
-    // ones doubtful. And whether two q have a product, as they share a division.
-    bool has_one_error() const noexcept {
-        return well_in_front() && least_q > 0x1p-12 * largest_q && least_q > 0x1p-500 && largest_q < 0x1p500;
-    }
+    bool is_well_in_front() const noexcept { return least_q > well_in_front * q_error; }
+    bool has_one_error() const noexcept { return is_well_in_front() && least_q > share_for_one_error * largest_q; }
+    // And whether two q have a product, as they share a division.
+    bool may_share_divisions() const noexcept { return has_one_error() && least_q > 0x1p-500 && largest_q < 0x1p500; }
 
     // What of a tile is next to q = 0, along the side by which q varies more: before and after that it is behind, or q
     // is no less than a fourth of its largest. All, if that is nothing; but where it is not few fragments, nothing in

@@ -55,9 +55,9 @@ std::optional<Footprint> footprint_at(const FootprintFunctions& functions, const
                                       std::int64_t y, const CloseQ& close_q) noexcept {
     const TrianglePlanes& planes = functions.triangle.planes;
     Bounded bounded = planes.at(functions.triangle.q, x, y);
-    if (!(std::fabs(bounded.value) > 0x1p24 * bounded.error)) bounded = close_q().at(x, y);
+    if (!(std::fabs(bounded.value) > well_in_front * bounded.error)) bounded = close_q().at(x, y);
     double q = bounded.value;
-    if (!(std::fabs(q) > 0x1p24 * bounded.error || bounded.error == 0.0))
+    if (!(std::fabs(q) > well_in_front * bounded.error || bounded.error == 0.0))
         q = ExactFragment(planes, x, y).function(3).estimate() * planes.factor();
     if (!(q > 0.0)) return std::nullopt;
     const glm::dvec2 p = planes.from_a({x, y, 1, 1});
@@ -164,7 +164,7 @@ inline glm::dvec2 FootprintSetup::error_bound(FragmentRect rect) const noexcept 
     const detail::Corners at = detail::survey(functions_.triangle, tile).at;
     if (at.all_behind()) return {0.0, 0.0};
     const auto bound = [&](std::size_t k) {
-        if (!at.well_in_front()) return std::numeric_limits<double>::infinity();
+        if (!at.is_well_in_front()) return std::numeric_limits<double>::infinity();
         const double numerator = functions_.largest(k, tile);
         const double error = functions_.error(k, tile) + 2.0 * at.q_error * at.reciprocal * numerator +
                              8.0 * detail::unit_roundoff_double * numerator;

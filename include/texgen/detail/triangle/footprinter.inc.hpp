@@ -14,7 +14,7 @@ public:
 
     void fill_all(const Tile& tile, const Corners& at) noexcept {
         if (at.largest_q <= -at.q_error) return store_rows(tile, nothing());  // behind, or 0 everywhere
-        const bool may_be_vectors = at.well_in_front() && at.least_q > 0x1p-12 * at.largest_q;
+        const bool may_be_vectors = at.has_one_error();
         if (may_be_vectors && tile.width <= largest_index && fill_in_vectors(tile, at)) return;
         const int least = may_be_vectors ? 8 : 2;
         if (tile.width <= least && tile.height <= least) return fill_one_by_one(tile);

@@ -90,7 +90,8 @@ private:
         if (plan.chunk != 0 && plan.steps == StepRule::undecided && tile.count() <= Corners::few &&
             are_floats_apart(at))
             return fill_exact(tile, at);
-        if (at.well_in_front()) return plan.chunk != 0 ? fill_polynomial(tile, at, plan) : fill_float_divided(tile, at);
+        if (at.is_well_in_front())
+            return plan.chunk != 0 ? fill_polynomial(tile, at, plan) : fill_float_divided(tile, at);
         split(tile, at);
     }
 
@@ -202,7 +203,7 @@ private:
 
     // All, or from a unit on.
     TEXGEN_APART void fill_exact(const Tile& tile, const Corners& at, const TileJob::Unit* from = nullptr) noexcept {
-        if (!at.has_one_error()) return split(tile, at);
+        if (!at.may_share_divisions()) return split(tile, at);
         TileJob job = make_job(tile, at);
         const Double2 largest = at.largest_quotient();
         const Double2 error = at.quotient_error(largest);
@@ -286,7 +287,7 @@ private:
         job.steps = plan.steps;
         job.tolerance = triangle_.tolerance * (1.0 - 0x1p-20);
         job.q_error = at.q_error;
-        job.least_q = 0x1p24 * at.q_error;
+        job.least_q = well_in_front * at.q_error;
         for (std::size_t k = 0; k < 2; ++k) job.numerator_error[k] = at.numerator_error[k];
         detail::fill_polynomial(kernels_, job, {0, 0, 0, 0},
                                 [&](const TileJob::Unit& refused) { fill_refused(tile, job, refused); });
@@ -307,7 +308,7 @@ private:
 
     TEXGEN_APART void fill_float_divided(const Tile& tile, const Corners& at) noexcept {
         const Double2 error = at.float_divided_error();
-        const bool fits = at.well_in_front() && at.least_q > 0x1p-20 * at.largest_q &&
+        const bool fits = at.is_well_in_front() && at.least_q > 0x1p-20 * at.largest_q &&
                           error[0] <= triangle_.tolerance && error[1] <= triangle_.tolerance;
         if (!fits) return fill_exact(tile, at);
         TileJob job = make_job(tile, at, reciprocal_power_of_two(at.largest_q));
