@@ -424,7 +424,7 @@ MUTANTS = [
           "in_scratch = false", "batch_test"),
          ("what doubles doubt of a row alone is a column", "shape.is_turned ? row : walk.x", "walk.x", "batch_test")),
     *_of("detail/kernels/batch_residues.inc.hpp",
-         ("the steps of a tile's functions change places", "along(vertices, 1), down(vertices, 0)", "along(vertices, 0), down(vertices, 1)",
+         ("the steps of a tile's functions change places", "along(vertices, 0), down(vertices, 1)", "along(vertices, 1), down(vertices, 0)",
           "batch_test"),
          ("what cancels in a tile is left to a set-up", "greater(lost, size * cancelled_share)", "greater(lost, size)", "batch_test"),
          ("a batch's residues are of the pixel's corner", "ResidueLanes of_corners(vertices, x, y)", "ResidueLanes of_corners(vertices, x + 0.5, y)",

@@ -195,15 +195,15 @@ struct CloseLanes : CloseTerms {
     }
 };
 
-// By how much the functions grow along a row (axis 1) or down (axis 0): E_i does by what corners j and k are apart.
+// By how much the functions grow along a row (axis 0) or down (1), as ExactFragment::growth().
 struct CloseSteps : CloseTerms {
     TEXGEN_APART CloseSteps(const VertexLanes& given, std::size_t axis) noexcept {
         EdgeLanes edge[3];
         TEXGEN_UNROLL
         for (std::size_t i = 0; i < 3; ++i) {
-            const std::size_t j = (i + (axis == 1 ? 1 : 2)) % 3;
-            const std::size_t k = (i + (axis == 1 ? 2 : 1)) % 3;
-            edge[i].high = two_sum(given.number(j, axis), given.number(k, axis) * -1.0, edge[i].low);
+            const std::size_t j = (i + (axis == 0 ? 1 : 2)) % 3;
+            const std::size_t k = (i + (axis == 0 ? 2 : 1)) % 3;
+            edge[i].high = two_sum(given.number(j, 1 - axis), given.number(k, 1 - axis) * -1.0, edge[i].low);
             edge[i].size = magnitude(edge[i].high);
         }
         take(given, edge, Doubles{});

@@ -24,7 +24,7 @@ struct ProductLanes {
 struct CornerLanes {
     TEXGEN_APART CornerLanes(const VertexLanes& given, const ResidueLanes& residues, const Doubles& x,
                              const Doubles& y) noexcept
-        : given_(given), residues_(residues), along_(given, 1), down_(given, 0) {
+        : given_(given), residues_(residues), along_(given, 0), down_(given, 1) {
         Doubles distance[3];
         TEXGEN_UNROLL
         for (std::size_t i = 0; i < 3; ++i)

@@ -55,7 +55,7 @@ struct BatchFunctions {
         }
         store_columns(residues, [&](std::size_t j) { return of[first + j].residues; });
         if (!about_corners) {
-            const CloseSteps along(vertices, 1), down(vertices, 0);
+            const CloseSteps along(vertices, 0), down(vertices, 1);
             LongWords cancel{};
             for (std::size_t n = 0; n < 4; ++n)
                 if (n != 2 || needs_r)
