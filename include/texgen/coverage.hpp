@@ -74,6 +74,8 @@ void coverage(const Transform<Texture, Space>& texture_from_space, const Texture
 }  // namespace TEXGEN_BUILD
 }  // namespace TEXGEN_NAMESPACE
 
+#include "detail/culling/bodies.inc.hpp"
+
 #include "detail/culling/spheres.inc.hpp"
 
 #include "detail/culling/coverage.inc.hpp"

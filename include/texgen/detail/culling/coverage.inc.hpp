@@ -22,8 +22,8 @@ inline bool has_points(const Box& box) noexcept {
 inline namespace TEXGEN_BUILD {
 
 template <class CompiledWhereCalled = void>
-void cover(const LitForms& forms, const FloatForms& float_forms, const SeparatingForms& separating,
-           std::span<const Box> boxes, const std::span<Coverage>& out) noexcept {
+void coverage_of_many(const LitForms& forms, const FloatForms& float_forms, const SeparatingForms& separating,
+                      std::span<const Box> boxes, const std::span<Coverage>& out) noexcept {
     const BoxBatchKernels& kernels = chosen<BoxBatchKernels>();
     DoubleForms double_forms;  // made when first needed
     classify_many<6>(forms, float_forms, boxes, out, kernels.classify,
@@ -75,11 +75,11 @@ Coverage LitVolume<Space>::coverage(const Sphere& sphere) const noexcept {
 
 template <class Space>
 void LitVolume<Space>::coverage(std::span<const Box> boxes, std::span<Coverage> out) const noexcept {
-    detail::cover(forms_, float_forms_, separating_, boxes, out);
+    detail::coverage_of_many(forms_, float_forms_, separating_, boxes, out);
 }
 template <class Space>
 void LitVolume<Space>::coverage(std::span<const Sphere> spheres, std::span<Coverage> out) const noexcept {
-    detail::cover(forms_, float_forms_, unit_forms_, spheres, out);
+    detail::coverage_of_many(forms_, float_forms_, unit_forms_, spheres, out);
 }
 
 // One body needs no forms in float.
@@ -107,8 +107,8 @@ template <class Space>
 void coverage(const Transform<Texture, Space>& texture_from_space, const TextureRegion& region,
               std::span<const Sphere> spheres, std::span<Coverage> out) noexcept {
     const detail::LitForms forms(texture_from_space.matrix(), region, detail::chosen<detail::FormKernels>());
-    detail::cover(forms, forms.in_float(detail::chosen<detail::FloatFormKernels>()),
-                  forms.unit(detail::chosen<detail::UnitFormKernels>()), spheres, out);
+    detail::coverage_of_many(forms, forms.in_float(detail::chosen<detail::FloatFormKernels>()),
+                             forms.unit(detail::chosen<detail::UnitFormKernels>()), spheres, out);
 }
 
 }  // namespace TEXGEN_BUILD
