@@ -386,7 +386,8 @@ TEST_CASE("with a tolerance, rectangles and visibility buffers are within it, an
                 // Alone it may be known to be dark.
                 const bool is_dark =
                     by_id[3][n] == 0.0f &&
-                    texgen::detail::survey(setup->functions(), {x, y, 1, 1}).plan.work == Work::nothing;
+                    texgen::detail::survey(texgen::detail::Inside::functions(*setup), {x, y, 1, 1}).plan.work ==
+                        Work::nothing;
                 if (!wrong_by_id.empty() && !is_dark)
                     FAIL_CHECK(wrong_by_id, " ", support::hex(shot.triangle), " tolerance ", tolerance.value, " at ", x,
                                " ", y);

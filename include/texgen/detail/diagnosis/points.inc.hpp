@@ -8,11 +8,6 @@ struct Picture {
     TextureRegion region = whole_texture();
     glm::dvec2 texels_per_unit{};
 
-    bool is_empty() const noexcept {
-        const std::optional<glm::dvec2> depth = region.depth();
-        return (region.min)().x > (region.max)().x || (region.min)().y > (region.max)().y ||
-               (depth && depth->x > depth->y);
-    }
     bool is_measured() const noexcept { return texels_per_unit.x > 0.0 && texels_per_unit.y > 0.0; }
     glm::dvec2 extent() const noexcept { return (region.max)() - (region.min)(); }
 

@@ -71,9 +71,9 @@ inline glm::dmat4 lost_of(const glm::dmat4& texgen, const Product& right) noexce
 
 inline Examined examine(const SetupMatrices& setup, Diagnosis& diagnosis) noexcept {
     if (!are_numbers(setup)) diagnosis.add(Defect::not_finite);
-    if (setup.picture.is_empty()) diagnosis.add(Defect::region_never_hit);
+    if (is_empty(setup.picture.region)) diagnosis.add(Defect::region_never_hit);
     const glm::dvec2 texels = setup.picture.extent() * setup.picture.texels_per_unit;
-    if (setup.picture.is_measured() && !setup.picture.is_empty() && smaller(texels.x, texels.y) < 1.0)
+    if (setup.picture.is_measured() && !is_empty(setup.picture.region) && smaller(texels.x, texels.y) < 1.0)
         diagnosis.add(Defect::smaller_than_texel, smaller(texels.x, texels.y));
 
     Examined examined;
