@@ -615,7 +615,7 @@ inline Calls batch_facing_calls(const Numbers& n) {
     auto batch = std::make_shared<texgen::TriangleBatch>(wide_open());
     return calls_of([batch, triangles = std::vector<texgen::Triangle>(8, triangle)] {
         batch->assign_facing(triangles, texgen::TextureOrigin::bottom_left);
-        keep(batch->planes());
+        keep(texgen::detail::Inside::planes(*batch));
     });
 }
 // The fragments of one of `Count` triangles that are the same, in runs of `Run`.
