@@ -28,8 +28,8 @@
 namespace TEXGEN_NAMESPACE {
 
 // How many texels one unit of s and of t spans: the size of the texture for normalised coordinates, those of an
-// atlas_tile too; 1 for a rectangle texture. Of level 0. Bad values (not positive, not finite) make what is measured in
-// texels NaN.
+// atlas_tile too; 1 for a rectangle texture. Of level 0. Bad values (not between 2^-200 and 2^200) make what is
+// measured in texels NaN.
 struct TexelsPerUnit {
     double s, t;
 };

@@ -729,20 +729,57 @@ TEST_CASE("next to q = 0 and behind it the extremes say so") {
     CHECK(nearest->level > farthest->level + 8.0);
     CHECK(!setup.extremes({0, 0, 0, 5}).has_value());
 
-    // The same where q is 0 in the middle of a fragment, and only rounding could say that it is not: s and q vary with
-    // x alone, so that no part of the rectangle has other numerators.
+    // Where q is 0 in the middle of a fragment, and only rounding could say that it is not, that one is behind.
     const Triangle root = flat({glm::vec2(0.5f, 0), glm::vec2(200.5f, 0), glm::vec2(0.5f, 200)},
                                {glm::vec3(0.5f, 0, -1), glm::vec3(0.25f, 0, 1), glm::vec3(0.5f, 0, -1)});
     const FootprintSetup at_root(setup_of(root), {256.0, 256.0});
     CHECK(!at_root.at(100, 2).has_value());
-    const auto on_root = at_root.extremes({100, 0, 1, 5});
-    REQUIRE(on_root.has_value());
-    CHECK(on_root->least_level > at_root.at(101, 2)->level);
-    CHECK(std::isinf(on_root->largest_level));
+    CHECK(!at_root.extremes({100, 0, 1, 5}).has_value());
+    const auto from_root = at_root.extremes({100, 0, 2, 5});
+    REQUIRE(from_root.has_value());
+    CHECK(from_root->least_level <= at_root.at(101, 2)->level);
+    CHECK(std::isinf(from_root->largest_level));
 
     // q = 0 everywhere is behind.
     const Triangle dark = flat({glm::vec2(0, 0), glm::vec2(200, 0), glm::vec2(0, 200)}, {});
     CHECK(!FootprintSetup(setup_of(dark), {256.0, 256.0}).extremes({0, 0, 9, 5}).has_value());
+    CHECK(!FootprintSetup(setup_of(dark), {256.0, 256.0}).extremes().has_value());
+}
+
+TEST_CASE("there are extremes exactly where a fragment is in front, and of a triangle where a corner is") {
+    Random random(4711);
+    int on_the_plane = 0, behind = 0, in_front = 0;
+    for (int i = 0; i < 20000; ++i) {
+        Triangle triangle{};
+        const auto whole = [&](int least, int largest) { return static_cast<float>(random.integer(least, largest)); };
+        for (WindowVertex* vertex : support::vertices(triangle)) {
+            const float w = std::ldexp(1.0f, random.integer(-1, 2));
+            *vertex = {
+                {whole(-16, 16) * 0.5f, whole(-16, 16) * 0.5f}, w, {whole(-4, 4), whole(-4, 4), 0, whole(-2, 1)}};
+        }
+        const auto of = TriangleSetup::of(triangle, everywhere());
+        if (!of) continue;
+        const FootprintSetup setup(*of, some_texels(random));
+        const ExactTriangle exact(triangle);
+        const FragmentRect rect{random.integer(-9, 9), random.integer(-9, 9), random.integer(1, 4),
+                                random.integer(1, 4)};
+        bool is_any_in_front = false, is_any_on_the_plane = false;
+        for (int y = rect.y; y < rect.y + rect.height; ++y) {
+            for (int x = rect.x; x < rect.x + rect.width; ++x) {
+                const int side = exact.at(x, y).q.sign();
+                is_any_in_front = is_any_in_front || side > 0;
+                is_any_on_the_plane = is_any_on_the_plane || side == 0;
+            }
+        }
+        INFO(hex(triangle), " rect ", rect.x, " ", rect.y, " ", rect.width, " x ", rect.height);
+        REQUIRE(setup.extremes(rect).has_value() == is_any_in_front);
+        const auto& [a, b, c] = triangle;
+        REQUIRE(setup.extremes().has_value() == (a.strq.w > 0 || b.strq.w > 0 || c.strq.w > 0));
+        on_the_plane += is_any_on_the_plane && !is_any_in_front;
+        behind += !is_any_on_the_plane && !is_any_in_front;
+        in_front += is_any_in_front;
+    }
+    CHECK(std::min({on_the_plane, behind, in_front}) > 200);
 }
 
 TEST_CASE("footprints of any size have the shape of those near 1") {

@@ -294,6 +294,42 @@ TEST_CASE(
     MESSAGE(exact, " of ", all, " corners are exact");
 }
 
+TEST_CASE("a quadrilateral whose s or t would lose digits, being below the normal floats, is refused") {
+    const auto trapezoid = [](double half_width) {
+        return Quadrilateral{glm::dvec2(-1, 0), glm::dvec2(1, 0), glm::dvec2(half_width, 1),
+                             glm::dvec2(-half_width, 1)};
+    };
+    Random random(4712);
+    int refused = 0, made = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const Quadrilateral corners = trapezoid(std::ldexp(random.uniform(1.0, 2.0), -random.integer(0, 120)));
+        const auto coordinate = [&] {
+            return random.coin() ? static_cast<double>(random.integer(0, 1))
+                                 : std::ldexp(random.uniform(1.0, 2.0), -random.integer(1, 60));
+        };
+        const glm::dvec2 least(coordinate(), coordinate());
+        const auto region = texgen::atlas_tile(least, least + glm::dvec2(1));
+        const auto of_whole = quadrilateral(corners), strq = quadrilateral(corners, region);
+        REQUIRE(of_whole.has_value());
+        bool is_any_lost = false;
+        for (std::size_t k = 0; k < 4; ++k) {
+            const glm::vec2 wanted(corner_of(region, k));
+            for (int c = 0; c < 2; ++c) {
+                const double product = static_cast<double>(wanted[c]) * static_cast<double>((*of_whole)[k].w);
+                is_any_lost = is_any_lost || (product != 0.0 && product < 0x1p-126 * (1.0 - 0x1p-21));
+                if (strq) {
+                    const float got = (*strq)[k][c] / (*strq)[k].w;
+                    INFO(hex(corners), " region ", hex(region.min()));
+                    REQUIRE(std::fabs(got - wanted[c]) <= std::fabs(support::neighbour(wanted[c], 1) - wanted[c]));
+                }
+            }
+        }
+        if (is_any_lost) REQUIRE(!strq);
+        ++(strq ? made : refused);
+    }
+    CHECK(std::min(made, refused) > 1000);
+}
+
 TEST_CASE("between its corners a quadrilateral has the exact homography's coordinates to 2^-20 of the largest") {
     Random random(409);
     for (int i = 0; i < 2000; ++i) {

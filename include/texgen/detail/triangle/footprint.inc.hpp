@@ -49,18 +49,25 @@ Footprint footprint_of(const glm::dvec2& dx, const glm::dvec2& dy, const Determi
             glm::dvec2(major.x / texels.s, major.y / texels.t) * (length / scale) / unit};
 }
 
-// The footprint of a fragment, empty behind the projector; where q is in doubt, close_q() has it.
+// q at a fragment, its sign exact; where it is in doubt, close_q() has it.
 template <class CloseQ>
-std::optional<Footprint> footprint_at(const FootprintFunctions& functions, const TexelsPerUnit& texels, std::int64_t x,
-                                      std::int64_t y, const CloseQ& close_q) noexcept {
-    const TrianglePlanes& planes = functions.triangle.planes;
-    Bounded bounded = planes.at(functions.triangle.q, x, y);
-    if (!(std::fabs(bounded.value) > well_in_front * bounded.error)) bounded = close_q().at(x, y);
-    double q = bounded.value;
-    if (!(std::fabs(q) > well_in_front * bounded.error || bounded.error == 0.0))
-        q = ExactFragment(planes, x, y).function(3).estimate() * planes.factor();
+double q_at(const TriangleFunctions& triangle, std::int64_t x, std::int64_t y, const CloseQ& close_q) noexcept {
+    const auto is_known = [](const Bounded& q) { return std::fabs(q.value) > well_in_front * q.error; };
+    Bounded q = triangle.planes.at(triangle.q, x, y);
+    if (is_known(q)) return q.value;
+    q = close_q().at(x, y);
+    if (is_known(q) || q.error == 0.0) return q.value;
+    return ExactFragment(triangle.planes, x, y).function(3).estimate() * triangle.planes.factor();
+}
+inline double q_at(const TriangleFunctions& triangle, std::int64_t x, std::int64_t y) noexcept {
+    return q_at(triangle, x, y, [&] { return ClosePlane(triangle.planes, 3, {x, y, 1, 1}); });
+}
+
+// The footprint of a fragment, where q is this.
+inline std::optional<Footprint> footprint_at(const FootprintFunctions& functions, const TexelsPerUnit& texels,
+                                             std::int64_t x, std::int64_t y, double q) noexcept {
     if (!(q > 0.0)) return std::nullopt;
-    const glm::dvec2 p = planes.from_a({x, y, 1, 1});
+    const glm::dvec2 p = functions.triangle.planes.from_a({x, y, 1, 1});
     const double reciprocal = 1.0 / q;
     const auto divided = [&](double numerator) { return numerator * reciprocal * reciprocal; };
     const auto& s = functions.slope[0].value;
@@ -72,9 +79,10 @@ std::optional<Footprint> footprint_at(const FootprintFunctions& functions, const
         texels);
 }
 
-// The extremes over a part of the window.
-inline std::optional<FootprintExtremes> extremes_over(const FootprintFunctions& functions, const TexelsPerUnit& texels,
-                                                      const WindowPolygon& polygon) noexcept {
+// The extremes over a part of the window. Where its q are in doubt, are_behind() tells whether all are behind.
+template <class AreBehind>
+std::optional<FootprintExtremes> extremes_over(const FootprintFunctions& functions, const TexelsPerUnit& texels,
+                                               const WindowPolygon& polygon, const AreBehind& are_behind) noexcept {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     const auto& s = functions.slope[0];
@@ -108,7 +116,7 @@ inline std::optional<FootprintExtremes> extremes_over(const FootprintFunctions& 
                                gamma(24) * size * scale,
                                gamma(24) * q_size * q_scale};
     const RangeOfQ range = range_of_q(field, polygon);
-    if (range.largest <= -field.q_error) return std::nullopt;
+    if (range.largest <= -field.q_error || (range.largest <= field.q_error && are_behind())) return std::nullopt;
     if (!is_usable(texels)) return FootprintExtremes{nan, nan, nan, nan, nan};
 
     // What the bounds leave for the roundings of the footprints themselves, of level and of area and anisotropy.
@@ -151,9 +159,7 @@ inline FootprintSetup::FootprintSetup(const TriangleSetup& triangle, TexelsPerUn
     : functions_(detail::Inside::functions(triangle)), texels_(texels) {}
 
 inline std::optional<Footprint> FootprintSetup::at(int x, int y) const noexcept {
-    return detail::footprint_at(functions_, texels_, x, y, [&] {
-        return detail::ClosePlane(functions_.triangle.planes, 3, {x, y, 1, 1});
-    });
+    return detail::footprint_at(functions_, texels_, x, y, detail::q_at(functions_.triangle, x, y));
 }
 
 // A numerator N = N^ + e over (Q^ + f)^2: the error is at most (e + 2 |f| |N|/Q) / Q^2 but for squares of f/Q, below
@@ -185,7 +191,13 @@ inline std::optional<FootprintExtremes> FootprintSetup::extremes(FragmentRect re
     polygon.add({last.x, first.y});
     polygon.add(last);
     polygon.add({first.x, last.y});
-    return detail::extremes_over(functions_, texels_, polygon);
+    const auto is_behind = [&](std::int64_t x, std::int64_t y) {
+        return !(detail::q_at(functions_.triangle, rect.x + x, rect.y + y) > 0.0);
+    };
+    return detail::extremes_over(functions_, texels_, polygon, [&] {
+        return is_behind(0, 0) && is_behind(rect.width - 1, 0) && is_behind(0, rect.height - 1) &&
+               is_behind(rect.width - 1, rect.height - 1);
+    });
 }
 
 inline std::optional<FootprintExtremes> FootprintSetup::extremes() const noexcept {
@@ -193,7 +205,10 @@ inline std::optional<FootprintExtremes> FootprintSetup::extremes() const noexcep
     polygon.add({0.0, 0.0});
     polygon.add(functions_.triangle.planes.to_b());
     polygon.add(functions_.triangle.planes.to_c());
-    return detail::extremes_over(functions_, texels_, polygon);
+    return detail::extremes_over(functions_, texels_, polygon, [&] {
+        const auto is_behind = [&](std::size_t i) { return !(functions_.triangle.planes.vertex(i).strq.w > 0.0f); };
+        return is_behind(0) && is_behind(1) && is_behind(2);
+    });
 }
 
 inline double headlights(const Triangle& triangle) noexcept {

@@ -145,8 +145,8 @@ private:
     void fill_one_by_one(const Tile& tile) noexcept {
         for (std::int64_t y = tile.y; y < tile.y + tile.height; ++y) {
             for (std::int64_t x = tile.x; x < tile.x + tile.width; ++x) {
-                const std::optional<Footprint> footprint =
-                    footprint_at(functions_, texels_, x, y, [this]() -> const ClosePlane& { return close_q(); });
+                const double q = q_at(functions_.triangle, x, y, [this]() -> const ClosePlane& { return close_q(); });
+                const std::optional<Footprint> footprint = footprint_at(functions_, texels_, x, y, q);
                 store_rows({x, y, 1, 1}, footprint ? *footprint : nothing());
             }
         }
