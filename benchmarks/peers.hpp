@@ -1,7 +1,7 @@
 #pragma once
 
-// The loops that a user of GLM or Eigen writes, in float, for the same input as texgen::interpolate. The constructor is
-// the set-up of a triangle. Each skips nothing, and trusts its numbers.
+// The loops that a user of GLM or Eigen writes, for the same input as texgen::interpolate. The constructor is the set-up
+// of a triangle. Each skips nothing, and trusts its numbers.
 
 #include <cstddef>
 
@@ -52,18 +52,20 @@ private:
     glm::vec3 inverse_w_;
 };
 
-// Plane equations of s/w, t/w and q/w over the window; 1/w cancels in the quotients.
-struct GlmPlanes {
-    glm::vec3 s, t, q;
+// Plane equations of s/w, t/w and q/w over the window, in float or in double; 1/w cancels in the quotients.
+template <class Scalar>
+struct GlmPlanesIn {
+    using Vector = glm::vec<3, Scalar>;
+    Vector s, t, q;
 
-    explicit GlmPlanes(const texgen::Triangle& triangle) {
+    explicit GlmPlanesIn(const texgen::Triangle& triangle) {
         const auto& [a, b, c] = triangle;
-        const glm::mat3 plane_from_corners = glm::inverse(
-            glm::transpose(glm::mat3(glm::vec3(a.window, 1), glm::vec3(b.window, 1), glm::vec3(c.window, 1))));
-        const glm::vec3 inverse_w = 1.0f / glm::vec3(a.clip_w, b.clip_w, c.clip_w);
-        s = plane_from_corners * (glm::vec3(a.strq.x, b.strq.x, c.strq.x) * inverse_w);
-        t = plane_from_corners * (glm::vec3(a.strq.y, b.strq.y, c.strq.y) * inverse_w);
-        q = plane_from_corners * (glm::vec3(a.strq.w, b.strq.w, c.strq.w) * inverse_w);
+        const auto plane_from_corners = glm::inverse(
+            glm::transpose(glm::mat<3, 3, Scalar>(Vector(a.window, 1), Vector(b.window, 1), Vector(c.window, 1))));
+        const Vector inverse_w = Scalar(1) / Vector(a.clip_w, b.clip_w, c.clip_w);
+        s = plane_from_corners * (Vector(a.strq.x, b.strq.x, c.strq.x) * inverse_w);
+        t = plane_from_corners * (Vector(a.strq.y, b.strq.y, c.strq.y) * inverse_w);
+        q = plane_from_corners * (Vector(a.strq.w, b.strq.w, c.strq.w) * inverse_w);
     }
 
     // As above.
@@ -72,13 +74,15 @@ struct GlmPlanes {
         std::size_t fragment = 0;
         for (int y = rect.y; y < rect.y + rect.height; ++y) {
             for (int x = rect.x; x < rect.x + rect.width; ++x, ++fragment) {
-                const glm::vec3 centre(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, 1.0f);
-                const float fragment_q = glm::dot(q, centre);
-                write(fragment, glm::dot(s, centre) / fragment_q, glm::dot(t, centre) / fragment_q, fragment_q);
+                const Vector centre(static_cast<Scalar>(x) + Scalar(0.5), static_cast<Scalar>(y) + Scalar(0.5), 1);
+                const Scalar fragment_q = glm::dot(q, centre);
+                write(fragment, static_cast<float>(glm::dot(s, centre) / fragment_q),
+                      static_cast<float>(glm::dot(t, centre) / fragment_q), static_cast<float>(fragment_q));
             }
         }
     }
 };
+using GlmPlanes = GlmPlanesIn<float>;
 
 // The same plane equations, a row of at most max_width fragments at a time in Eigen's arrays.
 template <int max_width>

@@ -154,7 +154,13 @@ struct Verdict {
     std::string build, scene, variant, than, promised, measured, possible, answer;
 };
 
-// Those of the promises whose rows were measured. What is possible is the peer's time over that of the stores alone.
+// What moving a scene's bytes takes: those that are read, too, where there is a row of that.
+const Timing* floor_of(const Timings& build, const char* scene) {
+    const Timing* copies = build.find(scene, copying);
+    return copies != nullptr ? copies : build.find(scene, stores);
+}
+
+// Those of the promises whose rows were measured. What is possible is the peer's time over that of the floor.
 std::vector<Verdict> verdicts_of(const std::vector<Timings>& builds, const std::vector<Timings>& others) {
     std::vector<Verdict> verdicts;
     for (const Promise& promise : promises) {
@@ -171,14 +177,14 @@ std::vector<Verdict> verdicts_of(const std::vector<Timings>& builds, const std::
             verdict.answer = ours->nanoseconds <= promise.ratio ? "yes" : "no";
         } else {
             const double measured = than->nanoseconds / ours->nanoseconds;
-            const Timing* floor = build->find(promise.scene, stores);
+            const Timing* floor = floor_of(*build, promise.scene);
             const double possible = floor != nullptr ? than->nanoseconds / floor->nanoseconds : HUGE_VAL;
             verdict.than = promise.than;
             verdict.promised = formatted("%.3gx", promise.ratio);
             verdict.measured = formatted("%.3gx", measured);
             if (floor != nullptr) verdict.possible = formatted("%.3gx", possible);
             verdict.answer = measured >= promise.ratio  ? "yes"
-                             : possible < promise.ratio ? "no: beyond the stores"
+                             : possible < promise.ratio ? "no: beyond the bytes"
                                                         : "no";
         }
         verdicts.push_back(verdict);
@@ -354,7 +360,7 @@ std::string promises_of(const std::vector<Timings>& builds, const std::vector<Ti
     std::string html =
         "<p>What the rows above were meant to reach, beside what they reach here. Possible is the peer's time over "
         "that "
-        "of storing the results alone: where it is below the promise, no loop on this processor can keep it.</p>\n"
+        "of moving the bytes alone: where it is below the promise, no loop on this processor can keep it.</p>\n"
         "<div class=\"wide\"><table>\n"
         "<tr><th>scene</th><th>row</th><th>against</th><th>build</th><th>promised</th><th>measured</th>"
         "<th>possible</th><th>kept</th></tr>\n";

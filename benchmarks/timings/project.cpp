@@ -87,24 +87,26 @@ void glm_one_by_one(const Project& work, std::size_t i) {
     }
 }
 
+template <class Scalar>
 void glm_planar(const Project& work, std::size_t i) {
-    const glm::mat4 matrix = work.points().matrix(i);
+    const glm::mat<4, 4, Scalar> matrix(work.points().matrix(i));
     const float *x = work.points().axis(0), *y = work.points().axis(1), *z = work.points().axis(2);
     float *s = work.s(), *t = work.t();
     for (std::size_t k = 0; k < work.size(); ++k) {
-        const glm::vec4 strq = matrix * glm::vec4(x[k], y[k], z[k], 1.0f);
-        s[k] = strq.x / strq.w;
-        t[k] = strq.y / strq.w;
+        const glm::vec<4, Scalar> strq = matrix * glm::vec<4, Scalar>(x[k], y[k], z[k], 1);
+        s[k] = static_cast<float>(strq.x / strq.w);
+        t[k] = static_cast<float>(strq.y / strq.w);
     }
 }
 
+template <class Scalar>
 void glm_interleaved(const Project& work, std::size_t i) {
-    const glm::mat4 matrix = work.points().matrix(i);
+    const glm::mat<4, 4, Scalar> matrix(work.points().matrix(i));
     const glm::vec3* vectors = work.points().vectors();
     glm::vec2* pairs = work.pairs();
     for (std::size_t k = 0; k < work.size(); ++k) {
-        const glm::vec4 strq = matrix * glm::vec4(vectors[k], 1.0f);
-        pairs[k] = glm::vec2(strq) / strq.w;
+        const glm::vec<4, Scalar> strq = matrix * glm::vec<4, Scalar>(vectors[k], 1);
+        pairs[k] = glm::vec2(glm::vec<2, Scalar>(strq) / strq.w);
     }
 }
 
@@ -172,7 +174,8 @@ void add_scene(std::size_t count, Layout layout) {
         add("texgen, exact, one by one", 0.0, ours_one_by_one);
         add("GLM, mat4 * vec4, one by one", promises_nothing, glm_one_by_one);
     }
-    add("GLM, mat4 * vec4", promises_nothing, is_planar ? glm_planar : glm_interleaved);
+    add("GLM, mat4 * vec4", promises_nothing, is_planar ? glm_planar<float> : glm_interleaved<float>);
+    add("GLM, dmat4 * dvec4", promises_nothing, is_planar ? glm_planar<double> : glm_interleaved<double>);
     add(is_planar ? "Eigen, array blocks" : "Eigen, hnormalized", promises_nothing,
         is_planar ? eigen_planar : eigen_interleaved);
 #ifdef TEXGEN_BENCH_ESTIMATE

@@ -266,6 +266,7 @@ void add_scene(const Shape& shape) {
     if (shape.times_set_up) add_batch(rows);
     add_peer<GlmLoop<report::GlmPlanes>>(rows, "GLM, plane equations");
     add_peer<GlmLoop<report::GlmBarycentric>>(rows, "GLM, barycentric");
+    add_peer<GlmLoop<report::GlmPlanesIn<double>>>(rows, "GLM, plane equations in double");
     add_peer<EigenRows>(rows, "Eigen, plane equations in arrays");
     add_peer<DividedAtVertices>(rows, "rejected: divided at the vertices: option (3)");
     add_peer<ForwardDifferences>(rows, "rejected: forward differences");

@@ -104,15 +104,20 @@ void glm_loop(const Segments& work, const Mixed& mixed) {
     const float* alpha = work.alpha();
     float *s = work.s(), *t = work.t();
     for (std::size_t k = 0; k < work.size(); ++k) {
-        const glm::vec4 strq = mixed(alpha[k]);
-        s[k] = strq.x / strq.w;
-        t[k] = strq.y / strq.w;
+        const auto strq = mixed(alpha[k]);
+        s[k] = static_cast<float>(strq.x / strq.w);
+        t[k] = static_cast<float>(strq.y / strq.w);
     }
 }
 
 void glm_mix(const Segments& work, std::size_t i) {
     const texgen::Segment segment = work.segment(i);
     glm_loop(work, [&](float alpha) { return glm::mix(segment.a, segment.b, alpha); });
+}
+
+void double_mix(const Segments& work, std::size_t i) {
+    const glm::dvec4 a(work.segment(i).a), b(work.segment(i).b);
+    glm_loop(work, [&](float alpha) { return glm::mix(a, b, static_cast<double>(alpha)); });
 }
 
 void short_mix(const Segments& work, std::size_t i) {
@@ -179,6 +184,7 @@ void add_scene(std::size_t count) {
         add(stop.name, stop.tolerance.value,
             [tolerance = stop.tolerance](const Segments& segments, std::size_t i) { ours(segments, i, tolerance); });
     add("GLM, mix", promises_nothing, glm_mix);
+    add("GLM, mix in double", promises_nothing, double_mix);
     add("GLM, mat4 * mix of points: option (1)", promises_nothing, direct_projection);
     add("Eigen, array blocks", promises_nothing, eigen_arrays);
     add("rejected: divided at the ends: option (3)", promises_nothing, divided_ends);
@@ -189,6 +195,9 @@ void add_scene(std::size_t count) {
 #endif
     add_unchecked(work->scene(), "floor: two store streams",
                   [=](std::size_t i) { store(static_cast<float>(i), work->s(), work->t(), work->size()); });
+    add_unchecked(work->scene(), "floor: copying as many bytes", [=](std::size_t) {
+        copy(work->alpha(), work->alpha(), work->alpha(), work->s(), work->t(), work->size());
+    });
 }
 
 }  // namespace
