@@ -131,8 +131,7 @@ Positions<Window> window_space(Floats&&... values) noexcept requires detail::Eig
 // Views the floats of a vector without gaps (VectorXf, Ref<ArrayXf>, a column of a matrix), or of a row-major matrix or
 // array that owns them (height x width fragments): an output of Texcoords, or an input of alphas.
 // Guarantee: a view as above; std::span<const float> of what is const. A vector that may have gaps does not compile.
-template <detail::EigenSpan Floats>
-auto floats(Floats&& values) noexcept {
+auto floats(detail::EigenSpan auto&& values) noexcept {
     return std::span(values.data(), static_cast<std::size_t>(values.size()));
 }
 

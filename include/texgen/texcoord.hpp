@@ -118,8 +118,7 @@ struct Position {
     glm::vec3 point;
 
     explicit Position(const glm::vec3& of_space) noexcept : point(of_space) {}
-    template <detail::MoreThanVec3 Vector>
-    explicit Position(const Vector&) = delete;
+    explicit Position(const detail::MoreThanVec3 auto&) = delete;
 };
 
 // Points of a space from an array of vectors, from three arrays (of one size, asserted), or from x, y, z that follow
@@ -133,8 +132,7 @@ inline Positions<Object> object_space(const float* first, std::size_t count, std
     return Positions<Object>(first, count, stride_bytes);
 }
 inline Position<Object> object_space(const glm::vec3& point) noexcept { return Position<Object>(point); }
-template <detail::MoreThanVec3 Vector>
-Position<Object> object_space(const Vector& point) = delete;
+Position<Object> object_space(const detail::MoreThanVec3 auto& point) = delete;
 
 // The same of points in the world.
 inline Positions<World> world_space(std::span<const glm::vec3> points) noexcept { return Positions<World>(points); }
@@ -146,8 +144,7 @@ inline Positions<World> world_space(const float* first, std::size_t count, std::
     return Positions<World>(first, count, stride_bytes);
 }
 inline Position<World> world_space(const glm::vec3& point) noexcept { return Position<World>(point); }
-template <detail::MoreThanVec3 Vector>
-Position<World> world_space(const Vector& point) = delete;
+Position<World> world_space(const detail::MoreThanVec3 auto& point) = delete;
 
 // The same of points in the eye's space.
 inline Positions<Eye> eye_space(std::span<const glm::vec3> points) noexcept { return Positions<Eye>(points); }
@@ -158,8 +155,7 @@ inline Positions<Eye> eye_space(const float* first, std::size_t count, std::size
     return Positions<Eye>(first, count, stride_bytes);
 }
 inline Position<Eye> eye_space(const glm::vec3& point) noexcept { return Position<Eye>(point); }
-template <detail::MoreThanVec3 Vector>
-Position<Eye> eye_space(const Vector& point) = delete;
+Position<Eye> eye_space(const detail::MoreThanVec3 auto& point) = delete;
 
 // The same of fragments: x and y in pixels, z the depth that the buffer holds.
 inline Positions<Window> window_space(std::span<const glm::vec3> points) noexcept { return Positions<Window>(points); }
@@ -171,8 +167,7 @@ inline Positions<Window> window_space(const float* first, std::size_t count, std
     return Positions<Window>(first, count, stride_bytes);
 }
 inline Position<Window> window_space(const glm::vec3& point) noexcept { return Position<Window>(point); }
-template <detail::MoreThanVec3 Vector>
-Position<Window> window_space(const Vector& point) = delete;
+Position<Window> window_space(const detail::MoreThanVec3 auto& point) = delete;
 
 inline namespace TEXGEN_BUILD {
 

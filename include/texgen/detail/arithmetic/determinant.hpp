@@ -15,8 +15,7 @@
 namespace TEXGEN_DETAIL {
 
 // A number within 2^-51 of itself, with its sign and its zeros, of which `close` is within `error`.
-template <class Exact>
-double settled(const DoubleDouble& close, double error, const Exact& exact) noexcept {
+double settled(const DoubleDouble& close, double error, const auto& exact) noexcept {
     return error <= 0x1p-54 * magnitude(close.high) ? close.high : exact().estimate();
 }
 

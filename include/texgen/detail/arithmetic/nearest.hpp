@@ -36,8 +36,7 @@ inline double middle_of(float low, float high) noexcept {
 
 // The float nearest to a number, ties to even; infinity beyond the range. The number is within error <= 2^-26 |value|
 // of a value, and sign_beyond(m) is the sign of what it is more than m, the middle of two floats.
-template <class SignBeyond>
-float nearest_to(double value, double error, const SignBeyond& sign_beyond) noexcept {
+float nearest_to(double value, double error, const auto& sign_beyond) noexcept {
     if (!(std::fabs(value) < 0x1p129)) return static_cast<float>(value);
     const auto low = static_cast<float>(value - error);
     const auto high = static_cast<float>(value + error);
@@ -61,8 +60,7 @@ float nearest_quotient(const Expansion<N>& numerator, const Expansion<D>& denomi
 
 // The sign (-1, 0 or 1) of the number that `bounded` stands for, from exact() where the bound leaves it open.
 // Returns -1 for what is not finite, which counts as behind.
-template <class Exact>
-int certain_sign(const Bounded& bounded, const Exact& exact) noexcept {
+int certain_sign(const Bounded& bounded, const auto& exact) noexcept {
     if (bounded.value > bounded.error) return 1;
     if (!(std::fabs(bounded.value) <= bounded.error && bounded.error < 0x1p1000)) return -1;
     return exact().sign();
@@ -70,8 +68,7 @@ int certain_sign(const Bounded& bounded, const Exact& exact) noexcept {
 
 // The float nearest to s / q, q > 0. With s = s^ + a, q = q^ + b, |a| <= ds, |b| <= dq < q^:
 // |s/q - s^/q^| = |a - b s^/q^| / q <= (ds + dq |s^/q^|) / (q^ - dq), and 4 u more cover the arithmetic here.
-template <class ExactS, class ExactQ>
-float certain_quotient(const Bounded& s, const Bounded& q, const ExactS& exact_s, const ExactQ& exact_q) noexcept {
+float certain_quotient(const Bounded& s, const Bounded& q, const auto& exact_s, const auto& exact_q) noexcept {
     const double quotient = s.value / q.value;
     if (!(s.error < 0x1p1000 && q.error < 0x1p1000)) return static_cast<float>(quotient);  // not finite
     const double error = 1.0001 * (s.error + q.error * std::fabs(quotient)) / (q.value - q.error) +

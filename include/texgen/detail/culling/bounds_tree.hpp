@@ -25,8 +25,7 @@ public:
 
     // Takes the bounds of the objects that changed, from bounds_of(object); all objects are below `count` or have none.
     // They are the changed ones until forget_changes().
-    template <class BoundsOf>
-    void change(std::span<const std::uint32_t> objects, std::size_t count, const BoundsOf& bounds_of) noexcept {
+    void change(std::span<const std::uint32_t> objects, std::size_t count, const auto& bounds_of) noexcept {
         const bool grows = count > bounds_.size();
         if (grows) grow(count);
         for (const std::uint32_t object : objects) bounds_[object] = bounds_of(object);
@@ -47,8 +46,7 @@ public:
 
     // Calls found(object, inside) for what the forms do not leave out, of all objects or of the changed ones: `inside`
     // where all of it is lit for certain. Returns the number of bounds that were tested.
-    template <class Found>
-    std::size_t visit(const WorldForms& forms, bool all, const Found& found) const noexcept {
+    std::size_t visit(const WorldForms& forms, bool all, const auto& found) const noexcept {
         return height_ > 0 ? visit(height_ - 1, 0, forms, all, found) : 0;
     }
 
@@ -75,8 +73,7 @@ private:
             return sum;
         }
 
-        template <class Action>
-        static void for_each(std::uint32_t bits, const Action& action) noexcept {
+        static void for_each(std::uint32_t bits, const auto& action) noexcept {
             for (; bits != 0; bits &= bits - 1) action(static_cast<std::size_t>(std::countr_zero(bits)));
         }
     };
@@ -107,9 +104,8 @@ private:
         block.changed = 0;
     }
 
-    template <class Found>
     std::size_t visit(std::size_t level, std::size_t index, const WorldForms& forms, bool all,
-                      const Found& found) const noexcept {
+                      const auto& found) const noexcept {
         const Block& block = levels_[level][index];
         std::size_t tested = 0;
         Block::for_each(all ? (1u << width) - 1 : block.changed, [&](std::size_t i) {

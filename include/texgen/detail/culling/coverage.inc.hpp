@@ -34,9 +34,8 @@ void coverage_of_many(const LitForms& forms, const FloatForms& float_forms, cons
 }
 
 // One box; separating() is asked where a further plane may make it outside.
-template <class Separating>
 Coverage coverage_of(const BoxKernels& kernels, const LitForms& forms, const Box& box,
-                     const Separating& separating) noexcept {
+                     const auto& separating) noexcept {
     const float *const min = &box.min.x, *const max = &box.max.x;
     const int answer = forms.can_say() ? kernels.classify(forms.lanes(), min, max) : body_in_doubt;
     if (answer < open_body) return static_cast<Coverage>(answer);

@@ -46,9 +46,8 @@ inline float just_in_front(float inside) noexcept {
 
 // Cuts the convex polygon in storage[0, count) and returns the new count. cut(inside, outside) makes the new vertex of
 // an edge: given its ends by their sides, and not by the order of the walk, it makes the same one for both neighbours.
-template <class Cut>
 std::size_t cut_convex(std::span<ClipVertex> storage, std::size_t count, const ClipDistance& distance,
-                       const Cut& cut) noexcept {
+                       const auto& cut) noexcept {
     std::size_t inside = 0;
     std::size_t entries = 0;  // edges that lead from the outside in
     std::size_t entry = 0;

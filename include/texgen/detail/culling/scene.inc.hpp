@@ -95,8 +95,7 @@ inline std::size_t Scene::update_eye(const CameraPose& world_from_eye) noexcept 
     return computed;
 }
 
-template <class RegionOf>
-bool Scene::is_as_it_was(const SceneView& view, const RegionOf& region_of) const noexcept {
+bool Scene::is_as_it_was(const SceneView& view, const auto& region_of) const noexcept {
     for (std::size_t i = 0; i < (std::min)(view.models.size(), view.bounds.size()); ++i) {
         if (objects_.is_changed(i)) continue;
         if (!(tree_[i] == detail::world_bounds(view.models[i].matrix(), view.bounds[i]))) return false;

@@ -157,8 +157,7 @@ inline ClipVertex cut_at(const SlideDistance& side, const ClipVertex& inside, co
 // Cuts the polygon in storage[0, count) edge by edge and returns the new count; 0 where nothing is inside but corners
 // on the side, or where storage has no room. sign() is that of the distance of a vertex; cut() as for cut_convex. It is
 // read from the end of the storage on, so that what is written at its begin grows into the room that is free.
-template <class Sign, class Cut>
-std::size_t cut_edges(std::span<ClipVertex> storage, std::size_t count, const Sign& sign, const Cut& cut) noexcept {
+std::size_t cut_edges(std::span<ClipVertex> storage, std::size_t count, const auto& sign, const auto& cut) noexcept {
     std::size_t inside = 0;
     while (inside < count && sign(storage[inside]) >= 0) ++inside;
     if (inside == count) return count;

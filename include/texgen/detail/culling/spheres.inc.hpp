@@ -14,8 +14,7 @@ inline namespace TEXGEN_BUILD {
 
 // One sphere. What is clear of all bounds by twice as much the kernel says as well, where roundings differ by less than
 // one; where the centre is in front of all forms, no edge is asked. slope_of() says how long the lanes' |a| are.
-template <class SlopeOf, class MakeUnit>
-Coverage coverage_of(const LitForms& forms, const FormLanes& lanes, const SlopeOf& slope_of, const MakeUnit& make_unit,
+Coverage coverage_of(const LitForms& forms, const FormLanes& lanes, const auto& slope_of, const auto& make_unit,
                      const Sphere& sphere) noexcept {
     const glm::dvec3 centre = widened(sphere.centre);
     const double radius = widened(sphere.radius);

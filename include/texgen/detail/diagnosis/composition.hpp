@@ -98,8 +98,7 @@ inline Product product_of(const FactorsInUse& factors, const FactorOrder& order)
 }
 
 // Calls gives(order) for the wrong orders that may give the matrix, until one does.
-template <class Gives>
-bool any_wrong_order(const FactorsInUse& factors, const Glance& glance, const Gives& gives) noexcept {
+bool any_wrong_order(const FactorsInUse& factors, const Glance& glance, const auto& gives) noexcept {
     std::array<std::array<ProductRow, 4>, 4> left;       // of factors a and b
     std::array<std::array<ProductColumns, 4>, 4> right;  // of factors b and a
     for (std::size_t a = 0; a < 4; ++a) {

@@ -22,8 +22,7 @@ inline void examine_planes(double z_near, double z_far, Diagnosis& diagnosis) no
     require(z_near < z_far, {z_near, z_far}, Defect::far_not_beyond_near, diagnosis);
 }
 
-template <class RectangularLens>
-void examine_rectangle(const RectangularLens& lens, Diagnosis& diagnosis) noexcept {
+void examine_rectangle(const auto& lens, Diagnosis& diagnosis) noexcept {
     require_finite({lens.left, lens.right, lens.bottom, lens.top, lens.z_near, lens.z_far}, diagnosis);
     require(lens.left != lens.right, {lens.left, lens.right}, Defect::lens_without_extent, diagnosis);
     require(lens.bottom != lens.top, {lens.bottom, lens.top}, Defect::lens_without_extent, diagnosis);
@@ -70,8 +69,7 @@ inline void examine(const Aim& aim, Diagnosis& diagnosis) noexcept {
         diagnosis.add(Defect::up_parallel_to_view);
 }
 
-template <class Lens>
-Diagnosis diagnose(const Lens& lens, const Aim& aim, Conventions conventions) noexcept {
+Diagnosis diagnose(const auto& lens, const Aim& aim, Conventions conventions) noexcept {
     Diagnosis diagnosis;
     if (make_projector(lens, aim, conventions)) return diagnosis;
     examine(lens, diagnosis);

@@ -102,8 +102,7 @@ struct CloseFragmentsAt {
     TEXGEN_INLINE const Residues& residues(std::size_t n) const noexcept { return residue[n]; }
     TEXGEN_INLINE const Doubles& grain(std::size_t n) const noexcept { return of_grain[n]; }
 
-    template <class Terms>
-    TEXGEN_INLINE void take(const VertexLanes& vertices, const Terms& terms, bool are_close) noexcept {
+    TEXGEN_INLINE void take(const VertexLanes& vertices, const auto& terms, bool are_close) noexcept {
         are_sums_first = are_close;
         for (std::size_t n = 0; n < 4; ++n)
             if (n != 2 || needs_r) value[n] = terms.function(vertices, n);

@@ -18,9 +18,7 @@ struct FragmentLanes {
     LongWords front;
     Words doubtful;
 
-    template <class Functions>
-    TEXGEN_INLINE void divide(const Functions& functions, const Doubles& x, const Doubles& y,
-                              double tolerance) noexcept {
+    TEXGEN_INLINE void divide(const auto& functions, const Doubles& x, const Doubles& y, double tolerance) noexcept {
         const Doubles p_x = x - functions[BatchPlanes::origin];
         const Doubles p_y = y - functions[BatchPlanes::origin + 1];
         const Doubles stretch = magnitude(p_x) * functions[BatchPlanes::per_reach] +
@@ -267,8 +265,7 @@ private:
         }
     }
 
-    template <class Functions>
-    TEXGEN_APART std::uint64_t put(const Vector& vector, const Functions& at) const noexcept {
+    TEXGEN_APART std::uint64_t put(const Vector& vector, const auto& at) const noexcept {
         CloseFragments<3> fragments;
         CloseDivisor q;
         q.take(at.values(3));

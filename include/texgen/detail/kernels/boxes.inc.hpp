@@ -7,8 +7,7 @@ namespace TEXGEN_DETAIL::TEXGEN_ISA {
 // error one or a NaN, and nothing is certain.
 // In float a sum or difference of two corners is rounded, as are a coefficient, a product, at most three sums of them
 // and the sum of the two: 7 u.
-template <class Change>
-TEXGEN_INLINE WideWords classes(const FloatForms& forms, const WideFloats (&twice_middle)[3], const Change& change,
+TEXGEN_INLINE WideWords classes(const FloatForms& forms, const WideFloats (&twice_middle)[3], const auto& change,
                                 const WideFloats& size, const WideWords& is_proper) noexcept {
     WideFloats largest = WideFloats{} + 0x1p126f;
     WideFloats least = largest;

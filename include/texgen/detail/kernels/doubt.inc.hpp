@@ -9,8 +9,7 @@ struct CloseValues {
 
     // Where its residue times the grain, of all lanes or of each, is all of it; of 0 any grain is, and of nothing else
     // 0.
-    template <class Grain>
-    TEXGEN_INLINE LongWords are_residues(const Grain& grain) const noexcept {
+    TEXGEN_INLINE LongWords are_residues(const auto& grain) const noexcept {
         return at_most(magnitude(high + low) + error, Doubles{} + grain * 0x1p62);
     }
 };
@@ -110,8 +109,7 @@ struct CloseFragments {
     LongWords doubtful;
 
     // Of `count` numerators, with residues or two doubles if there are any; else what doubles doubt stays so.
-    template <class Functions>
-    TEXGEN_INLINE void divide(const Functions& at, const CloseDivisor& q, std::size_t count, double tolerance,
+    TEXGEN_INLINE void divide(const auto& at, const CloseDivisor& q, std::size_t count, double tolerance,
                               bool is_more_known) noexcept {
         const auto q_grain = at.grain(Numerators);
         Residues of_q{};

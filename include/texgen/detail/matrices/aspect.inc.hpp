@@ -7,8 +7,7 @@ inline bool is_half_angle(double radians) noexcept { return radians > 0.0 && rad
 inline bool is_aspect(double aspect) noexcept { return aspect > 0.0 && is_finite(aspect); }
 
 // In halves: no difference leaves the range.
-template <class RectangularLens>
-double aspect_of(const RectangularLens& lens) noexcept {
+double aspect_of(const auto& lens) noexcept {
     return std::fabs((0.5 * lens.right - 0.5 * lens.left) / (0.5 * lens.top - 0.5 * lens.bottom));
 }
 

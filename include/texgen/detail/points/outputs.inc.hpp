@@ -16,8 +16,7 @@ inline float* array_of(const std::span<float>& output, std::size_t count) noexce
 }
 
 // Calls function(span) for each output of Texcoords or Footprints.
-template <class Outputs, class Function>
-void for_each_output(Outputs& out, const Function& function) noexcept {
+void for_each_output(auto& out, const auto& function) noexcept {
     if constexpr (requires { out.s; })
         for (std::span<float>* output : {&out.s, &out.t, &out.r, &out.lit}) function(*output);
     else
@@ -27,8 +26,7 @@ void for_each_output(Outputs& out, const Function& function) noexcept {
 }
 
 // Leaves the outputs that are computed; false if there are none.
-template <class Outputs>
-bool take_computed(Outputs& out, std::size_t count) noexcept {
+bool take_computed(auto& out, std::size_t count) noexcept {
     bool any = false;
     for_each_output(out, [&](std::span<float>& output) {
         if (!is_computed(output, count)) output = {};
@@ -52,8 +50,7 @@ struct PointOutputs {
 
 // Calls group(first, numerators, outputs) for the coordinates that are computed together: s and t where both are asked
 // for or the mask is, either one alone, and r, which takes from the mask what a depth does not hold.
-template <class Group>
-void for_each_group(const Texcoords& out, std::size_t count, const LitTest& region, const Group& group) noexcept {
+void for_each_group(const Texcoords& out, std::size_t count, const LitTest& region, const auto& group) noexcept {
     float* const s = array_of(out.s, count);
     float* const t = array_of(out.t, count);
     float* const r = array_of(out.r, count);
@@ -80,8 +77,7 @@ inline constexpr std::size_t copy_size = float_block;
 inline namespace TEXGEN_BUILD {
 
 // Runs a job for the r of a part, and takes the light where that is beyond the depth. What is dark already needs none.
-template <class Job, class Run>
-void darken_part(Job job, const PointOutputs& out, const JobPart& part, const Run& run) noexcept {
+void darken_part(auto job, const PointOutputs& out, const JobPart& part, const auto& run) noexcept {
     constexpr std::size_t size = 4 * copy_size;
     const auto [first, count, whole] = part;
     float buffer[size];
@@ -103,8 +99,7 @@ void darken_part(Job job, const PointOutputs& out, const JobPart& part, const Ru
 
 // Where the results of a part go, if all have a place of their own. The job is changed in place: copies of what has
 // just been written, in other sizes, wait for it.
-template <class Job>
-TEXGEN_INLINE bool is_placed(Job& job, const PointOutputs& out, const JobPart& part) noexcept {
+TEXGEN_INLINE bool is_placed(auto& job, const PointOutputs& out, const JobPart& part) noexcept {
     if (part.count != part.whole || !out.are_complete(job.numerators)) return false;
     if (job.numerators == 1 && out.lit != nullptr) return false;
     job.count = part.count;
@@ -116,8 +111,7 @@ TEXGEN_INLINE bool is_placed(Job& job, const PointOutputs& out, const JobPart& p
 }
 
 // Runs a job for a part. What has no place of its own goes through buffers.
-template <class Job, class Run>
-void run_part(Job& job, const PointOutputs& out, const JobPart& part, const Run& run) noexcept {
+void run_part(auto& job, const PointOutputs& out, const JobPart& part, const auto& run) noexcept {
     if (job.numerators == 1 && out.lit != nullptr) return darken_part(job, out, part, run);
     if (is_placed(job, out, part)) return run(job);
     float buffer[3][copy_size];
@@ -145,8 +139,7 @@ void run_part(Job& job, const PointOutputs& out, const JobPart& part, const Run&
 }
 
 // The values of a job from `first` on by its kernel, and by one(job, i) what that cannot decide.
-template <class Kernel, class Job, class One>
-void fill_blocks(Kernel kernel, const Job& job, std::size_t first, const One& one) noexcept {
+void fill_blocks(auto kernel, const auto& job, std::size_t first, const auto& one) noexcept {
     for (Undecided left = kernel(job, first); left.begin < job.count; left = kernel(job, first)) {
         for (std::uint64_t values = left.values; values != 0; values &= values - 1)
             one(job, left.begin + static_cast<std::size_t>(std::countr_zero(values)));

@@ -258,9 +258,8 @@ inline void interpolate_job(const SegmentKernels& kernels, SegmentJob& job) noex
 }
 
 // The last values, fewer than a kernel takes.
-template <class Run>
 TEXGEN_APART void run_rest(SegmentJob& job, const PointOutputs& outputs, std::span<const float> alpha,
-                           const Run& run) noexcept {
+                           const auto& run) noexcept {
     const std::size_t rest = alpha.size() % point_quantum, first = alpha.size() - rest;
     float padded[point_quantum];
     for (std::size_t i = 0; i < point_quantum; ++i) padded[i] = alpha[first + (i < rest ? i : rest - 1)];

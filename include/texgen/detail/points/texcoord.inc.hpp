@@ -103,9 +103,7 @@ inline void project_exact(const PointKernels& kernels, PointJob& job, std::size_
 
 // Points begin to end by a kernel that stops at a block whose error is not certified to be inside the tolerance. Such a
 // block has company: `otherwise` gets more points after each failure, until the kernel is tried again.
-template <class Kernel, class Otherwise>
-void project_within(Kernel kernel, PointJob& job, std::size_t begin, std::size_t end,
-                    const Otherwise& otherwise) noexcept {
+void project_within(auto kernel, PointJob& job, std::size_t begin, std::size_t end, const auto& otherwise) noexcept {
     std::size_t pause = float_block;
     for (std::size_t i = begin; i < end;) {
         job.count = end;

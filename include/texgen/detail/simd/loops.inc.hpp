@@ -13,8 +13,7 @@ struct Lanes {
 
     T operator[](int i) const noexcept { return lane[i]; }
 
-    template <class Operation>
-    static Lanes of(const Operation& operation) noexcept {
+    static Lanes of(const auto& operation) noexcept {
         Lanes result;
         for (int i = 0; i < lanes; ++i) result.lane[i] = operation(i);
         return result;
@@ -209,10 +208,7 @@ TEXGEN_INLINE Vector load(const void* from) noexcept {
     std::memcpy(values.lane, from, sizeof values.lane);
     return values;
 }
-template <class Vector>
-TEXGEN_INLINE void store(void* to, const Vector& values) noexcept {
-    std::memcpy(to, values.lane, sizeof values.lane);
-}
+TEXGEN_INLINE void store(void* to, const auto& values) noexcept { std::memcpy(to, values.lane, sizeof values.lane); }
 
 TEXGEN_INLINE Words inside(const Floats& values, float min, float max) noexcept {
     return Words::of([&](int i) { return values.lane[i] >= min && values.lane[i] <= max ? -1 : 0; });

@@ -15,8 +15,7 @@ struct SharedDivision {
 struct RoundedEnds {
     Floats below, above;
 
-    template <class Error>
-    TEXGEN_INLINE RoundedEnds(const Doubles& value, const Error& error) noexcept
+    TEXGEN_INLINE RoundedEnds(const Doubles& value, const auto& error) noexcept
         : below(to_floats(value - error)), above(to_floats(value + error)) {}
 
     TEXGEN_INLINE Words differ() const noexcept { return bits(below) ^ bits(above); }

@@ -204,14 +204,10 @@ TEXGEN_INLINE Vector load(const void* from) noexcept {
     __builtin_memcpy(&values, from, sizeof values);
     return values;
 }
-template <class Vector>
-TEXGEN_INLINE void store(void* to, const Vector& values) noexcept {
-    __builtin_memcpy(to, &values, sizeof values);
-}
+TEXGEN_INLINE void store(void* to, const auto& values) noexcept { __builtin_memcpy(to, &values, sizeof values); }
 
 // A mask: all ones where it holds, else zero.
-template <class Vector>
-TEXGEN_INLINE auto inside(const Vector& values, float min, float max) noexcept {
+TEXGEN_INLINE auto inside(const auto& values, float min, float max) noexcept {
     return (values >= min) & (values <= max);
 }
 

@@ -47,8 +47,7 @@ Outputs part_of(const Outputs& all, std::size_t first, std::size_t count) noexce
     return part;
 }
 
-template <class Outputs>
-void clear(Outputs& out) noexcept {
+void clear(auto& out) noexcept {
     for_each_output(out, [](std::span<float>& output) {
         for (float& value : output) value = 0.0f;
     });
@@ -86,9 +85,8 @@ inline void describe(BatchJob& job, const TriangleBatch& batch, const Texcoords&
 
 // Calls run(triangle, row part, first fragment) for the runs of one id in a row among `count` fragments from `first`
 // on, of those that is_wanted(fragment).
-template <class IsWanted, class Run>
 void for_each_run(std::span<const std::uint32_t> ids, const FragmentRect& rect, std::size_t first, std::size_t count,
-                  const IsWanted& is_wanted, const Run& run) noexcept {
+                  const auto& is_wanted, const auto& run) noexcept {
     const auto width = static_cast<std::size_t>(rect.width);
     for (std::size_t begin = first; begin < first + count;) {
         std::size_t end = begin + 1;

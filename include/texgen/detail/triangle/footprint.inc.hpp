@@ -8,8 +8,7 @@ inline bool is_usable(const TexelsPerUnit& texels) noexcept {
 
 // All of a footprint from J and det J, which has digits that J has lost where J is almost singular: determinant(unit)
 // is unit^2 det J, for a power of two that brings J near 1. So no square leaves the range of double.
-template <class Determinant>
-Footprint footprint_of(const glm::dvec2& dx, const glm::dvec2& dy, const Determinant& determinant,
+Footprint footprint_of(const glm::dvec2& dx, const glm::dvec2& dy, const auto& determinant,
                        const TexelsPerUnit& texels) noexcept {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     constexpr double infinity = std::numeric_limits<double>::infinity();

@@ -28,9 +28,7 @@ inline TileJob::Unit fill_exact(const TileKernels& kernels, const TileJob& job, 
 
 // Does the job from `first` on. Chunks that no rule serves, a part of one row or whole rows, are handed to `refuse`,
 // unless they are filled.
-template <class Refuse>
-void fill_polynomial(const TileKernels& kernels, const TileJob& job, TileJob::Unit first,
-                     const Refuse& refuse) noexcept {
+void fill_polynomial(const TileKernels& kernels, const TileJob& job, TileJob::Unit first, const auto& refuse) noexcept {
     const int width = job.width, height = job.height;
     const int longest = job.chunk;
     const int whole_chunks = width / longest;
