@@ -74,10 +74,9 @@ struct FragmentIds {
     bool is_whole;
 
     TEXGEN_INLINE FragmentIds(const FragmentsJob& job, std::size_t n) noexcept
-        : value(job.ids + n), is_whole(n + static_cast<std::size_t>(lanes) <= job.count) {
+        : value(job.ids + n), is_whole(n + at_once <= job.count) {
         if (is_whole) return;
-        for (std::size_t i = 0; i < static_cast<std::size_t>(lanes); ++i)
-            last[i] = n + i < job.count ? value[i] : value[0];
+        for (std::size_t i = 0; i < at_once; ++i) last[i] = n + i < job.count ? value[i] : value[0];
         value = last;
     }
     TEXGEN_INLINE bool are_one() const noexcept {
@@ -160,7 +159,7 @@ public:
         }
         if (count_ == 0) triangles_ = 0;
         const float* of_lane[lanes];
-        for (std::size_t i = 0; i < static_cast<std::size_t>(lanes); ++i)
+        for (std::size_t i = 0; i < at_once; ++i)
             of_lane[i] = vertices_of(job_, ids.value[i] < job_.triangles ? ids.value[i] : 0);
         undecided_ |= put_closely(of_lane, vector) << vector.place;
     }
@@ -189,7 +188,7 @@ private:
         known.is_one = ids.are_one();
         const std::uint64_t asked = lane_bits(vector.doubtful);
         const auto first = static_cast<std::size_t>(std::countr_zero(asked));
-        for (std::size_t i = 0; i < (known.is_one ? 1 : static_cast<std::size_t>(lanes)); ++i) {
+        for (std::size_t i = 0; i < (known.is_one ? 1 : at_once); ++i) {
             const std::uint32_t id = ids.value[(asked >> i & 1u) != 0 ? i : first];
             const std::size_t place = id % batch_block;
             if (has(place) && id_[place] != id) return false;
@@ -203,7 +202,6 @@ private:
 
     // Puts what is decided to its place.
     TEXGEN_APART void decide() noexcept {
-        constexpr auto size = static_cast<std::size_t>(lanes);
         const bool are_few = count_ <= 2;
         if (!are_few && !are_functions_known()) take_functions();
         bool is_one_left = false;
@@ -218,7 +216,7 @@ private:
             if (left != 0) {
                 is_one_left = true;
                 const float* of_lane[lanes];
-                for (std::size_t i = 0; i < size; ++i) of_lane[i] = vertices_of(job_, id_[known.place(i)]);
+                for (std::size_t i = 0; i < at_once; ++i) of_lane[i] = vertices_of(job_, id_[known.place(i)]);
                 left = put_closely(of_lane, known.vector);
             }
             undecided_ |= left << known.vector.place;
@@ -233,7 +231,7 @@ private:
         const BatchFunction* const functions = learned_.functions.of;
         if (known.is_one) return put(known.vector, BatchFunctionsAt<BatchFunction>{functions[known.place(0)], x, y});
         const BatchFunction* of_lane[lanes];
-        for (std::size_t i = 0; i < static_cast<std::size_t>(lanes); ++i) of_lane[i] = &functions[known.place(i)];
+        for (std::size_t i = 0; i < at_once; ++i) of_lane[i] = &functions[known.place(i)];
         const LaneFunctions of(of_lane, job_.needs_r());
         return put(known.vector, BatchFunctionsAt<LaneFunctions>{of, x, y});
     }
@@ -256,9 +254,9 @@ private:
         learned_.width = width_;
         const auto first = static_cast<std::size_t>(std::countr_zero(triangles_));
         const Doubles none{};
-        for (std::size_t i = 0; i < batch_block; i += static_cast<std::size_t>(lanes)) {
+        for (std::size_t i = 0; i < batch_block; i += at_once) {
             const float* of_lane[lanes];
-            for (std::size_t j = 0; j < static_cast<std::size_t>(lanes); ++j)
+            for (std::size_t j = 0; j < at_once; ++j)
                 of_lane[j] = vertices_of(job_, learned_.id[(learned_.triangles >> (i + j) & 1u) != 0 ? i + j : first]);
             learned_.functions.take(of_lane, job_.needs_r(), none + left_, none + top_, none + width_,
                                     none + learned_.rows, i, learned_.are_functions_about_corners);
@@ -328,7 +326,7 @@ TEXGEN_APART inline std::uint64_t decide_fragments(const FragmentsJob& job, cons
     DoubtfulFragments fragments(job, learned, job.x + 0.5 + static_cast<double>(column),
                                 job.y + 0.5 + static_cast<double>(row),
                                 static_cast<double>(is_part ? end - begin : width), static_cast<double>(rows));
-    for (std::size_t n = begin; n < end; n += static_cast<std::size_t>(lanes), centres.advance(), ++doubtful) {
+    for (std::size_t n = begin; n < end; n += at_once, centres.advance(), ++doubtful) {
         if (!any(*doubtful)) continue;
         const FragmentIds ids(job, n);
         fragments.add({centres.x, centres.y, ~equal(*doubtful, 0), ids.is_whole ? &out : &in_scratch,
@@ -341,18 +339,17 @@ TEXGEN_APART inline std::uint64_t decide_fragments(const FragmentsJob& job, cons
 // What is learned stands in another frame, which is large.
 template <std::size_t Numerators>
 TEXGEN_APART Undecided divide_all_fragments(const FragmentsJob& job, std::size_t first, Learned& learned) noexcept {
-    constexpr auto size = static_cast<std::size_t>(lanes);
     const FragmentOutputs out(job);
-    ScratchOutputs<size> scratch;
+    ScratchOutputs<at_once> scratch;
     const FragmentOutputs in_scratch = scratch.in_place_of(out);
     FragmentCentres centres(job, first);
     const auto planes_of = [&](std::uint32_t id) { return &job.planes[id < job.triangles ? id : job.triangles]; };
     for (std::size_t n = first; n < job.count;) {
         const std::size_t begin = n;
         const std::size_t end = job.count - begin < exact_block ? job.count : begin + exact_block;
-        Words doubtful[exact_block / size], any_doubtful{};
+        Words doubtful[exact_block / at_once], any_doubtful{};
         Words* next = doubtful;
-        for (; n < end; n += size, centres.advance()) {
+        for (; n < end; n += at_once, centres.advance()) {
             const FragmentIds ids(job, n);
             FragmentLanes<Numerators> fragments;
             if (ids.are_one() && ids.value[0] >= job.triangles) {
@@ -362,7 +359,7 @@ TEXGEN_APART Undecided divide_all_fragments(const FragmentsJob& job, std::size_t
             } else {
                 const BatchPlanes* of_lane[lanes];
                 TEXGEN_UNROLL
-                for (std::size_t i = 0; i < size; ++i) of_lane[i] = planes_of(ids.value[i]);
+                for (std::size_t i = 0; i < at_once; ++i) of_lane[i] = planes_of(ids.value[i]);
                 fragments.divide(BatchLanes(of_lane, Numerators == 3), centres.x, centres.y, job.tolerance);
             }
             const FragmentOutputs& to = ids.is_whole ? out : in_scratch;
@@ -372,7 +369,7 @@ TEXGEN_APART Undecided divide_all_fragments(const FragmentsJob& job, std::size_t
         }
         std::uint64_t undecided = 0;
         if (any(any_doubtful)) undecided = decide_fragments(job, out, in_scratch, begin, end, doubtful, learned);
-        if (n > job.count) scratch.copy_to(out, n - size, job.count + size - n);
+        if (n > job.count) scratch.copy_to(out, n - at_once, job.count + at_once - n);
         if (undecided != 0) return {begin, undecided};
     }
     return {job.count, 0};

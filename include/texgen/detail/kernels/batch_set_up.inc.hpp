@@ -11,30 +11,29 @@ TEXGEN_INLINE Residues load_lanes(const std::uint64_t* from) noexcept { return l
 template <class Vector, std::size_t Size, class From>
 TEXGEN_INLINE void load_columns(Vector (&columns)[Size], std::size_t count, const From& from) noexcept {
     TEXGEN_UNROLL
-    for (std::size_t end = Size; end > 0; end -= static_cast<std::size_t>(lanes)) {
-        const std::size_t first = end - static_cast<std::size_t>(lanes);
+    for (std::size_t end = Size; end > 0; end -= at_once) {
+        const std::size_t first = end - at_once;
         if (first >= count) continue;
         Vector row[lanes];
         TEXGEN_UNROLL
-        for (std::size_t j = 0; j < static_cast<std::size_t>(lanes); ++j) row[j] = load_lanes(from(j) + first);
+        for (std::size_t j = 0; j < at_once; ++j) row[j] = load_lanes(from(j) + first);
         transpose(row);
         TEXGEN_UNROLL
-        for (std::size_t j = 0; j < static_cast<std::size_t>(lanes); ++j) columns[first + j] = row[j];
+        for (std::size_t j = 0; j < at_once; ++j) columns[first + j] = row[j];
     }
 }
 
 // The other way.
 template <class Vector, std::size_t Size, class To>
 TEXGEN_INLINE void store_columns(const Vector (&columns)[Size], const To& to) noexcept {
-    constexpr auto size = static_cast<std::size_t>(lanes);
     TEXGEN_UNROLL
-    for (std::size_t first = 0; first < Size; first += size) {
+    for (std::size_t first = 0; first < Size; first += at_once) {
         Vector row[lanes];
         TEXGEN_UNROLL
-        for (std::size_t j = 0; j < size; ++j) row[j] = columns[first + j];
+        for (std::size_t j = 0; j < at_once; ++j) row[j] = columns[first + j];
         transpose(row);
         TEXGEN_UNROLL
-        for (std::size_t j = 0; j < size; ++j) store(to(j) + first, row[j]);
+        for (std::size_t j = 0; j < at_once; ++j) store(to(j) + first, row[j]);
     }
 }
 
@@ -48,7 +47,7 @@ struct TriangleLanes {
         const float* first[lanes];
         std::size_t turns[lanes];
         TEXGEN_UNROLL
-        for (std::size_t j = 0; j < static_cast<std::size_t>(lanes); ++j) {
+        for (std::size_t j = 0; j < at_once; ++j) {
             first[j] = triangles + 3 * BatchVertex::size * j;
             const auto w = [&](std::size_t i) { return bit_cast<int>(first[j][i * BatchVertex::size + 2]); };
             const auto is_b = static_cast<unsigned>(w(1) > w(0)) & static_cast<unsigned>(w(2) <= w(1));
@@ -140,7 +139,7 @@ TEXGEN_INLINE LongWords set_up_lanes(const float* triangles, BatchPlanes* planes
 template <class = void>
 unsigned set_up_batch(const float* triangles, BatchPlanes* planes) noexcept {
     unsigned unknown = 0;
-    for (std::size_t i = 0; i < batch_block; i += static_cast<std::size_t>(lanes))
+    for (std::size_t i = 0; i < batch_block; i += at_once)
         unknown |=
             static_cast<unsigned>(lane_bits(set_up_lanes(triangles + 3 * BatchVertex::size * i, planes + i)) << i);
     return unknown;

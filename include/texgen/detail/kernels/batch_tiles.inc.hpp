@@ -34,7 +34,7 @@ struct TileShape {
         per_width = 1.0 / width;
         last_row = (is_turned ? tile_width : tile_height) - 1;
         const bool is_narrow = divides(width, lanes);
-        is_whole = is_narrow ? count % static_cast<std::size_t>(lanes) == 0 : width % lanes == 0;
+        is_whole = is_narrow ? count % at_once == 0 : width % lanes == 0;
         has_wide_columns = divides(width, wide_lanes);
         x = indices<Doubles>();
         y = Doubles{};
@@ -95,13 +95,12 @@ struct TileFunctions {
 template <std::size_t Numerators>
 TEXGEN_APART bool divide_tile(const BatchPlanes& planes, const BatchTiles& tiles, std::size_t i, const TileShape& shape,
                               const TileOutputs<Numerators>& original) noexcept {
-    constexpr auto size = static_cast<std::size_t>(lanes);
     const TileOutputs<Numerators> out = original;
     const TileFunctions<Numerators> f(planes, tiles, i, shape.is_turned);
     const Doubles last_row = Doubles{} + shape.last_row;
     FragmentWalk<Doubles, double> walk(shape.width, shape.per_width, 0.0);
     Words doubtful{};
-    for (std::size_t n = 0; n < shape.count; n += size, walk.advance()) {
+    for (std::size_t n = 0; n < shape.count; n += at_once, walk.advance()) {
         const Doubles y = minimum(walk.y, last_row);
         const Doubles reciprocal = 1.0 / f.at(Numerators, walk.x, y);
         Floats quotient[Numerators];
@@ -144,16 +143,15 @@ struct TileColumn {
 template <std::size_t Numerators, bool HasWholeRows>
 TEXGEN_APART bool divide_whole_tile(const BatchPlanes& planes, const BatchTiles& tiles, std::size_t i,
                                     const TileShape& shape, const TileOutputs<Numerators>& original) noexcept {
-    constexpr auto size = static_cast<std::size_t>(lanes);
     const TileOutputs<Numerators> out = original;
     const TileFunctions<Numerators> f(planes, tiles, i, shape.is_turned);
     const std::size_t end = shape.count;
-    const std::size_t pitch = HasWholeRows ? size : static_cast<std::size_t>(shape.width);
+    const std::size_t pitch = HasWholeRows ? at_once : static_cast<std::size_t>(shape.width);
     const double rows = shape.rows;
     const int ulps = static_cast<int>(tiles.ulps[i]) - 1;
     Doubles x = shape.x;
     Distances least = far_from_middles();
-    for (std::size_t begin = 0; begin < pitch; begin += size) {
+    for (std::size_t begin = 0; begin < pitch; begin += at_once) {
         TileColumn<Numerators> column;
         TEXGEN_UNROLL
         for (std::size_t k = 0; k <= Numerators; ++k) {
@@ -180,7 +178,7 @@ TEXGEN_APART bool divide_whole_tile(const BatchPlanes& planes, const BatchTiles&
             }
         }
         if (HasWholeRows) break;
-        x = x + static_cast<double>(size);
+        x = x + static_cast<double>(at_once);
     }
     return !any_zero(least);
 }
@@ -224,13 +222,13 @@ TEXGEN_APART void divide_tile_float(const BatchTiles& tiles, std::size_t i, cons
     if constexpr (HasWholeRows) {
         const WideFloats bend_start = shape.wide_x * bend_x;
         WideFloats y = shape.wide_y;
-        for (std::size_t n = 0; n < end; n += static_cast<std::size_t>(wide_lanes), y = y + shape.wide_rows)
+        for (std::size_t n = 0; n < end; n += wide_at_once, y = y + shape.wide_rows)
             put(n, y * bend_y + bend_start, [&](std::size_t k) { return y * dy[k] + first[k]; });
     } else {
         FragmentWalk<WideFloats, float> walk(static_cast<float>(shape.width), static_cast<float>(shape.per_width), 0.0);
         const float half_x = 0.5f * static_cast<float>(shape.width - 1);
         const auto half_y = static_cast<float>(0.5 * shape.last_row);
-        for (std::size_t n = 0; n < end; n += static_cast<std::size_t>(wide_lanes), walk.advance()) {
+        for (std::size_t n = 0; n < end; n += wide_at_once, walk.advance()) {
             const WideFloats y = walk.y - half_y;
             const WideFloats x = walk.x - half_x;
             put(n, y * bend_y + x * bend_x, [&](std::size_t k) { return y * dy[k] + x * dx[k]; });
@@ -269,7 +267,7 @@ TEXGEN_INLINE bool fill_tile(const FragmentOutputs& out, const TileShape& shape,
     const bool is_certain = divide(here);
     if (out.lit != nullptr) {
         float* const lit = in_scratch ? scratch.values[3] : out.lit + begin;
-        for (std::size_t n = 0; n < shape.count; n += static_cast<std::size_t>(lanes)) {
+        for (std::size_t n = 0; n < shape.count; n += at_once) {
             Floats value[Numerators];
             TEXGEN_UNROLL
             for (std::size_t k = 0; k < Numerators; ++k) value[k] = load<Floats>(here.out[k] + n);
@@ -288,12 +286,12 @@ TEXGEN_APART inline std::uint64_t decide_tiles(const TilesJob& job, const Fragme
     BatchFunctions functions;
     TileScratch scratch;
     const auto known = static_cast<std::size_t>(std::countr_zero(doubtful));  // finite, where others may be no numbers
-    for (std::size_t i = 0; i < batch_block; i += static_cast<std::size_t>(lanes)) {
+    for (std::size_t i = 0; i < batch_block; i += at_once) {
         constexpr auto all_lanes = (std::uint64_t{1} << lanes) - 1;
         if ((doubtful >> i & all_lanes) == 0) continue;
         const float* of_lane[lanes];
         TEXGEN_UNROLL
-        for (std::size_t j = 0; j < static_cast<std::size_t>(lanes); ++j)
+        for (std::size_t j = 0; j < at_once; ++j)
             of_lane[j] = vertices_of(job, first + ((doubtful >> (i + j) & 1u) != 0 ? i + j : known));
         Words tile[4];
         load_fours(block[i], tile);
@@ -310,11 +308,11 @@ TEXGEN_APART inline std::uint64_t decide_tiles(const TilesJob& job, const Fragme
         done += shape.count;
         if ((doubtful >> i & 1u) == 0) continue;
         // What follows is there already.
-        const bool in_scratch = shape.count % static_cast<std::size_t>(lanes) != 0;
+        const bool in_scratch = shape.count % at_once != 0;
         const FragmentOutputs here = in_scratch ? scratch.in_place_of(out) : out;
         FragmentWalk<Doubles, double> walk(shape.width, shape.per_width, 0.0);
         Words left{};
-        for (std::size_t n = 0; n < shape.count && !any(left); n += static_cast<std::size_t>(lanes), walk.advance()) {
+        for (std::size_t n = 0; n < shape.count && !any(left); n += at_once, walk.advance()) {
             const Doubles row = minimum(walk.y, Doubles{} + shape.last_row);
             CloseFragments<3> fragments;
             const BatchFunctionsAt<BatchFunction> at{functions.of[i], shape.is_turned ? row : walk.x,
@@ -351,7 +349,7 @@ TEXGEN_INLINE Undecided divide_all_tiles(const TilesJob& job, std::size_t first,
             std::memcpy(padded, block, count * sizeof padded[0]);
             block = padded;
         }
-        for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(lanes)) {
+        for (std::size_t i = 0; i < count; i += at_once) {
             const BatchPlanes* const planes = job.planes + first + i;
             const std::uint64_t asked = (std::uint64_t{1} << (count - i)) - 1;
             const bool is_all_float =
@@ -374,7 +372,7 @@ TEXGEN_INLINE Undecided divide_all_tiles(const TilesJob& job, std::size_t first,
             } else if (shape.count > largest_batch_tile) {
                 doubtful |= std::uint64_t{1} << i;
             } else if (tiles.has(BatchTiles::is_exact, i) || tiles.has(BatchTiles::is_float, i)) {
-                const bool is_at_end = done + static_cast<std::size_t>(wide_lanes) > job.count;
+                const bool is_at_end = done + wide_at_once > job.count;
                 const bool is_certain = fill_tile<Numerators>(
                     out, shape, begin, is_at_end, scratch, [&](const TileOutputs<Numerators>& here) {
                         return divide_tile_by_tier<Numerators>(job.planes[first + i], tiles, i, shape, here);

@@ -40,7 +40,7 @@ using ReadForms = std::conditional_t<wide_lanes == 4, const FloatForms, const Fl
 template <class CompiledWhereCalled = void>
 void classify_boxes(const FloatForms& original, const float* boxes, std::size_t count, int* out) noexcept {
     ReadForms forms = original;
-    for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(wide_lanes)) {
+    for (std::size_t i = 0; i < count; i += wide_at_once) {
         WideFloats min[3], max[3], sum[3], extent[3];
         load_boxes(boxes + 6 * i, min, max);
         WideFloats size{};
@@ -62,7 +62,7 @@ void classify_boxes(const FloatForms& original, const float* boxes, std::size_t 
 template <class CompiledWhereCalled = void>
 void classify_spheres(const FloatForms& original, const float* spheres, std::size_t count, int* out) noexcept {
     ReadForms forms = original;
-    for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(wide_lanes)) {
+    for (std::size_t i = 0; i < count; i += wide_at_once) {
         WideFloats sphere[4], twice[3];  // the radius last
         load_fours(spheres + 4 * i, sphere);
         const WideFloats diameter = sphere[3] + sphere[3];
@@ -128,7 +128,7 @@ TEXGEN_INLINE void store_classes(int* out, const LongWords& outside, const LongW
 template <class CompiledWhereCalled = void>
 void decide_boxes(const DoubleForms* forms, const SeparatingForms& planes, const OpenRow* boxes, std::size_t count,
                   int* classes) noexcept {
-    for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(lanes)) {
+    for (std::size_t i = 0; i < count; i += at_once) {
         BoxRows row;
         TEXGEN_UNROLL
         for (std::size_t j = 0; j < 6; ++j) row[j] = to_doubles(load<Floats>(boxes[j] + i));
@@ -155,7 +155,7 @@ void decide_boxes(const DoubleForms* forms, const SeparatingForms& planes, const
 template <class CompiledWhereCalled = void>
 void decide_spheres(const UnitForms& forms, std::size_t form_count, const OpenRow* spheres, std::size_t count,
                     int* classes) noexcept {
-    for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(lanes)) {
+    for (std::size_t i = 0; i < count; i += at_once) {
         Doubles sphere[4];
         TEXGEN_UNROLL
         for (std::size_t j = 0; j < 4; ++j)

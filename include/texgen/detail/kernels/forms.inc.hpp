@@ -29,7 +29,7 @@ struct CoefficientLanes {
 
 template <class CompiledWhereCalled = void>
 void weigh_forms(const glm::dmat4& matrix, const FormWeights& weights, FormLanes& forms) noexcept {
-    for (std::size_t i = 0; i < form_lanes; i += static_cast<std::size_t>(lanes)) {
+    for (std::size_t i = 0; i < form_lanes; i += at_once) {
         const WeightLanes of(weights, i);
         Doubles form[4];
         TEXGEN_UNROLL
@@ -47,7 +47,7 @@ void weigh_forms(const glm::dmat4& matrix, const FormWeights& weights, FormLanes
 
 template <class CompiledWhereCalled = void>
 void make_unit_forms(const FormLanes& forms, const double* slopes, UnitForms& result) noexcept {
-    for (std::size_t i = 0; i < form_lanes; i += static_cast<std::size_t>(lanes)) {
+    for (std::size_t i = 0; i < form_lanes; i += at_once) {
         const Doubles scale = 1.0 / maximum(load<Doubles>(slopes + i), Doubles{} + 0x1p-800);
         const auto take = [&](const double* from, double* to) { store(to + i, load<Doubles>(from + i) * scale); };
         for (std::size_t j = 0; j < 3; ++j) take(forms.a[j], result.a[j]);
@@ -70,10 +70,10 @@ void make_unit_forms(const FormLanes& forms, const double* slopes, UnitForms& re
 // limit of depth whose rounding moves it far.
 template <class CompiledWhereCalled = void>
 void round_forms(const FormLanes& forms, std::size_t count, FloatForms& result) noexcept {
-    Doubles gradient[form_lanes / static_cast<std::size_t>(lanes)];
+    Doubles gradient[form_lanes / at_once];
     double distance[form_lanes];
-    for (std::size_t i = 0; i < form_lanes; i += static_cast<std::size_t>(lanes)) {
-        Doubles& sum = gradient[i / static_cast<std::size_t>(lanes)];
+    for (std::size_t i = 0; i < form_lanes; i += at_once) {
+        Doubles& sum = gradient[i / at_once];
         sum = magnitude(load<Doubles>(forms.a[0] + i)) + magnitude(load<Doubles>(forms.a[1] + i)) +
               magnitude(load<Doubles>(forms.a[2] + i));
         store(distance + i, where(greater(sum, 0.0), magnitude(load<Doubles>(forms.d + i)) / sum));
@@ -83,11 +83,11 @@ void round_forms(const FormLanes& forms, std::size_t count, FloatForms& result) 
     const double of_narrowing = 0x1p22 * (forms.largest_q + forms.last_q * per_extent);
     constexpr double is_depth[form_lanes] = {0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0};
     Doubles largest_a{}, largest_d{}, largest_narrowing{};
-    for (std::size_t i = 0; i < form_lanes; i += static_cast<std::size_t>(lanes)) {
+    for (std::size_t i = 0; i < form_lanes; i += at_once) {
         const auto d = load<Doubles>(forms.d + i);
         const auto narrowing = load<Doubles>(forms.narrowing + i);
         const Doubles size = maximum(load<Doubles>(is_depth + i) * narrowing * of_narrowing,
-                                     maximum(gradient[i / static_cast<std::size_t>(lanes)], magnitude(d) * per_extent));
+                                     maximum(gradient[i / at_once], magnitude(d) * per_extent));
         const Doubles scale =
             where(greater(size, 0x1p-900) & ~greater(size, 0x1p900), 0.125 / power_of_two_below(size));
         Doubles squared{};
@@ -150,12 +150,12 @@ int classify_box(const FormLanes& forms, const float* box_min, const float* box_
     }
     narrowed += 1.1 * forms.largest_q * (size[0] + size[1] + size[2]);
 
-    constexpr std::size_t count = form_lanes / static_cast<std::size_t>(lanes);
+    constexpr std::size_t count = form_lanes / at_once;
     Doubles value[count], change[count], error[count];
     LongWords outside{}, negative{}, open{}, not_inside{}, dark{};
     TEXGEN_UNROLL
     for (std::size_t i = 0; i < count; ++i) {
-        const std::size_t first = i * static_cast<std::size_t>(lanes);
+        const std::size_t first = i * at_once;
         const Doubles a[3] = {load<Doubles>(forms.a[0] + first), load<Doubles>(forms.a[1] + first),
                               load<Doubles>(forms.a[2] + first)};
         const Doubles twice_d = load<Doubles>(forms.d + first) * 2.0;
@@ -172,7 +172,7 @@ int classify_box(const FormLanes& forms, const float* box_min, const float* box_
     TEXGEN_UNROLL
     for (std::size_t i = 0; i < count; ++i) {
         const Doubles least = value[i] - change[i];
-        const auto narrowing = load<Doubles>(forms.narrowing + i * static_cast<std::size_t>(lanes));
+        const auto narrowing = load<Doubles>(forms.narrowing + i * at_once);
         open = open | ~greater(value[i] + change[i], error[i]);
         negative = negative | greater(0.0 - error[i], least);
         not_inside = not_inside | ~greater(least - error[i], narrowing * narrowed);
@@ -279,7 +279,7 @@ int decide_box(int answer, const glm::dmat4& matrix, const FormWeights& outer, c
     }
     for (const bool is_largest : {true, false}) {
         if (answer == (is_largest ? body_not_outside : body_not_inside)) continue;
-        for (std::size_t i = 0; i < form_lanes; i += static_cast<std::size_t>(lanes)) {
+        for (std::size_t i = 0; i < form_lanes; i += at_once) {
             const Doubles value = signed_forms(matrix, WeightLanes(is_largest ? outer : inner, i),
                                                is_largest ? max : min, is_largest ? min : max);
             if (any(greater(load<Doubles>(least + i), value))) return is_largest ? 0 : 1;

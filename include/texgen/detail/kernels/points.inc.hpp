@@ -167,7 +167,7 @@ template <std::size_t Numerators>
 TEXGEN_INLINE bool fill_bounded_block(const PointJob& job, std::size_t begin, std::size_t end) noexcept {
     Distances distance = far_from_middles();
     ReciprocalRange range;
-    for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(wide_lanes)) {
+    for (std::size_t i = begin; i < end; i += wide_at_once) {
         WideFloats x, y, z;
         load_points(job, i, x, y, z);
         PointDivision division[vectors_at_once];
@@ -181,7 +181,7 @@ TEXGEN_INLINE bool fill_bounded_block(const PointJob& job, std::size_t begin, st
                 value[k] = to_floats(quotient[k]);
             }
             distance = nearer(distance, quotient[0], quotient[Numerators - 1], job.ulps);
-            store_points(job, i + j * static_cast<std::size_t>(lanes), Numerators, value, ~Words{});
+            store_points(job, i + j * at_once, Numerators, value, ~Words{});
         }
     }
     return !any(~range.holds()) && !any_zero(distance);
@@ -193,9 +193,9 @@ TEXGEN_INLINE bool fill_bounded_block(const PointJob& job, std::size_t begin, st
 template <bool Signed, std::size_t Numerators>
 TEXGEN_INLINE Doubt fill_points_block(const PointJob& job, std::size_t begin, std::size_t end) noexcept {
     PointExtent extent;
-    PointDivision division[(Signed ? exact_block : float_block) / static_cast<std::size_t>(lanes)];
+    PointDivision division[(Signed ? exact_block : float_block) / at_once];
     PointDivision* next = division;
-    for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(wide_lanes)) {
+    for (std::size_t i = begin; i < end; i += wide_at_once) {
         WideFloats x, y, z;
         load_points(job, i, x, y, z);
         extent.add(x, y, z);
@@ -214,7 +214,7 @@ TEXGEN_INLINE Doubt fill_points_block(const PointJob& job, std::size_t begin, st
     Doubt doubt;
     ReciprocalRange range;
     next = division;
-    for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(lanes)) {
+    for (std::size_t i = begin; i < end; i += at_once) {
         if constexpr (!Signed) range.add(next->reciprocal);
         Floats value[2];
         const LongWords in_front =
@@ -249,7 +249,7 @@ TEXGEN_INLINE std::uint64_t fill_block_again(const PointJob& job, const PointTer
     // Floats below are no further apart than the tolerance.
     const Doubles within = power_of_two_below(Doubles{} + job.tolerance) * 0x1p24;
     std::uint64_t doubtful = 0;
-    for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(lanes)) {
+    for (std::size_t i = begin; i < end; i += at_once) {
         const PointLanes at = load_points(job, i);
         const PointSizes sizes(at);
         const LongWords are_dark = terms.are_dark(at);
@@ -381,7 +381,7 @@ Undecided fill_points_exact(const PointJob& job, std::size_t first) noexcept {
 template <class CompiledWhereCalled = void>
 void generate_points(const GenerateJob& original) noexcept {
     const GenerateJob job = original;
-    for (std::size_t i = 0; i < job.count; i += static_cast<std::size_t>(lanes)) {
+    for (std::size_t i = 0; i < job.count; i += at_once) {
         const PointLanes point = load_points(job, i);
         if (job.strq != nullptr) {
             store_interleaved(job.strq + 4 * i, to_floats(value_at(job.form[0], point)),

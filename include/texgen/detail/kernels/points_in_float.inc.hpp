@@ -83,7 +83,7 @@ TEXGEN_INLINE std::size_t fill_points_within_of(const PointJob& original, std::s
     };
     WideFloats x, y, z, value[2];
     if (in_float && job.is_certified) {
-        for (std::size_t i = first; i < job.count; i += static_cast<std::size_t>(wide_lanes)) {
+        for (std::size_t i = first; i < job.count; i += wide_at_once) {
             load_points(job, i, x, y, z);
             divide(x, y, z, forms.at(0, x, y, z), value);
             store_points(job, i, Numerators, value, ~WideWords{});
@@ -99,7 +99,7 @@ TEXGEN_INLINE std::size_t fill_points_within_of(const PointJob& original, std::s
         // The bits of positive floats have their order; those of a negative one, and of -0, are below them all. A q
         // that overflowed in float would go unnoticed, not being the least; its terms tell.
         WideWords least_q = signed_bits(WideFloats{} + 0x1p100f);
-        for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(wide_lanes)) {
+        for (std::size_t i = begin; i < end; i += wide_at_once) {
             load_points(job, i, x, y, z);
             extent.add(x, y, z);
             const WideFloats q = forms.at(0, x, y, z);

@@ -45,7 +45,7 @@ struct MixtureLanes {
 TEXGEN_INLINE bool has_small_alpha(const SegmentJob& job, std::size_t begin, std::size_t end, float last) noexcept {
     if (!(last > 0.0f)) return false;
     WideWords are{};
-    for (std::size_t i = begin; i < end; i += static_cast<std::size_t>(wide_lanes)) {
+    for (std::size_t i = begin; i < end; i += wide_at_once) {
         const auto alpha = load<WideFloats>(job.alpha + i);
         are |= less(WideFloats{}, alpha) & at_most(alpha, WideFloats{} + last);
     }
@@ -67,7 +67,6 @@ TEXGEN_INLINE Floats rounded_from(const Doubles& middle, const Doubles& remainde
 // Blocks, on both sides of the projector, up to the first with values that stay in doubt.
 template <std::size_t Numerators, bool AreShort>
 Undecided fill_segment_closely(const SegmentJob& job, std::size_t first) noexcept {
-    constexpr auto width = static_cast<std::size_t>(lanes);
     const std::size_t count = job.count;
     const float* const from = job.alpha;
     float* const out[2] = {job.out[0], job.out[Numerators - 1]};
@@ -84,7 +83,7 @@ Undecided fill_segment_closely(const SegmentJob& job, std::size_t first) noexcep
         const bool has_inexact = !AreShort && has_small_alpha(job, begin, end, job.inexact_alpha);
         const bool has_subnormal = has_small_alpha(job, begin, end, job.small_alpha);
         std::uint64_t doubtful = 0;
-        for (std::size_t i = begin; i < end; i += width) {
+        for (std::size_t i = begin; i < end; i += at_once) {
             const Doubles alpha = to_doubles(load<Floats>(from + i));
             if (is_constant) {
                 q.high = q_mixture.base + alpha * 0.0;  // no number where alpha is none
@@ -201,19 +200,18 @@ std::size_t fill_segment_in_double_of(const SegmentJob& job, std::size_t first, 
     const double base[2] = {job.base[0], job.base[1]}, slope[2] = {job.slope[0], job.slope[1]};
     const std::int32_t ulps = job.ulps;
     const bool are_accepted = job.are_accepted;
-    constexpr auto width = static_cast<std::size_t>(lanes);
-    Doubles reciprocal[float_block / width];
+    Doubles reciprocal[float_block / at_once];
     for (std::size_t begin = first; begin < count;) {
         const std::size_t end = end_of_block(count, begin, float_block);
         if (has_small_alpha(job, begin, end, job.small_alpha)) return begin;
         Distances distance = far_from_middles();
         Doubles sum{};
         Doubles* next = reciprocal;
-        for (std::size_t i = begin; i < end; i += 2 * width) {
+        for (std::size_t i = begin; i < end; i += 2 * at_once) {
             Doubles q[2];
             TEXGEN_UNROLL
             for (std::size_t j = 0; j < 2; ++j) {
-                const Doubles alpha = to_doubles(load<Floats>(from + i + j * width));
+                const Doubles alpha = to_doubles(load<Floats>(from + i + j * at_once));
                 q[j] = IsAsymptotic ? alpha + pole : alpha * bend + pole;
             }
             const SharedDivision division(q[0], q[1]);
@@ -221,7 +219,7 @@ std::size_t fill_segment_in_double_of(const SegmentJob& job, std::size_t first, 
             for (const Doubles& of_q : division.reciprocal) *next++ = of_q;
         }
         next = reciprocal;
-        for (std::size_t i = begin; i < end; i += width) {
+        for (std::size_t i = begin; i < end; i += at_once) {
             const Doubles of_q = *next++;
             const Doubles alpha = IsAsymptotic ? Doubles{} : to_doubles(load<Floats>(from + i));
             Doubles quotient[2];
@@ -255,7 +253,6 @@ std::size_t fill_segment_in_double(const SegmentJob& job, std::size_t first) noe
 template <std::size_t Numerators>
 std::size_t fill_segment_all_float_of(const SegmentJob& job, std::size_t first, std::size_t count) noexcept {
     const float* const from = job.alpha;
-    constexpr auto width = static_cast<std::size_t>(wide_lanes);
     const int other = Numerators == 2 ? 1 - job.steeper : 0;
     float* const out = job.out[job.steeper];
     float* const other_out = job.out[other];
@@ -285,7 +282,7 @@ std::size_t fill_segment_all_float_of(const SegmentJob& job, std::size_t first, 
         const std::size_t end = end_of_block(count, begin, float_block);
         sum = WideFloats{};
         std::size_t i = begin;
-        for (; i + width < end; i += 2 * width) fill_both(i, i + width);
+        for (; i + wide_at_once < end; i += 2 * wide_at_once) fill_both(i, i + wide_at_once);
         if (i < end) fill_both(i, i);
         if (any(~at_most(sum - sum, WideFloats{}))) return begin;
         begin = end;

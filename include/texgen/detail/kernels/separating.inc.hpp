@@ -45,7 +45,7 @@ TEXGEN_INLINE void add_plane(SeparatingForms& planes, const FormColumns* const (
     store(planes.d + planes.count,
           select(is_plane, d + (size * rounding + 0x1p-999), Doubles{} + std::numeric_limits<double>::infinity()));
     store(planes.error + planes.count, all_weights * (2.0 * rounding) + 0x1p-999);
-    planes.count += static_cast<std::size_t>(lanes);
+    planes.count += at_once;
 }
 
 // The planes through an edge, where forms f and g of two coordinates meet, and parallel to an axis of the space: with
@@ -59,7 +59,7 @@ TEXGEN_INLINE void add_edges(SeparatingForms& planes, const FormLanes& forms, st
         g.put(forms, second_of_edge[i], i);
     }
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        for (std::size_t i = 0; i < edges; i += static_cast<std::size_t>(lanes)) {
+        for (std::size_t i = 0; i < edges; i += at_once) {
             const auto a = load<Doubles>(f.a[axis] + i), b = load<Doubles>(g.a[axis] + i);
             const LongWords are_opposite =
                 (greater(a, 0.0) & greater(0.0 - b, 0.0)) | (greater(0.0 - a, 0.0) & greater(b, 0.0));
@@ -81,7 +81,7 @@ TEXGEN_INLINE void add_vertices(SeparatingForms& planes, const FormLanes& forms)
     }
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const std::size_t m = (axis + 1) % 3, n = (axis + 2) % 3;
-        for (std::size_t i = 0; i < 8; i += static_cast<std::size_t>(lanes)) {
+        for (std::size_t i = 0; i < 8; i += at_once) {
             const auto across = [&](const FormColumns& k, const FormColumns& l) {
                 return load<Doubles>(k.a[m] + i) * load<Doubles>(l.a[n] + i) -
                        load<Doubles>(k.a[n] + i) * load<Doubles>(l.a[m] + i);
@@ -113,7 +113,7 @@ TEXGEN_INLINE void add_axes(SeparatingForms& planes, const glm::dmat4& matrix, c
         for (std::size_t first = 0; first < form_lanes + 4; first += 3)
             for (std::size_t j = 0; j < 3; ++j)
                 again[k][first + j] = matrix[static_cast<glm::length_t>(j)][coordinates[k]];
-    for (std::size_t i = 0; i < 3; i += static_cast<std::size_t>(lanes)) {
+    for (std::size_t i = 0; i < 3; i += at_once) {
         Doubles row[3][3];  // the coefficient of an axis, and of the two that follow it
         TEXGEN_UNROLL
         for (std::size_t k = 0; k < 3; ++k)
@@ -148,7 +148,7 @@ TEXGEN_INLINE void add_axes(SeparatingForms& planes, const glm::dmat4& matrix, c
         for (std::size_t j = 0; j < 3; ++j) store(planes.a[j] + planes.count, a * load<Doubles>(is_axis[j] + i));
         store(planes.d + planes.count, select(is_plane, d + error_d, Doubles{} + infinity));
         store(planes.error + planes.count, bound(magnitude(row[0][0]), magnitude(row[1][0]), magnitude(row[2][0])));
-        planes.count += static_cast<std::size_t>(lanes);
+        planes.count += at_once;
     }
 }
 
@@ -175,7 +175,7 @@ bool is_separated(const SeparatingForms& planes, const float* box_min, const flo
         size += is_bounded ? larger(-min[j], max[j]) : 0.0;
     }
     LongWords are_negative{};
-    for (std::size_t k = 0; k < planes.count; k += static_cast<std::size_t>(lanes)) {
+    for (std::size_t k = 0; k < planes.count; k += at_once) {
         Doubles largest = load<Doubles>(planes.d + k) + load<Doubles>(planes.error + k) * size;
         TEXGEN_UNROLL
         for (std::size_t j = 0; j < 3; ++j) {

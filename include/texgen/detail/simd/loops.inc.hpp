@@ -4,6 +4,7 @@ namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
 inline constexpr int lanes = 8;  // of Doubles, and of the Floats that they round to
 inline constexpr int wide_lanes = 8;
+inline constexpr std::size_t at_once = lanes, wide_at_once = wide_lanes;  // the same, of arrays
 
 template <class T>
 struct Lanes {

@@ -5,6 +5,7 @@ namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
 inline constexpr int lanes = TEXGEN_LANE_BYTES / 8;  // of Doubles, and of the Floats that they round to
 inline constexpr int wide_lanes = TEXGEN_LANE_BYTES / 4;
+inline constexpr std::size_t at_once = lanes, wide_at_once = wide_lanes;  // the same, of arrays
 
 using Doubles [[gnu::vector_size(TEXGEN_LANE_BYTES)]] = double;
 using Floats [[gnu::vector_size(TEXGEN_LANE_BYTES / 2)]] = float;
