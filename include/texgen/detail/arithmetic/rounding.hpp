@@ -67,9 +67,6 @@ inline double last_bit(double value) noexcept {
     const auto from_last = static_cast<double>(std::uint64_t{1} << zeros);  // integers
     return bit_cast<double>(bits & 0x7ff0000000000000) * (0x1p-52 * from_last);
 }
-inline double smallest_last_bit(double a, double b, double c) noexcept {
-    return smaller(last_bit(a), smaller(last_bit(b), last_bit(c)));
-}
 
 // A product of 26 leading bits, or of the 27 that follow them, with a float is exact; so is one of 29 bits.
 inline double leading_26_bits(double value) noexcept {

@@ -158,7 +158,7 @@ private:
 
 // A power of two of which three numbers are multiples: finite where they are 0, too.
 TEXGEN_RARE inline double common_unit(double a, double b, double c) noexcept {
-    return smaller(smallest_last_bit(a, b, c), 0x1p500);
+    return smaller(smaller(last_bit(a), smaller(last_bit(b), last_bit(c))), 0x1p500);
 }
 
 // A whole number modulo 2^64: halves of it fit a signed integer.
@@ -241,38 +241,18 @@ TEXGEN_RARE inline bool take_exact_quotients(const CloseFunctions& functions, Ti
     return is_any_exact;
 }
 
-// Powers of two of which the functions of a triangle are multiples at every fragment: products and sums of floats are
-// multiples of the products of their last bits.
-class PlaneGrains {
-public:
-    explicit PlaneGrains(const TrianglePlanes& planes) noexcept : planes_(planes) {
-        const glm::dvec2 a = planes.corner(0), b = planes.corner(1), c = planes.corner(2);
-        of_window = {smaller(0.5, common_unit(a.x, b.x, c.x)), smaller(0.5, common_unit(a.y, b.y, c.y))};
-        of_weights = common_unit(planes.weight(0), planes.weight(1), planes.weight(2));
-    }
-
-    double of_values(glm::length_t coordinate) const noexcept {
-        return common_unit(planes_.value(0, coordinate), planes_.value(1, coordinate), planes_.value(2, coordinate));
-    }
-    // 0 where that is too small for a double.
-    double with(double values) const noexcept { return of_weights * (of_window.x * of_window.y) * values; }
-
-    glm::dvec2 of_window;
-    double of_weights;
-
-private:
-    const TrianglePlanes& planes_;
-};
-
-// The linear functions of a triangle in these grains, modulo 2^64: so the lowest digits are known of what two doubles
-// have the leading ones of.
+// The linear functions of a triangle, modulo 2^64, in grains: powers of two of which they are multiples at every
+// fragment, as products and sums of floats are of the products of their last bits. So the lowest digits are known of
+// what two doubles have the leading ones of.
 class PlaneResidues {
 public:
-    PlaneResidues(const TrianglePlanes& planes, const Tile& tile) noexcept
-        : planes_(planes), tile_(tile), grains_(planes) {
-        const glm::dvec2 unit = grains_.of_window;
-        const double of_weights = grains_.of_weights;
-        const double per_x = reciprocal_power_of_two(unit.x), per_y = reciprocal_power_of_two(unit.y);
+    PlaneResidues(const TrianglePlanes& planes, const Tile& tile) noexcept : planes_(planes), tile_(tile) {
+        const glm::dvec2 a = planes.corner(0), b = planes.corner(1), c = planes.corner(2);
+        const double unit_x = smaller(0.5, common_unit(a.x, b.x, c.x));
+        const double unit_y = smaller(0.5, common_unit(a.y, b.y, c.y));
+        const double of_weights = common_unit(planes.weight(0), planes.weight(1), planes.weight(2));
+        grain_ = of_weights * (unit_x * unit_y);
+        const double per_x = reciprocal_power_of_two(unit_x), per_y = reciprocal_power_of_two(unit_y);
         const double per_weight = reciprocal_power_of_two(of_weights);
         const std::uint64_t one_x = residue_of(per_x), one_y = residue_of(per_y);
         const std::uint64_t first_x = residue_of((static_cast<double>(tile.x) + 0.5) * per_x);  // integers
@@ -293,7 +273,8 @@ public:
 
     // Of a part of the tile.
     TEXGEN_RARE void add_to(CloseFunction& function, glm::length_t coordinate, const Tile& part) const noexcept {
-        const double unit = grains_.of_values(coordinate);
+        const double unit =
+            common_unit(planes_.value(0, coordinate), planes_.value(1, coordinate), planes_.value(2, coordinate));
         const double per_unit = reciprocal_power_of_two(unit);
         RampOf<std::uint64_t> sum{};
         for (std::size_t i = 0; i < 3; ++i) {
@@ -302,14 +283,14 @@ public:
         }
         sum.base += static_cast<std::uint64_t>(part.x - tile_.x) * sum.dx;
         sum.base += static_cast<std::uint64_t>(part.y - tile_.y) * sum.dy;
-        function.grain = grains_.with(unit);
+        function.grain = grain_ * unit;  // 0 where that is too small for a double
         function.residue = sum;
     }
 
 private:
     const TrianglePlanes& planes_;
     Tile tile_;
-    PlaneGrains grains_;
+    double grain_;                   // but for the values
     RampOf<std::uint64_t> edge_[3];  // of the sides' functions, with the weights
 };
 
