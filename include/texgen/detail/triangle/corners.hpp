@@ -216,20 +216,14 @@ inline Coverage coverage_of(const Corners& at, const Double2& min, const Double2
     return all_inside && at.all_in_front() ? Coverage::inside : Coverage::partial;
 }
 
-// The same of any tile, where that is rare.
-TEXGEN_RARE inline Coverage coverage_apart(const Corners& at, const Double2& min, const Double2& max,
-                                           double tolerance) noexcept {
-    return at.all_behind() ? Coverage::outside : coverage_of(at, min, max, tolerance);
-}
-
 // How much is in the sides of a region, where the numerators are s and t.
 inline Coverage st_coverage(const Corners& at, const LitTest& lit, double tolerance) noexcept {
     return coverage_of(at, double2_of(lit.least(0), lit.least(1)), double2_of(lit.greatest(0), lit.greatest(1)),
                        tolerance);
 }
-inline Coverage st_coverage_apart(const Corners& at, const LitTest& lit, double tolerance) noexcept {
-    return coverage_apart(at, double2_of(lit.least(0), lit.least(1)), double2_of(lit.greatest(0), lit.greatest(1)),
-                          tolerance);
+// The same of any tile, where that is rare.
+TEXGEN_RARE inline Coverage st_coverage_apart(const Corners& at, const LitTest& lit, double tolerance) noexcept {
+    return at.all_behind() ? Coverage::outside : st_coverage(at, lit, tolerance);
 }
 
 // The sides of a mask alone, with the margins of coverage_of(): what is known of the functions later errs by less. Q is
