@@ -265,8 +265,7 @@ private:
 
     TEXGEN_APART std::uint64_t put(const Vector& vector, const auto& at) const noexcept {
         CloseFragments<3> fragments;
-        CloseDivisor q;
-        q.take(at.values(3));
+        const CloseDivisor q(at.values(3));
         fragments.quotient[2] = Floats{};
         fragments.divide(at, q, job_.needs_r() ? 3 : 2, job_.tolerance, true);
         vector.out->put_where(vector.doubtful, vector.n, fragments.quotient, q.front);

@@ -9,9 +9,6 @@ namespace TEXGEN_DETAIL::TEXGEN_ISA {
 struct alignas(64) BatchFunction {
     double part[4][8];  // high, low, error, grain
     std::uint64_t residues[16];
-
-    TEXGEN_INLINE double number(std::size_t n, std::size_t j) const noexcept { return part[n][j]; }
-    TEXGEN_INLINE std::uint64_t residue(std::size_t i) const noexcept { return residues[i]; }
 };
 
 // Of one in each lane.
@@ -24,8 +21,6 @@ struct LaneFunctions {
             if (n != 2 || needs_r) load_columns(part[n], 8, [&](std::size_t j) { return of[j]->part[n]; });
         load_columns(residues, 12, [&](std::size_t j) { return of[j]->residues; });
     }
-    TEXGEN_INLINE const Doubles& number(std::size_t n, std::size_t j) const noexcept { return part[n][j]; }
-    TEXGEN_INLINE const Residues& residue(std::size_t i) const noexcept { return residues[i]; }
 };
 
 // Of as many triangles as a block has.
@@ -111,13 +106,13 @@ struct BatchFunctionsAt {
     Doubles x, y;
 
     TEXGEN_INLINE CloseValues values(std::size_t n) const noexcept {
-        return {x * of.number(n, 1) + (y * of.number(n, 2) + of.number(n, 0)),
-                x * of.number(n, 4) + (y * of.number(n, 5) + of.number(n, 3)), Doubles{} + of.number(n, 6)};
+        const auto& part = of.part[n];
+        return {x * part[1] + (y * part[2] + part[0]), x * part[4] + (y * part[5] + part[3]), Doubles{} + part[6]};
     }
     TEXGEN_INLINE Residues residues(std::size_t n) const noexcept {
-        return to_residues(x) * of.residue(3 * n + 1) + (to_residues(y) * of.residue(3 * n + 2) + of.residue(3 * n));
+        return to_residues(x) * of.residues[3 * n + 1] + (to_residues(y) * of.residues[3 * n + 2] + of.residues[3 * n]);
     }
-    TEXGEN_INLINE auto grain(std::size_t n) const noexcept { return of.number(n, 7); }
+    TEXGEN_INLINE auto grain(std::size_t n) const noexcept { return of.part[n][7]; }
 };
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA

@@ -317,8 +317,7 @@ TEXGEN_APART inline std::uint64_t decide_tiles(const TilesJob& job, const Fragme
             CloseFragments<3> fragments;
             const BatchFunctionsAt<BatchFunction> at{functions.of[i], shape.is_turned ? row : walk.x,
                                                      shape.is_turned ? walk.x : row};
-            CloseDivisor q;
-            q.take(at.values(3));
+            const CloseDivisor q(at.values(3));
             fragments.quotient[2] = Floats{};
             fragments.divide(at, q, job.needs_r() ? 3 : 2, job.tolerance, true);
             here.put(in_scratch ? n : begin + n, fragments.quotient, q.front);

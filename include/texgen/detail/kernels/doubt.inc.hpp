@@ -70,8 +70,7 @@ struct CloseDivisor : CloseValues {
     Doubles value, reciprocal, relative_error;
     LongWords front, is_beside;
 
-    TEXGEN_INLINE void take(const CloseValues& q) noexcept {
-        static_cast<CloseValues&>(*this) = q;
+    TEXGEN_INLINE explicit CloseDivisor(const CloseValues& q) noexcept : CloseValues(q) {
         value = high + low;
         front = greater(value, error * 256.0);
         is_beside = ~(front | at_most(value, error * -1.0));

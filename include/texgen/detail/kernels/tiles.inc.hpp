@@ -202,8 +202,7 @@ std::uint64_t fill_tile_closely(const TileJob& job, const CloseFunctions& functi
             store(result[2] + i, lit);
             continue;
         }
-        CloseDivisor q;
-        q.take(of_q);
+        const CloseDivisor q(of_q);
         CloseFragments<2, false> fragments;
         fragments.divide(at, q, numerators, functions.tolerance, is_more_known);
         doubtful |= lane_bits(fragments.doubtful) << i;

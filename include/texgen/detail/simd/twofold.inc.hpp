@@ -18,13 +18,10 @@ TEXGEN_INLINE Doubles quick_two_sum(const Doubles& a, Doubles b, Doubles& error)
     return sum;
 }
 
-// A number as an unevaluated sum, high the nearest double, and a bound on what that lacks: 0 where it is exact.
-struct Twofold {
-    Doubles high, low, lost;
-};
-// The same with a rest, far below them, all of them multiples of a power of two.
-struct PointSum : Twofold {
-    Doubles rest, grain;
+// A number as an unevaluated sum, high the nearest double, with a rest far below, and a bound on what that lacks: 0
+// where it is exact. All of them are multiples of the grain, a power of two.
+struct PointSum {
+    Doubles high, low, lost, rest, grain;
 };
 
 struct PointLanes {
