@@ -69,11 +69,9 @@ inline double last_bit(double value) noexcept {
 }
 
 // A product of 26 leading bits, or of the 27 that follow them, with a float is exact; so is one of 29 bits.
-inline double leading_26_bits(double value) noexcept {
-    return bit_cast<double>(bit_cast<std::uint64_t>(value) & ~std::uint64_t{0x7ffffff});
-}
-inline double leading_29_bits(double value) noexcept {
-    return bit_cast<double>(bit_cast<std::uint64_t>(value) & ~std::uint64_t{0xffffff});
+template <int Bits>
+double leading_bits(double value) noexcept {
+    return bit_cast<double>(bit_cast<std::uint64_t>(value) & ~std::uint64_t{0} << (53 - Bits));
 }
 
 // The relative error of n roundings in sequence is at most gamma(n) = n u / (1 - n u). Here u is twice the unit

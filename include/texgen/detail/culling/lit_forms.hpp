@@ -168,7 +168,7 @@ private:
         };
         for (std::size_t j = 0; j < 4; ++j) {
             const glm::dvec4& column = matrix_[static_cast<glm::length_t>(j)];
-            const double half = leading_26_bits(column.w);
+            const double half = leading_bits<26>(column.w);
             const double of_row = own * column[static_cast<glm::length_t>(coordinate_of(k))];
             const DoubleDouble most = two_sum(of_row, of_q * half);
             const DoubleDouble rest = two_sum(most.low, of_q * (column.w - half));
@@ -182,7 +182,7 @@ private:
                                                                         : j;
             if (j < 3) form.row[j] = row;
             for (const double part : {all.high, all.low, rest.low}) {
-                const double first = j < 3 ? leading_26_bits(part) : part;
+                const double first = j < 3 ? leading_bits<26>(part) : part;
                 add(first, row);
                 add(part - first, row);
             }

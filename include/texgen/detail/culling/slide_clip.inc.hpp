@@ -9,7 +9,7 @@ public:
         : coordinate_(plane.coordinate),
           sign_(plane.sign * unit_of(plane.bound)),
           per_q_(-sign_ * std::copysign(smaller(std::fabs(plane.bound), 0x1p1000), plane.bound)) {
-        const bool has_29_digits = leading_29_bits(per_q_) == per_q_;  // times a float: a double
+        const bool has_29_digits = leading_bits<29>(per_q_) == per_q_;  // times a float: a double
         product_error_ = has_29_digits ? 0.0 : gamma(1);
     }
 

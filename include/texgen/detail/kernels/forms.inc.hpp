@@ -18,7 +18,7 @@ struct CoefficientLanes {
 
     CoefficientLanes() = default;
     TEXGEN_INLINE CoefficientLanes(const WeightLanes& weights, const glm::dvec4& column) noexcept {
-        const double half = leading_26_bits(column.w);
+        const double half = detail::leading_bits<26>(column.w);
         const Doubles row = weights.of[0] * column.x + (weights.of[1] * column.y + weights.of[2] * column.z);
         Doubles rest;
         part[0] = two_sum(row, weights.of_q * half, rest);

@@ -79,7 +79,7 @@ inline Mixture mixture_of(double a, double b) noexcept {
     if (!is_finite(step.high)) return {a, b, 0.0, Mixture::is_not_finite};
     if (step.low != 0.0)
         return std::fabs(a) < std::fabs(b) ? Mixture{a, b, -a, Mixture::is_far} : Mixture{a, -a, b, Mixture::is_far};
-    const double leading = leading_29_bits(step.high);
+    const double leading = leading_bits<29>(step.high);
     return {a + 0.0, leading, step.high - leading, leading == step.high ? Mixture::is_short : Mixture::is_long};
 }
 

@@ -63,12 +63,7 @@ struct alignas(16) Double2 {
 };
 inline Double2 double2_of(double first, double second) noexcept { return {{first, second}}; }
 inline Double2 magnitude(const Double2& a) noexcept { return {{magnitude(a[0]), magnitude(a[1])}}; }
-inline Double2 leading_27_bits(const Double2& a) noexcept {
-    const auto leading = [](double value) {
-        return bit_cast<double>(bit_cast<std::uint64_t>(value) & ~std::uint64_t{0x3ffffff});
-    };
-    return {{leading(a[0]), leading(a[1])}};
-}
+inline Double2 leading_27_bits(const Double2& a) noexcept { return {{leading_bits<27>(a[0]), leading_bits<27>(a[1])}}; }
 inline Double2 smaller(const Double2& a, const Double2& b) noexcept {
     return {{smaller(a[0], b[0]), smaller(a[1], b[1])}};
 }

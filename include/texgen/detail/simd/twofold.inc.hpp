@@ -70,7 +70,7 @@ struct TwofoldForm {
         const double coefficient[3] = {form.x, form.y, form.z};
         bool has_terms = form.w != 0.0;
         for (unsigned j = 0; j < 3; ++j) {
-            high[j] = leading_29_bits(coefficient[j]);
+            high[j] = detail::leading_bits<29>(coefficient[j]);
             low[j] = coefficient[j] - high[j];
             size[j] = std::fabs(coefficient[j]);
             grain[j] = last_bit(coefficient[j]);
