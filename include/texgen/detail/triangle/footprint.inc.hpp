@@ -66,14 +66,11 @@ inline double q_at(const TriangleFunctions& triangle, std::int64_t x, std::int64
 inline std::optional<Footprint> footprint_at(const FootprintFunctions& functions, const TexelsPerUnit& texels,
                                              std::int64_t x, std::int64_t y, double q) noexcept {
     if (!(q > 0.0)) return std::nullopt;
-    const glm::dvec2 p = functions.triangle.planes.from_a({x, y, 1, 1});
+    const Slope::Terms s = functions.at_first(0, {x, y, 1, 1}), t = functions.at_first(1, {x, y, 1, 1});
     const double reciprocal = 1.0 / q;
     const auto divided = [&](double numerator) { return numerator * reciprocal * reciprocal; };
-    const auto& s = functions.slope[0].value;
-    const auto& t = functions.slope[1].value;
     return footprint_of(
-        {divided(s.dx + p.y * s.twist), divided(t.dx + p.y * t.twist)},
-        {divided(s.dy - p.x * s.twist), divided(t.dy - p.x * t.twist)},
+        {divided(s.dx), divided(t.dx)}, {divided(s.dy), divided(t.dy)},
         [&](double unit) { return functions.determinant * reciprocal * (reciprocal * unit) * (reciprocal * unit); },
         texels);
 }
