@@ -18,7 +18,6 @@
 
 #include "../../conventions.hpp"
 #include "../arithmetic/inverse.hpp"
-#include "../arithmetic/nearest.hpp"
 #include "../arithmetic/rounding.hpp"
 #include "../simd/box_kernels.hpp"
 #include "lit_test.hpp"

@@ -33,20 +33,19 @@ inline void examine(const Composition& composition, bool in_eye_space, Diagnosis
     if (composition.multiple < 0.0) diagnosis.add(Defect::everything_behind);
 }
 
-inline bool is_nan(double value) noexcept { return !(std::fabs(value) <= std::numeric_limits<double>::infinity()); }
-
 inline bool are_numbers(const SetupMatrices& setup) noexcept {
     const TextureRegion& region = setup.picture.region;
     const LensFacts& lens = setup.lens;
     // An infinite side of the region is none, but no scale-bias reaches it.
     const auto is_side = [&](const glm::dvec2& side) {
-        return setup.projector != nullptr ? is_finite(side) : !is_nan(side.x) && !is_nan(side.y);
+        return setup.projector != nullptr ? is_finite(side) : !std::isnan(side.x) && !std::isnan(side.y);
     };
     const auto is_given_finite = [](const std::optional<double>& value) { return !value || is_finite(*value); };
     const std::optional<glm::dvec2> depth = region.depth();
-    return is_side((region.min)()) && is_side((region.max)()) && !(depth && (is_nan(depth->x) || is_nan(depth->y))) &&
-           is_finite(setup.picture.texels_per_unit) && is_given_finite(lens.aspect) && is_given_finite(lens.z_near) &&
-           !(lens.z_far && is_nan(*lens.z_far)) && !(lens.fovy && !is_finite(lens.fovy->in_radians()));
+    return is_side((region.min)()) && is_side((region.max)()) &&
+           !(depth && (std::isnan(depth->x) || std::isnan(depth->y))) && is_finite(setup.picture.texels_per_unit) &&
+           is_given_finite(lens.aspect) && is_given_finite(lens.z_near) && !(lens.z_far && std::isnan(*lens.z_far)) &&
+           !(lens.fovy && !is_finite(lens.fovy->in_radians()));
 }
 
 // Half the bound on the rounding of an element to float, relative to it.

@@ -32,7 +32,7 @@ struct BatchFunctions {
     // corners.
     TEXGEN_APART void take(const float* const (&triangle)[lanes], bool needs_r, const Doubles& x, const Doubles& y,
                            const Doubles& width, const Doubles& height, std::size_t first,
-                           bool about_corners = false) noexcept {
+                           bool about_corners) noexcept {
         const VertexLanes vertices(triangle);
         const CloseLanes close(vertices, x, y);
         ResidueLanes of_corners(vertices, x, y);

@@ -11,8 +11,6 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "../arithmetic/determinant.hpp"
-#include "../arithmetic/expansion.hpp"
 #include "../arithmetic/rounding.hpp"
 #include "../simd/lanes.hpp"
 #include "../simd/tiers.hpp"
@@ -47,7 +45,8 @@ struct CloseRamp {
     // As high and low parts, see CloseFunction. The coefficients of low are at most half a unit: they, two products and
     // two sums are rounded in double, 6 u of half of width + height + 1 units: less than 2^-50 of those.
     TEXGEN_APART void copy_to(const Tile& tile, CloseFunction& result) const noexcept {
-        const double unit = unit_for(tile);
+        const double size = size_over(tile);
+        const double unit = size > 0.0 ? 0x1p-50 / reciprocal_power_of_two(size) : 0.0;
         const double rounder = 0x1.8p52 * unit;
         double high[3];
         double low[3];
@@ -59,16 +58,10 @@ struct CloseRamp {
         result.low = {low[0], low[1], low[2]};
         result.error = error + 0x1p-50 * (1.0 + tile.width + tile.height) * unit;
     }
-    double unit_for(const Tile& tile) const noexcept {
-        const double size = size_over(tile);
-        return size > 0.0 ? 0x1p-50 / reciprocal_power_of_two(size) : 0.0;
-    }
 };
 
 // Two numerators and q over a tile.
 struct CloseRamps {
-    static constexpr std::size_t q = 2;
-
     Tile tile;
     CloseRamp function[3];
 

@@ -10,7 +10,6 @@
 #include "../arithmetic/rounding.hpp"
 #include "../arithmetic/widen.hpp"
 #include "../language.hpp"
-#include "../simd/lanes.hpp"
 #include "close_planes.hpp"
 #include "planes.hpp"
 

@@ -13,7 +13,7 @@ public:
         : kernels_(kernels), functions_(functions), texels_(texels), rect_(rect), out_(out) {}
 
     void fill_all(const Tile& tile, const Corners& at) noexcept {
-        if (at.largest_q <= -at.q_error) return store_rows(tile, nothing());  // behind, or 0 everywhere
+        if (at.all_behind()) return store_rows(tile, nothing());  // behind, or 0 everywhere
         const bool may_be_vectors = at.has_one_error();
         if (may_be_vectors && tile.width <= largest_index && fill_in_vectors(tile, at)) return;
         const int least = may_be_vectors ? 8 : 2;
@@ -45,16 +45,13 @@ private:
 
     static Footprint nothing() noexcept { return {{0.0, 0.0}, {0.0, 0.0}, 0.0, {0.0, 0.0}, 0.0, {0.0, 0.0}}; }
 
-    bool needs_filter() const noexcept {
-        return !out_.level.empty() || !out_.anisotropy.empty() || !out_.major_s.empty() || !out_.major_t.empty();
-    }
-
     // False where floats do not reach. They hold the numerators in texels relative to their largest, Q relative to its
     // own, and the factors that bring both back.
     bool fill_in_vectors(const Tile& tile, const Corners& at) noexcept {
         const double numerator[2] = {functions_.largest(0, tile), functions_.largest(1, tile)};
         const double largest = larger(numerator[0] * texels_.s, numerator[1] * texels_.t);
-        const bool filters = needs_filter();
+        const bool filters =
+            !out_.level.empty() || !out_.anisotropy.empty() || !out_.major_s.empty() || !out_.major_t.empty();
         if (!(larger(numerator[0], numerator[1]) < 0x1p500) || !(at.largest_q < 0x1p200) || !(at.least_q > 0x1p-200))
             return false;
         if (filters && (!is_usable(texels_) || !(largest > 0x1p-500))) return false;

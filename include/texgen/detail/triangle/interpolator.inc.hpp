@@ -70,7 +70,7 @@ public:
     }
 
 private:
-    TEXGEN_RARE void fill(const Tile& tile, int longest = longest_chunk) noexcept {
+    TEXGEN_RARE void fill(const Tile& tile, int longest) noexcept {
         const Corners at = corners_at(tile);
         if (are_floats_apart(at)) return fill_exact(tile, at);
         Plan plan = plan_without_survey(tile, at);
@@ -171,7 +171,11 @@ private:
         const bool are_all = doubtful == ~std::uint64_t{0};
         while (doubtful != 0 && sharpen(tile, functions, std::popcount(doubtful)))
             doubtful = kernels_.fill_closely(job, functions, unit, doubtful);
-        fill_some(tile, unit, doubtful);
+        const int width = unit.x_end - unit.x_begin;
+        for (; doubtful != 0; doubtful &= doubtful - 1) {
+            const int i = std::countr_zero(doubtful);
+            fill_one(tile.x + unit.x_begin + i % width, tile.y + unit.y_begin + i / width);
+        }
         return are_all;
     }
 
@@ -266,19 +270,8 @@ private:
         }
         const int x = static_cast<int>(tile.x - whole_.x);
         const int y = static_cast<int>(tile.y - whole_.y);
-        if (!doubtful_) {
-            doubtful_.make(DoubtfulJob{make_job(whole_, *whole_at_), functions_of(whole_, *whole_at_)});
-        }
+        if (!doubtful_) doubtful_.make(DoubtfulJob{make_job(whole_, *whole_at_), functions_of(whole_, *whole_at_)});
         fill_closely(whole_, doubtful_->job, doubtful_->functions, {x, x + tile.width, y, y + tile.height});
-    }
-
-    // Fragments of a unit, one by one: a bit for each.
-    void fill_some(const Tile& tile, const TileJob::Unit& unit, std::uint64_t fragments) noexcept {
-        const int width = unit.x_end - unit.x_begin;
-        for (; fragments != 0; fragments &= fragments - 1) {
-            const int i = std::countr_zero(fragments);
-            fill_one(tile.x + unit.x_begin + i % width, tile.y + unit.y_begin + i / width);
-        }
     }
 
     TEXGEN_APART void fill_polynomial(const Tile& tile, const Corners& at, const Plan& plan) noexcept {
