@@ -22,9 +22,7 @@ struct Lanes {
 
     Lanes& operator+=(T b) noexcept { return *this = *this + b; }
     Lanes& operator&=(const Lanes& b) noexcept { return *this = *this & b; }
-    Lanes& operator|=(const Lanes& b) noexcept {
-        return *this = of([&](int i) { return lane[i] | b.lane[i]; });
-    }
+    Lanes& operator|=(const Lanes& b) noexcept { return *this = *this | b; }
 
     // The operand on the right is Lanes or one number for all.
     Lanes operator+(const auto& b) const noexcept {
@@ -44,11 +42,8 @@ struct Lanes {
     friend Lanes operator-(T a, const Lanes& b) noexcept {
         return of([&](int i) { return a - b.lane[i]; });
     }
-    friend Lanes operator/(const Lanes& a, const Lanes& b) noexcept {
-        return of([&](int i) { return a.lane[i] / b.lane[i]; });
-    }
-    friend Lanes operator/(T a, const Lanes& b) noexcept {
-        return of([&](int i) { return a / b.lane[i]; });
+    friend Lanes operator/(const auto& a, const Lanes& b) noexcept {
+        return of([&](int i) { return at(a, i) / b.lane[i]; });
     }
     friend Lanes operator|(const Lanes& a, const Lanes& b) noexcept {
         return of([&](int i) { return a.lane[i] | b.lane[i]; });

@@ -61,8 +61,7 @@ TEXGEN_INLINE Doubles truncated(const Doubles& values) noexcept {
 
 // Masks of Doubles are 64 bits wide.
 using LongWords [[gnu::vector_size(TEXGEN_LANE_BYTES)]] = long long;
-TEXGEN_INLINE LongWords greater(const Doubles& a, double b) noexcept { return a > b; }
-TEXGEN_INLINE LongWords greater(const Doubles& a, const Doubles& b) noexcept { return a > b; }
+TEXGEN_INLINE LongWords greater(const Doubles& a, const auto& b) noexcept { return a > b; }
 TEXGEN_INLINE LongWords at_most(const Doubles& a, const Doubles& b) noexcept { return a <= b; }
 TEXGEN_INLINE LongWords are_nonzero(const Doubles& a) noexcept { return a != 0.0; }
 template <int Bits>
