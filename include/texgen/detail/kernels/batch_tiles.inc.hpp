@@ -257,14 +257,15 @@ TEXGEN_INLINE bool divide_tile_by_tier(const BatchPlanes& planes, const BatchTil
 
 // A tile's values to its place in the outputs, from `begin` on; by way of scratch where whole vectors might reach
 // beyond what may be written.
-template <std::size_t Numerators, class Divide>
-TEXGEN_INLINE bool fill_tile(const FragmentOutputs& out, const TileShape& shape, std::size_t begin, bool in_scratch,
-                             TileScratch& scratch, const Divide& divide) noexcept {
+template <std::size_t Numerators>
+TEXGEN_INLINE bool fill_tile(const BatchPlanes& planes, const BatchTiles& tiles, std::size_t i, const TileShape& shape,
+                             const FragmentOutputs& out, std::size_t begin, bool in_scratch,
+                             TileScratch& scratch) noexcept {
     TileOutputs<Numerators> here;
     TEXGEN_UNROLL
     for (std::size_t k = 0; k < Numerators; ++k)
         here.out[k] = out.out[k] == nullptr || in_scratch ? scratch.values[k] : out.out[k] + begin;
-    const bool is_certain = divide(here);
+    const bool is_certain = divide_tile_by_tier<Numerators>(planes, tiles, i, shape, here);
     if (out.lit != nullptr) {
         float* const lit = in_scratch ? scratch.values[3] : out.lit + begin;
         for (std::size_t n = 0; n < shape.count; n += at_once) {
@@ -372,11 +373,8 @@ TEXGEN_INLINE Undecided divide_all_tiles(const TilesJob& job, std::size_t first,
                 doubtful |= std::uint64_t{1} << i;
             } else if (tiles.has(BatchTiles::is_exact, i) || tiles.has(BatchTiles::is_float, i)) {
                 const bool is_at_end = done + wide_at_once > job.count;
-                const bool is_certain = fill_tile<Numerators>(
-                    out, shape, begin, is_at_end, scratch, [&](const TileOutputs<Numerators>& here) {
-                        return divide_tile_by_tier<Numerators>(job.planes[first + i], tiles, i, shape, here);
-                    });
-                if (!is_certain) in_doubt |= std::uint64_t{1} << i;
+                if (!fill_tile<Numerators>(job.planes[first + i], tiles, i, shape, out, begin, is_at_end, scratch))
+                    in_doubt |= std::uint64_t{1} << i;
             } else {
                 in_doubt |= std::uint64_t{1} << i;
             }
