@@ -23,16 +23,8 @@ Footprint footprint_of(const glm::dvec2& dx, const glm::dvec2& dy, const auto& d
     const double t_dy = unit * dy.y * texels.t;
     const double size = larger(larger(std::fabs(s_dx), std::fabs(t_dx)), larger(std::fabs(s_dy), std::fabs(t_dy)));
     const double scale = reciprocal_power_of_two(size);
-    const double p = s_dx * scale;
-    const double q = t_dx * scale;
-    const double u = s_dy * scale;
-    const double v = t_dy * scale;
-    const double a = p * p + u * u;
-    const double b = p * q + u * v;
-    const double c = q * q + v * v;
-    const double half = 0.5 * (a - c);
-    const double root = std::sqrt(half * half + b * b);
-    const double largest = 0.5 * (a + c) + root;  // the larger eigenvalue of J J^T, and det^2 over it the smaller
+    const glm::dvec2 x(s_dx * scale, t_dx * scale), y(s_dy * scale, t_dy * scale);
+    const auto [b, half, root, largest] = Spectrum(x, y);  // det^2 over the larger eigenvalue is the smaller
     const double det = std::fabs(determinant(unit) * (texels.s * scale) * (texels.t * scale));
     const double length = std::sqrt(largest);
     glm::dvec2 major{1.0, 0.0};
@@ -42,7 +34,7 @@ Footprint footprint_of(const glm::dvec2& dx, const glm::dvec2& dy, const auto& d
     }
     return {dx,
             dy,
-            0.5 * std::log2(larger(p * p + q * q, u * u + v * v)) - (std::log2(scale) + std::log2(unit)),  // integers
+            0.5 * std::log2(larger(glm::dot(x, x), glm::dot(y, y))) - (std::log2(scale) + std::log2(unit)),  // integers
             glm::dvec2(length, smaller(det / length, length)) / scale / unit,
             det > 0.0 ? larger(largest / det, 1.0) : infinity,
             glm::dvec2(major.x / texels.s, major.y / texels.t) * (length / scale) / unit};

@@ -48,6 +48,20 @@ private:
     std::size_t count_ = 0;
 };
 
+// J J^T = ((a, b), (b, c)) of a J with these columns, and its larger eigenvalue, (a + c)/2 + root.
+struct Spectrum {
+    double b, half, root, largest;  // half: (a - c)/2
+
+    Spectrum(const glm::dvec2& x, const glm::dvec2& y) noexcept {
+        const double a = x.x * x.x + y.x * y.x;
+        const double c = x.y * x.y + y.y * y.y;
+        b = x.x * x.y + y.x * y.y;
+        half = 0.5 * (a - c);
+        root = std::sqrt(half * half + b * b);
+        largest = 0.5 * (a + c) + root;
+    }
+};
+
 // X(y), Y(x) and Q about the first vertex of the triangle, and bounds on their errors over the polygon.
 struct FootprintField {
     glm::dvec2 x, y, twist;  // X = x + p.y twist, Y = y - p.x twist
@@ -65,15 +79,7 @@ struct FootprintField {
         return larger(glm::dot(at_x, at_x), glm::dot(at_y, at_y));
     }
     // L^2.
-    double spectral_square_at(const glm::dvec2& p) const noexcept {
-        const glm::dvec2 at_x = x_at(p);
-        const glm::dvec2 at_y = y_at(p);
-        const double a = at_x.x * at_x.x + at_y.x * at_y.x;
-        const double b = at_x.x * at_x.y + at_y.x * at_y.y;
-        const double c = at_x.y * at_x.y + at_y.y * at_y.y;
-        const double half = 0.5 * (a - c);
-        return 0.5 * (a + c) + std::sqrt(half * half + b * b);
-    }
+    double spectral_square_at(const glm::dvec2& p) const noexcept { return Spectrum(x_at(p), y_at(p)).largest; }
 };
 
 struct RangeOfQ {
