@@ -147,5 +147,3 @@ constexpr Tolerance texels(double fraction, double texture_size) noexcept {
 }
 
 }  // namespace TEXGEN_NAMESPACE
-
-#include "detail/accepted.inc.hpp"
