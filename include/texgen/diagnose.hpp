@@ -9,7 +9,6 @@
 #include <cmath>
 #include <cstddef>
 #include <initializer_list>
-#include <limits>
 #include <numbers>
 #include <optional>
 #include <string_view>

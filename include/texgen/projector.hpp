@@ -6,7 +6,6 @@
 #include "detail/language.hpp"
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <optional>
 

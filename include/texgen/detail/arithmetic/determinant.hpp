@@ -3,8 +3,6 @@
 // Determinants whose terms may cancel to the last bit: in double or in two doubles where a bound decides, else as exact
 // sums.
 
-#include <limits>
-
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
@@ -34,7 +32,7 @@ public:
     // Within 2^-51 of itself: three products within 2^-103 of their terms, and two sums.
     double value() const noexcept {
         const double size = this->size();
-        if (!(size < 0x1p1000)) return std::numeric_limits<double>::quiet_NaN();
+        if (!(size < 0x1p1000)) return nan;
         const auto terms = [&](int i, int j, int k) { return product(exact_minor(i, j), {row_[k].z, 0.0}); };
         return settled(sum(sum(terms(1, 2, 0), terms(2, 0, 1)), terms(0, 1, 2)), 0x1p-100 * size,
                        [&] { return exactly(); });

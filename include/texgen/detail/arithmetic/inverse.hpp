@@ -4,7 +4,6 @@
 // does: if norm(I - A X) < 1 for any X at all, A is regular, and A^-1 is as near to X as the residual is small.
 
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include <glm/common.hpp>
@@ -192,7 +191,7 @@ private:
 
     // The largest sum of a column of |I - B X|. Infinite where A is not regular.
     double contraction() const noexcept {
-        if (!regular()) return std::numeric_limits<double>::infinity();
+        if (!regular()) return infinity;
         const glm::dmat4 terms = glm::dmat4(1.0) + absolute(scaled_) * absolute(inverse_);
         const glm::dmat4 r = absolute(residual()) * (1.0 + gamma(2)) + terms * 0x1p-99 + 0x1p-1000;
         double largest = 0.0;
@@ -205,7 +204,7 @@ private:
     // with d = rho X. Each |d R|_j is at most max|d| r, r the largest sum of a column of |R|: so |y_j - exact| <= |d_j|
     // + max|d| r / (1 - r).
     glm::dvec4 error_of_row(const glm::dvec4& solution, const glm::dvec4& row, double contraction) const noexcept {
-        if (!(contraction < 1.0)) return glm::dvec4(std::numeric_limits<double>::infinity());
+        if (!(contraction < 1.0)) return glm::dvec4(infinity);
         const glm::dvec4 scaled_solution = times_powers_of_two(solution, -row_exponent_);
         const glm::dvec4 target = times_powers_of_two(row, column_exponent_);
         const glm::dmat4 x = glm::transpose(inverse_);  // rows
@@ -226,7 +225,7 @@ private:
     glm::dmat4 inverse_{0.0};        // X
     glm::ivec4 row_exponent_{0};     // R = diag(2^row_exponent)
     glm::ivec4 column_exponent_{0};  // C = diag(2^column_exponent)
-    double beta_ = std::numeric_limits<double>::infinity();
+    double beta_ = infinity;
 };
 
 inline CertifiedInverse::CertifiedInverse(const glm::dmat4& matrix) noexcept : scaled_(matrix) {

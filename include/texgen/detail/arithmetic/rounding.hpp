@@ -34,6 +34,8 @@ namespace TEXGEN_DETAIL {
 
 inline constexpr double unit_roundoff_float = 0x1p-24;
 inline constexpr double unit_roundoff_double = 0x1p-53;
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
+inline constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // The smaller and the larger of two, b where one is a NaN. Unlike std::fmin and std::fmax these are one instruction.
 constexpr double smaller(double a, double b) noexcept { return a < b ? a : b; }
@@ -62,7 +64,7 @@ inline double reciprocal_power_of_two(double value) noexcept {
 // The last bit of a number that is set; infinity for 0.
 inline double last_bit(double value) noexcept {
     const auto bits = bit_cast<std::uint64_t>(value);
-    if (bits << 1 == 0) return std::numeric_limits<double>::infinity();
+    if (bits << 1 == 0) return infinity;
     const int zeros = std::countr_zero(bits | std::uint64_t{1} << 52);
     const auto from_last = static_cast<double>(std::uint64_t{1} << zeros);  // integers
     return bit_cast<double>(bits & 0x7ff0000000000000) * (0x1p-52 * from_last);
@@ -95,8 +97,7 @@ struct Bounded {
 
 // Half an ulp of the largest value: the error of a nearest float. From 2^128 - 2^103 on that is infinity.
 inline double half_ulp(double largest) noexcept {
-    return largest < 0x1.ffffffp127 ? unit_roundoff_float * largest + 0x1p-150
-                                    : std::numeric_limits<double>::infinity();
+    return largest < 0x1.ffffffp127 ? unit_roundoff_float * largest + 0x1p-150 : infinity;
 }
 
 // An unevaluated sum; high is the sum rounded to double.

@@ -12,7 +12,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 
 #include <glm/mat4x4.hpp>
 
@@ -187,8 +186,6 @@ private:
             }
         }
     }
-
-    static constexpr double infinity = std::numeric_limits<double>::infinity();
 
     std::size_t count_;
     glm::dmat4 matrix_;                   // of rows T_s, T_t, T_r and T_q

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <cstddef>
-#include <limits>
 
 #include "../../conventions.hpp"
 #include "../arithmetic/nearest.hpp"
@@ -27,7 +26,7 @@ struct RoundedSide {
     double outer, inner;
 
     static RoundedSide of_min(double min) noexcept {
-        if (!(std::fabs(min) < std::numeric_limits<double>::infinity())) return {min, min};
+        if (!(std::fabs(min) < infinity)) return {min, min};
         const float first = float_at_least(min);
         if (std::fabs(min) < 0x1p-126) return {-0x1p-126, first > 0.0f ? 0x1p-126 : widened(first)};
         return {widened(float_before(first)), widened(first)};

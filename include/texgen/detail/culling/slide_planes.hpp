@@ -5,12 +5,12 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <optional>
 
 #include <glm/vec2.hpp>
 
 #include "../../conventions.hpp"
+#include "../arithmetic/rounding.hpp"
 #include "../language.hpp"
 
 namespace TEXGEN_DETAIL {
@@ -21,7 +21,7 @@ struct SlidePlane {
     double sign, bound;
 
     // The bound at which the side is none: every point is inside. At its negative none is.
-    double none() const noexcept { return -sign * std::numeric_limits<double>::infinity(); }
+    double none() const noexcept { return -sign * infinity; }
 
     double at(double u, double q) const noexcept {
         const bool is_q = coordinate == 3 || (coordinate == 2 && bound == none());

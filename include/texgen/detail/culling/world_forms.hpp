@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
@@ -34,9 +33,9 @@ inline double range_of(const glm::dmat4& m, bool without_r = false) noexcept {
     for (glm::length_t column = 0; column < 4; ++column) {
         for (glm::length_t row = 0; row < 4; ++row) {
             const double size = std::fabs(m[column][row]);
-            if (!(size <= 0x1p200)) return std::numeric_limits<double>::infinity();
+            if (!(size <= 0x1p200)) return infinity;
             if (size == 0.0 || (without_r && row == 2)) continue;
-            if (size < 0x1p-200) return std::numeric_limits<double>::infinity();
+            if (size < 0x1p-200) return infinity;
             smallest = smaller(smallest, size);
             largest = larger(largest, size);
         }

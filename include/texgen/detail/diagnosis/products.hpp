@@ -5,7 +5,6 @@
 // of the other depth range, a bias without w.
 
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include <glm/mat4x4.hpp>
@@ -120,7 +119,7 @@ inline glm::dmat4 as_in_scenes(glm::dmat4 m) noexcept {
         for (glm::length_t row = 0; row < 4; ++row) {
             double& element = m[column][row];
             if (std::fabs(element) < 0x1p-150) element = 0.0;
-            if (std::fabs(element) > 0x1p150) element = std::numeric_limits<double>::quiet_NaN();
+            if (std::fabs(element) > 0x1p150) element = nan;
         }
     }
     return m;

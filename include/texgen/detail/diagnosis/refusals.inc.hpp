@@ -17,7 +17,7 @@ inline void require(bool keeps_rule, std::initializer_list<double> numbers, Defe
 
 // Of a lens whose far plane may be infinitely far.
 inline void examine_planes(double z_near, double z_far, Diagnosis& diagnosis) noexcept {
-    require_finite({z_near, z_far == std::numeric_limits<double>::infinity() ? 0.0 : z_far}, diagnosis);
+    require_finite({z_near, z_far == infinity ? 0.0 : z_far}, diagnosis);
     require(z_near > 0.0, {z_near}, Defect::near_not_in_front, diagnosis);
     require(z_near < z_far, {z_near, z_far}, Defect::far_not_beyond_near, diagnosis);
 }

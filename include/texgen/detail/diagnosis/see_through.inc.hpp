@@ -66,8 +66,7 @@ inline std::optional<glm::dmat4> lens_within(const glm::dmat4& texgen, const Fac
 inline double distance_of(double depth, const glm::dmat4& p, Handedness handedness) noexcept {
     const double per_z = depth * p[2].w - p[2].z;
     const double distance = ahead_of(p, handedness) * ((p[3].z - depth * p[3].w) / per_z);
-    return is_finite(distance) && (distance > 0.0 || !is_perspective(p)) ? distance
-                                                                         : std::numeric_limits<double>::infinity();
+    return is_finite(distance) && (distance > 0.0 || !is_perspective(p)) ? distance : infinity;
 }
 
 // What a lens was meant to be: what is known of it, and else what the projector's is.

@@ -68,7 +68,7 @@ struct VertexLanes {
         area = left - right;
         has_area = greater(magnitude(area), (magnitude(left) + magnitude(right)) * gamma(4));
         if (any(~has_area)) find_area();
-        error_of_q = where(~has_area, Doubles{} + std::numeric_limits<double>::infinity());
+        error_of_q = where(~has_area, Doubles{} + infinity);
     }
 
     TEXGEN_INLINE const Doubles& number(std::size_t i, std::size_t k) const noexcept {

@@ -126,7 +126,6 @@ TEXGEN_INLINE LongWords set_up_lanes(const float* triangles, BatchPlanes* planes
     const LongWords is_known = greater(magnitude(area), area_terms * gamma(4)) & greater(a[2], 0.0) &
                                greater(b[2], 0.0) & greater(c[2], 0.0) &
                                at_most(magnitude(all_slopes), Doubles{} + 0x1p1000);
-    constexpr double infinity = std::numeric_limits<double>::infinity();
     value[BatchPlanes::q + 3] = where(is_known, value[BatchPlanes::q + 3]) + where(~is_known, Doubles{} + infinity);
     value[BatchPlanes::origin] = a[0];
     value[BatchPlanes::origin + 1] = a[1];

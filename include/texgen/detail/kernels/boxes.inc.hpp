@@ -163,8 +163,7 @@ void decide_spheres(const UnitForms& forms, std::size_t form_count, const OpenRo
         const Doubles(&centre)[4] = sphere;
         const Doubles& radius = sphere[3];
         const Doubles size = magnitude(centre[0]) + magnitude(centre[1]) + magnitude(centre[2]);
-        const LongWords is_sphere =
-            greater(Doubles{} + std::numeric_limits<double>::infinity(), size + radius) & at_most(Doubles{}, radius);
+        const LongWords is_sphere = greater(Doubles{} + infinity, size + radius) & at_most(Doubles{}, radius);
         const Doubles of_q = ((size + radius * 2.0) * forms.largest_q + forms.last_q) * 1.1;
         const Doubles squared_radius = radius * radius;
         Doubles value[max_forms], margin[max_forms], reach[max_forms];

@@ -109,7 +109,6 @@ void round_forms(const FormLanes& forms, std::size_t count, FloatForms& result) 
         for (int i = 1; i < lanes; ++i) largest = larger_or_nan(largest, values[i]);
         return largest;
     };
-    constexpr double infinity = std::numeric_limits<double>::infinity();
     const double bound_d = largest_of(largest_d);
     const double most_narrowed = largest_of(largest_narrowing);
     const double error_a = 8.1 * unit_roundoff_float * largest_of(largest_a) + 1.1 * most_narrowed * forms.largest_q;
@@ -125,7 +124,6 @@ void round_forms(const FormLanes& forms, std::size_t count, FloatForms& result) 
 // u. Of a form that uses a coordinate which is infinite nothing is certain here.
 template <class CompiledWhereCalled = void>
 int classify_box(const FormLanes& forms, const float* box_min, const float* box_max) noexcept {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
     double sum[3], extent[3], size[3];
     bool is_proper = true;
     for (std::size_t j = 0; j < 3; ++j) {

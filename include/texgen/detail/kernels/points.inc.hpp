@@ -235,8 +235,7 @@ struct PointTerms {
     }
     // Which are behind whatever their q, being no numbers.
     TEXGEN_INLINE LongWords are_dark(const PointLanes& at) const noexcept {
-        const Doubles zero =
-            (at.v[0] + at.v[1] + at.v[2]) * (q.is_finite ? 0.0 : std::numeric_limits<double>::quiet_NaN());
+        const Doubles zero = (at.v[0] + at.v[1] + at.v[2]) * (q.is_finite ? 0.0 : nan);
         return ~at_most(zero, zero);
     }
 };

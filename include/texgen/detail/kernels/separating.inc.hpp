@@ -42,8 +42,7 @@ TEXGEN_INLINE void add_plane(SeparatingForms& planes, const FormColumns* const (
         size = size + weight[k] * magnitude(of_form);
         all_weights = all_weights + weight[k];
     }
-    store(planes.d + planes.count,
-          select(is_plane, d + (size * rounding + 0x1p-999), Doubles{} + std::numeric_limits<double>::infinity()));
+    store(planes.d + planes.count, select(is_plane, d + (size * rounding + 0x1p-999), Doubles{} + infinity));
     store(planes.error + planes.count, all_weights * (2.0 * rounding) + 0x1p-999);
     planes.count += at_once;
 }
@@ -101,7 +100,6 @@ TEXGEN_INLINE void add_vertices(SeparatingForms& planes, const FormLanes& forms)
 // gamma has one sign at the corners of the region, it has it in all of the pyramid.
 template <class CompiledWhereCalled = void>
 TEXGEN_INLINE void add_axes(SeparatingForms& planes, const glm::dmat4& matrix, const double* side) noexcept {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
     constexpr double is_axis[3][form_lanes] = {{1.0}, {0.0, 1.0}, {0.0, 0.0, 1.0}};
     constexpr double is_any_axis[form_lanes] = {1.0, 1.0, 1.0};
     constexpr glm::length_t coordinates[3] = {0, 1, 3};
@@ -164,7 +162,6 @@ void make_planes(const FormLanes& forms, const glm::dmat4& matrix, const double*
 // Whether a plane separates a box. Of a plane that uses a coordinate which is infinite nothing is certain. As below.
 template <class CompiledWhereCalled = void>
 bool is_separated(const SeparatingForms& planes, const float* box_min, const float* box_max) noexcept {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
     double min[3], max[3];
     double size = 0.0;
     for (std::size_t j = 0; j < 3; ++j) {
@@ -190,7 +187,6 @@ bool is_separated(const SeparatingForms& planes, const float* box_min, const flo
 
 // The same of a box a lane, by rows: min and max.
 TEXGEN_INLINE LongWords are_separated(const SeparatingForms& planes, const Doubles (&box)[8]) noexcept {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
     Doubles min[3], max[3];
     Doubles size{};
     TEXGEN_UNROLL

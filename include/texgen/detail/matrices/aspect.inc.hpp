@@ -22,7 +22,7 @@ template <class RectangularLens>
 RectangularLens contain_rectangle(RectangularLens lens, double aspect) noexcept {
     const double of_lens = aspect_of(lens);
     if (!is_aspect(aspect) || !is_aspect(of_lens)) {
-        lens.left = lens.right = std::numeric_limits<double>::quiet_NaN();
+        lens.left = lens.right = nan;
     } else if (aspect < of_lens) {
         narrow(lens.left, lens.right, aspect / of_lens);
     } else {
@@ -32,7 +32,6 @@ RectangularLens contain_rectangle(RectangularLens lens, double aspect) noexcept 
 }
 
 inline TextureRegion cover_aspect(double of_lens, double aspect, const TextureRegion& picture) noexcept {
-    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     glm::dvec2 low = (picture.min)(), high = (picture.max)();
     if (!is_aspect(aspect) || !is_aspect(of_lens)) return atlas_tile({nan, nan}, {nan, nan});
     if (aspect > of_lens) {

@@ -49,8 +49,7 @@ public:
         }
         if (!wants_normal_) return;
         const detail::CertifiedInverse inverse(detail::widened(modelview));
-        inverse_ =
-            glm::dmat3(inverse.regular() ? inverse.matrix() : glm::dmat4(std::numeric_limits<double>::quiet_NaN()));
+        inverse_ = glm::dmat3(inverse.regular() ? inverse.matrix() : glm::dmat4(detail::nan));
         const glm::dvec3 third_row(inverse_[0][2], inverse_[1][2], inverse_[2][2]);
         const double size = detail::largest(third_row);
         // A zero row has no scale to take away; only a projective M has one.

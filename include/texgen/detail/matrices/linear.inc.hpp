@@ -75,7 +75,7 @@ inline glm::dvec2 depth_error_bound(const WindowTexgen& texture_from_window, glm
     const detail::Bounded q = detail::value_at(detail::form(m, 3), v);
     const double least_q = q.value - q.error, slope_q = m[2][3];
     const double last_q = least_q - 1.001 * rounding * detail::magnitude(slope_q);
-    glm::dvec2 bound(std::numeric_limits<double>::infinity());
+    glm::dvec2 bound(detail::infinity);
     if (!(last_q > 0.0)) return bound;
     for (glm::length_t row = 0; row < 2; ++row) {
         // With d more depth, s/q changes by d (s' q - q' s) / (q (q + d q')), for s' and q' the slopes.

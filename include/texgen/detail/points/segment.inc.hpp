@@ -88,7 +88,7 @@ inline Mixture mixture_of(double a, double b) noexcept {
 inline double ulps_of_sum(double a, double b) noexcept {
     if (mixture_of(a, b).kind == Mixture::is_short) return 1.0;
     const double ratio = larger(std::fabs(a), std::fabs(b)) / smaller(std::fabs(a), std::fabs(b));
-    return a * b > 0.0 && is_finite(ratio) ? 1.0 + 2.0 * ratio : std::numeric_limits<double>::infinity();
+    return a * b > 0.0 && is_finite(ratio) ? 1.0 + 2.0 * ratio : infinity;
 }
 
 inline namespace TEXGEN_BUILD {
@@ -200,7 +200,6 @@ TEXGEN_INLINE void prepare_job(SegmentJob& job, const Segment& segment, int firs
 // lesser end, 2^-48 of their product at least: where alpha is not too small, what the first sum leaves and the rest
 // need no more than 53 bits above that.
 inline void prepare_exact(SegmentJob& job) noexcept {
-    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     double inexact = 0.0;
     job.are_short = true;
     const auto mixed_exactly = [&](double a, double b) {
@@ -316,12 +315,12 @@ inline Work work(const Segment& segment, TextureRegion region, Tolerance toleran
 }
 
 inline glm::dvec2 error_bound(const Segment& segment, Tolerance tolerance) noexcept {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
     const double accepted = detail::accepted(tolerance);
     const detail::SegmentEnds st(segment, 0, 1);
-    if (!detail::is_finite(st.a[0] + st.a[1] + st.b[0] + st.b[1] + st.q_a + st.q_b)) return {infinity, infinity};
+    if (!detail::is_finite(st.a[0] + st.a[1] + st.b[0] + st.b[1] + st.q_a + st.q_b))
+        return {detail::infinity, detail::infinity};
     if (st.q_a <= 0.0 && st.q_b <= 0.0) return {0.0, 0.0};
-    if (!st.are_in_front()) return {infinity, infinity};
+    if (!st.are_in_front()) return {detail::infinity, detail::infinity};
     const auto bound = [&](int coordinate) {
         const detail::SegmentEnds ends(segment, coordinate, coordinate);
         const detail::EndQuotients u(ends);

@@ -203,7 +203,7 @@ glm::dvec2 project_error_bound(const Transform<Texture, Space>& texture_from_spa
     for (std::size_t i = 0; i < positions.size(); ++i) {
         const glm::dvec3 v = detail::widened(positions[i]);
         const detail::Bounded q = detail::accurately_at(q_form, v);
-        if (!(q.error < 0x1p1000)) return glm::dvec2(std::numeric_limits<double>::infinity());
+        if (!(q.error < 0x1p1000)) return glm::dvec2(detail::infinity);
         if (q.value <= 0.0) continue;
         for (glm::length_t k = 0; k < 2; ++k) {
             const detail::PointForm form = detail::form(matrix, k);

@@ -12,8 +12,6 @@
 //
 // CONTRIBUTING.md has a table of which serve what.
 
-#include <limits>
-
 #include "../arithmetic/rounding.hpp"
 #include "../language.hpp"
 
@@ -32,7 +30,7 @@ struct FloatDivision {
         const double s_error = form_error * s_terms + underflow;
         const double q_error = form_error * q_terms + underflow;
         const double q = least_q * (1.0 - roundings) - q_error;
-        if (!(q > 0x1p-60 && s_terms < 0x1p127 && q_terms < 0x1p127)) return std::numeric_limits<double>::infinity();
+        if (!(q > 0x1p-60 && s_terms < 0x1p127 && q_terms < 0x1p127)) return infinity;
         return 1.001 * (s_error + largest * q_error) / q + roundings * largest;
     }
 };

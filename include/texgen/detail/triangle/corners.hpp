@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 
 #include "../../primitives.hpp"
 #include "../arithmetic/rounding.hpp"
@@ -237,7 +236,6 @@ TEXGEN_RARE inline void take_sides(const LitTest& lit, CloseFunctions& functions
         const double bound = std::fabs(least) + std::fabs(greatest);  // half of the larger one at least
         const double by_q = bound * 0x1.1p-21 + (0x1.1p-125 + 2.1 * functions.tolerance);
         const double error = functions.function[k].error + (2.0 * bound + by_q) * q_error;
-        constexpr double infinity = std::numeric_limits<double>::infinity();
         functions.side[k] = bound < infinity ? MaskSide{greatest + least, greatest - least, 1.02 * error, by_q}
                                              : MaskSide{0.0, 0.0, infinity, 0.0};
     }

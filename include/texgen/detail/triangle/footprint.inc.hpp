@@ -10,8 +10,6 @@ inline bool is_usable(const TexelsPerUnit& texels) noexcept {
 // is unit^2 det J, for a power of two that brings J near 1. So no square leaves the range of double.
 Footprint footprint_of(const glm::dvec2& dx, const glm::dvec2& dy, const auto& determinant,
                        const TexelsPerUnit& texels) noexcept {
-    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-    constexpr double infinity = std::numeric_limits<double>::infinity();
     const double largest_slope =
         larger_or_nan(larger_or_nan(std::fabs(dx.x), std::fabs(dx.y)), larger_or_nan(std::fabs(dy.x), std::fabs(dy.y)));
     if (!is_usable(texels) || !(largest_slope < infinity)) return {dx, dy, nan, {nan, nan}, nan, {nan, nan}};
@@ -71,8 +69,6 @@ inline std::optional<Footprint> footprint_at(const FootprintFunctions& functions
 template <class AreBehind>
 std::optional<FootprintExtremes> extremes_over(const FootprintFunctions& functions, const TexelsPerUnit& texels,
                                                const WindowPolygon& polygon, const AreBehind& are_behind) noexcept {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     const auto& s = functions.slope[0];
     const auto& t = functions.slope[1];
     glm::dvec2 reach(0.0, 0.0);
@@ -158,7 +154,7 @@ inline glm::dvec2 FootprintSetup::error_bound(FragmentRect rect) const noexcept 
     const detail::Corners at = detail::survey(functions_.triangle, tile).at;
     if (at.all_behind()) return {0.0, 0.0};
     const auto bound = [&](std::size_t k) {
-        if (!at.is_well_in_front()) return std::numeric_limits<double>::infinity();
+        if (!at.is_well_in_front()) return detail::infinity;
         const double numerator = functions_.largest(k, tile);
         const double error = functions_.error(k, tile) + 2.0 * at.q_error * at.reciprocal * numerator +
                              8.0 * detail::unit_roundoff_double * numerator;
@@ -205,14 +201,14 @@ inline double headlights(const Triangle& triangle) noexcept {
     for (const WindowVertex* vertex : {&triangle.a, &triangle.b, &triangle.c}) {
         const bool is_usable = vertex->clip_w > 0.0f && detail::is_finite(detail::widened(vertex->clip_w)) &&
                                detail::is_finite(detail::widened(vertex->strq.w));
-        if (!is_usable) return std::numeric_limits<double>::quiet_NaN();
+        if (!is_usable) return detail::nan;
         if (vertex->clip_w < nearest->clip_w) nearest = vertex;
         if (vertex->clip_w > farthest->clip_w) farthest = vertex;
     }
     const double near_q = detail::widened(nearest->strq.w);
     const double far_q = detail::widened(farthest->strq.w);
-    if (!(near_q > 0.0)) return std::numeric_limits<double>::quiet_NaN();
-    return far_q > 0.0 ? 1.5 * std::log2(near_q / far_q) : std::numeric_limits<double>::infinity();
+    if (!(near_q > 0.0)) return detail::nan;
+    return far_q > 0.0 ? 1.5 * std::log2(near_q / far_q) : detail::infinity;
 }
 
 }  // namespace TEXGEN_COMPILER

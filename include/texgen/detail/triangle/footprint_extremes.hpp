@@ -9,7 +9,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
@@ -87,7 +86,7 @@ struct RangeOfQ {
 };
 
 inline RangeOfQ range_of_q(const FootprintField& field, const WindowPolygon& polygon) noexcept {
-    RangeOfQ range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    RangeOfQ range{infinity, -infinity};
     for (std::size_t i = 0; i < polygon.count(); ++i) {
         const double q = field.q_at(polygon[i]);
         range = {smaller(q, range.least), larger(q, range.largest)};
@@ -229,8 +228,6 @@ private:
         return smaller_of({bound_at(n, larger(at_n, low.q)), next},
                           smaller_of({bound_at(low.n, low.q), next}, {bound_at(high.n, high.q), next}));
     }
-
-    static constexpr double infinity = std::numeric_limits<double>::infinity();
 
     static Least smaller_of(const Least& a, const Least& b) noexcept { return a.bound < b.bound ? a : b; }
     static double middle_of(double low, double high) noexcept {

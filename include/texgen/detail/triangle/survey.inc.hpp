@@ -146,7 +146,7 @@ inline glm::dvec2 TriangleSetup::error_bound(FragmentRect rect) const noexcept {
     if (at.all_behind()) return {0.0, 0.0};
     const auto bound = [&](std::size_t k) {
         if (plan.steps != detail::StepRule::undecided) return plan.error[k];
-        if (!at.all_in_front()) return std::numeric_limits<double>::infinity();
+        if (!at.all_in_front()) return detail::infinity;
         return detail::larger(functions_.tolerance, detail::half_ulp(at.largest_quotient()[k]));
     };
     return {bound(0), bound(1)};
