@@ -43,7 +43,23 @@ public:
     // makes every later decision independent of uniform and of diagonal scale. X ~ B^-1 is one elimination and steps of
     // refinement with a doubled residual: two, and more where elements are far apart, until each is as good as its
     // terms.
-    explicit CertifiedInverse(const glm::dmat4& matrix) noexcept;
+    explicit CertifiedInverse(const glm::dmat4& matrix) noexcept : scaled_(matrix) {
+        if (!is_finite(matrix) || !equilibrate() || !eliminate()) return;
+        clear_what_has_no_terms();
+        glm::dmat4 lacking = residual();
+        beta_ = certificate(lacking);
+        if (!regular()) return;
+        // A step, X <- X + X (I - B X), takes about 50 bits from what is noise: 900 in all lie between the elements.
+        constexpr int most_steps = 20;
+        inverse_ += inverse_ * lacking;
+        for (int step = 2; step <= most_steps; ++step) {
+            const glm::dmat4 before = inverse_;
+            lacking = residual();
+            const bool is_last = is_as_good_as_its_terms(lacking);
+            inverse_ += before * lacking;
+            if (is_last || inverse_ == before) return;
+        }
+    }
 
     // Whether norm(I - B X) + 5 u norm(|X| |B|) for the X of the elimination is below 1, which proves that A is
     // regular. For an exactly singular A it is at least 1 for every X: with y B = 0, y (I - B X) = y. False for what is
@@ -53,14 +69,34 @@ public:
     // A^-1 = C X R; each element within 2 ulp of the largest of its terms in A^-1 A A^-1 while the condition of B stays
     // below 1e8 and its terms, in X B X, above least_scaled. Half an ulp of its own may be all of that: as B X = 1 has
     // four terms, one of X B X is at least a quarter of it.
-    glm::dmat4 matrix() const noexcept;
+    glm::dmat4 matrix() const noexcept {
+        glm::dmat4 result;
+        for (glm::length_t j = 0; j < 4; ++j)
+            result[j] = times_powers_of_two(inverse_[j], column_exponent_ + row_exponent_[j]);
+        return result;
+    }
 
     // row A^-1, solved and refined by itself: the product of row and a rounded inverse could cancel.
-    glm::dvec4 solve_row(const glm::dvec4& row) const noexcept;
+    glm::dvec4 solve_row(const glm::dvec4& row) const noexcept {
+        // y A = row with B = R A C is (y R^-1) B = row C.
+        const glm::dvec4 target = times_powers_of_two(row, column_exponent_);
+        glm::dvec4 solution(0.0), residual = target;
+        for (int pass = 0; pass < 3; ++pass) {
+            for (glm::length_t j = 0; j < 4; ++j)
+                for (glm::length_t k = 0; k < 4; ++k) solution[j] += residual[k] * inverse_[j][k];
+            for (glm::length_t j = 0; j < 4; ++j) residual[j] = residual_of(solution, scaled_[j], target[j]);
+        }
+        return times_powers_of_two(solution, row_exponent_);
+    }
 
     // A bound on |solution - rows A^-1|, element by element, for any solution: solve_row()'s, or matrix() for the rows
     // of the identity, or one from elsewhere. A NaN or an infinity stays one; infinite where A is not regular.
-    glm::dmat4 error_of(const glm::dmat4& solution, const glm::dmat4& rows) const noexcept;
+    glm::dmat4 error_of(const glm::dmat4& solution, const glm::dmat4& rows) const noexcept {
+        const double r = contraction();
+        const glm::dmat4 solved = glm::transpose(solution), given = glm::transpose(rows);
+        return glm::transpose(glm::dmat4(error_of_row(solved[0], given[0], r), error_of_row(solved[1], given[1], r),
+                                         error_of_row(solved[2], given[2], r), error_of_row(solved[3], given[3], r)));
+    }
     glm::dvec4 error_of(const glm::dvec4& solution, const glm::dvec4& row) const noexcept {
         return error_of_row(solution, row, contraction());
     }
@@ -227,50 +263,6 @@ private:
     glm::ivec4 column_exponent_{0};  // C = diag(2^column_exponent)
     double beta_ = infinity;
 };
-
-inline CertifiedInverse::CertifiedInverse(const glm::dmat4& matrix) noexcept : scaled_(matrix) {
-    if (!is_finite(matrix) || !equilibrate() || !eliminate()) return;
-    clear_what_has_no_terms();
-    glm::dmat4 lacking = residual();
-    beta_ = certificate(lacking);
-    if (!regular()) return;
-    // A step, X <- X + X (I - B X), takes about 50 bits from what is noise: 900 in all lie between the elements.
-    constexpr int most_steps = 20;
-    inverse_ += inverse_ * lacking;
-    for (int step = 2; step <= most_steps; ++step) {
-        const glm::dmat4 before = inverse_;
-        lacking = residual();
-        const bool is_last = is_as_good_as_its_terms(lacking);
-        inverse_ += before * lacking;
-        if (is_last || inverse_ == before) return;
-    }
-}
-
-inline glm::dmat4 CertifiedInverse::matrix() const noexcept {
-    glm::dmat4 result;
-    for (glm::length_t j = 0; j < 4; ++j)
-        result[j] = times_powers_of_two(inverse_[j], column_exponent_ + row_exponent_[j]);
-    return result;
-}
-
-inline glm::dvec4 CertifiedInverse::solve_row(const glm::dvec4& row) const noexcept {
-    // y A = row with B = R A C is (y R^-1) B = row C.
-    const glm::dvec4 target = times_powers_of_two(row, column_exponent_);
-    glm::dvec4 solution(0.0), residual = target;
-    for (int pass = 0; pass < 3; ++pass) {
-        for (glm::length_t j = 0; j < 4; ++j)
-            for (glm::length_t k = 0; k < 4; ++k) solution[j] += residual[k] * inverse_[j][k];
-        for (glm::length_t j = 0; j < 4; ++j) residual[j] = residual_of(solution, scaled_[j], target[j]);
-    }
-    return times_powers_of_two(solution, row_exponent_);
-}
-
-inline glm::dmat4 CertifiedInverse::error_of(const glm::dmat4& solution, const glm::dmat4& rows) const noexcept {
-    const double r = contraction();
-    const glm::dmat4 solved = glm::transpose(solution), given = glm::transpose(rows);
-    return glm::transpose(glm::dmat4(error_of_row(solved[0], given[0], r), error_of_row(solved[1], given[1], r),
-                                     error_of_row(solved[2], given[2], r), error_of_row(solved[3], given[3], r)));
-}
 
 // How far the 3x3 part is from orthonormal, and the last row from (0, 0, 0, 1): the largest deviation.
 inline double distance_from_rigid(const glm::dmat4& m) noexcept {
