@@ -30,8 +30,7 @@ inline namespace TEXGEN_BUILD {
 // boxes about q = 0 may be `partial`.) A sphere is `partial` too where no plane but one through a vertex of the volume
 // leaves it out. A batch answers as the single question does. No allocation, noexcept; what is prepared is never
 // changed, so threads may share it.
-// Shape: bodies of Space, in order; both spans have one size (asserted; else nothing is
-// written).
+// Shape: bodies of Space, in order; both spans have one size (asserted; else nothing is written).
 // Bad input: a NaN anywhere in a body, or a matrix that is not finite: partial. A box with min > max in some axis, a
 // sphere with a negative radius, an empty region (see TextureRegion) or a q that is 0 everywhere: outside. Exponents so
 // far apart that exact sums leave the range of double (elements below 2^-600 of the matrix's largest, sides of the

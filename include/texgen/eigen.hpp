@@ -101,9 +101,8 @@ requires detail::EigenDense<Vector> && detail::FloatOrDouble<typename Vector::Sc
 // Views the floats of an Eigen object as points.
 // Guarantee: they are not copied, and must outlive the view; no allocation, noexcept.
 // Shapes: points as columns of a 3 x N (Matrix3Xf, Ref, Map, middleRows<3>(i), but not block(i, 0, 3, n), whose rows
-// are not known when it is compiled; interleaved where its columns are dense, planar where
-// it is row-major), as rows of an N x 3, or as three vectors of coordinates of one size and one inner stride. Any
-// strides.
+// are not known when it is compiled; interleaved where its columns are dense, planar where it is row-major), as rows of
+// an N x 3, or as three vectors of coordinates of one size and one inner stride. Any strides.
 // Bad input: three vectors that disagree, and negative strides, are asserted; without assertions they are no points.
 template <class... Floats>
 Positions<Object> object_space(Floats&&... values) noexcept requires detail::EigenPositions<Floats...> {

@@ -104,8 +104,7 @@ inline constexpr double interpolation_error = 0x1p-50;
 // double: coordinates that are 0 or at least 2^-13, below 2^17. No allocation, noexcept.
 // Shape: outputs are row-major, width * height; an empty span is not computed. In front of the projector (q > 0) s, t,
 // r are the quotients, and lit is 1 where the s and t, and with a depth the r, that are (or would be) written lie in
-// the closed region, else 0.
-// Behind (q <= 0) all four are 0. Outside the triangle the values are those of its plane.
+// the closed region, else 0. Behind (q <= 0) all four are 0. Outside the triangle the values are those of its plane.
 // Bad input: preconditions, asserted: as strq(), and the sizes agree. NaN and infinity in a coordinate stay in that
 // coordinate; in q they make every fragment dark.
 inline void interpolate(const Triangle& triangle, TextureRegion region, FragmentRect rect, Texcoords out) noexcept {

@@ -42,8 +42,7 @@ struct HomogeneousTexcoords {
 };
 
 // A view of points with w = 1 in a known space: three arrays of floats that share a stride. It owns nothing, and reads
-// floats at any alignment. Made by object_space(), world_space(), eye_space() and
-// window_space().
+// floats at any alignment. Made by object_space(), world_space(), eye_space() and window_space().
 template <class Space>
 class Positions {
 public:

@@ -177,8 +177,7 @@ struct CloseLanes : CloseTerms {
                                    magnitude(given.number(i, 1) - given.number(0, 1)));
             const LongWords is_far = greater(magnitude(to_x[0].high) + magnitude(to_y[0].high), spread);
             for (std::size_t i = 0; i < 3; ++i) {
-                const std::size_t j = (i + 1) % 3;
-                const std::size_t k = (i + 2) % 3;
+                const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
                 from_x[i].set(given.number(k, 0), select(is_far, given.number(j, 0), x));
                 from_y[i].set(given.number(k, 1), select(is_far, given.number(j, 1), y));
                 lost = lost + (magnitude(from_x[i].lost) + magnitude(from_y[i].lost));
@@ -278,8 +277,7 @@ struct ResidueLanes {
         }
         TEXGEN_UNROLL
         for (std::size_t i = 0; i < 3; ++i) {
-            const std::size_t j = (i + 1) % 3;
-            const std::size_t k = (i + 2) % 3;
+            const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
             side[i] = scale_[i] * (to_x_[j] * to_y_[k] - to_y_[j] * to_x_[k]);
         }
     }
@@ -288,8 +286,7 @@ struct ResidueLanes {
     TEXGEN_INLINE void steps(Residues (&dx)[3], Residues (&dy)[3]) const noexcept {
         TEXGEN_UNROLL
         for (std::size_t i = 0; i < 3; ++i) {
-            const std::size_t j = (i + 1) % 3;
-            const std::size_t k = (i + 2) % 3;
+            const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
             dx[i] = scale_[i] * (to_y_[j] - to_y_[k]);
             dy[i] = scale_[i] * (to_x_[k] - to_x_[j]);
         }
@@ -333,8 +330,7 @@ struct NearLanes {
     TEXGEN_INLINE NearLanes(const VertexLanes& given, const Doubles& x, const Doubles& y) noexcept {
         TEXGEN_UNROLL
         for (std::size_t i = 0; i < 3; ++i) {
-            const std::size_t j = (i + 1) % 3;
-            const std::size_t k = (i + 2) % 3;
+            const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
             const Doubles left = (given.number(j, 0) - x) * (given.number(k, 1) - given.number(j, 1));
             const Doubles right = (given.number(j, 1) - y) * (given.number(k, 0) - given.number(j, 0));
             const Doubles weight = given.number(j, 2) * given.number(k, 2);

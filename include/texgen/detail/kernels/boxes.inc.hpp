@@ -160,9 +160,8 @@ void decide_spheres(const UnitForms& forms, std::size_t form_count, const OpenRo
         TEXGEN_UNROLL
         for (std::size_t j = 0; j < 4; ++j)
             sphere[j] = count == 1 ? Doubles{} + widened(*spheres[j]) : to_doubles(load<Floats>(spheres[j] + i));
-        const Doubles(&centre)[4] = sphere;
         const Doubles& radius = sphere[3];
-        const Doubles size = magnitude(centre[0]) + magnitude(centre[1]) + magnitude(centre[2]);
+        const Doubles size = magnitude(sphere[0]) + magnitude(sphere[1]) + magnitude(sphere[2]);
         const LongWords is_sphere = greater(Doubles{} + infinity, size + radius) & at_most(Doubles{}, radius);
         const Doubles of_q = ((size + radius * 2.0) * forms.largest_q + forms.last_q) * 1.1;
         const Doubles squared_radius = radius * radius;
@@ -170,7 +169,7 @@ void decide_spheres(const UnitForms& forms, std::size_t form_count, const OpenRo
         LongWords outside = ~is_sphere, dark{}, inside = is_sphere;
         for (std::size_t k = 0; k < form_count; ++k) {
             value[k] =
-                centre[0] * forms.a[0][k] + (centre[1] * forms.a[1][k] + (centre[2] * forms.a[2][k] + forms.d[k]));
+                sphere[0] * forms.a[0][k] + (sphere[1] * forms.a[1][k] + (sphere[2] * forms.a[2][k] + forms.d[k]));
             const Doubles error = size * forms.error_a[k] + forms.error_d[k];
             margin[k] = error * 16.0;
             reach[k] = magnitude(value[k]) + margin[k];

@@ -49,8 +49,7 @@ inline Difference scaled_difference(const glm::dvec3& to, const glm::dvec3& from
 inline glm::dvec3 cross(const Difference& a, const glm::dvec3& b) noexcept {
     glm::dvec3 result(0.0);
     for (glm::length_t i = 0; i < 3; ++i) {
-        const glm::length_t j = (i + 1) % 3;
-        const glm::length_t k = (i + 2) % 3;
+        const glm::length_t j = (i + 1) % 3, k = (i + 2) % 3;
         Expansion<8> sum;
         sum.add_product(a.high[j], b[k]);
         sum.add_product(a.low[j], b[k]);

@@ -38,8 +38,7 @@ struct FormLanes {
     double largest_q, last_q;
 };
 
-// The same, times numbers that bring |a| to 1, or up to 14 u below it; a constant
-// form is far above any radius.
+// The same, times numbers that bring |a| to 1, or up to 14 u below it; a constant form is far above any radius.
 struct UnitForms : FormLanes {};
 
 // The same in float, twice the value each, a lane a form, with one bound for all: over a body each errs by less than

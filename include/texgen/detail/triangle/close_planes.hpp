@@ -102,8 +102,7 @@ public:
         Pair to[3];  // from the first fragment to the corners
         for (std::size_t i = 0; i < 3; ++i) to[i] = Pair(corner(i), first);
         for (std::size_t i = 0; i < 3; ++i) {
-            const std::size_t j = (i + 1) % 3;
-            const std::size_t k = (i + 2) % 3;
+            const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
             const DoubleDouble left = product(to[j].lane(0), to[k].lane(1));
             const DoubleDouble right = product(to[j].lane(1), to[k].lane(0));
             const Pair side(corner(j), corner(k));
@@ -256,8 +255,7 @@ public:
             y[i] = residue_of(planes.corner(i).y * per_y) - first_y;
         }
         for (std::size_t i = 0; i < 3; ++i) {
-            const std::size_t j = (i + 1) % 3;
-            const std::size_t k = (i + 2) % 3;
+            const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
             const std::uint64_t weight = residue_of(planes.weight(i) * per_weight);
             edge_[i] = {weight * (x[j] * y[k] - y[j] * x[k]), weight * ((y[j] - y[k]) * one_x),
                         weight * ((x[k] - x[j]) * one_y)};

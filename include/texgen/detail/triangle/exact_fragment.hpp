@@ -75,8 +75,7 @@ private:
     // G_j : G_k = w_k (k - p) : w_j (p - j). False where p is on none, or a difference is no double.
     TEXGEN_RARE bool is_on_side(const DoubleDouble (&to_x)[3], const DoubleDouble (&to_y)[3]) noexcept {
         for (std::size_t i = 0; i < 3; ++i) {
-            const std::size_t j = (i + 1) % 3;
-            const std::size_t k = (i + 2) % 3;
+            const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
             if (to_x[j].low != 0.0 || to_y[j].low != 0.0 || to_x[k].low != 0.0 || to_y[k].low != 0.0) continue;
             const DoubleDouble left = two_product(to_x[j].high, to_y[k].high);
             const DoubleDouble right = two_product(to_y[j].high, to_x[k].high);
