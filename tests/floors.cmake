@@ -178,9 +178,11 @@ foreach(header IN LISTS headers)
     # What was given in float is widened by one function (see detail/arithmetic/widen.hpp); a cast of integers says so. Kernels load
     # their floats from arrays. What is converted without a cast, the build of every header alone refuses.
     if(NOT header MATCHES "widen\\.hpp$|^detail/(simd|kernels)/.*\\.inc\\.hpp$")
-        file(STRINGS ${file} conversions REGEX "static_cast<double>|[^A-Za-z_:<]double[({][A-Za-z_(*]|glm::d(vec|mat)[234]( [a-z_]+)?[({][A-Za-z_(*]([^(), <]|\\([^(),]*\\))*[)}]")
+        set(conversion "static_cast<double>|[^A-Za-z_:<]double[({][A-Za-z_(*]|glm::d(vec|mat)[234]( [a-z_]+)?[({][A-Za-z_(*]([^(), <]|\\([^(),]*\\))*[)}]")
+        file(STRINGS ${file} conversions REGEX "${conversion}")
         foreach(line IN LISTS conversions)
-            if(NOT line MATCHES "// integers$")
+            string(REGEX REPLACE "[({](detail::)?(infinity|nan)[)}]" "" line "${line}")
+            if(line MATCHES "${conversion}" AND NOT line MATCHES "// integers$")
                 complain("${header}: ${line} may convert a float: see detail/arithmetic/widen.hpp")
             endif()
         endforeach()
