@@ -56,14 +56,14 @@ inline constexpr double clip_error = 0x1p-50;
 // it.
 // Guarantee: every vertex that comes out has w > 0, and z + w >= 0 (negative_one_to_one), z >= 0 (zero_to_one) or,
 // where reversed_depth says that the near plane is z = w, z <= w. Vertices in front keep their bits. Each component of
-// a new vertex is within 1/2 float ulp + clip_error of the exact intersection, but z, which is the near plane's for the
-// w that comes out. It has the same bits whichever way its edge is walked, so shared edges stay closed. No allocation,
+// a new vertex is within 1/2 float ulp + clip_error of the exact intersection, w within that of itself, but z, which is
+// the near plane's for the w that comes out. It has the same bits whichever way its edge is walked, so shared edges stay closed. No allocation,
 // noexcept.
 // Shape: out.size() > polygon.size() (asserted); out may begin where the polygon does, and overlaps it in no other way.
 // Bad input: a polygon with a position that is not finite is dropped, as is one that crosses the plane more than twice
 // (no convex polygon does). strq may hold anything. Where the near plane leaves room for w <= 0 (an oblique near
-// plane), edges are cut a second time, at a millionth of the w of their end in front; that can take one vertex more,
-// and where `out` has no room for it the polygon is dropped.
+// plane), or for a w below all floats, edges are cut a second time, at a millionth (2^-20) of the w of their end in
+// front; that can take one vertex more, and where `out` has no room for it the polygon is dropped.
 // Source: Blinn and Newell, Clipping Using Homogeneous Coordinates (1978); Sutherland and Hodgman, Reentrant Polygon
 // Clipping, CACM 17 (1974).
 inline std::size_t clip_to_near(std::span<const ClipVertex> polygon, std::span<ClipVertex> out, DepthRange range,
@@ -125,8 +125,8 @@ inline namespace TEXGEN_COMPILER {
 // coordinate: a polygon that reaches it is cut at a millionth (2^-20) of the q of the edge's other end.
 // Bad input: a polygon with an s, t or q that is not finite is dropped, with a depth also one with such an r, and all
 // are where the region holds no point. The position may hold anything, as may r without a depth. What is not convex (as
-// rounding may leave a polygon with more than three corners) is cut as it is, and dropped where `out` has no room for
-// the vertices that this takes beyond 5, or 7.
+// rounding may leave a polygon with more than three corners) is cut as it is, and may be dropped where `out` has no
+// more room than that.
 // Source: Sutherland and Hodgman, Reentrant Polygon Clipping, CACM 17 (1974).
 inline std::size_t clip_to_slide(std::span<const ClipVertex> polygon, TextureRegion region,
                                  std::span<ClipVertex> out) noexcept;

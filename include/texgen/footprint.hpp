@@ -90,7 +90,8 @@ public:
     FootprintSetup(const TriangleSetup& triangle, TexelsPerUnit texels) noexcept;
 
     // Computes the footprint of the fragment (x, y), empty behind the projector; the sign of q is decided exactly.
-    // Guarantee: dx and dy within error_bound() without its rounding to float. No allocation, noexcept.
+    // Guarantee: dx and dy within error_bound() without its rounding to float; the rest is that of digits of J which
+    // they have lost where it is almost singular, and has no bound. No allocation, noexcept.
     std::optional<Footprint> at(int x, int y) const noexcept;
 
     // Bounds the error of what footprint() writes to dsdx and dsdy (x), dtdx and dtdy (y).
@@ -101,8 +102,8 @@ public:
     // Finds the extremes of the footprints over a rectangle.
     // Guarantee: no fragment of the rectangle that is in front of the projector has a level, an area or an anisotropy
     // outside of these (they hold for exact footprints and for those of `exact`; a tolerance may add its share). Each
-    // is reached within 1 % at some point of the rectangle (that is levels within 0.015) where q is well away from 0;
-    // largest_level, largest_area and largest_anisotropy are infinite where q is not. Empty where all is behind the
+    // is reached within 1 % at some point of the rectangle (that is levels within 0.015) where q is well away from 0,
+    // also beside its terms; largest_level, largest_area and largest_anisotropy are infinite where q is not. Empty where all is behind the
     // projector or the rectangle is empty. A level of the Jacobian 0 is -infinity, and NaN where the texels are bad. It
     // takes as long as some tens of fragments, and never visits them. No allocation, noexcept.
     std::optional<FootprintExtremes> extremes(FragmentRect rect) const noexcept;
@@ -124,7 +125,7 @@ private:
 // from it the level of detail rises by 3/2 log2(w_far / w_near) for the camera, and by 3/2 log2(q_near / q_far) for the
 // projector. The latter is the score, in levels: 0 for a parallel projector, negative where the projector stands with
 // the camera and evens out what the camera does, positive where both add up; infinite where the projector's plane is
-// reached. No allocation, noexcept.
+// reached. Of vertices as near, or as far, those count that score the most. No allocation, noexcept.
 // Bad input: NaN where a clip_w is not positive, a clip_w or q not finite, or q is not positive at the vertex nearest
 // to the camera.
 // Source: Everitt, Projective Texture Mapping; the dueling frusta of Stamminger and Drettakis, Perspective Shadow Maps,

@@ -216,6 +216,50 @@ TEST_CASE("what comes out is in front of the near plane, has w > 0, and lies on 
     }
 }
 
+TEST_CASE("an edge that crosses the near plane next to the eye keeps the digits of its w") {
+    Random random(48);
+    int cancelling = 0;
+    for (const NearPlane plane : near_planes) {
+        for (int i = 0; i < 2000; ++i) {
+            const auto end = [&](float side) {
+                const float large = side * random.uniform_float(1.0, 4.0);
+                const float small = std::ldexp(random.uniform_float(1.0, 2.0), -random.integer(1, 120));
+                const bool is_plain = !plane.reversed && plane.range == DepthRange::zero_to_one;
+                const float z = is_plain ? large : plane.reversed ? small : -small;
+                return ClipVertex{
+                    {random.uniform_float(-1.0, 1.0), random.uniform_float(-1.0, 1.0), z, is_plain ? small : large},
+                    random.vector4(1.0)};
+            };
+            const Polygon triangle{end(1.0f), end(-1.0f), end(1.0f)};
+            const Polygon out = clipped(triangle, plane);
+            const std::string input = hex_of(triangle);
+            REQUIRE_MESSAGE(out.size() == 4, input);
+            const auto is_crossing = [&](const ClipVertex& v) {
+                for (const ClipVertex* inside : {&triangle[0], &triangle[2]}) {
+                    const ClipVertex& outside = triangle[1];
+                    const Rational d_i = distance(inside->position, plane), d_o = distance(outside.position, plane);
+                    const auto between = [&](float from, float to) {
+                        return Rational((d_i * exactly(to) - d_o * exactly(from)) / (d_i - d_o));
+                    };
+                    const Rational w = between(inside->position.w, outside.position.w);
+                    const Rational x = between(inside->position.x, outside.position.x);
+                    cancelling += w < exactly(0x1p-60);
+                    if (support::magnitude(exactly(v.position.w) - w) <= w * exactly(0x1.0001p-24) &&
+                        support::magnitude(exactly(v.position.x) - x) <= exactly(0x1.01p-24))
+                        return true;
+                }
+                return false;
+            };
+            for (const ClipVertex& v : out) {
+                REQUIRE_MESSAGE(distance(v.position, plane) >= 0, input);
+                const bool is_kept = bits(v) == bits(triangle[0]) || bits(v) == bits(triangle[2]);
+                REQUIRE_MESSAGE((is_kept || is_crossing(v)), input);
+            }
+        }
+    }
+    CHECK(cancelling > 1000);
+}
+
 TEST_CASE("neighbours that share an edge get the same bits on it, whichever way they walk") {
     Random random(34);
     for (const NearPlane plane : near_planes) {

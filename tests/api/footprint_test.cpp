@@ -1063,6 +1063,9 @@ TEST_CASE(
     bad.c.clip_w = 2.0f;
     bad.c.strq.w = -1.0f;
     CHECK(texgen::headlights(bad) == infinity_double);
+    std::swap(bad.b, bad.c);  // no corner is far from it alone
+    bad.c.clip_w = 3.0f;
+    CHECK(texgen::headlights(bad) == infinity_double);
     const Triangle good = bad;
     for (const float no_number : {std::numeric_limits<float>::quiet_NaN(), HUGE_VALF}) {
         for (std::size_t i = 0; i < 3; ++i) {
@@ -1074,4 +1077,30 @@ TEST_CASE(
             CHECK(std::isnan(texgen::headlights(bad)));
         }
     }
+}
+
+TEST_CASE("the score is that of the triangle, in whatever order its corners are") {
+    Random random(4713);
+    int finite = 0, infinite = 0;
+    for (int i = 0; i < 2000; ++i) {
+        Triangle triangle{};
+        for (WindowVertex* vertex : support::vertices(triangle)) {
+            const auto whole = [&](int least, int largest) {
+                return static_cast<float>(random.integer(least, largest));
+            };
+            *vertex = {{0, 0}, whole(1, 3), {0, 0, 0, whole(-1, 4)}};
+        }
+        const auto& [a, b, c] = triangle;
+        const double score = texgen::headlights(triangle);
+        for (const Triangle& turned :
+             {Triangle{a, c, b}, Triangle{b, a, c}, Triangle{b, c, a}, Triangle{c, a, b}, Triangle{c, b, a}}) {
+            const double turned_score = texgen::headlights(turned);
+            INFO(hex(triangle), " ", turned_score, " ", score);
+            REQUIRE((turned_score == score || (std::isnan(turned_score) && std::isnan(score))));
+        }
+        finite += std::isfinite(score);
+        infinite += std::isinf(score);
+        REQUIRE((std::isinf(score) || std::isnan(score)) == (a.strq.w <= 0 || b.strq.w <= 0 || c.strq.w <= 0));
+    }
+    CHECK(std::min(finite, infinite) > 300);
 }

@@ -19,6 +19,14 @@ struct ClipDistance {
         return z * widened(vertex.position.z) + w * widened(vertex.position.w) - offset;
     }
 
+    // The w at which an edge crosses a near plane: of two products of floats, which are exact, so that where it is small
+    // beside that of the ends it has all its digits.
+    float crossing_w(const ClipVertex& inside, const ClipVertex& outside) const noexcept {
+        const double z_inside = widened(inside.position.z), w_inside = widened(inside.position.w);
+        const double z_outside = widened(outside.position.z), w_outside = widened(outside.position.w);
+        const double crossing = z * (z_inside * w_outside - z_outside * w_inside);
+        return static_cast<float>(crossing / ((*this)(inside) - (*this)(outside)));
+    }
     // The z of a near plane where w is given: set, and not computed, it cannot be rounded to the other side.
     float depth_on_plane(float given_w) const noexcept { return static_cast<float>(0.0 - z * w) * given_w; }
 };
@@ -114,6 +122,7 @@ inline std::size_t clip_to_near(std::span<const ClipVertex> polygon, std::span<C
     if (any_behind && !any_in_front) return 0;
     const auto cut_at_near = [&](const ClipVertex& inside, const ClipVertex& outside) {
         ClipVertex cut = detail::between(-near_plane(outside), inside, near_plane(inside), outside);
+        cut.position.w = near_plane.crossing_w(inside, outside);
         cut.position.z = near_plane.depth_on_plane(cut.position.w);
         return cut;
     };

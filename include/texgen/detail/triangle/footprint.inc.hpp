@@ -196,19 +196,24 @@ inline std::optional<FootprintExtremes> FootprintSetup::extremes() const noexcep
 }
 
 inline double headlights(const Triangle& triangle) noexcept {
+    const auto is_nearer = [](const WindowVertex& a, const WindowVertex& b) {
+        return a.clip_w < b.clip_w || (a.clip_w == b.clip_w && a.strq.w > b.strq.w);
+    };
     const WindowVertex* nearest = &triangle.a;
     const WindowVertex* farthest = &triangle.a;
+    bool is_all_in_front = true;
     for (const WindowVertex* vertex : {&triangle.a, &triangle.b, &triangle.c}) {
         const bool is_usable = vertex->clip_w > 0.0f && detail::is_finite(detail::widened(vertex->clip_w)) &&
                                detail::is_finite(detail::widened(vertex->strq.w));
         if (!is_usable) return detail::nan;
-        if (vertex->clip_w < nearest->clip_w) nearest = vertex;
-        if (vertex->clip_w > farthest->clip_w) farthest = vertex;
+        if (is_nearer(*vertex, *nearest)) nearest = vertex;
+        if (is_nearer(*farthest, *vertex)) farthest = vertex;
+        is_all_in_front = is_all_in_front && vertex->strq.w > 0.0f;
     }
     const double near_q = detail::widened(nearest->strq.w);
     const double far_q = detail::widened(farthest->strq.w);
     if (!(near_q > 0.0)) return detail::nan;
-    return far_q > 0.0 ? 1.5 * std::log2(near_q / far_q) : detail::infinity;
+    return is_all_in_front ? 1.5 * std::log2(near_q / far_q) : detail::infinity;
 }
 
 }  // namespace TEXGEN_COMPILER
