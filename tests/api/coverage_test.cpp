@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include <glm/matrix.hpp>
+
 #include "judges/exact.hpp"
 #include "judges/rational_matrix.hpp"
 #include "support/hex.hpp"
@@ -664,13 +666,30 @@ TEST_CASE("a box that touches an edge of the pyramid at one point is not outside
     CHECK(touching > 2000);
 }
 
-TEST_CASE("of the boxes of random scenes less than 3 % are partial that could be outside") {
+namespace {
+
+// What is left where some sides are none, or lie so far away that they might be.
+TextureRegion without_some_sides(const TextureRegion& region, Random& random) {
+    glm::dvec2 min = region.min(), max = region.max();
+    for (glm::length_t k = 0; k < 2; ++k) {
+        const double far = random.coin() ? HUGE_VAL : random.power_of_ten(10.0, 60.0);
+        if (random.coin()) min[k] = -far;
+        if (random.coin()) max[k] = far;
+    }
+    const TextureRegion result = texgen::atlas_tile(min, max);
+    return region.depth() ? result.with_depth(region.depth()->x, region.depth()->y) : result;
+}
+
+}  // namespace
+
+TEST_CASE("of the boxes of random scenes less than 3 % are partial that could be outside, whatever sides there are") {
     Random random(42);
     Counts counts;
     long tested = 0;
-    for (int scene = 0; scene < 160; ++scene) {
+    for (int scene = 0; scene < 320; ++scene) {
         const double distance = scene % 4 == 0 ? 1e5 : 0.0;
-        const Slide slide = ordinary_slide(random, distance);
+        Slide slide = ordinary_slide(random, distance);
+        if (scene % 2 == 1) slide.region = without_some_sides(slide.region, random);
         const Judge judge(slide.matrix, slide.region);
         const LitVolume<texgen::World> volume(WorldTexgen(slide.matrix), slide.region);
         const glm::dvec3 apex = point_on(slide, 3, random, glm::dvec3(0.0));
@@ -856,6 +875,33 @@ private:
 };
 
 }  // namespace
+
+TEST_CASE("where sides are none a box is partial only if no plane leaves it out") {
+    Random random(4714);
+    Counts counts;
+    const auto integer = [&](int most) { return static_cast<double>(random.integer(-most, most)); };
+    for (int i = 0; i < 40000; ++i) {
+        Slide slide{glm::dmat4(0.0), whole_texture()};
+        for (glm::length_t j = 0; j < 4; ++j) slide.matrix[j] = {integer(3), integer(3), 0.0, integer(3)};
+        const auto row = [&](glm::length_t k) {
+            return glm::dvec3(slide.matrix[0][k], slide.matrix[1][k], slide.matrix[2][k]);
+        };
+        if (glm::determinant(glm::dmat3(row(0), row(1), row(3))) == 0.0) continue;  // there need be no pyramid
+        slide.region = without_some_sides(slide.region, random);
+        const glm::vec3 middle(integer(3), integer(3), integer(3));
+        const Box box{middle - glm::vec3(1.0f), middle + glm::vec3(1.0f)};
+        const Coverage answer = coverage(WorldTexgen(slide.matrix), slide.region, box);
+        const Judge judge(slide.matrix, slide.region);
+        const std::string wrong = what_is_wrong(answer, judge, true, box, counts);
+        REQUIRE_MESSAGE(wrong.empty(), wrong << ": " << hex(slide) << ", " << hex(box));
+        // Most that touch a plane, of these integers, touch it exactly.
+        const Box around{box.min - glm::vec3(0x1p-10f), box.max + glm::vec3(0x1p-10f)};
+        if (answer == Coverage::partial) REQUIRE_MESSAGE(!judge.is_outside(around), hex(slide) << ", " << hex(box));
+    }
+    MESSAGE("outside " << counts.outside << " (by a separating plane alone " << counts.separated << "), partial "
+                       << counts.partial << ", inside " << counts.inside);
+    CHECK(counts.separated > 500);
+}
 
 TEST_CASE("a sphere that just reaches an edge far from the origin is not outside") {
     // s = a (x - x of the edge) and t likewise, over q = 1: the rounding of a x is far above the ulp of a small

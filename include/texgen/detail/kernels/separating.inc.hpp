@@ -97,14 +97,13 @@ TEXGEN_INLINE void add_vertices(SeparatingForms& planes, const FormLanes& forms)
 
 // The planes through the apex that have x, y or z alone, a lane each. alpha T_s + beta T_t + gamma T_q with the
 // cofactors of that column of the 3x3 of the rows has no coefficient in the two others, and where alpha s + beta t +
-// gamma has one sign at the corners of the region, it has it in all of the pyramid.
+// gamma has one sign at the corners of the region, it has it in all of the pyramid; where a side is none, alpha, or
+// beta, has to have the sign that keeps it.
 template <class CompiledWhereCalled = void>
 TEXGEN_INLINE void add_axes(SeparatingForms& planes, const glm::dmat4& matrix, const double* side) noexcept {
     constexpr double is_axis[3][form_lanes] = {{1.0}, {0.0, 1.0}, {0.0, 0.0, 1.0}};
     constexpr double is_any_axis[form_lanes] = {1.0, 1.0, 1.0};
     constexpr glm::length_t coordinates[3] = {0, 1, 3};
-    const double largest_s = larger_or_nan(std::fabs(side[0]), std::fabs(side[1]));
-    const double largest_t = larger_or_nan(std::fabs(side[2]), std::fabs(side[3]));
     // Rows s, t and q, again and again, so that the axes which follow one can be read as well.
     double again[3][form_lanes + 4];
     for (std::size_t k = 0; k < 3; ++k)
@@ -129,14 +128,32 @@ TEXGEN_INLINE void add_axes(SeparatingForms& planes, const glm::dmat4& matrix, c
                    (magnitude(cofactor[0]) * s + magnitude(cofactor[1]) * t + magnitude(cofactor[2]) * q) * gamma(13) +
                    0x1p-1000;
         };
-        const Doubles of_s[2] = {cofactor[0] * side[0], cofactor[0] * side[1]};
-        const Doubles of_t[2] = {cofactor[1] * side[2], cofactor[1] * side[3]};
-        const Doubles least = minimum(of_s[0], of_s[1]) + minimum(of_t[0], of_t[1]) + cofactor[2];
-        const Doubles largest = maximum(of_s[0], of_s[1]) + maximum(of_t[0], of_t[1]) + cofactor[2];
-        const Doubles error_at_corners = bound(largest_s, largest_t, 1.0);
-        const LongWords is_positive = greater(least, error_at_corners);
+        // Of s, t and 1: between two sides, with their errors.
+        Doubles least = Doubles{} - 0x1p-999, largest = Doubles{} + 0x1p-999;
+        const auto add = [&](std::size_t k, double min, double max) {
+            const bool has_side = std::fabs(min) < infinity || std::fabs(max) < infinity;
+            Doubles low = Doubles{} + (has_side ? infinity : 0.0), high = low * -1.0;
+            for (const double at : {min, max}) {
+                if (std::fabs(at) < infinity) {
+                    const Doubles product = cofactor[k] * at;
+                    const Doubles margin = error[k] * (1.001 * std::fabs(at)) + magnitude(product) * gamma(13);
+                    low = minimum(product - margin, low);
+                    high = maximum(product + margin, high);
+                } else {
+                    const Doubles growth = at > 0.0 ? cofactor[k] : 0.0 - cofactor[k];
+                    low = select(greater(growth + 0x1p-999, error[k]), low, Doubles{} - infinity);
+                    high = select(greater(0x1p-999 - growth, error[k]), high, Doubles{} + infinity);
+                }
+            }
+            least = least + low;
+            largest = largest + high;
+        };
+        add(0, side[0], side[1]);
+        add(1, side[2], side[3]);
+        add(2, 1.0, 1.0);
+        const LongWords is_positive = greater(least, 0.0);
         const LongWords is_plane =
-            (is_positive | greater(0.0 - largest, error_at_corners)) & are_nonzero(load<Doubles>(is_any_axis + i));
+            (is_positive | greater(0.0 - largest, 0.0)) & are_nonzero(load<Doubles>(is_any_axis + i));
         const Doubles sign = select(is_positive, Doubles{} + 1.0, Doubles{} - 1.0);
 
         const Doubles a =
