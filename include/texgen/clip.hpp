@@ -57,8 +57,8 @@ inline constexpr double clip_error = 0x1p-50;
 // Guarantee: every vertex that comes out has w > 0, and z + w >= 0 (negative_one_to_one), z >= 0 (zero_to_one) or,
 // where reversed_depth says that the near plane is z = w, z <= w. Vertices in front keep their bits. Each component of
 // a new vertex is within 1/2 float ulp + clip_error of the exact intersection, w within that of itself, but z, which is
-// the near plane's for the w that comes out. It has the same bits whichever way its edge is walked, so shared edges stay closed. No allocation,
-// noexcept.
+// the near plane's for the w that comes out. It has the same bits whichever way its edge is walked, so shared edges
+// stay closed. No allocation, noexcept.
 // Shape: out.size() > polygon.size() (asserted); out may begin where the polygon does, and overlaps it in no other way.
 // Bad input: a polygon with a position that is not finite is dropped, as is one that crosses the plane more than twice
 // (no convex polygon does). strq may hold anything. Where the near plane leaves room for w <= 0 (an oblique near
@@ -100,8 +100,8 @@ template <class Space>
 ClipPlanes clip_planes(const Transform<Texture, Space>& texgen, TextureRegion region) noexcept;
 
 // How far outside a side of the region a vertex of clip_to_slide() may be: min q - u and u - max q are at most
-// slide_clip_error max(|min|, |max|) q for u = s and t, and for r where the region has a depth, while no number is
-// below the normal floats.
+// slide_clip_error max(|min|, |max|) q for u = s and t, and for r where the region has a depth, while no number, times
+// a side or not, is below the normal floats.
 //
 // A vertex that comes out has at most seven cuts behind it. A cut of vertices with u - min q >= -e q satisfies that
 // too, as it is linear, and rounding u and q moves u - min q by 2^-24 (|u| + |min| q) <= 2^-23 max(|min|, |max|) q

@@ -26,15 +26,17 @@ inline namespace TEXGEN_BUILD {
 // side, or of a limit of depth, a body is `partial`. (What a tolerance moves across a side is not looked for here.) A
 // box is `partial` only where it is so, or touches a plane through an edge or through the apex of the projector's
 // pyramid within 2^-47 of the sizes involved; the pyramid's own planes, with its sides at the floats next to the
-// region's, are decided exactly, as are the near and the far plane of a depth. (Where no r in front is in the depth,
-// boxes about q = 0 may be `partial`.) A sphere is `partial` too where no plane but one through a vertex of the volume
-// leaves it out. A batch answers as the single question does. No allocation, noexcept; what is prepared is never
-// changed, so threads may share it.
+// region's (next to 0 the normal ones), are decided exactly, as are the near and the far plane of a depth. (Where no r
+// in front is in the depth, boxes about q = 0 may be `partial`.) A sphere is `partial` too where no plane but one
+// through a vertex of the volume leaves it out, and where a side that is moved inwards by those floats would cut it, at
+// the largest q that points as far from the origin may have. A batch answers as the single question does. No
+// allocation, noexcept; what is prepared is never changed, so threads may share it.
 // Shape: bodies of Space, in order; both spans have one size (asserted; else nothing is written).
-// Bad input: a NaN anywhere in a body, or a matrix that is not finite: partial. A box with min > max in some axis, a
-// sphere with a negative radius, an empty region (see TextureRegion) or a q that is 0 everywhere: outside. Exponents so
-// far apart that exact sums leave the range of double (elements below 2^-600 of the matrix's largest, sides of the
-// region beyond 2^+-200): partial. An infinite side of the region, or limit of its depth, is none.
+// Bad input, the first that applies: a NaN anywhere in a body: partial. A box with min > max in some axis, a sphere
+// with a negative radius: outside. A matrix that is not finite: partial. An empty region (see TextureRegion): outside.
+// Exponents so far apart that exact sums leave the range of double (elements below 2^-600 of the matrix's largest,
+// sides of the region beyond 2^+-200): partial. A q that is 0 everywhere: outside. An infinite side of the region, or
+// limit of its depth, is none.
 // Source: the separating axis theorem; Gottschalk, Lin, Manocha, OBBTree, SIGGRAPH 1996.
 template <class Space>
 class LitVolume {

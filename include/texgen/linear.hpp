@@ -80,8 +80,8 @@ inline EyeTexgen eye_linear(const ProjectorProjection& projection, const Transfo
 // the camera sees. The depth is what the buffer holds: NDC z, or (z + 1)/2 under OpenGL's range. y grows as NDC y does:
 // for pixels from the top down (Direct3D, Metal) give the viewport {x, y + height, width, -height}; with Vulkan's y
 // down it is as it is.
-// Bad input: empty where V_c or P_c is singular to working precision, the viewport's width or height is 0, or a number
-// is not finite. The camera's conventions are its own.
+// Bad input: empty where inverse() refuses V_c or P_c, but for what overflows, the viewport's width or height is 0, or
+// a number is not finite. The camera's conventions are its own.
 // Source: Everitt, Projective Texture Mapping, (4), with the window in the place of the eye.
 inline std::optional<WindowTexgen> window_linear(const Projector& projector, const Projector& camera,
                                                  const Viewport& viewport, TextureRegion region = whole_texture(),
@@ -103,7 +103,7 @@ inline glm::dvec2 depth_error_bound(const WindowTexgen& texture_from_window, glm
 // Guarantee: solved and refined, so that rounded to float it is within 0.54 ulp of its largest component while the
 // condition of M (rows and columns scaled) stays below 1e8; no allocation, noexcept.
 // Shape: planes over the space that M takes to the eye. The rows of S P_p V_p under MODELVIEW = V_e give T_e.
-// Bad input: empty where M is singular to working precision, or a plane, M or a result is not finite.
+// Bad input: empty where inverse() refuses M, but for what overflows, or where a plane, M or a result is not finite.
 // Source: OpenGL compatibility specification, "Generating Texture Coordinates": p' = p M^-1, M current at the time of
 // the call.
 template <class Space>

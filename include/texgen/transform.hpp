@@ -82,10 +82,10 @@ using WindowTexgen = Transform<Texture, Window>;                     // T_w
 
 // Inverts a transform.
 // Guarantee: where it answers, each element of X = A^-1 is within 2 double ulp of the largest of its terms in X A X,
-// while the condition of A (rows and columns scaled) stays below 1e8, however far apart its elements are, as long as
-// that term is (likewise scaled) above 2^-900; an element without terms is 0. The answer is certified by its residual,
-// never by the size of a determinant, so any uniform scale is regular. An affine A has an exactly affine X. No
-// allocation, noexcept.
+// while the condition of A stays below 1e8 (its rows scaled to largest elements near 1, and then its columns), however
+// far apart its elements are, as long as that term is, likewise scaled, above 2^-900; an element without terms is 0.
+// The answer is certified by its residual, never by the size of a determinant, so any uniform scale is regular. An
+// affine A has an exactly affine X. No allocation, noexcept.
 // Bad input: empty for a matrix that is singular to working precision, is not finite, or whose inverse overflows, and
 // where an element is below 2^-900 of others in its row or column: scaling could round it.
 // Source: the residual bounds the error of any inverse: Higham, Accuracy and Stability of Numerical Algorithms, 14.
@@ -94,7 +94,7 @@ std::optional<Transform<From, To>> inverse(const Transform<To, From>& transform)
 
 // Bounds |inverse - transform^-1|, element by element, for any `inverse`: that of inverse(), of inverse_rigid(), a
 // rounded one, or one from elsewhere.
-// Guarantee: next to the error itself while the condition (rows and columns scaled) stays below 1e7. No allocation,
+// Guarantee: next to the error itself while the condition, of rows and columns scaled, stays below 1e7. No allocation,
 // noexcept; it costs about what inverse() does.
 // Shape: elements as in inverse.matrix().
 // Bad input: infinite where inverse() refuses the transform; a NaN or an infinity of the inverse stays in its row.

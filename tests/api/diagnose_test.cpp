@@ -999,6 +999,32 @@ TEST_CASE("no valid set-up along the axes is found fault with, however far, in f
     for (const int seen_so_often : {far, parallel, in_float, float_views, alone, lossy}) CHECK(seen_so_often > 1000);
 }
 
+TEST_CASE("a parallel light, however narrow and along whatever diagonal, lacks no w") {
+    Random random(4715);
+    int lossy = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const double half = random.power_of_ten(-9.0, 3.0);
+        const auto sign = [&] { return random.coin() ? 1.0 : -1.0; };
+        const texgen::OrthographicLens lens{-half, half, -half, half, 0.0, random.power_of_ten(-2.0, 3.0)};
+        const texgen::Aim aim{.position = glm::dvec3(0.0),
+                              .target = random.coin() ? glm::dvec3(sign(), sign(), sign()) : random.direction(),
+                              .up = {0.0, 1.0, 0.0}};
+        const auto projector = texgen::make_projector(lens, aim, texgen::opengl);
+        if (!projector) continue;
+        glm::dmat4 model(1.0);
+        for (int j = 0; j < 3; ++j) model[3][j] = random.integer(-9, 9);
+        const texgen::ObjectTexgen texgen(texgen::object_linear(*projector, texgen::ModelMatrix(model)).rounded());
+        for (const Diagnosis& diagnosis :
+             {texgen::diagnose(texgen), texgen::diagnose(texgen, {.projector = *projector}),
+              texgen::diagnose(texgen, {.projector = *projector, .world_from_space = texgen::ModelMatrix(model)})}) {
+            INFO(text(diagnosis), " half ", hex(half), " target ", hex(aim.target), " model ", hex(model));
+            lossy += diagnosis.contains(Defect::precision_lost);
+            REQUIRE((diagnosis.empty() || (diagnosis.contains(Defect::precision_lost) && diagnosis.size() == 1)));
+        }
+    }
+    CHECK(lossy > 1000);
+}
+
 TEST_CASE("every defect of the corpus is found, and stands first") {
     for (const Kind& kind : kinds) {
         Random random(601);

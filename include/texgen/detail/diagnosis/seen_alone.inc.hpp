@@ -118,7 +118,7 @@ inline void examine_seen_lens(const SeenLens& lens, const SetupMatrices& setup, 
 }
 
 // Of a matrix whose rows r and q are none of a lens: whether they are when 1/2 is taken from every element, as it is
-// added to a glm::mat4.
+// added to a glm::mat4. No parallel light has it: q would be that of a lens along a diagonal, and no view has its size.
 inline bool has_bias_in_every_column(const glm::dmat4& texgen, const glm::dmat4* pose) noexcept {
     const SeenLens lens(in_the_world(texgen - 0.5, pose), rounding_of(texgen));
     return lens.is_lens() && lens.is_centred_on(glm::dvec2(0.0));
@@ -146,7 +146,7 @@ inline bool examine_alone(const glm::dmat4& texgen, const SetupMatrices& setup, 
         const glm::dmat4* p = setup.projector != nullptr ? &setup.projector->projection.matrix() : nullptr;
         examine_seen_lens(lens, setup,
                           p != nullptr && is_lens(*p) ? meant_by(*p, *conventions, setup.lens) : setup.lens, diagnosis);
-    } else if (has_bias_in_every_column(texgen, setup.pose)) {
+    } else if (!rows.is_parallel_light && has_bias_in_every_column(texgen, setup.pose)) {
         diagnosis.add(Defect::bias_without_w);
     }
     const bool has_scale_bias =

@@ -30,7 +30,11 @@ std::optional<Transform<From, To>> inverse(const Transform<To, From>& transform)
 
 template <class To, class From>
 glm::dmat4 inverse_error_bound(const Transform<To, From>& transform, const Transform<From, To>& inverse) noexcept {
-    return detail::CertifiedInverse(transform.matrix()).error_of(inverse.matrix(), glm::dmat4(1.0));
+    const detail::CertifiedInverse certified(transform.matrix());
+    glm::dmat4 bound = certified.error_of(inverse.matrix(), glm::dmat4(1.0));
+    if (!detail::is_finite(certified.matrix()))
+        for (glm::length_t i = 0; i < 4; ++i) bound[i] = glm::dvec4(detail::infinity);
+    return bound;
 }
 
 template <class To, class From>
