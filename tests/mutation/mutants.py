@@ -52,7 +52,7 @@ MUTANTS = [
           "surface_test"),
          ("the low part of a minor is lost", "sum.add_product(minor.low, row_[k].z);", "", "surface_test")),
     *_of("detail/triangle/surface.inc.hpp",
-         ("a quadrilateral loses digits of s and t", "        if (is_lost(strq[i].x, u) || is_lost(strq[i].y, v)) return std::nullopt;\n", "",
+         ("a quadrilateral loses digits of s and t", "        if (detail::is_lost(strq[i].x, u) || detail::is_lost(strq[i].y, v)) return std::nullopt;\n", "",
           "surface_test"),
          ("the origin is at the other end", "(sign > 0) == (origin == TextureOrigin::bottom_left)",
           "(sign > 0) == (origin == TextureOrigin::top_left)", "surface_test"),

@@ -45,8 +45,7 @@ private:
     double winding_ = 1.0, least_area_ = 0.0;
 };
 
-// (u q, v q, 0, q) for a corner of the region, such that the quotients are u and v. A product that is no normal float
-// loses digits of them.
+// (u q, v q, 0, q) for a corner of the region, such that the quotients are u and v.
 inline glm::vec4 strq_of_corner(float u, float v, float nearest_q) noexcept {
     const auto times_q = [](float coordinate, float q) { return static_cast<float>(widened(coordinate) * widened(q)); };
     const auto is_exact = [&](float coordinate, float q) { return times_q(coordinate, q) / q == coordinate; };
@@ -59,6 +58,9 @@ inline glm::vec4 strq_of_corner(float u, float v, float nearest_q) noexcept {
     }
     return {times_q(u, q), times_q(v, q), 0.0f, q};
 }
+
+// Whether a product with q, which is no normal float, has lost digits of the other factor.
+inline bool is_lost(float product, float factor) noexcept { return factor != 0.0f && std::fabs(product) < 0x1p-126f; }
 
 }  // namespace TEXGEN_DETAIL
 
@@ -96,14 +98,13 @@ inline std::optional<std::array<glm::vec4, 4>> quadrilateral(const std::array<gl
     const detail::ConvexQuadrilateral shape(corners);
     if (!shape.is_convex()) return std::nullopt;
     const glm::vec2 least{(region.min)()}, greatest{(region.max)()};
-    const auto is_lost = [](float product, float factor) { return factor != 0.0f && std::fabs(product) < 0x1p-126f; };
     std::array<glm::vec4, 4> strq{};
     for (std::size_t i = 0; i < 4; ++i) {
         const auto q = static_cast<float>(shape.q(i));
         const float u = i == 1 || i == 2 ? greatest.x : least.x, v = i >= 2 ? greatest.y : least.y;
         if (!(q >= 0x1p-126f)) return std::nullopt;
         strq[i] = detail::strq_of_corner(u, v, q);
-        if (is_lost(strq[i].x, u) || is_lost(strq[i].y, v)) return std::nullopt;
+        if (detail::is_lost(strq[i].x, u) || detail::is_lost(strq[i].y, v)) return std::nullopt;
     }
     return strq;
 }
