@@ -9,7 +9,7 @@ inline Coverage coverage_without_forms(const LitForms& forms, const Box& box) no
         if (std::isnan(box.min[j]) || std::isnan(box.max[j])) return Coverage::partial;
         is_empty = is_empty || box.min[j] > box.max[j];
     }
-    return is_empty || forms.light_nothing() ? Coverage::outside : Coverage::partial;
+    return is_empty || forms.lights_nothing() ? Coverage::outside : Coverage::partial;
 }
 
 // Whether a box holds a point that is a number: of a NaN and beyond all numbers, inf - inf, an extent is a NaN.

@@ -48,7 +48,7 @@ public:
     }
 
     // Whether every point is dark: the region is empty or q is 0 everywhere.
-    bool light_nothing() const noexcept { return lights_nothing_; }
+    bool lights_nothing() const noexcept { return lights_nothing_; }
 
     // Whether bodies have to be asked about: not where every point is dark, nor for numbers that are not finite or
     // exponents so far apart that an exact sum could leave the range of double.

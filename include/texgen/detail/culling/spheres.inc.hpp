@@ -7,7 +7,7 @@ inline Coverage coverage_without_forms(const LitForms& forms, const Sphere& sphe
     const glm::vec3& centre = sphere.centre;
     if (std::isnan(centre.x) || std::isnan(centre.y) || std::isnan(centre.z) || std::isnan(sphere.radius))
         return Coverage::partial;
-    return sphere.radius < 0.0f || forms.light_nothing() ? Coverage::outside : Coverage::partial;
+    return sphere.radius < 0.0f || forms.lights_nothing() ? Coverage::outside : Coverage::partial;
 }
 
 inline namespace TEXGEN_BUILD {

@@ -3,7 +3,7 @@
 namespace TEXGEN_DETAIL {
 
 // Whether a matrix holds numbers to go on with; if not, says why.
-inline bool is_usable(const glm::dmat4& m, Diagnosis& diagnosis) noexcept {
+inline bool examine_usable(const glm::dmat4& m, Diagnosis& diagnosis) noexcept {
     const bool has_numbers = is_finite(m), is_written = m != glm::dmat4(0.0);
     if (!has_numbers) diagnosis.add(Defect::not_finite);
     if (!is_written) diagnosis.add(Defect::never_written);
@@ -65,8 +65,8 @@ inline void examine(const Projector& projector, const LensFacts& facts, const Pi
                     Diagnosis& diagnosis) noexcept {
     glm::dmat4 p = projector.projection.matrix();
     glm::dmat4 v = projector.view.matrix();
-    const bool has_projection = is_usable(p, diagnosis);
-    const bool has_view = is_usable(v, diagnosis);
+    const bool has_projection = examine_usable(p, diagnosis);
+    const bool has_view = examine_usable(v, diagnosis);
 
     // A view is affine, and one that is not is no view; a rotation is no lens.
     if (has_projection && has_view && is_lens(v) && distance_from_rigid(p) < 1e-3 &&

@@ -86,7 +86,7 @@ inline Examined examine(const SetupMatrices& setup, Diagnosis& diagnosis) noexce
         }
     }
     if (setup.pose != nullptr) {
-        if (!is_usable(*setup.pose, diagnosis)) factors.reset();
+        if (!examine_usable(*setup.pose, diagnosis)) factors.reset();
         if (!setup.in_window && is_affine_transposed(*setup.pose)) diagnosis.add(Defect::transposed);
         glm::dmat4 turned_and_scaled = *setup.pose;
         turned_and_scaled[3] = glm::dvec4(0.0);
@@ -114,7 +114,7 @@ inline Examined examine(const SetupMatrices& setup, Diagnosis& diagnosis) noexce
         return examined;
     }
     const glm::dmat4& texgen = *setup.texgen;
-    if (!is_usable(texgen, diagnosis)) return examined;
+    if (!examine_usable(texgen, diagnosis)) return examined;
     if (is_opengl_default(texgen)) {
         diagnosis.add(Defect::never_written);
         return examined;

@@ -65,7 +65,7 @@ struct TileFunction {
     }
 };
 
-// Tiles all of whose fragments in front are beyond a side of the region, with the margins of coverage_of() in
+// Tiles all of whose fragments in front are beyond a side of the region, with the margins of coverage_by_sides() in
 // triangle/corners.hpp. `outwards` is -1 for the lower side and 1 for the upper one.
 TEXGEN_INLINE LongWords are_beyond(const TileFunction& f, const TileFunction& q, double bound, double outwards,
                                    double tolerance) noexcept {

@@ -39,7 +39,7 @@ inline BatchPlanes batch_planes(const Triangle& triangle) noexcept {
 
 // The outputs of `count` values from `first` on.
 template <class Outputs>
-Outputs part_of(const Outputs& all, std::size_t first, std::size_t count) noexcept {
+Outputs subspans(const Outputs& all, std::size_t first, std::size_t count) noexcept {
     Outputs part = all;
     for_each_output(part, [&](std::span<float>& output) {
         if (!output.empty()) output = output.subspan(first, count);
@@ -174,7 +174,7 @@ void interpolate(const TriangleBatch& batch, std::span<const FragmentRect> rects
             const std::size_t values = detail::count_of(rects[known]);
             if ((doubt.values & 1u) != 0 && values != 0)
                 detail::interpolate_apart(batch, known, detail::tile_of(rects[known]),
-                                          detail::part_of(out, done, values));
+                                          detail::subspans(out, done, values));
             done += values;
         }
         doubt = kernels.divide_tiles(job, known, done);
@@ -204,7 +204,7 @@ void interpolate(const TriangleBatch& batch, std::span<const std::uint32_t> ids,
             [&](std::size_t fragment) { return (doubt.values >> (fragment - doubt.begin) & 1u) != 0; },
             [&](std::uint32_t id, const detail::Tile& part, std::size_t first) {
                 detail::interpolate_apart(batch, id, part,
-                                          detail::part_of(out, first, static_cast<std::size_t>(part.width)));
+                                          detail::subspans(out, first, static_cast<std::size_t>(part.width)));
             });
         doubt = kernels.divide_fragments(job, doubt.begin + left);
     }
@@ -225,7 +225,7 @@ void footprint(const TriangleBatch& batch, std::span<const std::uint32_t> ids, F
     detail::for_each_run(
         ids, rect, 0, count, [](std::size_t) { return true; },
         [&](std::uint32_t id, const detail::Tile& part, std::size_t first) {
-            Footprints here = detail::part_of(out, first, static_cast<std::size_t>(part.width));
+            Footprints here = detail::subspans(out, first, static_cast<std::size_t>(part.width));
             auto& [known, setup] = last[id % detail::batch_block];
             if (id != known) {
                 setup.reset();

@@ -193,7 +193,8 @@ TEXGEN_RARE inline void take_planes(const Corners& at, CloseFunctions& functions
 // largest. The float that is written may be on the other side than the exact value, by an ulp, by the tolerance (twice
 // that leaves room), or as a 0 that was subnormal: so the answer must hold with that much slack, and with room for what
 // F, Q and G are rounded by.
-inline Coverage coverage_of(const Corners& at, const Double2& min, const Double2& max, double tolerance) noexcept {
+inline Coverage coverage_by_sides(const Corners& at, const Double2& min, const Double2& max,
+                                  double tolerance) noexcept {
     struct Side {
         Double2 least, largest, margin;
     };
@@ -217,18 +218,18 @@ inline Coverage coverage_of(const Corners& at, const Double2& min, const Double2
 
 // How much is in the sides of a region, where the numerators are s and t.
 inline Coverage st_coverage(const Corners& at, const LitTest& lit, double tolerance) noexcept {
-    return coverage_of(at, double2_of(lit.least(0), lit.least(1)), double2_of(lit.greatest(0), lit.greatest(1)),
-                       tolerance);
+    return coverage_by_sides(at, double2_of(lit.least(0), lit.least(1)), double2_of(lit.greatest(0), lit.greatest(1)),
+                             tolerance);
 }
 // The same of any tile, where that is rare.
 TEXGEN_RARE inline Coverage st_coverage_apart(const Corners& at, const LitTest& lit, double tolerance) noexcept {
     return at.all_behind() ? Coverage::outside : st_coverage(at, lit, tolerance);
 }
 
-// The sides of a mask alone, with the margins of coverage_of(): what is known of the functions later errs by less. Q is
-// at most what is computed and its error. Roundings, here and where a fragment is asked, are some 2^-50 of c and of the
-// bounds times q: nothing to margins of 2^-22 of those, or to a c that is larger. Bounds that are not finite leave all
-// to the floats.
+// The sides of a mask alone, with the margins of coverage_by_sides(): what is known of the functions later errs by
+// less. Q is at most what is computed and its error. Roundings, here and where a fragment is asked, are some 2^-50 of c
+// and of the bounds times q: nothing to margins of 2^-22 of those, or to a c that is larger. Bounds that are not finite
+// leave all to the floats.
 TEXGEN_RARE inline void take_sides(const LitTest& lit, CloseFunctions& functions) noexcept {
     const double q_error = functions.function[CloseFunctions::q].error;
     for (std::size_t k = 0; k < 2; ++k) {
@@ -247,7 +248,7 @@ inline Coverage r_coverage(const Corners& at, const LitTest& lit, double toleran
     constexpr double none = 0x1p500, infinite = 0x1p128;
     const double min = larger(-none, smaller(infinite, widened(lit.r_min())));
     const double max = larger(-infinite, smaller(none, widened(lit.r_max())));
-    return coverage_of(at, double2_of(min, min), double2_of(max, max), tolerance);
+    return coverage_by_sides(at, double2_of(min, min), double2_of(max, max), tolerance);
 }
 
 }  // namespace TEXGEN_BUILD

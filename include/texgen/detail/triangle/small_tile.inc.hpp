@@ -55,13 +55,13 @@ Number largest_of(const Number& base, const Number& right, const Number& bottom)
 }
 
 // Whether all of it is lit, or certainly a part, and far enough from q = 0 and from 0 that one bound serves all
-// quotients. The sides are those of coverage_of() with twice its margins, so that nothing is said of a tile of which
-// that says something else. Exact: F errs by less than 2^-41.5 of itself and q by 2^-44, and four roundings follow:
-// within SmallTile::ulps; F is above 2^-124 q, so the floats are normal.
-// In float, with u = 2^-24 and b the steps to the last row, of which y is at most half: F is rounded with its column,
-// its step, the product with y, and the sum, by u (2 F + 1.5 b), as is q, and the reciprocal and the product round by 2
-// u. Of a quotient that is at most `greatest` this is 6 u greatest + 1.5 u (b_F + greatest b_q) / q, and what floats
-// below 2^-126 lose is less than 2^-100.
+// quotients. The sides are those of coverage_by_sides() with twice its margins, so that nothing is said of a tile of
+// which that says something else. Exact: F errs by less than 2^-41.5 of itself and q by 2^-44, and four roundings
+// follow: within SmallTile::ulps; F is above 2^-124 q, so the floats are normal. In float, with u = 2^-24 and b the
+// steps to the last row, of which y is at most half: F is rounded with its column, its step, the product with y, and
+// the sum, by u (2 F + 1.5 b), as is q, and the reciprocal and the product round by 2 u. Of a quotient that is at most
+// `greatest` this is 6 u greatest + 1.5 u (b_F + greatest b_q) / q, and what floats below 2^-126 lose is less than
+// 2^-100.
 enum class SmallAnswer { doubt, lit, partly_lit };
 inline SmallAnswer ask(const LitTest& lit, double tolerance, const SmallFunction<Double2>& f,
                        const SmallFunction<double>& q, SmallTile& tile) noexcept {
