@@ -19,8 +19,8 @@ struct ClipDistance {
         return z * widened(vertex.position.z) + w * widened(vertex.position.w) - offset;
     }
 
-    // The w at which an edge crosses a near plane: of two products of floats, which are exact, so that where it is small
-    // beside that of the ends it has all its digits.
+    // The w at which an edge crosses a near plane: of two products of floats, which are exact, so that where it is
+    // small beside that of the ends it has all its digits.
     float crossing_w(const ClipVertex& inside, const ClipVertex& outside) const noexcept {
         const double z_inside = widened(inside.position.z), w_inside = widened(inside.position.w);
         const double z_outside = widened(outside.position.z), w_outside = widened(outside.position.w);
