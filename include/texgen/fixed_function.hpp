@@ -73,7 +73,8 @@ public:
 
     // Bounds how far each component of the stored eye plane of this coordinate is from p M^-1, the rounding to float
     // included.
-    // Guarantee: next to the error itself while the condition of M (rows and columns scaled) stays below 1e7.
+    // Guarantee: next to the error itself while the condition of M (rows and columns scaled) stays below 1e7 and these
+    // are within 2^40 of one another in size; never below it.
     // Bad input: infinite where set_eye_plane() refuses M; a NaN or an infinity of p stays one.
     glm::dvec4 eye_plane_error_bound(Coordinate coordinate, glm::vec4 plane, const glm::mat4& modelview) const noexcept;
 

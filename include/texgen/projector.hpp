@@ -120,11 +120,11 @@ inline std::optional<ProjectorProjection> orthographic(const OrthographicLens& l
 inline std::optional<ProjectorProjection> pinhole(const PinholeLens& lens, Conventions conventions) noexcept;
 
 // Narrows a lens to a picture of another aspect, width over height, so that all of the picture is in the light of the
-// lens as it was, about the same axis: what remains of the light would be bars.
-// Guarantee: the fovy within 4 double ulp, the sides of a rectangle within 2^-50 of its largest; one side of the
-// picture keeps its place, and a lens of that aspect stays as it is. No allocation, noexcept.
-// Bad input: a lens that perspective(), frustum() or orthographic() refuses, where the aspect is not positive and
-// finite, or the lens is one of those.
+// lens as it was, about its middle: what remains of the light would be bars.
+// Guarantee: the fovy within 4 double ulp where it is above 2^-900, the sides of a rectangle within 2^-50 of its
+// largest; two opposite sides keep their places, and a lens of that aspect stays as it is. No allocation, noexcept.
+// Bad input: a lens that perspective(), frustum() or orthographic() refuses, where an aspect, the picture's or the
+// lens's, is not positive and finite, or the lens is one of those.
 inline PerspectiveLens contain(const PerspectiveLens& lens, double aspect) noexcept;
 inline FrustumLens contain(const FrustumLens& lens, double aspect) noexcept;
 inline OrthographicLens contain(const OrthographicLens& lens, double aspect) noexcept;

@@ -39,7 +39,7 @@ inline ScaleBias scale_bias(Conventions conventions, TextureRegion region = whol
 // max(|w|, |x|). The edges of the picture are exact: x = -w gives min * w and x = w gives max * w. No allocation,
 // noexcept.
 // Shape: the projector's clip coordinates in, homogeneous (s, t, r, q) out; q = w.
-// Bad input: NaN and infinity stay in their component (w is in all of them).
+// Bad input: what is not finite leaves its component infinite or a NaN (w is in all of them).
 inline glm::vec4 to_texture(glm::vec4 projector_clip, Conventions conventions, TextureRegion region = whole_texture(),
                             DepthMapping depth = DepthMapping::unit) noexcept;
 

@@ -94,8 +94,8 @@ std::optional<Transform<From, To>> inverse(const Transform<To, From>& transform)
 
 // Bounds |inverse - transform^-1|, element by element, for any `inverse`: that of inverse(), of inverse_rigid(), a
 // rounded one, or one from elsewhere.
-// Guarantee: next to the error itself while the condition, of rows and columns scaled, stays below 1e7. No allocation,
-// noexcept; it costs about what inverse() does.
+// Guarantee: next to the error itself while the condition, of rows and columns scaled, stays below 1e7 and these are
+// within 2^40 of one another in size; never below it. No allocation, noexcept; it costs about what inverse() does.
 // Shape: elements as in inverse.matrix().
 // Bad input: infinite where inverse() refuses the transform; a NaN or an infinity of the inverse stays in its row.
 // Source: the residual bounds the error of any inverse: Higham, Accuracy and Stability of Numerical Algorithms, 14.

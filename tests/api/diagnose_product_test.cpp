@@ -859,6 +859,8 @@ TEST_CASE("each way in which a lens is refused has its name") {
     const PerspectiveLens& p = good_perspective;
     for (const double degrees : {0.0, -30.0, 180.0, 359.0})
         require_only(with(p, &PerspectiveLens::fovy, texgen::degrees(degrees)), good_aim, Defect::angle_out_of_range);
+    for (const double radians : {0x1p-1074, 0x1p-1073})
+        require_only(with(p, &PerspectiveLens::fovy, texgen::radians(radians)), good_aim, Defect::beyond_double);
     for (const double number : {10.0, 30.0, 90.0, -45.0})
         require_only(with(p, &PerspectiveLens::fovy, texgen::radians(number)), good_aim, Defect::angle_unit_mistaken);
     for (const double aspect : {0.0, -1.5})
