@@ -424,6 +424,24 @@ TEST_CASE("NaN, infinity and an inverse beyond the range are refused") {
     CHECK(inverse(ModelMatrix(scale(1e-300, 1e300, 1.0))));
 }
 
+TEST_CASE("where an inverse is refused its error bound is infinite, and nowhere else") {
+    Random random(4716);
+    const texgen::Transform<texgen::Object, texgen::World> given(glm::dmat4(1.0));
+    int refused = 0, answered = 0;
+    for (int i = 0; i < 2000; ++i) {
+        glm::dmat4 m = random_matrix(random, 1.0);
+        for (int column = 0; column < 4; ++column) m[column] *= std::ldexp(1.0, random.integer(-1025, -960));
+        if (random.integer(0, 3) == 0) m[3] = m[0];
+        const ModelMatrix transform(m);
+        const glm::dmat4 bound = inverse_error_bound(transform, given);
+        const bool is_answered = inverse(transform).has_value();
+        for (int column = 0; column < 4; ++column)
+            for (int row = 0; row < 4; ++row) REQUIRE_MESSAGE(std::isfinite(bound[column][row]) == is_answered, hex(m));
+        ++(is_answered ? answered : refused);
+    }
+    CHECK(std::min(refused, answered) > 100);
+}
+
 TEST_CASE("the inverse of the inverse is the transform again, to the rounding of its condition") {
     Random random(50);
     for (int i = 0; i < 200; ++i) {
