@@ -220,6 +220,23 @@ TEST_CASE("room for fewer vertices than a cut may leave is asserted, and stays a
     }
 }
 
+TEST_CASE("rectangles of a batch with more fragments than there are numbers are of no array's size") {
+    // 16 times 2^60, and 64.
+    std::vector<texgen::FragmentRect> rects(17, {0, 0, 1 << 30, 1 << 30});
+    rects.back() = {0, 0, 8, 8};
+    texgen::TriangleBatch batch(whole_texture());
+    batch.assign(std::vector<texgen::Triangle>(17, some_triangle()));
+    constexpr float untouched = 7.0f;
+    std::vector<float> out(64, untouched);
+    broken_preconditions = 0;
+    texgen::interpolate(batch, rects, {.s = out});
+    CHECK(broken_preconditions != 0);
+    for (const float value : out) CHECK(value == untouched);
+    broken_preconditions = 0;
+    texgen::interpolate(batch, rects, {});
+    CHECK(broken_preconditions == 0);
+}
+
 TEST_CASE(
     "a rectangle of no fragments is empty, whatever the sign of its sizes: nothing is asked, asserted or written") {
     const auto triangle = texgen::TriangleSetup::of(some_triangle(), whole_texture());

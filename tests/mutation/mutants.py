@@ -468,6 +468,7 @@ MUTANTS = [
           "with_sign_of(of_corner(given.number(1, 2), given.number(2, 2), given.number(0, 2)), given.area)",
           "of_corner(given.number(1, 2), given.number(2, 2), given.number(0, 2))", "batch_test")),
     *_of("detail/triangle/batch.inc.hpp",
+         ("the fragments of all rectangles wrap around", "left -= (std::min)(count_of(rect), left);", "left -= count_of(rect);", "preconditions_test"),
          ("runs of one id go on in the next row", "(std::min)((row + 1) * width, first + count)",
           "first + count", "batch_test"),
          ("what a setup leaves is not cleared", "if (!setup || interpolate_tile(*setup, tile, out) == Work::nothing) clear(out);",

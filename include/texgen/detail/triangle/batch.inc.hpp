@@ -53,6 +53,14 @@ void clear(auto& out) noexcept {
     });
 }
 
+// The fragments of all together, or the most of which no array can be.
+inline std::size_t count_of(std::span<const FragmentRect> rects) noexcept {
+    constexpr std::size_t most = (std::numeric_limits<std::size_t>::max)();
+    std::size_t left = most;
+    for (const FragmentRect& rect : rects) left -= (std::min)(count_of(rect), left);
+    return most - left;
+}
+
 inline namespace TEXGEN_BUILD {
 
 inline std::optional<TriangleSetup> set_up(const TriangleBatch& batch, std::size_t triangle) noexcept {
@@ -158,8 +166,7 @@ void interpolate(const TriangleBatch& batch, std::span<const FragmentRect> rects
     static_assert(sizeof(FragmentRect) == sizeof(int[4]));
     TEXGEN_ASSERT(rects.size() == batch.size());
     if (rects.size() != batch.size() || rects.empty()) return;
-    std::size_t count = 0;
-    for (const FragmentRect& rect : rects) count += detail::count_of(rect);
+    const std::size_t count = detail::count_of(rects);
     if (!detail::take_computed(out, count)) return;
     detail::TilesJob job{};
     detail::describe(job, batch, out, count);
