@@ -209,12 +209,6 @@ struct CloseSteps : CloseTerms {
     }
 };
 
-// Of integers below 2^115, or that are multiples of so large a power of two.
-TEXGEN_INLINE Residues to_residues_of_any(const Doubles& integers) noexcept {
-    const Doubles rest = integers - ((integers * 0x1p-64 + 0x1.8p52) - 0x1.8p52) * 0x1p64;
-    return to_residues(rest - where(~greater(Doubles{} + 0x1p63, rest), Doubles{} + 0x1p64));
-}
-
 // Three numbers, and the power of two of which they are integers.
 struct IntegerLanes {
     Doubles number[3];

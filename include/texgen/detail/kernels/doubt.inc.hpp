@@ -14,6 +14,12 @@ struct CloseValues {
     }
 };
 
+// Of integers below 2^115, or that are multiples of so large a power of two.
+TEXGEN_INLINE Residues to_residues_of_any(const Doubles& integers) noexcept {
+    const Doubles rest = integers - ((integers * 0x1p-64 + 0x1.8p52) - 0x1.8p52) * 0x1p64;
+    return to_residues(rest - where(~greater(Doubles{} + 0x1p63, rest), Doubles{} + 0x1p64));
+}
+
 // The nearer float where a quotient is so near the middle m of two that the sign of F - m Q decides: of what two
 // doubles hold of it, or of its residue, where that says all of it.
 struct CloseMiddle {
@@ -34,10 +40,10 @@ struct CloseMiddle {
     }
 
     // By two doubles: where F - m Q is larger than its error, or that is less than half a grain. Returns the lanes that
-    // this decides.
+    // this decides, and what F - m Q is at most.
     template <class Grain>
     TEXGEN_INLINE LongWords decide_by_sums(const CloseValues& f, const CloseValues& q, const Grain& f_grain,
-                                           const Grain& q_grain, Floats& value) const noexcept {
+                                           const Grain& q_grain, Doubles& bound, Floats& value) const noexcept {
         // The leading parts cancel, and their product is exact.
         const Doubles leading = leading_bits<27>(q.high);
         Doubles low;
@@ -45,6 +51,7 @@ struct CloseMiddle {
         const Doubles rest = sum + (low + (f.low - middle * q.low));
         const Doubles error = magnitude(middle) * q.error + f.error;
         const LongWords is_tie = at_most(magnitude(rest), error);
+        bound = minimum(magnitude(rest) + error, bound);
         value = nearest(rest, is_tie);
         return ~is_tie | greater(grain_of(f_grain, q_grain), error * 2.25);
     }
@@ -58,8 +65,9 @@ struct CloseMiddle {
         const Doubles per_finer = reciprocals_of_powers(finer);
         const Doubles f_times = per_finer * f_grain;
         const Doubles q_times = middle * q_grain * per_finer;
-        const LongWords fits = greater(Doubles{} + 0x1p62, maximum(f_times, magnitude(q_times)));
-        const Residues residue = of_f * to_residues(where(fits, f_times)) - of_q * to_residues(where(fits, q_times));
+        const LongWords fits = greater(Doubles{} + 0x1p900, maximum(f_times, magnitude(q_times)));
+        const Residues residue =
+            of_f * to_residues_of_any(where(fits, f_times)) - of_q * to_residues_of_any(where(fits, q_times));
         value = nearest(signs_of(residue), are_zero(residue));
         return fits & greater(finer * 0x1p62, bound);
     }
@@ -132,18 +140,17 @@ struct CloseFragments {
                 left &= ~decided;
             };
             const CloseMiddle middle(close.u);
+            // The middle is as near to the quotient as F/Q is: so |F - m Q| is at most twice the error times Q.
+            Doubles bound = close.error * q.value * 2.25;
             Floats nearest;
             if (at.are_sums_first) {
-                take(middle.decide_by_sums(close.f, q, grain, q_grain, nearest), nearest);
+                take(middle.decide_by_sums(close.f, q, grain, q_grain, bound, nearest), nearest);
                 if (!any(left)) continue;
                 of_q = at.residues(Numerators);
             }
             const Residues of_f = at.residues(k);
-            if (!SkipsMiddles || any(left & ~is_rough)) {
-                // The middle is as near to the quotient as F/Q is: so |F - m Q| is at most twice the error times Q.
-                const Doubles bound = close.error * q.value * 2.25;
+            if (!SkipsMiddles || any(left & ~is_rough))
                 take(middle.decide_by_residues(of_f, grain, of_q, q_grain, bound, nearest), nearest);
-            }
             if (any(is_rough)) {
                 const RoundedEnds ends(close.u, close.error);
                 const LongWords is_zero = close.f.are_residues(grain) & are_zero(of_f);

@@ -104,6 +104,7 @@ TEXGEN_INLINE void add_axes(SeparatingForms& planes, const glm::dmat4& matrix, c
     constexpr double is_axis[3][form_lanes] = {{1.0}, {0.0, 1.0}, {0.0, 0.0, 1.0}};
     constexpr double is_any_axis[form_lanes] = {1.0, 1.0, 1.0};
     constexpr glm::length_t coordinates[3] = {0, 1, 3};
+    const double ends[3][2] = {{side[0], side[1]}, {side[2], side[3]}, {1.0, 1.0}};
     // Rows s, t and q, again and again, so that the axes which follow one can be read as well.
     double again[3][form_lanes + 4];
     for (std::size_t k = 0; k < 3; ++k)
@@ -128,29 +129,27 @@ TEXGEN_INLINE void add_axes(SeparatingForms& planes, const glm::dmat4& matrix, c
                    (magnitude(cofactor[0]) * s + magnitude(cofactor[1]) * t + magnitude(cofactor[2]) * q) * gamma(13) +
                    0x1p-1000;
         };
-        // Of s, t and 1: between two sides, with their errors.
+        // Of s, t and 1, between two sides each, with their errors.
         Doubles least = Doubles{} - 0x1p-999, largest = Doubles{} + 0x1p-999;
-        const auto add = [&](std::size_t k, double min, double max) {
-            const bool has_side = std::fabs(min) < infinity || std::fabs(max) < infinity;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const bool has_side = ends[k][0] > -infinity || ends[k][1] < infinity;
             Doubles low = Doubles{} + (has_side ? infinity : 0.0), high = low * -1.0;
-            for (const double at : {min, max}) {
-                if (std::fabs(at) < infinity) {
-                    const Doubles product = cofactor[k] * at;
-                    const Doubles margin = error[k] * (1.001 * std::fabs(at)) + magnitude(product) * gamma(13);
+            for (std::size_t j = 0; j < 2; ++j) {
+                const double size = std::fabs(ends[k][j]);
+                if (size < infinity) {
+                    const Doubles product = cofactor[k] * ends[k][j];
+                    const Doubles margin = error[k] * (1.001 * size) + magnitude(product) * gamma(13);
                     low = minimum(product - margin, low);
                     high = maximum(product + margin, high);
                 } else {
-                    const Doubles growth = at > 0.0 ? cofactor[k] : 0.0 - cofactor[k];
+                    const Doubles growth = cofactor[k] * (j == 0 ? -1.0 : 1.0);
                     low = select(greater(growth + 0x1p-999, error[k]), low, Doubles{} - infinity);
                     high = select(greater(0x1p-999 - growth, error[k]), high, Doubles{} + infinity);
                 }
             }
             least = least + low;
             largest = largest + high;
-        };
-        add(0, side[0], side[1]);
-        add(1, side[2], side[3]);
-        add(2, 1.0, 1.0);
+        }
         const LongWords is_positive = greater(least, 0.0);
         const LongWords is_plane =
             (is_positive | greater(0.0 - largest, 0.0)) & are_nonzero(load<Doubles>(is_any_axis + i));
