@@ -626,7 +626,7 @@ MUTANTS = [
           "Doubles{} + grain * 0x1p90);", "interpolate_test"),
          ("fragments behind by their residue are in doubt", "~q.are_residues(q_grain) | are_positive(of_q)", "are_positive(of_q)",
           "batch_test"),
-         ("a residue forgets q", " - of_q * to_residues(where(fits, q_times));", ";", "interpolate_test"),
+         ("a residue forgets q", " - of_q * to_residues_of_any(where(fits, q_times));", ";", "interpolate_test"),
          ("the low part of q is forgotten", "(low + (f.low - middle * q.low))", "(low + f.low)", "near_ties_test")),
     *_of("detail/kernels/tiles.inc.hpp",
          ("a doubtful unit is passed", "    return rotated(doubtful, static_cast<int>(count % 64));", "    return 0;", "interpolate_test"),

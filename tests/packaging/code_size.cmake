@@ -10,7 +10,7 @@ set(arguments_of_along "const Segment& segment, std::span<const float> alpha, Te
 set(arguments_of_footprints "const FootprintSetup& setup, FragmentRect rect, Footprints out")
 set(arguments_of_batch "const TriangleBatch& batch, std::span<const FragmentRect> rects, Texcoords out")
 set(calls
-    "63900 interpolate.hpp Work interpolate interpolate(setup, rect, out)"
+    "64000 interpolate.hpp Work interpolate interpolate(setup, rect, out)"
     "100000 texcoord.hpp void project project(texgen, positions, whole_texture(), out)"
     "8000 texcoord.hpp auto one project(texgen, world_space(position))"
     "35000 coverage.hpp Coverage coverage coverage(texgen, whole_texture(), box)"

@@ -14,7 +14,8 @@ struct CloseValues {
     }
 };
 
-// Of integers below 2^115, or that are multiples of so large a power of two.
+// Of integers below 2^115, or of at most 50 digits and zeros behind them; but not of 2^170, which the sums here take for
+// another.
 TEXGEN_INLINE Residues to_residues_of_any(const Doubles& integers) noexcept {
     const Doubles rest = integers - ((integers * 0x1p-64 + 0x1.8p52) - 0x1.8p52) * 0x1p64;
     return to_residues(rest - where(~greater(Doubles{} + 0x1p63, rest), Doubles{} + 0x1p64));
@@ -65,9 +66,9 @@ struct CloseMiddle {
         const Doubles per_finer = reciprocals_of_powers(finer);
         const Doubles f_times = per_finer * f_grain;
         const Doubles q_times = middle * q_grain * per_finer;
-        const LongWords fits = greater(Doubles{} + 0x1p900, maximum(f_times, magnitude(q_times)));
+        const LongWords fits = greater(Doubles{} + 0x1p62, f_times) & greater(Doubles{} + 0x1p900, magnitude(q_times));
         const Residues residue =
-            of_f * to_residues_of_any(where(fits, f_times)) - of_q * to_residues_of_any(where(fits, q_times));
+            of_f * to_residues(where(fits, f_times)) - of_q * to_residues_of_any(where(fits, q_times));
         value = nearest(signs_of(residue), are_zero(residue));
         return fits & greater(finer * 0x1p62, bound);
     }
