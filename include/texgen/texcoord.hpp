@@ -190,7 +190,8 @@ void generate(const Transform<Texture, Space>& texture_from_space, Positions<Spa
 // lit = 1 inside the closed region, decided from the s and t, and with a depth from the r, that are (or would be)
 // written. Behind, s = t = r = lit = 0. A depth costs at most what r costs; where s and t leave many
 // neighbours dark, r is not computed for them. No allocation, noexcept.
-// Shapes: as many outputs as positions, or none (asserted); outputs must not overlap the positions.
+// Shapes: as many values of an output as positions, or none (asserted; else that output is not written); outputs must
+// not overlap the positions.
 // Bad input: NaN and infinity spoil their own point only; a point whose q is NaN is behind.
 // Source: Everitt, Projective Texture Mapping, section 2; the reverse projection is behind q = 0.
 template <class Space>
