@@ -82,6 +82,22 @@ WindowVertex vertex(float x, float y, float w, float s, float t, float q) { retu
 
 }  // namespace
 
+TEST_CASE("ties whose terms are 110 powers of two apart take at most three times what those of 60 take") {
+    // Two corners on ties, and small; the third makes others of what is left of it.
+    const auto ties = [](int exponent) {
+        const float k = std::ldexp(1.0f, exponent);
+        return Shot{{{{0.5f, 40.5f}, 1.0f, {0x1.80005ap0f * k, 0x1.000032p0f * k, 0x1.00000cp0f * k, 3.0f}},
+                     {{24.5f, 16.5f}, 1.0f, {0x1.80002ap0f * k, 0x1.000052p0f * k, 0x1.000014p0f * k, 3.0f}},
+                     {{40.5f, 8.5f}, 1.0f, {0x1.800012p+1f, 0x1.000002p+1f, 0x1.00003ap+1f, 3.0f}}},
+                    {16, 2, 64, 4}};
+    };
+    for (const int exponent : {-85, -95, -100, -110}) {
+        const double ratio = support::worst_over_ordinary_within(3.0, Workload(ties(-60), texgen::exact),
+                                                                 Workload(ties(exponent), texgen::exact));
+        REQUIRE_MESSAGE(ratio <= 3.0, exponent, ": ", ratio, " times");
+    }
+}
+
 TEST_CASE("a triangle that the near plane cuts costs at most 16 times the ordinary one, and 4 times in 99 of 100") {
     constexpr int count = 300;
     for (const auto& [width, height] : {std::array{8, 8}, std::array{64, 4}}) {
