@@ -1,7 +1,7 @@
 #pragma once
 
-// The loops that a user of GLM or Eigen writes, for the same input as texgen::interpolate. The constructor is the set-up
-// of a triangle. Each skips nothing, and trusts its numbers.
+// The loops that a user of GLM or Eigen writes, for the same input as texgen::interpolate. The constructor is the
+// set-up of a triangle. Each skips nothing, and trusts its numbers.
 
 #include <cstddef>
 

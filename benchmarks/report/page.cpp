@@ -362,7 +362,7 @@ std::string html_of(const Report& report) {
         "float "
         "below 1, the least there can be, is 1.2e-4. GLM and Eigen stand for the loops that their users write, in "
         "float. "
-        "What is called floor only stores results.</p>\n" +
+        "What is called floor only moves bytes: it stores results, or copies what comes in as well.</p>\n" +
         pictures_task(report);
     for (const Task* task : tasks) html += section_of(report, *task);
 

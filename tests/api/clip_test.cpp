@@ -46,6 +46,12 @@ Rational distance(const glm::vec4& p, NearPlane plane) {
     return plane.range == DepthRange::zero_to_one ? exactly(p.z) : Rational(exactly(p.z) + exactly(p.w));
 }
 
+// Whether a float is one rounding away from what is within `slack` of the exact value.
+bool is_rounded(float value, const Rational& exact, const Rational& slack) {
+    return support::magnitude(exactly(value) - exact) <=
+           slack + support::power_of_two(support::ulp_exponent<float>(exact) - 1);
+}
+
 Polygon clipped(const Polygon& polygon, NearPlane plane) {
     Polygon out(polygon.size() + 1);
     out.resize(clip_to_near(polygon, out, plane.range, plane.reversed));
@@ -201,9 +207,7 @@ TEST_CASE("what comes out is in front of the near plane, has w > 0, and lies on 
                         const Rational exact = from_a + from_b;
                         const Rational slack =
                             exactly(texgen::clip_error) * (support::magnitude(from_a) + support::magnitude(from_b));
-                        const Rational half_ulp = support::power_of_two(support::ulp_exponent<float>(exact) - 1);
-                        const Rational off = support::magnitude(exactly(component(v)) - exact);
-                        matches = matches && off <= half_ulp + slack;
+                        matches = matches && is_rounded(component(v), exact, slack);
                     }
                     found = matches;
                 }
@@ -244,9 +248,9 @@ TEST_CASE("an edge that crosses the near plane next to the eye keeps the digits 
                     const Rational w = between(inside->position.w, outside.position.w);
                     const Rational x = between(inside->position.x, outside.position.x);
                     cancelling += w < exactly(0x1p-60);
-                    if (support::magnitude(exactly(v.position.w) - w) <= w * exactly(0x1.0001p-24) &&
-                        support::magnitude(exactly(v.position.x) - x) <= exactly(0x1.01p-24))
-                        return true;
+                    // The terms of x are at most 1 together.
+                    const Rational error = exactly(texgen::clip_error);
+                    if (is_rounded(v.position.w, w, w * error) && is_rounded(v.position.x, x, error)) return true;
                 }
                 return false;
             };
@@ -457,8 +461,7 @@ TEST_CASE("the window is within its stated error of the exact division") {
             const Rational exact = first + half + offset;
             const Rational slack =
                 support::power_of_two(-51) * (support::magnitude(first + half) + support::magnitude(offset));
-            return support::magnitude(exactly(window) - exact) <=
-                   slack + support::power_of_two(support::ulp_exponent<float>(exact) - 1);
+            return is_rounded(window, exact, slack);
         };
         REQUIRE_MESSAGE(check(computed.window.x, v.position.x, viewport.x, viewport.width), hex(v.position));
         REQUIRE_MESSAGE(check(computed.window.y, v.position.y, viewport.y, viewport.height), hex(v.position));

@@ -33,6 +33,7 @@ inline void examine(const PerspectiveLens& lens, Diagnosis& diagnosis) noexcept 
     const double angle = lens.fovy.in_radians();
     require_finite({angle, lens.aspect}, diagnosis);
     const bool has_turns = std::fabs(angle) > 2.0 * std::numbers::pi;
+    // Not of its half, as the lens has it: an angle above 0 whose half is none is in range, and its lens beyond double.
     require(angle > 0.0 && 0.5 * angle < 0.5 * std::numbers::pi, {angle},
             has_turns ? Defect::angle_unit_mistaken : Defect::angle_out_of_range, diagnosis);
     require(lens.aspect > 0.0, {lens.aspect}, Defect::aspect_not_positive, diagnosis);
