@@ -23,6 +23,8 @@
 
 #include "points.inc.hpp"
 #include "points_in_float.inc.hpp"
+
+#include "generate.inc.hpp"
 #include "segments.inc.hpp"
 
 #include "separating.inc.hpp"

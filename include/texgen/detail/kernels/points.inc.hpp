@@ -376,21 +376,4 @@ Undecided fill_points_exact(const PointJob& job, std::size_t first) noexcept {
     return job.numerators == 2 ? fill_points_exact_of<2>(job, first) : fill_points_exact_of<1>(job, first);
 }
 
-// The forms at points, in double, rounded once.
-template <class CompiledWhereCalled = void>
-void generate_points(const GenerateJob& original) noexcept {
-    const GenerateJob job = original;
-    for (std::size_t i = 0; i < job.count; i += at_once) {
-        const PointLanes point = load_points(job, i);
-        if (job.strq != nullptr) {
-            store_interleaved(job.strq + 4 * i, to_floats(value_at(job.form[0], point)),
-                              to_floats(value_at(job.form[1], point)), to_floats(value_at(job.form[2], point)),
-                              to_floats(value_at(job.form[3], point)));
-        } else {
-            for (std::size_t k = 0; k < 4; ++k)
-                if (job.out[k] != nullptr) store(job.out[k] + i, to_floats(value_at(job.form[k], point)));
-        }
-    }
-}
-
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA

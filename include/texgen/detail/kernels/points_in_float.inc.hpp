@@ -29,7 +29,7 @@ private:
 // The same in double, rounded once.
 template <std::size_t Numerators>
 struct FormsInDouble {
-    PointForm form[1 + Numerators];
+    PointFormLanes form[1 + Numerators];
 
     TEXGEN_INLINE explicit FormsInDouble(const PointJob& job) noexcept : form{job.q} {
         for (std::size_t k = 0; k < Numerators; ++k) form[1 + k] = job.numerator[k];

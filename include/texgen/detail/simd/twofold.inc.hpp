@@ -28,7 +28,18 @@ struct PointLanes {
     Doubles v[3];
 };
 
-TEXGEN_INLINE Doubles value_at(const PointForm& form, const PointLanes& point) noexcept {
+// A form with its coefficients in all lanes: GCC takes that out of no loop that has branches.
+struct PointFormLanes {
+    Doubles x, y, z, w;
+
+    PointFormLanes() = default;
+    TEXGEN_INLINE PointFormLanes(const PointForm& of) noexcept
+        : x(Doubles{} + of.x), y(Doubles{} + of.y), z(Doubles{} + of.z), w(Doubles{} + of.w) {}
+};
+
+// Of either.
+template <class Form>
+TEXGEN_INLINE Doubles value_at(const Form& form, const PointLanes& point) noexcept {
     return point.v[0] * form.x + (point.v[1] * form.y + (point.v[2] * form.z + form.w));
 }
 

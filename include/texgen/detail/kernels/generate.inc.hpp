@@ -1,0 +1,24 @@
+// Homogeneous coordinates of points: the forms themselves, in double, rounded once. Included by kernels.inc.hpp.
+
+namespace TEXGEN_DETAIL::TEXGEN_ISA {
+
+template <class CompiledWhereCalled = void>
+void generate_points(const GenerateJob& original) noexcept {
+    const GenerateJob job = original;
+    const PointFormLanes form[4] = {job.form[0], job.form[1], job.form[2], job.form[3]};
+    for (std::size_t i = 0; i < job.count; i += at_once) {
+        const PointLanes point = load_points(job, i);
+        Floats value[4];
+        TEXGEN_UNROLL
+        for (std::size_t k = 0; k < 4; ++k) value[k] = to_floats(value_at(form[k], point));
+        if (job.strq != nullptr) {
+            store_interleaved(job.strq + 4 * i, value[0], value[1], value[2], value[3]);
+        } else {
+            TEXGEN_UNROLL
+            for (std::size_t k = 0; k < 4; ++k)
+                if (job.out[k] != nullptr) store(job.out[k] + i, value[k]);
+        }
+    }
+}
+
+}  // namespace TEXGEN_DETAIL::TEXGEN_ISA
