@@ -40,7 +40,8 @@ public:
                 const auto wanted = static_cast<double>(exact.value[row]);
                 errors.add_ulp(computed[row], wanted);
                 if (has_promise)
-                    errors.check(computed[row], wanted, 0x1p-50 * static_cast<double>(exact.magnitude[row]));
+                    errors.check(computed[row], wanted,
+                                 texgen::generate_error * static_cast<double>(exact.magnitude[row]));
             }
             for (int row = 0; row < 2; ++row)
                 errors.add_texels(static_cast<double>(computed[row]) / computed.w - exact.quotient(row));

@@ -37,10 +37,14 @@ struct ClipVertex {
 
 inline namespace TEXGEN_COMPILER {
 
+// How far to_window() may be from the exact division, before its one rounding to float: relative to |centre of the
+// viewport| + |width / 2 * position.x / position.w| in x, likewise in y.
+inline constexpr double to_window_error = 0x1p-51;
+
 // Takes the vertex to the window: x = viewport.x + (position.x / position.w + 1) width / 2, y likewise, so that y grows
 // as the clip y does.
-// Guarantee: x within 1/2 float ulp + 2^-51 (|centre of the viewport| + |width / 2 * position.x / position.w|), y
-// likewise; clip_w and strq unchanged; equal vertices give equal bits. No allocation, noexcept.
+// Guarantee: x and y within 1/2 float ulp + to_window_error; clip_w and strq unchanged; equal vertices give equal bits.
+// No allocation, noexcept.
 // Bad input: precondition, asserted: position.w > 0. What is not finite stays so in its component.
 // Source: OpenGL 2.1 specification, 2.11.1.
 inline WindowVertex to_window(const ClipVertex& vertex, Viewport viewport) noexcept;

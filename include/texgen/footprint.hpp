@@ -74,9 +74,12 @@ struct FootprintExtremes {
 
 inline namespace TEXGEN_COMPILER {
 
+// How far footprint_of() may be from the exact footprint of its derivatives.
+inline constexpr double footprint_error = 0x1p-48;
+
 // Computes the footprint of derivatives that come from elsewhere.
-// Guarantee: singular values and anisotropy within 2^-48 of themselves (of the larger singular value for the smaller;
-// so with the anisotropy, relative to its square), level within 2^-48 max(1, |level|): of any finite derivatives, while
+// Guarantee: singular values and anisotropy within footprint_error of themselves (of the larger singular value for the
+// smaller; so with the anisotropy, relative to its square), level within footprint_error max(1, |level|): of any finite derivatives, while
 // what comes out is a normal number; what is beyond the largest is infinite. No allocation, noexcept.
 // Shapes: units of s and t a pixel.
 // Bad input: what is not finite makes all but dx and dy NaN.

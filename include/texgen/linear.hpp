@@ -67,15 +67,18 @@ inline EyeTexgen eye_linear(const ProjectorProjection& projection, const Transfo
                             Conventions conventions, TextureRegion region = whole_texture(),
                             DepthMapping depth = DepthMapping::unit) noexcept;
 
+// How far s/q of a fragment by window_linear() may be from the exact value: relative to (m_s + |s/q| m_q) / |q|, with m
+// the products of the factors' magnitudes on the fragment.
+inline constexpr double window_linear_error = 0x1p-47;
+
 // Makes the texgen matrix of a camera's window, T_w = S P_p V_p (W P_c V_c)^-1: it takes a fragment of the depth buffer
 // to the slide, for decals and projectors' light that are deferred, and for a photograph on a g-buffer. In a fragment
 // shader:
 //
 //     vec4 strq = texture_from_window * vec4(gl_FragCoord.xy, texelFetch(depth, ivec2(gl_FragCoord.xy), 0).r, 1.0);
 //
-// Guarantee: in double, each row solved against V_c and P_c as they are. With m the products of the factors' magnitudes
-// on the fragment, s/q is within 2^-47 (m_s + |s/q| m_q) / |q| of its exact value, as far from the origin as 1e7, while
-// the condition of V_c and of P_c (rows and columns scaled) stays below 1e8. No allocation, noexcept.
+// Guarantee: in double, each row solved against V_c and P_c as they are. s/q and t/q of a fragment are within
+// window_linear_error of their exact values, as far from the origin as 1e7, while the condition of V_c and of P_c (rows and columns scaled) stays below 1e8. No allocation, noexcept.
 // Shape: (x, y, depth, 1) to homogeneous (s, t, r, q) over the camera's w: q > 0 in front of the projector for all that
 // the camera sees. The depth is what the buffer holds: NDC z, or (z + 1)/2 under OpenGL's range. y grows as NDC y does:
 // for pixels from the top down (Direct3D, Metal) give the viewport {x, y + height, width, -height}; with Vulkan's y

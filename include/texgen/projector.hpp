@@ -119,19 +119,26 @@ inline std::optional<ProjectorProjection> orthographic(const OrthographicLens& l
 // Source: Hartley and Zisserman, Multiple View Geometry, 6.1; OpenCV's camera model without distortion.
 inline std::optional<ProjectorProjection> pinhole(const PinholeLens& lens, Conventions conventions) noexcept;
 
+// How far a side of a rectangle by contain() may be from the exact one: relative to the largest of the lens.
+inline constexpr double contain_error = 0x1p-50;
+
 // Narrows a lens to a picture of another aspect, width over height, so that all of the picture is in the light of the
 // lens as it was, about its middle: what remains of the light would be bars.
-// Guarantee: the fovy within 4 double ulp where it is above 2^-900, the sides of a rectangle within 2^-50 of its
-// largest; two opposite sides keep their places, and a lens of that aspect stays as it is. No allocation, noexcept.
+// Guarantee: the fovy within 4 double ulp where it is above 2^-900, the sides of a rectangle within
+// contain_error; two opposite sides keep their places, and a lens of that aspect stays as it is. No allocation,
+// noexcept.
 // Bad input: a lens that perspective(), frustum() or orthographic() refuses, where an aspect, the picture's or the
 // lens's, is not positive and finite, or the lens is one of those.
 inline PerspectiveLens contain(const PerspectiveLens& lens, double aspect) noexcept;
 inline FrustumLens contain(const FrustumLens& lens, double aspect) noexcept;
 inline OrthographicLens contain(const OrthographicLens& lens, double aspect) noexcept;
 
+// How far a side by cover() may be from the exact one: relative to the largest of the picture's region.
+inline constexpr double cover_error = 0x1p-51;
+
 // Crops a picture of another aspect, width over height, to the part about its middle that fills the light of a lens.
-// Guarantee: within 2^-51 of the largest side of the picture's region; a picture of the lens's aspect stays as it is.
-// No allocation, noexcept. The picture's depth is kept.
+// Guarantee: within cover_error; a picture of the lens's aspect stays as it is, and the picture's depth is kept. No
+// allocation, noexcept.
 // Bad input: a region without points where an aspect, the picture's or the lens's, is not positive and finite.
 inline TextureRegion cover(const PerspectiveLens& lens, double aspect,
                            TextureRegion picture = whole_texture()) noexcept;

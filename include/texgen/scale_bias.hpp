@@ -33,10 +33,13 @@ namespace TEXGEN_NAMESPACE {
 inline ScaleBias scale_bias(Conventions conventions, TextureRegion region = whole_texture(),
                             DepthMapping depth = DepthMapping::unit) noexcept;
 
+// How far to_texture() may be from the exact value, before its one rounding to float: relative to max(|min|, |max|)
+// max(|w|, |x|), with the sides of the region in that coordinate, in y likewise, in z.
+inline constexpr double to_texture_error = 0x1p-51;
+
 // Takes a clip coordinate to the texture as S does, without the matrix: x, y in [-w, w] become [0, w] for the whole
 // texture.
-// Guarantee: each component is computed in double and rounded once: within 1/2 float ulp + 2^-51 max(|min|, |max|)
-// max(|w|, |x|). The edges of the picture are exact: x = -w gives min * w and x = w gives max * w. No allocation,
+// Guarantee: each component is computed in double and rounded once: within 1/2 float ulp + to_texture_error. The edges of the picture are exact: x = -w gives min * w and x = w gives max * w. No allocation,
 // noexcept.
 // Shape: the projector's clip coordinates in, homogeneous (s, t, r, q) out; q = w.
 // Bad input: what is not finite leaves its component infinite or a NaN (w is in all of them).

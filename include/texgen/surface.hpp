@@ -34,18 +34,24 @@ enum class Facing { towards, away, edge_on };
 // Source: Olano, Greer, Triangle Scan Conversion using 2D Homogeneous Coordinates (1997).
 inline Facing facing(glm::vec4 a, glm::vec4 b, glm::vec4 c, TextureOrigin origin) noexcept;
 
+// How far slide_area() may be from the exact area, relative to it.
+inline constexpr double slide_area_error = 0x1p-50;
+
 // Measures the area of a triangle on the slide, in units of s times units of t: of texels, for a rectangle texture.
-// Guarantee: within 2^-50 of itself, whatever cancels; positive where t grows from the edge a b towards c when s grows
+// Guarantee: within slide_area_error of itself, whatever cancels; positive where t grows from the edge a b towards c when s grows
 // to the right from a to b, as det [s t q]; 0 where it is exactly that. Over the triangle's area in the scene it is the
 // density of texels there. No allocation, noexcept.
 // Shape: (s, t, r, q) of the corners in order; r is not looked at.
 // Bad input: empty unless all q > 0, and where an s, t or q is NaN or infinite.
 inline std::optional<double> slide_area(glm::vec4 a, glm::vec4 b, glm::vec4 c) noexcept;
 
+// How far each number of receiver_plane() may be from the exact one, relative to it.
+inline constexpr double receiver_plane_error = 0x1p-49;
+
 // Finds how depth changes over the slide on the plane of a triangle: (A, B, C) with r/q = A s/q + B t/q + C. So the
 // slopes of r are two constants, dr/ds = A and dr/dt = B: what a shadow map's texels that lie beside the fragment are
 // biased by, without a constant to fit.
-// Guarantee: each within 2^-49 of itself, whatever cancels; some or all corners may be behind. No allocation, noexcept.
+// Guarantee: each within receiver_plane_error of itself, whatever cancels; some or all corners may be behind. No allocation, noexcept.
 // Shape: (s, t, r, q) of the corners in any order. In a fragment shader, for a map that has r and texels of that size,
 //
 //     float bias = dot(abs(plane.xy), 0.5 * texel);  // to any point of the texel that the fragment falls on
@@ -72,10 +78,13 @@ inline std::optional<glm::dvec3> receiver_plane(glm::vec4 a, glm::vec4 b, glm::v
 inline std::optional<std::array<glm::vec4, 4>> quadrilateral(const std::array<glm::dvec2, 4>& corners,
                                                              const TextureRegion& region = whole_texture()) noexcept;
 
+// How far an element of keystone() may be from the exact one, relative to the magnitudes of its two terms.
+inline constexpr double keystone_error = 0x1p-48;
+
 // Makes the matrix of the same homography: for a slide that is to fill a quadrilateral of a window, or of a wall that
 // was measured.
 // Guarantee: as quadrilateral(), with the same q; each element is the difference of two terms, or their sum, and within
-// 2^-48 of the terms' magnitudes, unless a term is below 2^-1000 for the whole texture. No allocation, noexcept.
+// keystone_error of their magnitudes, unless a term is below 2^-1000 for the whole texture. No allocation, noexcept.
 // Shape: (x, y, z, 1) to (s, t, 0, q), whatever z is. q > 0 on the side of the horizon where the quadrilateral is.
 // Bad input: empty as quadrilateral(), though q, s and t may be of any size, and where an element is not finite.
 inline std::optional<WindowTexgen> keystone(const std::array<glm::dvec2, 4>& corners,

@@ -169,8 +169,11 @@ Position<Window> window_space(const detail::MoreThanVec3 auto& point) = delete;
 
 inline namespace TEXGEN_BUILD {
 
+// How far generate() may be from the exact value, before its one rounding to float: relative to sum |T_ij v_j|.
+inline constexpr double generate_error = 0x1p-50;
+
 // Writes T v of every position, homogeneous: q <= 0 is kept, and is the caller's to test.
-// Guarantee: each coordinate within 1/2 ulp + 2^-50 sum |T_ij v_j| of its exact value; no allocation, noexcept.
+// Guarantee: each coordinate within 1/2 ulp + generate_error of its exact value; no allocation, noexcept.
 // Shapes: as many outputs as positions (asserted); outputs must not overlap the positions. Units of T's region.
 // Bad input: NaN and infinity spoil their own point only.
 // Source: Everitt, Projective Texture Mapping, (3) and (4).
@@ -178,7 +181,7 @@ template <class Space>
 void generate(const Transform<Texture, Space>& texture_from_space, Positions<Space> positions,
               std::span<glm::vec4> strq) noexcept;
 
-// The same into one array a coordinate; an empty one is not computed.
+// The same into one array a coordinate; an empty one is left out.
 template <class Space>
 void generate(const Transform<Texture, Space>& texture_from_space, Positions<Space> positions,
               HomogeneousTexcoords out) noexcept;
@@ -215,7 +218,7 @@ std::optional<glm::vec2> project(const Transform<Texture, Space>& texture_from_s
 
 // Bounds the error of each coordinate (s, t, r, q) that generate() gives of these positions.
 // Guarantee: |computed - exact| is at most this for every position, the rounding to float included: 1/2 ulp +
-// 2^-50 sum |T_ij v_j|, where that is largest. No allocation, noexcept; it looks at every position.
+// generate_error, where that is largest. No allocation, noexcept; it looks at every position.
 // Bad input: a NaN or an infinity of a matrix's row or of a position makes a NaN or an infinity of the bounds it
 // reaches.
 template <class Space>

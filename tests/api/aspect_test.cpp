@@ -91,8 +91,8 @@ TEST_CASE(
         check(support::random_rectangle<OrthographicLens>(random),
               [](const OrthographicLens& lens) { return orthographic(lens, texgen::vulkan).value(); });
     }
-    CHECK_MESSAGE(worst_side <= 8.0, worst_input);
-    CHECK(worst_region <= 4.0);
+    CHECK_MESSAGE(0x1p-53 * worst_side <= texgen::contain_error, worst_input);
+    CHECK(0x1p-53 * worst_region <= texgen::cover_error);
     MESSAGE(worst_side, " and ", worst_region, " times 2^-53 of the largest side at most");
 }
 

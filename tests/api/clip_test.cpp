@@ -460,7 +460,7 @@ TEST_CASE("the window is within its stated error of the exact division") {
             const Rational offset = half * exactly(clip) / exactly(v.position.w);
             const Rational exact = first + half + offset;
             const Rational slack =
-                support::power_of_two(-51) * (support::magnitude(first + half) + support::magnitude(offset));
+                exactly(texgen::to_window_error) * (support::magnitude(first + half) + support::magnitude(offset));
             return is_rounded(window, exact, slack);
         };
         REQUIRE_MESSAGE(check(computed.window.x, v.position.x, viewport.x, viewport.width), hex(v.position));

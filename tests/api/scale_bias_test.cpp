@@ -89,7 +89,7 @@ TEST_CASE("the remap without a matrix is within its stated error of the definiti
         for (int k = 0; k < 3; ++k) {
             const auto [at_minus, at_plus] = ends[static_cast<std::size_t>(k)];
             const Rational exact = remapped(at_minus, at_plus, clip[k], clip.w);
-            const Rational slack = support::power_of_two(-51) *
+            const Rational slack = exactly(texgen::to_texture_error) *
                                    exactly(std::max(std::fabs(at_minus), std::fabs(at_plus))) *
                                    exactly(std::max(std::fabs(clip[k]), std::fabs(clip.w)));
             const Rational half_ulp = support::power_of_two(support::ulp_exponent<float>(exact) - 1);

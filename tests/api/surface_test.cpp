@@ -170,7 +170,7 @@ TEST_CASE("slide_area is within 2^-50 of itself, and there where all q are posit
         }
         CHECK(count > 1000);
     }
-    CHECK_MESSAGE(worst <= 0x1p-50, worst_input);
+    CHECK_MESSAGE(worst <= texgen::slide_area_error, worst_input);
     MESSAGE((worst * 0x1p52), " times 2^-52 at most: ", worst_input);
 }
 
@@ -207,7 +207,7 @@ TEST_CASE("receiver_plane has the depth of all corners' plane, each number withi
         }
         CHECK((refused > 500) == (family == CornerFamily::edge_on || family == CornerFamily::graded));
     }
-    CHECK_MESSAGE(worst <= 0x1p-49, worst_input);
+    CHECK_MESSAGE(worst <= texgen::receiver_plane_error, worst_input);
     MESSAGE((worst * 0x1p52), " times 2^-52 at most: ", worst_input);
 }
 
@@ -372,11 +372,11 @@ TEST_CASE("keystone is the exact homography, element by element within 2^-48 of 
             worst = std::max(worst, error);
         }
     }
-    CHECK_MESSAGE(worst <= 0x1p-48, worst_input);
+    CHECK_MESSAGE(worst <= texgen::keystone_error, worst_input);
     MESSAGE((worst * 0x1p52), " times 2^-52 at most: ", worst_input);
     // One area is 2^1100 times another.
     const Quadrilateral graded{{{-0x1p400, 0.0}, {0.0, 0.0}, {0.0, 0x1p-400}, {-0x1p100, 0x1p400}}};
-    CHECK(support::keystone_error(keystone(graded).value(), graded, texgen::whole_texture()) <= 0x1p-48);
+    CHECK(support::keystone_error(keystone(graded).value(), graded, texgen::whole_texture()) <= texgen::keystone_error);
 }
 
 TEST_CASE(

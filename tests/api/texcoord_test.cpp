@@ -368,7 +368,7 @@ TEST_CASE("generated coordinates are within half a unit and 2^-50 of the sum of 
                     const glm::dvec4 r = row(batch.matrix, k);
                     const Dyadic terms = magnitude(Dyadic(r.x) * Dyadic(v.x)) + magnitude(Dyadic(r.y) * Dyadic(v.y)) +
                                          magnitude(Dyadic(r.z) * Dyadic(v.z)) + magnitude(Dyadic(r.w));
-                    const Dyadic slack = terms * Dyadic(0x1p-50);
+                    const Dyadic slack = terms * Dyadic(texgen::generate_error);
                     const Dyadic& x = exact[static_cast<std::size_t>(k)];
                     if (!(magnitude(x) + slack < Dyadic(0x1.ffffffp127))) continue;
                     ++compared;

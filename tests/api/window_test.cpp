@@ -62,7 +62,7 @@ TEST_CASE(
             }
         }
     }
-    CHECK_MESSAGE(worst <= 0x1p-47, worst_input);
+    CHECK_MESSAGE(worst <= texgen::window_linear_error, worst_input);
     MESSAGE((worst * 0x1p53), " times 2^-53 at most");
 }
 

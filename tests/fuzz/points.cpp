@@ -272,7 +272,7 @@ void generate_points(Input& input) {
         support::Dyadic slack = magnitude(support::Dyadic(matrix[3][k]));
         for (int j = 0; j < 3; ++j)
             slack = slack + magnitude(support::Dyadic(matrix[j][k]) * support::Dyadic(points[i][j]));
-        slack = slack * support::Dyadic(0x1p-50);
+        slack = slack * support::Dyadic(texgen::generate_error);
         const float value = alone[k];
         must(!std::isnan(value), "numbers make no NaN");
         // An infinity stands for everything beyond the largest float and half a unit.

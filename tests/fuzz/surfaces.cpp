@@ -36,14 +36,14 @@ void triangles(Input& input) {
     must(facing == support::facing_of_sign(sign, origin), "the side that is seen is exact");
     must(area.has_value() == (a.w > 0.0f && b.w > 0.0f && c.w > 0.0f), "an area needs all corners in front");
     if (area)
-        must(support::relative_error(*area, support::exact_slide_area(corners)) <= 0x1p-50,
+        must(support::relative_error(*area, support::exact_slide_area(corners)) <= texgen::slide_area_error,
              "an area is within 2^-50 of itself");
     const bool has_depth = std::isfinite(a.z) && std::isfinite(b.z) && std::isfinite(c.z);
     must(plane.has_value() == (has_depth && sign != 0), "a plane needs a triangle that is not seen edge on");
     if (!plane) return;
     const auto exact = support::exact_receiver_plane(corners);
     for (int k = 0; k < 3; ++k)
-        must(support::relative_error((*plane)[k], exact[static_cast<std::size_t>(k)]) <= 0x1p-49,
+        must(support::relative_error((*plane)[k], exact[static_cast<std::size_t>(k)]) <= texgen::receiver_plane_error,
              "a slope is within 2^-49 of itself");
 }
 
@@ -70,7 +70,7 @@ void quadrilaterals(Input& input) {
         must(support::ulp_error((*strq)[k].w, (*exact)[k]) <= 2.51, "a q is the homography's");
     // Fractions of numbers that differ by 2^800 take long.
     if (const auto whole = texgen::keystone(corners); whole && is_soon_divided && input.coin())
-        must(support::keystone_error(*whole, corners, texgen::whole_texture()) <= 0x1p-48,
+        must(support::keystone_error(*whole, corners, texgen::whole_texture()) <= texgen::keystone_error,
              "a matrix is the homography's");
     if (const auto whole = texgen::quadrilateral(corners)) {
         for (std::size_t k = 0; k < 4; ++k) {

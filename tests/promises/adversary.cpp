@@ -210,7 +210,7 @@ Share generate_share(const Numbers& n) {
     const Dyadic value(static_cast<double>(strq.x));
     const Dyadic middle(support::detail::middle(strq.x, value < exact));
     const Dyadic beyond = magnitude(value - exact) - magnitude(middle - value);
-    const double slack = 0x1p-50 * terms.estimate();
+    const double slack = texgen::generate_error * terms.estimate();
     return slack > 0.0 ? share_of_error(beyond.estimate() / slack) : says_nothing;
 }
 
@@ -702,7 +702,7 @@ Share window_share(const Numbers& n) {
     }
     const auto texgen = window_linear(scene.projector, scene.camera, scene.viewport, scene.region, scene.depth);
     if (!texgen) return broken;
-    return support::ExactWindow(scene).share_of_terms(*texgen, {n[0], n[1], n[2]}) / 0x1p-47;
+    return support::ExactWindow(scene).share_of_terms(*texgen, {n[0], n[1], n[2]}) / texgen::window_linear_error;
 }
 Numbers begin_window(Random& random) {
     const support::WindowScene scene = support::random_window_scene(random, random.power_of_ten(-1.0, 7.0));
@@ -769,7 +769,7 @@ Share slide_area_share(const Numbers& n) {
     const support::Corners corners = surface_of(n);
     const auto area = texgen::slide_area(corners[0], corners[1], corners[2]);
     if (!area) return says_nothing;
-    return support::relative_error(*area, support::exact_slide_area(corners)) / 0x1p-50;
+    return support::relative_error(*area, support::exact_slide_area(corners)) / texgen::slide_area_error;
 }
 
 Share receiver_plane_share(const Numbers& n) {
@@ -782,7 +782,7 @@ Share receiver_plane_share(const Numbers& n) {
     for (int k = 0; k < 3; ++k)
         worst = std::max(worst, support::relative_error(
                                     (*plane)[k], support::exact_receiver_plane(corners)[static_cast<std::size_t>(k)]));
-    return worst / 0x1p-49;
+    return worst / texgen::receiver_plane_error;
 }
 
 // Each element of the lens of a calibrated camera within 4 ulp.
@@ -865,7 +865,7 @@ Share keystone_share(const Numbers& n) {
     const auto matrix = texgen::keystone(corners);
     if (!support::exact_q(corners)) return matrix ? broken : says_nothing;
     if (!matrix) return says_nothing;
-    return support::keystone_error(*matrix, corners, texgen::whole_texture()) / 0x1p-48;
+    return support::keystone_error(*matrix, corners, texgen::whole_texture()) / texgen::keystone_error;
 }
 
 // The worst ulp of a q, where a half is allowed, and the refusal of what is not strictly convex.

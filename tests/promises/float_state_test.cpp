@@ -371,8 +371,8 @@ TEST_CASE("points: the sign of q is exact where its terms cancel, and errors are
                     double terms = std::fabs(matrix[3][row]);
                     for (int j = 0; j < 3; ++j) terms += std::fabs(matrix[j][row] * static_cast<double>(read[j]));
                     const Quotient u{exact, support::Dyadic(1.0)};
-                    const double room =
-                        0.5 * ulp_of(u) * (1.0 + 0x1p-20) + 0x1p-50 * terms + (state.flushes ? 0x1p-126 : 0.0);
+                    const double room = 0.5 * ulp_of(u) * (1.0 + 0x1p-20) + texgen::generate_error * terms +
+                                        (state.flushes ? 0x1p-126 : 0.0);
                     of_generate = std::max(of_generate, support::distance(strq[k][row], u) / room);
                 }
             }
