@@ -121,6 +121,30 @@ TEST_CASE("the worst points cost eight times ordinary ones at most, ten within a
     }
 }
 
+TEST_CASE("points that fill no last vector cost little more than those that do") {
+    constexpr double most = 1.5;
+    Random random(58);
+    const support::Cloud cloud = support::ordinary_cloud(256, random);
+    const texgen::WorldTexgen texgen(cloud.matrix);
+    std::vector<glm::vec4> padded, strq(256);
+    std::vector<glm::vec2> st(256);
+    for (const glm::vec3& point : cloud.points) padded.emplace_back(point, 1.0f);
+    const auto generates = [&](std::size_t count) {
+        return [&, count] {
+            generate(texgen, texgen::world_space(&padded[0].x, count, sizeof padded[0]), std::span(strq).first(count));
+        };
+    };
+    const auto projects = [&](std::size_t count) {
+        return [&, count] {
+            project(texgen, texgen::world_space(&padded[0].x, count, sizeof padded[0]), std::span(st).first(count));
+        };
+    };
+    const double of_generate = support::worst_over_ordinary_within(most, generates(256), generates(255));
+    const double of_project = support::worst_over_ordinary_within(most, projects(256), projects(255));
+    CHECK(of_generate <= most);
+    CHECK(of_project <= most);
+}
+
 TEST_CASE("the worst segments cost eight times ordinary ones at most, at every size, whatever is asked for") {
     Random random(57);
     for (const std::size_t count : {1u, 16u, 64u, 1024u}) {

@@ -148,20 +148,16 @@ void generate_all(const glm::dmat4& matrix, const Positions<Space>& positions, f
         GenerateJob part = job;
         static_cast<PointInput&>(part) = input;
         part.count = whole;
-        if (count == whole) {
-            part.strq = strq != nullptr ? strq + 4 * first : nullptr;
-            for (std::size_t k = 0; k < 4; ++k) part.out[k] = out[k] != nullptr ? out[k] + first : nullptr;
-            return chosen<PointKernels>().generate(part);
-        }
-        float buffer[4][copy_size];  // a part that is padded is a copy
-        for (std::size_t k = 0; k < 4; ++k) part.out[k] = buffer[k];
+        const bool is_padded = count != whole;
+        float buffer[4 * copy_size];  // a part that is padded is a copy
+        if (strq != nullptr) part.strq = is_padded ? buffer : strq + 4 * first;
+        for (std::size_t k = 0; k < 4; ++k)
+            if (out[k] != nullptr) part.out[k] = is_padded ? buffer + k * copy_size : out[k] + first;
         chosen<PointKernels>().generate(part);
-        for (std::size_t i = 0; i < count; ++i) {
-            for (std::size_t k = 0; k < 4; ++k) {
-                if (strq != nullptr) strq[4 * (first + i) + k] = buffer[k][i];
-                if (out[k] != nullptr) out[k][first + i] = buffer[k][i];
-            }
-        }
+        if (!is_padded) return;
+        if (strq != nullptr) std::memcpy(strq + 4 * first, part.strq, 4 * count * sizeof(float));
+        for (std::size_t k = 0; k < 4; ++k)
+            if (out[k] != nullptr) std::memcpy(out[k] + first, part.out[k], count * sizeof(float));
     });
 }
 
