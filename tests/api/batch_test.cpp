@@ -188,7 +188,7 @@ Shot draw(Random& random) {
         default:
             break;
     }
-    if (random.integer(0, 60) == 0) shot.rect.width = random.integer(30, 80), shot.rect.height = 30;
+    if (random.integer(0, 15) == 0) shot.rect.width = random.integer(1, 80), shot.rect.height = random.integer(1, 40);
     return shot;
 }
 
@@ -266,6 +266,7 @@ struct Drawn {
 
 TEST_CASE("with exact, rectangles of a batch have the bits that each has alone, whatever is asked for") {
     Random random(1);
+    int apart = 0, large = 0, overlapping = 0;  // tiles for a setup; beyond scratch; with vectors that overlap
     for (int round = 0; round < 400; ++round) {
         const texgen::TextureRegion region = draw_region(random);
         TriangleBatch batch(region);
@@ -280,6 +281,9 @@ TEST_CASE("with exact, rectangles of a batch have the bits that each has alone, 
             std::size_t first = 0;
             for (std::size_t i = 0; i < drawn.rects.size(); ++i) {
                 const std::size_t count = count_of(drawn.rects[i]);
+                apart += count > texgen::detail::largest_batch_tile;
+                large += count > texgen::detail::largest_in_scratch && count <= texgen::detail::largest_batch_tile;
+                overlapping += count < 512 && drawn.rects[i].width > 8 && drawn.rects[i].width % 8 != 0;
                 const Expected expected(drawn.triangles[i], region, drawn.rects[i], asked, texgen::exact);
                 if (!agree(expected, 0, out, first, count))
                     FAIL_CHECK(support::hex(drawn.triangles[i]), " at ", drawn.rects[i].x, " ", drawn.rects[i].y, " ",
@@ -288,6 +292,9 @@ TEST_CASE("with exact, rectangles of a batch have the bits that each has alone, 
             }
         }
     }
+    CHECK(apart > 100);
+    CHECK(large > 100);
+    CHECK(overlapping > 300);
 }
 
 TEST_CASE("with exact, a visibility buffer has the bits that each fragment has alone") {

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -245,5 +246,37 @@ TEST_CASE("where no coordinate is subnormal, subnormal numbers do not double the
         const std::vector<FragmentRect> rects(8, {300, 300, 8, 8});
         std::vector<float> s(512), t(512);
         require_same_cost("weights", support::calls_of([&] { interpolate(batch, rects, {s, t, {}, {}}); }));
+    }
+}
+
+TEST_CASE("a batch takes no longer than its triangles one by one, however large their tiles are") {
+    constexpr double most = 1.15;
+    const std::vector<Triangle> triangles(8, ordinary(1, 1).triangle);
+    for (const Tolerance tolerance : dial) {
+        texgen::TriangleBatch batch(texgen::whole_texture(), tolerance);
+        for (const int size : {3, 8, 9, 12, 17, 24, 32, 40}) {
+            const std::vector<FragmentRect> rects(triangles.size(), {300, 100, size, size});
+            const std::size_t count = support::count_of(rects[0]);
+            std::vector<float> s(count * rects.size()), t(s.size()), lit(s.size());
+            const auto part = [&](std::vector<float>& all, std::size_t i) {
+                return std::span(all).subspan(i * count, count);
+            };
+            for (const bool is_lit_asked : {false, true}) {
+                const auto outputs = [&](auto of_s, auto of_t, auto of_lit) {
+                    return texgen::Texcoords{of_s, of_t, {}, is_lit_asked ? of_lit : std::span<float>()};
+                };
+                const auto one_by_one = [&] {
+                    for (std::size_t i = 0; i < rects.size(); ++i)
+                        interpolate(support::setup_of(triangles[i], texgen::whole_texture(), tolerance), rects[i],
+                                    outputs(part(s, i), part(t, i), part(lit, i)));
+                };
+                const auto together = [&] {
+                    batch.assign(triangles);
+                    interpolate(batch, rects, outputs(std::span(s), std::span(t), std::span(lit)));
+                };
+                const double ratio = support::worst_over_ordinary_within(most, one_by_one, together);
+                CHECK_MESSAGE(ratio <= most, size, " x ", size, ", tolerance ", tolerance.value, ": ", ratio, " times");
+            }
+        }
     }
 }

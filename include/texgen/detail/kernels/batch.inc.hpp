@@ -9,6 +9,7 @@
 #include "batch_residues.inc.hpp"
 
 #include "batch_fragments.inc.hpp"
+#include "batch_shapes.inc.hpp"
 #include "batch_survey.inc.hpp"
 
 #include "batch_tiles.inc.hpp"

@@ -9,7 +9,7 @@ struct BatchTiles {
     double ulps[batch_block];  // what quotients are within, of their own, a power of two
     float middle[3][batch_block], dx[3][batch_block], dy[3][batch_block], bend_x[batch_block], bend_y[batch_block];
     // A bit for each tile and kind, in one number: stores of several would be waited for where they are read at once.
-    enum Kind : std::size_t { is_dark, is_exact, has_middles, is_float, is_polynomial };
+    enum Kind : std::size_t { is_dark, is_lit, is_exact, has_middles, is_float, is_polynomial };
     std::uint64_t kinds;
 
     TEXGEN_INLINE void add(Kind kind, const LongWords& mask, std::size_t first) noexcept {
@@ -55,7 +55,7 @@ struct TileFunction {
         at[2] = at[0] + dy * tile.bottom;
         at[3] = at[2] + dx * tile.right;
         least = least_of(at);
-        largest = maximum(maximum(at[0], at[1]), maximum(at[2], at[3]));
+        largest = largest_of(at);
         size = maximum(largest, least * -1.0);
         error = function[3] * tile.stretch + size * tile.sums;
     }
@@ -63,20 +63,27 @@ struct TileFunction {
     TEXGEN_INLINE static Doubles least_of(const Doubles (&at)[4]) noexcept {
         return minimum(minimum(at[0], at[1]), minimum(at[2], at[3]));
     }
+    TEXGEN_INLINE static Doubles largest_of(const Doubles (&at)[4]) noexcept {
+        return maximum(maximum(at[0], at[1]), maximum(at[2], at[3]));
+    }
 };
 
-// Tiles all of whose fragments in front are beyond a side of the region, with the margins of coverage_by_sides() in
-// triangle/corners.hpp. `outwards` is -1 for the lower side and 1 for the upper one.
-TEXGEN_INLINE LongWords are_beyond(const TileFunction& f, const TileFunction& q, double bound, double outwards,
-                                   double tolerance) noexcept {
-    const double size = std::fabs(bound);
-    const double slack = size * 0x1p-22 + (0x1p-125 + 2.0 * tolerance);
-    const Doubles margin = (f.error + q.error * (size + slack) + q.size * (slack + size * gamma(4))) * 1.0002;
-    Doubles g[4];
-    TEXGEN_UNROLL
-    for (std::size_t i = 0; i < 4; ++i) g[i] = f.at[i] * outwards - q.at[i] * (outwards * bound);
-    return greater(TileFunction::least_of(g) * (1.0 - gamma(4)), margin);
-}
+// Tiles all of whose fragments in front are below a bound, such as a side of the region, or above it, with the margins
+// of coverage_by_sides() in triangle/corners.hpp.
+struct Beyond {
+    LongWords below, above;
+
+    TEXGEN_INLINE Beyond(const TileFunction& f, const TileFunction& q, double bound, double tolerance) noexcept {
+        const double size = std::fabs(bound);
+        const double slack = size * 0x1p-22 + (0x1p-125 + 2.0 * tolerance);
+        const Doubles margin = (f.error + q.error * (size + slack) + q.size * (slack + size * gamma(4))) * 1.0002;
+        Doubles g[4];
+        TEXGEN_UNROLL
+        for (std::size_t i = 0; i < 4; ++i) g[i] = f.at[i] - q.at[i] * bound;
+        below = greater(margin * -1.0, TileFunction::largest_of(g));
+        above = greater(TileFunction::least_of(g), margin);
+    }
+};
 
 // In float a tile is what a chunk is (chunks.inc.hpp), in two directions. With r = 2^-24 the numerator of a step D
 // carries 3 r D, x of the denominator 3 r X, X being its largest, so that the step has 3 r X / (1 - X) D of it; the
@@ -113,6 +120,7 @@ TEXGEN_INLINE LongWords prepare_in_float(const BatchJob& job, const BatchPlanes*
     LongWords is_float = greater(middle_q, q_error * 0x1p26) & at_most(extent, Doubles{} + 0.75);
     LongWords is_polynomial = at_most(extent, Doubles{} + 0.25);
     LongWords is_inside = is_float;
+    LongWords is_lit = is_float;
     TEXGEN_UNROLL
     for (std::size_t k = 0; k < Numerators; ++k) {
         const Doubles* const f = &planes.value[BatchPlanes::of_numerator[k]];
@@ -131,10 +139,13 @@ TEXGEN_INLINE LongWords prepare_in_float(const BatchJob& job, const BatchPlanes*
         const bool has_limits = k < 2 || job.has_depth;
         const double min = static_cast<double>(k < 2 ? job.min[k] : job.r_min);
         const double max = static_cast<double>(k < 2 ? job.max[k] : job.r_max);
-        if (has_limits) is_inside &= ~(greater(u, max) | greater(Doubles{} + min, u));
+        if (!has_limits) continue;
+        is_inside &= ~(greater(u, max) | greater(Doubles{} + min, u));
+        is_lit &= greater(u - (step + rest), min) & greater(Doubles{} + max, u + (step + rest));
     }
     tiles.add(BatchTiles::is_float, is_float, first);
     tiles.add(BatchTiles::is_polynomial, is_polynomial & is_float, first);
+    tiles.add(BatchTiles::is_lit, is_lit & is_float, first);
     return is_float & is_inside;
 }
 
@@ -152,6 +163,12 @@ TEXGEN_APART void prepare(const BatchJob& job, const BatchPlanes* of_tiles, cons
     store(&tiles.q[first], q.at[0]);
     const LongWords is_exact = in_front & greater(q.least, q.largest * share_for_one_error);
     LongWords is_dark = greater(q.largest * -1.0, q.error);
+    LongWords is_lit = is_exact;
+    const auto ask = [&](const TileFunction& f, double min, double max) {
+        const Beyond of_min(f, q, min, job.tolerance), of_max(f, q, max, job.tolerance);
+        is_dark |= of_min.below | of_max.above;
+        is_lit &= of_min.above & of_max.below;
+    };
     Doubles ulps = Doubles{} + 4.0;
     // The product of two, and its reciprocal, are normal numbers.
     LongWords have_middles = is_exact & greater(q.least, 0x1p-500) & greater(Doubles{} + 0x1p500, q.largest);
@@ -172,22 +189,20 @@ TEXGEN_APART void prepare(const BatchJob& job, const BatchPlanes* of_tiles, cons
         if (k < 2) {
             const double min = static_cast<double>(job.min[k]);
             const double max = static_cast<double>(job.max[k]);
-            // A corner in the region spares the rest.
-            if (any(greater(q.at[0] * min, f.at[0]) | greater(f.at[0], q.at[0] * max))) {
-                is_dark |= are_beyond(f, q, min, -1.0, job.tolerance);
-                is_dark |= are_beyond(f, q, max, 1.0, job.tolerance);
-            }
+            // Where no mask is asked for a corner in the region spares the rest.
+            if (job.lit != nullptr || any(greater(q.at[0] * min, f.at[0]) | greater(f.at[0], q.at[0] * max)))
+                ask(f, min, max);
         }
         if (k == 2 && job.has_depth) {
             // Infinite limits as r_coverage() has them.
             const double r_min = larger(-0x1p500, smaller(0x1p128, static_cast<double>(job.r_min)));
             const double r_max = larger(-0x1p128, smaller(0x1p500, static_cast<double>(job.r_max)));
-            is_dark |= are_beyond(f, q, r_min, -1.0, job.tolerance);
-            is_dark |= are_beyond(f, q, r_max, 1.0, job.tolerance);
+            ask(f, r_min, r_max);
         }
     }
     store(&tiles.ulps[first], power_of_two_below(ulps) * 2.0);
     tiles.add(BatchTiles::is_dark, is_dark, first);
+    tiles.add(BatchTiles::is_lit, is_lit, first);
     tiles.add(BatchTiles::is_exact, is_exact, first);
     tiles.add(BatchTiles::has_middles, have_middles & greater(Doubles{} + 0x1p14, ulps), first);
 }

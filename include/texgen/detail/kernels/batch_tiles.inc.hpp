@@ -2,60 +2,6 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// Whether a positive number divides a power of two: it is one, and no larger.
-TEXGEN_INLINE bool divides(int a, int power_of_two) noexcept { return (a & (a - 1)) == 0 && a <= power_of_two; }
-
-// The rectangle of a tile as its kernels walk it: a row alone is a column. Most tiles have the shape of the one before.
-struct TileShape {
-    int width = 0;
-    bool is_turned = false;
-    std::size_t count = 0;
-    double per_width = 1.0, last_row = 0.0;
-    bool is_whole = false;          // its rows are whole vectors, or vectors have whole rows
-    bool has_wide_columns = false;  // wide vectors have whole rows
-    // The columns and rows of the first vector, by how many rows the next is below it, and the same in float about the
-    // middle.
-    Doubles x{}, y{};
-    double rows = 1.0;
-    WideFloats wide_x{}, wide_y{};
-    float wide_rows = 1.0f;
-
-    TEXGEN_INLINE TileShape() noexcept = default;
-
-    TEXGEN_INLINE bool is_of(int tile_width, int tile_height) const noexcept {
-        return given_[0] == tile_width && given_[1] == tile_height;
-    }
-    TEXGEN_INLINE void take(int tile_width, int tile_height) noexcept {
-        given_[0] = tile_width;
-        given_[1] = tile_height;
-        is_turned = tile_height == 1;
-        width = is_turned ? 1 : tile_width;
-        count = static_cast<std::size_t>(tile_width) * static_cast<std::size_t>(tile_height);
-        per_width = 1.0 / width;
-        last_row = (is_turned ? tile_width : tile_height) - 1;
-        const bool is_narrow = divides(width, lanes);
-        is_whole = is_narrow ? count % at_once == 0 : width % lanes == 0;
-        has_wide_columns = divides(width, wide_lanes);
-        x = indices<Doubles>();
-        y = Doubles{};
-        rows = 1.0;
-        if (is_narrow) {
-            const FragmentWalk<Doubles, double> walk(width, per_width, 0.0);
-            x = walk.x;
-            y = walk.y;
-            rows = walk.rows_per_vector;
-        }
-        if (!has_wide_columns) return;
-        const FragmentWalk<WideFloats, float> wide(static_cast<float>(width), static_cast<float>(per_width), 0.0);
-        wide_x = wide.x - 0.5f * static_cast<float>(width - 1);
-        wide_y = wide.y - static_cast<float>(0.5 * last_row);
-        wide_rows = wide.rows_per_vector;
-    }
-
-private:
-    int given_[2] = {0, 0};
-};
-
 // Where the values of a tile go, whole vectors; none is null, so that loops need not ask.
 template <std::size_t Numerators>
 struct TileOutputs {
@@ -68,7 +14,7 @@ struct TileOutputs {
     }
 };
 
-using TileScratch = ScratchOutputs<largest_batch_tile + wide_lanes>;
+using TileScratch = ScratchOutputs<largest_in_scratch + wide_lanes>;
 
 // What the kernels in double know of a tile: its functions as base, along a row and down.
 template <std::size_t Numerators>
@@ -139,7 +85,7 @@ struct TileColumn {
     }
 };
 
-// The same of a tile whose vectors have whole rows, or its rows whole vectors, and no quotient but normal ones.
+// The same where is_whole, of no quotient but normal ones. The last vector of a row may begin in the one before.
 template <std::size_t Numerators, bool HasWholeRows>
 TEXGEN_APART bool divide_whole_tile(const BatchPlanes& planes, const BatchTiles& tiles, std::size_t i,
                                     const TileShape& shape, const TileOutputs<Numerators>& original) noexcept {
@@ -151,7 +97,7 @@ TEXGEN_APART bool divide_whole_tile(const BatchPlanes& planes, const BatchTiles&
     const int ulps = static_cast<int>(tiles.ulps[i]) - 1;
     Doubles x = shape.x;
     Distances least = far_from_middles();
-    for (std::size_t begin = 0; begin < pitch; begin += at_once) {
+    for (std::size_t begin = 0;;) {
         TileColumn<Numerators> column;
         TEXGEN_UNROLL
         for (std::size_t k = 0; k <= Numerators; ++k) {
@@ -177,8 +123,10 @@ TEXGEN_APART bool divide_whole_tile(const BatchPlanes& planes, const BatchTiles&
                 out.put(n + j * to_next, rounded);
             }
         }
-        if (HasWholeRows) break;
-        x = x + static_cast<double>(at_once);
+        if (HasWholeRows || begin + at_once == pitch) break;
+        const std::size_t step = begin + 2 * at_once <= pitch ? at_once : pitch - at_once - begin;
+        begin += step;
+        x = x + static_cast<double>(step);
     }
     return !any_zero(least);
 }
@@ -268,10 +216,14 @@ TEXGEN_INLINE bool fill_tile(const BatchPlanes& planes, const BatchTiles& tiles,
     const bool is_certain = divide_tile_by_tier<Numerators>(planes, tiles, i, shape, here);
     if (out.lit != nullptr) {
         float* const lit = in_scratch ? scratch.values[3] : out.lit + begin;
-        for (std::size_t n = 0; n < shape.count; n += at_once) {
-            Floats value[Numerators];
+        for (std::size_t n = 0; n < shape.count; n += wide_at_once) {
+            if (tiles.has(BatchTiles::is_lit, i)) {
+                store(lit + n, WideFloats{} + 1.0f);
+                continue;
+            }
+            WideFloats value[Numerators];
             TEXGEN_UNROLL
-            for (std::size_t k = 0; k < Numerators; ++k) value[k] = load<Floats>(here.out[k] + n);
+            for (std::size_t k = 0; k < Numerators; ++k) value[k] = load<WideFloats>(here.out[k] + n);
             store(lit + n, one_where(out.are_inside(value)));
         }
     }
@@ -338,6 +290,9 @@ TEXGEN_INLINE Undecided divide_all_tiles(const TilesJob& job, std::size_t first,
     TileScratch scratch;
     BatchTiles tiles;
     TileShape shape;
+    std::size_t most = largest_batch_tile;
+    for (std::size_t k = 0; k < Numerators; ++k)
+        if (out.out[k] == nullptr) most = largest_in_scratch;
     for (; first < job.tile_count; first += batch_block) {
         const std::size_t count = job.tile_count - first < batch_block ? job.tile_count - first : batch_block;
         tiles.kinds = 0;
@@ -369,15 +324,15 @@ TEXGEN_INLINE Undecided divide_all_tiles(const TilesJob& job, std::size_t first,
             if (tiles.has(BatchTiles::is_dark, i)) {
                 for (float* const array : {out.out[0], out.out[1], out.out[2], out.lit})
                     for (std::size_t n = begin; array != nullptr && n < done; ++n) array[n] = 0.0f;
-            } else if (shape.count > largest_batch_tile) {
-                doubtful |= std::uint64_t{1} << i;
-            } else if (tiles.has(BatchTiles::is_exact, i) || tiles.has(BatchTiles::is_float, i)) {
-                const bool is_at_end = done + wide_at_once > job.count;
-                if (!fill_tile<Numerators>(job.planes[first + i], tiles, i, shape, out, begin, is_at_end, scratch))
-                    in_doubt |= std::uint64_t{1} << i;
-            } else {
-                in_doubt |= std::uint64_t{1} << i;
+                continue;
             }
+            const bool is_large = shape.count > largest_in_scratch;
+            const bool is_at_end = done + wide_at_once > job.count;
+            const bool is_certain =
+                shape.count <= (is_at_end ? largest_in_scratch : most) &&
+                (tiles.has(BatchTiles::is_exact, i) || tiles.has(BatchTiles::is_float, i)) &&
+                fill_tile<Numerators>(job.planes[first + i], tiles, i, shape, out, begin, is_at_end, scratch);
+            if (!is_certain) (is_large ? doubtful : in_doubt) |= std::uint64_t{1} << i;
         }
         if (in_doubt != 0) doubtful |= decide_tiles(job, out, first, block, in_doubt, begin_of_block);
         if (doubtful != 0) return {first, doubtful};

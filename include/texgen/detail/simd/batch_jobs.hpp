@@ -42,8 +42,9 @@ struct alignas(64) BatchPlanes {
 inline constexpr double batch_plane_error = 1.0001 * gamma(20);
 
 // Tiles of more fragments are left to a TriangleSetup, which costs little beside them and resumes where one is in
-// doubt.
-inline constexpr std::size_t largest_batch_tile = 512;
+// doubt; and of more than scratch holds those that are in doubt, or need it.
+inline constexpr std::size_t largest_batch_tile = 1024;
+inline constexpr std::size_t largest_in_scratch = 512;
 
 // An output is null, or an array of `count` floats; r is computed where it has one, and where the mask is to have a
 // depth.

@@ -57,10 +57,9 @@ TEXGEN_APART void finish_depth(const TileKernels& kernels, const TriangleFunctio
     }
 }
 
-// The fragments of a rectangle, for outputs that are computed.
+// The fragments of a rectangle by a plan, for outputs that are computed.
 template <class CompiledWhereCalled = void>
-inline Work interpolate_tile(const TriangleSetup& setup, const Tile& tile, const Texcoords& out) noexcept {
-    const TriangleFunctions& triangle = Inside::functions(setup);
+inline Work interpolate_by_plan(const TriangleFunctions& triangle, const Tile& tile, const Texcoords& out) noexcept {
     TileSurvey found = survey(triangle, tile);
     const Plan& plan = found.plan;
     if (plan.work == Work::nothing) {
@@ -89,6 +88,21 @@ inline Work interpolate_tile(const TriangleSetup& setup, const Tile& tile, const
     return plan.work;
 }
 
+// The same without one where that serves.
+template <class CompiledWhereCalled = void>
+TEXGEN_INLINE Work interpolate_tile(const TriangleSetup& setup, const Tile& tile, const Texcoords& out) noexcept {
+    const TriangleFunctions& triangle = Inside::functions(setup);
+    Coverage depth = Coverage::inside;
+    SmallAnswer answer = SmallAnswer::doubt;
+    if (is_small(tile, triangle.tolerance)) {
+        if (triangle.lit.has_depth()) depth = depth_coverage(triangle, tile);
+        if (depth != Coverage::outside) answer = fill_small(triangle, tile, out);
+    }
+    if (answer == SmallAnswer::doubt) return interpolate_by_plan(triangle, tile, out);
+    if (!out.r.empty() || depth != Coverage::inside) finish_depth(chosen<TileKernels>(), triangle, tile, out, depth);
+    return work_of(triangle, answer == SmallAnswer::lit && depth == Coverage::inside);
+}
+
 }  // namespace TEXGEN_BUILD
 }  // namespace TEXGEN_DETAIL
 
@@ -100,18 +114,7 @@ TEXGEN_INLINE Work interpolate(const TriangleSetup& setup, FragmentRect rect, Te
     const std::size_t count = detail::count_of(rect);
     if (count == 0) return Work::nothing;
     detail::take_computed(out, count);
-    const detail::Tile tile = detail::tile_of(rect);
-    const detail::TriangleFunctions& triangle = detail::Inside::functions(setup);
-    Coverage depth = Coverage::inside;
-    detail::SmallAnswer answer = detail::SmallAnswer::doubt;
-    if (detail::is_small(tile, triangle.tolerance)) {
-        if (triangle.lit.has_depth()) depth = detail::depth_coverage(triangle, tile);
-        if (depth != Coverage::outside) answer = detail::fill_small(triangle, tile, out);
-    }
-    if (answer == detail::SmallAnswer::doubt) return detail::interpolate_tile(setup, tile, out);
-    if (!out.r.empty() || depth != Coverage::inside)
-        detail::finish_depth(detail::chosen<detail::TileKernels>(), triangle, tile, out, depth);
-    return detail::work_of(triangle, answer == detail::SmallAnswer::lit && depth == Coverage::inside);
+    return detail::interpolate_tile(setup, detail::tile_of(rect), out);
 }
 
 }  // namespace TEXGEN_BUILD

@@ -1,0 +1,59 @@
+// How the kernels of a batch walk a tile. Included by batch.inc.hpp.
+
+namespace TEXGEN_DETAIL::TEXGEN_ISA {
+
+// Whether a positive number divides a power of two: it is one, and no larger.
+TEXGEN_INLINE bool divides(int a, int power_of_two) noexcept { return (a & (a - 1)) == 0 && a <= power_of_two; }
+
+// The rectangle of a tile as its kernels walk it: a row alone is a column. Most tiles have the shape of the one before.
+struct TileShape {
+    int width = 0;
+    bool is_turned = false;
+    std::size_t count = 0;
+    double per_width = 1.0, last_row = 0.0;
+    bool is_whole = false;          // its rows hold vectors, or vectors have whole rows
+    bool has_wide_columns = false;  // wide vectors have whole rows
+    // The columns and rows of the first vector, by how many rows the next is below it, and the same in float about the
+    // middle.
+    Doubles x{}, y{};
+    double rows = 1.0;
+    WideFloats wide_x{}, wide_y{};
+    float wide_rows = 1.0f;
+
+    TEXGEN_INLINE TileShape() noexcept = default;
+
+    TEXGEN_INLINE bool is_of(int tile_width, int tile_height) const noexcept {
+        return given_[0] == tile_width && given_[1] == tile_height;
+    }
+    TEXGEN_INLINE void take(int tile_width, int tile_height) noexcept {
+        given_[0] = tile_width;
+        given_[1] = tile_height;
+        is_turned = tile_height == 1;
+        width = is_turned ? 1 : tile_width;
+        count = static_cast<std::size_t>(tile_width) * static_cast<std::size_t>(tile_height);
+        per_width = 1.0 / width;
+        last_row = (is_turned ? tile_width : tile_height) - 1;
+        const bool is_narrow = divides(width, lanes);
+        is_whole = is_narrow ? count % at_once == 0 : width >= lanes;
+        has_wide_columns = divides(width, wide_lanes);
+        x = indices<Doubles>();
+        y = Doubles{};
+        rows = 1.0;
+        if (is_narrow) {
+            const FragmentWalk<Doubles, double> walk(width, per_width, 0.0);
+            x = walk.x;
+            y = walk.y;
+            rows = walk.rows_per_vector;
+        }
+        if (!has_wide_columns) return;
+        const FragmentWalk<WideFloats, float> wide(static_cast<float>(width), static_cast<float>(per_width), 0.0);
+        wide_x = wide.x - 0.5f * static_cast<float>(width - 1);
+        wide_y = wide.y - static_cast<float>(0.5 * last_row);
+        wide_rows = wide.rows_per_vector;
+    }
+
+private:
+    int given_[2] = {0, 0};
+};
+
+}  // namespace TEXGEN_DETAIL::TEXGEN_ISA
