@@ -290,7 +290,8 @@ TEXGEN_INLINE Undecided divide_all_tiles(const TilesJob& job, std::size_t first,
     TileScratch scratch;
     BatchTiles tiles;
     TileShape shape;
-    std::size_t most = largest_batch_tile;
+    // Few lanes divide large tiles in float no faster than a set-up by chunks.
+    std::size_t most = job.tolerance > 0.0 && lanes < 4 ? largest_in_scratch : largest_batch_tile;
     for (std::size_t k = 0; k < Numerators; ++k)
         if (out.out[k] == nullptr) most = largest_in_scratch;
     for (; first < job.tile_count; first += batch_block) {
