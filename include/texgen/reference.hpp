@@ -3,10 +3,12 @@
 // Floor 6: the definitions, straight from the papers, generic over the scalar: double for pictures and checks, an exact
 // rational for the judge. Nothing here is fast, and nothing is shared with the fast path.
 //
-// A Scalar needs an exact constructor from float, + - * / and comparisons, and Eigen::NumTraits.
+// A Scalar needs an exact constructor from float, + - * / and comparisons, and Eigen::NumTraits; integers are refused.
+// What its arithmetic loses is lost: a float finds no area in slivers that have one, and asserts.
 
 #include "detail/language.hpp"
 
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -35,7 +37,7 @@ using Vector4 = Eigen::Matrix<Scalar, 4, 1>;
 // Shape: the window in pixels, pixel centres at +0.5; any point of the plane, where the interpolated 1/w is not 0.
 // Bad input: precondition, asserted: the triangle has an area and its clip_w are positive.
 // Source: OpenGL 2.1 specification, 3.5.1; Heckbert and Moreton, Interpolation for Polygon Texture Mapping and Shading.
-template <class Scalar>
+template <detail::HoldsFloats Scalar>
 Vector4<Scalar> strq(const Triangle& triangle, Scalar window_x, Scalar window_y) {
     const detail::WindowTriangle<Scalar> t(triangle);
     const Vector3<Scalar> weights = t.weights(window_x, window_y);
@@ -45,7 +47,7 @@ Vector4<Scalar> strq(const Triangle& triangle, Scalar window_x, Scalar window_y)
 
 // The homogeneous (s, t, r, q) at alpha: (1 - alpha) A + alpha B.
 // Guarantee: exact where the Scalar is. Shape: alpha = 0 is segment.a, alpha = 1 is segment.b; any alpha.
-template <class Scalar>
+template <detail::HoldsFloats Scalar>
 Vector4<Scalar> strq(const Segment& segment, Scalar alpha) {
     return detail::mix(detail::exactly<Scalar>(segment.a), detail::exactly<Scalar>(segment.b), alpha);
 }
@@ -65,7 +67,7 @@ Vector3<Scalar> quotient(const Vector4<Scalar>& strq) {
 template <class Scalar>
 Vector3<Scalar> direct_projection(const Eigen::Matrix<Scalar, 4, 4>& texture_from_space, const Vector3<Scalar>& a,
                                   const Vector3<Scalar>& b, Scalar alpha) {
-    const Vector3<Scalar> c = Scalar(Scalar(1) - alpha) * a + alpha * b;
+    const Vector3<Scalar> c = Scalar(Scalar(1.0f) - alpha) * a + alpha * b;
     const Vector4<Scalar> projected = c[0] * texture_from_space.col(0) + c[1] * texture_from_space.col(1) +
                                       c[2] * texture_from_space.col(2) + texture_from_space.col(3);
     return quotient(projected);
@@ -80,12 +82,12 @@ Vector3<Scalar> interpolate_then_divide(const Vector4<Scalar>& a, const Vector4<
 // (3), divide then interpolate: the wrong one, which bends every line. For pictures and tests only.
 template <class Scalar>
 Vector3<Scalar> wrong_divide_then_interpolate(const Vector4<Scalar>& a, const Vector4<Scalar>& b, Scalar alpha) {
-    return Scalar(Scalar(1) - alpha) * quotient(a) + alpha * quotient(b);
+    return Scalar(Scalar(1.0f) - alpha) * quotient(a) + alpha * quotient(b);
 }
 
 // (3) over a triangle: s/q, t/q and r/q of the vertices, interpolated as ordinary coordinates are (perspective-correct
 // in the camera's w). The wrong one. For pictures and tests only; preconditions as strq().
-template <class Scalar>
+template <detail::HoldsFloats Scalar>
 Vector3<Scalar> wrong_divide_then_interpolate(const Triangle& triangle, Scalar window_x, Scalar window_y) {
     const detail::WindowTriangle<Scalar> t(triangle);
     const Vector3<Scalar> weights = t.weights(window_x, window_y);
@@ -104,7 +106,8 @@ inline constexpr double interpolation_error = 0x1p-50;
 // double: coordinates that are 0 or at least 2^-13, below 2^17. No allocation, noexcept.
 // Shape: outputs are row-major, width * height; an empty span is not computed. In front of the projector (q > 0) s, t,
 // r are the quotients, and lit is 1 where the s and t, and with a depth the r, that are (or would be) written lie in
-// the closed region, else 0. Behind (q <= 0) all four are 0. Outside the triangle the values are those of its plane.
+// the closed region, else 0. Behind (q <= 0) all four are 0. Outside the triangle the values are those of its plane;
+// where the interpolated 1/w is not positive nothing is promised.
 // Bad input: preconditions, asserted: as strq(), and the sizes agree. NaN and infinity in a coordinate stay in that
 // coordinate; in q they make every fragment dark.
 inline void interpolate(const Triangle& triangle, TextureRegion region, FragmentRect rect, Texcoords out) noexcept {
@@ -121,7 +124,7 @@ inline void interpolate(const Triangle& triangle, TextureRegion region, Fragment
             const double x = rect.x + static_cast<double>(column) + 0.5;  // integers
             const Vector3<double> k = vertices.weights(x, y);
             const Vector4<double> strq = k[0] * vertices.a.strq + k[1] * vertices.b.strq + k[2] * vertices.c.strq;
-            const bool in_front = strq[3] > 0.0;
+            const bool in_front = strq[3] > 0.0 && std::isfinite(strq[3]);
             const auto divided = [&](int i) { return in_front ? static_cast<float>(strq[i] / strq[3]) : 0.0f; };
             const auto s = detail::exactly<double>(divided(0));
             const auto t = detail::exactly<double>(divided(1));

@@ -37,6 +37,20 @@ struct Outputs {
     std::vector<float> s, t, r, lit;
 };
 
+// What compiles.
+template <class Number>
+concept AreNumbers = requires(const Triangle& triangle, const texgen::Segment& segment, Number n) {
+    reference::strq(triangle, n, n);
+    reference::strq(segment, n);
+    reference::wrong_divide_then_interpolate(triangle, n, n);
+};
+template <class Number>
+concept IsAlpha = requires(const texgen::Segment& segment, Number n) {
+    reference::strq(segment, n);
+};
+static_assert(AreNumbers<double> && AreNumbers<float> && AreNumbers<long double> && AreNumbers<Rational>);
+static_assert(!IsAlpha<int> && !IsAlpha<long> && !IsAlpha<bool>, "which drop the fractions of floats");
+
 Rational centre(int pixel) { return Rational(2 * pixel + 1, 2); }
 
 // lambda_i / w_i with barycentrics that sum to 1, divided wherever the definition divides.
@@ -363,12 +377,16 @@ TEST_CASE("a NaN or an infinity in one coordinate stays there, and in q makes th
         CHECK(spoiled.lit == std::vector<float>(9, 0.0f));
         for (const float s : spoiled.s) CHECK_FALSE(std::isfinite(s));
     }
-    Triangle triangle = simple_triangle();
-    triangle.c.strq.w = nan_float;
-    Outputs out(9);
-    reference::interpolate(triangle, texgen::whole_texture(), {1, 1, 3, 3}, out.spans());
-    CHECK(out.lit == std::vector<float>(9, 0.0f));
-    CHECK(out.s == std::vector<float>(9, 0.0f));
+    // All coordinates would be 0 of an infinite q.
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    for (const float bad : {nan_float, infinity, -infinity}) {
+        Outputs out(9);
+        Triangle triangle = simple_triangle();
+        triangle.c.strq.w = bad;
+        reference::interpolate(triangle, texgen::whole_texture(), {1, 1, 3, 3}, out.spans());
+        CHECK(out.lit == std::vector<float>(9, 0.0f));
+        CHECK(out.s == std::vector<float>(9, 0.0f));
+    }
 }
 
 TEST_CASE("the reference takes window coordinates and w of any size that a float has") {

@@ -16,6 +16,10 @@ namespace TEXGEN_NAMESPACE::reference {
 inline namespace TEXGEN_COMPILER {
 namespace detail {
 
+// What holds floats: an integer would drop their fractions without a word.
+template <class Scalar>
+concept HoldsFloats = !Eigen::NumTraits<Scalar>::IsInteger;
+
 // The float that was given: a volatile, since g++ 12 takes (double)(float)x of neighbours for x where it inlines a
 // caller that rounds.
 template <class Scalar>
@@ -32,7 +36,7 @@ Eigen::Matrix<Scalar, 4, 1> exactly(const glm::vec4& v) {
 template <class Scalar>
 Eigen::Matrix<Scalar, 4, 1> mix(const Eigen::Matrix<Scalar, 4, 1>& a, const Eigen::Matrix<Scalar, 4, 1>& b,
                                 const Scalar& alpha) {
-    return Scalar(Scalar(1) - alpha) * a + alpha * b;
+    return Scalar(Scalar(1.0f) - alpha) * a + alpha * b;
 }
 
 template <class Scalar>
@@ -69,9 +73,9 @@ struct WindowTriangle {
     Vertex<Scalar> a, b, c;
     Scalar side;  // 1, or -1 for a triangle that is seen from behind
 
-    explicit WindowTriangle(const Triangle& triangle) : a(triangle.a), b(triangle.b), c(triangle.c), side(0) {
-        const Scalar area = edge(a, b, c.x, c.y), zero(0);
-        side = Scalar(area > zero ? 1 : area < zero ? -1 : 0);
+    explicit WindowTriangle(const Triangle& triangle) : a(triangle.a), b(triangle.b), c(triangle.c), side(0.0f) {
+        const Scalar area = edge(a, b, c.x, c.y), zero(0.0f);
+        side = Scalar(area > zero ? 1.0f : area < zero ? -1.0f : 0.0f);
         TEXGEN_ASSERT(side != zero && a.w > zero && b.w > zero && c.w > zero);
     }
 
