@@ -2,8 +2,9 @@
 
 // Floor 9: Eigen users' border, not in the umbrella: matrices go across by value and say their spaces, arrays go across
 // as views. A view is made of the strides that the Eigen object reports; what has no such view (an expression, another
-// scalar, a temporary, a stride where none can be) does not compile, so nothing is copied and nothing is read at a
-// wrong place.
+// scalar, a temporary that owns its numbers, a stride where none can be) does not compile, so nothing is copied and
+// nothing is read at a wrong place. A view of a temporary's numbers (make().leftCols(2), or a Ref<const ...> that had
+// to copy) has the type of any other, and ends with the statement.
 
 #include "detail/language.hpp"
 
@@ -30,8 +31,8 @@ namespace TEXGEN_NAMESPACE {
 // Shape: a 4x4 of float or double for column vectors, or an Eigen::Transform of any mode
 // (Isometry3d, Affine3f, AffineCompact3d, Projective3d ...). The role names the spaces; there is no default.
 // Bad input: NaN and infinity are kept as they are.
-template <class Role, detail::EigenMatrix4 Matrix>
-Role from_eigen(const Matrix& matrix) {
+template <detail::TransformOfSpaces Role, detail::EigenMatrix4 Matrix>
+Role from_eigen(const Matrix& matrix) noexcept(detail::owns_elements<Matrix>) {
     const Eigen::Matrix<typename Matrix::Scalar, 4, 4> value = matrix;
     glm::mat<4, 4, typename Matrix::Scalar> result;
     for (Eigen::Index column = 0; column < 4; ++column)
@@ -40,11 +41,14 @@ Role from_eigen(const Matrix& matrix) {
     return Role(result);
 }
 
-// Makes it of an Eigen::Transform.
-template <class Role, detail::EigenTransform EigenTransform>
+// Makes it of an Eigen::Transform. An AffineCompact has no last row; of others it is kept, whatever the mode says of it.
+template <detail::TransformOfSpaces Role, detail::EigenTransform EigenTransform>
 Role from_eigen(const EigenTransform& transform) noexcept {
-    return from_eigen<Role>(
-        Eigen::Transform<typename EigenTransform::Scalar, 3, Eigen::Projective>(transform).matrix());
+    if constexpr (static_cast<int>(EigenTransform::Mode) == static_cast<int>(Eigen::AffineCompact))
+        return from_eigen<Role>(
+            Eigen::Transform<typename EigenTransform::Scalar, 3, Eigen::Projective>(transform).matrix());
+    else
+        return from_eigen<Role>(transform.matrix());
 }
 
 // Makes an Eigen matrix of a Transform.
@@ -103,35 +107,44 @@ requires detail::EigenDense<Vector> && detail::FloatOrDouble<typename Vector::Sc
 // Shapes: points as columns of a 3 x N (Matrix3Xf, Ref, Map, middleRows<3>(i), but not block(i, 0, 3, n), whose rows
 // are not known when it is compiled; interleaved where its columns are dense, planar where it is row-major), as rows of
 // an N x 3, or as three vectors of coordinates of one size and one inner stride. Any strides.
-// Bad input: three vectors that disagree, and negative strides, are asserted; without assertions they are no points.
+// Bad input: three vectors that disagree, and strides from point to point that are negative, are asserted; without
+// assertions they are no points.
 template <class... Floats>
 Positions<Object> object_space(Floats&&... values) noexcept requires detail::EigenPositions<Floats...> {
-    return detail::positions_of<Object>(values...);
+    return detail::positions_of<Object>(values.derived()...);
 }
+auto object_space(auto&&... values) requires detail::EigenTemporaries<decltype(values)...>
+= delete;
 
 // The same of points in the world.
 template <class... Floats>
 Positions<World> world_space(Floats&&... values) noexcept requires detail::EigenPositions<Floats...> {
-    return detail::positions_of<World>(values...);
+    return detail::positions_of<World>(values.derived()...);
 }
+auto world_space(auto&&... values) requires detail::EigenTemporaries<decltype(values)...>
+= delete;
 
 // The same of points in the eye's space.
 template <class... Floats>
 Positions<Eye> eye_space(Floats&&... values) noexcept requires detail::EigenPositions<Floats...> {
-    return detail::positions_of<Eye>(values...);
+    return detail::positions_of<Eye>(values.derived()...);
 }
+auto eye_space(auto&&... values) requires detail::EigenTemporaries<decltype(values)...>
+= delete;
 
 // The same of fragments: x and y in pixels, z the depth that the buffer holds.
 template <class... Floats>
 Positions<Window> window_space(Floats&&... values) noexcept requires detail::EigenPositions<Floats...> {
-    return detail::positions_of<Window>(values...);
+    return detail::positions_of<Window>(values.derived()...);
 }
+auto window_space(auto&&... values) requires detail::EigenTemporaries<decltype(values)...>
+= delete;
 
 // Views the floats of a vector without gaps (VectorXf, Ref<ArrayXf>, a column of a matrix), or of a row-major matrix or
 // array that owns them (height x width fragments): an output of Texcoords, or an input of alphas.
 // Guarantee: a view as above; std::span<const float> of what is const. A vector that may have gaps does not compile.
 auto floats(detail::EigenSpan auto&& values) noexcept {
-    return std::span(values.data(), static_cast<std::size_t>(values.size()));
+    return std::span(values.derived().data(), static_cast<std::size_t>(values.size()));
 }
 
 }  // namespace TEXGEN_NAMESPACE

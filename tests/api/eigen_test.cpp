@@ -41,6 +41,20 @@ concept IsTransform = requires(const Matrix& matrix) {
     texgen::from_eigen<texgen::ModelMatrix>(matrix);
 };
 
+template <class T>
+concept HasData = requires(const T& t) {
+    t.data();
+};
+template <class Role>
+concept IsRole = requires(const Eigen::Matrix4d& matrix) {
+    texgen::from_eigen<Role>(matrix);
+};
+
+// As Eigen's manual has it, under "Inheriting from Matrix".
+struct Cloud : Eigen::Matrix3Xf {
+    using Eigen::Matrix3Xf::Matrix3Xf;
+};
+
 glm::dmat4 random_matrix(Random& random) {
     glm::dmat4 m(0.0);
     for (int column = 0; column < 4; ++column)
@@ -100,6 +114,12 @@ TEST_CASE("a transform comes from Eigen with every element, and knows its spaces
         REQUIRE(texgen::from_eigen<texgen::ViewMatrix>(row_major).matrix() == m);
         REQUIRE(texgen::from_eigen<texgen::ViewMatrix>(Eigen::Projective3d(eigen)).matrix() == m);
         REQUIRE(texgen::from_eigen<texgen::ViewMatrix>(eigen.transpose()).matrix() == glm::transpose(m));
+        // Eigen keeps a last row that such a transform does not have.
+        REQUIRE(texgen::from_eigen<texgen::ViewMatrix>(Eigen::Affine3d(eigen)).matrix() == m);
+        Eigen::Isometry3d isometry;
+        isometry.matrix() = eigen;
+        REQUIRE(texgen::from_eigen<texgen::ViewMatrix>(isometry).matrix() == m);
+        static_assert(noexcept(texgen::from_eigen<texgen::ViewMatrix>(eigen)));
 
         const glm::mat4 floats = support::rounded(m);
         Eigen::Matrix4f eigen_floats;
@@ -248,7 +268,11 @@ TEST_CASE("what would need a copy, or be read at a wrong place, does not compile
     static_assert(ArePoints<Eigen::Matrix3Xf&> && ArePoints<const Eigen::Matrix3Xf&>);
     static_assert(ArePoints<Eigen::Ref<const Eigen::Matrix3Xf>> && ArePoints<Eigen::Map<const Eigen::MatrixX3f>>);
     static_assert(!ArePoints<Eigen::Matrix3Xf>, "a temporary that owns its points");
+    static_assert(ArePoints<Cloud&> && !ArePoints<Cloud> && !AreFloats<Cloud&>);
     static_assert(!ArePoints<Expression>, "an expression");
+    using Indexed =
+        decltype(std::declval<Eigen::Matrix3Xf&>()(Eigen::seqN(Eigen::fix<0>, Eigen::fix<3>), Eigen::seqN(0, 4, 2)));
+    static_assert(!ArePoints<Indexed> || HasData<Indexed>);
     static_assert(!ArePoints<Eigen::Matrix3Xd&>, "doubles");
     static_assert(!ArePoints<Eigen::Matrix3f&>, "rows or columns?");
     static_assert(!ArePoints<Eigen::Matrix4Xf&> && !ArePoints<Eigen::MatrixXf&>, "no three coordinates");
@@ -263,7 +287,22 @@ TEST_CASE("what would need a copy, or be read at a wrong place, does not compile
     static_assert(!AreFloats<Eigen::ArrayXXf&>, "columns of fragments");
     static_assert(IsTransform<Eigen::Matrix4d> && IsTransform<Eigen::Affine3f>);
     static_assert(!IsTransform<Eigen::Matrix3d> && !IsTransform<Eigen::Matrix4i> && !IsTransform<Eigen::Affine2d>);
+    static_assert(!IsTransform<Eigen::Transform<int, 3, Eigen::Affine>>);
+    static_assert(!IsTransform<Eigen::Transform<long double, 3, Eigen::Affine>>);
+    static_assert(IsRole<texgen::ModelMatrix> && !IsRole<glm::mat4> && !IsRole<glm::dmat4>);
     static_assert(!std::is_convertible_v<Eigen::Matrix4d, texgen::ModelMatrix>);
+}
+
+TEST_CASE("what is seen as MatrixBase or ArrayBase is what it is of") {
+    Random random(66);
+    const std::vector<glm::vec3> points = random_points(random, 20);
+    Cloud cloud(3, 20);
+    for (Eigen::Index i = 0; i < 20; ++i) cloud.col(i) = texgen::to_eigen(points[static_cast<std::size_t>(i)]);
+    check_same(points, texgen::world_space(cloud), cloud.data());
+    const Eigen::MatrixBase<Eigen::Matrix3Xf>& base = cloud;
+    check_same(points, texgen::world_space(base), cloud.data());
+    Eigen::ArrayXf values(4);
+    CHECK(texgen::floats(values.array()).data() == values.data());
 }
 
 TEST_CASE("outputs go straight into Eigen's vectors and images") {

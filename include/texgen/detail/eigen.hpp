@@ -5,11 +5,13 @@
 #include <concepts>
 #include <cstddef>
 #include <type_traits>
+#include <utility>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
 #include "../texcoord.hpp"
+#include "../transform.hpp"
 #include "assert.hpp"
 #include "language.hpp"
 
@@ -25,30 +27,42 @@ concept EigenDense = requires(const T& t) {
 
 template <class T>
 concept EigenTransform = requires(const T& t) {
-    []<class Scalar, int Mode, int Options>(const Eigen::Transform<Scalar, 3, Mode, Options>&) {}(t);
+    []<FloatOrDouble Scalar, int Mode, int Options>(const Eigen::Transform<Scalar, 3, Mode, Options>&) {}(t);
+};
+
+template <class T>
+concept TransformOfSpaces = requires(const T& t) {
+    []<class To, class From>(const Transform<To, From>&) {}(t);
 };
 
 template <class T>
 concept EigenMatrix4 =
     EigenDense<T> && FloatOrDouble<typename T::Scalar> && T::RowsAtCompileTime == 4 && T::ColsAtCompileTime == 4;
 
+// A class derived from a matrix owns them as well.
 template <class T>
-inline constexpr bool owns_elements =
-    std::is_base_of_v<Eigen::PlainObjectBase<std::remove_cvref_t<T>>, std::remove_cvref_t<T>>;
+inline constexpr bool owns_elements = requires(const std::remove_cvref_t<T>& t) {
+    []<class Derived>(const Eigen::PlainObjectBase<Derived>&) {}(t);
+};
+
+// What is seen as MatrixBase or ArrayBase.
+template <class T>
+using EigenDerived = std::remove_cvref_t<decltype(std::declval<T&>().derived())>;
 
 // Floats in memory that outlive the call: a view of them, or an lvalue that owns them. T as of a forwarding reference.
 template <class T>
-concept EigenFloats = EigenDense<std::remove_cvref_t<T>> && std::same_as < typename std::remove_cvref_t<T>::Scalar,
-float > &&(std::remove_cvref_t<T>::Flags& Eigen::DirectAccessBit) != 0 &&
-    (std::is_lvalue_reference_v<T> || !owns_elements<T>);
+concept EigenFloats = EigenDense<std::remove_cvref_t<T>> && requires(const EigenDerived<T>& t) {
+    { t.data() } -> std::convertible_to<const float*>;
+} && bool(EigenDerived<T>::Flags& Eigen::DirectAccessBit) &&
+    (std::is_lvalue_reference_v<T> || !owns_elements<EigenDerived<T>>);
 
 // Points are columns of three rows, or rows of three columns; nine numbers do not say which.
 template <class T>
-concept EigenPoints = EigenFloats<T> &&(std::remove_cvref_t<T>::RowsAtCompileTime == 3) !=
-                      (std::remove_cvref_t<T>::ColsAtCompileTime == 3);
+concept EigenPoints = EigenFloats<T> &&
+                      (EigenDerived<T>::RowsAtCompileTime == 3) != (EigenDerived<T>::ColsAtCompileTime == 3);
 
 template <class T>
-concept EigenCoordinates = EigenFloats<T> && bool(std::remove_cvref_t<T>::IsVectorAtCompileTime);
+concept EigenCoordinates = EigenFloats<T> && bool(EigenDerived<T>::IsVectorAtCompileTime);
 
 template <class... Floats>
 concept EigenPositions = (sizeof...(Floats) == 1 && (EigenPoints<Floats> && ...)) ||
@@ -57,8 +71,13 @@ concept EigenPositions = (sizeof...(Floats) == 1 && (EigenPoints<Floats> && ...)
 // Floats that follow one another, in the order of row-major fragments.
 template <class T>
 concept EigenSpan = EigenFloats<T> &&
-    ((bool(std::remove_cvref_t<T>::IsVectorAtCompileTime) && std::remove_cvref_t<T>::InnerStrideAtCompileTime == 1) ||
-     (bool(std::remove_cvref_t<T>::IsRowMajor) && owns_elements<T>));
+    ((bool(EigenDerived<T>::IsVectorAtCompileTime) && EigenDerived<T>::InnerStrideAtCompileTime == 1) ||
+     (bool(EigenDerived<T>::IsRowMajor) && owns_elements<EigenDerived<T>>));
+
+// Temporaries that own coordinates: ranges of floats, of which std::span would be a view.
+template <class... Floats>
+concept EigenTemporaries = sizeof...(Floats) == 3 && (EigenDense<std::remove_cvref_t<Floats>> && ...) &&
+                           ((!std::is_lvalue_reference_v<Floats> && owns_elements<Floats>) || ...);
 
 template <class Space, class Points>
 Positions<Space> positions_of(const Points& points) noexcept {
