@@ -11,8 +11,8 @@
 
 #include "detail/matrices/required.hpp"
 
-// 0.4.16: 10000 major + 100 minor + patch.
-#define TEXGEN_VERSION 416
+// 0.4.17: 10000 major + 100 minor + patch.
+#define TEXGEN_VERSION 417
 
 namespace TEXGEN_NAMESPACE {
 
