@@ -85,7 +85,7 @@ inline namespace TEXGEN_BUILD {
 // Shapes: as many rectangles as triangles, and outputs of all their fragments together, or empty ones (all asserted;
 // else nothing is written). Fragments outside a triangle get the values of its plane; where the interpolated
 // 1/w is not positive nothing is promised.
-// Cost: with its set-up a tile of 8 x 8 takes about half of what a TriangleSetup does; beyond 512 fragments it is left
+// Cost: with its set-up a tile of 8 x 8 takes about half of what a TriangleSetup does; beyond 1024 fragments it is left
 // to one, as is what is in doubt: that takes as long as some tiles of a friendly triangle.
 // Bad input: an empty rectangle has no values.
 template <class CompiledWhereCalled = void>
@@ -95,7 +95,8 @@ void interpolate(const TriangleBatch& batch, std::span<const FragmentRect> rects
 // Guarantee: as above for the triangle's fragment. Where ids[k] is no_triangle, or its triangle is refused, all outputs
 // are 0. A fragment that is not lit has lit = 0, and s, t, r of its triangle's plane or 0. No allocation, noexcept.
 // Shapes: width * height ids, and as many floats an output, or none (asserted).
-// Cost: least where neighbours have one id; ids in any order take about twice as long.
+// Cost: runs of 64 fragments and more of one id in a row take what interpolate() of a TriangleSetup does, which those of
+// the last few triangles share; others least where neighbours have one id, and ids in any order about twice as long.
 // Bad input: an empty rectangle does nothing; an id beyond the batch is no_triangle.
 template <class CompiledWhereCalled = void>
 void interpolate(const TriangleBatch& batch, std::span<const std::uint32_t> ids, FragmentRect rect,

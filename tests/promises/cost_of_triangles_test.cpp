@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -278,5 +279,27 @@ TEST_CASE("a batch takes no longer than its triangles one by one, however large 
                 CHECK_MESSAGE(ratio <= most, size, " x ", size, ", tolerance ", tolerance.value, ": ", ratio, " times");
             }
         }
+    }
+}
+
+TEST_CASE("long runs of a visibility buffer take little more than rows of their triangles") {
+    constexpr double most = 2.5;
+    const Triangle triangle = ordinary(1, 1).triangle;
+    const FragmentRect rect{100, 100, 512, 2};
+    const std::vector<std::uint32_t> ids(support::count_of(rect), 0);
+    std::vector<float> s(ids.size()), t(ids.size()), lit(ids.size());
+    for (const Tolerance tolerance : dial) {
+        texgen::TriangleBatch batch(texgen::whole_texture(), tolerance);
+        batch.assign(std::span(&triangle, 1));
+        const texgen::TriangleSetup setup = support::setup_of(triangle, texgen::whole_texture(), tolerance);
+        const double ratio = support::worst_over_ordinary_within(
+            most,
+            [&] {
+                interpolate(setup, rect, {s, t, {}, lit});
+            },
+            [&] {
+                interpolate(batch, ids, rect, {s, t, {}, lit});
+            });
+        CHECK_MESSAGE(ratio <= most, "tolerance ", tolerance.value, ": ", ratio, " times");
     }
 }

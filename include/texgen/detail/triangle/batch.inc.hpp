@@ -69,8 +69,7 @@ inline std::optional<TriangleSetup> set_up(const TriangleBatch& batch, std::size
 
 // A rectangle of one triangle with fragments, by its own set-up.
 template <class CompiledWhereCalled = void>
-void interpolate_apart(const TriangleBatch& batch, std::size_t triangle, const Tile& tile, Texcoords out) noexcept {
-    const auto setup = set_up(batch, triangle);
+void interpolate_apart(const std::optional<TriangleSetup>& setup, const Tile& tile, Texcoords out) noexcept {
     if (!setup || interpolate_tile(*setup, tile, out) == Work::nothing) clear(out);
 }
 
@@ -91,6 +90,62 @@ inline void describe(BatchJob& job, const TriangleBatch& batch, const Texcoords&
     job.r_max = lit.r_max();
 }
 
+// What is made of the triangles that a visibility buffer has asked for last: neighbours share few.
+template <class Made>
+class Recent {
+public:
+    // Of a triangle, by make() where it is not known.
+    const std::optional<Made>& of(std::uint32_t id, const auto& make) noexcept {
+        Known& known = known_[id % batch_block];
+        if (known.id != id) {
+            known.made = make();
+            known.id = id;
+        }
+        return known.made;
+    }
+
+private:
+    struct Known {
+        std::uint32_t id = no_triangle;
+        std::optional<Made> made;
+    };
+    Known known_[batch_block];
+};
+
+inline Tile part_of(const FragmentRect& rect, std::size_t first, std::size_t count) noexcept {
+    const auto width = static_cast<std::size_t>(rect.width);
+    return {rect.x + static_cast<std::int64_t>(first % width), rect.y + static_cast<std::int64_t>(first / width),
+            static_cast<int>(count), 1};
+}
+
+// So many fragments of one id in a row pay for a set-up of their own.
+inline constexpr std::size_t long_run = 64;
+
+// Calls run(first, count) for the long runs of one id in a row. Each has a whole probe, wherever that begins.
+void for_each_long_run(std::span<const std::uint32_t> ids, std::size_t width, const auto& run) noexcept {
+    constexpr std::size_t probe = long_run / 2;
+    const auto are_one = [&](std::size_t first) {
+        return ids[first] == ids[first + probe - 1] &&
+               std::memcmp(&ids[first], &ids[first + 1], (probe - 1) * sizeof ids[0]) == 0;
+    };
+    for (std::size_t row = 0; row < ids.size(); row += width) {
+        const std::size_t end_of_row = row + width;
+        for (std::size_t at = row; at + probe <= end_of_row;) {
+            if (!are_one(at)) {
+                at += probe;
+                continue;
+            }
+            const std::uint32_t id = ids[at];
+            std::size_t begin = at, end = at + probe;
+            while (begin > row && ids[begin - 1] == id) --begin;
+            while (end + probe <= end_of_row && ids[end] == id && are_one(end)) end += probe;
+            while (end < end_of_row && ids[end] == id) ++end;
+            if (end - begin >= long_run) run(begin, end - begin);
+            at = end;
+        }
+    }
+}
+
 // Calls run(triangle, row part, first fragment) for the runs of one id in a row among `count` fragments from `first`
 // on, of those that is_wanted(fragment).
 void for_each_run(std::span<const std::uint32_t> ids, const FragmentRect& rect, std::size_t first, std::size_t count,
@@ -102,12 +157,45 @@ void for_each_run(std::span<const std::uint32_t> ids, const FragmentRect& rect, 
         const std::size_t end_of_row = (std::min)((row + 1) * width, first + count);
         if (is_wanted(begin)) {
             while (end < end_of_row && ids[end] == ids[begin] && is_wanted(end)) ++end;
-            const Tile part{rect.x + static_cast<std::int64_t>(begin % width), rect.y + static_cast<std::int64_t>(row),
-                            static_cast<int>(end - begin), 1};
-            run(ids[begin], part, begin);
+            run(ids[begin], part_of(rect, begin, end - begin), begin);
         }
         begin = end;
     }
+}
+
+// The fragments of a visibility buffer from `begin` to `end`.
+template <class CompiledWhereCalled = void>
+void interpolate_ids(const TriangleBatch& batch, FragmentsJob& job, const FragmentRect& rect, std::size_t begin,
+                     std::size_t end, const Texcoords& out) noexcept {
+    const BatchKernels& kernels = chosen<BatchKernels>();
+    job.count = end;
+    for (Undecided doubt = kernels.divide_fragments(job, begin); doubt.begin < end;) {
+        const std::size_t left = (std::min)(exact_block, end - doubt.begin);
+        for_each_run(
+            {job.ids, end}, rect, doubt.begin, left,
+            [&](std::size_t fragment) { return (doubt.values >> (fragment - doubt.begin) & 1u) != 0; },
+            [&](std::uint32_t id, const Tile& part, std::size_t first) {
+                interpolate_apart(set_up(batch, id), part, subspans(out, first, static_cast<std::size_t>(part.width)));
+            });
+        doubt = kernels.divide_fragments(job, doubt.begin + left);
+    }
+}
+
+// The same of one that may have long runs, which go to set-ups. Apart, so that small ones need no room for these.
+template <class CompiledWhereCalled = void>
+TEXGEN_APART void interpolate_runs(const TriangleBatch& batch, FragmentsJob& job, const FragmentRect& rect,
+                                   std::span<const std::uint32_t> ids, const Texcoords& out) noexcept {
+    Recent<TriangleSetup> recent;
+    std::size_t done = 0;
+    for_each_long_run(ids, static_cast<std::size_t>(rect.width), [&](std::size_t first, std::size_t length) {
+        if (done < first) interpolate_ids(batch, job, rect, done, first, out);
+        done = first + length;
+        Texcoords here = subspans(out, first, length);
+        const std::uint32_t id = ids[first];
+        if (id >= batch.size()) return clear(here);
+        interpolate_apart(recent.of(id, [&] { return set_up(batch, id); }), part_of(rect, first, length), here);
+    });
+    if (done < ids.size()) interpolate_ids(batch, job, rect, done, ids.size(), out);
 }
 
 }  // namespace TEXGEN_BUILD
@@ -180,7 +268,7 @@ void interpolate(const TriangleBatch& batch, std::span<const FragmentRect> rects
         for (; known < (std::min)(doubt.begin + detail::batch_block, rects.size()); ++known, doubt.values >>= 1) {
             const std::size_t values = detail::count_of(rects[known]);
             if ((doubt.values & 1u) != 0 && values != 0)
-                detail::interpolate_apart(batch, known, detail::tile_of(rects[known]),
+                detail::interpolate_apart(detail::set_up(batch, known), detail::tile_of(rects[known]),
                                           detail::subspans(out, done, values));
             done += values;
         }
@@ -203,18 +291,10 @@ void interpolate(const TriangleBatch& batch, std::span<const std::uint32_t> ids,
     job.x = rect.x;
     job.y = rect.y;
     job.width = rect.width;
-    const detail::BatchKernels& kernels = detail::chosen<detail::BatchKernels>();
-    for (detail::Undecided doubt = kernels.divide_fragments(job, 0); doubt.begin < count;) {
-        const std::size_t left = (std::min)(detail::exact_block, count - doubt.begin);
-        detail::for_each_run(
-            ids, rect, doubt.begin, left,
-            [&](std::size_t fragment) { return (doubt.values >> (fragment - doubt.begin) & 1u) != 0; },
-            [&](std::uint32_t id, const detail::Tile& part, std::size_t first) {
-                detail::interpolate_apart(batch, id, part,
-                                          detail::subspans(out, first, static_cast<std::size_t>(part.width)));
-            });
-        doubt = kernels.divide_fragments(job, doubt.begin + left);
-    }
+    if (static_cast<std::size_t>(rect.width) < detail::long_run)
+        detail::interpolate_ids(batch, job, rect, 0, count, out);
+    else
+        detail::interpolate_runs(batch, job, rect, ids, out);
 }
 
 template <class CompiledWhereCalled>
@@ -224,22 +304,17 @@ void footprint(const TriangleBatch& batch, std::span<const std::uint32_t> ids, F
     if (count == 0) return;
     TEXGEN_ASSERT(ids.size() == count);
     if (ids.size() != count || !detail::take_computed(out, count)) return;
-    struct Known {
-        std::uint32_t id = no_triangle;
-        std::optional<FootprintSetup> setup;
-    };
-    Known last[detail::batch_block];  // neighbours share few triangles
+    detail::Recent<FootprintSetup> recent;
     detail::for_each_run(
         ids, rect, 0, count, [](std::size_t) { return true; },
         [&](std::uint32_t id, const detail::Tile& part, std::size_t first) {
             Footprints here = detail::subspans(out, first, static_cast<std::size_t>(part.width));
-            auto& [known, setup] = last[id % detail::batch_block];
-            if (id != known) {
-                setup.reset();
-                if (id < batch.size())
-                    if (const auto triangle = detail::set_up(batch, id)) setup.emplace(*triangle, texels);
-                known = id;
-            }
+            if (id >= batch.size()) return detail::clear(here);
+            const auto& setup = recent.of(id, [&]() -> std::optional<FootprintSetup> {
+                const auto triangle = detail::set_up(batch, id);
+                if (!triangle) return std::nullopt;
+                return FootprintSetup(*triangle, texels);
+            });
             if (!setup || !detail::footprint_tile(*setup, part, here)) detail::clear(here);
         });
 }
