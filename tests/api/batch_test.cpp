@@ -314,7 +314,8 @@ TEST_CASE("with exact, a visibility buffer has the bits that each fragment has a
         const int longest = rect.width < 60 ? random.integer(1, 30) : random.integer(40, 300);
         for (std::size_t i = 0; i < ids.size();) {
             const int any = random.integer(-1, static_cast<int>(batch.size()) - 1);
-            const auto id = static_cast<std::uint32_t>(any > 0 && random.coin() ? 0 : any);
+            auto id = static_cast<std::uint32_t>(any > 0 && random.coin() ? 0 : any);
+            if (any < 0 && random.coin()) id = static_cast<std::uint32_t>(batch.size()) + 1000000u;  // none, either
             for (int run = random.integer(1, longest); run > 0 && i < ids.size(); --run) ids[i++] = id;
         }
         texgen::detail::for_each_long_run(ids, rect.width > 0 ? static_cast<std::size_t>(rect.width) : 1,
@@ -334,7 +335,7 @@ TEST_CASE("with exact, a visibility buffer has the bits that each fragment has a
             const int left = before(x), above = before(y);
             beyond += left > 0 || above > 0;
             const FragmentRect pixels{static_cast<int>(x - left), static_cast<int>(y - above), left + 1, above + 1};
-            if (ids[i] == no_triangle) {
+            if (ids[i] >= batch.size()) {
                 for (std::size_t k = 0; k < 4; ++k) CHECK((!out.asked(k) || support::same_bits(out[k][i], 0.0f)));
                 continue;
             }
