@@ -75,12 +75,13 @@ struct FootprintExtremes {
 inline namespace TEXGEN_COMPILER {
 
 // How far footprint_of() may be from the exact footprint of its derivatives.
-inline constexpr double footprint_error = 0x1p-48;
+inline constexpr double footprint_of_error = 0x1p-48;
 
 // Computes the footprint of derivatives that come from elsewhere.
-// Guarantee: singular values and anisotropy within footprint_error of themselves (of the larger singular value for the
-// smaller; so with the anisotropy, relative to its square), level within footprint_error max(1, |level|): of any finite derivatives, while
-// what comes out is a normal number; what is beyond the largest is infinite. No allocation, noexcept.
+// Guarantee: singular values and anisotropy within footprint_of_error of themselves (of the larger singular value for
+// the smaller; so with the anisotropy, relative to its square), level within footprint_of_error max(1, |level|): of any
+// finite derivatives, while what comes out is a normal number; what is beyond the largest is infinite. No allocation,
+// noexcept.
 // Shapes: units of s and t a pixel.
 // Bad input: what is not finite makes all but dx and dy NaN.
 inline Footprint footprint_of(const glm::dvec2& dx, const glm::dvec2& dy, const TexelsPerUnit& texels) noexcept;

@@ -32,6 +32,10 @@ template <class Coordinates>
 concept AreCoordinates = requires(Coordinates&& c) {
     texgen::world_space(c, c, c);
 };
+template <class Coordinates>
+concept AreTemporaryCoordinates = requires(Coordinates&& c) {
+    texgen::world_space(std::move(c), std::move(c), std::move(c));
+};
 template <class Values>
 concept AreFloats = requires(Values&& values) {
     texgen::floats(static_cast<Values&&>(values));
@@ -280,6 +284,8 @@ TEST_CASE("what would need a copy, or be read at a wrong place, does not compile
     static_assert(AreCoordinates<Eigen::VectorXf&> && AreCoordinates<Eigen::ArrayXf&> && AreCoordinates<Row>);
     static_assert(!AreCoordinates<Eigen::VectorXd&> && !AreCoordinates<Eigen::MatrixXf&>);
     static_assert(AreCoordinates<std::vector<float>&>);
+    static_assert(!AreTemporaryCoordinates<Eigen::VectorXf> && !AreTemporaryCoordinates<Eigen::ArrayXf>);
+    static_assert(AreTemporaryCoordinates<Row>, "views");
     static_assert(AreFloats<Eigen::VectorXf&> && AreFloats<Eigen::Ref<Eigen::ArrayXf>> && AreFloats<Column>);
     static_assert(!AreFloats<Row> && !AreFloats<Eigen::VectorXf> && !AreFloats<Eigen::VectorXd&>);
     static_assert(!AreFloats<Eigen::Map<Eigen::VectorXf, 0, Eigen::InnerStride<2>>>);

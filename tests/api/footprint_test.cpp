@@ -804,7 +804,7 @@ TEST_CASE("footprints of any size have the shape of those near 1") {
 
 TEST_CASE("a footprint of any finite derivatives is that of 400 bits, next to level 0 and at the ends of the range") {
     Random random(6751);
-    const double bound = texgen::footprint_error;
+    const double bound = texgen::footprint_of_error;
     const Real largest_double = std::numeric_limits<double>::max();
     double worst_level = 0.0, worst_value = 0.0, worst_anisotropy = 0.0;
     int near_level_0 = 0, huge = 0, infinite = 0, thin = 0;
