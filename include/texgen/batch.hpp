@@ -117,3 +117,5 @@ void footprint(const TriangleBatch& batch, std::span<const std::uint32_t> ids, F
 }  // namespace TEXGEN_NAMESPACE
 
 #include "detail/triangle/batch.inc.hpp"
+
+#include "detail/triangle/visibility.inc.hpp"

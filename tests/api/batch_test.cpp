@@ -267,7 +267,13 @@ std::vector<std::pair<std::size_t, std::size_t>> long_runs(const std::vector<std
     std::vector<std::pair<std::size_t, std::size_t>> runs;
     for (std::size_t begin = 0, end = 0; begin < ids.size(); begin = end) {
         while (end < (begin / width + 1) * width && ids[end] == ids[begin]) ++end;
-        if (end - begin >= texgen::detail::long_run) runs.emplace_back(begin, end - begin);
+        const bool is_long = end - begin >= texgen::detail::long_run;
+        const auto is_next_row_the_same = [&] {
+            return end + width <= ids.size() &&
+                   std::count(&ids[end], &ids[end] + width, ids[begin]) == static_cast<std::ptrdiff_t>(width);
+        };
+        while (is_long && (end - begin) % width == 0 && is_next_row_the_same()) end += width;
+        if (is_long) runs.emplace_back(begin, end - begin);
     }
     return runs;
 }
@@ -369,13 +375,13 @@ TEST_CASE("with exact, a visibility buffer has the bits that each fragment has a
     CHECK(long_count > 100);
 }
 
-TEST_CASE("long runs of one id in a row are found whole, and no others") {
+TEST_CASE("long runs of one id in a row are found whole, as are rows that are one, and no others") {
     Random random(27);
-    int runs = 0;
+    int runs = 0, of_rows = 0;
     for (int round = 0; round < 2000; ++round) {
-        const auto width = static_cast<std::size_t>(random.integer(1, 400));
+        const auto width = static_cast<std::size_t>(random.integer(1, round % 2 == 0 ? 100 : 400));
         const auto height = static_cast<std::size_t>(random.integer(1, 4));
-        const int longest = random.integer(1, 200);
+        const int longest = random.integer(1, 300);
         std::vector<std::uint32_t> ids(width * height);
         for (std::size_t i = 0; i < ids.size();) {
             const auto id = static_cast<std::uint32_t>(random.integer(0, 2));
@@ -386,8 +392,10 @@ TEST_CASE("long runs of one id in a row are found whole, and no others") {
             ids, width, [&](std::size_t first, std::size_t count) { found.emplace_back(first, count); });
         REQUIRE_MESSAGE(found == long_runs(ids, width), "width ", width, ", round ", round);
         runs += static_cast<int>(found.size());
+        for (const auto& [first, count] : found) of_rows += count > width;
     }
     CHECK(runs > 1000);
+    CHECK(of_rows > 100);
 }
 
 TEST_CASE("with a tolerance, rectangles and visibility buffers are within it, and lit is what s and t say") {

@@ -1,0 +1,181 @@
+// A visibility buffer of a batch's triangles: its long runs of one id to set-ups, what is between them to kernels, and
+// their doubt to set-ups again. Included by batch.hpp.
+
+namespace TEXGEN_DETAIL {
+inline namespace TEXGEN_BUILD {
+
+// What is made of the triangles that a visibility buffer has asked for last: neighbours share few.
+template <class Made>
+class Recent {
+public:
+    // Of a triangle, by make() where it is not known.
+    const std::optional<Made>& of(std::uint32_t id, const auto& make) noexcept {
+        Known& known = known_[id % batch_block];
+        if (known.id != id) {
+            known.made = make();
+            known.id = id;
+        }
+        return known.made;
+    }
+
+private:
+    struct Known {
+        std::uint32_t id = no_triangle;
+        std::optional<Made> made;
+    };
+    Known known_[batch_block];
+};
+
+// A part of a row of a rectangle, or whole rows.
+inline Tile part_of(const FragmentRect& rect, std::size_t first, std::size_t count) noexcept {
+    const auto width = static_cast<std::size_t>(rect.width);
+    return {rect.x + static_cast<std::int64_t>(first % width), rect.y + static_cast<std::int64_t>(first / width),
+            static_cast<int>((std::min)(count, width)), static_cast<int>((count - 1) / width) + 1};
+}
+
+// So many fragments of one id in a row pay for a set-up of their own.
+inline constexpr std::size_t long_run = 64;
+
+// Calls run(first, count) for the long runs of one id in a row, and for rows together that are one. Each has a whole
+// probe, wherever that begins.
+void for_each_long_run(std::span<const std::uint32_t> ids, std::size_t width, const auto& run) noexcept {
+    constexpr std::size_t probe = long_run / 2;
+    const auto are_as_before = [&](std::size_t first, std::size_t count) {
+        return std::memcmp(&ids[first - 1], &ids[first], count * sizeof ids[0]) == 0;
+    };
+    for (std::size_t row = 0; row < ids.size(); row += width) {
+        const std::size_t end_of_row = row + width;
+        for (std::size_t at = row; at + probe <= end_of_row;) {
+            const std::uint32_t id = ids[at];
+            if (ids[at + probe - 1] != id || !are_as_before(at + 1, probe - 1)) {
+                at += probe;
+                continue;
+            }
+            std::size_t begin = at, end = at + probe, step = probe;
+            while (begin > row && ids[begin - 1] == id) --begin;
+            for (; end + step <= end_of_row && are_as_before(end, step); step *= 2) end += step;
+            for (; step >= probe; step /= 2)
+                if (end + step <= end_of_row && are_as_before(end, step)) end += step;
+            while (end < end_of_row && ids[end] == id) ++end;
+            if (end - begin == width && width >= long_run)
+                for (; end + width <= ids.size() && are_as_before(end, width); row += width) end += width;
+            if (end - begin >= long_run) run(begin, end - begin);
+            at = end;
+        }
+    }
+}
+
+// Calls run(triangle, row part, first fragment) for the runs of one id in a row among `count` fragments from `first`
+// on, of those that is_wanted(fragment).
+void for_each_run(std::span<const std::uint32_t> ids, const FragmentRect& rect, std::size_t first, std::size_t count,
+                  const auto& is_wanted, const auto& run) noexcept {
+    const auto width = static_cast<std::size_t>(rect.width);
+    for (std::size_t begin = first; begin < first + count;) {
+        std::size_t end = begin + 1;
+        const std::size_t row = begin / width;
+        const std::size_t end_of_row = (std::min)((row + 1) * width, first + count);
+        if (is_wanted(begin)) {
+            while (end < end_of_row && ids[end] == ids[begin] && is_wanted(end)) ++end;
+            run(ids[begin], part_of(rect, begin, end - begin), begin);
+        }
+        begin = end;
+    }
+}
+
+// The fragments of a visibility buffer from `begin` to `end`.
+template <class CompiledWhereCalled = void>
+void interpolate_ids(const TriangleBatch& batch, FragmentsJob& job, const FragmentRect& rect, std::size_t begin,
+                     std::size_t end, const Texcoords& out) noexcept {
+    const BatchKernels& kernels = chosen<BatchKernels>();
+    job.count = end;
+    for (Undecided doubt = kernels.divide_fragments(job, begin); doubt.begin < end;) {
+        const std::size_t left = (std::min)(exact_block, end - doubt.begin);
+        for_each_run(
+            {job.ids, end}, rect, doubt.begin, left,
+            [&](std::size_t fragment) { return (doubt.values >> (fragment - doubt.begin) & 1u) != 0; },
+            [&](std::uint32_t id, const Tile& part, std::size_t first) {
+                interpolate_apart(set_up(batch, id), part, subspans(out, first, static_cast<std::size_t>(part.width)));
+            });
+        doubt = kernels.divide_fragments(job, doubt.begin + left);
+    }
+}
+
+// Calls of_one(first, count) for the long runs of one id in a row, and of_any(begin, end) for what is between them.
+void for_each_stretch(std::span<const std::uint32_t> ids, std::size_t width, const auto& of_one,
+                      const auto& of_any) noexcept {
+    std::size_t done = 0;
+    for_each_long_run(ids, width, [&](std::size_t first, std::size_t length) {
+        if (done < first) of_any(done, first);
+        done = first + length;
+        of_one(first, length);
+    });
+    if (done < ids.size()) of_any(done, ids.size());
+}
+
+// The same of one that may have long runs, which go to set-ups. Apart, so that small ones need no room for these.
+template <class CompiledWhereCalled = void>
+TEXGEN_APART void interpolate_runs(const TriangleBatch& batch, FragmentsJob& job, const FragmentRect& rect,
+                                   std::span<const std::uint32_t> ids, const Texcoords& out) noexcept {
+    Recent<TriangleSetup> recent;
+    for_each_stretch(
+        ids, static_cast<std::size_t>(rect.width),
+        [&](std::size_t first, std::size_t length) {
+            Texcoords here = subspans(out, first, length);
+            const std::uint32_t id = ids[first];
+            if (id >= batch.size()) return clear(here);
+            interpolate_apart(recent.of(id, [&] { return set_up(batch, id); }), part_of(rect, first, length), here);
+        },
+        [&](std::size_t begin, std::size_t end) { interpolate_ids(batch, job, rect, begin, end, out); });
+}
+
+}  // namespace TEXGEN_BUILD
+}  // namespace TEXGEN_DETAIL
+
+namespace TEXGEN_NAMESPACE {
+inline namespace TEXGEN_BUILD {
+
+template <class CompiledWhereCalled>
+void interpolate(const TriangleBatch& batch, std::span<const std::uint32_t> ids, FragmentRect rect,
+                 Texcoords out) noexcept {
+    const std::size_t count = detail::count_of(rect);
+    if (count == 0) return;
+    TEXGEN_ASSERT(ids.size() == count);
+    if (ids.size() != count || !detail::take_computed(out, count)) return;
+    if (batch.size() == 0) return detail::clear(out);
+    detail::FragmentsJob job{};
+    detail::describe(job, batch, out, count);
+    job.ids = ids.data();
+    job.triangles = static_cast<std::uint32_t>(batch.size());
+    job.x = rect.x;
+    job.y = rect.y;
+    job.width = rect.width;
+    if (static_cast<std::size_t>(rect.width) < detail::long_run)
+        detail::interpolate_ids(batch, job, rect, 0, count, out);
+    else
+        detail::interpolate_runs(batch, job, rect, ids, out);
+}
+
+template <class CompiledWhereCalled>
+void footprint(const TriangleBatch& batch, std::span<const std::uint32_t> ids, FragmentRect rect, TexelsPerUnit texels,
+               Footprints out) noexcept {
+    const std::size_t count = detail::count_of(rect);
+    if (count == 0) return;
+    TEXGEN_ASSERT(ids.size() == count);
+    if (ids.size() != count || !detail::take_computed(out, count)) return;
+    detail::Recent<FootprintSetup> recent;
+    detail::for_each_run(
+        ids, rect, 0, count, [](std::size_t) { return true; },
+        [&](std::uint32_t id, const detail::Tile& part, std::size_t first) {
+            Footprints here = detail::subspans(out, first, static_cast<std::size_t>(part.width));
+            if (id >= batch.size()) return detail::clear(here);
+            const auto& setup = recent.of(id, [&]() -> std::optional<FootprintSetup> {
+                const auto triangle = detail::set_up(batch, id);
+                if (!triangle) return std::nullopt;
+                return FootprintSetup(*triangle, texels);
+            });
+            if (!setup || !detail::footprint_tile(*setup, part, here)) detail::clear(here);
+        });
+}
+
+}  // namespace TEXGEN_BUILD
+}  // namespace TEXGEN_NAMESPACE
