@@ -9,9 +9,9 @@
 
 #include <texgen/footprint.hpp>
 #include <texgen/interpolate.hpp>
-#include <texgen/reference.hpp>
 
 #include "bench.hpp"
+#include "derivatives.hpp"
 
 namespace bench {
 
@@ -36,25 +36,6 @@ struct Fragments {
 };
 
 std::span<float> array(std::size_t count, std::size_t k) { return {output(count, k), count}; }
-
-// d(s/q)/dx and so on by central differences of the definition in long double, within 1e-11 here.
-struct Derivatives {
-    double dx[2], dy[2];
-
-    Derivatives(const Triangle& triangle, int x, int y) {
-        constexpr long double step = 0x1p-16L;
-        const auto quotient = [&](long double right, long double up) {
-            return texgen::reference::quotient<long double>(
-                texgen::reference::strq<long double>(triangle, x + 0.5L + right, y + 0.5L + up));
-        };
-        const auto right = quotient(step, 0), left = quotient(-step, 0), up = quotient(0, step),
-                   down = quotient(0, -step);
-        for (int k = 0; k < 2; ++k) {
-            dx[k] = static_cast<double>((right[k] - left[k]) / (2 * step));
-            dy[k] = static_cast<double>((up[k] - down[k]) / (2 * step));
-        }
-    }
-};
 
 void add_scene(const std::string& name, double q_ratio, int width, int height) {
     const auto fragments = std::make_shared<Fragments>();
@@ -91,11 +72,7 @@ void add_scene(const std::string& name, double q_ratio, int width, int height) {
             const FragmentRect& rect = fragments->rects[i];
             for (std::size_t k = 0; k < count; k += 97) {
                 const auto column = static_cast<int>(k) % rect.width, row = static_cast<int>(k) / rect.width;
-                const Derivatives exact(fragments->triangle, rect.x + column, rect.y + row);
-                for (std::size_t c = 0; c < 2; ++c) {
-                    errors.add(output(count, c)[k], exact.dx[c], 1e-10);
-                    errors.add(output(count, 2 + c)[k], exact.dy[c], 1e-10);
-                }
+                judge(Derivatives(fragments->triangle, rect.x + column, rect.y + row), count, k, errors);
             }
         };
         add_row(scene, "four derivatives" + after, stop.tolerance.value, differentiate, check);

@@ -1,9 +1,10 @@
-// Visibility buffers: the fragments of a rectangle, each of the triangle that its id names, to s, t.
+// Visibility buffers: the fragments of a rectangle, each of the triangle that its id names, to s, t and to footprints.
 
 #include <cmath>
 #include <cstdint>
 #include <memory>
 #include <random>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 
 #include "../peers.hpp"
 #include "bench.hpp"
+#include "derivatives.hpp"
 
 namespace bench {
 
@@ -45,6 +47,46 @@ std::shared_ptr<Buffer> make_buffer(std::size_t run) {
     }
     while (buffer->ids.size() < count) buffer->ids.insert(buffer->ids.end(), run, random() % 256);
     return buffer;
+}
+
+std::span<float> array(std::size_t k) { return {output(count, k), count}; }
+
+void add_footprints_of(const std::string& name, const std::shared_ptr<Buffer>& buffer) {
+    const Scene scene{"footprints of a visibility buffer, " + name, 1, count};
+    const auto check = [=](std::size_t, Errors& errors) {
+        for (std::size_t k = 0; k < count; k += 97)
+            judge(Derivatives(buffer->triangles[buffer->ids[k]], static_cast<int>(k % 128), static_cast<int>(k / 128)),
+                  count, k, errors);
+    };
+    auto batch = std::make_shared<texgen::TriangleBatch>(texgen::whole_texture());
+    batch->assign(buffer->triangles);
+    const auto write = [=](const texgen::Footprints& out) {
+        texgen::footprint(*batch, buffer->ids, rect, {4096, 4096}, out);
+    };
+    add_row(
+        scene, "four derivatives: texgen", 0.0,
+        [=](std::size_t) { write({.dsdx = array(0), .dtdx = array(1), .dsdy = array(2), .dtdy = array(3)}); }, check);
+    add_unchecked(scene, "level of detail: texgen", [=](std::size_t) { write({.level = array(0)}); });
+    add_unchecked(scene, "level, anisotropy, major axis: texgen", [=](std::size_t) {
+        write({.level = array(0), .anisotropy = array(1), .major_s = array(2), .major_t = array(3)});
+    });
+    std::vector<report::GlmPlanes> planes(buffer->triangles.begin(), buffer->triangles.end());
+    const auto look_up = [=](std::size_t) {
+        float* const to[] = {output(count, 0), output(count, 1), output(count, 2), output(count, 3)};
+        for (std::size_t k = 0; k < count; ++k) {
+            const report::GlmPlanes& plane = planes[buffer->ids[k]];
+            const glm::vec3 centre(static_cast<float>(k % 128) + 0.5f, static_cast<float>(k / 128) + 0.5f, 1.0f);
+            const float q = glm::dot(plane.q, centre);
+            const glm::vec2 st = glm::vec2(glm::dot(plane.s, centre), glm::dot(plane.t, centre)) / q;
+            const glm::vec2 dx = (glm::vec2(plane.s.x, plane.t.x) - st * plane.q.x) / q;
+            const glm::vec2 dy = (glm::vec2(plane.s.y, plane.t.y) - st * plane.q.y) / q;
+            to[0][k] = dx.x;
+            to[1][k] = dx.y;
+            to[2][k] = dy.x;
+            to[3][k] = dy.y;
+        }
+    };
+    add_row(scene, "four derivatives: GLM, plane equations looked up", promises_nothing, look_up, check);
 }
 
 void add_buffer(const std::string& name, std::size_t run) {
@@ -81,6 +123,7 @@ void add_buffer(const std::string& name, std::size_t run) {
         }
     };
     add_row(scene, "GLM, plane equations looked up", promises_nothing, look_up, check);
+    add_footprints_of(name, buffer);
 }
 
 }  // namespace

@@ -102,12 +102,17 @@ template <class CompiledWhereCalled = void>
 void interpolate(const TriangleBatch& batch, std::span<const std::uint32_t> ids, FragmentRect rect,
                  Texcoords out) noexcept;
 
+// How much farther from the exact derivatives than error_bound() of its FootprintSetup says, relative to their length,
+// those of a triangle in a visibility buffer may be: what cancels is not known to more digits there.
+inline constexpr double batch_footprint_error = 0x1p-34;
+
 // Writes the footprints of a visibility buffer, as textureGrad takes them: of fragment k that of triangle ids[k].
-// Guarantee: as footprint() of a FootprintSetup of the triangle has it, for a rectangle of the neighbours in a row with
-// one id. Where that writes nothing, ids[k] is no_triangle or its triangle is refused, all outputs are 0. No
+// Guarantee: as footprint() of a FootprintSetup of the triangle has it for the fragment, whatever the tolerance, but
+// for batch_footprint_error. Behind, where ids[k] is no_triangle or its triangle is refused, all outputs are 0. No
 // allocation, noexcept.
 // Shapes: as above.
-// Cost: a FootprintSetup for each run of one id in a row, but for those of the last few triangles.
+// Cost: derivatives take about twice what a visibility buffer's coordinates do; runs of 64 fragments and more of one id
+// in a row, and what is almost singular, take a FootprintSetup, which those of the last few triangles share.
 // Bad input: as of footprint(), and above.
 template <class CompiledWhereCalled = void>
 void footprint(const TriangleBatch& batch, std::span<const std::uint32_t> ids, FragmentRect rect, TexelsPerUnit texels,

@@ -855,40 +855,63 @@ TEST_CASE("few friendly tiles need a set-up of their own") {
     }
 }
 
-TEST_CASE("footprints of a visibility buffer are those of the runs of one id in a row") {
+TEST_CASE("footprints of a visibility buffer are those of its triangles") {
     Random random(5);
-    for (int round = 0; round < 60; ++round) {
+    int checked = 0, long_runs = 0, whole_rows = 0, dark = 0;
+    for (int round = 0; round < 120; ++round) {
         const Drawn drawn(random, random.integer(1, 9));
         TriangleBatch batch(texgen::whole_texture());
         batch.assign(drawn.triangles);
-        const FragmentRect rect{random.integer(-20, 600), random.integer(-20, 600), random.integer(1, 20), 3};
+        const bool may_be_long = round % 3 == 0;
+        const FragmentRect rect{random.integer(-20, 600), random.integer(-20, 600),
+                                random.integer(1, may_be_long ? 200 : 20), 3};
         std::vector<std::uint32_t> ids(count_of(rect));
         for (std::size_t i = 0; i < ids.size();) {
             const auto id = static_cast<std::uint32_t>(random.integer(-1, static_cast<int>(batch.size()) - 1));
-            for (int run = random.integer(1, 9); run > 0 && i < ids.size(); --run) ids[i++] = id;
+            const int longest = may_be_long && random.coin() ? 3 * rect.width : 9;
+            const std::size_t before = i;
+            for (int run = random.integer(1, longest); run > 0 && i < ids.size(); --run) ids[i++] = id;
+            long_runs += i - before >= 128;
+            whole_rows += i - before >= 2 * static_cast<std::size_t>(rect.width) && rect.width >= 64;
         }
-        const auto asked = static_cast<unsigned>(random.coin() ? 255 : random.integer(0, 255));
-        support::FootprintOutputs out(rect, asked);
         const texgen::TexelsPerUnit texels{1024.0, 512.0};
+        const auto asked = static_cast<unsigned>(random.coin() ? 255 : random.integer(0, 255));
+        support::FootprintOutputs out(rect, asked, static_cast<std::size_t>(random.integer(0, 15)));
         footprint(batch, ids, rect, texels, out.spans());
         CHECK(out.pads_are_intact());
-        for (std::size_t begin = 0; begin < ids.size();) {
-            std::size_t end = begin + 1;
-            const auto width = static_cast<std::size_t>(rect.width);
-            while (end < ids.size() && end / width == begin / width && ids[end] == ids[begin]) ++end;
-            const FragmentRect run{rect.x + static_cast<int>(begin % width), rect.y + static_cast<int>(begin / width),
-                                   static_cast<int>(end - begin), 1};
-            support::FootprintOutputs expected(run, asked);
-            bool is_written = false;
-            if (ids[begin] != no_triangle)
-                if (const auto setup = TriangleSetup::of(drawn.triangles[ids[begin]], texgen::whole_texture()))
-                    is_written = footprint(texgen::FootprintSetup(*setup, texels), run, expected.spans());
+        for (std::size_t i = 0; i < ids.size(); ++i) {
+            bool is_dark = true;
             for (std::size_t k = 0; k < 8; ++k)
-                for (std::size_t i = begin; out.asked(k) && i < end; ++i)
-                    CHECK(support::same_bits(out[k][i], is_written ? expected[k][i - begin] : 0.0f));
-            begin = end;
+                is_dark = is_dark && (!out.asked(k) || support::same_bits(out[k][i], 0.0f));
+            const int x = rect.x + static_cast<int>(i) % rect.width, y = rect.y + static_cast<int>(i) / rect.width;
+            const auto triangle = ids[i] != no_triangle
+                                      ? TriangleSetup::of(drawn.triangles[ids[i]], texgen::whole_texture())
+                                      : std::nullopt;
+            std::optional<texgen::Footprint> exact;
+            if (triangle) exact = texgen::FootprintSetup(*triangle, texels).at(x, y);
+            if (!exact) {
+                CHECK_MESSAGE(is_dark, "id ", ids[i], " at ", x, " ", y);
+                ++dark;
+                continue;
+            }
+            if (is_dark) continue;  // of a long run that is not lit
+            const glm::dvec2 bound = texgen::FootprintSetup(*triangle, texels).error_bound({x, y, 1, 1});
+            for (std::size_t k = 0; k < 4; ++k) {
+                if (!out.asked(k)) continue;
+                const auto coordinate = static_cast<glm::length_t>(k % 2);
+                const double expected = k < 2 ? exact->dx[coordinate] : exact->dy[coordinate];
+                const double length = std::hypot(exact->dx[coordinate], exact->dy[coordinate]);
+                const double allowed = 2.0 * bound[coordinate] + texgen::batch_footprint_error * length;
+                if (!(length < 0x1p100) || !(allowed < length)) continue;
+                ++checked;
+                CHECK_MESSAGE(std::fabs(out.at(k, i) - expected) <= allowed, support::hex(drawn.triangles[ids[i]]));
+            }
         }
     }
+    CHECK(checked > 10000);
+    CHECK(long_runs > 10);
+    CHECK(whole_rows > 5);
+    CHECK(dark > 1000);
 }
 
 TEST_CASE("a batch that was moved from has no triangles, and takes new ones; a copy is one of its own") {

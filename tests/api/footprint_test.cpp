@@ -22,6 +22,7 @@
 #include "support/outputs.hpp"
 #include "support/random.hpp"
 #include "support/special_values.hpp"
+#include "texgen/batch.hpp"
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
 #include "texgen/texcoord.hpp"
@@ -152,9 +153,32 @@ bool contains_centre(const Triangle& triangle, int x, int y) {
     return corner[0] != nullptr;
 }
 
+// The footprints of a shot's triangle among those of others, in short runs; returns which fragments have it, by id 0.
+std::vector<std::uint32_t> fill_among_others(const Shot& shot, const TexelsPerUnit& texels, Random& random,
+                                             FootprintOutputs& out) {
+    Triangle triangles[4] = {shot.triangle, support::make_triangle(support::Family::friendly, random),
+                             support::make_triangle(support::Family::sliver, random),
+                             support::make_triangle(support::Family::parallel, random)};
+    if (random.coin()) triangles[3].b.window.x = std::numeric_limits<float>::quiet_NaN();
+    texgen::TriangleBatch batch(texgen::whole_texture());
+    batch.assign(triangles);
+    std::vector<std::uint32_t> ids(count_of(shot.rect));
+    for (std::size_t i = 0; i < ids.size();) {
+        for (int run = random.integer(1, 15); run > 0 && i < ids.size(); --run) ids[i++] = 0;
+        const int other = random.integer(-1, 5);
+        for (int run = random.integer(1, 5); run > 0 && i < ids.size(); --run)
+            ids[i++] = other < 0 ? texgen::no_triangle : static_cast<std::uint32_t>(other);
+    }
+    footprint(batch, ids, shot.rect, texels, out.spans());
+    return ids;
+}
+
 }  // namespace
 
 TEST_CASE("derivatives are the exact ones within the stated bound, for every hard family") {
+    bool is_in_buffer = false;
+    SUBCASE("by a set-up") {}
+    SUBCASE("in a visibility buffer") { is_in_buffer = true; }
     std::uint64_t seed = 6000;
     int checked = 0, behind = 0, unbounded = 0, next_to_zero = 0;
     double worst = 0.0;
@@ -171,14 +195,19 @@ TEST_CASE("derivatives are the exact ones within the stated bound, for every har
             const FootprintSetup setup(setup_of(shot.triangle), texels);
             const glm::dvec2 bound = setup.error_bound(shot.rect);
             FootprintOutputs out(shot.rect, FootprintOutputs::all, static_cast<std::size_t>(random.integer(0, 15)));
-            const bool written = footprint(setup, shot.rect, out.spans());
+            std::vector<std::uint32_t> ids;
+            bool written = true;
+            if (is_in_buffer)
+                ids = fill_among_others(shot, texels, random, out);
+            else
+                written = footprint(setup, shot.rect, out.spans());
             REQUIRE(out.pads_are_intact());
             if (!written) REQUIRE(out.is_untouched());
             const std::size_t step = count_of(shot.rect) / 6 + 1;
             for (std::size_t k = static_cast<std::size_t>(random.integer(0, 2)); k < count_of(shot.rect); k += step) {
                 const std::int64_t x = shot.x(static_cast<std::int64_t>(k) % shot.rect.width);
                 const std::int64_t y = shot.y(static_cast<std::int64_t>(k) / shot.rect.width);
-                if (!exact.has_positive_w(x, y)) continue;
+                if (!exact.has_positive_w(x, y) || (is_in_buffer && ids[k] != 0)) continue;
                 const std::string context = std::string(family.name) + " " + text(texels) + ", fragment " +
                                             std::to_string(x) + " " + std::to_string(y) + " of " + hex(shot);
                 if (exact.at(x, y).q.sign() <= 0) {
@@ -195,11 +224,12 @@ TEST_CASE("derivatives are the exact ones within the stated bound, for every har
                     const double error = std::max(distance(out.at(dsdx + c, k), truth.dx[c]),
                                                   distance(out.at(dsdy + c, k), truth.dy[c]));
                     if (std::isnan(error) || std::isinf(error)) continue;  // beyond the range of float
-                    const double allowed = bound[static_cast<int>(c)];
+                    const auto norm = static_cast<double>(truth.norm(c));
+                    const double allowed =
+                        bound[static_cast<int>(c)] + (is_in_buffer ? texgen::batch_footprint_error * norm : 0.0);
                     REQUIRE_MESSAGE(error <= allowed, context << " error " << error << " allowed " << allowed);
                     unbounded += std::isinf(allowed);
                     if (!std::isinf(allowed)) worst = std::max(worst, error / allowed);
-                    const auto norm = static_cast<double>(truth.norm(c));
                     // Next to q = 0 there is no bound from doubles, but exact sums.
                     if (std::isinf(allowed) && family.name[0] == 'q' && norm < 1e30) {
                         ++next_to_zero;
@@ -214,17 +244,17 @@ TEST_CASE("derivatives are the exact ones within the stated bound, for every har
         }
         INFO(family.name);
         CHECK(hard >= family.least_share * shots * 0.6);
-        if (family.least_share == 1.0) CHECK(away > 100);
+        if (family.least_share == 1.0) CHECK(away > (is_in_buffer ? 60 : 100));
         CHECK(worst_away <= 1e-5);
         MESSAGE(std::string(family.name), ": away from q = 0 the largest relative error is ", worst_away, " in ", away);
     }
     MESSAGE(checked, " fragments, ", behind, " behind, ", unbounded, " without a bound; worst error ", worst,
             " of its bound");
-    CHECK(checked > 3000);
-    CHECK(behind > 200);
+    CHECK(checked > 2000);
+    CHECK(behind > 150);
     CHECK(worst > 0.5);
     CHECK(unbounded < checked / 3);
-    CHECK(next_to_zero > 200);
+    CHECK(next_to_zero > 150);
 }
 
 TEST_CASE("derivatives agree with 400-bit differences of the definition to 1e-5") {
@@ -282,6 +312,9 @@ TEST_CASE("derivatives agree with 400-bit differences of the definition to 1e-5"
 }
 
 TEST_CASE("level, anisotropy and major axis are those of the exact Jacobian") {
+    bool is_in_buffer = false;
+    SUBCASE("by a set-up") {}
+    SUBCASE("in a visibility buffer") { is_in_buffer = true; }
     Random random(6200);
     int circular = 0, thin = 0, magnified = 0, minified = 0, checked = 0;
     double worst_level = 0.0, worst_anisotropy = 0.0, worst_major = 0.0;
@@ -304,10 +337,15 @@ TEST_CASE("level, anisotropy and major axis are those of the exact Jacobian") {
         const ExactTriangle exact(triangle);
         const FootprintSetup setup(setup_of(triangle), texels);
         FootprintOutputs out(shot.rect);
-        if (!footprint(setup, shot.rect, out.spans())) continue;
+        std::vector<std::uint32_t> ids;
+        if (is_in_buffer)
+            ids = fill_among_others(shot, texels, random, out);
+        else if (!footprint(setup, shot.rect, out.spans()))
+            continue;
         for (std::size_t k = 0; k < count_of(shot.rect); k += 1 + count_of(shot.rect) / 5) {
             const std::int64_t x = shot.x(static_cast<std::int64_t>(k) % shot.rect.width);
             const std::int64_t y = shot.y(static_cast<std::int64_t>(k) / shot.rect.width);
+            if (is_in_buffer && ids[k] != 0) continue;
             if (!exact.has_positive_w(x, y) || exact.at(x, y).q.sign() <= 0) continue;
             if (distance_from_zero(triangle, static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5) < 1e-3)
                 continue;

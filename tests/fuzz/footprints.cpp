@@ -13,6 +13,7 @@
 #include "judges/exact.hpp"
 #include "judges/fragments.hpp"
 #include "support/footprint_outputs.hpp"
+#include "texgen/batch.hpp"
 #include "texgen/footprint.hpp"
 #include "texgen/interpolate.hpp"
 
@@ -81,6 +82,47 @@ void require_inside(const Footprint& one, double error, const FootprintExtremes&
     must(one.anisotropy <= extremes.largest_anisotropy, "no anisotropy is above the largest");
 }
 
+// The same triangle, and itself with its corners turned, in runs of a visibility buffer.
+struct BufferedFootprints {
+    Triangle triangles[2];
+    TexelsPerUnit texels;
+    std::size_t run;
+    support::FootprintOutputs out;
+
+    BufferedFootprints(const Triangle& triangle, const TexelsPerUnit& of_slide, const FragmentRect& rect,
+                       unsigned asked, std::size_t length)
+        : triangles{triangle, {triangle.b, triangle.c, triangle.a}}, texels(of_slide), run(length), out(rect, asked) {
+        texgen::TriangleBatch batch(texgen::whole_texture());
+        batch.assign(triangles);
+        std::vector<std::uint32_t> ids(support::count_of(rect));
+        for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = i / run % 2;
+        footprint(batch, ids, rect, texels, out.spans());
+        must(out.pads_are_intact(), "footprints of a visibility buffer are written to their outputs only");
+    }
+
+    void require(std::size_t i, int x, int y, const support::ExactTriangle& exact) const {
+        if (exact.at(x, y).q.sign() <= 0) {
+            for (std::size_t k = 0; k < 8; ++k)
+                if (out.asked(k)) must(same(out[k][i], 0.0f), "behind, all of a visibility buffer are 0");
+            return;
+        }
+        const ExactSlopes slopes(exact, x, y);
+        const FootprintSetup setup(*TriangleSetup::of(triangles[i / run % 2], texgen::whole_texture()), texels);
+        const glm::dvec2 bound = setup.error_bound({x, y, 1, 1});
+        for (std::size_t k = 0; k < 2; ++k) {
+            const double length =
+                std::hypot(slopes.dx[k].estimate(), slopes.dy[k].estimate()) / slopes.q_squared.estimate();
+            const double allowed = bound[static_cast<int>(k)] + texgen::batch_footprint_error * length;
+            if (std::isnan(allowed)) continue;
+            if (out.asked(k))
+                must(is_within(out[k][i], slopes.dx[k], slopes.q_squared, allowed), "a buffered d/dx is in its bound");
+            if (out.asked(2 + k))
+                must(is_within(out[2 + k][i], slopes.dy[k], slopes.q_squared, allowed),
+                     "a buffered d/dy is in its bound");
+        }
+    }
+};
+
 void footprints_of_triangles(Input& input) {
     const Triangle triangle{input.vertex(), input.vertex(), input.vertex()};
     const auto tolerance = input.tolerance();
@@ -112,12 +154,15 @@ void footprints_of_triangles(Input& input) {
     if (count == 0) return;
 
     const support::ExactTriangle exact(triangle);
+    const BufferedFootprints buffered(triangle, texels, rect, input.raw<std::uint8_t>(),
+                                      static_cast<std::size_t>(input.integer(1, 40)));
     for (int drawn = 0; drawn < 2; ++drawn) {
         const std::size_t i = input.raw<std::uint16_t>() % count;
         const std::int64_t x = rect.x + static_cast<std::int64_t>(i) % rect.width;
         const std::int64_t y = rect.y + static_cast<std::int64_t>(i) / rect.width;
         if (!exact.has_positive_w(x, y) || x > 0x7fffffff || y > 0x7fffffff) continue;
         const auto one = setup.at(static_cast<int>(x), static_cast<int>(y));
+        buffered.require(i, static_cast<int>(x), static_cast<int>(y), exact);
         must(one.has_value() == (exact.at(x, y).q.sign() > 0), "a footprint is there exactly in front");
         if (!one) {
             for (std::size_t k = 0; k < 8 && written; ++k)

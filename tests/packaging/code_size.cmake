@@ -16,7 +16,7 @@ set(calls
     "35000 coverage.hpp Coverage coverage coverage(texgen, whole_texture(), box)"
     "62000 segment.hpp void along interpolate(segment, alpha, whole_texture(), out)"
     "48000 footprint.hpp bool footprints footprint(setup, rect, out)"
-    "320000 batch.hpp void batch interpolate(batch, rects, out)")
+    "321000 batch.hpp void batch interpolate(batch, rects, out)")
 
 find_program(size size)
 execute_process(COMMAND ${COMPILER} --version OUTPUT_VARIABLE version)

@@ -427,25 +427,35 @@ Share triangle_within_share(const Numbers& n) {
 
 // Derivatives within their bound, whose numerators are the differences of neighbours; and each level of a fragment in
 // front inside the extremes of the rectangle: the share that rounding takes of the room that they leave for it.
-template <bool OfExtremes>
+enum class OfFootprints { bound, extremes, batch };
+template <OfFootprints Of>
 Share footprint_share(const Numbers& n) {
+    constexpr bool OfExtremes = Of == OfFootprints::extremes;
     const texgen::Triangle triangle = triangle_of(n);
     const auto prepared = texgen::TriangleSetup::of(triangle, support::everywhere());
     if (!prepared || !is_in_range(n, 0x1p-30, 0x1p30)) return says_nothing;
     const texgen::FootprintSetup setup(*prepared, {256.0, 1000.0});
     Outputs out(256), levels(256, 1u);
     const texgen::Texcoords spans = out.spans();
-    if (!footprint(setup, wide,
-                   {.dsdx = spans.s,
-                    .dtdx = spans.t,
-                    .dsdy = spans.r,
-                    .dtdy = spans.lit,
-                    .level = levels.spans().s,
-                    .anisotropy = {},
-                    .major_s = {},
-                    .major_t = {}}))
+    const texgen::Footprints footprints{.dsdx = spans.s,
+                                        .dtdx = spans.t,
+                                        .dsdy = spans.r,
+                                        .dtdy = spans.lit,
+                                        .level = levels.spans().s,
+                                        .anisotropy = {},
+                                        .major_s = {},
+                                        .major_t = {}};
+    if (Of == OfFootprints::batch) {
+        texgen::TriangleBatch batch(support::everywhere());
+        const texgen::Triangle both[] = {triangle, {triangle.b, triangle.c, triangle.a}};
+        batch.assign(both);
+        std::vector<std::uint32_t> ids(256);
+        for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = i / 3 % 2;
+        footprint(batch, ids, wide, {256.0, 1000.0}, footprints);
+    } else if (!footprint(setup, wide, footprints)) {
         return says_nothing;
-    const glm::dvec2 bound = setup.error_bound(wide);
+    }
+    const glm::dvec2 of_rect = setup.error_bound(wide);
     const auto extremes = setup.extremes(wide);
     const support::ExactTriangle exact(triangle);
     Share worst = says_nothing;
@@ -464,6 +474,17 @@ Share footprint_share(const Numbers& n) {
             continue;
         }
         const Homogeneous next[] = {exact.at(x + 1, y), exact.at(x, y + 1)};
+        glm::dvec2 bound = of_rect;
+        if (Of == OfFootprints::batch) {
+            const auto turned = texgen::TriangleSetup::of({triangle.b, triangle.c, triangle.a}, support::everywhere());
+            if (!turned) return broken;
+            const texgen::FootprintSetup setup_of_id(i / 3 % 2 == 0 ? *prepared : *turned, {256.0, 1000.0});
+            const auto one = setup_of_id.at(x, y);
+            if (!one) return broken;
+            const auto length = [&](int k) { return std::hypot(one->dx[k], one->dy[k]); };
+            bound = setup_of_id.error_bound({x, y, 1, 1}) +
+                    texgen::batch_footprint_error * glm::dvec2(length(0), length(1));
+        }
         for (std::size_t k = 0; k < 4; ++k) {
             const Dyadic here = at.over_q(k % 2).n;
             const Homogeneous& neighbour = next[k / 2];
@@ -908,8 +929,9 @@ const std::array promises{
     Promise{"triangle: error_bound", 21, [](Random& random) { return with_tolerance(begin_triangle(random), random); },
             triangle_within_share<true>},
     Promise{"triangle: work, a decision", 21, begin_triangle, work_share},
-    Promise{"footprint: error_bound", 21, begin_triangle, footprint_share<false>},
-    Promise{"footprint: extremes", 21, begin_triangle, footprint_share<true>},
+    Promise{"footprint: error_bound", 21, begin_triangle, footprint_share<OfFootprints::bound>},
+    Promise{"footprint: extremes", 21, begin_triangle, footprint_share<OfFootprints::extremes>},
+    Promise{"footprint of ids: error_bound", 21, begin_triangle, footprint_share<OfFootprints::batch>},
     Promise{"box: coverage, a decision", 25, begin_batch, coverage_share},
     Promise{"inverse: 2 ulp of the largest term", 0, begin_matrix, inverse_share},
     Promise{"inverse: inverse_error_bound", 0, begin_matrix, inverse_bound_share},

@@ -638,9 +638,9 @@ Calls visibility_calls(const Numbers& n) {
         interpolate(batch, ids, call.rect, outputs_for<Of>(call.out));
     });
 }
-template <std::size_t Run>
+template <std::size_t Run, std::size_t Count = 8>
 Calls footprint_ids_calls(const Numbers& n) {
-    return ids_calls<Run>(n, true, wide_open(), [](const auto& batch, const auto& ids, TileCall& call) {
+    return ids_calls<Run, Count>(n, true, wide_open(), [](const auto& batch, const auto& ids, TileCall& call) {
         auto& out = call.out;
         footprint(batch, ids, call.rect, {1024.0, 768.0},
                   {out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7]});
@@ -1487,7 +1487,7 @@ inline const std::array workloads{
     Workload{"interpolate ids, exact, lit alone, mixed", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::visibility_calls<1, true, detail::OutputsOf::mask>, detail::triangle_limit<64, 4>},
     Workload{"interpolate ids, tolerance, lit alone with a depth, in runs", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::visibility_calls<8, false, detail::OutputsOf::mask_of_depth>, detail::triangle_limit<64, 4>},
     Workload{"footprint of ids, in runs", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::footprint_ids_calls<8>, detail::triangle_limit<64, 4>},
-    Workload{"footprint of ids, mixed", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::footprint_ids_calls<1>, detail::triangle_limit<64, 4>},
+    Workload{"footprint of ids, mixed", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::footprint_ids_calls<1, 9>, detail::triangle_limit<64, 4>},
     Workload{"FootprintSetup", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::footprint_setup_calls,
              detail::always},
     Workload{"FootprintSetup::at", 23, detail::ordinary_triangle, detail::hostile_triangle, detail::footprint_at_calls,

@@ -9,6 +9,8 @@
 #include "batch_residues.inc.hpp"
 
 #include "batch_fragments.inc.hpp"
+
+#include "batch_footprints.inc.hpp"
 #include "batch_shapes.inc.hpp"
 #include "batch_survey.inc.hpp"
 
@@ -21,5 +23,9 @@ inline constexpr BatchKernels kernel_table<BatchKernels, CompiledWhereCalled>{
     .set_up = set_up_batch<CompiledWhereCalled>,
     .divide_tiles = divide_batch_tiles<CompiledWhereCalled>,
     .divide_fragments = divide_batch_fragments<CompiledWhereCalled>};
+
+template <class CompiledWhereCalled>
+inline constexpr BatchFootprintKernels kernel_table<BatchFootprintKernels, CompiledWhereCalled>{
+    .fill = fill_batch_footprints<CompiledWhereCalled>};
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA

@@ -55,20 +55,27 @@ struct EdgeLanes {
 // The vertices of the triangle in each lane; of its numbers x, y, w, s, t, r, q.
 struct VertexLanes {
     Doubles vertex[3][8];
-    Doubles area;        // nearly, doubled
+    Doubles area;        // doubled, within 2^-40 of itself
     LongWords has_area;  // its sign is known
     Doubles error_of_q;  // infinite elsewhere, so that all is in doubt
 
-    TEXGEN_APART explicit VertexLanes(const float* const (&triangle)[lanes]) noexcept {
+    VertexLanes() = default;
+    TEXGEN_INLINE explicit VertexLanes(const float* const (&triangle)[lanes]) noexcept { take(triangle); }
+
+    TEXGEN_APART void take(const float* const (&triangle)[lanes]) noexcept {
+        load_about_farthest(triangle, vertex);
+        find_area();
+    }
+    // One triangle in all of them.
+    TEXGEN_APART void take(const float* triangle) noexcept {
+        const std::size_t* const of_turned = about_farthest(triangle);
         TEXGEN_UNROLL
-        for (std::size_t i = 0; i < 3; ++i)
-            load_columns(vertex[i], 8, [&](std::size_t j) { return triangle[j] + i * BatchVertex::size; });
-        const Doubles left = (number(1, 0) - number(0, 0)) * (number(2, 1) - number(0, 1));
-        const Doubles right = (number(1, 1) - number(0, 1)) * (number(2, 0) - number(0, 0));
-        area = left - right;
-        has_area = greater(magnitude(area), (magnitude(left) + magnitude(right)) * gamma(4));
-        if (any(~has_area)) find_area();
-        error_of_q = where(~has_area, Doubles{} + infinity);
+        for (std::size_t i = 0; i < 3; ++i) {
+            const float* const from = triangle + of_turned[i];
+            TEXGEN_UNROLL
+            for (std::size_t k = 0; k < BatchVertex::size; ++k) vertex[i][k] = Doubles{} + detail::widened(from[k]);
+        }
+        find_area();
     }
 
     TEXGEN_INLINE const Doubles& number(std::size_t i, std::size_t k) const noexcept {
@@ -89,9 +96,16 @@ struct VertexLanes {
 private:
     // Of slivers it takes two doubles.
     TEXGEN_INLINE void find_area() noexcept {
-        const EdgeLanes edge = area_closely();
-        area = edge.high;
-        has_area = greater(magnitude(area), edge.size * 0x1p-98);
+        const Doubles left = (number(1, 0) - number(0, 0)) * (number(2, 1) - number(0, 1));
+        const Doubles right = (number(1, 1) - number(0, 1)) * (number(2, 0) - number(0, 0));
+        area = left - right;
+        has_area = greater(magnitude(area), (magnitude(left) + magnitude(right)) * 0x1p-10);
+        if (any(~has_area)) {
+            const EdgeLanes edge = area_closely();
+            area = edge.high;
+            has_area = greater(magnitude(area), edge.size * 0x1p-98);
+        }
+        error_of_q = where(~has_area, Doubles{} + infinity);
     }
 };
 

@@ -63,7 +63,7 @@ struct FragmentLanes {
     }
 };
 
-TEXGEN_INLINE const float* vertices_of(const BatchJob& job, std::size_t triangle) noexcept {
+TEXGEN_INLINE const float* vertices_of(const auto& job, std::size_t triangle) noexcept {
     return job.vertices + 3 * BatchVertex::size * triangle;
 }
 
@@ -73,7 +73,7 @@ struct FragmentIds {
     const std::uint32_t* value;
     bool is_whole;
 
-    TEXGEN_INLINE FragmentIds(const FragmentsJob& job, std::size_t n) noexcept
+    TEXGEN_INLINE FragmentIds(const auto& job, std::size_t n) noexcept
         : value(job.ids + n), is_whole(n + at_once <= job.count) {
         if (is_whole) return;
         for (std::size_t i = 0; i < at_once; ++i) last[i] = n + i < job.count ? value[i] : value[0];
@@ -89,7 +89,7 @@ class FragmentCentres {
 public:
     Doubles x, y;
 
-    TEXGEN_INLINE FragmentCentres(const FragmentsJob& job, std::size_t first) noexcept
+    TEXGEN_INLINE FragmentCentres(const auto& job, std::size_t first) noexcept
         : width_(job.width),
           per_width_(1.0 / job.width),
           left_(job.x + 0.5),

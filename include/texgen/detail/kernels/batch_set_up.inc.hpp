@@ -37,39 +37,38 @@ TEXGEN_INLINE void store_columns(const Vector (&columns)[Size], const To& to) no
     }
 }
 
-// A triangle in each lane: its vertices, the one of the largest w first, as TrianglePlanes has them.
-struct TriangleLanes {
-    Doubles vertex[3][8];
-
-    // Numbers that are positive are in the order of their bits; others are refused in any order. No branch: it would be
-    // random.
-    TEXGEN_INLINE explicit TriangleLanes(const float* triangles) noexcept {
-        const float* first[lanes];
-        std::size_t turns[lanes];
-        TEXGEN_UNROLL
-        for (std::size_t j = 0; j < at_once; ++j) {
-            first[j] = triangles + 3 * BatchVertex::size * j;
-            const auto w = [&](std::size_t i) { return bit_cast<int>(first[j][i * BatchVertex::size + 2]); };
-            const auto is_b = static_cast<unsigned>(w(1) > w(0)) & static_cast<unsigned>(w(2) <= w(1));
-            const auto is_c = static_cast<unsigned>(w(2) > w(0)) & ~is_b;
-            turns[j] = is_b + 2 * is_c;
-        }
-        TEXGEN_UNROLL
-        for (std::size_t i = 0; i < 3; ++i)
-            load_columns(vertex[i], 8, [&](std::size_t j) { return first[j] + of_turned[i + turns[j]]; });
-    }
-
-private:
+// What the vertices of a triangle are off its first float, the one of the largest w first, as TrianglePlanes has them.
+// Numbers that are positive are in the order of their bits; others are refused in any order. No branch: it would be
+// random.
+TEXGEN_INLINE const std::size_t* about_farthest(const float* triangle) noexcept {
     static constexpr std::size_t of_turned[5] = {0, BatchVertex::size, 2 * BatchVertex::size, 0, BatchVertex::size};
-};
+    const auto w = [&](std::size_t i) { return bit_cast<int>(triangle[i * BatchVertex::size + 2]); };
+    const auto is_b = static_cast<unsigned>(w(1) > w(0)) & static_cast<unsigned>(w(2) <= w(1));
+    const auto is_c = static_cast<unsigned>(w(2) > w(0)) & ~is_b;
+    return of_turned + (is_b + 2 * is_c);
+}
+
+// The triangle in each lane: its vertices, the one of the largest w first.
+TEXGEN_INLINE void load_about_farthest(const float* const (&triangle)[lanes], Doubles (&vertex)[3][8]) noexcept {
+    const std::size_t* of_turned[lanes];
+    TEXGEN_UNROLL
+    for (std::size_t j = 0; j < at_once; ++j) of_turned[j] = about_farthest(triangle[j]);
+    TEXGEN_UNROLL
+    for (std::size_t i = 0; i < 3; ++i)
+        load_columns(vertex[i], 8, [&](std::size_t j) { return triangle[j] + of_turned[j][i]; });
+}
 
 // As TrianglePlanes, with the same operations in the same order: what they err by is said there. Where the sign of the
 // area is in doubt, or a number is not one, the error of q is infinite: those lanes are returned.
 TEXGEN_INLINE LongWords set_up_lanes(const float* triangles, BatchPlanes* planes) noexcept {
-    const TriangleLanes given(triangles);
-    const Doubles* const a = given.vertex[0];
-    const Doubles* const b = given.vertex[1];
-    const Doubles* const c = given.vertex[2];
+    const float* of_lane[lanes];
+    TEXGEN_UNROLL
+    for (std::size_t j = 0; j < at_once; ++j) of_lane[j] = triangles + 3 * BatchVertex::size * j;
+    Doubles vertex[3][8];
+    load_about_farthest(of_lane, vertex);
+    const Doubles* const a = vertex[0];
+    const Doubles* const b = vertex[1];
+    const Doubles* const c = vertex[2];
     const Doubles b_x = b[0] - a[0];
     const Doubles b_y = b[1] - a[1];
     const Doubles c_x = c[0] - a[0];

@@ -90,6 +90,28 @@ TEXGEN_INLINE WideFloats inverse_square_root(const WideFloats& x) noexcept {
     return y;
 }
 
+// The larger eigenvalue of J J^T = ((a, b), (b, c)), and its eigenvector: (|half| + root, b), or (b, |half| + root)
+// where half < 0; (1, 0) for a circle.
+struct SpectrumLanes {
+    WideFloats b, half, root, largest;
+
+    TEXGEN_INLINE SpectrumLanes(const WideFloats& a, const WideFloats& given_b, const WideFloats& c) noexcept
+        : b(given_b), half((a - c) * 0.5f) {
+        const WideFloats root_square = half * half + b * b;
+        root = root_square * inverse_square_root(root_square);
+        largest = (a + c) * 0.5f + root;
+    }
+
+    // The longer half axis, times a factor.
+    TEXGEN_INLINE void find_major(const WideFloats& factor, WideFloats (&axis)[2]) const noexcept {
+        const WideFloats along = magnitude(half) + root + largest * 0x1p-24f;
+        const WideFloats length = largest * inverse_square_root(largest * (along * along + b * b)) * factor;
+        const WideWords swapped = is_negative(half);
+        axis[0] = select(swapped, b, along) * length;
+        axis[1] = select(swapped, along, b) * length;
+    }
+};
+
 // Rows from `first` on, up to the first with a fragment whose derivatives are too small for the floats here (it is
 // written all the same); the height if there is none.
 template <bool InFloat, bool Shape>
@@ -120,28 +142,18 @@ TEXGEN_INLINE int filter_rows(const FootprintJob& job, int first) noexcept {
                 store_some(level + x, count, half_log2_of_quotient(square, q_q * q_q) + job.level_offset);
             }
             if constexpr (Shape) {
-                // The larger eigenvalue of J J^T = ((a, b), (b, c)), and its eigenvector: (|half| + root, b), or
-                // (b, |half| + root) where half < 0; (1, 0) for a circle.
-                const WideFloats a = s_dy * s_dy + static_cast<float>(s_dx * s_dx);
-                const WideFloats c = t_dy * t_dy + static_cast<float>(t_dx * t_dx);
-                const WideFloats b = s_dy * t_dy + static_cast<float>(s_dx * t_dx);
-                const WideFloats half = (a - c) * 0.5f;
-                const WideFloats root_square = half * half + b * b;
-                const WideFloats root = root_square * inverse_square_root(root_square);
-                const WideFloats largest = (a + c) * 0.5f + root;
+                const SpectrumLanes spectrum(s_dy * s_dy + static_cast<float>(s_dx * s_dx),
+                                             s_dy * t_dy + static_cast<float>(s_dx * t_dx),
+                                             t_dy * t_dy + static_cast<float>(t_dx * t_dx));
                 const WideFloats per_q = 1.0f / q;
                 if (anisotropy != nullptr)
                     store_some(anisotropy + x, count,
-                               larger_of(largest * per_q * job.anisotropy_factor, WideFloats{} + 1.0f));
+                               larger_of(spectrum.largest * per_q * job.anisotropy_factor, WideFloats{} + 1.0f));
                 if (major_s != nullptr || major_t != nullptr) {
-                    const WideFloats along = magnitude(half) + root + largest * 0x1p-24f;
-                    const WideFloats length =
-                        largest * inverse_square_root(largest * (along * along + b * b)) * (per_q * per_q);
-                    const WideWords swapped = is_negative(half);
-                    if (major_s != nullptr)
-                        store_some(major_s + x, count, select(swapped, b, along) * length * job.major_factor[0]);
-                    if (major_t != nullptr)
-                        store_some(major_t + x, count, select(swapped, along, b) * length * job.major_factor[1]);
+                    WideFloats axis[2];
+                    spectrum.find_major(per_q * per_q, axis);
+                    if (major_s != nullptr) store_some(major_s + x, count, axis[0] * job.major_factor[0]);
+                    if (major_t != nullptr) store_some(major_t + x, count, axis[1] * job.major_factor[1]);
                 }
             }
         }

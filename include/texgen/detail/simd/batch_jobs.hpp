@@ -76,12 +76,34 @@ struct FragmentsJob : BatchJob {
     int x, y, width;
 };
 
+// The same for footprints: derivatives by x and by y of s and of t, and what filters make of them.
+struct BatchFootprintsJob {
+    const float* vertices;
+    const std::uint32_t* ids;
+    std::uint32_t triangles;
+    int x, y, width;
+    std::size_t count;
+    double texels[2];  // per unit of s and t
+    float per_texel[2];
+    float* dx[2];
+    float* dy[2];
+    float* level;
+    float* anisotropy;
+    float* major[2];
+
+    bool has_shape() const noexcept { return anisotropy != nullptr || major[0] != nullptr || major[1] != nullptr; }
+};
+
 struct BatchKernels {
     // A block; a float behind its last vertex is read. A bit for each triangle whose functions are not known.
     unsigned (*set_up)(const float* triangles, BatchPlanes* planes) noexcept;
     // From a tile on that begins a block, with values from output `done` on. Stops at a block that has tiles in doubt.
     Undecided (*divide_tiles)(const TilesJob& job, std::size_t first, std::size_t done) noexcept;
     Undecided (*divide_fragments)(const FragmentsJob& job, std::size_t first) noexcept;
+};
+
+struct BatchFootprintKernels {
+    Undecided (*fill)(const BatchFootprintsJob& job, std::size_t first) noexcept;
 };
 
 }  // namespace TEXGEN_DETAIL

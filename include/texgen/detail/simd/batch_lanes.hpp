@@ -15,6 +15,7 @@
 namespace TEXGEN_DETAIL {
 inline namespace TEXGEN_BUILD {
 TEXGEN_EXTERN template const BatchKernels& chosen<BatchKernels>() noexcept;
-}
+TEXGEN_EXTERN template const BatchFootprintKernels& chosen<BatchFootprintKernels>() noexcept;
+}  // namespace TEXGEN_BUILD
 }  // namespace TEXGEN_DETAIL
 #endif

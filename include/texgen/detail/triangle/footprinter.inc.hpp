@@ -167,14 +167,18 @@ private:
     OnDemand<ClosePlane> close_q_;
 };
 
-// The footprints of a rectangle, for outputs that are computed.
+// The footprints of a rectangle, for outputs that are computed; false where the slide lights none of it, and nothing is
+// written unless `always`.
 template <class CompiledWhereCalled = void>
-inline bool footprint_tile(const FootprintSetup& setup, const Tile& tile, const Footprints& out) noexcept {
+inline bool footprint_tile(const FootprintSetup& setup, const Tile& tile, const Footprints& out,
+                           bool always = false) noexcept {
     const FootprintFunctions& functions = Inside::functions(setup);
     const TileSurvey found = survey(functions.triangle, tile);
-    if (found.plan.work == Work::nothing) return false;
-    TileFootprinter<>(chosen<FootprintKernels>(), functions, Inside::texels(setup), tile, out).fill_all(tile, found.at);
-    return true;
+    const bool may_be_lit = found.plan.work != Work::nothing;
+    if (may_be_lit || always)
+        TileFootprinter<>(chosen<FootprintKernels>(), functions, Inside::texels(setup), tile, out)
+            .fill_all(tile, found.at);
+    return may_be_lit;
 }
 
 }  // namespace TEXGEN_BUILD

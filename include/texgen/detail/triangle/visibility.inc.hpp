@@ -128,6 +128,86 @@ TEXGEN_APART void interpolate_runs(const TriangleBatch& batch, FragmentsJob& job
         [&](std::size_t begin, std::size_t end) { interpolate_ids(batch, job, rect, begin, end, out); });
 }
 
+// The footprints of a visibility buffer: of long runs by set-ups, of others in lanes, and by set-ups what these leave.
+template <class CompiledWhereCalled = void>
+class BatchFootprinter {
+public:
+    BatchFootprinter(const TriangleBatch& batch, std::span<const std::uint32_t> ids, const FragmentRect& rect,
+                     const TexelsPerUnit& texels, const Footprints& out) noexcept
+        : batch_(batch), ids_(ids), rect_(rect), texels_(texels), out_(out) {}
+
+    void fill_all() noexcept {
+        for_each_stretch(
+            ids_, static_cast<std::size_t>(rect_.width),
+            [&](std::size_t first, std::size_t length) {
+                fill_run(ids_[first], part_of(rect_, first, length), first, false);
+            },
+            [&](std::size_t begin, std::size_t end) { fill_in_lanes(begin, end); });
+    }
+
+private:
+    // The kernel has lengths from 2^-100 to 2^100 texels, and their reciprocals, in float.
+    static bool are_ordinary(const TexelsPerUnit& texels) noexcept {
+        return texels.s > 0x1p-24 && texels.s < 0x1p24 && texels.t > 0x1p-24 && texels.t < 0x1p24;
+    }
+
+    void fill_in_lanes(std::size_t begin, std::size_t end) noexcept {
+        BatchFootprintsJob job{};
+        job.vertices = &Inside::triangle(batch_, 0).a.window.x;
+        job.ids = ids_.data();
+        job.triangles = static_cast<std::uint32_t>(batch_.size());
+        job.x = rect_.x;
+        job.y = rect_.y;
+        job.width = rect_.width;
+        job.count = end;
+        job.texels[0] = texels_.s;
+        job.texels[1] = texels_.t;
+        job.per_texel[0] = static_cast<float>(1.0 / texels_.s);
+        job.per_texel[1] = static_cast<float>(1.0 / texels_.t);
+        job.dx[0] = array_of(out_.dsdx, ids_.size());
+        job.dx[1] = array_of(out_.dtdx, ids_.size());
+        job.dy[0] = array_of(out_.dsdy, ids_.size());
+        job.dy[1] = array_of(out_.dtdy, ids_.size());
+        job.level = array_of(out_.level, ids_.size());
+        job.anisotropy = array_of(out_.anisotropy, ids_.size());
+        job.major[0] = array_of(out_.major_s, ids_.size());
+        job.major[1] = array_of(out_.major_t, ids_.size());
+        if ((job.level != nullptr || job.has_shape()) && !are_ordinary(texels_))
+            return fill_runs(begin, end - begin, [](std::size_t) { return true; });
+        const BatchFootprintKernels& kernels = chosen<BatchFootprintKernels>();
+        for (Undecided doubt = kernels.fill(job, begin); doubt.begin < end;) {
+            const std::size_t left = (std::min)(exact_block, end - doubt.begin);
+            fill_runs(doubt.begin, left,
+                      [&](std::size_t fragment) { return (doubt.values >> (fragment - doubt.begin) & 1u) != 0; });
+            doubt = kernels.fill(job, doubt.begin + left);
+        }
+    }
+
+    void fill_runs(std::size_t first, std::size_t count, const auto& is_wanted) noexcept {
+        for_each_run(ids_, rect_, first, count, is_wanted,
+                     [&](std::uint32_t id, const Tile& part, std::size_t begin) { fill_run(id, part, begin, true); });
+    }
+
+    // What is not lit is written only if `always`, or 0.
+    void fill_run(std::uint32_t id, const Tile& part, std::size_t first, bool always) noexcept {
+        Footprints here = subspans(out_, first, static_cast<std::size_t>(part.count()));
+        if (id >= batch_.size()) return clear(here);
+        const auto& setup = recent_.of(id, [&]() -> std::optional<FootprintSetup> {
+            const auto triangle = set_up(batch_, id);
+            if (!triangle) return std::nullopt;
+            return FootprintSetup(*triangle, texels_);
+        });
+        if (!setup || (!footprint_tile(*setup, part, here, always) && !always)) clear(here);
+    }
+
+    const TriangleBatch& batch_;
+    std::span<const std::uint32_t> ids_;
+    FragmentRect rect_;
+    TexelsPerUnit texels_;
+    Footprints out_;
+    Recent<FootprintSetup> recent_;
+};
+
 }  // namespace TEXGEN_BUILD
 }  // namespace TEXGEN_DETAIL
 
@@ -162,19 +242,8 @@ void footprint(const TriangleBatch& batch, std::span<const std::uint32_t> ids, F
     if (count == 0) return;
     TEXGEN_ASSERT(ids.size() == count);
     if (ids.size() != count || !detail::take_computed(out, count)) return;
-    detail::Recent<FootprintSetup> recent;
-    detail::for_each_run(
-        ids, rect, 0, count, [](std::size_t) { return true; },
-        [&](std::uint32_t id, const detail::Tile& part, std::size_t first) {
-            Footprints here = detail::subspans(out, first, static_cast<std::size_t>(part.width));
-            if (id >= batch.size()) return detail::clear(here);
-            const auto& setup = recent.of(id, [&]() -> std::optional<FootprintSetup> {
-                const auto triangle = detail::set_up(batch, id);
-                if (!triangle) return std::nullopt;
-                return FootprintSetup(*triangle, texels);
-            });
-            if (!setup || !detail::footprint_tile(*setup, part, here)) detail::clear(here);
-        });
+    if (batch.size() == 0) return detail::clear(out);
+    detail::BatchFootprinter<>(batch, ids, rect, texels, out).fill_all();
 }
 
 }  // namespace TEXGEN_BUILD
