@@ -859,7 +859,8 @@ TEST_CASE("footprints of a visibility buffer are those of its triangles") {
     Random random(5);
     int checked = 0, long_runs = 0, whole_rows = 0, dark = 0;
     for (int round = 0; round < 120; ++round) {
-        const Drawn drawn(random, random.integer(1, 9));
+        Drawn drawn(random, random.integer(1, 9));
+        if (random.coin()) drawn.triangles.back() = refused(random);
         TriangleBatch batch(texgen::whole_texture());
         batch.assign(drawn.triangles);
         const bool may_be_long = round % 3 == 0;

@@ -128,11 +128,12 @@ struct DeterminantLanes {
     }
 };
 
-// J of a block's fragments in texels, column by column and relative to a power of two, the unit: so floats hold it, and a
-// determinant that is made in double. Those that are not in front have no unit.
+// J of a block's fragments in texels, column by column and relative to a power of two: so floats hold it, and a
+// determinant that is made in double. That power is a product of two floats, of which the second is 1 but where J is very
+// large or small, and the first is 0 where a fragment is not in front.
 struct JacobianBlock {
     float dx[2][exact_block], dy[2][exact_block];
-    float determinant[exact_block], unit[exact_block];
+    float determinant[exact_block], unit[2][exact_block];
 
     // Returns the lanes that floats do not hold.
     TEXGEN_INLINE LongWords put(std::size_t n, const FootprintLanes& functions, const JacobianLanes& of,
@@ -144,12 +145,15 @@ struct JacobianBlock {
         const LongWords is_zero = ~are_nonzero(size);
         const Doubles power = select(is_zero, Doubles{} + 1.0, power_of_two_below(size));
         const Doubles per_unit = where(of.front, reciprocals_of_powers(power));
-        store(unit + n, to_floats(where(of.front, power)));
+        const Doubles large = select(greater(size, 0x1p100), Doubles{} + 0x1p100, Doubles{} + 1.0);
+        const Doubles second = select(greater(Doubles{} + 0x1p-100, size) & ~is_zero, Doubles{} + 0x1p-100, large);
+        store(unit[0] + n, to_floats(where(of.front, power * reciprocals_of_powers(second))));
+        store(unit[1] + n, to_floats(second));
         store(dx[0] + n, to_floats(s_dx * per_unit));
         store(dx[1] + n, to_floats(t_dx * per_unit));
         store(dy[0] + n, to_floats(s_dy * per_unit));
         store(dy[1] + n, to_floats(t_dy * per_unit));
-        const LongWords is_held = is_zero | (greater(size, 0x1p-100) & greater(Doubles{} + 0x1p100, size));
+        const LongWords is_held = is_zero | (greater(size, 0x1p-200) & greater(Doubles{} + 0x1p200, size));
         if (!job.has_shape()) return ~is_held;
         const Doubles left = (s_dx * per_unit) * (t_dy * per_unit), right = (s_dy * per_unit) * (t_dx * per_unit);
         Doubles det = magnitude(left - right);
@@ -170,18 +174,20 @@ struct JacobianBlock {
             const int some = count - n < wide_at_once ? static_cast<int>(count - n) : wide_lanes;
             const auto s_dx = load<WideFloats>(dx[0] + n), t_dx = load<WideFloats>(dx[1] + n);
             const auto s_dy = load<WideFloats>(dy[0] + n), t_dy = load<WideFloats>(dy[1] + n);
-            const auto power = load<WideFloats>(unit + n);
+            const auto first = load<WideFloats>(unit[0] + n), second = load<WideFloats>(unit[1] + n);
             const auto put = [&](float* to, const WideFloats& value) {
-                const WideWords in_front = less(WideFloats{}, power);
+                const WideWords in_front = less(WideFloats{}, first);
                 if (to != nullptr) store_some(to + begin + n, some, select(in_front, value, WideFloats{}));
             };
             const WideFloats square = larger_of(s_dx * s_dx + t_dx * t_dx, s_dy * s_dy + t_dy * t_dy);
             const WideWords is_zero = less(square, WideFloats{} + 0.5f);
             if (job.level != nullptr) {
-                constexpr int bits_of_one = bit_cast<int>(1.0f);
-                const WideFloats exponent = to_numbers(signed_bits(power) - (WideWords{} + bits_of_one)) * 0x1p-23f;
-                const WideFloats of_power = half_log2_of_quotient(square, WideFloats{} + 1.0f) + exponent;
-                put(job.level, select(is_zero, WideFloats{} - static_cast<float>(infinity), of_power));
+                const auto exponent = [](const WideFloats& power) {
+                    return to_numbers(signed_bits(power) - (WideWords{} + bit_cast<int>(1.0f))) * 0x1p-23f;
+                };
+                const WideFloats levels =
+                    half_log2_of_quotient(square, WideFloats{} + 1.0f) + (exponent(first) + exponent(second));
+                put(job.level, select(is_zero, WideFloats{} - static_cast<float>(infinity), levels));
             }
             if (!job.has_shape()) continue;
             const SpectrumLanes spectrum(s_dx * s_dx + s_dy * s_dy, s_dx * t_dx + s_dy * t_dy,
@@ -189,8 +195,8 @@ struct JacobianBlock {
             const WideFloats ratio = spectrum.largest * (1.0f / load<WideFloats>(determinant + n));
             put(job.anisotropy, select(is_zero, WideFloats{} + 1.0f, larger_of(ratio, WideFloats{} + 1.0f)));
             WideFloats axis[2];
-            spectrum.find_major(power, axis);
-            for (std::size_t k = 0; k < 2; ++k) put(job.major[k], axis[k] * job.per_texel[k]);
+            spectrum.find_major(first, axis);
+            for (std::size_t k = 0; k < 2; ++k) put(job.major[k], axis[k] * job.per_texel[k] * second);
         }
     }
 };
@@ -206,7 +212,7 @@ Undecided fill_batch_footprints(const BatchFootprintsJob& original, std::size_t 
     FootprintLanes known;
     known.take(dark);
     Words known_ids = Words{} - 1;  // no triangle
-    JacobianBlock block{};  // vectors read beyond the last fragment
+    JacobianBlock block{};          // vectors read beyond the last fragment
     for (std::size_t n = first; n < job.count;) {
         const std::size_t begin = n;
         const std::size_t end = job.count - begin < exact_block ? job.count : begin + exact_block;

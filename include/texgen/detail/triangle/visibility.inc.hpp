@@ -128,6 +128,30 @@ TEXGEN_APART void interpolate_runs(const TriangleBatch& batch, FragmentsJob& job
         [&](std::size_t begin, std::size_t end) { interpolate_ids(batch, job, rect, begin, end, out); });
 }
 
+// What the kernel of footprints is given of a visibility buffer.
+inline void describe(BatchFootprintsJob& job, const TriangleBatch& batch, std::span<const std::uint32_t> ids,
+                     const FragmentRect& rect, const TexelsPerUnit& texels, const Footprints& out) noexcept {
+    job.vertices = &Inside::triangle(batch, 0).a.window.x;
+    job.ids = ids.data();
+    job.triangles = static_cast<std::uint32_t>(batch.size());
+    job.x = rect.x;
+    job.y = rect.y;
+    job.width = rect.width;
+    job.count = ids.size();
+    job.texels[0] = texels.s;
+    job.texels[1] = texels.t;
+    job.per_texel[0] = static_cast<float>(1.0 / texels.s);
+    job.per_texel[1] = static_cast<float>(1.0 / texels.t);
+    job.dx[0] = array_of(out.dsdx, job.count);
+    job.dx[1] = array_of(out.dtdx, job.count);
+    job.dy[0] = array_of(out.dsdy, job.count);
+    job.dy[1] = array_of(out.dtdy, job.count);
+    job.level = array_of(out.level, job.count);
+    job.anisotropy = array_of(out.anisotropy, job.count);
+    job.major[0] = array_of(out.major_s, job.count);
+    job.major[1] = array_of(out.major_t, job.count);
+}
+
 // The footprints of a visibility buffer: of long runs by set-ups, of others in lanes, and by set-ups what these leave.
 template <class CompiledWhereCalled = void>
 class BatchFootprinter {
@@ -146,32 +170,15 @@ public:
     }
 
 private:
-    // The kernel has lengths from 2^-100 to 2^100 texels, and their reciprocals, in float.
+    // The kernel has their reciprocals, times 2^100, in float.
     static bool are_ordinary(const TexelsPerUnit& texels) noexcept {
         return texels.s > 0x1p-24 && texels.s < 0x1p24 && texels.t > 0x1p-24 && texels.t < 0x1p24;
     }
 
     void fill_in_lanes(std::size_t begin, std::size_t end) noexcept {
         BatchFootprintsJob job{};
-        job.vertices = &Inside::triangle(batch_, 0).a.window.x;
-        job.ids = ids_.data();
-        job.triangles = static_cast<std::uint32_t>(batch_.size());
-        job.x = rect_.x;
-        job.y = rect_.y;
-        job.width = rect_.width;
+        describe(job, batch_, ids_, rect_, texels_, out_);
         job.count = end;
-        job.texels[0] = texels_.s;
-        job.texels[1] = texels_.t;
-        job.per_texel[0] = static_cast<float>(1.0 / texels_.s);
-        job.per_texel[1] = static_cast<float>(1.0 / texels_.t);
-        job.dx[0] = array_of(out_.dsdx, ids_.size());
-        job.dx[1] = array_of(out_.dtdx, ids_.size());
-        job.dy[0] = array_of(out_.dsdy, ids_.size());
-        job.dy[1] = array_of(out_.dtdy, ids_.size());
-        job.level = array_of(out_.level, ids_.size());
-        job.anisotropy = array_of(out_.anisotropy, ids_.size());
-        job.major[0] = array_of(out_.major_s, ids_.size());
-        job.major[1] = array_of(out_.major_t, ids_.size());
         if ((job.level != nullptr || job.has_shape()) && !are_ordinary(texels_))
             return fill_runs(begin, end - begin, [](std::size_t) { return true; });
         const BatchFootprintKernels& kernels = chosen<BatchFootprintKernels>();
