@@ -12,40 +12,59 @@ inline int coordinates_with(TexGenMode mode) noexcept {
     return mode == TexGenMode::sphere_map ? 2 : uses_normal(mode) ? 3 : 0;
 }
 
-// a . b with one rounding: a vertex near the eye, or far from the origin, is a small difference of large terms. The
-// product of two floats is exact in double, so only the sum needs care.
-inline double cancelling_dot(const glm::vec4& a, const glm::vec4& b) noexcept {
-    double sum = 0.0, lost = 0.0;
-    for (glm::length_t i = 0; i < 4; ++i) {
-        const DoubleDouble next = two_sum(sum, widened(a[i]) * widened(b[i]));
-        sum = next.high;
-        lost += next.low;
-    }
-    // What is lost of an infinity is no number.
-    return is_finite(sum) ? sum + lost : sum;
+// Sums for many vertices: std::fma() is a call where the compiler is given no instruction for it. What it rounds less is
+// nothing to the bounds.
+inline double plain_dot(const glm::dvec3& a, const glm::dvec3& b) noexcept { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline double plain_dot(const glm::dvec4& a, const glm::dvec4& b) noexcept {
+    return (a.x * b.x + a.y * b.y) + (a.z * b.z + a.w * b.w);
 }
 
-// v / |v|, and zero for zero. The power of two keeps the squares inside the range of double.
+// a . b with one rounding: a vertex near the eye, or far from the origin, is a small difference of large terms. The
+// product of two floats is exact in double, so only the sum needs care.
+inline double cancelling_dot(const glm::dvec4& a, const glm::dvec4& b) noexcept {
+    const DoubleDouble first = two_sum(a.x * b.x, a.y * b.y);
+    const DoubleDouble second = two_sum(a.z * b.z, a.w * b.w);
+    const DoubleDouble sum = two_sum(first.high, second.high);
+    // What is lost of an infinity is no number.
+    return is_finite(sum.high) ? sum.high + (sum.low + (first.low + second.low)) : sum.high;
+}
+
+// v times the power of two that brings its largest component near 1.
+inline double reciprocal_size(const glm::dvec3& v) noexcept {
+    return reciprocal_power_of_two(larger(larger(std::fabs(v.x), std::fabs(v.y)), std::fabs(v.z)));
+}
+
+// v / |v|, and zero for zero; of what is 1 it may be an ulp more. The power of two keeps the squares inside the range of
+// double.
 inline glm::dvec3 direction(const glm::dvec3& v) noexcept {
-    const double size = largest(v);
-    if (!(size > 0.0)) return v;
-    const glm::dvec3 near_one = times_power_of_two(v, -std::ilogb(size));
-    return near_one / length(near_one);
+    if (v == glm::dvec3(0.0)) return v;
+    const glm::dvec3 near_one = v * reciprocal_size(v);
+    return near_one * (1.0 / std::sqrt(plain_dot(near_one, near_one)));
 }
 
 }  // namespace TEXGEN_DETAIL
 
 namespace TEXGEN_NAMESPACE {
 
-// The way from object space to the eye, prepared once for a MODELVIEW, as far as the unit's modes need it.
+// The way from object space to the eye, and what else many vertices share, prepared once for a MODELVIEW, as far as the
+// unit's modes need it.
 class TexGenUnit::EyeSpace {
 public:
     EyeSpace(const glm::mat4& modelview, const TexGenUnit& unit) noexcept
-        : scaling_(unit.normal_scaling_), rows_(glm::transpose(modelview)) {
-        for (const CoordinateState& coordinate : unit.states_) {
+        : scaling_(unit.normal_scaling_),
+          rows_(detail::widened(glm::transpose(modelview))),
+          texture_rows_(detail::widened(glm::transpose(unit.texture_matrix_))),
+          has_texture_matrix_(unit.texture_matrix_ != glm::mat4(1.0f)) {
+        for (std::size_t i = 0; i < unit.states_.size(); ++i) {
+            const CoordinateState& coordinate = unit.states_[i];
+            const bool is_of_object = coordinate.mode == TexGenMode::object_linear;
+            planes_[i] = detail::widened(is_of_object ? coordinate.object_plane : coordinate.eye_plane);
             if (!coordinate.enabled) continue;
-            wants_position_ = wants_position_ || coordinate.mode != TexGenMode::object_linear;
+            const bool is_reflected =
+                coordinate.mode == TexGenMode::sphere_map || coordinate.mode == TexGenMode::reflection_map;
+            wants_position_ = wants_position_ || coordinate.mode == TexGenMode::eye_linear || is_reflected;
             wants_normal_ = wants_normal_ || detail::uses_normal(coordinate.mode);
+            wants_reflection_ = wants_reflection_ || is_reflected;
         }
         if (!wants_normal_) return;
         const detail::CertifiedInverse inverse(detail::widened(modelview));
@@ -62,26 +81,33 @@ public:
 
     bool wants_position() const noexcept { return wants_position_; }
     bool wants_normal() const noexcept { return wants_normal_; }
-    glm::dvec4 position(const glm::vec4& position) const noexcept {
+    bool wants_reflection() const noexcept { return wants_reflection_; }
+    bool has_texture_matrix() const noexcept { return has_texture_matrix_; }
+    const glm::dmat4& texture_rows() const noexcept { return texture_rows_; }
+    const glm::dvec4& plane(std::size_t i) const noexcept { return planes_[i]; }
+
+    glm::dvec4 position(const glm::dvec4& position) const noexcept {
         return {detail::cancelling_dot(rows_[0], position), detail::cancelling_dot(rows_[1], position),
                 detail::cancelling_dot(rows_[2], position), detail::cancelling_dot(rows_[3], position)};
     }
 
     // Under the unit's normal scaling.
-    glm::dvec3 normal(const glm::vec3& normal) const noexcept {
-        const glm::dvec3 row = detail::widened(normal);
-        const glm::dvec3 result(detail::dot(row, inverse_[0]), detail::dot(row, inverse_[1]),
-                                detail::dot(row, inverse_[2]));
+    glm::dvec3 normal(const glm::dvec3& row) const noexcept {
+        const glm::dvec3 result(detail::plain_dot(row, inverse_[0]), detail::plain_dot(row, inverse_[1]),
+                                detail::plain_dot(row, inverse_[2]));
         if (scaling_ == NormalScaling::rescale) return result * rescale_;
         return scaling_ == NormalScaling::normalize ? detail::direction(result) : result;
     }
 
 private:
-    bool wants_position_ = false, wants_normal_ = false;
+    bool wants_position_ = false, wants_normal_ = false, wants_reflection_ = false;
     NormalScaling scaling_;
-    glm::mat4 rows_;
+    glm::dmat4 rows_;
+    glm::dvec4 planes_[4];
     glm::dmat3 inverse_{1.0};  // the upper 3x3 of M^-1
     double rescale_ = 1.0;
+    glm::dmat4 texture_rows_;
+    bool has_texture_matrix_;
 };
 
 inline TexGenUnit::CoordinateState* TexGenUnit::find(Coordinate coordinate) noexcept {
@@ -130,43 +156,44 @@ inline void TexGenUnit::set_normal_scaling(NormalScaling scaling) noexcept {
         normal_scaling_ = scaling;
 }
 
-inline glm::vec4 TexGenUnit::generate(const FixedFunctionVertex& vertex, const EyeSpace& eye_space) const noexcept {
-    const glm::dvec4 eye = eye_space.wants_position() ? eye_space.position(vertex.position) : glm::dvec4(0.0);
+// Apart, so that one vertex and many have the same bits, whatever a compiler fuses.
+TEXGEN_APART inline glm::vec4 TexGenUnit::generate(const FixedFunctionVertex& vertex,
+                                                   const EyeSpace& eye_space) const noexcept {
+    const glm::dvec4 position = detail::widened(vertex.position);
+    const glm::dvec4 eye = eye_space.wants_position() ? eye_space.position(position) : glm::dvec4(0.0);
 
-    // The reflection is held as r 4^-k with n 2^-k near 1 at most, because a normal under a tiny scale can be too long
-    // to square. r + (0, 0, 1) is m/2 long, so its direction halved is what the sphere map adds to 1/2: no square root
-    // of a difference, and zero where m is.
+    // With n k near 1 at most, k a power of two, the reflection is held as r k^2, because a normal under a tiny scale
+    // can be too long to square. r + (0, 0, 1) is m/2 long, so its direction halved is what the sphere map adds to 1/2:
+    // no square root of a difference, and zero where m is.
     glm::dvec3 normal(0.0), scaled_reflection(0.0), sphere(0.0);
-    int exponent = 0;
-    if (eye_space.wants_normal()) {
-        normal = eye_space.normal(vertex.normal);
-        const double size = detail::largest(normal);
-        if (size > 1.0 && detail::is_finite(size)) exponent = std::ilogb(size);
-        const glm::dvec3 n = detail::times_power_of_two(normal, -exponent);
+    double per_scale = 1.0;
+    if (eye_space.wants_normal()) normal = eye_space.normal(detail::widened(vertex.normal));
+    if (eye_space.wants_reflection()) {
+        const double scale = detail::smaller(detail::reciprocal_size(normal), 1.0);
+        per_scale = 1.0 / scale;
+        const glm::dvec3 n = normal * scale;
         const glm::dvec3 to_vertex = detail::direction({eye.x, eye.y, eye.z});
-        const double n_dot_u = detail::dot(n, to_vertex);
-        const glm::dvec3 u = detail::times_power_of_two(to_vertex, -2 * exponent);
-        for (glm::length_t i = 0; i < 3; ++i) scaled_reflection[i] = std::fma(-2.0 * n[i], n_dot_u, u[i]);
-        sphere = detail::direction(scaled_reflection + glm::dvec3(0.0, 0.0, std::scalbn(1.0, -2 * exponent)));
+        scaled_reflection = to_vertex * scale * scale - n * (2.0 * detail::plain_dot(n, to_vertex));
+        sphere = detail::direction(scaled_reflection + glm::dvec3(0.0, 0.0, scale * scale));
     }
 
     glm::dvec4 generated = detail::widened(vertex.texcoord);
-    for (glm::length_t i = 0; i < 4; ++i) {
-        const CoordinateState& coordinate = states_[static_cast<std::size_t>(i)];
-        if (!coordinate.enabled) continue;
-        const TexGenMode mode = coordinate.mode;
-        generated[i] = mode == TexGenMode::object_linear
-                           ? detail::cancelling_dot(coordinate.object_plane, vertex.position)
-                       : mode == TexGenMode::eye_linear     ? detail::dot(detail::widened(coordinate.eye_plane), eye)
-                       : mode == TexGenMode::sphere_map     ? 0.5 + 0.5 * sphere[i]
-                       : mode == TexGenMode::reflection_map ? std::scalbn(scaled_reflection[i], 2 * exponent)
+    for (std::size_t k = 0; k < states_.size(); ++k) {
+        if (!states_[k].enabled) continue;
+        const auto i = static_cast<glm::length_t>(k);
+        const TexGenMode mode = states_[k].mode;
+        generated[i] = mode == TexGenMode::object_linear ? detail::cancelling_dot(eye_space.plane(k), position)
+                       : mode == TexGenMode::eye_linear  ? detail::plain_dot(eye_space.plane(k), eye)
+                       : mode == TexGenMode::sphere_map
+                           ? 0.5 + 0.5 * detail::smaller(1.0, detail::larger(-1.0, sphere[i]))
+                       : mode == TexGenMode::reflection_map ? scaled_reflection[i] * per_scale * per_scale
                                                             : normal[i];
     }
     // The identity is left out, so that a NaN stays in its coordinate.
-    if (texture_matrix_ == glm::mat4(1.0f)) return glm::vec4(generated);
-    const glm::dmat4 texture_rows = detail::widened(glm::transpose(texture_matrix_));
-    return {detail::dot(texture_rows[0], generated), detail::dot(texture_rows[1], generated),
-            detail::dot(texture_rows[2], generated), detail::dot(texture_rows[3], generated)};
+    if (!eye_space.has_texture_matrix()) return glm::vec4(generated);
+    const glm::dmat4& rows = eye_space.texture_rows();
+    return {detail::plain_dot(rows[0], generated), detail::plain_dot(rows[1], generated),
+            detail::plain_dot(rows[2], generated), detail::plain_dot(rows[3], generated)};
 }
 
 inline glm::vec4 TexGenUnit::generate(const FixedFunctionVertex& vertex, const glm::mat4& modelview) const noexcept {
