@@ -21,8 +21,8 @@ inline bool is_finite(const glm::dmat4& m) noexcept {
 }
 
 inline glm::dvec4 times_powers_of_two(const glm::dvec4& v, const glm::ivec4& exponent) noexcept {
-    return {std::scalbn(v.x, exponent.x), std::scalbn(v.y, exponent.y), std::scalbn(v.z, exponent.z),
-            std::scalbn(v.w, exponent.w)};
+    return {times_power_of_two(v.x, exponent.x), times_power_of_two(v.y, exponent.y),
+            times_power_of_two(v.z, exponent.z), times_power_of_two(v.w, exponent.w)};
 }
 
 // The magnitudes of the elements. (Without glm::abs(), which calls a function of each.)
@@ -127,8 +127,8 @@ private:
                 const double largest =
                     larger(larger(std::fabs(line.x), std::fabs(line.y)), larger(std::fabs(line.z), std::fabs(line.w)));
                 if (largest == 0.0) return false;
-                const int shift = -std::ilogb(largest);
-                scaled_[i] = times_powers_of_two(line, glm::ivec4(shift));
+                const int shift = -exponent_of(largest);
+                if (shift != 0) scaled_[i] = times_powers_of_two(line, glm::ivec4(shift));
                 for (glm::length_t k = 0; k < 4; ++k)
                     is_exact = is_exact && (line[k] == 0.0 || std::fabs(scaled_[i][k]) >= least_scaled);
                 (pass % 2 == 0 ? row_exponent_ : column_exponent_)[i] += shift;
@@ -162,19 +162,20 @@ private:
     }
 
     // An element of B^-1 is a cofactor over the determinant. Where a factor of each of the cofactor's products is 0 so
-    // is the element; what elimination has left there would never be small beside terms that are 0.
+    // is the element; what elimination has left there would never be small beside terms that are 0. One has a product
+    // where each of its three rows, each two and all have as many columns with factors (Hall's marriage theorem).
     void clear_what_has_no_terms() noexcept {
+        unsigned rows[4] = {};  // a bit for each column
+        for (glm::length_t i = 0; i < 4; ++i)
+            for (glm::length_t j = 0; j < 4; ++j) rows[j] |= scaled_[i][j] != 0.0 ? 1u << i : 0u;
+        const auto without_last = [](unsigned bits) { return bits & (bits - 1); };
         for (glm::length_t i = 0; i < 4; ++i) {
             for (glm::length_t j = 0; j < 4; ++j) {
-                const auto is_factor = [&](glm::length_t row, glm::length_t column) {
-                    return scaled_[(i + column) % 4][(j + row) % 4] != 0.0;
-                };
-                bool has_term = false;
-                for (glm::length_t k = 0; k < 3; ++k) {
-                    const glm::length_t l = 1 + (k + 1) % 3, m = 1 + (k + 2) % 3;
-                    has_term = has_term || (is_factor(1, 1 + k) && ((is_factor(2, l) && is_factor(3, m)) ||
-                                                                    (is_factor(2, m) && is_factor(3, l))));
-                }
+                const auto row = [&](glm::length_t k) { return rows[(j + k) % 4] & ~(1u << i); };
+                const unsigned a = row(1), b = row(2), c = row(3);
+                const bool has_term = a != 0 && b != 0 && c != 0 && without_last(a | b) != 0 &&
+                                      without_last(b | c) != 0 && without_last(c | a) != 0 &&
+                                      without_last(without_last(a | b | c)) != 0;
                 if (!has_term) inverse_[j][i] = 0.0;
             }
         }
@@ -219,7 +220,7 @@ private:
                 if (!(r[j][i] <= 0x1p-10)) return false;
                 // Nothing is promised of what may leave the range.
                 if (largest[j] < least_scaled) continue;
-                if (!(error[j][i] < std::scalbn(1.999, std::ilogb(largest[j]) - 52))) return false;
+                if (!(error[j][i] < times_power_of_two(1.999, exponent_of(largest[j]) - 52))) return false;
             }
         }
         return true;

@@ -61,6 +61,16 @@ inline double reciprocal_power_of_two(double value) noexcept {
     return bit_cast<double>(0x7fe0000000000000 - (bit_cast<std::uint64_t>(value) & 0x7ff0000000000000));
 }
 
+// std::ilogb() and std::scalbn() are calls; bits will do, but for an exponent at the ends of the range.
+inline int exponent_of(double value) noexcept {
+    const auto biased = static_cast<int>(bit_cast<std::uint64_t>(value) >> 52 & 0x7ff);
+    return biased != 0 && biased != 0x7ff ? biased - 1023 : std::ilogb(value);
+}
+inline double times_power_of_two(double value, int exponent) noexcept {
+    if (exponent < -1022 || exponent > 1023) return std::scalbn(value, exponent);
+    return value * bit_cast<double>(static_cast<std::uint64_t>(exponent + 1023) << 52);
+}
+
 // The last bit of a number that is set; infinity for 0.
 inline double last_bit(double value) noexcept {
     const auto bits = bit_cast<std::uint64_t>(value);

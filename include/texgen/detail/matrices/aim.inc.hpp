@@ -9,21 +9,21 @@ inline double rotated(const glm::dvec3& row, const glm::dvec3& point) noexcept {
     constexpr int none = -10000;  // less than any
     int exponent[3], largest = none;
     for (glm::length_t i = 0; i < 3; ++i) {
-        exponent[i] = row[i] == 0.0 || point[i] == 0.0 ? none : std::ilogb(row[i]) + std::ilogb(point[i]);
+        exponent[i] = row[i] == 0.0 || point[i] == 0.0 ? none : exponent_of(row[i]) + exponent_of(point[i]);
         if (exponent[i] > largest) largest = exponent[i];
     }
     Expansion<6> sum;
     double last = 0.0;
     for (glm::length_t i = 0; i < 3; ++i) {
         if (exponent[i] == none) continue;
-        const int of_row = std::ilogb(row[i]);
+        const int of_row = exponent_of(row[i]);
         if (exponent[i] < largest - 200)
             last = row[i] * point[i];
         else
-            sum.add_product(std::scalbn(row[i], -of_row), std::scalbn(point[i], of_row - largest));
+            sum.add_product(times_power_of_two(row[i], -of_row), times_power_of_two(point[i], of_row - largest));
     }
     const double value = sum.estimate();
-    return value != 0.0 ? std::scalbn(value, largest) : last;
+    return value != 0.0 ? times_power_of_two(value, largest) : last;
 }
 
 // A difference of two points as it is, unrounded: the sum of both.
@@ -42,7 +42,7 @@ inline Difference scaled_difference(const glm::dvec3& to, const glm::dvec3& from
     }
     const glm::dvec3 scaled = scaled_near_one(result.high);
     if (!(length(scaled) > 0.0)) return Difference{};
-    return {scaled, times_power_of_two(result.low, -std::ilogb(largest(result.high)))};
+    return {scaled, times_power_of_two(result.low, -exponent_of(largest(result.high)))};
 }
 
 // a x b within 1 ulp, component by component.
@@ -110,7 +110,7 @@ inline std::optional<ProjectorView> mirrored(const ProjectorView& view, const gl
     const glm::dvec3 direction{plane.x, plane.y, plane.z};
     const glm::dvec3 normal = detail::scaled_near_one(direction);
     if (!(detail::length(normal) > 0.0)) return std::nullopt;
-    const double distance = std::scalbn(plane.w, -std::ilogb(detail::largest(direction)));
+    const double distance = detail::times_power_of_two(plane.w, -detail::exponent_of(detail::largest(direction)));
     detail::DoubleDouble squared{0.0, 0.0};
     for (glm::length_t i = 0; i < 3; ++i) squared = detail::add_product(squared, normal[i], normal[i]);
     // V R = V - f (n, d), f = 2 V (n, 0) / |n|^2 a column, in two doubles.

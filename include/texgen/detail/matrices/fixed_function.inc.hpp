@@ -73,9 +73,9 @@ public:
         const double size = detail::largest(third_row);
         // A zero row has no scale to take away; only a projective M has one.
         if (size > 0.0) {
-            const int exponent = std::ilogb(size);
+            const int exponent = detail::exponent_of(size);
             const glm::dvec3 near_one = detail::times_power_of_two(third_row, -exponent);
-            rescale_ = std::scalbn(1.0 / detail::length(near_one), -exponent);
+            rescale_ = detail::times_power_of_two(1.0 / detail::length(near_one), -exponent);
         }
     }
 

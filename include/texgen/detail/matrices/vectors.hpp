@@ -35,13 +35,13 @@ inline double largest(const glm::dvec3& v) noexcept {
 }
 
 inline glm::dvec3 times_power_of_two(const glm::dvec3& v, int exponent) noexcept {
-    return {std::scalbn(v.x, exponent), std::scalbn(v.y, exponent), std::scalbn(v.z, exponent)};
+    return {times_power_of_two(v.x, exponent), times_power_of_two(v.y, exponent), times_power_of_two(v.z, exponent)};
 }
 
 // v times a power of two, so that its largest component is in [1, 2); 0 for zero and for what is not finite.
 inline glm::dvec3 scaled_near_one(const glm::dvec3& v) noexcept {
     if (!is_finite(v)) return glm::dvec3(0.0);
-    return largest(v) > 0.0 ? times_power_of_two(v, -std::ilogb(largest(v))) : v;
+    return largest(v) > 0.0 ? times_power_of_two(v, -exponent_of(largest(v))) : v;
 }
 
 // v / |v| for a v near 1. The length is that of the exact squares, rounded once, so that it adds next to nothing.

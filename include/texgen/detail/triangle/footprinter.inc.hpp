@@ -101,10 +101,6 @@ private:
         return true;
     }
 
-    static int exponent_of(double power_of_two) noexcept {
-        return static_cast<int>(bit_cast<std::uint64_t>(power_of_two) >> 52) - 1023;
-    }
-
     // Whether columns of J Q^2 and Q in float are within 2^-19 of themselves, which leaves level, anisotropy and major
     // within 2^-16. With u = 2^-24 base, slope, product and sum of a component N are rounded: u (2 |N| + 2 |twist|
     // width), where |N| is at most about 1; and one of the columns is nowhere shorter than at the first fragment less
