@@ -210,9 +210,9 @@ Undecided fill_batch_footprints(const BatchFootprintsJob& original, std::size_t 
     const auto vertices = [&](std::uint32_t id) { return id < job.triangles ? vertices_of(job, id) : dark; };
     FragmentCentres centres(job, first);
     FootprintLanes known;
-    known.take(dark);
-    Words known_ids = Words{} - 1;  // no triangle
-    JacobianBlock block{};          // vectors read beyond the last fragment
+    Words known_ids{};
+    bool has_known = false;
+    JacobianBlock block{};  // vectors read beyond the last fragment
     for (std::size_t n = first; n < job.count;) {
         const std::size_t begin = n;
         const std::size_t end = job.count - begin < exact_block ? job.count : begin + exact_block;
@@ -220,7 +220,8 @@ Undecided fill_batch_footprints(const BatchFootprintsJob& original, std::size_t 
         for (; n < end; n += at_once, centres.advance()) {
             const FragmentIds ids(job, n);
             const auto asked_ids = load<Words>(ids.value);
-            if (any(asked_ids ^ known_ids)) {
+            if (!has_known || any(asked_ids ^ known_ids)) {
+                has_known = true;
                 known_ids = asked_ids;
                 if (ids.are_one()) {
                     known.take(vertices(ids.value[0]));
