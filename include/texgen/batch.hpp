@@ -109,7 +109,7 @@ inline constexpr double batch_footprint_error = 0x1p-34;
 // Writes the footprints of a visibility buffer, as textureGrad takes them: of fragment k that of triangle ids[k].
 // Guarantee: as footprint() of a FootprintSetup of the triangle has it for the fragment, but for batch_footprint_error.
 // Behind, where ids[k] is no_triangle or its triangle is refused, all outputs are 0, as they may be of a run of 64
-// fragments and more of one id of which none is lit. No allocation, noexcept.
+// fragments and more of one id in a row of which none is lit. No allocation, noexcept.
 // Shapes: as above.
 // Cost: derivatives take about twice what a visibility buffer's coordinates do; runs of 64 fragments and more of one id
 // in a row, and the little that lanes leave, take a FootprintSetup, which those of the last few triangles share.

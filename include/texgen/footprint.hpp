@@ -146,7 +146,7 @@ inline namespace TEXGEN_BUILD {
 // Guarantee: in front of the projector the derivatives are within setup.error_bound(rect): with `exact` next to half an
 // ulp, with a tolerance within max(tolerance, that), in units of s and t a pixel. level is within 2^-16 max(1, |level|
 // / 32) of that of derivatives within the bound, anisotropy and major within 2^-16 of theirs (major relative to its
-// length; where the anisotropy is near 1 its direction means nothing). Behind, all are 0, the sign of q decided
+// length, in texels; where the anisotropy is near 1 its direction means nothing). Behind, all are 0, the sign of q decided
 // exactly. No allocation, noexcept.
 // Shapes: each output has width * height floats, row-major, or none (asserted). Fragments outside the triangle get the
 // values of its plane; where the interpolated 1/w is not positive nothing is promised.

@@ -1142,3 +1142,41 @@ TEST_CASE("the score is that of the triangle, in whatever order its corners are"
     }
     CHECK(std::min(finite, infinite) > 300);
 }
+
+TEST_CASE("no axis is a NaN or infinite, nor an anisotropy that a float holds, whatever the texels") {
+    const Triangle triangle{
+        {{0, 0}, 1, {0, 0, 0, 1}}, {{16, 0}, 2, {2, 1, 0, 2}}, {{0, 16}, 1.5f, {0.5f, 1.5f, 0, 1.5f}}};
+    Triangle constant = triangle;
+    for (WindowVertex* vertex : support::vertices(constant)) vertex->strq.x = 0.25f * vertex->strq.w;
+    for (const Triangle& one : {triangle, constant}) {
+        for (const int exponent :
+             {-199, -150, -140, -132, -126, -120, 0, 120, 124, 126, 127, 128, 130, 140, 150, 199}) {
+            for (const bool is_of_s : {false, true}) {
+                const double many = std::ldexp(1.0, exponent);
+                const TexelsPerUnit texels = is_of_s ? TexelsPerUnit{many, 1.0} : TexelsPerUnit{1.0, many};
+                const FragmentRect rect{3, 4, 9, 2};
+                const FootprintSetup setup(setup_of(one), texels);
+                FootprintOutputs of_setup(rect), of_buffer(rect);
+                REQUIRE(footprint(setup, rect, of_setup.spans()));
+                texgen::TriangleBatch batch(texgen::whole_texture());
+                batch.assign({&one, 1});
+                const std::vector<std::uint32_t> ids(count_of(rect), 0);
+                footprint(batch, ids, rect, texels, of_buffer.spans());
+                for (std::size_t k = 0; k < ids.size(); ++k) {
+                    const auto at = setup.at(rect.x + static_cast<int>(k) % 9, rect.y + static_cast<int>(k) / 9);
+                    REQUIRE(at);
+                    for (const FootprintOutputs* out : {&of_setup, &of_buffer}) {
+                        CAPTURE(text(texels));
+                        const double length = std::hypot(at->major.x, at->major.y);
+                        CHECK(std::fabs(out->at(major_s, k) - at->major.x) <= 1e-4 * length);
+                        CHECK(std::fabs(out->at(major_t, k) - at->major.y) <= 1e-4 * length);
+                        if (at->anisotropy < 0x1.fffp127)
+                            CHECK(std::fabs(out->at(anisotropy, k) / at->anisotropy - 1.0) <= 1e-4);
+                        else
+                            CHECK(out->at(anisotropy, k) >= 0x1.ffep127);
+                    }
+                }
+            }
+        }
+    }
+}

@@ -157,7 +157,8 @@ struct JacobianBlock {
         if (!job.has_shape()) return ~is_held;
         const Doubles left = (s_dx * per_unit) * (t_dy * per_unit), right = (s_dy * per_unit) * (t_dx * per_unit);
         Doubles det = magnitude(left - right);
-        LongWords is_known = greater(det, (magnitude(left) + magnitude(right)) * 0x1p-30);
+        LongWords is_known =
+            greater(det, maximum((magnitude(left) + magnitude(right)) * 0x1p-30, Doubles{} + 0x1p-100));
         if (any(of.front & ~is_known)) {
             const DeterminantLanes closely(functions.given);
             const Doubles of_s = of.factor * job.texels[0] * per_unit, of_t = of.factor * job.texels[1] * per_unit;
