@@ -497,7 +497,7 @@ MUTANTS = [
           "front = greater(q, error) & ~of.is_refused;", "batch_footprint_test"),
          ("no footprint's triangle is refused", "greater(Doubles{} + infinity, sizes));", "greater(Doubles{} + 1.0, 0.0));", "batch_test"),
          ("q that is 0 is in doubt for ever", "is_known |= greater(grain * 0.5,", "is_known |= greater(grain * 0.0,", "batch_footprint_test"),
-         ("a Jacobian is almost singular nowhere", "+ magnitude(right)) * 0x1p-30);", "+ magnitude(right)) * 0.0);", "footprint_test"),
+         ("a Jacobian is almost singular nowhere", "+ magnitude(right)) * 0x1p-30,", "+ magnitude(right)) * 0.0,", "footprint_test"),
          ("the second unit of a Jacobian is not in its level", "+ (exponent(first) + exponent(second));",
           "+ exponent(first);", "batch_footprint_test"),
          ("footprints behind have values", "select(in_front, value, WideFloats{})", "value", "batch_test")),
