@@ -105,6 +105,54 @@ TEST_CASE("footprints of a visibility buffer keep their digits where q cancels")
     CHECK(checked > 20);
 }
 
+// Half an ulp is all that error_bound() leaves where the larger derivative is just above a power of two: there what else
+// they err by is seen, next to the middle of two floats.
+TEST_CASE("derivatives of a visibility buffer err by no more than batch_footprint_error besides") {
+    Random random(11);
+    int checked = 0, next_to_middle = 0;
+    for (int round = 0; round < 30000; ++round) {
+        Triangle triangle = support::make_triangle(support::Family::friendly, random);
+        const FragmentRect pixel = support::pixel_near(triangle, random);
+        const auto footprint_of = [&]() -> std::optional<texgen::Footprint> {
+            const auto setup = texgen::TriangleSetup::of(triangle, texgen::whole_texture());
+            if (!setup) return std::nullopt;
+            return texgen::FootprintSetup(*setup, texels).at(pixel.x, pixel.y);
+        };
+        const auto before = footprint_of();
+        if (!before) continue;
+        int exponent = 0;
+        const double larger = std::max(std::fabs(before->dx.x), std::fabs(before->dy.x));
+        const double mantissa = std::frexp(larger, &exponent);
+        for (texgen::WindowVertex* v : support::vertices(triangle))
+            v->strq.x = static_cast<float>(static_cast<double>(v->strq.x) * (0.5002 / mantissa));
+        const support::ExactTriangle exact(triangle);
+        if (!exact.has_positive_w(pixel.x, pixel.y) || exact.at(pixel.x, pixel.y).q.sign() <= 0) continue;
+        TriangleBatch batch(texgen::whole_texture());
+        batch.assign({&triangle, 1});
+        const std::uint32_t id = 0;
+        FootprintOutputs out(pixel);
+        footprint(batch, {&id, 1}, pixel, texels, out.spans());
+        const auto expected = footprint_of();
+        REQUIRE(expected);
+        const auto setup = texgen::TriangleSetup::of(triangle, texgen::whole_texture());
+        const double bound = texgen::FootprintSetup(*setup, texels).error_bound(pixel).x;
+        const double allowed = bound + texgen::batch_footprint_error * std::hypot(expected->dx.x, expected->dy.x);
+        const support::Homogeneous here = exact.at(pixel.x, pixel.y);
+        const support::Dyadic q_squared = here.q * here.q, f = here.over_q(0).n;
+        for (const std::size_t axis : {std::size_t{0}, std::size_t{1}}) {
+            const int right = axis == 0 ? 1 : 0;
+            const support::Homogeneous next = exact.at(pixel.x + right, pixel.y + 1 - right);
+            const support::Dyadic slope = (next.over_q(0).n - f) * here.q - f * (next.q - here.q);
+            const support::Dyadic error = magnitude(support::Dyadic(out.at(2 * axis, 0)) * q_squared - slope);
+            CHECK_MESSAGE(error <= support::Dyadic(allowed) * q_squared, support::hex(triangle));
+            next_to_middle += support::Dyadic(0.995 * bound) * q_squared <= error;
+            ++checked;
+        }
+    }
+    CHECK(checked > 30000);
+    CHECK(next_to_middle > 50);
+}
+
 TEST_CASE("few fragments of a visibility buffer are left to set-ups of their footprints") {
     Random random(9);
     for (const support::HardFamily& family : support::hard_families) {

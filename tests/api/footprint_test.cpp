@@ -250,11 +250,11 @@ TEST_CASE("derivatives are the exact ones within the stated bound, for every har
     }
     MESSAGE(checked, " fragments, ", behind, " behind, ", unbounded, " without a bound; worst error ", worst,
             " of its bound");
-    CHECK(checked > 2000);
-    CHECK(behind > 150);
+    CHECK(checked > (is_in_buffer ? 2000 : 3000));
+    CHECK(behind > (is_in_buffer ? 150 : 200));
     CHECK(worst > 0.5);
     CHECK(unbounded < checked / 3);
-    CHECK(next_to_zero > 150);
+    CHECK(next_to_zero > (is_in_buffer ? 150 : 200));
 }
 
 TEST_CASE("derivatives agree with 400-bit differences of the definition to 1e-5") {

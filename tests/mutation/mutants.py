@@ -493,6 +493,8 @@ MUTANTS = [
          ("a footprint in doubt may be dark", "begin, true);", "begin, false);", "footprint_test")),
     *_of("detail/kernels/batch_footprints.inc.hpp",
          ("the twist of a visibility buffer's footprints is lost", "(of.dy[k] - p_x * of.twist[k]) * factor", "of.dy[k] * factor", "footprint_test"),
+         ("a visibility buffer's derivatives err by 2^-30", "(of.given.area * reciprocal) * (of.w * reciprocal);",
+          "(of.given.area * reciprocal) * (of.w * reciprocal * (1.0 + 0x1p-30));", "batch_footprint_test"),
          ("q of a visibility buffer's footprints may cancel", "front = greater(q * cancelled_share, error) & ~of.is_refused;",
           "front = greater(q, error) & ~of.is_refused;", "batch_footprint_test"),
          ("no footprint's triangle is refused", "greater(Doubles{} + infinity, sizes));", "greater(Doubles{} + 1.0, 0.0));", "batch_test"),

@@ -29,7 +29,7 @@ inline double cancelling_dot(const glm::dvec4& a, const glm::dvec4& b) noexcept 
     return is_finite(sum.high) ? sum.high + (sum.low + (first.low + second.low)) : sum.high;
 }
 
-// v times the power of two that brings its largest component near 1.
+// The power of two that brings the largest component of a vector near 1.
 inline double reciprocal_size(const glm::dvec3& v) noexcept {
     return reciprocal_power_of_two(larger(larger(std::fabs(v.x), std::fabs(v.y)), std::fabs(v.z)));
 }

@@ -68,20 +68,19 @@ struct TilesJob : BatchJob {
     std::size_t tile_count;
 };
 
-// Triangle ids[k] of `triangles` at fragment k of a rectangle; any other id is no triangle, as planes[triangles] has
-// it.
-struct FragmentsJob : BatchJob {
+// Triangle ids[k] of `triangles` at fragment k of a rectangle; any other id is no triangle.
+struct VisibilityBuffer {
     const std::uint32_t* ids;
     std::uint32_t triangles;
     int x, y, width;
 };
 
+// Of no triangle planes[triangles] are the functions.
+struct FragmentsJob : BatchJob, VisibilityBuffer {};
+
 // The same for footprints: derivatives by x and by y of s and of t, and what filters make of them.
-struct BatchFootprintsJob {
+struct BatchFootprintsJob : VisibilityBuffer {
     const float* vertices;
-    const std::uint32_t* ids;
-    std::uint32_t triangles;
-    int x, y, width;
     std::size_t count;
     double texels[2];  // per unit of s and t
     float per_texel[2];

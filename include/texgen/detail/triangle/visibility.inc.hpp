@@ -4,6 +4,11 @@
 namespace TEXGEN_DETAIL {
 inline namespace TEXGEN_BUILD {
 
+inline void describe(VisibilityBuffer& buffer, const TriangleBatch& batch, std::span<const std::uint32_t> ids,
+                     const FragmentRect& rect) noexcept {
+    buffer = {ids.data(), static_cast<std::uint32_t>(batch.size()), rect.x, rect.y, rect.width};
+}
+
 // What is made of the triangles that a visibility buffer has asked for last: neighbours share few.
 template <class Made>
 class Recent {
@@ -131,12 +136,8 @@ TEXGEN_APART void interpolate_runs(const TriangleBatch& batch, FragmentsJob& job
 // What the kernel of footprints is given of a visibility buffer.
 inline void describe(BatchFootprintsJob& job, const TriangleBatch& batch, std::span<const std::uint32_t> ids,
                      const FragmentRect& rect, const TexelsPerUnit& texels, const Footprints& out) noexcept {
+    describe(job, batch, ids, rect);
     job.vertices = &Inside::triangle(batch, 0).a.window.x;
-    job.ids = ids.data();
-    job.triangles = static_cast<std::uint32_t>(batch.size());
-    job.x = rect.x;
-    job.y = rect.y;
-    job.width = rect.width;
     job.count = ids.size();
     job.texels[0] = texels.s;
     job.texels[1] = texels.t;
@@ -231,11 +232,7 @@ void interpolate(const TriangleBatch& batch, std::span<const std::uint32_t> ids,
     if (batch.size() == 0) return detail::clear(out);
     detail::FragmentsJob job{};
     detail::describe(job, batch, out, count);
-    job.ids = ids.data();
-    job.triangles = static_cast<std::uint32_t>(batch.size());
-    job.x = rect.x;
-    job.y = rect.y;
-    job.width = rect.width;
+    detail::describe(job, batch, ids, rect);
     if (static_cast<std::size_t>(rect.width) < detail::long_run)
         detail::interpolate_ids(batch, job, rect, 0, count, out);
     else
