@@ -81,6 +81,7 @@ public:
     const float* x() const noexcept { return x_; }
     const float* y() const noexcept { return y_; }
     const float* z() const noexcept { return z_; }
+    std::size_t stride_bytes() const noexcept { return stride_bytes_; }
 
     glm::vec3 operator[](std::size_t i) const noexcept {
         return {load(x_, i * stride_bytes_), load(y_, i * stride_bytes_), load(z_, i * stride_bytes_)};

@@ -114,26 +114,22 @@ TEXGEN_INLINE bool is_placed(auto& job, const PointOutputs& out, const JobPart& 
 void run_part(auto& job, const PointOutputs& out, const JobPart& part, const auto& run) noexcept {
     if (job.numerators == 1 && out.lit != nullptr) return darken_part(job, out, part, run);
     if (is_placed(job, out, part)) return run(job);
-    float buffer[3][copy_size];
-    job.out[0] = buffer[0];
-    job.out[1] = buffer[1];
-    job.lit = out.lit != nullptr ? buffer[2] : nullptr;
-    job.interleaved_st = false;
+    float buffer[3 * copy_size];
+    job.interleaved_st = out.st != nullptr;
+    job.out[0] = buffer;
+    job.out[1] = buffer + copy_size;
+    job.lit = out.lit != nullptr ? buffer + 2 * copy_size : nullptr;
     for (std::size_t begin = 0; begin < part.count; begin += copy_size) {
         job.count = part.whole - begin < copy_size ? part.whole - begin : copy_size;
         run(job);
         const std::size_t first = part.first + begin;
         const std::size_t end = part.count - begin < job.count ? part.count - begin : job.count;
-        // One array after another: of stores to all Clang makes masked ones, and one without an array takes 100 ns.
-        const auto copy = [&](float* to, const float* from, std::size_t stride) {
-            if (to == nullptr) return;
-            for (std::size_t i = 0; i < end; ++i) to[stride * (first + i)] = from[i];
+        const auto copy = [&](float* to, const float* from, std::size_t width) {
+            if (to != nullptr) std::memcpy(to + width * first, from, width * end * sizeof(float));
         };
-        for (std::size_t k = 0; k < 2; ++k) {
-            copy(out.coordinate[k], buffer[k], 1);
-            if (out.st != nullptr) copy(out.st + k, buffer[k], 2);
-        }
-        copy(out.lit, buffer[2], 1);
+        copy(out.st, buffer, 2);
+        for (std::size_t k = 0; k < 2; ++k) copy(out.coordinate[k], buffer + k * copy_size, 1);
+        copy(out.lit, buffer + 2 * copy_size, 1);
         job.advance(job.count);
     }
 }

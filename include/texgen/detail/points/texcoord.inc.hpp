@@ -2,6 +2,24 @@
 
 namespace TEXGEN_DETAIL {
 
+// Copies `count` points from `first` on. Where x, y, z follow one another, they go together: a load and a store for each
+// take twice the time.
+template <class Space>
+void copy_points(const Positions<Space>& positions, std::size_t first, std::size_t count, float* to) noexcept {
+    constexpr std::size_t size = 3 * sizeof(float);
+    const float* const x = positions.x();
+    if (positions.y() == x + 1 && positions.z() == x + 2) {
+        const std::size_t stride = positions.stride_bytes();
+        const std::byte* from = reinterpret_cast<const std::byte*>(x) + first * stride;
+        for (std::size_t i = 0; i < count; ++i, from += stride) std::memcpy(to + 3 * i, from, size);
+    } else {
+        for (std::size_t i = 0; i < count; ++i) {
+            const glm::vec3 point = positions[first + i];
+            std::memcpy(to + 3 * i, &point.x, size);
+        }
+    }
+}
+
 // Calls run(input, part) for parts of the positions that the kernels can read: as they are, or, where the count is no
 // multiple of point_quantum or the layout is none of theirs, copied, and padded with the last point.
 template <class Space, class Run>
@@ -14,19 +32,14 @@ void for_each_part(const Positions<Space>& positions, const Run& run) noexcept {
             run(PointInput{positions.is_interleaved(), positions.x(), positions.y(), positions.z()},
                 JobPart{0, first, first});
     }
-    float x[copy_size];
-    float y[copy_size];
-    float z[copy_size];
+    float points[3 * copy_size];
     while (first < count) {
         const std::size_t size = count - first < copy_size ? count - first : copy_size;
         const std::size_t whole = (size + point_quantum - 1) / point_quantum * point_quantum;
-        for (std::size_t i = 0; i < whole; ++i) {
-            const glm::vec3 point = positions[first + (i < size ? i : size - 1)];
-            x[i] = point.x;
-            y[i] = point.y;
-            z[i] = point.z;
-        }
-        run(PointInput{false, x, y, z}, JobPart{first, size, whole});
+        copy_points(positions, first, size, points);
+        for (std::size_t i = size; i < whole; ++i)
+            std::memcpy(points + 3 * i, points + 3 * (size - 1), 3 * sizeof(float));
+        run(PointInput{true, points, points + 1, points + 2}, JobPart{first, size, whole});
         first += size;
     }
 }
