@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "judges/fragments.hpp"
@@ -284,6 +285,35 @@ TEST_CASE("a batch takes no longer than its triangles one by one, however large 
                 const double ratio = support::worst_over_ordinary_within(most, one_by_one, together);
                 CHECK_MESSAGE(ratio <= most, size, " x ", size, ", tolerance ", tolerance.value, ": ", ratio, " times");
             }
+        }
+    }
+}
+
+TEST_CASE(
+    "one coordinate takes little more than s and t, and all three with the mask not much more than twice as long") {
+    constexpr double most_alone = 2.0, most_of_all = 2.75;
+    std::vector<float> s(256), t(256), r(256), lit(256);
+    for (const Tolerance tolerance : dial) {
+        const texgen::TriangleSetup setup =
+            support::setup_of(ordinary(1, 1).triangle, texgen::whole_texture(), tolerance);
+        for (const auto& [width, height] : {std::pair{1, 1}, {4, 4}, {8, 8}, {16, 16}, {64, 4}}) {
+            const FragmentRect rect{300, 100, width, height};
+            const std::size_t count = support::count_of(rect);
+            const auto part = [&](std::vector<float>& all) { return std::span(all).first(count); };
+            const auto over_both = [&](double limit, const texgen::Texcoords& out) {
+                return support::worst_over_ordinary_within(
+                    limit,
+                    [&] {
+                        interpolate(setup, rect, {part(s), part(t)});
+                    },
+                    [&] { interpolate(setup, rect, out); });
+            };
+            const double of_s = over_both(most_alone, {part(s)}), of_r = over_both(most_alone, {{}, {}, part(r)});
+            const double of_all = over_both(most_of_all, {part(s), part(t), part(r), part(lit)});
+            INFO(width, " x ", height, ", tolerance ", tolerance.value);
+            CHECK(of_s <= most_alone);
+            CHECK(of_r <= most_alone);
+            CHECK(of_all <= most_of_all);
         }
     }
 }

@@ -3,18 +3,6 @@
 namespace TEXGEN_DETAIL {
 inline namespace TEXGEN_BUILD {
 
-// One coordinate of a rectangle; without a plan nothing is known of it.
-template <class CompiledWhereCalled = void>
-TEXGEN_APART void interpolate_alone(const TileKernels& kernels, const TriangleFunctions& triangle, const Tile& rect,
-                                    glm::length_t coordinate, const std::span<float>& output,
-                                    const Plan* plan) noexcept {
-    if (output.empty()) return;
-    OnDemand<CloseRamps> close;
-    TileInterpolator<> interpolator(kernels, triangle, rect, close);
-    interpolator.add(coordinate, output);
-    interpolator.interpolate(rect, plan);
-}
-
 // Takes the light of a tile's fragments whose r, which nobody asked for, is beyond the depth, which cuts it. It is
 // halved until the buffer holds it; of a half where nothing is lit, or all is in the depth, r is not computed.
 template <class CompiledWhereCalled = void>
@@ -42,15 +30,14 @@ TEXGEN_RARE inline void darken_beyond_depth(const TileKernels& kernels, const Tr
                                      length, triangle.lit.r_min(), triangle.lit.r_max());
 }
 
-// r, and what the depth takes of a mask that s and t have made.
+// What the depth takes of a mask that s and t have made; r is there, where it was asked for.
 template <class CompiledWhereCalled = void>
-TEXGEN_APART void finish_depth(const TileKernels& kernels, const TriangleFunctions& triangle, const Tile& tile,
-                               const Texcoords& out, Coverage depth) noexcept {
-    interpolate_alone(kernels, triangle, tile, 2, out.r, nullptr);
-    if (depth == Coverage::inside || out.lit.empty()) return;
+TEXGEN_APART void darken_beyond_depth(const TriangleFunctions& triangle, const Tile& tile,
+                                      const Texcoords& out) noexcept {
+    if (out.lit.empty()) return;
     if (out.r.empty()) {
         float buffer[1024];
-        darken_beyond_depth(kernels, triangle, tile, tile, buffer, out.lit);
+        darken_beyond_depth(chosen<TileKernels>(), triangle, tile, tile, buffer, out.lit);
     } else {
         chosen<MaskKernels>().darken(out.lit.data(), out.r.data(), out.lit.size(), triangle.lit.r_min(),
                                      triangle.lit.r_max());
@@ -84,7 +71,8 @@ inline Work interpolate_by_plan(const TriangleFunctions& triangle, const Tile& t
         interpolate_alone(kernels, triangle, tile, 0, out.s, &plan);
         interpolate_alone(kernels, triangle, tile, 1, out.t, &plan);
     }
-    finish_depth(kernels, triangle, tile, out, plan.depth);
+    interpolate_alone(kernels, triangle, tile, 2, out.r, nullptr);
+    if (plan.depth != Coverage::inside) darken_beyond_depth(triangle, tile, out);
     return plan.work;
 }
 
@@ -99,7 +87,7 @@ TEXGEN_INLINE Work interpolate_tile(const TriangleSetup& setup, const Tile& tile
         if (depth != Coverage::outside) answer = fill_small(triangle, tile, out);
     }
     if (answer == SmallAnswer::doubt) return interpolate_by_plan(triangle, tile, out);
-    if (!out.r.empty() || depth != Coverage::inside) finish_depth(chosen<TileKernels>(), triangle, tile, out, depth);
+    if (depth != Coverage::inside) darken_beyond_depth(triangle, tile, out);
     return work_of(triangle, answer == SmallAnswer::lit && depth == Coverage::inside);
 }
 

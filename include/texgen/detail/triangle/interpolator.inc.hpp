@@ -374,5 +374,17 @@ private:
     float scratch_[2][scratch_width];  // coordinates that only the mask needs, a row at a time
 };
 
+// One coordinate of a rectangle; without a plan nothing is known of it.
+template <class CompiledWhereCalled = void>
+TEXGEN_APART void interpolate_alone(const TileKernels& kernels, const TriangleFunctions& triangle, const Tile& rect,
+                                    glm::length_t coordinate, const std::span<float>& output,
+                                    const Plan* plan) noexcept {
+    if (output.empty()) return;
+    OnDemand<CloseRamps> close;
+    TileInterpolator<> interpolator(kernels, triangle, rect, close);
+    interpolator.add(coordinate, output);
+    interpolator.interpolate(rect, plan);
+}
+
 }  // namespace TEXGEN_BUILD
 }  // namespace TEXGEN_DETAIL

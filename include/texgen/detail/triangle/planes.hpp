@@ -136,7 +136,7 @@ public:
         const auto corner = [&](const WindowVertex& vertex) { return widened(vertex.strq[coordinate]); };
         return plane_through(corner(triangle_.a), corner(triangle_.b), corner(triangle_.c));
     }
-    PlaneOf<Double2> plane_twice(glm::length_t coordinate) const noexcept {
+    TEXGEN_APART PlaneOf<Double2> plane_twice(glm::length_t coordinate) const noexcept {
         const Plane once = plane(coordinate);
         const auto twice = [](const Ramp& ramp) -> RampOf<Double2> {
             return {double2_of(ramp.base, ramp.base), double2_of(ramp.dx, ramp.dx), double2_of(ramp.dy, ramp.dy)};

@@ -54,20 +54,28 @@ Number largest_of(const Number& base, const Number& right, const Number& bottom)
     return larger(of_row, of_row + bottom);
 }
 
-// Whether all of it is lit, or certainly a part, and far enough from q = 0 and from 0 that one bound serves all
-// quotients. The sides are those of coverage_by_sides() with twice its margins, so that nothing is said of a tile of
-// which that says something else. Exact: F errs by less than 2^-41.5 of itself and q by 2^-44, and four roundings
-// follow: within SmallTile::ulps; F is above 2^-124 q, so the floats are normal. In float, with u = 2^-24 and b the
-// steps to the last row, of which y is at most half: F is rounded with its column, its step, the product with y, and
-// the sum, by u (2 F + 1.5 b), as is q, and the reciprocal and the product round by 2 u. Of a quotient that is at most
-// `greatest` this is 6 u greatest + 1.5 u (b_F + greatest b_q) / q, and what floats below 2^-126 lose is less than
-// 2^-100.
+// q over the tile, and at the corners where it is least and largest.
+struct SmallDivisor {
+    SmallFunction<double> function;
+    double least, largest;
+
+    SmallDivisor(const Plane& q, const SmallPlace& place) noexcept
+        : function(q, place),
+          least(least_of(function.base, function.right, function.bottom)),
+          largest(largest_of(function.base, function.right, function.bottom)) {}
+
+    bool is_far_from_zero() const noexcept {
+        return least > larger(0x1p44 * function.error, 0x1p-100) && largest < 0x1p60;
+    }
+};
+
+// Whether all of s and t is lit, or certainly a part. The sides are those of coverage_by_sides() with twice its margins,
+// so that nothing is said of a tile of which that says something else.
 enum class SmallAnswer { doubt, lit, partly_lit };
 inline SmallAnswer ask(const LitTest& lit, double tolerance, const SmallFunction<Double2>& f,
-                       const SmallFunction<double>& q, SmallTile& tile) noexcept {
-    const double least_q = least_of(q.base, q.right, q.bottom);
-    const double largest_q = largest_of(q.base, q.right, q.bottom);
-    if (!(least_q > larger(0x1p44 * q.error, 0x1p-100) && largest_q < 0x1p60)) return SmallAnswer::doubt;
+                       const SmallDivisor& divisor) noexcept {
+    if (!divisor.is_far_from_zero()) return SmallAnswer::doubt;
+    const SmallFunction<double>& q = divisor.function;
     const Double2 min = double2_of(lit.least(0), lit.least(1));
     const Double2 max = double2_of(lit.greatest(0), lit.greatest(1));
     const Double2 above[3] = {f.base - min * q.base, f.right - min * q.right, f.bottom - min * q.bottom};
@@ -75,20 +83,8 @@ inline SmallAnswer ask(const LitTest& lit, double tolerance, const SmallFunction
     const Double2 least_above = least_of<Double2>(above[0], above[1], above[2]);
     const Double2 least_below = least_of<Double2>(below[0], below[1], below[2]);
     const Double2 error = f.error + max * q.error;
-    const Double2 margin = error * 2.0 + (max * 0x1p-21 + (0x1.1p-124 + 4.1 * tolerance)) * largest_q;
-    const bool is_lit = all_less(margin, smaller(least_above, least_below));
-    tile.is_in_float = false;
-    if (is_lit && tolerance != 0.0 && tile.width == 8 && read_alone(tile.height) % 2 == 0) {
-        const double allowed = (tolerance - 0x1p-100) * (least_q - q.error);
-        const Double2 rounded = larger(f.bottom, -f.bottom) + max * (4.02 * least_q + std::fabs(q.bottom));
-        tile.is_in_float =
-            all_less(error * 1.01 + rounded * (1.52 * unit_roundoff_float), double2_of(allowed, allowed)) &&
-            least_q > larger(0x1p-10 * largest_q, 0x1p-21) && tolerance < 0x1p40;
-        if (tile.is_in_float) return SmallAnswer::lit;
-    }
-    if (!all_less(f.error * 0x1.8p41 + 0x1.1p-124 * largest_q, least_of<Double2>(f.base, f.right, f.bottom)))
-        return SmallAnswer::doubt;
-    if (is_lit) return SmallAnswer::lit;
+    const Double2 margin = error * 2.0 + (max * 0x1p-21 + (0x1.1p-124 + 4.1 * tolerance)) * divisor.largest;
+    if (all_less(margin, smaller(least_above, least_below))) return SmallAnswer::lit;
     const bool is_partly_dark = any_less(smaller(least_above, least_below), -margin);
     const Double2 largest_above = largest_of<Double2>(above[0], above[1], above[2]);
     const Double2 largest_below = largest_of<Double2>(below[0], below[1], below[2]);
@@ -96,36 +92,98 @@ inline SmallAnswer ask(const LitTest& lit, double tolerance, const SmallFunction
     return is_partly_dark && !may_be_dark ? SmallAnswer::partly_lit : SmallAnswer::doubt;
 }
 
-// s, t and their mask of a small tile, if one certificate serves all of it. A tile of one unit with a value in doubt is
-// divided again here, without a plan.
+// Whether one bound serves all quotients; the tile is in float where that does.
+// Exact: F errs by less than 2^-41.5 of itself and q by 2^-44, and four roundings follow: within SmallTile::ulps; F is
+// above 2^-124 q, so the floats are normal. In float, with u = 2^-24 and b the steps to the last row, of which y is at
+// most half: F is rounded with its column, its step, the product with y, and the sum, by u (2 F + 1.5 b), as is q, and
+// the reciprocal and the product round by 2 u. Of quotients that are `greatest` at most this is 6 u greatest + 1.5 u
+// (b_F + greatest b_q) / q, and what floats below 2^-126 lose is less than 2^-100.
+inline bool serves(const SmallFunction<Double2>& f, const SmallDivisor& divisor, double tolerance,
+                   SmallTile& tile) noexcept {
+    const SmallFunction<double>& q = divisor.function;
+    const Double2 least = least_of<Double2>(f.base, f.right, f.bottom);
+    tile.is_in_float = false;
+    if (tolerance != 0.0 && tile.width == 8 && read_alone(tile.height) % 2 == 0) {
+        const Double2 largest = larger(largest_of<Double2>(f.base, f.right, f.bottom), -least);
+        const Double2 greatest = largest * (1.001 / divisor.least);
+        const double allowed = (tolerance - 0x1p-100) * (divisor.least - q.error);
+        const Double2 error = f.error + greatest * q.error;
+        const Double2 rounded = larger(f.bottom, -f.bottom) + greatest * (4.02 * divisor.least + std::fabs(q.bottom));
+        tile.is_in_float =
+            all_less(error * 1.01 + rounded * (1.52 * unit_roundoff_float), double2_of(allowed, allowed)) &&
+            divisor.least > larger(0x1p-10 * divisor.largest, 0x1p-21) && tolerance < 0x1p40;
+    }
+    return tile.is_in_float || all_less(f.error * 0x1.8p41 + 0x1.1p-124 * divisor.largest, least);
+}
+
+enum class SmallDoubt { none, of_unit, of_all };
+
+// One coordinate of a tile of one unit with a value in doubt, or s and t and their mask, without a plan.
+template <class CompiledWhereCalled = void>
+TEXGEN_RARE void divide_again(const TriangleFunctions& triangle, const Tile& rect, glm::length_t coordinate,
+                              const std::span<float>& output, const Texcoords* st) noexcept {
+    OnDemand<CloseRamps> close;
+    TileInterpolator<> interpolator(chosen<TileKernels>(), triangle, rect, close);
+    st != nullptr ? interpolator.add(st->s, st->t, st->lit) : interpolator.add(coordinate, output);
+    interpolator.interpolate_from_doubt(rect);
+}
+
+// The quotients of one or two coordinates, if one bound serves them; `tile` says where they go.
+template <class CompiledWhereCalled = void>
+TEXGEN_APART SmallDoubt divide_small(const TriangleFunctions& triangle, const RampOf<Double2>& ramp,
+                                     const SmallFunction<Double2>& f, const SmallDivisor& q, SmallTile& tile) noexcept {
+    if (!serves(f, q, triangle.tolerance, tile)) return SmallDoubt::of_all;
+    store_ramps({f.base, ramp.dx, ramp.dy}, tile.numerator);
+    tile.q = {q.function.base, triangle.q.value.dx, triangle.q.value.dy};
+    if (chosen<TileKernels>().fill_small(tile)) return SmallDoubt::none;
+    return tile.width * tile.height <= TileJob::unit_size ? SmallDoubt::of_unit : SmallDoubt::of_all;
+}
+
+// One coordinate of a small tile in the place of both.
+template <class CompiledWhereCalled = void>
+TEXGEN_APART void fill_small_alone(const TriangleFunctions& triangle, const Tile& rect, const SmallPlace& place,
+                                   const SmallDivisor& q, glm::length_t coordinate, const std::span<float>& output,
+                                   SmallTile& tile) noexcept {
+    const PlaneOf<Double2> plane = triangle.planes.plane_twice(coordinate);
+    tile.out[0] = tile.out[1] = output.data();
+    tile.lit = nullptr;
+    const SmallDoubt doubt = divide_small(triangle, plane.value, SmallFunction<Double2>(plane, place), q, tile);
+    if (doubt == SmallDoubt::of_unit)
+        divide_again(triangle, rect, coordinate, output, nullptr);
+    else if (doubt == SmallDoubt::of_all)
+        interpolate_alone(chosen<TileKernels>(), triangle, rect, coordinate, output, nullptr);
+}
+
+// s, t, r and the mask of a small tile, if one certificate serves all of s and t that is asked for.
 template <class CompiledWhereCalled = void>
 TEXGEN_APART SmallAnswer fill_small(const TriangleFunctions& triangle, const Tile& rect,
                                     const Texcoords& out) noexcept {
     const Double2 least = double2_of(triangle.lit.least(0), triangle.lit.least(1));
-    if (!(least[0] >= 0.0 && least[1] >= 0.0) || out.s.empty() || out.t.empty()) return SmallAnswer::doubt;
+    if (!(least[0] >= 0.0 && least[1] >= 0.0)) return SmallAnswer::doubt;
     const SmallPlace place(triangle.planes.from_a(rect), rect);
     const SmallFunction<Double2> f(triangle.st, place);
-    const SmallFunction<double> q(triangle.q, place);
+    const SmallDivisor q(triangle.q, place);
+    const SmallAnswer answer = ask(triangle.lit, triangle.tolerance, f, q);
+    if (answer == SmallAnswer::doubt) return answer;
+    const bool is_lit = answer == SmallAnswer::lit;
     SmallTile tile;
     tile.width = rect.width;
     tile.height = rect.height;
-    const SmallAnswer answer = ask(triangle.lit, triangle.tolerance, f, q, tile);
-    if (answer == SmallAnswer::doubt) return answer;
-    const RampOf<Double2>& st = triangle.st.value;
-    store_ramps({f.base, st.dx, st.dy}, tile.numerator);
-    tile.q = {q.base, triangle.q.value.dx, triangle.q.value.dy};
-    tile.out[0] = out.s.data();
-    tile.out[1] = out.t.data();
-    tile.lit = out.lit.empty() ? nullptr : out.lit.data();
-    if (tile.lit != nullptr) triangle.lit.copy_to(tile.min, tile.max);
-    const TileKernels& kernels = chosen<TileKernels>();
-    if (!kernels.fill_small(tile)) {
-        if (rect.count() > TileJob::unit_size) return SmallAnswer::doubt;
-        OnDemand<CloseRamps> close;
-        TileInterpolator<> interpolator(kernels, triangle, rect, close);
-        interpolator.add(out.s, out.t, out.lit);
-        interpolator.interpolate_from_doubt(rect);
+    if (!out.s.empty() && !out.t.empty()) {
+        tile.out[0] = out.s.data();
+        tile.out[1] = out.t.data();
+        tile.lit = is_lit || out.lit.empty() ? nullptr : out.lit.data();
+        if (tile.lit != nullptr) triangle.lit.copy_to(tile.min, tile.max);
+        const SmallDoubt doubt = divide_small(triangle, triangle.st.value, f, q, tile);
+        if (doubt == SmallDoubt::of_all) return SmallAnswer::doubt;
+        if (doubt == SmallDoubt::of_unit) divide_again(triangle, rect, 0, {}, &out);
+    } else {
+        if (!is_lit && !out.lit.empty()) return SmallAnswer::doubt;
+        if (!out.s.empty()) fill_small_alone(triangle, rect, place, q, 0, out.s, tile);
+        if (!out.t.empty()) fill_small_alone(triangle, rect, place, q, 1, out.t, tile);
     }
+    if (!out.r.empty()) fill_small_alone(triangle, rect, place, q, 2, out.r, tile);
+    if (is_lit && !out.lit.empty()) chosen<MaskKernels>().light_all(out.lit.data(), out.lit.size());
     return answer;
 }
 
