@@ -132,6 +132,9 @@ Shot row_with_a_tie(int column, int width, int height, Random& random) {
             {x, y, width, height}};
 }
 
+// Small tiles that one certificate serves are those of regions without negative coordinates, as the whole texture is.
+const texgen::TextureRegion positive = texgen::atlas_tile({0.0, 0.0}, {4.0, 4.0});
+
 // Of a scene, with all of a window of 450 x 320 in front and in the slide: one certificate mostly serves a tile of it.
 Triangle gentle_triangle(Random& random) {
     const auto vertex = [&](float x, float y) {
@@ -219,8 +222,10 @@ TEST_CASE("every fragment of a row whose values all lie between two floats is de
                 }
                 Seen seen;
                 for (const unsigned asked : {15u, 1u, 4u, 8u}) {
-                    Outputs out(count_of(shot.rect), asked, static_cast<std::size_t>(random.integer(0, 15)));
-                    require_right(shot, everywhere(), out, seen);
+                    for (const texgen::TextureRegion& region : {everywhere(), positive}) {
+                        Outputs out(count_of(shot.rect), asked, static_cast<std::size_t>(random.integer(0, 15)));
+                        require_right(shot, region, out, seen);
+                    }
                 }
             }
         }
@@ -239,8 +244,10 @@ TEST_CASE("one tie anywhere in rows of values that are far from ties is rounded 
         long_ones += width * height > 512;
         const Shot shot = row_with_a_tie(column, width, height, random);
         REQUIRE(support::is_tie(ExactTriangle(shot.triangle).at(shot.x(column), shot.y(0)).over_q(0)));
-        Outputs out(count_of(shot.rect), random.coin() ? 15u : 3u, static_cast<std::size_t>(random.integer(0, 15)));
-        require_right(shot, everywhere(), out, seen);
+        for (const texgen::TextureRegion& region : {everywhere(), positive}) {
+            Outputs out(count_of(shot.rect), random.coin() ? 15u : 3u, static_cast<std::size_t>(random.integer(0, 15)));
+            require_right(shot, region, out, seen);
+        }
     }
     CHECK(long_ones > 20);
     CHECK(long_ones < 100);
@@ -261,8 +268,10 @@ TEST_CASE("a tie that a corner 2^-20 to 2^-100 of a pixel off its place leaves i
         shot.triangle.c.window.x = std::ldexp(random.coin() ? bits : -bits, random.integer(-100, -20));
         if (i % 2 != 0) shot.triangle.c.window.y = random.uniform_float(512.0, 1024.0);
         ties += support::is_tie(ExactTriangle(shot.triangle).at(shot.x(column), shot.y(0)).over_q(0));
-        Outputs out(count_of(shot.rect), random.coin() ? 15u : 3u, static_cast<std::size_t>(random.integer(0, 15)));
-        require_right(shot, everywhere(), out, seen);
+        for (const texgen::TextureRegion& region : {everywhere(), positive}) {
+            Outputs out(count_of(shot.rect), random.coin() ? 15u : 3u, static_cast<std::size_t>(random.integer(0, 15)));
+            require_right(shot, region, out, seen);
+        }
     }
     CHECK(ties == 0);
 }
@@ -279,6 +288,25 @@ TEST_CASE("a tie far down a row from where s is largest is rounded to the even f
         Outputs out(count_of(shot.rect), 3u);
         require_right(shot, everywhere(), out, seen);
     }
+}
+
+TEST_CASE("next to where s is 0, of terms that cancel, every fragment of a small tile is the nearest float") {
+    Random random(205);
+    Seen seen;
+    for (int i = 0; i < 400; ++i) {
+        const FragmentRect rect{random.integer(100, 400), random.integer(100, 400), random.integer(1, 12),
+                                random.integer(1, 8)};
+        const double zero = rect.x + 0.5 - random.power_of_ten(-5.0, -1.0);
+        const auto vertex = [&](double around_x, double around_y) {
+            const float x = random.uniform_float(around_x - 9.0, around_x + 9.0), y = support::to_float(around_y);
+            const double s = (static_cast<double>(x) - zero) / 1024.0;
+            return WindowVertex{{x, y}, 1.0f, {support::to_float(s), 0.5f, 0.5f, random.uniform_float(1.0, 1.5)}};
+        };
+        const Shot shot{{vertex(-20.0, -20.0), vertex(1400.0, 40.0), vertex(60.0, 1200.0)}, rect};
+        Outputs out(count_of(rect), random.coin() ? 15u : 1u);
+        require_right(shot, texgen::atlas_tile({0.0, 0.0}, {0.03, 1.0}), out, seen);
+    }
+    CHECK(seen.lit > 5000);
 }
 
 TEST_CASE("what has more bits than a residue is not what the residue says: neither 0, nor of its sign") {

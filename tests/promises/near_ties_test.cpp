@@ -66,11 +66,33 @@ texgen::Triangle triangle_of(const std::vector<double>& n) {
     };
     return {vertex(0), vertex(7), vertex(14)};
 }
-Answer of_triangle(const std::vector<double>& n, std::size_t count) {
+Answer of_triangle(const std::vector<double>& n, const texgen::FragmentRect& rect,
+                   const texgen::TextureRegion& region = everywhere(), unsigned asked = 3u) {
     const texgen::Triangle triangle = triangle_of(n);
-    Answer answer{support::ExactTriangle(triangle).at(20, 20), Outputs(count, 3u)};
-    interpolate(support::setup_of(triangle), {20, 20, static_cast<int>(count), 1}, answer.out.spans());
+    Answer answer{support::ExactTriangle(triangle).at(20, 20), Outputs(support::count_of(rect), asked)};
+    interpolate(support::setup_of(triangle, region), rect, answer.out.spans());
     return answer;
+}
+Answer of_triangle(const std::vector<double>& n, std::size_t count) {
+    return of_triangle(n, {20, 20, static_cast<int>(count), 1});
+}
+
+// The same in a region that has all that is near, so that one certificate may serve the tile; each coordinate alone, as
+// well. Returns how many tiles that were.
+int check_in_region(const std::vector<double>& n, const Answer& nearest, const std::string& line) {
+    const glm::dvec2 value(nearest.out[0][0], nearest.out[1][0]);
+    if (!(value.x > 0.0 && value.y > 0.0)) return 0;
+    int tiles = 0;
+    for (const auto& [width, height] : {std::pair{1, 1}, {5, 3}, {8, 8}, {16, 4}, {64, 1}, {64, 4}})
+        for (const unsigned asked : {1u, 2u, 3u, 11u}) {
+            const texgen::TextureRegion region = texgen::atlas_tile({0.0, 0.0}, 1e3 * value);
+            const Answer answer = of_triangle(n, {20, 20, width, height}, region, asked);
+            ++tiles;
+            for (std::size_t k = 0; k < 2; ++k)
+                if (answer.out.asked(k))
+                    CHECK_MESSAGE(is_nearest(answer.out[k][0], answer.exact.over_q(k)), line, " ", width, " ", asked);
+        }
+    return tiles;
 }
 
 // What stands beside the float of that fragment: within the tolerance, as a part of the quotient, or on a side of the
@@ -127,7 +149,7 @@ double distance_in_half_ulps(float value, const support::Quotient& u) {
 
 TEST_CASE("next to the middle of two floats the nearest is found, alone and in company") {
     std::ifstream file(TEXGEN_TEST_DATA "/promises/near_ties.txt");
-    int next_to_the_middle = 0, lines = 0;
+    int next_to_the_middle = 0, lines = 0, in_region = 0;
     for (std::string line; std::getline(file, line);) {
         if (line.empty() || line.front() == '#') continue;
         ++lines;
@@ -149,6 +171,7 @@ TEST_CASE("next to the middle of two floats the nearest is found, alone and in c
         }
         if (kind != "triangle") continue;
         check_beside(triangle_of(numbers), of_triangle(numbers, 1), line);
+        in_region += check_in_region(numbers, of_triangle(numbers, 1), line);
         for (const auto& size : {std::pair{8, 8}, std::pair{16, 4}, std::pair{64, 1}, std::pair{5, 3}})
             for (const bool by_id : {false, true}) {
                 const Answer answer = of_tile(numbers, size.first, size.second, by_id);
@@ -159,4 +182,5 @@ TEST_CASE("next to the middle of two floats the nearest is found, alone and in c
     }
     CHECK(lines >= 100);
     CHECK(next_to_the_middle >= 4 * lines);
+    CHECK(in_region > 100);
 }

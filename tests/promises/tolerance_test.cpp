@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -212,6 +213,48 @@ TEST_CASE("a tolerance at which a certificate just holds, or just fails, is kept
     CHECK(affine.largest_share > 0.1);  // what is affine is computed as a parabola
     CHECK(quadratic.quadratic > 300);
     CHECK(quadratic.largest_share > 0.5);
+}
+
+TEST_CASE("a tolerance at which tiles of eight columns are just divided in float is kept") {
+    Random random(2600);
+    Tally tally;
+    int alone = 0, together = 0;
+    for (int i = 0; i < 600; ++i) {
+        texgen::Triangle triangle{};
+        for (texgen::WindowVertex* const corner : support::vertices(triangle)) {
+            const float x = random.uniform_float(0.0, 200.0), y = random.uniform_float(0.0, 200.0);
+            const float clip_w = random.uniform_float(1.0, 3.0), q = random.uniform_float(0.5, 2.0);
+            const float s = random.uniform_float(0.0, 1.0), t = random.uniform_float(0.0, 1.0);
+            *corner = {{x, y}, clip_w, glm::vec4(s, t, random.uniform_float(-0.5, 1.0), 1.0f) * q};
+        }
+        const Shot shot{triangle, {random.integer(20, 150), random.integer(20, 150), 8, 2 * random.integer(1, 16)}};
+        const unsigned asked = any_outputs(random);
+        const auto values = [&](Tolerance tolerance) {
+            Outputs out(count_of(shot.rect), asked);
+            interpolate(setup_of(triangle, texgen::whole_texture(), tolerance), shot.rect, out.spans());
+            return out;
+        };
+        const Outputs exact = values(texgen::exact);
+        const auto is_in_float = [&](double tolerance) {
+            const Outputs out = values({tolerance});
+            for (std::size_t k = 0; k < 3; ++k)
+                if (out.asked(k) && !same_bits(out[k], exact[k])) return true;
+            return false;
+        };
+        double low = largest_quotient(shot) * 0x1p-30, high = low * 0x1p10;
+        REQUIRE_MESSAGE(!is_in_float(low), hex(low), " for ", hex(shot));
+        if (!is_in_float(high)) continue;
+        while (high > low * (1.0 + 0x1p-20)) {
+            const double middle = 0.5 * (low + high);
+            (is_in_float(middle) ? high : low) = middle;
+        }
+        (std::popcount(asked & 7u) == 1 ? alone : together) += 1;
+        for (const double factor : {1.0, random.uniform(1.0, 2.0)})
+            require_right(shot, texgen::whole_texture(), {high * factor}, asked, random, tally);
+    }
+    CHECK(alone > 50);
+    CHECK(together > 50);
+    CHECK(tally.largest_share > 0.2);
 }
 
 TEST_CASE(
