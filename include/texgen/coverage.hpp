@@ -13,6 +13,7 @@
 #include "detail/arithmetic/widen.hpp"
 #include "detail/assert.hpp"
 #include "detail/culling/lit_forms.hpp"
+#include "detail/on_demand.hpp"
 #include "detail/simd/lanes.hpp"
 #include "primitives.hpp"
 #include "transform.hpp"

@@ -397,7 +397,7 @@ MUTANTS = [
           "greater(c[2], 0.0) &", "batch_test"),
          ("the last lanes of a batch's planes are stored elsewhere", "row[j] = columns[first + j];",
           "row[j] = columns[first < 16 ? first + j : j];", "batch_test"),
-         ("a batch has no depth", "if (has_depth) result &= inside(value[2], r_min, r_max);", "", "batch_test")),
+         ("a batch has no depth", "if (has_depth) result &= inside(value[2], r_min, r_max);", ";", "batch_test")),
     *_of("detail/kernels/batch_survey.inc.hpp",
          ("tiles in float are within any tolerance", "is_float &= at_most(rest, tolerance);",
           "", "batch_test"),

@@ -21,15 +21,15 @@ inline bool has_points(const Box& box) noexcept {
 
 inline namespace TEXGEN_BUILD {
 
-template <class CompiledWhereCalled = void>
-void coverage_of_many(const LitForms& forms, const FloatForms& float_forms, const SeparatingForms& separating,
+// Boxes; separating() is asked as below.
+void coverage_of_many(const LitForms& forms, const FloatForms& float_forms, const auto& separating,
                       std::span<const Box> boxes, const std::span<Coverage>& out) noexcept {
     const BoxBatchKernels& kernels = chosen<BoxBatchKernels>();
     DoubleForms double_forms;  // made when first needed
     classify_many<6>(forms, float_forms, boxes, out, kernels.classify,
                      [&](const OpenRow* open, std::size_t count, bool is_any_in_doubt, int* classes) {
                          if (is_any_in_doubt && double_forms.count == 0) forms.take_in_double(double_forms);
-                         kernels.decide(is_any_in_doubt ? &double_forms : nullptr, separating, open, count, classes);
+                         kernels.decide(is_any_in_doubt ? &double_forms : nullptr, separating(), open, count, classes);
                      });
 }
 
@@ -74,7 +74,8 @@ Coverage LitVolume<Space>::coverage(const Sphere& sphere) const noexcept {
 
 template <class Space>
 void LitVolume<Space>::coverage(std::span<const Box> boxes, std::span<Coverage> out) const noexcept {
-    detail::coverage_of_many(forms_, float_forms_, separating_, boxes, out);
+    detail::coverage_of_many(
+        forms_, float_forms_, [this]() -> const detail::SeparatingForms& { return separating_; }, boxes, out);
 }
 template <class Space>
 void LitVolume<Space>::coverage(std::span<const Sphere> spheres, std::span<Coverage> out) const noexcept {
@@ -100,7 +101,15 @@ Coverage coverage(const Transform<Texture, Space>& texture_from_space, const Tex
 template <class Space>
 void coverage(const Transform<Texture, Space>& texture_from_space, const TextureRegion& region,
               std::span<const Box> boxes, std::span<Coverage> out) noexcept {
-    LitVolume<Space>(texture_from_space, region).coverage(boxes, out);
+    const detail::LitForms forms(texture_from_space.matrix(), region, detail::chosen<detail::FormKernels>());
+    detail::OnDemand<detail::SeparatingForms> separating;
+    detail::coverage_of_many(
+        forms, forms.in_float(detail::chosen<detail::FloatFormKernels>()),
+        [&]() -> const detail::SeparatingForms& {
+            if (!separating) separating.make(forms.separating(detail::chosen<detail::SeparatingFormKernels>()));
+            return *separating;
+        },
+        boxes, out);
 }
 template <class Space>
 void coverage(const Transform<Texture, Space>& texture_from_space, const TextureRegion& region,
