@@ -565,6 +565,32 @@ TEST_CASE("where q has few digits left the bound of a derivative has them in it"
     CHECK(close > 1000);
 }
 
+TEST_CASE("a fragment where q is 0, of terms with more bits than two doubles and residues have, has no footprint") {
+    Random random(5350);
+    for (int i = 0; i < 300; ++i) {
+        // It is a fourth of the way between two corners, where 3 c and -c cancel for q = c w; the third has bits for
+        // nothing.
+        const int x = random.integer(-100, 100), y = random.integer(-100, 100);
+        const auto of_20_bits = [&](double size) {
+            return std::ldexp(static_cast<float>(random.integer(1 << 19, 1 << 20)), std::ilogb(size) - 19);
+        };
+        const float dx = of_20_bits(60.0), dy = random.coin() ? of_20_bits(60.0) : -of_20_bits(60.0);
+        const auto corner = [&](float at_x, float at_y, float over_w) {
+            const float clip_w = of_20_bits(1.0);
+            const glm::vec4 strq(random.uniform_float(0.0, 1.0), random.uniform_float(0.0, 1.0), 0.5f, over_w * clip_w);
+            return WindowVertex{{at_x, at_y}, clip_w, strq};
+        };
+        const float middle_x = static_cast<float>(x) + 0.5f, middle_y = static_cast<float>(y) + 0.5f;
+        const float tiny = std::ldexp(random.uniform_float(-1.0, 1.0), random.integer(-100, -60));
+        const Shot shot{
+            {corner(middle_x + 3.0f * dx, middle_y + 3.0f * dy, 3.0f), corner(middle_x - dx, middle_y - dy, -1.0f),
+             corner(tiny, random.uniform_float(500.0, 900.0), 1.0f)},
+            {x, y, 1, 1}};
+        REQUIRE(ExactTriangle(shot.triangle).at(x, y).q.sign() == 0);
+        CHECK_MESSAGE(!FootprintSetup(setup_of(shot.triangle), {1024.0, 1024.0}).at(x, y).has_value(), hex(shot));
+    }
+}
+
 TEST_CASE("only what is asked for is written, the same whatever else is asked for, in any rectangle and alignment") {
     Random random(6400);
     for (int i = 0; i < 300; ++i) {
