@@ -38,10 +38,10 @@ Footprint footprint_of(const glm::dvec2& dx, const glm::dvec2& dy, const auto& d
             glm::dvec2(major.x / texels.s, major.y / texels.t) * (length / scale) / unit};
 }
 
-// q at a fragment, its sign exact; where it is in doubt, close_q() has it.
+// q at a fragment, its sign exact, within cancelled_share of itself; where the planes cancel, close_q() has it.
 template <class CloseQ>
 double q_at(const TriangleFunctions& triangle, std::int64_t x, std::int64_t y, const CloseQ& close_q) noexcept {
-    const auto is_known = [](const Bounded& q) { return std::fabs(q.value) > well_in_front * q.error; };
+    const auto is_known = [](const Bounded& q) { return std::fabs(q.value) * cancelled_share > q.error; };
     Bounded q = triangle.planes.at(triangle.q, x, y);
     if (is_known(q)) return q.value;
     q = close_q().at(x, y);
@@ -147,17 +147,20 @@ inline std::optional<Footprint> FootprintSetup::at(int x, int y) const noexcept 
 }
 
 // A numerator N = N^ + e over (Q^ + f)^2: the error is at most (e + 2 |f| |N|/Q) / Q^2 but for squares of f/Q, below
-// 2^-23 where the tile is well in front. Rounding adds 4 u |N|/Q^2, and half an ulp.
+// 2^-23 where the tile is well in front. Rounding adds 4 u |N|/Q^2, and half an ulp. Where the planes cancel anywhere
+// in the tile f is what q_at() leaves at most.
 inline glm::dvec2 FootprintSetup::error_bound(FragmentRect rect) const noexcept {
     if (rect.width <= 0 || rect.height <= 0) return {0.0, 0.0};
     const detail::Tile tile = detail::tile_of(rect);
-    const detail::Corners at = detail::survey(functions_.triangle, tile).at;
+    const detail::TileSurvey found = detail::survey(functions_.triangle, tile);
+    const detail::Corners& at = found.at;
     if (at.all_behind()) return {0.0, 0.0};
+    const double share = found.close ? detail::cancelled_share : at.q_error * at.reciprocal;
     const auto bound = [&](std::size_t k) {
         if (!at.is_well_in_front()) return detail::infinity;
         const double numerator = functions_.largest(k, tile);
-        const double error = functions_.error(k, tile) + 2.0 * at.q_error * at.reciprocal * numerator +
-                             8.0 * detail::unit_roundoff_double * numerator;
+        const double error =
+            functions_.error(k, tile) + 2.0 * share * numerator + 8.0 * detail::unit_roundoff_double * numerator;
         // Q^-2 may be beyond a double.
         const auto divided = [&](double n) { return n * at.reciprocal * at.reciprocal; };
         return detail::larger(functions_.triangle.tolerance,
