@@ -614,7 +614,8 @@ TEST_CASE("a tie that has more bits than two doubles is decided as for each tria
     }
 }
 
-// Of 384 000 such ties the five that are decided wrongly where the rounded integer is taken for the exact one.
+// Of 384 000 such ties those that were decided wrongly where the rounded integer was taken for the exact one, and nothing
+// else bounded what residues decide.
 TEST_CASE("a tie of an integer that is rounded as it becomes a double is a tie") {
     struct Found {
         float w[3];

@@ -27,7 +27,7 @@ struct TileFunctions {
         for (std::size_t k = 0; k <= Numerators; ++k) {
             const double* const plane = &planes.value[k < Numerators ? BatchPlanes::of_numerator[k] : BatchPlanes::q];
             base[k] = k < Numerators ? tiles.base[k][i] : tiles.q[i];
-            along[k] = plane[is_turned ? 2 : 1];
+            along[k] = plane[1];  // of a row alone, which has no columns, nothing
             down[k] = plane[is_turned ? 1 : 2];
         }
     }
@@ -147,9 +147,9 @@ TEXGEN_APART void divide_tile_float(const BatchTiles& tiles, std::size_t i, cons
                                     const TileOutputs<Numerators>& original) noexcept {
     const TileOutputs<Numerators> out = original;
     const std::size_t end = shape.count;
-    const float bend_x = shape.is_turned ? tiles.bend_y[i] : tiles.bend_x[i];
+    const float bend_x = tiles.bend_x[i];
     const float bend_y = shape.is_turned ? tiles.bend_x[i] : tiles.bend_y[i];
-    const auto& along = shape.is_turned ? tiles.dy : tiles.dx;
+    const auto& along = tiles.dx;
     const auto& down = shape.is_turned ? tiles.dx : tiles.dy;
     float dx[Numerators], dy[Numerators];
     WideFloats middle[Numerators], first[Numerators];
