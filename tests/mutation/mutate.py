@@ -6,7 +6,7 @@
               [--only WORD]         the mutants whose name or header contains the word
 
 The library is broken in a copy, below DIRECTORY, with one instruction set and little optimisation. One mutant is one or two
-test programs: the whole table takes about half an hour. Fails where a mutant survives that the table does not explain,
+test programs: the whole table takes an hour and a half. Fails where a mutant survives that the table does not explain,
 or is no program.
 """
 
