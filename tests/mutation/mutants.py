@@ -794,7 +794,7 @@ MUTANTS = [
          ("the low part of a sum", "(a - (sum - b_part)) + (b - b_part)", "(a - (sum - b_part)) - (b - b_part)",
           "transform_test"),
          ("the low part of a product", "std::fma(a, b, -product)", "0.0", "transform_test"),
-         ("Kahan's second product", "+ std::fma(-c, d, cd);", ";", "aim_test"),
+         ("Kahan's second product", "+ std::fma(-c, d, cd);", ";", "surface_test"),
          ("a NaN is not the larger", "return a > b || !(a == a) ? a : b;", "return a > b ? a : b;", "transform_test")),
     *_of("detail/simd/tiers.hpp",
          ("the points' float bound is halved", "all_float{5.01 *", "all_float{2.0 *", "bounds_test texcoord_test"),
