@@ -1229,6 +1229,41 @@ TEST_CASE("a point whose side is what the last bits of cancelling coefficients l
     CHECK(inside > 200);
 }
 
+TEST_CASE("a box beside a side by 2^-53 is beside it, and on it touches it, whatever has cancelled to leave that") {
+    Random random(950);
+    int outside = 0, inside = 0;
+    for (int i = 0; i < 4000; ++i) {
+        // At (x0, y0) both s = k (y0 x - x0 y) + c and q = g (y0 x - x0 y) + 1 have their last terms alone: the others
+        // cancel, of which a side has sums of 150 bits.
+        const float x = random.uniform_float(128.0, 256.0), y = random.uniform_float(128.0, 256.0);
+        const auto of_29_bits = [&](int exponent) {
+            return std::ldexp(random.integer(1 << 28, (1 << 29) - 1), exponent - 29);
+        };
+        const double k = of_29_bits(random.integer(0, 100)), g = of_29_bits(-12);
+        const float side = random.uniform_float(0.5, 1.0), before = std::nextafter(side, 0.0f);
+        const int sign = random.integer(-1, 1);
+        const auto texgen_of = [&](float at) {
+            glm::dmat4 matrix(0.0);
+            matrix[0] = {static_cast<double>(y) * k, 0.0, 0.0, static_cast<double>(y) * g};
+            matrix[1] = {-static_cast<double>(x) * k, 0.0, 0.0, -static_cast<double>(x) * g};
+            matrix[3] = {static_cast<double>(at) + sign * 0x1p-53, 0.5, 0.0, 1.0};
+            return WorldTexgen(matrix);
+        };
+        const TextureRegion region = atlas_tile({static_cast<double>(side), 0.0}, {0x1p120, 1.0});
+        const Box below{{x - 1.0f, y, 0.0f}, {x, y + 1.0f, 1.0f}}, above{{x, y - 1.0f, 0.0f}, {x + 1.0f, y, 1.0f}};
+        // No float is between the side and the one before, which is outside.
+        const Coverage of_below = coverage(texgen_of(before), region, below);
+        const Coverage of_above = coverage(texgen_of(side), region, above);
+        const std::string context = hex(k) + " " + hex(g) + " " + hex(x) + " " + hex(y) + " " + hex(side);
+        CHECK_MESSAGE(of_below == (sign < 0 ? Coverage::outside : Coverage::partial), context);
+        CHECK_MESSAGE(of_above == (sign < 0 ? Coverage::partial : Coverage::inside), context);
+        outside += of_below == Coverage::outside;
+        inside += of_above == Coverage::inside;
+    }
+    CHECK(outside > 1000);
+    CHECK(inside > 2000);
+}
+
 TEST_CASE("what is no body, no slide or no number gets a safe answer") {
     const auto projector = texgen::make_projector(
         texgen::PerspectiveLens{.fovy = degrees(30), .aspect = 1, .z_near = 0.2, .z_far = 1000},
