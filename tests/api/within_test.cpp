@@ -159,6 +159,29 @@ TEST_CASE("within a box every point is what it must be, at every tolerance, in e
     CHECK(behind > 5000);
 }
 
+TEST_CASE("a tolerance below what is lost of subnormal coefficients is kept within a box") {
+    Random random(8150);
+    for (int round = 0; round < 200; ++round) {
+        glm::dmat4 matrix(0.0);
+        for (int row = 0; row < 2; ++row)
+            for (int j = 0; j < 3; ++j)
+                matrix[j][row] = std::ldexp(random.uniform(1.0, 2.0), random.integer(-140, -128));
+        matrix[3][3] = 1.0;
+        std::vector<glm::vec3> points;
+        for (int i = 0; i < 64; ++i) points.push_back(glm::vec3(768.0f) + random.vector3(256.0));
+        const Tolerance tolerance{std::ldexp(1.0, random.integer(-150, -130))};
+        Outputs out(points.size(), 3u);
+        project(texgen::WorldTexgen(matrix), texgen::world_space(points).within(box_of(points)), everywhere(),
+                out.spans(), tolerance);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const std::string wrong =
+                what_is_wrong(support::exactly_at(matrix, points[i]), everywhere(), tolerance, out, i);
+            REQUIRE_MESSAGE(wrong.empty(), wrong, " at ", support::hex(points[i]), " by ", support::hex(matrix),
+                            ", tolerance ", support::hex(tolerance.value));
+        }
+    }
+}
+
 TEST_CASE("a box changes no bit of the nearest floats, pairs and points in doubt neither") {
     Random random(8200);
     for (const std::size_t count : {std::size_t{1}, std::size_t{16}, std::size_t{100}, std::size_t{333}}) {
