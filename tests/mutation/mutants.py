@@ -757,7 +757,7 @@ MUTANTS = [
           "TEXGEN_INLINE Words inside(const Floats& values, float min, float max) noexcept {\n    return Words::of([&](int i) { return values.lane[i] > min && values.lane[i] <= max ? -1 : 0; });",
           "work_test texcoord_test", {"scalar": True}),
          ("a - b is b - a", "return of([&](int i) { return a - b.lane[i]; });",
-          "return of([&](int i) { return b.lane[i] - a; });", "segment_test", {"scalar": True})),
+          "return of([&](int i) { return b.lane[i] - a; });", "tolerance_test coverage_test", {"scalar": True})),
     *_of("detail/culling/lit_test.hpp",
          ("a NaN tolerance is a tolerance", "return tolerance.value > 0.0 ? (tolerance.value",
           "return !(tolerance.value <= 0.0) ? (tolerance.value", "segment_test tolerance_test texcoord_test"),
