@@ -164,10 +164,14 @@ TEXGEN_INLINE bool are_sided(const CloseFunctions& functions, const CloseFunctio
 
 // The fragments of a unit that are asked, as many at once as a vector has, wherever they stand: those of a column, or a
 // few that are left, share vectors; more than half of a unit is asked as all of it. One numerator alone stands in both
-// places.
+// places. Short vectors need the most code: it is compiled for size.
 template <class CompiledWhereCalled = void>
-TEXGEN_RARE std::uint64_t fill_tile_closely(const TileJob& job, const CloseFunctions& functions, TileJob::Unit unit,
-                                            std::uint64_t asked) noexcept {
+#if TEXGEN_LANE_BYTES <= 16
+TEXGEN_RARE
+#endif
+    std::uint64_t
+    fill_tile_closely(const TileJob& job, const CloseFunctions& functions, TileJob::Unit unit,
+                      std::uint64_t asked) noexcept {
     constexpr int most = TileJob::unit_size + lanes;
     const bool is_more_known = functions.have_residues || functions.are_close;
     const std::size_t numerators = job.out[0] == job.out[1] ? 1 : 2;
