@@ -166,7 +166,7 @@ TEXGEN_INLINE bool are_sided(const CloseFunctions& functions, const CloseFunctio
 // few that are left, share vectors; more than half of a unit is asked as all of it. One numerator alone stands in both
 // places. Short vectors need the most code: it is compiled for size.
 template <class CompiledWhereCalled = void>
-#if TEXGEN_LANE_BYTES <= 16
+#if defined(TEXGEN_HAS_VECTORS) && TEXGEN_LANE_BYTES == 16
 TEXGEN_RARE
 #endif
     std::uint64_t
