@@ -16,7 +16,7 @@ inline float* array_of(const std::span<float>& output, std::size_t count) noexce
 }
 
 // Calls function(span) for each output of Texcoords or Footprints.
-void for_each_output(auto& out, const auto& function) noexcept {
+TEXGEN_INLINE void for_each_output(auto& out, const auto& function) noexcept {
     if constexpr (requires { out.s; })
         for (std::span<float>* output : {&out.s, &out.t, &out.r, &out.lit}) function(*output);
     else
