@@ -27,7 +27,7 @@ struct TileFunctions {
         for (std::size_t k = 0; k <= Numerators; ++k) {
             const double* const plane = &planes.value[k < Numerators ? BatchPlanes::of_numerator[k] : BatchPlanes::q];
             base[k] = k < Numerators ? tiles.base[k][i] : tiles.q[i];
-            along[k] = plane[1];  // of a row alone, which has no columns, nothing
+            along[k] = plane[1];  // a row alone is a column, whose x is 0
             down[k] = plane[is_turned ? 1 : 2];
         }
     }
@@ -147,15 +147,15 @@ TEXGEN_APART void divide_tile_float(const BatchTiles& tiles, std::size_t i, cons
                                     const TileOutputs<Numerators>& original) noexcept {
     const TileOutputs<Numerators> out = original;
     const std::size_t end = shape.count;
+    // A row alone is a column, whose x is 0.
     const float bend_x = tiles.bend_x[i];
     const float bend_y = shape.is_turned ? tiles.bend_x[i] : tiles.bend_y[i];
-    const auto& along = tiles.dx;
     const auto& down = shape.is_turned ? tiles.dx : tiles.dy;
     float dx[Numerators], dy[Numerators];
     WideFloats middle[Numerators], first[Numerators];
     TEXGEN_UNROLL
     for (std::size_t k = 0; k < Numerators; ++k) {
-        dx[k] = along[k][i];
+        dx[k] = tiles.dx[k][i];
         dy[k] = down[k][i];
         middle[k] = WideFloats{} + tiles.middle[k][i];
         first[k] = shape.wide_x * dx[k];
