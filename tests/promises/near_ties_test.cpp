@@ -170,8 +170,9 @@ TEST_CASE("next to the middle of two floats the nearest is found, alone and in c
             }
         }
         if (kind != "triangle") continue;
-        check_beside(triangle_of(numbers), of_triangle(numbers, 1), line);
-        in_region += check_in_region(numbers, of_triangle(numbers, 1), line);
+        const Answer nearest = of_triangle(numbers, 1);
+        check_beside(triangle_of(numbers), nearest, line);
+        in_region += check_in_region(numbers, nearest, line);
         for (const auto& size : {std::pair{8, 8}, std::pair{16, 4}, std::pair{64, 1}, std::pair{5, 3}})
             for (const bool by_id : {false, true}) {
                 const Answer answer = of_tile(numbers, size.first, size.second, by_id);

@@ -3,12 +3,22 @@
 namespace TEXGEN_DETAIL {
 inline namespace TEXGEN_BUILD {
 
+// One coordinate of a rectangle; without a plan nothing is known of it.
+template <class CompiledWhereCalled = void>
+TEXGEN_APART void interpolate_alone(const TriangleFunctions& triangle, const Tile& rect, glm::length_t coordinate,
+                                    const std::span<float>& output, const Plan* plan) noexcept {
+    if (output.empty()) return;
+    OnDemand<CloseRamps> close;
+    TileInterpolator<> interpolator(triangle, rect, close);
+    interpolator.add(coordinate, output);
+    interpolator.interpolate(rect, plan);
+}
+
 // Takes the light of a tile's fragments whose r, which nobody asked for, is beyond the depth, which cuts it. It is
 // halved until the buffer holds it; of a half where nothing is lit, or all is in the depth, r is not computed.
 template <class CompiledWhereCalled = void>
-TEXGEN_RARE inline void darken_beyond_depth(const TileKernels& kernels, const TriangleFunctions& triangle,
-                                            const Tile& rect, const Tile& tile, const std::span<float>& buffer,
-                                            const std::span<float>& lit) noexcept {
+TEXGEN_RARE inline void darken_beyond_depth(const TriangleFunctions& triangle, const Tile& rect, const Tile& tile,
+                                            const std::span<float>& buffer, const std::span<float>& lit) noexcept {
     const auto count = static_cast<std::size_t>(tile.count());
     if (count > buffer.size()) {
         for (const Tile& half : tile.halves()) {
@@ -16,11 +26,11 @@ TEXGEN_RARE inline void darken_beyond_depth(const TileKernels& kernels, const Tr
             if (plan.work == Work::nothing)
                 fill_rows(lit, rect, half, 0.0f);
             else if (plan.depth != Coverage::inside)
-                darken_beyond_depth(kernels, triangle, rect, half, buffer, lit);
+                darken_beyond_depth(triangle, rect, half, buffer, lit);
         }
         return;
     }
-    interpolate_alone(kernels, triangle, tile, 2, buffer.first(count), nullptr);
+    interpolate_alone(triangle, tile, 2, buffer.first(count), nullptr);
     // Rows that follow one another are one.
     const std::size_t rows = tile.width == rect.width ? 1 : static_cast<std::size_t>(tile.height);
     const std::size_t length = count / rows;
@@ -37,7 +47,7 @@ TEXGEN_APART void darken_beyond_depth(const TriangleFunctions& triangle, const T
     if (out.lit.empty()) return;
     if (out.r.empty()) {
         float buffer[1024];
-        darken_beyond_depth(chosen<TileKernels>(), triangle, tile, tile, buffer, out.lit);
+        darken_beyond_depth(triangle, tile, tile, buffer, out.lit);
     } else {
         chosen<MaskKernels>().darken(out.lit.data(), out.r.data(), out.lit.size(), triangle.lit.r_min(),
                                      triangle.lit.r_max());
@@ -54,13 +64,12 @@ inline Work interpolate_by_plan(const TriangleFunctions& triangle, const Tile& t
         return plan.work;
     }
 
-    const TileKernels& kernels = chosen<TileKernels>();
     // What is certainly inside is lit, and s and t need not be compared.
     const bool is_inside = plan.sides == Coverage::inside;
     if (is_inside && !out.lit.empty()) chosen<MaskKernels>().light_all(out.lit.data(), out.lit.size());
     const bool both = !out.s.empty() && !out.t.empty();
     if (both || (!is_inside && !out.lit.empty())) {
-        TileInterpolator<> interpolator(kernels, triangle, tile, found.close);
+        TileInterpolator<> interpolator(triangle, tile, found.close);
         interpolator.add(out.s, out.t, out.lit);
         if (is_inside) interpolator.leave_mask();
         if (both)
@@ -68,10 +77,10 @@ inline Work interpolate_by_plan(const TriangleFunctions& triangle, const Tile& t
         else
             interpolator.interpolate_in_strips(tile, plan);
     } else {
-        interpolate_alone(kernels, triangle, tile, 0, out.s, &plan);
-        interpolate_alone(kernels, triangle, tile, 1, out.t, &plan);
+        interpolate_alone(triangle, tile, 0, out.s, &plan);
+        interpolate_alone(triangle, tile, 1, out.t, &plan);
     }
-    interpolate_alone(kernels, triangle, tile, 2, out.r, nullptr);
+    interpolate_alone(triangle, tile, 2, out.r, nullptr);
     if (plan.depth != Coverage::inside) darken_beyond_depth(triangle, tile, out);
     return plan.work;
 }

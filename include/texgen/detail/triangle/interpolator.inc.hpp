@@ -10,9 +10,8 @@ public:
     static constexpr int scratch_width = 512;
 
     // `close` is what is known of the functions that add() says, or nothing yet.
-    TileInterpolator(const TileKernels& kernels, const TriangleFunctions& triangle, const Tile& rect,
-                     OnDemand<CloseRamps>& close) noexcept
-        : kernels_(kernels), triangle_(triangle), rect_(rect), close_(close) {}
+    TileInterpolator(const TriangleFunctions& triangle, const Tile& rect, OnDemand<CloseRamps>& close) noexcept
+        : triangle_(triangle), rect_(rect), close_(close) {}
 
     // s and t, of which one that only the mask needs has no output.
     void add(const std::span<float>& s, const std::span<float>& t, const std::span<float>& lit) noexcept {
@@ -40,7 +39,7 @@ public:
         return at;
     }
 
-    void interpolate(const Tile& tile, const Plan* plan) noexcept {
+    TEXGEN_APART void interpolate(const Tile& tile, const Plan* plan) noexcept {
         const Corners at = corners_at(tile);
         interpolate(tile, at, plan != nullptr ? *plan : plan_without_survey(tile, at));
     }
@@ -356,7 +355,7 @@ private:
 
     std::size_t offset(std::int64_t x, std::int64_t y) const noexcept { return offset_in(rect_, x, y); }
 
-    const TileKernels& kernels_;
+    const TileKernels& kernels_ = chosen<TileKernels>();
     const TriangleFunctions& triangle_;
     Tile rect_;  // whose fragments the outputs have
     std::size_t count_ = 0;
@@ -373,18 +372,6 @@ private:
     std::span<float> lit_;
     float scratch_[2][scratch_width];  // coordinates that only the mask needs, a row at a time
 };
-
-// One coordinate of a rectangle; without a plan nothing is known of it.
-template <class CompiledWhereCalled = void>
-TEXGEN_APART void interpolate_alone(const TileKernels& kernels, const TriangleFunctions& triangle, const Tile& rect,
-                                    glm::length_t coordinate, const std::span<float>& output,
-                                    const Plan* plan) noexcept {
-    if (output.empty()) return;
-    OnDemand<CloseRamps> close;
-    TileInterpolator<> interpolator(kernels, triangle, rect, close);
-    interpolator.add(coordinate, output);
-    interpolator.interpolate(rect, plan);
-}
 
 }  // namespace TEXGEN_BUILD
 }  // namespace TEXGEN_DETAIL

@@ -54,15 +54,16 @@ Number largest_of(const Number& base, const Number& right, const Number& bottom)
     return larger(of_row, of_row + bottom);
 }
 
-// q over the tile, and at the corners where it is least and largest.
+// q over the tile, and at the corners where it is least and largest. These do not follow function.error: clang++ would
+// load the two at once, and a load of what two stores wrote waits for both.
 struct SmallDivisor {
-    SmallFunction<double> function;
     double least, largest;
+    SmallFunction<double> function;
 
-    SmallDivisor(const Plane& q, const SmallPlace& place) noexcept
-        : function(q, place),
-          least(least_of(function.base, function.right, function.bottom)),
-          largest(largest_of(function.base, function.right, function.bottom)) {}
+    SmallDivisor(const Plane& q, const SmallPlace& place) noexcept : function(q, place) {
+        least = least_of(function.base, function.right, function.bottom);
+        largest = largest_of(function.base, function.right, function.bottom);
+    }
 
     bool is_far_from_zero() const noexcept {
         return least > larger(0x1p44 * function.error, 0x1p-100) && largest < 0x1p60;
@@ -92,12 +93,12 @@ inline SmallAnswer ask(const LitTest& lit, double tolerance, const SmallFunction
     return is_partly_dark && !may_be_dark ? SmallAnswer::partly_lit : SmallAnswer::doubt;
 }
 
-// Whether one bound serves all quotients; the tile is in float where that does.
-// Exact: F errs by less than 2^-41.5 of itself and q by 2^-44, and four roundings follow: within SmallTile::ulps; F is
-// above 2^-124 q, so the floats are normal. In float, with u = 2^-24 and b the steps to the last row, of which y is at
-// most half: F is rounded with its column, its step, the product with y, and the sum, by u (2 F + 1.5 b), as is q, and
-// the reciprocal and the product round by 2 u. Of quotients that are `greatest` at most this is 6 u greatest + 1.5 u
-// (b_F + greatest b_q) / q, and what floats below 2^-126 lose is less than 2^-100.
+// Whether one bound serves all quotients; the tile is in float where that does. Exact: F errs by less than 2^-41.5 of
+// itself and q by 2^-44, and four roundings follow: within SmallTile::ulps; F is above 2^-124 q, so the floats are
+// normal. In float, with u = 2^-24 and b the steps to the last row, of which y is at most half: F is rounded with its
+// column, its step, the product with y, and the sum, by u (2 F + 1.5 b), as is q, and the reciprocal and the product
+// round by 2 u. Of quotients that are `greatest` at most this is 6 u greatest + 1.5 u (b_F + greatest b_q) / q, and what
+// floats below 2^-126 lose is less than 2^-100.
 inline bool serves(const SmallFunction<Double2>& f, const SmallDivisor& divisor, double tolerance,
                    SmallTile& tile) noexcept {
     const SmallFunction<double>& q = divisor.function;
@@ -116,17 +117,8 @@ inline bool serves(const SmallFunction<Double2>& f, const SmallDivisor& divisor,
     return tile.is_in_float || all_less(f.error * 0x1.8p41 + 0x1.1p-124 * divisor.largest, least);
 }
 
+// What of a tile is left: nothing, what has to be divided again, or all, as no one bound serves.
 enum class SmallDoubt { none, of_unit, of_all };
-
-// One coordinate of a tile of one unit with a value in doubt, or s and t and their mask, without a plan.
-template <class CompiledWhereCalled = void>
-TEXGEN_RARE void divide_again(const TriangleFunctions& triangle, const Tile& rect, glm::length_t coordinate,
-                              const std::span<float>& output, const Texcoords* st) noexcept {
-    OnDemand<CloseRamps> close;
-    TileInterpolator<> interpolator(chosen<TileKernels>(), triangle, rect, close);
-    st != nullptr ? interpolator.add(st->s, st->t, st->lit) : interpolator.add(coordinate, output);
-    interpolator.interpolate_from_doubt(rect);
-}
 
 // The quotients of one or two coordinates, if one bound serves them; `tile` says where they go.
 template <class CompiledWhereCalled = void>
@@ -148,10 +140,11 @@ TEXGEN_APART void fill_small_alone(const TriangleFunctions& triangle, const Tile
     tile.out[0] = tile.out[1] = output.data();
     tile.lit = nullptr;
     const SmallDoubt doubt = divide_small(triangle, plane.value, SmallFunction<Double2>(plane, place), q, tile);
-    if (doubt == SmallDoubt::of_unit)
-        divide_again(triangle, rect, coordinate, output, nullptr);
-    else if (doubt == SmallDoubt::of_all)
-        interpolate_alone(chosen<TileKernels>(), triangle, rect, coordinate, output, nullptr);
+    if (doubt == SmallDoubt::none) return;
+    OnDemand<CloseRamps> close;
+    TileInterpolator<> interpolator(triangle, rect, close);
+    interpolator.add(coordinate, output);
+    doubt == SmallDoubt::of_unit ? interpolator.interpolate_from_doubt(rect) : interpolator.interpolate(rect, nullptr);
 }
 
 // s, t, r and the mask of a small tile, if one certificate serves all of s and t that is asked for.
@@ -176,7 +169,12 @@ TEXGEN_APART SmallAnswer fill_small(const TriangleFunctions& triangle, const Til
         if (tile.lit != nullptr) triangle.lit.copy_to(tile.min, tile.max);
         const SmallDoubt doubt = divide_small(triangle, triangle.st.value, f, q, tile);
         if (doubt == SmallDoubt::of_all) return SmallAnswer::doubt;
-        if (doubt == SmallDoubt::of_unit) divide_again(triangle, rect, 0, {}, &out);
+        if (doubt == SmallDoubt::of_unit) {
+            OnDemand<CloseRamps> close;
+            TileInterpolator<> interpolator(triangle, rect, close);
+            interpolator.add(out.s, out.t, out.lit);
+            interpolator.interpolate_from_doubt(rect);
+        }
     } else {
         if (!is_lit && !out.lit.empty()) return SmallAnswer::doubt;
         if (!out.s.empty()) fill_small_alone(triangle, rect, place, q, 0, out.s, tile);
