@@ -9,10 +9,12 @@
 
 #include "detail/language.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <optional>
 #include <span>
 
@@ -97,6 +99,7 @@ Work interpolate(const TriangleSetup& setup, FragmentRect rect, Texcoords out) n
 #include "detail/triangle/units.inc.hpp"
 
 #include "detail/triangle/interpolator.inc.hpp"
+#include "detail/triangle/mask_spans.inc.hpp"
 #include "detail/triangle/small_tile.inc.hpp"
 
 #include "detail/triangle/interpolate.inc.hpp"

@@ -489,6 +489,66 @@ TEST_CASE("a mask without coordinates is right in rows wider than the scratch of
     CHECK(seen.dark > 2000);
 }
 
+TEST_CASE("a mask alone is that of s and t where sides cross the tile, follow its pixels or are its plane") {
+    Random random(451);
+    // Corners on fragments and coordinates of few bits, so that sides run through fragments along rows, columns and
+    // diagonals; and others.
+    const auto on_a_grid = [](Random& r) {
+        Shot shot{};
+        for (WindowVertex* vertex : vertices(shot.triangle)) {
+            vertex->window = glm::vec2(r.integer(-64, 300), r.integer(-64, 300)) + 0.5f;
+            vertex->clip_w = std::ldexp(1.0f, r.integer(0, 2));
+            vertex->strq = glm::vec4(r.integer(-4, 8), r.integer(-4, 8), 2.0f, 4 * r.integer(1, 2)) * 0.25f;
+        }
+        return shot;
+    };
+    const std::array makers{
+        +on_a_grid,
+        +[](Random& r) { return support::detail::ordinary(support::Family::friendly, r); },
+        +[](Random& r) { return support::detail::with_root(3, r); },
+        +[](Random& r) { return support::detail::constant_q(r); },
+    };
+    int crossed = 0, planes = 0, open = 0, beside = 0;
+    for (int i = 0; i < 6000; ++i) {
+        Shot shot = makers[static_cast<std::size_t>(i) % makers.size()](random);
+        shot.rect = {random.integer(-10, 100), random.integer(-10, 100), random.integer(1, 150), random.integer(1, 12)};
+        const bool is_plane = random.integer(0, 7) == 0;
+        if (is_plane) {
+            const auto coordinate = static_cast<glm::length_t>(random.integer(0, 1));
+            const float bound = random.coin() ? 1.0f : 0.0f;
+            for (WindowVertex* vertex : vertices(shot.triangle)) vertex->strq[coordinate] = bound * vertex->strq.w;
+        }
+        const auto side = [&](double of_whole, double none) {
+            const int kind = random.integer(0, 9);
+            open += kind == 0;
+            return kind == 0 ? none : kind == 1 ? random.integer(-8, 16) / 8.0 : of_whole;
+        };
+        const texgen::TextureRegion region = texgen::atlas_tile({side(0.0, -HUGE_VAL), side(0.0, -HUGE_VAL)},
+                                                                {side(1.0, HUGE_VAL), side(1.0, HUGE_VAL)});
+        const auto setup = TriangleSetup::of(shot.triangle, region);
+        if (!setup) continue;
+        Outputs all(count_of(shot.rect));
+        const Work work = interpolate(*setup, shot.rect, all.spans());
+        for (const unsigned asked : {8u, 9u, 10u}) {
+            Outputs some(count_of(shot.rect), asked, static_cast<std::size_t>(random.integer(0, 16)));
+            REQUIRE_MESSAGE(interpolate(*setup, shot.rect, some.spans()) == work, hex(region), " in ", hex(shot));
+            for (std::size_t k = 0; k < 4; ++k)
+                if (some.asked(k) && (k == 3 || work != Work::nothing))
+                    REQUIRE_MESSAGE(same_bits(some[k], all[k]), asked, " of ", hex(region), " in ", hex(shot));
+            REQUIRE(some.pads_are_intact());
+        }
+        const auto lit = std::count(all.lit().begin(), all.lit().end(), 1.0f);
+        crossed += lit > 0 && lit < static_cast<std::ptrdiff_t>(all.size());
+        planes += is_plane && lit > 0;
+        for (std::size_t k = 0; k < all.size() && work != Work::nothing; ++k)
+            beside += all.s()[k] == 0.0f || all.s()[k] == 1.0f;
+    }
+    CHECK(crossed > 400);
+    CHECK(planes > 100);
+    CHECK(open > 1000);
+    CHECK(beside > 2000);
+}
+
 TEST_CASE("the order of the vertices and the winding do not change a bit") {
     std::uint64_t seed = 500;
     for (const HardFamily& family : support::hard_families) {

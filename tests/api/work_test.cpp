@@ -41,11 +41,6 @@ using texgen::TriangleSetup;
 using texgen::WindowVertex;
 using texgen::Work;
 
-std::string hex(const TextureRegion& region) {
-    const std::string sides = "region " + hex(region.min()) + " to " + hex(region.max());
-    return region.depth() ? sides + ", depth " + hex(*region.depth()) : sides;
-}
-
 // w = 1 and q = 1, and s = r = first + i step at fragment i of every row, t likewise at every row: without an error
 // where first + 1024 step is a float.
 Shot ramp(glm::vec2 first, glm::vec2 step, int width, int height) {
@@ -165,6 +160,39 @@ TEST_CASE("nothing is done only where nothing is lit, and no test is left out wh
     CHECK(divide > 25);
     CHECK(affine > 50);
     CHECK(border > 100);
+}
+
+TEST_CASE("a side that is none asks no fragment, and what a rectangle needs does not depend on what is asked") {
+    Random random(3100);
+    int divide = 0, whole = 0, nothing = 0;
+    for (int i = 0; i < 4000; ++i) {
+        Shot shot = i % 2 == 0 ? support::detail::ordinary(support::Family::friendly, random)
+                               : support::detail::constant_q(random);
+        shot.rect.width = random.integer(1, 70);
+        shot.rect.height = random.integer(1, 8);
+        const auto side = [&](double bound, double none) { return random.integer(0, 2) == 0 ? bound : none; };
+        const TextureRegion region =
+            atlas_tile({side(random.uniform(-0.5, 1.0), -HUGE_VAL), side(random.uniform(-0.5, 1.0), -HUGE_VAL)},
+                       {side(random.uniform(0.0, 1.5), HUGE_VAL), side(random.uniform(0.0, 1.5), HUGE_VAL)});
+        const Tolerance tolerance{random.coin() ? 0.0 : 1e-6};
+        const TriangleSetup setup = setup_of(shot.triangle, region, tolerance);
+        const Work work = setup.work(shot.rect);
+        for (const unsigned asked : {1u, 3u, 8u, 11u, 15u}) {
+            Outputs out(count_of(shot.rect), asked);
+            REQUIRE_MESSAGE(interpolate(setup, shot.rect, out.spans()) == work, asked, " of ", hex(region), " in ",
+                            hex(shot));
+        }
+        nothing += work == Work::nothing;
+        const Truth truth = truth_of(shot, ExactTriangle(shot.triangle), support::everywhere());
+        const Work of_all = setup_of(shot.triangle, support::everywhere(), tolerance).work(shot.rect);
+        if (truth.all_in_front && truth.all_promised) {
+            ++whole;
+            divide += of_all != Work::divide_and_test;
+        }
+    }
+    CHECK(nothing > 300);
+    CHECK(whole > 1000);
+    CHECK(divide == whole);
 }
 
 TEST_CASE("where nothing is lit by a margin nothing is done; where all is lit by a margin nothing is tested") {

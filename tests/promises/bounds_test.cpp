@@ -123,12 +123,15 @@ TEST_CASE("functions over a triangle in float, or in double and rounded, stay in
         const texgen::FragmentRect rect{random.integer(0, 20), random.integer(0, 20), is_float ? 30 : 15,
                                         is_float ? 1 : 2};
         const Tolerance tolerance{random.uniform(1.0, is_float ? 7.0 : 4.5) * unit_roundoff};
-        const texgen::TriangleSetup setup = support::setup_of(triangle, everywhere(), tolerance);
         Outputs out(30), nearest(30);
-        const texgen::Work work = interpolate(setup, rect, out.spans());
         interpolate(support::setup_of(triangle), rect, nearest.spans());
+        // Of a tile that touches a side nothing is certain, which small tiles ask for their own way.
+        const texgen::TextureRegion region = texgen::atlas_tile(
+            {*std::max_element(nearest.s().begin(), nearest.s().end()), -HUGE_VAL}, {HUGE_VAL, HUGE_VAL});
+        const texgen::TriangleSetup setup = support::setup_of(triangle, region, tolerance);
+        const texgen::Work work = interpolate(setup, rect, out.spans());
         support::Seen seen;
-        const std::string wrong = first_wrong({triangle, rect}, exact, everywhere(), tolerance, work, out, seen);
+        const std::string wrong = first_wrong({triangle, rect}, exact, region, tolerance, work, out, seen);
         REQUIRE_MESSAGE(wrong.empty(), wrong, " of ", support::hex(triangle), ", tolerance ", hex(tolerance.value));
         for (std::size_t k = 0; k < out.size(); ++k) cheap += !support::same_bits(out.s()[k], nearest.s()[k]);
     }

@@ -9,6 +9,8 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include "texgen/conventions.hpp"
+
 namespace support {
 
 inline std::string hex(double value) {
@@ -31,6 +33,11 @@ std::string hex(const glm::mat<C, R, T, Q>& m) {
     std::string text = "{";
     for (glm::length_t i = 0; i < C; ++i) text += (i == 0 ? "" : ", ") + hex(m[i]);
     return text + "}";
+}
+
+inline std::string hex(const texgen::TextureRegion& region) {
+    const std::string sides = "region " + hex(region.min()) + " to " + hex(region.max());
+    return region.depth() ? sides + ", depth " + hex(*region.depth()) : sides;
 }
 
 }  // namespace support

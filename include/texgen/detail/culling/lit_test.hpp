@@ -49,6 +49,7 @@ public:
     explicit LitTest(const TextureRegion& region) noexcept
         : min_{float_at_least((region.min)().x), float_at_least((region.min)().y)},
           max_{-float_at_least(-(region.max)().x), -float_at_least(-(region.max)().y)},
+          is_bounded_(max_[0] - min_[0] < HUGE_VALF && max_[1] - min_[1] < HUGE_VALF),
           has_depth_(region.depth().has_value()) {
         if (!has_depth_) return;
         r_min_ = float_at_least(region.depth()->x);
@@ -62,6 +63,8 @@ public:
     double least(std::size_t coordinate) const noexcept { return widened(read_alone(min_[coordinate])); }
     double greatest(std::size_t coordinate) const noexcept { return widened(read_alone(max_[coordinate])); }
 
+    // Whether s and t certainly have four sides, all finite.
+    bool is_bounded() const noexcept { return is_bounded_; }
     bool has_depth() const noexcept { return has_depth_; }
     float r_min() const noexcept { return r_min_; }
     float r_max() const noexcept { return r_max_; }
@@ -78,7 +81,7 @@ public:
 private:
     float min_[2];
     float max_[2];
-    bool has_depth_;
+    bool is_bounded_, has_depth_;
     float r_min_ = 0.0f, r_max_ = 0.0f;
 };
 

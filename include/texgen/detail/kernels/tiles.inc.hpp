@@ -144,24 +144,6 @@ struct CloseFunctionsAt {
     TEXGEN_INLINE double grain(std::size_t n) const noexcept { return of[n].grain; }
 };
 
-// Whether the sides of the region decide all of a vector of a mask alone, see MaskSide, and who is lit then.
-TEXGEN_INLINE bool are_sided(const CloseFunctions& functions, const CloseFunctionsAt& at, const CloseValues& of_q,
-                             Floats& lit) noexcept {
-    const Doubles q = of_q.high + of_q.low;
-    // Where the least of these is above 0 all is lit, where one of those is not, dark.
-    Doubles certainly = q - of_q.error, possibly = q + of_q.error;
-    for (std::size_t k = 0; k < 2; ++k) {
-        const auto& [middle, half, margin, margin_by_q] = functions.side[k];
-        const CloseValues f = at.values(k);
-        const Doubles inside = q * half - magnitude((f.high + f.low) - q * middle);
-        const Doubles least = q * margin_by_q + margin;
-        certainly = minimum(inside - least, certainly);
-        possibly = minimum(inside + least, possibly);
-    }
-    lit = one_where(narrow(greater(certainly, 0.0)));
-    return !any(at_most(certainly, Doubles{}) & greater(possibly, 0.0));
-}
-
 // The fragments of a unit that are asked, as many at once as a vector has, wherever they stand: those of a column, or a
 // few that are left, share vectors; more than half of a unit is asked as all of it. One numerator alone stands in both
 // places. Short vectors need the most code: it is compiled for size.
@@ -175,7 +157,6 @@ TEXGEN_RARE
     constexpr int most = TileJob::unit_size + lanes;
     const bool is_more_known = functions.have_residues || functions.are_close;
     const std::size_t numerators = job.out[0] == job.out[1] ? 1 : 2;
-    const bool is_mask = job.is_scratch[0] && job.is_scratch[1];
     const int width = unit.x_end - unit.x_begin;
     const int size = width * (unit.y_end - unit.y_begin);
     const std::uint64_t all = ~std::uint64_t{0} >> (TileJob::unit_size - size);
@@ -200,13 +181,7 @@ TEXGEN_RARE
     for (int i = 0; i < count; i += lanes) {
         const CloseFunctionsAt at{functions.function, load<Doubles>(x + i), load<Doubles>(y + i), functions.are_close,
                                   functions.are_sums_first};
-        const CloseValues of_q = at.values(CloseFunctions::q);
-        Floats lit;
-        if (is_mask && are_sided(functions, at, of_q, lit)) {
-            store(result[2] + i, lit);
-            continue;
-        }
-        const CloseDivisor q(of_q);
+        const CloseDivisor q(at.values(CloseFunctions::q));
         CloseFragments<2, false> fragments;
         fragments.divide(at, q, numerators, functions.tolerance, is_more_known);
         doubtful |= lane_bits(fragments.doubtful) << i;

@@ -154,17 +154,10 @@ struct CloseFunction {
     double error, grain;
     RampOf<std::uint64_t> residue;
 };
-// A side of a region and the one across from it, for a mask alone. With c = F - middle Q a fragment in front is lit
-// where half Q - |c| is above margin + margin_by_q Q, and dark where it is below minus that; between them its float
-// matters, or the tolerance.
-struct MaskSide {
-    double middle, half, margin, margin_by_q;
-};
 struct CloseFunctions {
     static constexpr std::size_t q = 2;
 
-    CloseFunction function[3];  // two numerators, and q
-    MaskSide side[2];
+    CloseFunction function[3];      // two numerators, and q
     double tolerance;               // within which whatever is nearest to a double will do
     bool are_close, have_residues;  // or they are of the planes as they are, without low parts, and without residues
     bool are_sums_first;            // as they say more than residues do

@@ -188,20 +188,40 @@ TEXGEN_RARE inline void take_planes(const Corners& at, CloseFunctions& functions
     functions.function[CloseFunctions::q].error = at.q_error;
 }
 
+// The side of a region at a bound is G = F - bound Q, positive above the bound and negative below it. The float that is
+// written may be on the other side than the exact value, by an ulp, by the tolerance (twice that leaves room), or as a
+// 0 that was subnormal: so an answer must hold with that much slack, and with room for what F, Q and G are rounded by,
+// which is the first of these and |bound| times the second.
+inline double largest_q_of(const Corners& at) noexcept {
+    return larger(std::fabs(at.least_q), std::fabs(at.largest_q)) + at.q_error;
+}
+inline Double2 margin_of_sides(const Corners& at, double tolerance, double q) noexcept {
+    return (at.numerator_error + (0x1p-125 + 2.0 * tolerance) * q) * 1.0001;
+}
+inline double margin_of_bounds(const Corners& at, double q) noexcept { return (at.q_error + 0x1.001p-22 * q) * 1.0001; }
+
+// The bounds of a region as finite numbers. For an infinite one stands what is rounded to infinity; but where it is none
+// a number that no quotient of a triangle's comes near. A NaN stays one.
+inline constexpr double bound_of_none = 0x1p500, bound_of_infinity = 0x1p128;
+inline Double2 finite_min(const Double2& min) noexcept {
+    return larger(double2_of(-bound_of_none, -bound_of_none),
+                  smaller(double2_of(bound_of_infinity, bound_of_infinity), min));
+}
+inline Double2 finite_max(const Double2& max) noexcept {
+    return larger(double2_of(-bound_of_infinity, -bound_of_infinity),
+                  smaller(double2_of(bound_of_none, bound_of_none), max));
+}
+
 // How much of all fragments in front, if there are any, is between two bounds of the one numerator and two of the
-// other: G = F - bound Q is positive above a bound and negative below it, and the corners have the least and the
-// largest. The float that is written may be on the other side than the exact value, by an ulp, by the tolerance (twice
-// that leaves room), or as a 0 that was subnormal: so the answer must hold with that much slack, and with room for what
-// F, Q and G are rounded by.
+// other: the corners have the least and the largest of G.
 inline Coverage coverage_by_sides(const Corners& at, const Double2& min, const Double2& max,
                                   double tolerance) noexcept {
     struct Side {
         Double2 least, largest, margin;
     };
-    const double q = larger(std::fabs(at.least_q), std::fabs(at.largest_q)) + at.q_error;
-    const double slack = 0x1p-125 + 2.0 * tolerance;
-    const Double2 margin = (at.numerator_error + slack * q) * 1.0001;
-    const double margin_of_bound = (at.q_error + 0x1.001p-22 * q) * 1.0001;
+    const double q = largest_q_of(at);
+    const Double2 margin = margin_of_sides(at, tolerance, q);
+    const double margin_of_bound = margin_of_bounds(at, q);
     const auto side_of = [&](const Double2& bound) {
         Double2 g[4];
         TEXGEN_UNROLL
@@ -209,8 +229,8 @@ inline Coverage coverage_by_sides(const Corners& at, const Double2& min, const D
         return Side{smaller(smaller(g[0], g[1]), smaller(g[2], g[3])), larger(larger(g[0], g[1]), larger(g[2], g[3])),
                     margin + magnitude(bound) * margin_of_bound};
     };
-    const Side of_min = side_of(min);
-    const Side of_max = side_of(max);
+    const Side of_min = side_of(finite_min(min));
+    const Side of_max = side_of(finite_max(max));
     if (any_less(of_min.largest, -of_min.margin) || any_less(of_max.margin, of_max.least)) return Coverage::outside;
     const bool all_inside = all_less(of_min.margin, of_min.least) && all_less(of_max.largest, -of_max.margin);
     return all_inside && at.all_in_front() ? Coverage::inside : Coverage::partial;
@@ -221,33 +241,9 @@ inline Coverage st_coverage(const Corners& at, const LitTest& lit, double tolera
     return coverage_by_sides(at, double2_of(lit.least(0), lit.least(1)), double2_of(lit.greatest(0), lit.greatest(1)),
                              tolerance);
 }
-// The same of any tile, where that is rare.
-TEXGEN_RARE inline Coverage st_coverage_apart(const Corners& at, const LitTest& lit, double tolerance) noexcept {
-    return at.all_behind() ? Coverage::outside : st_coverage(at, lit, tolerance);
-}
-
-// The sides of a mask alone, with the margins of coverage_by_sides(): what is known of the functions later errs by
-// less. Q is at most what is computed and its error. Roundings, here and where a fragment is asked, are some 2^-50 of c
-// and of the bounds times q: nothing to margins of 2^-22 of those, or to a c that is larger. Bounds that are not finite
-// leave all to the floats.
-TEXGEN_RARE inline void take_sides(const LitTest& lit, CloseFunctions& functions) noexcept {
-    const double q_error = functions.function[CloseFunctions::q].error;
-    for (std::size_t k = 0; k < 2; ++k) {
-        const double least = 0.5 * lit.least(k), greatest = 0.5 * lit.greatest(k);
-        const double bound = std::fabs(least) + std::fabs(greatest);  // half of the larger one at least
-        const double by_q = bound * 0x1.1p-21 + (0x1.1p-125 + 2.1 * functions.tolerance);
-        const double error = functions.function[k].error + (2.0 * bound + by_q) * q_error;
-        functions.side[k] = bound < infinity ? MaskSide{greatest + least, greatest - least, 1.02 * error, by_q}
-                                             : MaskSide{0.0, 0.0, infinity, 0.0};
-    }
-}
-
-// Of a depth, where the numerators are r twice. For an infinite limit stands what is rounded to infinity; but where it
-// is none a number that no quotient of a triangle's comes near. A NaN stays one.
+// Of a depth, where the numerators are r twice.
 inline Coverage r_coverage(const Corners& at, const LitTest& lit, double tolerance) noexcept {
-    constexpr double none = 0x1p500, infinite = 0x1p128;
-    const double min = larger(-none, smaller(infinite, widened(lit.r_min())));
-    const double max = larger(-infinite, smaller(none, widened(lit.r_max())));
+    const double min = widened(lit.r_min()), max = widened(lit.r_max());
     return coverage_by_sides(at, double2_of(min, min), double2_of(max, max), tolerance);
 }
 

@@ -9,9 +9,7 @@ TEXGEN_APART void interpolate_alone(const TriangleFunctions& triangle, const Til
                                     const std::span<float>& output, const Plan* plan) noexcept {
     if (output.empty()) return;
     OnDemand<CloseRamps> close;
-    TileInterpolator<> interpolator(triangle, rect, close);
-    interpolator.add(coordinate, output);
-    interpolator.interpolate(rect, plan);
+    TileInterpolator<>(triangle, rect, close, coordinate, output).interpolate(rect, plan);
 }
 
 // Takes the light of a tile's fragments whose r, which nobody asked for, is beyond the depth, which cuts it. It is
@@ -67,18 +65,16 @@ inline Work interpolate_by_plan(const TriangleFunctions& triangle, const Tile& t
     // What is certainly inside is lit, and s and t need not be compared.
     const bool is_inside = plan.sides == Coverage::inside;
     if (is_inside && !out.lit.empty()) chosen<MaskKernels>().light_all(out.lit.data(), out.lit.size());
-    const bool both = !out.s.empty() && !out.t.empty();
-    if (both || (!is_inside && !out.lit.empty())) {
-        TileInterpolator<> interpolator(triangle, tile, found.close);
-        interpolator.add(out.s, out.t, out.lit);
+    const bool asks_mask = !is_inside && !out.lit.empty();
+    if (!out.s.empty() && !out.t.empty()) {
+        TileInterpolator<> interpolator(triangle, tile, found.close, out);
         if (is_inside) interpolator.leave_mask();
-        if (both)
-            interpolator.interpolate(tile, found.at, plan);
-        else
-            interpolator.interpolate_in_strips(tile, plan);
+        interpolator.interpolate(tile, found.at, plan);
     } else {
         interpolate_alone(triangle, tile, 0, out.s, &plan);
         interpolate_alone(triangle, tile, 1, out.t, &plan);
+        const Tile left = asks_mask ? light_spans(triangle, tile, found.at, out.lit) : Tile{};
+        if (left.count() > 0) TileInterpolator<>(triangle, tile, found.close, out).interpolate_in_strips(left, plan);
     }
     interpolate_alone(triangle, tile, 2, out.r, nullptr);
     if (plan.depth != Coverage::inside) darken_beyond_depth(triangle, tile, out);

@@ -9,29 +9,31 @@ class TileInterpolator {
 public:
     static constexpr int scratch_width = 512;
 
-    // `close` is what is known of the functions that add() says, or nothing yet.
-    TileInterpolator(const TriangleFunctions& triangle, const Tile& rect, OnDemand<CloseRamps>& close) noexcept
-        : triangle_(triangle), rect_(rect), close_(close) {}
+    // s and t, of which one that only the mask needs has no output. `close` is what is known of them, or nothing yet.
+    TEXGEN_APART TileInterpolator(const TriangleFunctions& triangle, const Tile& rect, OnDemand<CloseRamps>& close,
+                                  const Texcoords& out) noexcept
+        : triangle_(triangle),
+          rect_(rect),
+          count_(2),
+          coordinate_{0, 1},
+          planes_(&triangle.st),
+          close_(close),
+          output_{out.s, out.t},
+          lit_(out.lit) {}
+    // One coordinate, 0 to 2 for s, t, r.
+    TEXGEN_APART TileInterpolator(const TriangleFunctions& triangle, const Tile& rect, OnDemand<CloseRamps>& close,
+                                  glm::length_t coordinate, const std::span<float>& output) noexcept
+        : triangle_(triangle),
+          rect_(rect),
+          count_(1),
+          coordinate_{coordinate},
+          planes_(&alone_),
+          alone_(triangle.planes.plane_twice(coordinate)),
+          close_(close),
+          output_{output} {}
 
-    // s and t, of which one that only the mask needs has no output.
-    void add(const std::span<float>& s, const std::span<float>& t, const std::span<float>& lit) noexcept {
-        planes_ = &triangle_.st;
-        count_ = 2;
-        coordinate_[1] = 1;
-        output_[0] = s;
-        output_[1] = t;
-        lit_ = lit;
-    }
     // As it is known already.
     void leave_mask() noexcept { lit_ = {}; }
-    // One coordinate, 0 to 2 for s, t, r.
-    void add(glm::length_t coordinate, const std::span<float>& output) noexcept {
-        alone_ = triangle_.planes.plane_twice(coordinate);
-        planes_ = &alone_;
-        count_ = 1;
-        coordinate_[0] = coordinate;
-        output_[0] = output;
-    }
 
     TEXGEN_APART Corners corners_at(const Tile& tile) noexcept {
         Corners at = corners_of(triangle_.planes, *planes_, triangle_.q, tile);
@@ -109,7 +111,6 @@ private:
         result.are_close = static_cast<bool>(close_);
         result.are_close ? take_close(tile, result, false) : take_planes(at, result);
         result.are_sums_first = result.are_close;
-        if (is_mask_alone()) take_sides(triangle_.lit, result);
         return result;
     }
 
@@ -180,13 +181,6 @@ private:
 
     // Exact sums of one fragment cost less than two doubles and residues, which a tile shares.
     bool is_one() const noexcept { return rect_.count() == 1; }
-    bool is_mask_alone() const noexcept { return output_[0].empty() && output_[1].empty(); }
-    // Writes the mask of a part of a tile if all of it is lit or dark.
-    TEXGEN_RARE bool lights_at_once(const Tile& part) noexcept {
-        const Coverage sides = st_coverage_apart(corners_at(part), triangle_.lit, triangle_.tolerance);
-        if (sides != Coverage::partial) fill_rows(lit_, rect_, part, sides == Coverage::inside ? 1.0f : 0.0f);
-        return sides != Coverage::partial;
-    }
 
     // A tile behind is cleared. Of one in doubt what is next to q = 0 is divided closely, if those are few; else it is
     // halved.
@@ -196,7 +190,7 @@ private:
         const Stretch stretch = at.next_to_zero(tile);
         for (std::size_t i = 0; i < 3; ++i) {
             const Tile part = stretch.part(tile, i);
-            if (part.count() == 0 || (is_mask_alone() && lights_at_once(part))) continue;
+            if (part.count() == 0) continue;
             if (i == 1)
                 fill_closely(part);
             else
@@ -358,8 +352,8 @@ private:
     const TileKernels& kernels_ = chosen<TileKernels>();
     const TriangleFunctions& triangle_;
     Tile rect_;  // whose fragments the outputs have
-    std::size_t count_ = 0;
-    glm::length_t coordinate_[2] = {};
+    std::size_t count_;
+    glm::length_t coordinate_[2];
     const PlaneOf<Double2>* planes_;
     PlaneOf<Double2> alone_;
     OnDemand<CloseRamps>& close_;

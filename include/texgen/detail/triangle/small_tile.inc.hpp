@@ -77,14 +77,19 @@ inline SmallAnswer ask(const LitTest& lit, double tolerance, const SmallFunction
                        const SmallDivisor& divisor) noexcept {
     if (!divisor.is_far_from_zero()) return SmallAnswer::doubt;
     const SmallFunction<double>& q = divisor.function;
-    const Double2 min = double2_of(lit.least(0), lit.least(1));
-    const Double2 max = double2_of(lit.greatest(0), lit.greatest(1));
+    Double2 min = double2_of(lit.least(0), lit.least(1));
+    Double2 max = double2_of(lit.greatest(0), lit.greatest(1));
+    if (!lit.is_bounded()) {
+        min = finite_min(min);
+        max = finite_max(max);
+    }
     const Double2 above[3] = {f.base - min * q.base, f.right - min * q.right, f.bottom - min * q.bottom};
     const Double2 below[3] = {max * q.base - f.base, max * q.right - f.right, max * q.bottom - f.bottom};
     const Double2 least_above = least_of<Double2>(above[0], above[1], above[2]);
     const Double2 least_below = least_of<Double2>(below[0], below[1], below[2]);
-    const Double2 error = f.error + max * q.error;
-    const Double2 margin = error * 2.0 + (max * 0x1p-21 + (0x1.1p-124 + 4.1 * tolerance)) * divisor.largest;
+    const Double2 size = larger(max, -min);
+    const Double2 error = f.error + size * q.error;
+    const Double2 margin = error * 2.0 + (size * 0x1p-21 + (0x1.1p-124 + 4.1 * tolerance)) * divisor.largest;
     if (all_less(margin, smaller(least_above, least_below))) return SmallAnswer::lit;
     const bool is_partly_dark = any_less(smaller(least_above, least_below), -margin);
     const Double2 largest_above = largest_of<Double2>(above[0], above[1], above[2]);
@@ -142,8 +147,7 @@ TEXGEN_APART void fill_small_alone(const TriangleFunctions& triangle, const Tile
     const SmallDoubt doubt = divide_small(triangle, plane.value, SmallFunction<Double2>(plane, place), q, tile);
     if (doubt == SmallDoubt::none) return;
     OnDemand<CloseRamps> close;
-    TileInterpolator<> interpolator(triangle, rect, close);
-    interpolator.add(coordinate, output);
+    TileInterpolator<> interpolator(triangle, rect, close, coordinate, output);
     doubt == SmallDoubt::of_unit ? interpolator.interpolate_from_doubt(rect) : interpolator.interpolate(rect, nullptr);
 }
 
@@ -151,8 +155,6 @@ TEXGEN_APART void fill_small_alone(const TriangleFunctions& triangle, const Tile
 template <class CompiledWhereCalled = void>
 TEXGEN_APART SmallAnswer fill_small(const TriangleFunctions& triangle, const Tile& rect,
                                     const Texcoords& out) noexcept {
-    const Double2 least = double2_of(triangle.lit.least(0), triangle.lit.least(1));
-    if (!(least[0] >= 0.0 && least[1] >= 0.0)) return SmallAnswer::doubt;
     const SmallPlace place(triangle.planes.from_a(rect), rect);
     const SmallFunction<Double2> f(triangle.st, place);
     const SmallDivisor q(triangle.q, place);
@@ -171,9 +173,7 @@ TEXGEN_APART SmallAnswer fill_small(const TriangleFunctions& triangle, const Til
         if (doubt == SmallDoubt::of_all) return SmallAnswer::doubt;
         if (doubt == SmallDoubt::of_unit) {
             OnDemand<CloseRamps> close;
-            TileInterpolator<> interpolator(triangle, rect, close);
-            interpolator.add(out.s, out.t, out.lit);
-            interpolator.interpolate_from_doubt(rect);
+            TileInterpolator<>(triangle, rect, close, out).interpolate_from_doubt(rect);
         }
     } else {
         if (!is_lit && !out.lit.empty()) return SmallAnswer::doubt;

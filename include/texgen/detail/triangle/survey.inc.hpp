@@ -110,7 +110,7 @@ inline void choose_plan(const TriangleFunctions& triangle, const Tile& tile, con
     if (at.is_well_in_front()) choose_steps(plan, at, triangle.tolerance * (1.0 - 0x1p-18));
 }
 
-inline TileSurvey survey(const TriangleFunctions& triangle, const Tile& tile) noexcept {
+TEXGEN_APART inline TileSurvey survey(const TriangleFunctions& triangle, const Tile& tile) noexcept {
     TileSurvey found(triangle, tile);
     for (;;) {
         choose_plan(triangle, tile, found.at, found.plan);

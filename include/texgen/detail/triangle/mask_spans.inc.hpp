@@ -1,0 +1,128 @@
+// A mask without its coordinates: q = 0 and each side of the region bound a half plane, so that what is lit of a row of
+// fragments is one span. Its ends are found by a division for all rows, and no fragment is divided. Included by
+// interpolate.hpp.
+
+namespace TEXGEN_DETAIL {
+inline namespace TEXGEN_BUILD {
+
+// Fragments of a row, from `begin` to before `end`.
+struct Span {
+    int begin, end;
+};
+
+// q >= 0 and the sides of the region over a tile, with the margins of coverage_by_sides(): a linear function is above 0
+// where it is computed to be above its margin, and not where it is below minus that.
+class HalfPlanes {
+public:
+    TEXGEN_APART HalfPlanes(const TriangleFunctions& triangle, const Corners& at, const Tile& tile) noexcept
+        : tile_(tile) {
+        const double q = largest_q_of(at);
+        if (!at.all_in_front()) add(at.q_ramp, 1.01 * at.q_error + 0x1p-46 * q);
+        const auto& [base, dx, dy] = at.numerator_ramp;
+        for (std::size_t side = 0; side < 4; ++side) {
+            const std::size_t k = side % 2;
+            const double sign = side < 2 ? 1.0 : -1.0;
+            const double bound = side < 2 ? triangle.lit.least(k) : triangle.lit.greatest(k);
+            if (bound == -sign * infinity || (triangle.tolerance == 0.0 && is_on_side(triangle.planes, k, bound)))
+                continue;
+            const auto at_side = [&](const Double2& f, double of_q) { return sign * (f[k] - bound * of_q); };
+            // A tile's values are five of the largest at most, which are rounded thrice.
+            add({at_side(base, at.q_ramp.base), at_side(dx, at.q_ramp.dx), at_side(dy, at.q_ramp.dy)},
+                margin_of_sides(at, triangle.tolerance, q)[k] + std::fabs(bound) * margin_of_bounds(at, q) +
+                    0x1p-46 * at.largest_numerator[k]);
+        }
+    }
+
+    // False where a function or a bound is next to infinity, and nothing is known.
+    bool are_finite() const noexcept { return are_finite_; }
+
+    // What of a row is lit.
+    struct Lit {
+        Span certain, possible;
+    };
+    TEXGEN_APART Lit find(int y) const noexcept {
+        const Double2 none{}, all = double2_of(tile_.width, tile_.width);
+        Double2 begin = none, end = all;
+        for (std::size_t i = 0; i < begins_; ++i) begin = larger(at_begin_[i].in_row(y), begin);
+        for (std::size_t i = 0; i < ends_; ++i) end = smaller(at_end_[i].in_row(y), end);
+        begin = smaller(begin, all);
+        end = larger(end, none);
+        Span possible{count_before(begin[1]), count_before(end[1])};
+        if (possible.begin > possible.end) possible.begin = possible.end;
+        const Span certain{count_before(begin[0]), count_before(end[0])};
+        return {certain.begin < certain.end ? certain : Span{possible.end, possible.end}, possible};
+    }
+
+private:
+    // Where it is the margin, and minus that.
+    struct Zero {
+        Double2 first, step;
+
+        Double2 in_row(int y) const noexcept { return first + step * y; }
+    };
+
+    // Whether u = bound everywhere: bounds are floats, and products of two exact.
+    static bool is_on_side(const TrianglePlanes& planes, std::size_t k, double bound) noexcept {
+        const auto coordinate = static_cast<glm::length_t>(k);
+        for (std::size_t i = 0; i < 3; ++i)
+            if (planes.value(i, coordinate) != bound * planes.value(i, 3)) return false;
+        return true;
+    }
+
+    // One that grows by less than a share of its margin along a row may as well grow by that share.
+    TEXGEN_APART void add(const Ramp& value, double margin) noexcept {
+        const double least_growth = 0x1p-8 * margin / tile_.width;
+        double dx = value.dx;
+        if (std::fabs(dx) < least_growth) {
+            dx = least_growth;
+            margin *= 1.01;
+        }
+        const double per_dx = 1.0 / dx;
+        const double base = -value.base * per_dx, step = -value.dy * per_dx, reach = std::fabs(margin * per_dx);
+        const double rounding = 0x1p-20 + 0x1p-50 * (std::fabs(base) + std::fabs(step) * tile_.height + reach);
+        const Double2 zero = double2_of(base, base);
+        const Double2 outwards = double2_of(reach + rounding, -reach - rounding);
+        if (dx > 0.0)
+            at_begin_[begins_++] = {zero + outwards, double2_of(step, step)};
+        else
+            at_end_[ends_++] = {zero - outwards, double2_of(step, step)};
+        are_finite_ &= rounding < infinity;
+    }
+
+    static int count_before(double x) noexcept {
+        const int whole = static_cast<int>(x);
+        return whole < x ? whole + 1 : whole;
+    }
+
+    Tile tile_;
+    Zero at_begin_[5], at_end_[5];
+    std::size_t begins_ = 0, ends_ = 0;
+    bool are_finite_ = true;
+};
+
+// The mask of a tile by the spans of its rows. Returns the part in which floats decide: all, where they do in much of it;
+// or under a tolerance anywhere, as what would be written depends on all of the tile then.
+TEXGEN_APART inline Tile light_spans(const TriangleFunctions& triangle, const Tile& tile, const Corners& at,
+                                     const std::span<float>& lit) noexcept {
+    const HalfPlanes planes(triangle, at, tile);
+    if (!planes.are_finite()) return tile;
+    std::memset(lit.data(), 0, lit.size_bytes());
+    const MaskKernels& kernels = chosen<MaskKernels>();
+    int left = tile.width, right = 0, top = tile.height, bottom = 0;
+    for (int y = 0; y < tile.height; ++y) {
+        const auto [certain, possible] = planes.find(y);
+        kernels.light_all(lit.data() + static_cast<std::ptrdiff_t>(y) * tile.width + certain.begin,
+                          static_cast<std::size_t>(certain.end - certain.begin));
+        if (possible.begin == certain.begin && possible.end == certain.end) continue;
+        left = (std::min)(left, possible.begin < certain.begin ? possible.begin : certain.end);
+        right = (std::max)(right, certain.end < possible.end ? possible.end : certain.begin);
+        top = (std::min)(top, y);
+        bottom = y + 1;
+    }
+    if (bottom == 0) return {};
+    const Tile part{tile.x + left, tile.y + top, right - left, bottom - top};
+    return triangle.tolerance != 0.0 || 4 * part.count() > tile.count() ? tile : part;
+}
+
+}  // namespace TEXGEN_BUILD
+}  // namespace TEXGEN_DETAIL
