@@ -502,8 +502,25 @@ TEST_CASE("a mask alone is that of s and t where sides cross the tile, follow it
         }
         return shot;
     };
+    // s is 1 at fragments but for less than its floats are apart, which move the side by 2^-18 of a fragment and more.
+    const auto beside_one = [](Random& r) {
+        const glm::vec2 crossing = glm::vec2(r.integer(0, 140), r.integer(0, 100)) + 0.5f;
+        const glm::vec2 from[] = {{-816.0f, 0.0f}, {208.0f, 40.0f}, {-16.0f, 500.0f}};
+        const auto down = static_cast<float>(r.integer(-1, 1));
+        Shot shot{};
+        std::size_t i = 0;
+        for (WindowVertex* vertex : vertices(shot.triangle)) {
+            const glm::vec2 by = from[i++];
+            const float s = 1.0f + (by.x + down * by.y) / 1024.0f;
+            vertex->window = crossing + by;
+            vertex->clip_w = 1.0f;
+            vertex->strq = {r.coin() ? s : std::nextafter(s, r.coin() ? 2.0f : -1.0f), 0.5f, 0.5f, 1.0f};
+        }
+        return shot;
+    };
     const std::array makers{
         +on_a_grid,
+        +beside_one,
         +[](Random& r) { return support::detail::ordinary(support::Family::friendly, r); },
         +[](Random& r) { return support::detail::with_root(3, r); },
         +[](Random& r) { return support::detail::constant_q(r); },
