@@ -384,3 +384,26 @@ TEST_CASE(
         }
     }
 }
+
+TEST_CASE("masks of a batch that are lit at once take at most three quarters of what s and t take") {
+    constexpr std::size_t count = 64;
+    for (const int size : {8, 16, 32}) {
+        for (const Tolerance tolerance : dial) {
+            const Shot shot = ordinary(size, size);
+            texgen::TriangleBatch batch(texgen::atlas_tile({-HUGE_VAL, 0.0}, {HUGE_VAL, 1.0}), tolerance);
+            batch.assign(std::vector<Triangle>(count, shot.triangle));
+            const std::vector<FragmentRect> rects(count, shot.rect);
+            std::vector<float> s(count * support::count_of(shot.rect)), t(s.size()), lit(s.size());
+            const double ratio = support::worst_over_ordinary_within(
+                0.75,
+                [&] {
+                    interpolate(batch, rects, {s, t, {}, {}});
+                },
+                [&] {
+                    interpolate(batch, rects, {{}, {}, {}, lit});
+                });
+            REQUIRE_MESSAGE(ratio <= 0.75, size, ", tolerance ", tolerance.value, ": ", ratio);
+            REQUIRE(std::count(lit.begin(), lit.end(), 1.0f) == static_cast<std::ptrdiff_t>(lit.size()));
+        }
+    }
+}

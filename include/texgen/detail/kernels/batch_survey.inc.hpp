@@ -136,10 +136,8 @@ TEXGEN_INLINE LongWords prepare_in_float(const BatchJob& job, const BatchPlanes*
                              ((size_u + step) * q_error + f[3] * tile.stretch) * error_share;
         is_float &= at_most(rest, tolerance);
         is_polynomial &= at_most(rest + step * share, tolerance);
-        const bool has_limits = k < 2 || job.has_depth;
-        const double min = static_cast<double>(k < 2 ? job.min[k] : job.r_min);
-        const double max = static_cast<double>(k < 2 ? job.max[k] : job.r_max);
-        if (!has_limits) continue;
+        if (k == 2 && !job.has_depth) continue;
+        const double min = job.least[k], max = job.greatest[k];
         is_inside &= ~(greater(u, max) | greater(Doubles{} + min, u));
         is_lit &= greater(u - (step + rest), min) & greater(Doubles{} + max, u + (step + rest));
     }
@@ -186,19 +184,11 @@ TEXGEN_APART void prepare(const BatchJob& job, const BatchPlanes* of_tiles, cons
         const LongWords is_normal = greater(least, 0.0);
         ulps = maximum(ulps, where(is_normal, error * q.largest / least * (0x1p53 * 1.001)));
         have_middles &= is_normal;
-        if (k < 2) {
-            const double min = static_cast<double>(job.min[k]);
-            const double max = static_cast<double>(job.max[k]);
-            // Where no mask is asked for a corner in the region spares the rest.
-            if (job.lit != nullptr || any(greater(q.at[0] * min, f.at[0]) | greater(f.at[0], q.at[0] * max)))
-                ask(f, min, max);
-        }
-        if (k == 2 && job.has_depth) {
-            // Infinite limits as r_coverage() has them.
-            const double r_min = larger(-0x1p500, smaller(0x1p128, static_cast<double>(job.r_min)));
-            const double r_max = larger(-0x1p128, smaller(0x1p500, static_cast<double>(job.r_max)));
-            ask(f, r_min, r_max);
-        }
+        if (k == 2 && !job.has_depth) continue;
+        const double min = job.least[k], max = job.greatest[k];
+        // Where no mask is asked for a corner in the region spares the rest.
+        if (k == 2 || job.lit != nullptr || any(greater(q.at[0] * min, f.at[0]) | greater(f.at[0], q.at[0] * max)))
+            ask(f, min, max);
     }
     store(&tiles.ulps[first], power_of_two_below(ulps) * 2.0);
     tiles.add(BatchTiles::is_dark, is_dark, first);

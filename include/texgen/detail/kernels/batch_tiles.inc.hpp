@@ -231,6 +231,18 @@ TEXGEN_INLINE bool fill_tile(const BatchPlanes& planes, const BatchTiles& tiles,
     return is_certain;
 }
 
+// One value for a tile, wherever it has outputs.
+TEXGEN_APART inline void fill_all(const FragmentOutputs& out, std::size_t begin, std::size_t count,
+                                  float value) noexcept {
+    const WideFloats values = WideFloats{} + value;
+    for (float* const array : {out.out[0], out.out[1], out.out[2], out.lit}) {
+        if (array == nullptr) continue;
+        std::size_t n = begin;
+        for (; n + wide_at_once <= begin + count; n += wide_at_once) store(array + n, values);
+        for (; n < begin + count; ++n) array[n] = value;
+    }
+}
+
 // Tiles of the block from `first` on that are in doubt, a bit each, again; its values begin at `of_block`. From the
 // first that stays so on they have functions about corners, too. Returns those that this leaves.
 TEXGEN_APART inline std::uint64_t decide_tiles(const TilesJob& job, const FragmentOutputs& out, std::size_t first,
@@ -294,6 +306,7 @@ TEXGEN_INLINE Undecided divide_all_tiles(const TilesJob& job, std::size_t first,
     std::size_t most = job.tolerance > 0.0 && lanes < 4 ? largest_in_scratch : largest_batch_tile;
     for (std::size_t k = 0; k < Numerators; ++k)
         if (out.out[k] == nullptr) most = largest_in_scratch;
+    const bool is_mask_alone = out.out[0] == nullptr && out.out[1] == nullptr && out.out[2] == nullptr;
     for (; first < job.tile_count; first += batch_block) {
         const std::size_t count = job.tile_count - first < batch_block ? job.tile_count - first : batch_block;
         tiles.kinds = 0;
@@ -322,9 +335,8 @@ TEXGEN_INLINE Undecided divide_all_tiles(const TilesJob& job, std::size_t first,
             if (!shape.is_of(width, height)) shape.take(width, height);
             const std::size_t begin = done;
             done += shape.count;
-            if (tiles.has(BatchTiles::is_dark, i)) {
-                for (float* const array : {out.out[0], out.out[1], out.out[2], out.lit})
-                    for (std::size_t n = begin; array != nullptr && n < done; ++n) array[n] = 0.0f;
+            if (tiles.has(BatchTiles::is_dark, i) || (is_mask_alone && tiles.has(BatchTiles::is_lit, i))) {
+                fill_all(out, begin, shape.count, tiles.has(BatchTiles::is_dark, i) ? 0.0f : 1.0f);
                 continue;
             }
             const bool is_large = shape.count > largest_in_scratch;

@@ -58,6 +58,7 @@ struct BatchJob {
     float min[2], max[2];  // the region
     bool has_depth;
     float r_min, r_max;
+    double least[3], greatest[3];  // those of s, t and r as finite numbers
 
     bool needs_r() const noexcept { return out[2] != nullptr || (has_depth && lit != nullptr); }
 };
