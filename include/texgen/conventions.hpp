@@ -11,8 +11,8 @@
 
 #include "detail/matrices/required.hpp"
 
-// 0.4.18: 10000 major + 100 minor + patch.
-#define TEXGEN_VERSION 418
+// 0.4.19: 10000 major + 100 minor + patch.
+#define TEXGEN_VERSION 419
 
 namespace TEXGEN_NAMESPACE {
 
