@@ -99,7 +99,7 @@ inline SmallAnswer ask(const LitTest& lit, double tolerance, const SmallFunction
 }
 
 // Whether one bound serves all quotients; the tile is in float where that does. Exact: F errs by less than 2^-41.5 of
-// itself and q by 2^-44, and four roundings follow: within SmallTile::ulps; F is above 2^-124 q, so the floats are
+// itself and q by 2^-44, and four roundings follow: within SmallTile::ulps; |F| is above 2^-124 q, so the floats are
 // normal. In float, with u = 2^-24 and b the steps to the last row, of which y is at most half: F is rounded with its
 // column, its step, the product with y, and the sum, by u (2 F + 1.5 b), as is q, and the reciprocal and the product
 // round by 2 u. Of quotients that are `greatest` at most this is 6 u greatest + 1.5 u (b_F + greatest b_q) / q, and what
@@ -108,10 +108,10 @@ inline bool serves(const SmallFunction<Double2>& f, const SmallDivisor& divisor,
                    SmallTile& tile) noexcept {
     const SmallFunction<double>& q = divisor.function;
     const Double2 least = least_of<Double2>(f.base, f.right, f.bottom);
+    const Double2 largest = largest_of<Double2>(f.base, f.right, f.bottom);
     tile.is_in_float = false;
     if (tolerance != 0.0 && tile.width == 8 && read_alone(tile.height) % 2 == 0) {
-        const Double2 largest = larger(largest_of<Double2>(f.base, f.right, f.bottom), -least);
-        const Double2 greatest = largest * (1.001 / divisor.least);
+        const Double2 greatest = larger(largest, -least) * (1.001 / divisor.least);
         const double allowed = (tolerance - 0x1p-100) * (divisor.least - q.error);
         const Double2 error = f.error + greatest * q.error;
         const Double2 rounded = larger(f.bottom, -f.bottom) + greatest * (4.02 * divisor.least + std::fabs(q.bottom));
@@ -119,7 +119,7 @@ inline bool serves(const SmallFunction<Double2>& f, const SmallDivisor& divisor,
             all_less(error * 1.01 + rounded * (1.52 * unit_roundoff_float), double2_of(allowed, allowed)) &&
             divisor.least > larger(0x1p-10 * divisor.largest, 0x1p-21) && tolerance < 0x1p40;
     }
-    return tile.is_in_float || all_less(f.error * 0x1.8p41 + 0x1.1p-124 * divisor.largest, least);
+    return tile.is_in_float || all_less(f.error * 0x1.8p41 + 0x1.1p-124 * divisor.largest, larger(least, -largest));
 }
 
 // What of a tile is left: nothing, what has to be divided again, or all, as no one bound serves.
