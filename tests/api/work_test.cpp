@@ -170,7 +170,11 @@ TEST_CASE("a side that is none asks no fragment, and what a rectangle needs does
                                : support::detail::constant_q(random);
         shot.rect.width = random.integer(1, 70);
         shot.rect.height = random.integer(1, 8);
-        const auto side = [&](double bound, double none) { return random.integer(0, 2) == 0 ? bound : none; };
+        // Of regions that are none, too.
+        const auto side = [&](double bound, double none) {
+            const int kind = random.integer(0, 20);
+            return kind == 0 ? nan_double : kind == 1 ? -none : kind == 2 ? bound * 0x1p127 : kind < 9 ? bound : none;
+        };
         const TextureRegion region =
             atlas_tile({side(random.uniform(-0.5, 1.0), -HUGE_VAL), side(random.uniform(-0.5, 1.0), -HUGE_VAL)},
                        {side(random.uniform(0.0, 1.5), HUGE_VAL), side(random.uniform(0.0, 1.5), HUGE_VAL)});

@@ -658,7 +658,7 @@ MUTANTS = [
          ("a side of a mask has no margin", "reach = std::fabs(margin * per_dx);", "reach = 0.0;", "interpolate_test"),
          ("what may be lit of a row is", "{count_before(begin[0]), count_before(end[0])}",
           "{count_before(begin[1]), count_before(end[1])}", "interpolate_test"),
-         ("a mask does not ask q", "if (!at.all_in_front()) add(", "if (false) add(", "interpolate_test"),
+         ("a mask does not ask q", "        add(at.q_ramp, at.q_error + 0x1p-46 * q);\n", "", "interpolate_test"),
          ("a triangle that touches a side at one corner is on it", "if (planes.value(i, coordinate) != bound * planes.value(i, 3)) return false;",
           "if (planes.value(i, coordinate) == bound * planes.value(i, 3)) return true;", "interpolate_test"),
          ("a row that begins on a side is dark", "whole < x ? whole + 1 : whole", "whole + 1", "interpolate_test"),

@@ -49,7 +49,8 @@ public:
     explicit LitTest(const TextureRegion& region) noexcept
         : min_{float_at_least((region.min)().x), float_at_least((region.min)().y)},
           max_{-float_at_least(-(region.max)().x), -float_at_least(-(region.max)().y)},
-          is_bounded_(widened(max_[0]) - widened(min_[0]) < infinity && widened(max_[1]) - widened(min_[1]) < infinity),
+          is_bounded_(std::fabs(widened(max_[0]) - widened(min_[0])) + std::fabs(widened(max_[1]) - widened(min_[1])) <
+                      infinity),
           has_depth_(region.depth().has_value()) {
         if (!has_depth_) return;
         r_min_ = float_at_least(region.depth()->x);

@@ -17,7 +17,7 @@ public:
     TEXGEN_APART HalfPlanes(const TriangleFunctions& triangle, const Corners& at, const Tile& tile) noexcept
         : tile_(tile) {
         const double q = largest_q_of(at);
-        if (!at.all_in_front()) add(at.q_ramp, at.q_error + 0x1p-46 * q);
+        add(at.q_ramp, at.q_error + 0x1p-46 * q);
         const auto& [base, dx, dy] = at.numerator_ramp;
         for (std::size_t side = 0; side < 4; ++side) {
             const std::size_t k = side % 2;

@@ -82,6 +82,7 @@ inline SmallAnswer ask(const LitTest& lit, double tolerance, const SmallFunction
     if (!lit.is_bounded()) {
         min = finite_min(min);
         max = finite_max(max);
+        if (!all_less(min, max)) return SmallAnswer::doubt;  // a NaN, or nothing
     }
     const Double2 above[3] = {f.base - min * q.base, f.right - min * q.right, f.bottom - min * q.bottom};
     const Double2 below[3] = {max * q.base - f.base, max * q.right - f.right, max * q.bottom - f.bottom};
