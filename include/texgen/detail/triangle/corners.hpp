@@ -188,13 +188,15 @@ TEXGEN_RARE inline void take_planes(const Corners& at, CloseFunctions& functions
     functions.function[CloseFunctions::q].error = at.q_error;
 }
 
-// The side of a region at a bound is G = F - bound Q, positive above the bound and negative below it. The float that is
-// written may be on the other side than the exact value, by an ulp, by the tolerance (twice that leaves room), or as a
-// 0 that was subnormal: so an answer must hold with that much slack, and with room for what F, Q and G are rounded by,
-// which is the first of these and |bound| times the second.
+// What |Q| is at most.
 inline double largest_q_of(const Corners& at) noexcept {
     return larger(std::fabs(at.least_q), std::fabs(at.largest_q)) + at.q_error;
 }
+
+// The side of a region at a bound is G = F - bound Q, positive above the bound and negative below it. The float that is
+// written may be on the other side than the exact value, by an ulp, by the tolerance (twice that leaves room), or as a
+// 0 that was subnormal: so an answer must hold with that much slack, and with room for what F, Q and G are rounded by,
+// which is the first of these and |bound| times the second; q is the largest |Q|.
 inline Double2 margin_of_sides(const Corners& at, double tolerance, double q) noexcept {
     return (at.numerator_error + (0x1p-125 + 2.0 * tolerance) * q) * 1.0001;
 }
