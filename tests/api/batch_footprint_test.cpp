@@ -31,7 +31,7 @@ using texgen::FragmentRect;
 using texgen::Triangle;
 using texgen::TriangleBatch;
 
-constexpr texgen::TexelsPerUnit texels{1024.0, 512.0};
+constexpr texgen::TexelsPerUnit slide_texels{1024.0, 512.0};
 
 // A triangle beyond which q at fragment (0, 0) is above 0 and below 2^-38 of its terms, by the choice of the last q and
 // of many w.
@@ -63,7 +63,7 @@ int left_by_lanes(const std::vector<Triangle>& triangles, const std::vector<std:
     batch.assign(triangles);
     FootprintOutputs out(rect);
     texgen::detail::BatchFootprintsJob job{};
-    texgen::detail::describe(job, batch, ids, rect, texels, out.spans());
+    texgen::detail::describe(job, batch, ids, rect, slide_texels, out.spans());
     const auto& kernels = texgen::detail::chosen<texgen::detail::BatchFootprintKernels>();
     int left = 0;
     for (std::size_t begin = 0; begin < ids.size();) {
@@ -88,7 +88,7 @@ TEST_CASE("footprints of a visibility buffer keep their digits where q cancels")
         batch.assign(std::array{*drawn, support::make_triangle(support::Family::friendly, random)});
         const FragmentRect rect{0, 0, 5, 1};
         FootprintOutputs out(rect);
-        footprint(batch, std::array<std::uint32_t, 5>{0, 1, 1, 0, 0}, rect, texels, out.spans());
+        footprint(batch, std::array<std::uint32_t, 5>{0, 1, 1, 0, 0}, rect, slide_texels, out.spans());
         const support::Homogeneous here = exact.at(0, 0), next[] = {exact.at(1, 0), exact.at(0, 1)};
         for (std::size_t k = 0; k < 4; ++k) {
             const auto slope = [&](std::size_t axis) {
@@ -116,7 +116,7 @@ TEST_CASE("derivatives of a visibility buffer err by no more than batch_footprin
         const auto footprint_of = [&]() -> std::optional<texgen::Footprint> {
             const auto setup = texgen::TriangleSetup::of(triangle, texgen::whole_texture());
             if (!setup) return std::nullopt;
-            return texgen::FootprintSetup(*setup, texels).at(pixel.x, pixel.y);
+            return texgen::FootprintSetup(*setup, slide_texels).at(pixel.x, pixel.y);
         };
         const auto before = footprint_of();
         if (!before) continue;
@@ -131,11 +131,11 @@ TEST_CASE("derivatives of a visibility buffer err by no more than batch_footprin
         batch.assign({&triangle, 1});
         const std::uint32_t id = 0;
         FootprintOutputs out(pixel);
-        footprint(batch, {&id, 1}, pixel, texels, out.spans());
+        footprint(batch, {&id, 1}, pixel, slide_texels, out.spans());
         const auto expected = footprint_of();
         REQUIRE(expected);
         const auto setup = texgen::TriangleSetup::of(triangle, texgen::whole_texture());
-        const double bound = texgen::FootprintSetup(*setup, texels).error_bound(pixel).x;
+        const double bound = texgen::FootprintSetup(*setup, slide_texels).error_bound(pixel).x;
         const double allowed = bound + texgen::batch_footprint_error * std::hypot(expected->dx.x, expected->dy.x);
         const support::Homogeneous here = exact.at(pixel.x, pixel.y);
         const support::Dyadic q_squared = here.q * here.q, f = here.over_q(0).n;
@@ -184,13 +184,13 @@ TEST_CASE("a visibility buffer's slides may be very large or small, as those of 
         const auto setup = texgen::TriangleSetup::of(triangle, texgen::whole_texture());
         REQUIRE(setup);
         const FragmentRect pixel = support::pixel_near(triangle, random);
-        const auto expected = texgen::FootprintSetup(*setup, texels).at(pixel.x, pixel.y);
+        const auto expected = texgen::FootprintSetup(*setup, slide_texels).at(pixel.x, pixel.y);
         if (!expected) continue;
         TriangleBatch batch(texgen::whole_texture());
         batch.assign({&triangle, 1});
         const std::uint32_t id = 0;
         FootprintOutputs out(pixel);
-        footprint(batch, {&id, 1}, pixel, texels, out.spans());
+        footprint(batch, {&id, 1}, pixel, slide_texels, out.spans());
         CHECK_MESSAGE(std::fabs(out.at(4, 0) - expected->level) <= 1e-3, support::hex(triangle));
         CHECK_MESSAGE(std::fabs(out.at(5, 0) / expected->anisotropy - 1.0) <= 1e-4, support::hex(triangle));
         const double length = std::hypot(expected->major.x, expected->major.y);

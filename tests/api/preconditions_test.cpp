@@ -1,10 +1,6 @@
 // What breaks a precondition of sizes is asserted, and without assertions writes nothing at all.
 
-#include <cstddef>
-
-// What the library asserts, counted; the program goes on, as one without assertions does.
-inline std::size_t broken_preconditions = 0;
-#define TEXGEN_ASSERT(condition) ((condition) ? void() : void(++broken_preconditions))
+#include "support/broken_preconditions.hpp"
 
 #include <doctest/doctest.h>
 
@@ -27,6 +23,7 @@ inline std::size_t broken_preconditions = 0;
 
 namespace {
 
+using support::broken_preconditions;
 using texgen::Coverage;
 using texgen::exact;
 using texgen::whole_texture;
@@ -55,9 +52,8 @@ void check_nothing_is_written(std::size_t count, const Element& untouched, const
         CAPTURE(count);
         CAPTURE(is_longer);
         WrongSize<Element> out(count, is_longer, untouched);
-        broken_preconditions = 0;
         write(out.span());
-        CHECK(broken_preconditions != 0);
+        CHECK(std::exchange(broken_preconditions, 0) != 0);
         CHECK(out.is_untouched());
     }
 }
@@ -126,9 +122,8 @@ TEST_CASE("three arrays of coordinates that disagree are asserted, and are no po
     const std::vector<float> longer(40, 0.5f);
     for (std::size_t shortest = 0; shortest < 3; ++shortest) {
         const auto part = [&](std::size_t k) { return std::span(longer).first(k == shortest ? 7 : 40); };
-        broken_preconditions = 0;
         const auto positions = texgen::world_space(part(0), part(1), part(2));
-        CHECK(broken_preconditions == 1);
+        CHECK(std::exchange(broken_preconditions, 0) == 1);
         CHECK(positions.size() == 0);
     }
 }
@@ -204,9 +199,8 @@ TEST_CASE("room for fewer vertices than a cut may leave is asserted, and stays a
         CAPTURE(room);
         const auto check = [&](std::size_t needed, const auto& clip) {
             std::vector<texgen::ClipVertex> out(8, untouched);
-            broken_preconditions = 0;
             const std::size_t count = clip(std::span(out).first(room));
-            CHECK((broken_preconditions == 0) == (room >= needed));
+            CHECK((std::exchange(broken_preconditions, 0) == 0) == (room >= needed));
             CHECK((count != 0) == (room >= needed));
             const std::size_t written = room >= needed ? room : 0;
             CHECK(std::all_of(out.begin() + static_cast<std::ptrdiff_t>(written), out.end(),
@@ -228,11 +222,9 @@ TEST_CASE("rectangles of a batch with more fragments than there are numbers are 
     batch.assign(std::vector<texgen::Triangle>(17, some_triangle()));
     constexpr float untouched = 7.0f;
     std::vector<float> out(64, untouched);
-    broken_preconditions = 0;
     texgen::interpolate(batch, rects, {.s = out});
-    CHECK(broken_preconditions != 0);
+    CHECK(std::exchange(broken_preconditions, 0) != 0);
     for (const float value : out) CHECK(value == untouched);
-    broken_preconditions = 0;
     texgen::interpolate(batch, rects, {});
     CHECK(broken_preconditions == 0);
 }
@@ -249,7 +241,6 @@ TEST_CASE(
     float alone[64];
     texgen::interpolate(*triangle, whole, {.s = alone});
     constexpr int least = -2147483647 - 1;
-    broken_preconditions = 0;
     for (const auto& size : {std::pair(0, 4), std::pair(4, 0), std::pair(-1, 8), std::pair(8, -1), std::pair(-8, -8),
                              std::pair(least, least), std::pair(least, 1)}) {
         const int width = size.first, height = size.second;

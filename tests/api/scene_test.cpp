@@ -1,12 +1,6 @@
 // A scene of many objects and projectors over many frames, judged by all its pairs asked one by one.
 
-#include <cstddef>
-
-namespace {
-// What the library asserts, counted.
-int broken_preconditions = 0;
-}  // namespace
-#define TEXGEN_ASSERT(condition) ((condition) ? void() : void(++broken_preconditions))
+#include "support/broken_preconditions.hpp"
 
 #include <doctest/doctest.h>
 
@@ -31,6 +25,7 @@ int broken_preconditions = 0;
 namespace {
 
 using support::allocations;
+using support::broken_preconditions;
 using support::hex;
 using support::infinity_float;
 using support::nan_float;

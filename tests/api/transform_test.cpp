@@ -385,7 +385,7 @@ TEST_CASE("graded matrices are inverted within 2 ulp of the largest term, whatev
     Random random(471);
     double worst = 0.0;
     int inverted = 0;
-    for (int i = 0; i < 1200; ++i) {
+    for (int i = 0; i < 400; ++i) {
         const glm::dmat4 m = graded_matrix(random);
         const auto exact = support::inverse(exactly(m));
         const auto answer = inverse(ModelMatrix(m));
@@ -395,7 +395,7 @@ TEST_CASE("graded matrices are inverted within 2 ulp of the largest term, whatev
         worst = std::max(worst, error);
         CHECK_MESSAGE(error <= 2.0, hex(m));
     }
-    CHECK(inverted > 500);
+    CHECK(inverted > 150);
     MESSAGE(worst, " ulp of the largest term at most, of ", inverted);
 }
 

@@ -1,11 +1,7 @@
 // Positions::within(): the caller's word on a batch changes no promise; a word that is none changes nothing, and one
 // that is broken is asserted.
 
-#include <cstddef>
-
-// What a broken precondition calls here.
-inline std::size_t broken_preconditions = 0;
-#define TEXGEN_ASSERT(condition) ((condition) ? void() : void(++broken_preconditions))
+#include "support/broken_preconditions.hpp"
 
 #include <doctest/doctest.h>
 
@@ -30,6 +26,7 @@ inline std::size_t broken_preconditions = 0;
 
 namespace {
 
+using support::broken_preconditions;
 using support::Cloud;
 using support::everywhere;
 using support::infinity_float;

@@ -106,7 +106,7 @@ TEST_CASE("units and chunks at the end of the longest rows and columns are done,
     }
 }
 
-#ifdef __OPTIMIZE__  // else it takes minutes
+#if defined(__OPTIMIZE__) && !defined(__SANITIZE_ADDRESS__)  // else it takes minutes
 TEST_CASE("the longest row ends as a short one in its place") {
     const LongArray array(longest);
     if (!array.is_usable()) return;

@@ -173,7 +173,7 @@ constexpr float unwritten = 7.0f;
 // printed with a digit, of a sum that is 0.0015 away from where the digit changes, so that none depends on the build.
 bool same_bits = true;
 
-void print(float value) {
+[[gnu::noinline]] void print(float value) {
     if (same_bits)
         std::printf(" %a", static_cast<double>(value));
     else
