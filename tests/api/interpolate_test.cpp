@@ -316,6 +316,36 @@ TEST_CASE("next to where s is 0, of terms that cancel, every fragment of a small
     CHECK(seen.lit > 5000);
 }
 
+TEST_CASE("where s is 0 at one fragment of a small tile, of terms that are no dyadic numbers, it is 0") {
+    Random random(206);
+    Seen seen;
+    for (int i = 0; i < 2000; ++i) {
+        const FragmentRect rect{random.integer(100, 400), random.integer(100, 400), random.integer(1, 12),
+                                random.integer(1, 8)};
+        const int column = random.integer(0, rect.width - 1), row = random.integer(0, rect.height - 1);
+        // The middle of the corners, where s/w are integers whose sum is 0.
+        int x[3] = {}, y[3] = {}, s_over_w[3] = {};
+        for (std::size_t k = 0; k < 2; ++k) {
+            x[2] -= x[k] = random.integer(-700, 700);
+            y[2] -= y[k] = random.integer(-700, 700);
+            s_over_w[2] -= s_over_w[k] = random.integer(-2000, 2000);
+        }
+        const auto vertex = [&](std::size_t k) {
+            const int w = random.integer(1, 2000);
+            const auto single = [](int value) { return static_cast<float>(value); };
+            return WindowVertex{{single(rect.x + column + x[k]) + 0.5f, single(rect.y + row + y[k]) + 0.5f},
+                                single(w),
+                                {single(s_over_w[k] * w), 0.5f, 0.5f, single(w * random.integer(2000, 4000))}};
+        };
+        const Shot shot{{vertex(0), vertex(1), vertex(2)}, rect};
+        if (!TriangleSetup::of(shot.triangle, everywhere())) continue;
+        Outputs out(count_of(rect), 1u);
+        require_right(shot, texgen::atlas_tile({-9.0, -9.0}, {9.0, 9.0}), out, seen);
+        REQUIRE_MESSAGE(same_bits(out.s()[static_cast<std::size_t>(row * rect.width + column)], 0.0f), hex(shot));
+    }
+    CHECK(seen.in_front > 50000);
+}
+
 TEST_CASE("what has more bits than a residue is not what the residue says: neither 0, nor of its sign") {
     Random random(204);
     Seen seen;
