@@ -652,6 +652,8 @@ MUTANTS = [
           "near_ties_test interpolate_test"),
          ("s and t of a small tile in doubt stay so", "            TileInterpolator<>(triangle, rect, close, out).interpolate_from_doubt(rect);\n", "", "near_ties_test"),
          ("sides of small tiles may be infinite", "if (!lit.is_bounded()) {", "if (false) {", "work_test"),
+         ("an infinite side of a small tile is far beyond its quotients", "(8.0 / divisor.least) + 1.0",
+          "(0.3 / divisor.least) + 0x1p-9", "work_test interpolate_test"),
          ("quotients of small tiles in float are small", "larger(largest, -least) * (1.001 / divisor.least)", "larger(largest, -least) * 1e-3", "tolerance_test interpolate_test"),
          ("negative coordinates of small tiles are positive", "larger(least, -largest));", "larger(least, largest));", "interpolate_test near_ties_test")),
     *_of("detail/triangle/mask_spans.inc.hpp",

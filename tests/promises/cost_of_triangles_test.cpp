@@ -318,6 +318,32 @@ TEST_CASE(
     }
 }
 
+TEST_CASE("a small tile takes little more where a coordinate has one side or none than where it has both") {
+    constexpr double most = 1.5;
+    std::vector<float> s(64), t(64), lit(64);
+    for (const Tolerance tolerance : dial) {
+        const Triangle triangle = ordinary(1, 1).triangle;
+        const texgen::TriangleSetup both = support::setup_of(triangle, texgen::whole_texture(), tolerance);
+        for (const glm::dvec2 first : {glm::dvec2(0.0), glm::dvec2(-HUGE_VAL), glm::dvec2(-HUGE_VAL, 0.0)}) {
+            const texgen::TriangleSetup open =
+                support::setup_of(triangle, texgen::atlas_tile(first, glm::dvec2(HUGE_VAL)), tolerance);
+            for (const int width : {1, 8}) {
+                const FragmentRect rect{300, 100, width, width};
+                const auto part = [&](std::vector<float>& all) {
+                    return std::span(all).first(support::count_of(rect));
+                };
+                const texgen::Texcoords out{part(s), part(t), {}, part(lit)};
+                REQUIRE(both.work(rect) == texgen::Work::divide);
+                REQUIRE(open.work(rect) == texgen::Work::divide);
+                const double ratio = support::worst_over_ordinary_within(
+                    most, [&] { interpolate(both, rect, out); }, [&] { interpolate(open, rect, out); });
+                INFO(width, " x ", width, ", tolerance ", tolerance.value, ", from ", first.x, ", ", first.y);
+                CHECK(ratio <= most);
+            }
+        }
+    }
+}
+
 TEST_CASE("long runs of a visibility buffer take little more than rows of their triangles") {
     constexpr double most = 2.5;
     const Triangle triangle = ordinary(1, 1).triangle;

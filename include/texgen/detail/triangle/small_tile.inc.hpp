@@ -80,8 +80,11 @@ inline SmallAnswer ask(const LitTest& lit, double tolerance, const SmallFunction
     Double2 min = double2_of(lit.least(0), lit.least(1));
     Double2 max = double2_of(lit.greatest(0), lit.greatest(1));
     if (!lit.is_bounded()) {
-        min = finite_min(min);
-        max = finite_max(max);
+        // A side far beyond all quotients leaves no more out than an infinite one, and has a margin of its size.
+        const Double2 largest = magnitude(f.base) + magnitude(f.right) + magnitude(f.bottom);
+        const Double2 far = largest * (8.0 / divisor.least) + 1.0;
+        min = larger(-far, min);
+        max = smaller(far, max);
         if (!all_less(min, max)) return SmallAnswer::doubt;  // a NaN, or nothing
     }
     const Double2 above[3] = {f.base - min * q.base, f.right - min * q.right, f.bottom - min * q.bottom};
