@@ -83,9 +83,9 @@ inline SmallAnswer ask(const LitTest& lit, double tolerance, const SmallFunction
         // A side far beyond all quotients leaves no more out than an infinite one, and its margin is no larger than they
         // are. Eight times beyond them what is lit here is inside by coverage_by_sides(), whatever q does in the tile.
         const Double2 largest = magnitude(f.base) + magnitude(f.right) + magnitude(f.bottom);
-        const Double2 far = largest * (8.0 / divisor.least) + 1.0;
-        min = larger(-far, min);
-        max = smaller(far, max);
+        const Double2 beyond = largest * (8.0 / divisor.least) + 1.0;
+        min = larger(-beyond, min);
+        max = smaller(beyond, max);
         if (!all_less(min, max)) return SmallAnswer::doubt;  // a NaN, or nothing
     }
     const Double2 above[3] = {f.base - min * q.base, f.right - min * q.right, f.bottom - min * q.bottom};
