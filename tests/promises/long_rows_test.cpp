@@ -30,14 +30,6 @@ constexpr int longest = std::numeric_limits<int>::max();
 constexpr std::size_t tail = 700;  // more than two chunks
 constexpr float poison = -7.0f;
 
-// s and t fall to 0 at the far corner, so that neighbours there differ.
-Triangle triangle() {
-    constexpr float size = 0x1p31f;
-    return {.a = {{0.0f, 0.0f}, 1.0f, {1.0f, 1.0f, 0.5f, 1.0f}},
-            .b = {{size, 0.0f}, 1.0f, {0.0f, 0.5f, 0.5f, 2.0f}},
-            .c = {{0.0f, size}, 1.0f, {0.5f, 0.0f, 0.5f, 2.0f}}};
-}
-
 // A row, or column, that ends as an int does, from the middle of two others on; its last floats have values of no
 // others.
 TileJob job_of(int width, int height, std::span<float> out) {
@@ -110,9 +102,14 @@ TEST_CASE("units and chunks at the end of the longest rows and columns are done,
 TEST_CASE("the longest row ends as a short one in its place") {
     const LongArray array(longest);
     if (!array.is_usable()) return;
+    // s and t fall to 0 at the far corner, so that neighbours there differ.
+    constexpr float size = 0x1p31f;
+    const Triangle triangle{.a = {{0.0f, 0.0f}, 1.0f, {1.0f, 1.0f, 0.5f, 1.0f}},
+                            .b = {{size, 0.0f}, 1.0f, {0.0f, 0.5f, 0.5f, 2.0f}},
+                            .c = {{0.0f, size}, 1.0f, {0.5f, 0.0f, 0.5f, 2.0f}}};
     for (const double tolerance : {0.0, 0x1p-20}) {
         CAPTURE(tolerance);
-        const auto setup = TriangleSetup::of(triangle(), texgen::whole_texture(), texgen::Tolerance{tolerance}).value();
+        const auto setup = TriangleSetup::of(triangle, texgen::whole_texture(), texgen::Tolerance{tolerance}).value();
         std::ranges::fill(array.last(tail), poison);
         const FragmentRect all{0, 0, longest, 1};
         const FragmentRect end{longest - static_cast<int>(tail), 0, static_cast<int>(tail), 1};
