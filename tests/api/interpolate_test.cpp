@@ -147,6 +147,10 @@ Triangle gentle_triangle(Random& random) {
     return {vertex(-20.0f, -20.0f), vertex(1400.0f, 40.0f), vertex(60.0f, 1200.0f)};
 }
 
+FragmentRect small_rect(Random& random) {
+    return {random.integer(100, 400), random.integer(100, 400), random.integer(1, 12), random.integer(1, 8)};
+}
+
 }  // namespace
 
 TEST_CASE("every fragment is the nearest float of the exact rational, in every family") {
@@ -299,8 +303,7 @@ TEST_CASE("next to where s is 0, of terms that cancel, every fragment of a small
     Random random(205);
     Seen seen;
     for (int i = 0; i < 400; ++i) {
-        const FragmentRect rect{random.integer(100, 400), random.integer(100, 400), random.integer(1, 12),
-                                random.integer(1, 8)};
+        const FragmentRect rect = small_rect(random);
         // Before the tile, or in it, where s changes its sign.
         const int column = random.coin() ? 0 : random.integer(0, rect.width - 1);
         const double zero = rect.x + column + 0.5 - random.power_of_ten(column == 0 ? -5.0 : -9.0, -1.0);
@@ -320,8 +323,7 @@ TEST_CASE("where s is 0 at one fragment of a small tile, of terms that are no dy
     Random random(206);
     Seen seen;
     for (int i = 0; i < 2000; ++i) {
-        const FragmentRect rect{random.integer(100, 400), random.integer(100, 400), random.integer(1, 12),
-                                random.integer(1, 8)};
+        const FragmentRect rect = small_rect(random);
         const int column = random.integer(0, rect.width - 1), row = random.integer(0, rect.height - 1);
         // The middle of the corners, where s/w are integers whose sum is 0.
         int x[3] = {}, y[3] = {}, s_over_w[3] = {};

@@ -651,7 +651,7 @@ MUTANTS = [
          ("one coordinate of a small tile in doubt stays so", "doubt == SmallDoubt::of_unit ? interpolator.interpolate_from_doubt(rect) :", "if (doubt != SmallDoubt::of_unit)",
           "near_ties_test interpolate_test"),
          ("s and t of a small tile in doubt stay so", "            TileInterpolator<>(triangle, rect, close, out).interpolate_from_doubt(rect);\n", "", "near_ties_test"),
-         ("sides of small tiles may be infinite", "if (!lit.is_bounded()) {", "if (false) {", "work_test"),
+         ("sides of small tiles may be infinite", "if (!lit.is_narrow()) {", "if (false) {", "work_test"),
          ("an infinite side of a small tile is far beyond its quotients", "(8.0 / divisor.least) + 1.0",
           "(0.3 / divisor.least) + 0x1p-9", "work_test interpolate_test"),
          ("quotients of small tiles in float are small", "larger(largest, -least) * (1.001 / divisor.least)", "larger(largest, -least) * 1e-3", "tolerance_test interpolate_test"),

@@ -49,8 +49,8 @@ public:
     explicit LitTest(const TextureRegion& region) noexcept
         : min_{float_at_least((region.min)().x), float_at_least((region.min)().y)},
           max_{-float_at_least(-(region.max)().x), -float_at_least(-(region.max)().y)},
-          is_bounded_(std::fabs(widened(max_[0]) - widened(min_[0])) + std::fabs(widened(max_[1]) - widened(min_[1])) <
-                      infinity),
+          is_narrow_(std::fabs(widened(max_[0]) - widened(min_[0])) + std::fabs(widened(max_[1]) - widened(min_[1])) <
+                     0x1p16),
           has_depth_(region.depth().has_value()) {
         if (!has_depth_) return;
         r_min_ = float_at_least(region.depth()->x);
@@ -64,8 +64,8 @@ public:
     double least(std::size_t coordinate) const noexcept { return widened(read_alone(min_[coordinate])); }
     double greatest(std::size_t coordinate) const noexcept { return widened(read_alone(max_[coordinate])); }
 
-    // Whether s and t certainly have four sides, all finite.
-    bool is_bounded() const noexcept { return is_bounded_; }
+    // Whether s and t certainly have four sides, which are no further apart than those of the largest textures.
+    bool is_narrow() const noexcept { return is_narrow_; }
     bool has_depth() const noexcept { return has_depth_; }
     float r_min() const noexcept { return r_min_; }
     float r_max() const noexcept { return r_max_; }
@@ -82,7 +82,7 @@ public:
 private:
     float min_[2];
     float max_[2];
-    bool is_bounded_, has_depth_;
+    bool is_narrow_, has_depth_;
     float r_min_ = 0.0f, r_max_ = 0.0f;
 };
 

@@ -79,9 +79,9 @@ inline SmallAnswer ask(const LitTest& lit, double tolerance, const SmallFunction
     const SmallFunction<double>& q = divisor.function;
     Double2 min = double2_of(lit.least(0), lit.least(1));
     Double2 max = double2_of(lit.greatest(0), lit.greatest(1));
-    if (!lit.is_bounded()) {
-        // A side far beyond all quotients leaves no more out than an infinite one, and its margin is no larger than they
-        // are. Eight times beyond them what is lit here is inside by coverage_by_sides(), whatever q does in the tile.
+    if (!lit.is_narrow()) {
+        // A side far beyond all quotients may as well stand eight times beyond them, where its margin is no larger than
+        // they are. What is lit then is inside by coverage_by_sides(), too, whatever q does in the tile.
         const Double2 largest = magnitude(f.base) + magnitude(f.right) + magnitude(f.bottom);
         const Double2 beyond = largest * (8.0 / divisor.least) + 1.0;
         min = larger(-beyond, min);
