@@ -1,7 +1,6 @@
 #pragma once
 
-// Exact numbers. Boost computes them, in numbers.cpp alone: its templates take longer to compile than what a test asks
-// of them.
+// Exact numbers. GMP and MPFR compute them, in numbers.cpp alone.
 
 #include <compare>
 #include <concepts>
@@ -39,7 +38,7 @@ public:
     Rational& operator*=(const Rational& b) { return *this = *this * b; }
     Rational& operator/=(const Rational& b) { return *this = *this / b; }
 
-    // Boost's number, for numbers.cpp.
+    // GMP's number, for numbers.cpp.
     struct Value;
     explicit Rational(Value value);
     const Value& value() const;
@@ -87,7 +86,7 @@ public:
 
 private:
     struct Mantissa;
-    Dyadic(Mantissa mantissa, int exponent);
+    Dyadic(std::shared_ptr<const Mantissa> mantissa, int exponent);
 
     std::shared_ptr<const Mantissa> mantissa_;  // none is 0
     int exponent_ = 0;
@@ -120,7 +119,7 @@ public:
 
 private:
     struct Value;
-    explicit Real(Value value);
+    explicit Real(std::shared_ptr<const Value> value);
     const Value& value() const;
 
     std::shared_ptr<const Value> value_;  // none is 0

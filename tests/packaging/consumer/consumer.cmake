@@ -22,7 +22,7 @@ function(run_for result)
 endfunction()
 
 set(settings --no-warn-unused-cli -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${COMPILER})
-foreach(package IN ITEMS Eigen3 Boost doctest benchmark)
+foreach(package IN ITEMS Eigen3 doctest benchmark)
     list(APPEND settings -DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
 endforeach()
 file(REMOVE_RECURSE ${DIRECTORY})
