@@ -2,8 +2,10 @@
 // takes the address, and they are printed by value. A compiler that loses sight of them in the call, as GCC 12 may (its
 // bug 115033), prints what they held before. Every public function that writes through a span is called.
 //
-// The calls are macros: the text of each is a part of every program. A function would hide what the compiler may lose.
+// The calls are macros: the text of each is a part of every program. A function would hide what the compiler may lose,
+// which are outputs: what is read comes from functions.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -47,102 +49,130 @@ constexpr Triangle triangle{{{0.0f, 0.0f}, 1.0f, {0.1f, 0.2f, 0.3f, 1.0f}},
                             {{40.0f, 0.0f}, 3.0f, {2.9f, 0.5f, 0.75f, 2.0f}},
                             {{0.0f, 30.0f}, 2.0f, {0.5f, 1.5f, 0.25f, 1.5f}}};
 
+template <std::size_t count>
+[[gnu::noinline]] std::array<glm::vec3, count> points() {
+    std::array<glm::vec3, count> result;
+    for (std::size_t i = 0; i < count; ++i) result[i] = point(static_cast<int>(i));
+    return result;
+}
+template <std::size_t count>
+struct Columns {
+    float x[count], y[count], z[count];
+};
+template <std::size_t count>
+[[gnu::noinline]] Columns<count> columns() {
+    Columns<count> result;
+    for (std::size_t i = 0; i < count; ++i) {
+        const glm::vec3 at = point(static_cast<int>(i));
+        result.x[i] = at.x;
+        result.y[i] = at.y;
+        result.z[i] = at.z;
+    }
+    return result;
+}
+struct Vertex {
+    float position[3], other;
+};
+template <std::size_t count>
+[[gnu::noinline]] std::array<Vertex, count> strided() {
+    std::array<Vertex, count> result{};
+    for (std::size_t i = 0; i < count; ++i)
+        for (glm::length_t k = 0; k < 3; ++k) result[i].position[k] = point(static_cast<int>(i))[k];
+    return result;
+}
+template <std::size_t count>
+[[gnu::noinline]] std::array<float, count> fractions() {
+    std::array<float, count> result;
+    for (std::size_t i = 0; i < count; ++i) result[i] = (static_cast<float>(i) + 0.3f) / (count + 1);
+    return result;
+}
+template <std::size_t count>
+constexpr std::array<std::uint32_t, count> ids{};
+template <std::size_t count, class Body>
+[[gnu::noinline]] std::array<Body, count> bodies(Body (*body)(int)) {
+    std::array<Body, count> result;
+    for (std::size_t i = 0; i < count; ++i) result[i] = body(static_cast<int>(i));
+    return result;
+}
+[[gnu::noinline]] std::optional<TriangleSetup> setup(Tolerance tolerance, const TextureRegion& region) {
+    return TriangleSetup::of(triangle, region, tolerance);
+}
+[[gnu::noinline]] TriangleBatch batch(Tolerance tolerance) {
+    TriangleBatch result(whole_texture(), tolerance);
+    result.assign({&triangle, 1});
+    return result;
+}
+
 // What is called, with `count` values an output, of four coordinates as `mask` says
 
 #define GIVEN(bit) (mask >> (bit)&1) != 0 ? count : 0
 #define SPANS(s, t, r, lit) \
     {s, GIVEN(0)}, {t, GIVEN(1)}, {r, GIVEN(2)}, { lit, GIVEN(3) }
 
-#define PROJECT(...)                                      \
-    glm::vec3 points[count];                              \
-    for (int i = 0; i < count; ++i) points[i] = point(i); \
-    project(WorldTexgen(matrix()), world_space(points), whole_texture(), {SPANS(__VA_ARGS__)}, tolerance)
+#define PROJECT(...)                    \
+    const auto given = points<count>(); \
+    project(WorldTexgen(matrix()), world_space(given), whole_texture(), {SPANS(__VA_ARGS__)}, tolerance)
 
-#define PROJECT_PLANAR(...)             \
-    float x[count], y[count], z[count]; \
-    for (int i = 0; i < count; ++i) {   \
-        x[i] = point(i).x;              \
-        y[i] = point(i).y;              \
-        z[i] = point(i).z;              \
-    }                                   \
+#define PROJECT_PLANAR(...)                  \
+    const auto [x, y, z] = columns<count>(); \
     project(EyeTexgen(matrix()), eye_space(x, y, z), whole_texture(), {SPANS(__VA_ARGS__)}, tolerance)
 
 #define PROJECT_WITHIN(...)                               \
-    glm::vec3 points[count];                              \
-    for (int i = 0; i < count; ++i) points[i] = point(i); \
+    const auto given = points<count>();                   \
     const Box all{glm::vec3(-200.0f), glm::vec3(200.0f)}; \
-    project(WorldTexgen(matrix()), world_space(points).within(all), whole_texture(), {SPANS(__VA_ARGS__)}, tolerance)
+    project(WorldTexgen(matrix()), world_space(given).within(all), whole_texture(), {SPANS(__VA_ARGS__)}, tolerance)
 
-#define PROJECT_STRIDED(...)                                                                        \
-    float vertices[count][4];                                                                       \
-    for (int i = 0; i < count; ++i)                                                                 \
-        for (glm::length_t k = 0; k < 3; ++k) vertices[i][k] = point(i)[k];                         \
-    project(ObjectTexgen(matrix()), object_space(vertices[0], count, sizeof vertices[0]), volume(), \
+#define PROJECT_STRIDED(...)                                                                           \
+    const auto given = strided<count>();                                                               \
+    project(ObjectTexgen(matrix()), object_space(given[0].position, count, sizeof given[0]), volume(), \
             {SPANS(__VA_ARGS__)}, tolerance)
 
-#define GENERATE(...)                                     \
-    glm::vec3 points[count];                              \
-    for (int i = 0; i < count; ++i) points[i] = point(i); \
-    generate(WorldTexgen(matrix()), world_space(points), HomogeneousTexcoords{SPANS(__VA_ARGS__)})
+#define GENERATE(...)                   \
+    const auto given = points<count>(); \
+    generate(WorldTexgen(matrix()), world_space(given), HomogeneousTexcoords{SPANS(__VA_ARGS__)})
 
-#define INTERPOLATE(...)                                                 \
-    const auto setup = TriangleSetup::of(triangle, volume(), tolerance); \
-    if (setup) interpolate(*setup, {3, 4, count, 1}, {SPANS(__VA_ARGS__)})
+#define INTERPOLATE(...)                           \
+    const auto given = setup(tolerance, volume()); \
+    if (given) interpolate(*given, {3, 4, count, 1}, {SPANS(__VA_ARGS__)})
 
-#define INTERPOLATE_BATCH(...)                       \
-    TriangleBatch batch(whole_texture(), tolerance); \
-    batch.assign({&triangle, 1});                    \
-    const FragmentRect rect{3, 4, count, 1};         \
-    interpolate(batch, std::span(&rect, 1), {SPANS(__VA_ARGS__)})
+#define INTERPOLATE_BATCH(...)               \
+    const FragmentRect rect{3, 4, count, 1}; \
+    interpolate(batch(tolerance), std::span(&rect, 1), {SPANS(__VA_ARGS__)})
 
-#define INTERPOLATE_IDS(...)                                     \
-    TriangleBatch batch(whole_texture(), tolerance);             \
-    batch.assign({&triangle, 1});                                \
-    const std::vector<std::uint32_t> ids(std::size_t{count}, 0); \
-    interpolate(batch, ids, {3, 4, count, 1}, {SPANS(__VA_ARGS__)})
+#define INTERPOLATE_IDS(...) interpolate(batch(tolerance), ids<count>, {3, 4, count, 1}, {SPANS(__VA_ARGS__)})
 
-#define DERIVATIVES_OF_IDS(...)                                  \
-    TriangleBatch batch(whole_texture(), tolerance);             \
-    batch.assign({&triangle, 1});                                \
-    const std::vector<std::uint32_t> ids(std::size_t{count}, 0); \
-    footprint(batch, ids, {3, 4, count, 1}, {1024.0, 512.0}, {SPANS(__VA_ARGS__), {}, {}, {}, {}})
+#define DERIVATIVES_OF_IDS(...) \
+    footprint(batch(tolerance), ids<count>, {3, 4, count, 1}, {1024.0, 512.0}, {SPANS(__VA_ARGS__), {}, {}, {}, {}})
 
-#define INTERPOLATE_SEGMENT(...)                                                             \
-    float alpha[count];                                                                      \
-    for (int i = 0; i < count; ++i) alpha[i] = (static_cast<float>(i) + 0.3f) / (count + 1); \
+#define INTERPOLATE_SEGMENT(...)           \
+    const auto alpha = fractions<count>(); \
     interpolate({triangle.a.strq, triangle.b.strq}, alpha, volume(), {SPANS(__VA_ARGS__)}, tolerance)
 
-#define DERIVATIVES(...)                                                        \
-    const auto setup = TriangleSetup::of(triangle, whole_texture(), tolerance); \
-    if (setup)                                                                  \
-    footprint(FootprintSetup(*setup, {1024.0, 512.0}), {3, 4, count, 1}, {SPANS(__VA_ARGS__), {}, {}, {}, {}})
+#define DERIVATIVES(...)                                  \
+    const auto given = setup(tolerance, whole_texture()); \
+    if (given)                                            \
+    footprint(FootprintSetup(*given, {1024.0, 512.0}), {3, 4, count, 1}, {SPANS(__VA_ARGS__), {}, {}, {}, {}})
 
-#define FILTERS(...)                                                            \
-    const auto setup = TriangleSetup::of(triangle, whole_texture(), tolerance); \
-    if (setup)                                                                  \
-    footprint(FootprintSetup(*setup, {1024.0, 512.0}), {3, 4, count, 1}, {{}, {}, {}, {}, SPANS(__VA_ARGS__)})
+#define FILTERS(...)                                      \
+    const auto given = setup(tolerance, whole_texture()); \
+    if (given)                                            \
+    footprint(FootprintSetup(*given, {1024.0, 512.0}), {3, 4, count, 1}, {{}, {}, {}, {}, SPANS(__VA_ARGS__)})
 
 #define REFERENCE(...) reference::interpolate(triangle, whole_texture(), {3, 4, count, 1}, {SPANS(__VA_ARGS__)})
 
-#define PROJECT_EIGEN(...)                  \
-    Eigen::Matrix<float, count, 1> x, y, z; \
-    for (int i = 0; i < count; ++i) {       \
-        x[i] = point(i).x;                  \
-        y[i] = point(i).y;                  \
-        z[i] = point(i).z;                  \
-    }                                       \
+#define PROJECT_EIGEN(...)                                                                     \
+    const auto given = columns<count>();                                                       \
+    const Eigen::Map<const Eigen::Matrix<float, count, 1>> x(given.x), y(given.y), z(given.z); \
     project(WorldTexgen(matrix()), world_space(x, y, z), whole_texture(), {SPANS(__VA_ARGS__)}, tolerance)
 
 // The same, with one output of another type.
-#define PROJECT_PAIRS(out)                                \
-    glm::vec3 points[count];                              \
-    for (int i = 0; i < count; ++i) points[i] = point(i); \
-    project(WorldTexgen(matrix()), world_space(points), std::span<glm::vec2>(out, count), tolerance)
+#define PROJECT_PAIRS(out)              \
+    const auto given = points<count>(); \
+    project(WorldTexgen(matrix()), world_space(given), std::span<glm::vec2>(out, count), tolerance)
 
-#define GENERATE_VECTORS(out)                             \
-    glm::vec3 points[count];                              \
-    for (int i = 0; i < count; ++i) points[i] = point(i); \
-    generate(WorldTexgen(matrix()), world_space(points), {out, count})
+#define GENERATE_VECTORS(out)           \
+    const auto given = points<count>(); \
+    generate(WorldTexgen(matrix()), world_space(given), {out, count})
 
 #define FIXED_FUNCTION(out)                                                           \
     FixedFunctionVertex vertices[count];                                              \
@@ -151,19 +181,17 @@ constexpr Triangle triangle{{{0.0f, 0.0f}, 1.0f, {0.1f, 0.2f, 0.3f, 1.0f}},
     unit.enable(Coordinate::s);                                                       \
     unit.generate(vertices, glm::mat4(2.0f), {out, count})
 
-#define COVERAGE(Body, body, out)                        \
-    Body bodies[count];                                  \
-    for (int i = 0; i < count; ++i) bodies[i] = body(i); \
-    coverage(WorldTexgen(matrix()), whole_texture(), bodies, {out, count})
-#define COVERAGE_OF_BOXES(out) COVERAGE(Box, box, out)
-#define COVERAGE_OF_SPHERES(out) COVERAGE(Sphere, sphere, out)
+#define COVERAGE(body, out)                 \
+    const auto given = bodies<count>(body); \
+    coverage(WorldTexgen(matrix()), whole_texture(), given, {out, count})
+#define COVERAGE_OF_BOXES(out) COVERAGE(box, out)
+#define COVERAGE_OF_SPHERES(out) COVERAGE(sphere, out)
 
-#define VOLUME(Body, body, out)                          \
-    Body bodies[count];                                  \
-    for (int i = 0; i < count; ++i) bodies[i] = body(i); \
-    LitVolume<World>(WorldTexgen(matrix()), whole_texture()).coverage(bodies, {out, count})
-#define VOLUME_AND_BOXES(out) VOLUME(Box, box, out)
-#define VOLUME_AND_SPHERES(out) VOLUME(Sphere, sphere, out)
+#define VOLUME(body, out)                   \
+    const auto given = bodies<count>(body); \
+    LitVolume<World>(WorldTexgen(matrix()), whole_texture()).coverage(given, {out, count})
+#define VOLUME_AND_BOXES(out) VOLUME(box, out)
+#define VOLUME_AND_SPHERES(out) VOLUME(sphere, out)
 
 // Where a program keeps its outputs
 
