@@ -372,8 +372,8 @@ TEST_CASE("long runs of a visibility buffer take little more than rows of their 
 }
 
 TEST_CASE(
-    "a mask alone costs at most 8 times one that is lit at once where a side crosses the tile or is its plane, 16 of 8 "
-    "x 8") {
+    "a mask alone costs at most 8 times one that is lit at once where a side crosses the tile or is its plane, 10 or "
+    "16 of a small one") {
     const auto shot_with = [](int width, int height, const auto& change) {
         Shot shot = ordinary(width, height);
         for (WindowVertex* corner : support::vertices(shot.triangle)) change(*corner);
@@ -407,8 +407,8 @@ TEST_CASE(
                 interpolate(setup, rect, {{}, {}, {}, lit});
             };
         };
-        // Of 8 x 8 fragments a diagonal of ties asks for all, which were certain before.
-        const double most = width == 8 ? 16.0 : 8.0;
+        // A diagonal of ties asks for all of 8 x 8 fragments, which were certain before, and for some columns of 64 x 4.
+        const double most = width == 8 ? 16.0 : width == 64 ? 10.0 : 8.0;
         for (const Shot& shot : shots) {
             const double ratio = support::worst_over_ordinary_within(most, call(ordinary(width, height)), call(shot));
             REQUIRE_MESSAGE(ratio <= most, width, " x ", height, ": ", ratio, " times in ", hex(shot));

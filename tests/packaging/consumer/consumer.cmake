@@ -155,7 +155,7 @@ elseif(WAY STREQUAL single_header)
     endif()
     compile(consumer ${without} -I ${folder} ${main})
     set(units ${SOURCE}/tests/packaging/two_units)
-    compile(two_units -I ${folder} ${units}/one.cpp ${units}/two.cpp)
+    compile(two_units -DTEXGEN_NO_DISPATCH -I ${folder} ${units}/one.cpp ${units}/two.cpp)
 
 else()
     message(FATAL_ERROR "There is no way ${WAY}")
