@@ -45,8 +45,8 @@ void* reallocate(void* memory, std::size_t from, std::size_t to) {
     return result;
 }
 
-// GMP has it, and MPFR from there: before main(), where there are no numbers yet.
-[[maybe_unused]] const bool is_shared = (mp_set_memory_functions(allocate, reallocate, deallocate), true);
+// GMP takes its memory from there, and MPFR with it: from before main() on, when there are no numbers yet.
+[[maybe_unused]] const bool is_used_by_gmp = (mp_set_memory_functions(allocate, reallocate, deallocate), true);
 
 template <class Type>
 struct Pool {
