@@ -70,7 +70,7 @@ constexpr const char* usage =
     "\n"
     "Example:\n"
     "  printf 'v -1 0 1\\nv 1 0 1\\nv 0 0 -1\\nv 0 2 0\\nf 1 2 4\\nf 2 3 4\\nf 3 1 4\\n' >pyramid.obj\n"
-    "  %s --mesh pyramid.obj --lens perspective:20 --size 512x512 --out pyramid\n";
+    "  %s --mesh pyramid.obj --lens perspective:20 --size 256x256 --out pyramid\n";
 
 struct Options {
     std::optional<fs::path> mesh, slide;

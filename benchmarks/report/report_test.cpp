@@ -22,6 +22,8 @@ std::string contents(const fs::path& file) {
     return text.str();
 }
 
+const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+
 void write(const fs::path& file, const std::string& bytes) { std::ofstream(file, std::ios::binary) << bytes; }
 
 struct Outcome {
@@ -44,12 +46,19 @@ public:
     Workplace(const Workplace&) = delete;
     Workplace& operator=(const Workplace&) = delete;
 
-    Outcome run(const std::string& arguments) const {
+    Outcome run(const std::string& arguments, const std::string& environment = "") const {
         const fs::path output = before_ / "report_test_output", error = before_ / "report_test_error";
-        const int status = std::system(
-            ("'" TEXGEN_REPORT_PROGRAM "' " + arguments + " >'" + output.string() + "' 2>'" + error.string() + "'")
-                .c_str());
+        const int status = std::system((environment + " '" TEXGEN_REPORT_PROGRAM "' " + arguments + " >'" +
+                                        output.string() + "' 2>'" + error.string() + "'")
+                                           .c_str());
         return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents(output), contents(error)};
+    }
+
+    // Of one triangle and few pixels, where the pictures are not what is asked for.
+    Outcome run_on_little(const std::string& arguments, const std::string& environment = "") const {
+        const fs::path mesh = before_ / "report_test_mesh.obj";
+        write(mesh, triangle + "f 1 2 3\n");
+        return run("--rounds 1 --size 16x16 --mesh '" + mesh.string() + "' " + arguments, environment);
     }
 
     std::vector<std::string> files() const {
@@ -77,7 +86,6 @@ private:
     fs::path before_, folder_;
 };
 
-const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 const std::string png_signature = "\x89PNG\r\n\x1a\n";
 
 // A PNG that ends after its header.
@@ -149,7 +157,7 @@ TEST_CASE("a mesh that cannot be used is refused in one line") {
 TEST_CASE("a slide that cannot be used is refused in one line") {
     using namespace std::string_literals;
     const Workplace place;
-    REQUIRE(place.run("--rounds 1 --size 16x16 --out good").status == 0);
+    REQUIRE(place.run_on_little("--out good").status == 0);
     const std::string good = contents("good/teapot.png");
     place.check_refusal("--slide missing.png", "missing.png");
     const auto check = [&](const std::string& bytes) {
@@ -184,7 +192,7 @@ TEST_CASE("timings become the page's tables and charts, which say where others a
     write("timings.json", timing_of("K9, 1024", "texgen, <exact>", "1.25") + timing_of("K9, 1024", "GLM, loop", "2.5") +
                               timing_of("project planar, 1024", "texgen, 1/512 texel of 4096", "3") +
                               timing_of("project planar, 1024", "GLM, mat4 * vec4", "2"));
-    CHECK(place.run("--rounds 1 --size 16x16 --timings timings.json").status == 0);
+    CHECK(place.run_on_little("--timings timings.json").status == 0);
     const std::string page = contents("report/index.html");
     CHECK(page.find("<td>texgen, &lt;exact&gt;</td><td>1.250</td><td>2.00</td>") != std::string::npos);
     CHECK(page.find("<h3>Points</h3>") != std::string::npos);
@@ -196,7 +204,7 @@ TEST_CASE("timings become the page's tables and charts, which say where others a
     write("timings.json", timing_of("project planar, 1024", "texgen, exact", "0.75") +
                               timing_of("project planar, 1024", "GLM, mat4 * vec4", "16.25"));
     CHECK(!fs::exists("report/times.md"));
-    CHECK(place.run("--rounds 1 --size 16x16 --timings timings.json --timings timings.json").status == 0);
+    CHECK(place.run_on_little("--timings timings.json --timings timings.json").status == 0);
     const std::string table = contents("report/times.md");
     CHECK(table.find("| points, planar | 0.75 / 0.75, 1.0e-3 | | 16.2 / 16.2, 1.0e-3 | |\n") != std::string::npos);
     CHECK(table.find("| a segment | | | | |\n") != std::string::npos);
@@ -214,20 +222,20 @@ TEST_CASE("a speed that was promised of a build is judged by that build, the fir
     write("native.json", rows_of("GNU 12", "-O3 -march=native", "0.5"));
     write("avx2.json", rows_of("GNU 12", "-O3 -mavx2 -mfma", "0.25"));
     write("clang.json", rows_of("Clang 14", "-O3 -march=native", "0.8"));
-    const std::string two = "--rounds 1 --size 16x16 --timings o2.json --timings native.json";
+    const std::string two = "--timings o2.json --timings native.json";
     const auto judges = [](const std::string& page, const std::string& flags, const char* asked, const char* measured,
                            const char* answer) {
         return page.find("<td>" + flags + "</td><td>" + asked + "x</td><td>" + measured + "x</td><td></td><td>" +
                          answer + "</td>") != std::string::npos;
     };
-    REQUIRE(place.run(two + " --others clang.json --others avx2.json").status == 0);
+    REQUIRE(place.run_on_little(two + " --others clang.json --others avx2.json").status == 0);
     std::string page = contents("report/index.html");
     CHECK(judges(page, "-O2", "42", "40", "no"));
     CHECK(judges(page, "-O3 -march=native", "3", "2", "no"));
     CHECK(judges(page, "-O3 -mavx2 -mfma", "2", "4", "yes"));
     CHECK(judges(page, "clang++ -O3 -march=native", "2.4", "1.25", "no"));
 
-    REQUIRE(place.run(two).status == 0);
+    REQUIRE(place.run_on_little(two).status == 0);
     page = contents("report/index.html");
     CHECK(judges(page, "-O3 -march=native", "3", "2", "no"));
     CHECK(page.find("clang++") == std::string::npos);
@@ -238,14 +246,14 @@ TEST_CASE("without gnuplot, and with one that fails, the page says so in the pla
     const Workplace place;
     write("gnuplot", "#!/bin/sh\necho '<svg'\nexit 1\n");
     fs::permissions("gnuplot", fs::perms::owner_all);
-    for (const char* path : {"/nowhere", "."}) {
-        CHECK(std::system(("PATH=" + std::string(path) + " '" TEXGEN_REPORT_PROGRAM "' --rounds 1 --size 16x16 >output")
-                              .c_str()) == 0);
+    for (const std::string path : {"/nowhere", "."}) {
+        const Outcome outcome = place.run_on_little("", "PATH=" + path);
+        CHECK(outcome.status == 0);
         const std::string page = contents("report/index.html");
         CHECK(page.find("No chart: gnuplot is missing or failed.") != std::string::npos);
         CHECK(page.find("<svg") == std::string::npos);
         CHECK(page.ends_with("</html>\n"));
-        CHECK(contents("output").find("No chart: gnuplot is missing or failed.") != std::string::npos);
+        CHECK(outcome.output.find("No chart: gnuplot is missing or failed.") != std::string::npos);
     }
 }
 
@@ -253,7 +261,7 @@ TEST_CASE("names of timings are text to gnuplot, and nothing that it executes") 
     const Workplace place;
     write("timings.json", timing_of("project planar, 1024", "texgen, `touch one`' . system('touch two') #", "3") +
                               timing_of("project planar, 1024", "GLM, {/=99 @mat4} \\", "2"));
-    CHECK(place.run("--rounds 1 --size 16x16 --timings timings.json").status == 0);
+    CHECK(place.run_on_little("--timings timings.json").status == 0);
     CHECK((contents("report/index.html").find("No chart") == std::string::npos) == has_gnuplot());
     for (const std::string& file : place.files()) CHECK((file.starts_with("report") || file == "timings.json"));
 }
@@ -273,14 +281,14 @@ TEST_CASE("costs become a table of the terminal and of the page, none become not
     write("costs.txt",
           "GLM's "
           "headers||200|800|0\nclip.hpp||300|900|\nclip_<near>()|clip.hpp|550|10900|7000\nodd()|nowhere.hpp|50|1|1\n");
-    const Outcome outcome = place.run("--rounds 1 --size 16x16 --costs costs.txt");
+    const Outcome outcome = place.run_on_little("--costs costs.txt");
     CHECK(outcome.status == 0);
     CHECK(outcome.output.find("1.50x GLM") != std::string::npos);
     CHECK(contents("report/index.html")
               .find("<td>clip_&lt;near&gt;()</td><td>0.55</td><td>+0.25 s</td><td>10.0</td><td>7.0</td>") !=
           std::string::npos);
     write("costs.txt", "");
-    CHECK(place.run("--rounds 1 --size 16x16 --costs costs.txt").status == 0);
+    CHECK(place.run_on_little("--costs costs.txt").status == 0);
     CHECK(contents("report/index.html").find("costs to compile") == std::string::npos);
 }
 
@@ -297,7 +305,7 @@ TEST_CASE("worst times that are none are refused in one line") {
 TEST_CASE("worst times become a table of the terminal and of the page that says which limits are met") {
     const Workplace place;
     write("worst.txt", "divide|<any>|2|9|8\nproject|ties everywhere|2|17|8\n");
-    const Outcome outcome = place.run("--rounds 1 --size 16x16 --worst worst.txt");
+    const Outcome outcome = place.run_on_little("--worst worst.txt");
     CHECK(outcome.status == 0);
     CHECK(outcome.output.find("8.5      8  NOT MET  ties everywhere") != std::string::npos);
     const std::string page = contents("report/index.html");
@@ -405,7 +413,7 @@ TEST_CASE("a run replaces an old report and leaves other files alone") {
     fs::create_directory("mine");
     write("mine/index.html", "yesterday");
     write("mine/letter.txt", "dear reader");
-    CHECK(place.run("--rounds 1 --size 16x16 --out mine").status == 0);
+    CHECK(place.run_on_little("--out mine").status == 0);
     CHECK(contents("mine/index.html").starts_with("<!DOCTYPE html>"));
     CHECK(contents("mine/letter.txt") == "dear reader");
 }
@@ -441,7 +449,7 @@ TEST_CASE("a mesh of Windows and a slide of one pixel are taken, and the other k
 TEST_CASE("whoever watches a terminal sees the progress, and a clear line after it") {
     const Workplace place;
     if (std::system("script -qec true /dev/null >/dev/null 2>&1") != 0) return;  // no pseudo-terminal can be had
-    CHECK(std::system("script -qec \"'" TEXGEN_REPORT_PROGRAM "' --size 16x16\" /dev/null >watched") == 0);
+    CHECK(std::system("script -qec \"'" TEXGEN_REPORT_PROGRAM "' --rounds 1 --size 16x16\" /dev/null >watched") == 0);
     const std::string watched = contents("watched");
     CHECK(watched.find(": rendering ") != std::string::npos);
     CHECK(watched.find(": measuring errors far from the origin") != std::string::npos);
