@@ -11,8 +11,8 @@
 
 #include "detail/matrices/required.hpp"
 
-// 0.4.20: 10000 major + 100 minor + patch.
-#define TEXGEN_VERSION 420
+// 0.4.21: 10000 major + 100 minor + patch.
+#define TEXGEN_VERSION 421
 
 namespace TEXGEN_NAMESPACE {
 

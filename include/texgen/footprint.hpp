@@ -27,7 +27,7 @@
 namespace TEXGEN_NAMESPACE {
 
 // How many texels one unit of s and of t spans: the size of the texture for normalised coordinates, those of an
-// atlas_tile too; 1 for a rectangle texture. Of level 0. Bad values (not between 2^-200 and 2^200) make what is
+// atlas_tile too; 1 for a rectangle texture. Of level 0. Bad values (not above 2^-200 and below 2^200) make what is
 // measured in texels NaN.
 struct TexelsPerUnit {
     double s, t;
@@ -99,8 +99,8 @@ public:
     std::optional<Footprint> at(int x, int y) const noexcept;
 
     // Bounds the error of what footprint() writes to dsdx and dsdy (x), dtdx and dtdy (y).
-    // Guarantee: |computed - exact| is at most this at every fragment of the rectangle with q > 0; infinite where no
-    // finite bound exists, as next to q = 0. noexcept.
+    // Guarantee: |computed - exact| is at most this at every fragment of the rectangle with q > 0; infinite where none
+    // is known, as next to q = 0. noexcept.
     glm::dvec2 error_bound(FragmentRect rect) const noexcept;
 
     // Finds the extremes of the footprints over a rectangle.

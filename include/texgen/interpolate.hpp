@@ -61,7 +61,7 @@ public:
 
     // Bounds the error of s (x) and t (y) over a rectangle.
     // Guarantee: |computed - exact| is at most this for every fragment of the rectangle with q > 0, the rounding to
-    // float included; infinite where no finite bound exists, as next to q = 0. noexcept.
+    // float included; infinite where none is known, as next to q = 0. noexcept.
     glm::dvec2 error_bound(FragmentRect rect) const noexcept;
 
 private:
@@ -81,7 +81,8 @@ inline namespace TEXGEN_BUILD {
 // Guarantee: in front each is within max(tolerance, 1/2 ulp) of the exact value of the given floats (r: the tolerance
 // relative to max(1, |r|)). With `exact` each is the nearest float, so that its bits depend on
 // neither the rectangle, the length, the alignment nor the build. lit = 1 inside the closed region, decided from the s
-// and t, and with a depth from the r, that are (or would be) written; where r is certainly in the depth, or s and t
+// and t, and with a depth from the r, that are written; of one that is not asked for from a float as near to the exact
+// value, so that with a tolerance either may be right next to a side. Where r is certainly in the depth, or s and t
 // leave all of a part of the rectangle dark, it is not computed for that. Behind, s = t = r = lit = 0, the sign of q
 // decided exactly. For Work::nothing lit is 0 and s, t, r are not written. No allocation, noexcept.
 // Shapes: each output has width * height floats, row-major, or none (asserted). Fragments outside the triangle get the

@@ -31,7 +31,7 @@ inline namespace TEXGEN_BUILD {
 // max(1, |r|)); with `exact` the nearest float, the ends included. The sign of q is exact, and behind the projector all
 // are 0. lit as for triangles. No allocation, noexcept.
 // Shapes: each output as long as alpha, or empty (asserted; else it is not written); alpha in [0, 1] (asserted).
-// Bad input: NaN and infinity spoil their own value only; an alpha that is NaN is never lit.
+// Bad input: NaN and infinity spoil their own value only; an alpha that is NaN is never lit, and not asserted.
 // Source: the C_u note, (2).
 template <class CompiledWhereCalled = void>
 void interpolate(const Segment& segment, std::span<const float> alpha, TextureRegion region, Texcoords out,

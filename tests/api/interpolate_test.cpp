@@ -39,6 +39,7 @@ using support::Shot;
 using support::text;
 using support::vertices;
 using texgen::FragmentRect;
+using texgen::Tolerance;
 using texgen::Triangle;
 using texgen::TriangleSetup;
 using texgen::WindowVertex;
@@ -598,6 +599,54 @@ TEST_CASE("a mask alone is that of s and t where sides cross the tile, follow it
     CHECK(planes > 100);
     CHECK(open > 1000);
     CHECK(beside > 2000);
+}
+
+TEST_CASE("where a coordinate is 0 along an edge in a row or a column of fragments it is 0, and all else is right") {
+    Random random(453);
+    Seen seen;
+    int zeros = 0, both = 0;
+    for (int i = 0; i < 4000; ++i) {
+        Shot shot = support::detail::ordinary(support::Family::friendly, random);
+        shot.rect = {random.integer(-50, 200), random.integer(-50, 200), 1, 1};
+        if (random.integer(0, 3) != 0) shot.rect.width = random.integer(1, 20);
+        if (random.integer(0, 3) != 0) shot.rect.height = random.integer(1, 20);
+        const auto put_zeros = [&](std::size_t first, glm::length_t coordinate, glm::length_t axis) {
+            const int place = axis == 0 ? shot.rect.x + random.integer(0, shot.rect.width - 1)
+                                        : shot.rect.y + random.integer(0, shot.rect.height - 1);
+            for (std::size_t j = first; j < first + 2; ++j) {
+                WindowVertex& vertex = *vertices(shot.triangle)[j % 3];
+                vertex.window[axis] = static_cast<float>(place) + 0.5f;
+                vertex.strq[coordinate] = random.coin() ? 0.0f : -0.0f;
+            }
+        };
+        const auto first = static_cast<std::size_t>(random.integer(0, 2));
+        const int coordinate = random.integer(0, 2), axis = random.integer(0, 1);
+        put_zeros(first, coordinate, axis);
+        if (random.coin()) put_zeros(first + 1, (coordinate + 1) % 3, 1 - axis);  // they cross at a corner
+        const auto side = [&](double other) { return random.coin() ? 0.0 : other; };
+        texgen::TextureRegion region = texgen::atlas_tile({side(-HUGE_VAL), side(-1.0)}, {side(HUGE_VAL), side(1.0)});
+        if (random.integer(0, 2) == 0) region = region.with_depth(side(-HUGE_VAL), side(1.0));
+        const Tolerance tolerance{random.integer(0, 2) != 0 ? 0.0 : random.power_of_ten(-9.0, -1.0)};
+        const auto setup = TriangleSetup::of(shot.triangle, region, tolerance);
+        if (!setup) continue;
+        const ExactTriangle exact(shot.triangle);
+        for (const unsigned asked : {Outputs::all, static_cast<unsigned>(random.integer(1, 15)), 3u, 8u}) {
+            Outputs out(count_of(shot.rect), asked, static_cast<std::size_t>(random.integer(0, 16)));
+            const Work work = interpolate(*setup, shot.rect, out.spans());
+            const std::string wrong = first_wrong(shot, exact, region, tolerance, work, out, seen);
+            REQUIRE_MESSAGE(wrong.empty(), wrong, " of ", asked, ", ", hex(region), ", ", hex(tolerance.value), " in ",
+                            hex(shot));
+            REQUIRE_MESSAGE(out.pads_are_intact(), hex(shot));
+            for (std::size_t n = 0; work != Work::nothing && asked == 3u && n < out.size(); ++n) {
+                zeros += out.s()[n] == 0.0f || out.t()[n] == 0.0f;
+                both += out.s()[n] == 0.0f && out.t()[n] == 0.0f;
+            }
+        }
+    }
+    CHECK(zeros > 5000);
+    CHECK(both > 100);
+    CHECK(seen.lit > 20000);
+    CHECK(seen.dark > 20000);
 }
 
 TEST_CASE("the order of the vertices and the winding do not change a bit") {

@@ -22,7 +22,7 @@ TEXGEN_INLINE bool divide_small(const SmallTile& tile) noexcept {
         }
     }
     // Shorter rows than vectors have no room for the last of them.
-    float buffer[2][TileJob::unit_size + lanes];
+    float buffer[2][SmallTile::most_in_short_rows + lanes];
     const bool has_room = width >= lanes;
     float* const out[2] = {has_room ? tile.out[0] : buffer[0], has_room ? tile.out[1] : buffer[1]};
     Distances least = far_from_middles();

@@ -99,6 +99,8 @@ struct SmallTile {
 
     // Of doubles, within this of half-way between two floats is in doubt.
     static constexpr int ulps = 0xfff;
+    // The most fragments of rows that are shorter than vectors.
+    static constexpr int most_in_short_rows = 256;
 };
 
 // Where a row of a TileJob goes. A copy, so that the compiler knows that no store changes it.

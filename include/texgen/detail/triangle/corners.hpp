@@ -53,8 +53,11 @@ struct Corners {
     // Whether so little is left of the functions' terms that many quotients would be in doubt: the planes are about a
     // corner. Where q has both signs there is doubt beside q = 0 in any case.
     bool cancel() const noexcept {
+        return q_cancels() || any_less(largest_numerator * cancelled_share, numerator_error);
+    }
+    bool q_cancels() const noexcept {
         const double size = least_q > q_error ? least_q : larger(-least_q, largest_q);
-        return q_error > cancelled_share * size || any_less(largest_numerator * cancelled_share, numerator_error);
+        return q_error > cancelled_share * size;
     }
     bool is_well_in_front() const noexcept { return least_q > well_in_front * q_error; }
     bool has_one_error() const noexcept { return is_well_in_front() && least_q > share_for_one_error * largest_q; }
@@ -186,6 +189,35 @@ TEXGEN_RARE inline void take_planes(const Corners& at, CloseFunctions& functions
     }
     functions.function[CloseFunctions::q].high = at.q_ramp;
     functions.function[CloseFunctions::q].error = at.q_error;
+}
+
+// The row or column of a tile on an edge between corners at which a coordinate is 0, as it is all along that edge; or
+// none.
+TEXGEN_RARE inline Stretch zeros_of(const TrianglePlanes& planes, glm::length_t coordinate, const Tile& tile) noexcept {
+    const std::int64_t first[] = {tile.x, tile.y};
+    const int size[] = {tile.width, tile.height};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t j = (i + 1) % 3;
+        if (planes.value(i, coordinate) != 0.0 || planes.value(j, coordinate) != 0.0) continue;
+        for (glm::length_t axis = 0; axis < 2; ++axis) {
+            const double place = (planes.corner(i)[axis] - 0.5) - static_cast<double>(first[axis]);  // integers
+            if (planes.corner(j)[axis] != planes.corner(i)[axis] || !(place >= 0.0 && place < size[axis])) continue;
+            const int index = static_cast<int>(place);
+            if (index == place) return {axis == 0, index, index + 1};
+        }
+    }
+    return {};
+}
+
+// Whether these cancel but for numerators that are so small for their zeros.
+TEXGEN_RARE inline bool cancel_beyond_zeros(const Corners& at, const TrianglePlanes& planes, glm::length_t of_first,
+                                            glm::length_t of_second, const Tile& tile) noexcept {
+    if (at.q_cancels()) return true;
+    for (std::size_t k = 0; k < 2; ++k)
+        if (at.largest_numerator[k] * cancelled_share < at.numerator_error[k] &&
+            zeros_of(planes, k == 0 ? of_first : of_second, tile).end == 0)
+            return true;
+    return false;
 }
 
 // What |Q| is at most.

@@ -37,7 +37,9 @@ public:
 
     TEXGEN_APART Corners corners_at(const Tile& tile) noexcept {
         Corners at = corners_of(triangle_.planes, *planes_, triangle_.q, tile);
-        if (!at.all_behind() && at.cancel()) take_corners(at, close_ramps(tile));
+        if (!at.all_behind() && at.cancel() &&
+            cancel_beyond_zeros(at, triangle_.planes, coordinate_of(0), coordinate_of(1), tile))
+            take_corners(at, close_ramps(tile));
         return at;
     }
 
@@ -220,6 +222,10 @@ private:
 
     TEXGEN_RARE void fill_from_doubt(const Tile& tile, const Corners& at, TileJob& job, TileJob::Unit unit,
                                      std::uint64_t doubtful = ~std::uint64_t{0}) noexcept {
+        for (std::size_t k = 0; k < count_; ++k)
+            if (planes_->magnitude.dx[k] + planes_->magnitude.dy[k] != 0.0)
+                if (const Stretch zeros = zeros_of(triangle_.planes, coordinate_of(k), tile); zeros.end != 0)
+                    return fill_around(tile, zeros, k);
         if (is_one()) return fill_one(tile.x, tile.y);
         DoubtfulFunctions functions = functions_of(tile, at);
         functions.residues_first = true;
@@ -251,6 +257,25 @@ private:
                 return fill_exact(tile, closer, &unit);
             }
         }
+    }
+
+    // What is before a row or column of zeros of numerator k, it, without that numerator, and what is behind it.
+    TEXGEN_RARE void fill_around(const Tile& tile, const Stretch& zeros, std::size_t k) noexcept {
+        const auto rest = [&](const Double2& of) {
+            return double2_of(k == 0 || count_ == 1 ? 0.0 : of[0], k == 1 || count_ == 1 ? 0.0 : of[1]);
+        };
+        const auto rest_of = [&](const RampOf<Double2>& of) {
+            return RampOf<Double2>{rest(of.base), rest(of.dx), rest(of.dy)};
+        };
+        const PlaneOf<Double2>* const planes = planes_;
+        const PlaneOf<Double2> without{rest_of(planes->value), rest_of(planes->magnitude)};
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Tile part = zeros.part(tile, i);
+            if (part.count() == 0) continue;
+            planes_ = i == 1 ? &without : planes;
+            fill_exact(part, corners_at(part));
+        }
+        planes_ = planes;
     }
 
     // A small tile, by one job for all that there are: with the planes as they are, and closely only if that leaves

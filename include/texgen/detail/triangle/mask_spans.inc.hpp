@@ -17,19 +17,24 @@ public:
     TEXGEN_APART HalfPlanes(const TriangleFunctions& triangle, const Corners& at, const Tile& tile) noexcept
         : tile_(tile) {
         const double q = largest_q_of(at);
+        // Under a tolerance what is written may not be what is exact, but for a function that is 0.
+        const bool is_exact = triangle.tolerance == 0.0;
         add(at.q_ramp, at.q_error + 0x1p-46 * q);
         const auto& [base, dx, dy] = at.numerator_ramp;
         for (std::size_t side = 0; side < 4; ++side) {
             const std::size_t k = side % 2;
             const double sign = side < 2 ? 1.0 : -1.0;
             const double bound = side < 2 ? triangle.lit.least(k) : triangle.lit.greatest(k);
-            if (bound == -sign * infinity || (triangle.tolerance == 0.0 && is_on_side(triangle.planes, k, bound)))
+            if (bound == -sign * infinity || ((is_exact || bound == 0.0) && is_on_side(triangle.planes, k, bound)))
                 continue;
             const auto at_side = [&](const Double2& f, double of_q) { return sign * (f[k] - bound * of_q); };
+            Ramp inside{at_side(base, at.q_ramp.base), at_side(dx, at.q_ramp.dx), at_side(dy, at.q_ramp.dy)};
+            // What is on the side is inside, and half a fragment from there nothing is.
+            if (is_exact && bound == 0.0 && zeros_of(triangle.planes, static_cast<glm::length_t>(k), tile).end != 0)
+                inside.base += 0.5 * (std::fabs(inside.dx) + std::fabs(inside.dy));
             // A tile's values are five of the largest at most, which are rounded thrice.
-            add({at_side(base, at.q_ramp.base), at_side(dx, at.q_ramp.dx), at_side(dy, at.q_ramp.dy)},
-                margin_of_sides(at, triangle.tolerance, q)[k] + std::fabs(bound) * margin_of_bounds(at, q) +
-                    0x1p-46 * at.largest_numerator[k]);
+            add(inside, margin_of_sides(at, triangle.tolerance, q)[k] + std::fabs(bound) * margin_of_bounds(at, q) +
+                            0x1p-46 * at.largest_numerator[k]);
         }
     }
 
@@ -100,8 +105,7 @@ private:
     bool are_finite_ = true;
 };
 
-// The mask of a tile by the spans of its rows. Returns the part in which floats decide: all, where they do in much of it;
-// or under a tolerance anywhere, as what would be written depends on all of the tile then.
+// The mask of a tile by the spans of its rows. Returns the part in which floats decide: all, where they do in much of it.
 TEXGEN_APART inline Tile light_spans(const TriangleFunctions& triangle, const Tile& tile, const Corners& at,
                                      const std::span<float>& lit) noexcept {
     const HalfPlanes planes(triangle, at, tile);
@@ -121,7 +125,7 @@ TEXGEN_APART inline Tile light_spans(const TriangleFunctions& triangle, const Ti
     }
     if (bottom == 0) return {};
     const Tile part{tile.x + left, tile.y + top, right - left, bottom - top};
-    return triangle.tolerance != 0.0 || 4 * part.count() > tile.count() ? tile : part;
+    return 4 * part.count() > tile.count() ? tile : part;
 }
 
 }  // namespace TEXGEN_BUILD

@@ -4,12 +4,13 @@
 namespace TEXGEN_DETAIL {
 inline namespace TEXGEN_BUILD {
 
-// Rows that are shorter than vectors are gathered in a buffer, which has a unit. Of many fragments one may well be in
+// Rows that are shorter than vectors are gathered in a buffer. Of many fragments one may well be in
 // doubt, which has all of them divided again; and in long rows vectors that follow one another share a division at less
 // cost.
 inline bool is_small(const Tile& tile, double tolerance) noexcept {
     constexpr int longest_vector = 8;
-    const int most = tile.width < longest_vector ? TileJob::unit_size : tile.width <= 64 ? 4096 : 512;
+    const int width = tile.width == 1 ? tile.height : tile.width;  // a column is a row
+    const int most = width < longest_vector ? SmallTile::most_in_short_rows : width <= 64 ? 4096 : 512;
     return tile.count() <= most && (tolerance == 0.0 || !pays_for_chunks(tile));
 }
 
@@ -130,13 +131,17 @@ inline bool serves(const SmallFunction<Double2>& f, const SmallDivisor& divisor,
 // What of a tile is left: nothing, what has to be divided again, or all, as no one bound serves.
 enum class SmallDoubt { none, of_unit, of_all };
 
-// The quotients of one or two coordinates, if one bound serves them; `tile` says where they go.
+// The quotients of one or two coordinates, if one bound serves them; `tile` says where they go. A column is a row.
 template <class CompiledWhereCalled = void>
-TEXGEN_APART SmallDoubt divide_small(const TriangleFunctions& triangle, const RampOf<Double2>& ramp,
+TEXGEN_APART SmallDoubt divide_small(const TriangleFunctions& triangle, const Tile& rect, const RampOf<Double2>& ramp,
                                      const SmallFunction<Double2>& f, const SmallDivisor& q, SmallTile& tile) noexcept {
+    const bool is_column = rect.width == 1;
+    tile.width = is_column ? rect.height : rect.width;
+    tile.height = is_column ? 1 : rect.height;
     if (!serves(f, q, triangle.tolerance, tile)) return SmallDoubt::of_all;
-    store_ramps({f.base, ramp.dx, ramp.dy}, tile.numerator);
-    tile.q = {q.function.base, triangle.q.value.dx, triangle.q.value.dy};
+    const auto& [q_base, q_dx, q_dy] = triangle.q.value;
+    store_ramps({f.base, is_column ? ramp.dy : ramp.dx, is_column ? ramp.dx : ramp.dy}, tile.numerator);
+    tile.q = {q.function.base, is_column ? q_dy : q_dx, is_column ? q_dx : q_dy};
     if (chosen<TileKernels>().fill_small(tile)) return SmallDoubt::none;
     return tile.width * tile.height <= TileJob::unit_size ? SmallDoubt::of_unit : SmallDoubt::of_all;
 }
@@ -149,7 +154,7 @@ TEXGEN_APART void fill_small_alone(const TriangleFunctions& triangle, const Tile
     const PlaneOf<Double2> plane = triangle.planes.plane_twice(coordinate);
     tile.out[0] = tile.out[1] = output.data();
     tile.lit = nullptr;
-    const SmallDoubt doubt = divide_small(triangle, plane.value, SmallFunction<Double2>(plane, place), q, tile);
+    const SmallDoubt doubt = divide_small(triangle, rect, plane.value, SmallFunction<Double2>(plane, place), q, tile);
     if (doubt == SmallDoubt::none) return;
     OnDemand<CloseRamps> close;
     TileInterpolator<> interpolator(triangle, rect, close, coordinate, output);
@@ -167,21 +172,28 @@ TEXGEN_APART SmallAnswer fill_small(const TriangleFunctions& triangle, const Til
     if (answer == SmallAnswer::doubt) return answer;
     const bool is_lit = answer == SmallAnswer::lit;
     SmallTile tile;
-    tile.width = rect.width;
-    tile.height = rect.height;
-    if (!out.s.empty() && !out.t.empty()) {
-        tile.out[0] = out.s.data();
-        tile.out[1] = out.t.data();
-        tile.lit = is_lit || out.lit.empty() ? nullptr : out.lit.data();
+    const bool needs_mask = !is_lit && !out.lit.empty();
+    // Few fragments have their mask by s and t sooner than by spans, whether these are asked for or not.
+    float scratch[2][TileJob::unit_size];
+    Texcoords both = out;
+    if (needs_mask && rect.count() <= TileJob::unit_size) {
+        const auto count = static_cast<std::size_t>(rect.count());
+        if (out.s.empty()) both.s = {scratch[0], count};
+        if (out.t.empty()) both.t = {scratch[1], count};
+    }
+    if (!both.s.empty() && !both.t.empty()) {
+        tile.out[0] = both.s.data();
+        tile.out[1] = both.t.data();
+        tile.lit = needs_mask ? out.lit.data() : nullptr;
         if (tile.lit != nullptr) triangle.lit.copy_to(tile.min, tile.max);
-        const SmallDoubt doubt = divide_small(triangle, triangle.st.value, f, q, tile);
+        const SmallDoubt doubt = divide_small(triangle, rect, triangle.st.value, f, q, tile);
         if (doubt == SmallDoubt::of_all) return SmallAnswer::doubt;
         if (doubt == SmallDoubt::of_unit) {
             OnDemand<CloseRamps> close;
-            TileInterpolator<>(triangle, rect, close, out).interpolate_from_doubt(rect);
+            TileInterpolator<>(triangle, rect, close, both).interpolate_from_doubt(rect);
         }
     } else {
-        if (!is_lit && !out.lit.empty()) return SmallAnswer::doubt;
+        if (needs_mask) return SmallAnswer::doubt;
         if (!out.s.empty()) fill_small_alone(triangle, rect, place, q, 0, out.s, tile);
         if (!out.t.empty()) fill_small_alone(triangle, rect, place, q, 1, out.t, tile);
     }

@@ -114,7 +114,9 @@ TEXGEN_APART inline TileSurvey survey(const TriangleFunctions& triangle, const T
     TileSurvey found(triangle, tile);
     for (;;) {
         choose_plan(triangle, tile, found.at, found.plan);
-        if (found.close || found.plan.work == Work::nothing || !found.at.cancel()) return found;
+        if (found.close || found.plan.work == Work::nothing || !found.at.cancel() ||
+            !cancel_beyond_zeros(found.at, triangle.planes, 0, 1, tile))
+            return found;
         found.close.make(ClosePlanes(triangle.planes, tile).ramps(0, 1));
         take_corners(found.at, *found.close);
     }
