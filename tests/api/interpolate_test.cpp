@@ -613,9 +613,10 @@ TEST_CASE("where a coordinate is 0 along an edge in a row or a column of fragmen
         const auto put_zeros = [&](std::size_t first, glm::length_t coordinate, glm::length_t axis) {
             const int place = axis == 0 ? shot.rect.x + random.integer(0, shot.rect.width - 1)
                                         : shot.rect.y + random.integer(0, shot.rect.height - 1);
+            const float at = random.integer(0, 3) != 0 ? 0.5f : random.uniform_float(0.0, 1.0);
             for (std::size_t j = first; j < first + 2; ++j) {
                 WindowVertex& vertex = *vertices(shot.triangle)[j % 3];
-                vertex.window[axis] = static_cast<float>(place) + 0.5f;
+                vertex.window[axis] = static_cast<float>(place) + at;
                 vertex.strq[coordinate] = random.coin() ? 0.0f : -0.0f;
             }
         };

@@ -36,7 +36,7 @@ def what_does_not_apply():
 
 
 def configure(copy, build, flags):
-    for part in (".cmake", "include", "tests", "CMakeLists.txt", "README.md"):
+    for part in (".cmake", ".github", "include", "tests", "CMakeLists.txt", "README.md"):
         source, target = PROJECT / part, copy / part
         if source.is_dir():
             shutil.copytree(source, target, dirs_exist_ok=True)
