@@ -436,7 +436,7 @@ TEST_CASE("long runs of a visibility buffer take little more than rows of their 
 
 TEST_CASE(
     "a mask alone costs at most 8 times one that is lit at once where a side crosses the tile or is its plane, 12 of a "
-    "small one") {
+    "small one or with a tolerance") {
     const auto shot_with = [](int width, int height, const auto& change) {
         Shot shot = ordinary(width, height);
         for (WindowVertex* corner : support::vertices(shot.triangle)) change(*corner);
@@ -465,9 +465,10 @@ TEST_CASE(
             shot_with(width, height, [&](WindowVertex& c) { c.strq.x = c.strq.y = c.strq.w; }),
         };
         std::vector<float> lit(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-        // Spans of few fragments, of which some columns are asked for where a side follows a diagonal.
-        const double most = width <= 64 ? 12.0 : 8.0;
         for (const Tolerance tolerance : {texgen::exact, texgen::texels(1.0 / 16.0, 1024.0)}) {
+            // Spans of few fragments, of which some columns are asked for where a side follows a diagonal; and planes of
+            // a side, beside which floats within a tolerance may be.
+            const double most = width <= 64 || tolerance.value > 0.0 ? 12.0 : 8.0;
             const auto call = [&](const Shot& shot) {
                 return [&lit, setup = support::setup_of(shot.triangle, texgen::whole_texture(), tolerance),
                         rect = shot.rect] {
