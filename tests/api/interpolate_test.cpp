@@ -605,7 +605,7 @@ TEST_CASE("where a coordinate is 0 along an edge in a row or a column of fragmen
     Random random(453);
     Seen seen;
     int zeros = 0, both = 0;
-    for (int i = 0; i < 4000; ++i) {
+    for (int i = 0; i < 1000; ++i) {
         Shot shot = support::detail::ordinary(support::Family::friendly, random);
         shot.rect = {random.integer(-50, 200), random.integer(-50, 200), 1, 1};
         if (random.integer(0, 3) != 0) shot.rect.width = random.integer(1, 20);
@@ -644,10 +644,10 @@ TEST_CASE("where a coordinate is 0 along an edge in a row or a column of fragmen
             }
         }
     }
-    CHECK(zeros > 5000);
-    CHECK(both > 100);
-    CHECK(seen.lit > 20000);
-    CHECK(seen.dark > 20000);
+    CHECK(zeros > 1500);
+    CHECK(both > 40);
+    CHECK(seen.lit > 5000);
+    CHECK(seen.dark > 5000);
 }
 
 TEST_CASE("the order of the vertices and the winding do not change a bit") {
