@@ -209,7 +209,7 @@ TEXGEN_RARE inline Stretch zeros_of(const TrianglePlanes& planes, glm::length_t 
     return {};
 }
 
-// Whether these cancel but for numerators that are so small for their zeros.
+// Whether q cancels, or a numerator that is not as small as it is for its zeros: of those two doubles say no more.
 TEXGEN_RARE inline bool cancel_beyond_zeros(const Corners& at, const TrianglePlanes& planes, glm::length_t of_first,
                                             glm::length_t of_second, const Tile& tile) noexcept {
     if (at.q_cancels()) return true;

@@ -222,6 +222,7 @@ private:
 
     TEXGEN_RARE void fill_from_doubt(const Tile& tile, const Corners& at, TileJob& job, TileJob::Unit unit,
                                      std::uint64_t doubtful = ~std::uint64_t{0}) noexcept {
+        // A numerator without a plane is that of its zeros already.
         for (std::size_t k = 0; k < count_; ++k)
             if (planes_->magnitude.dx[k] + planes_->magnitude.dy[k] != 0.0)
                 if (const Stretch zeros = zeros_of(triangle_.planes, coordinate_of(k), tile); zeros.end != 0)

@@ -4,9 +4,8 @@
 namespace TEXGEN_DETAIL {
 inline namespace TEXGEN_BUILD {
 
-// Rows that are shorter than vectors are gathered in a buffer. Of many fragments one may well be in
-// doubt, which has all of them divided again; and in long rows vectors that follow one another share a division at less
-// cost.
+// Rows that are shorter than vectors are gathered in a buffer. Of many fragments one may well be in doubt, which has all
+// of them divided again; and in long rows vectors that follow one another share a division at less cost.
 inline bool is_small(const Tile& tile, double tolerance) noexcept {
     constexpr int longest_vector = 8;
     const int width = tile.width == 1 ? tile.height : tile.width;  // a column is a row
