@@ -11,8 +11,8 @@
 
 #include "detail/matrices/required.hpp"
 
-// 0.4.21: 10000 major + 100 minor + patch.
-#define TEXGEN_VERSION 421
+// 0.4.22: 10000 major + 100 minor + patch.
+#define TEXGEN_VERSION 422
 
 namespace TEXGEN_NAMESPACE {
 

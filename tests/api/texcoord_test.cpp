@@ -341,6 +341,41 @@ TEST_CASE("a tolerance of some units of the largest coordinate of the batch is k
     CHECK(tally.in_front > 20000);
 }
 
+TEST_CASE(
+    "blocks of points on either side of the projector, or far from the origin, keep the tolerance and the sign of q") {
+    Random random(6250);
+    Tally tally;
+    int in_float = 0, of_company = 0;
+    for (int i = 0; i < 60; ++i) {
+        // Neighbours, as a mesh has them, about a path that may cross q = 0; some far from all others.
+        const auto count = static_cast<std::size_t>(random.integer(200, 2600));
+        Batch batch = families[static_cast<std::size_t>(i % 4 == 0 ? 2 : 0)].make(random, count);
+        const auto is_behind = [&](const glm::vec3& point) { return exactly_at(batch.matrix, point).q.sign() < 0; };
+        const auto behind = std::find_if(batch.points.begin(), batch.points.end() - 1, is_behind);
+        const glm::dvec3 begin(*behind), end(random.coin() ? batch.points[1] : *behind);
+        const double width = random.power_of_ten(-3.0, 0.0);
+        const int outliers = random.coin() ? random.integer(20, 400) : 0;
+        for (std::size_t j = 0; j < count; ++j) {
+            const double along = static_cast<double>(j) / static_cast<double>(count);
+            batch.points[j] = glm::vec3(glm::mix(begin, end, along)) + random.vector3(width);
+            if (outliers != 0 && random.integer(0, outliers) == 0) {
+                batch.points[j] = random.vector3(random.power_of_ten(2.0, 30.0));
+                ++of_company;
+            }
+        }
+        const Tolerance tolerance{random.power_of_ten(-6.0, -2.0)};
+        const unsigned asked = random.coin() ? Outputs::all : static_cast<unsigned>(random.integer(1, 15));
+        Outputs out(count, asked, static_cast<std::size_t>(i % 16)), exact(count, asked);
+        require_right(batch, any_region(batch, random), tolerance, out, tally);
+        project(batch.texgen(), batch.positions(), everywhere(), exact.spans());
+        for (std::size_t j = 0; j < count && out.asked(0); ++j) in_float += !same_bits(out.s()[j], exact.s()[j]);
+    }
+    CHECK(tally.in_front > 20000);
+    CHECK(tally.behind > 20000);
+    CHECK(in_float > 4000);
+    CHECK(of_company > 100);
+}
+
 TEST_CASE("generated coordinates are within half a unit and 2^-50 of the sum of their terms") {
     std::uint64_t seed = 6300;
     int compared = 0, cancelling = 0;

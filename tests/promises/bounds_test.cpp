@@ -49,37 +49,45 @@ int count_of_cheap(const glm::dmat4& matrix, const std::vector<glm::vec3>& point
 
 TEST_CASE("forms in float whose coefficients and sums are all rounded the same way stay inside the tolerance") {
     // s: 1 + 2^-24 and three times 2^-24 are rounded down to 1, one by one; q: 1 + 3 * 2^-24 is rounded up, and three
-    // times -2^-24 leave it there. The quotient is 8 unit roundoffs too small.
+    // times -2^-24 leave it there. The quotient is 8 unit roundoffs too small; and all that eight times.
+    constexpr double last = 8.0 * unit_roundoff;
     glm::dmat4 matrix(0.0);
-    for (int j = 0; j < 3; ++j) matrix[j] = {unit_roundoff, unit_roundoff, unit_roundoff, -unit_roundoff};
-    matrix[3] = {1.0 + unit_roundoff, 1.0 + unit_roundoff, 1.0 + unit_roundoff, 1.0 + 3.0 * unit_roundoff};
-    const std::vector<glm::vec3> points(64, glm::vec3(1.0f));
-    int cheap = 0;
-    for (double units = 1.0; units < 40.0; units += 0.25)
-        cheap += count_of_cheap(matrix, points, {units * unit_roundoff});
-    CHECK(cheap > 1000);
+    for (int j = 0; j < 3; ++j) matrix[j] = {last, last, last, -unit_roundoff};
+    matrix[3] = {8.0 + last, 8.0 + last, 8.0 + last, 1.0 + 3.0 * unit_roundoff};
+    // About the origin; and, in blocks that follow one which is not all in front, about points of which some are there.
+    std::vector<glm::vec3> in_front(512, glm::vec3(1.0f)), about_points = in_front;
+    for (std::size_t i = 1; i < 512; i += 2) about_points[i] = glm::vec3(0.0f);
+    about_points[0] = glm::vec3(1e7f);
+    for (const std::vector<glm::vec3>* points : {&in_front, &about_points}) {
+        int cheap = 0;
+        for (double units = 1.0; units < 40.0; units += 0.25) cheap += count_of_cheap(matrix, *points, {units * last});
+        CHECK(cheap > 1000);
+    }
 }
 
-TEST_CASE("forms in double that are rounded to float and divided there stay inside the tolerance") {
+TEST_CASE("forms about a point lose what is rounded there, and what their constants lose in double") {
     Random random(6100);
     int cheap = 0;
     for (int i = 0; i < 400; ++i) {
-        // Terms that cancel in float, so that only the forms in double fit.
+        // On a plane far away, whose forms are small numbers there: constants of 2^36 cancel.
+        const glm::vec3 place(random.uniform_float(0x1p25, 0x1p26), random.uniform_float(0x1p25, 0x1p26), 0.0f);
         glm::dmat4 matrix(0.0);
-        matrix[0] = {1024.0, 1024.0, 1024.0, 1024.0};
-        matrix[1] = {-1024.0, -1024.0, -1024.0, -1024.0};
-        // Above a power of two roundings are largest beside the number.
-        const auto about_one = [&] { return random.uniform(1.0, 1.0 + 0x1p-6); };
-        matrix[2] = {about_one(), 0.0, 0.0, 0.0};
-        matrix[3] = {0.0, about_one(), about_one(), about_one()};
-        std::vector<glm::vec3> points(64);
-        for (glm::vec3& point : points) {
-            const float size = random.uniform_float(1.0, 1024.0);
-            point = {size, size, random.uniform_float(1.0, 1.0 + 0x1p-6)};
+        for (int k = 0; k < 2; ++k) {
+            const double x = random.uniform(512.0, 1024.0), y = random.uniform(512.0, 1024.0);
+            matrix[0][k] = x;
+            matrix[1][k] = y;
+            matrix[2][k] = random.uniform(-1.0, 1.0);
+            matrix[3][k] = -std::fma(x, static_cast<double>(place.x), y * static_cast<double>(place.y)) +
+                           random.uniform(-1.0, 1.0);
         }
-        cheap += count_of_cheap(matrix, points, {random.uniform(1.0, 5.0) * unit_roundoff});
+        matrix[2].w = 1.0;
+        matrix[3].w = 0.5;
+        std::vector<glm::vec3> points(64, place);
+        for (glm::vec3& point : points) point.z = random.uniform_float(1.0, 2.0);
+        points.back().z = -1.0f;  // behind, so that the block is not all in front
+        cheap += count_of_cheap(matrix, points, {random.power_of_ten(-5.0, -3.0)});
     }
-    CHECK(cheap > 100);
+    CHECK(cheap > 1000);
 }
 
 TEST_CASE("float functions of a segment stay inside the tolerance at every multiple of the unit roundoff") {

@@ -121,6 +121,50 @@ TEST_CASE("the worst points cost eight times ordinary ones at most, ten within a
     }
 }
 
+TEST_CASE("within a sixteenth of a texel points behind the projector cost little more than those in front") {
+    Random random(59);
+    constexpr std::size_t count = 4096;
+    const support::Cloud in_front = support::ordinary_cloud(count, random);
+    support::Cloud behind = in_front, either_side = in_front, far = in_front, some_next_to_zero = in_front;
+    behind.name = "behind";
+    either_side.name = "on either side";
+    far.name = "far from the origin";
+    some_next_to_zero.name = "every 97th next to q = 0";
+    const glm::dvec3 place(3e4, -2e4, 1e4);
+    far.matrix[3] -= glm::dmat4(far.matrix) * glm::dvec4(place, 0.0);
+    for (std::size_t i = 0; i < count; ++i) {
+        glm::vec3& point = behind.points[i];
+        point.z = -point.z + 1.0f;
+        if (i % 64 < 32) either_side.points[i] = point;
+        if (i % 97 == 0) some_next_to_zero.points[i].z = 0.5f + 0.01f * point.x + 0.02f * point.y - 1e-4f;
+        far.points[i] += glm::vec3(place);
+    }
+    for (const support::Cloud* cloud : {&behind, &either_side, &far, &some_next_to_zero}) {
+        for (const Projection::Way way : {Projection::Way::interleaved_lit, Projection::Way::planar,
+                                          Projection::Way::lit_only, Projection::Way::pairs}) {
+            const double most = cloud == &some_next_to_zero ? 6.0 : 4.0;
+            const Tolerance tolerance = texgen::texels(1.0 / 16.0, 1024.0);
+            const double cost = support::worst_over_ordinary_within(most, Projection(in_front, way, tolerance),
+                                                                    Projection(*cloud, way, tolerance));
+            CHECK_MESSAGE(cost <= most, cloud->name, ": ", cost, " times, layout ", static_cast<int>(way));
+        }
+    }
+}
+
+TEST_CASE("one point in an array costs less than a vector of them") {
+    constexpr double most = 0.9;
+    Random random(60);
+    support::Cloud sixteen = support::ordinary_cloud(16, random), one = sixteen;
+    one.points.resize(1);
+    for (const Projection::Way way : {Projection::Way::interleaved_lit, Projection::Way::pairs}) {
+        for (const Tolerance tolerance : {texgen::exact, texgen::texels(1.0 / 16.0, 1024.0)}) {
+            const double cost = support::worst_over_ordinary_within(most, Projection(sixteen, way, tolerance),
+                                                                    Projection(one, way, tolerance));
+            CHECK_MESSAGE(cost <= most, cost, " of sixteen, layout ", static_cast<int>(way));
+        }
+    }
+}
+
 TEST_CASE("points that fill no last vector cost little more than those that do") {
     constexpr double most = 1.5;
     Random random(58);

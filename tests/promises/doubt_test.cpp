@@ -103,7 +103,8 @@ TEST_CASE("points in doubt have the same bits in vectors and one by one") {
                 job.lit = row == 0 ? arrays[2].data() : nullptr;
             };
             write_to(in_vectors);
-            project_exact(texgen::detail::chosen<texgen::detail::PointKernels>(), job, 0, count);
+            const auto& kernels = texgen::detail::chosen<texgen::detail::PointKernels>();
+            texgen::detail::fill_blocks(kernels.fill_exact, job, 0, texgen::detail::project_one);
             write_to(one_by_one);
             for (std::size_t i = 0; i < count; ++i) texgen::detail::project_one(job, i);
             for (std::size_t k = 0; k < 3; ++k)

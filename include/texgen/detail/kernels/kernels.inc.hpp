@@ -52,8 +52,7 @@ inline constexpr TileKernels kernel_table<TileKernels, CompiledWhereCalled>{
 template <class CompiledWhereCalled>
 inline constexpr PointKernels kernel_table<PointKernels, CompiledWhereCalled>{
     .fill_exact = fill_points_exact<CompiledWhereCalled>,
-    .fill_all_float = fill_points_within<FormsInFloat, CompiledWhereCalled>,
-    .fill_float_divided = fill_points_within<FormsInDouble, CompiledWhereCalled>,
+    .fill_within = fill_points_within<CompiledWhereCalled>,
     .generate = generate_points<CompiledWhereCalled>};
 
 template <class CompiledWhereCalled>

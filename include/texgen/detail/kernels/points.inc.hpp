@@ -230,7 +230,7 @@ struct PointTerms {
     TwofoldForm q;
     TwofoldForm numerator[2];
 
-    TEXGEN_INLINE explicit PointTerms(const PointJob& job) noexcept : q(job.q) {
+    TEXGEN_APART explicit PointTerms(const PointJob& job) noexcept : q(job.q) {
         for (int k = 0; k < job.numerators; ++k) numerator[k] = TwofoldForm(job.numerator[k]);
     }
     // Which are behind whatever their q, being no numbers.
@@ -242,8 +242,9 @@ struct PointTerms {
 
 // Does a block again, from each_lane on at least. What a vector needs beyond that, those that follow get at once, up to
 // eight blocks. Returns what stays in doubt, bit i for point begin + i.
-TEXGEN_INLINE std::uint64_t fill_block_again(const PointJob& job, const PointTerms& terms, std::size_t begin,
-                                             std::size_t end, Effort& effort) noexcept {
+template <class CompiledWhereCalled = void>
+TEXGEN_APART std::uint64_t fill_block_again(const PointJob& job, const PointTerms& terms, std::size_t begin,
+                                            std::size_t end, Effort& effort) noexcept {
     const std::size_t numerators = job.numerators == 2 ? 2 : 1;  // never 0: GCC 12 fails on a loop that may be none
     // Floats below are no further apart than the tolerance.
     const Doubles within = power_of_two_below(Doubles{} + job.tolerance) * 0x1p24;

@@ -2,124 +2,216 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
+TEXGEN_INLINE void round_to_float(const PointForm& form, float (&to)[4]) noexcept {
+    to[0] = static_cast<float>(form.x);
+    to[1] = static_cast<float>(form.y);
+    to[2] = static_cast<float>(form.z);
+    to[3] = static_cast<float>(form.w);
+}
+
 // The forms of q and of the numerators in float, in the order in which they are computed.
 template <std::size_t Numerators>
 struct FormsInFloat {
     float coefficient[1 + Numerators][4];
 
     TEXGEN_INLINE explicit FormsInFloat(const PointJob& job) noexcept {
-        fill(coefficient[0], job.q);
-        for (std::size_t k = 0; k < Numerators; ++k) fill(coefficient[1 + k], job.numerator[k]);
+        round_to_float(job.q, coefficient[0]);
+        for (std::size_t k = 0; k < Numerators; ++k) round_to_float(job.numerator[k], coefficient[1 + k]);
     }
     TEXGEN_INLINE WideFloats at(std::size_t k, const WideFloats& x, const WideFloats& y,
                                 const WideFloats& z) const noexcept {
         const float(&c)[4] = coefficient[k];
         return x * c[0] + (y * c[1] + (z * c[2] + c[3]));
     }
-
-private:
-    TEXGEN_INLINE static void fill(float (&to)[4], const PointForm& form) noexcept {
-        to[0] = static_cast<float>(form.x);
-        to[1] = static_cast<float>(form.y);
-        to[2] = static_cast<float>(form.z);
-        to[3] = static_cast<float>(form.w);
+    TEXGEN_INLINE void divide(const WideFloats& x, const WideFloats& y, const WideFloats& z, const WideFloats& q,
+                              WideFloats (&value)[2]) const noexcept {
+        const WideFloats reciprocal = 1.0f / q;
+        for (std::size_t k = 0; k < Numerators; ++k) value[k] = at(1 + k, x, y, z) * reciprocal;
     }
 };
 
-// The same in double, rounded once.
+// What bounds the errors of quotients in float, by FloatDivision::error(), in each lane: in float itself, whose
+// roundings, 16 units each at most, the factors cover.
+struct FloatErrors {
+    WideFloats of_form[3];   // of q and of two numerators
+    WideWords are_in_range;  // the forms
+    float roundings, accepted;
+
+    // Where these are the largest |x|, |y|, |z|.
+    TEXGEN_INLINE FloatErrors(const FloatDivision& division, const PointForm (&form)[3], const PointExtent& extent,
+                              double tolerance) noexcept
+        : are_in_range(~WideWords{}),
+          roundings(static_cast<float>(division.roundings * 1.0001)),
+          accepted(static_cast<float>(tolerance > 0x1p-100 ? 0.9999 * tolerance : 0.0)) {
+        const auto form_error = static_cast<float>(division.form_error * 1.0001);
+        const WideFloats underflow = (extent.x + extent.y + extent.z + 1.0f) * 0x1.01p-124f;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const WideFloats terms = extent.terms_of(form[k]);
+            are_in_range &= less(terms, WideFloats{} + 0x1p126f);
+            of_form[k] = terms * form_error + underflow;
+        }
+    }
+    // The least that q is, where that is as computed.
+    TEXGEN_INLINE WideFloats least(const WideFloats& q) const noexcept {
+        return q * (1.0f - (roundings + 0x1p-20f)) - of_form[0];
+    }
+    // Of quotients of this size at most, 1 / q at most the reciprocal. A NaN is not inside.
+    TEXGEN_INLINE WideWords are_within(std::size_t k, const WideFloats& size,
+                                       const WideFloats& reciprocal) const noexcept {
+        const WideFloats error = (of_form[k] + size * of_form[0]) * (reciprocal * 1.0015f) + size * roundings;
+        return less(error, WideFloats{} + accepted);
+    }
+};
+
+// A block of points, if all are in front. The largest |v_j| bound the terms of the forms, and with the largest quotient
+// and the least q, found on the way, the error of every point. Returns whether all are inside the tolerance (they are
+// written all the same). A NaN makes the largest quotient one, and fails.
 template <std::size_t Numerators>
-struct FormsInDouble {
-    PointFormLanes form[1 + Numerators];
-
-    TEXGEN_INLINE explicit FormsInDouble(const PointJob& job) noexcept : form{job.q} {
-        for (std::size_t k = 0; k < Numerators; ++k) form[1 + k] = job.numerator[k];
+TEXGEN_INLINE bool fill_in_front(const PointJob& original, const PointJob& job, const FormsInFloat<Numerators>& forms,
+                                 std::size_t begin, std::size_t end) noexcept {
+    PointExtent extent;
+    WideWords largest[Numerators] = {};
+    // The bits of positive floats have their order; those of a negative one, and of -0, are below them all. A q that
+    // overflowed in float would go unnoticed, not being the least; its terms tell.
+    WideWords least_q = signed_bits(WideFloats{} + 0x1p100f);
+    WideFloats x, y, z, value[2];
+    for (std::size_t i = begin; i < end; i += wide_at_once) {
+        load_points(job, i, x, y, z);
+        extent.add(x, y, z);
+        const WideFloats q = forms.at(0, x, y, z);
+        least_q = minimum(signed_bits(q), least_q);
+        forms.divide(x, y, z, q, value);
+        for (std::size_t k = 0; k < Numerators; ++k) largest[k] = maximum(magnitude_bits(value[k]), largest[k]);
+        store_points(job, i, Numerators, value, ~WideWords{});
     }
-    TEXGEN_INLINE WideFloats at(std::size_t k, const WideFloats& x, const WideFloats& y,
-                                const WideFloats& z) const noexcept {
-        const auto value = [&](const Doubles& vx, const Doubles& vy, const Doubles& vz) {
-            return value_at(form[k], PointLanes{{vx, vy, vz}});
-        };
-        return in_double(value, x, y, z);
-    }
-};
-
-// Whether the errors of quotients in float are inside a tolerance in all lanes, by FloatDivision::error(): in float
-// itself, whose roundings, 16 units each at most, the factors cover. A NaN is not inside.
-TEXGEN_INLINE bool are_within(const FloatDivision& division, const PointForm& numerator, const PointForm& q_form,
-                              const PointExtent& extent, const WideWords& least_q, const WideWords& largest,
-                              double tolerance) noexcept {
-    const auto form_error = static_cast<float>(division.form_error * 1.0001);
-    const auto roundings = static_cast<float>(division.roundings * 1.0001);
-    const WideFloats s_terms = extent.terms_of(numerator);
-    const WideFloats q_terms = extent.terms_of(q_form);
-    const WideFloats quotient = from_bits(largest);
-    const WideFloats underflow = (extent.x + extent.y + extent.z + 1.0f) * 0x1.01p-124f;
-    const WideFloats q_error = q_terms * form_error + underflow;
-    const WideFloats q = from_bits(least_q) * (1.0f - (roundings + 0x1p-20f)) - q_error;
-    const WideFloats error =
-        (s_terms * form_error + underflow + quotient * q_error) / q * 1.0015f + quotient * roundings;
-    const auto accepted = static_cast<float>(tolerance > 0x1p-100 ? 0.9999 * tolerance : 0.0);
-    constexpr float largest_terms = 0x1p126f;
-    const WideWords is_within = less(WideFloats{} + 0x1p-59f, q) & less(s_terms, WideFloats{} + largest_terms) &
-                                less(q_terms, WideFloats{} + largest_terms) & less(error, WideFloats{} + accepted);
-    return !any(~is_within);
+    const PointForm of[3] = {original.q, original.numerator[0], original.numerator[Numerators - 1]};
+    const FloatErrors errors(all_float, of, extent, original.tolerance);
+    const WideFloats q = errors.least(from_bits(least_q));
+    WideWords are_within = errors.are_in_range & less(WideFloats{} + 0x1p-59f, q);
+    for (std::size_t k = 0; k < Numerators; ++k)
+        are_within &= errors.are_within(1 + k, from_bits(largest[k]), 1.0f / q);
+    return !any(~are_within);
 }
 
-// Divided in float, in blocks of float_block points and then more. The largest |v_j| bound the terms of the forms, and
-// with the largest quotient and the least q, found on the way, the error of every point: see FloatDivision. Returns
-// where the first block begins that is not inside the tolerance (it is written all the same), or the count. A NaN makes
-// the largest quotient one, and fails. The job is copied for the loops, field by field: what was written by fields is
-// waited for when it is read whole, as it would be were its forms, which are found by their number, in the copy.
-template <template <std::size_t> class Forms, std::size_t Numerators>
-TEXGEN_INLINE std::size_t fill_points_within_of(const PointJob& original, std::size_t first) noexcept {
-    constexpr bool in_float = std::is_same_v<Forms<1>, FormsInFloat<1>>;
-    constexpr FloatDivision division = in_float ? all_float : float_divided;
-    const Forms<Numerators> forms(original);
+// A block on either side of the projector, about one of its points, so that what is far from the origin loses nothing
+// by it, with errors of each lane. Returns bit i for vector i of which a lane is neither certainly inside the tolerance
+// nor behind (it is written all the same); many_doubtful where it were more than an eighth of them.
+inline constexpr std::uint64_t many_doubtful = ~std::uint64_t{};
+template <class CompiledWhereCalled = void>
+TEXGEN_APART std::uint64_t fill_about_point(const PointJob& job, std::size_t begin, std::size_t end) noexcept {
+    WideFloats x, y, z;
+    load_points(job, (begin + end - 1) / 2 / wide_at_once * wide_at_once, x, y, z);
+    const float point[3] = {x[1], y[1], z[1]};
+    PointExtent extent;
+    WideFloats difference[float_block / wide_at_once][3], *next = difference[0];
+    for (std::size_t i = begin; i < end; i += wide_at_once, next += 3) {
+        load_points(job, i, x, y, z);
+        next[0] = x - point[0];
+        next[1] = y - point[1];
+        next[2] = z - point[2];
+        extent.add(next[0], next[1], next[2]);
+    }
+    PointForm about[3] = {job.q, job.numerator[0], job.numerator[job.numerators - 1]};
+    float coefficient[3][4];
+    for (std::size_t k = 0; k < 3; ++k) {
+        PointForm& form = about[k];
+        const double terms[3] = {form.x * point[0], form.y * point[1], form.z * point[2]};
+        const double sum = std::fabs(terms[0]) + std::fabs(terms[1]) + std::fabs(terms[2]) + std::fabs(form.w);
+        form.w += terms[0] + terms[1] + terms[2];
+        round_to_float(form, coefficient[k]);
+        // For its error: that of the sum in double is less than form_error of this share.
+        form.w = std::fabs(form.w) + sum * 0x1p-28;
+    }
+    const FloatErrors errors(about_point, about, extent, job.tolerance);
+    // So far in front 1 / q errs by less than 2^-9 of itself.
+    const WideFloats least_q = errors.of_form[0] * 0x1p10f + 0x1p-58f;
+    std::uint64_t doubtful = 0;
+    std::size_t count = 0;
+    next = difference[0];
+    for (std::size_t i = begin; i < end; i += wide_at_once, next += 3) {
+        const auto value_of = [&](const float(&c)[4]) {
+            return next[0] * c[0] + (next[1] * c[1] + (next[2] * c[2] + c[3]));
+        };
+        const WideFloats q = value_of(coefficient[0]), reciprocal = 1.0f / q;
+        const WideWords are_in_front = errors.are_in_range & less(least_q, q);
+        const WideWords are_behind = errors.are_in_range & less(errors.of_form[0] * 1.001f, -1.0f * q);
+        WideWords are_certain = are_in_front;
+        WideFloats value[2];
+        TEXGEN_UNROLL
+        for (std::size_t k = 0; k < 2; ++k) {
+            value[k] = from_bits(are_in_front & signed_bits(value_of(coefficient[1 + k]) * reciprocal));
+            are_certain &= errors.are_within(1 + k, magnitude(value[k]), reciprocal * 1.002f);
+        }
+        store_points(job, i, static_cast<std::size_t>(job.numerators), value, are_in_front);
+        if (!any(~(are_certain | are_behind))) continue;
+        doubtful |= std::uint64_t{1} << (i - begin) / wide_at_once;
+        if (++count * 8 * wide_at_once > end - begin) return many_doubtful;
+    }
+    return doubtful;
+}
+
+// Those vectors of a block again, exactly. Returns what stays in doubt of one exact_block, or that nothing is.
+TEXGEN_APART inline Undecided fill_vectors_again(const PointJob& job, std::size_t begin, std::size_t end,
+                                                 std::uint64_t doubtful, Effort& effort) noexcept {
+    const PointTerms terms(job);
+    Undecided left{begin, 0};
+    for (; doubtful != 0; doubtful &= doubtful - 1) {
+        const std::size_t i = begin + static_cast<std::size_t>(std::countr_zero(doubtful)) * wide_at_once;
+        if (i / exact_block != left.begin / exact_block) {
+            if (left.values != 0) return left;
+            left.begin = i / exact_block * exact_block;
+        }
+        left.values |= fill_block_again(job, terms, i, i + wide_at_once, effort) << (i - left.begin);
+    }
+    return left.values != 0 ? left : Undecided{end, 0};
+}
+
+// Blocks of float_block points, about a point where one is not certainly in front, and of four times as many once one
+// is. Where most vectors of a block are in doubt, they have company: more points after each such block are done exactly.
+// The job is copied for the loops, field by field: what was written by fields is waited for when it is read whole, as it
+// would be were its forms, which are found by their number, in the copy.
+template <std::size_t Numerators>
+TEXGEN_INLINE Undecided fill_points_within_of(const PointJob& original, std::size_t first) noexcept {
+    const FormsInFloat<Numerators> forms(original);
     const PointJob job = original;
-    const auto divide = [&](const WideFloats& x, const WideFloats& y, const WideFloats& z, const WideFloats& q,
-                            WideFloats(&value)[2]) {
-        const WideFloats reciprocal = 1.0f / q;
-        for (std::size_t k = 0; k < Numerators; ++k) value[k] = forms.at(1 + k, x, y, z) * reciprocal;
-    };
-    WideFloats x, y, z, value[2];
-    if (in_float && job.is_certified) {
+    if (job.is_certified) {
+        WideFloats x, y, z, value[2];
         for (std::size_t i = first; i < job.count; i += wide_at_once) {
             load_points(job, i, x, y, z);
-            divide(x, y, z, forms.at(0, x, y, z), value);
+            forms.divide(x, y, z, forms.at(0, x, y, z), value);
             store_points(job, i, Numerators, value, ~WideWords{});
         }
-        return job.count;
+        return {job.count, 0};
     }
-    std::size_t size_of_block = in_float ? float_block : exact_block;
+    Effort effort;
+    std::size_t size = float_block, pause = float_block;
+    int failures = 0;
     for (std::size_t begin = first, end; begin < job.count; begin = end) {
-        end = size_of_block < job.count - begin ? begin + size_of_block : job.count;
-        size_of_block = 4 * float_block;
-        PointExtent extent;
-        WideWords largest[Numerators] = {};
-        // The bits of positive floats have their order; those of a negative one, and of -0, are below them all. A q
-        // that overflowed in float would go unnoticed, not being the least; its terms tell.
-        WideWords least_q = signed_bits(WideFloats{} + 0x1p100f);
-        for (std::size_t i = begin; i < end; i += wide_at_once) {
-            load_points(job, i, x, y, z);
-            extent.add(x, y, z);
-            const WideFloats q = forms.at(0, x, y, z);
-            least_q = minimum(signed_bits(q), least_q);
-            divide(x, y, z, q, value);
-            for (std::size_t k = 0; k < Numerators; ++k) largest[k] = maximum(magnitude_bits(value[k]), largest[k]);
-            store_points(job, i, Numerators, value, ~WideWords{});
+        end = end_of_block(job.count, begin, size);
+        size = 4 * float_block;
+        if (failures % 8 == 0 && fill_in_front<Numerators>(original, job, forms, begin, end)) continue;
+        ++failures;
+        size = float_block;
+        end = end_of_block(job.count, begin, size);
+        const std::uint64_t doubtful = fill_about_point(original, begin, end);
+        if (doubtful == 0) continue;
+        Undecided left;
+        if (doubtful == many_doubtful) {
+            pause *= 4;
+            PointJob part = original;
+            part.count = end = pause < job.count - begin ? begin + pause : job.count;
+            left = fill_points_exact(part, begin);
+        } else {
+            left = fill_vectors_again(original, begin, end, doubtful, effort);
         }
-        for (std::size_t k = 0; k < Numerators; ++k)
-            if (!are_within(division, original.numerator[k], original.q, extent, least_q, largest[k],
-                            original.tolerance))
-                return begin;
+        if (left.values != 0) return left;
     }
-    return job.count;
+    return {job.count, 0};
 }
 
-template <template <std::size_t> class Forms, class CompiledWhereCalled = void>
-std::size_t fill_points_within(const PointJob& job, std::size_t first) noexcept {
-    return job.numerators == 2 ? fill_points_within_of<Forms, 2>(job, first)
-                               : fill_points_within_of<Forms, 1>(job, first);
+template <class CompiledWhereCalled = void>
+Undecided fill_points_within(const PointJob& job, std::size_t first) noexcept {
+    return job.numerators == 2 ? fill_points_within_of<2>(job, first) : fill_points_within_of<1>(job, first);
 }
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA

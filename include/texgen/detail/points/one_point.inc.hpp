@@ -160,17 +160,6 @@ inline bool divide_closely(const FormPair& numerators, const PointForm& q_form, 
     return true;
 }
 
-// One point of a job.
-inline void project_one(const PointJob& job, std::size_t i) noexcept {
-    const glm::dvec3 v = job.interleaved_xyz ? widened(glm::vec3(job.x[3 * i], job.x[3 * i + 1], job.x[3 * i + 2]))
-                                             : widened(glm::vec3(job.x[i], job.y[i], job.z[i]));
-    float value[2];
-    const bool in_front = divide_closely({job.numerator[0], job.numerator[1]}, job.q, v, value);
-    for (std::size_t k = 0; k < static_cast<std::size_t>(job.numerators); ++k)
-        (job.interleaved_st ? job.out[0][2 * i + k] : job.out[k][i]) = in_front ? value[k] : 0.0f;
-    if (job.lit != nullptr) job.lit[i] = in_front && is_inside(value[0], value[1], job.min, job.max) ? 1.0f : 0.0f;
-}
-
 // s/q and t/q of a point, where q is well above 0. Their errors are that of certain_quotient().
 struct PointQuotients {
     Double2 value, error;
@@ -221,26 +210,37 @@ TEXGEN_APART bool divide_beside_ties(const FormPair& numerators, const PointForm
     return are_whole;
 }
 
-// What project_point() leaves.
-inline std::optional<glm::vec2> project_closely(const glm::dmat4& matrix, const glm::dvec3& v) noexcept {
-    const FormPair numerators(form(matrix, 0), form(matrix, 1));
-    const PointForm q = form(matrix, 3);
+// What divide_point() leaves.
+inline std::optional<glm::vec2> divide_point_closely(const FormPair& numerators, const PointForm& q_form,
+                                                     const glm::dvec3& v) noexcept {
     float value[2];
-    if (!divide_beside_ties<WideInteger>(numerators, q, v, value) && !divide_closely(numerators, q, v, value))
+    if (!divide_beside_ties<WideInteger>(numerators, q_form, v, value) && !divide_closely(numerators, q_form, v, value))
         return std::nullopt;
     return glm::vec2(value[0], value[1]);
 }
 
-// (s/q, t/q) of a point, empty behind.
-inline std::optional<glm::vec2> project_point(const glm::dmat4& matrix, const glm::dvec3& v) noexcept {
-    const Bounded q = value_at(form(matrix, 3), v);
+// Two numerators over q at a point, empty behind.
+inline std::optional<glm::vec2> divide_point(const FormPair& numerators, const PointForm& q_form,
+                                             const glm::dvec3& v) noexcept {
+    const Bounded q = value_at(q_form, v);
     if (is_well_above_0(q)) {
-        const PointQuotients quotient(FormPair(form(matrix, 0), form(matrix, 1)), v, q);
+        const PointQuotients quotient(numerators, v, q);
         if (rounds_alone(quotient.value[0], quotient.error[0]) && rounds_alone(quotient.value[1], quotient.error[1]))
             return glm::vec2(static_cast<float>(quotient.value[0]), static_cast<float>(quotient.value[1]));
     }
     if (q.value < -q.error) return std::nullopt;
-    return project_closely(matrix, v);
+    return divide_point_closely(numerators, q_form, v);
+}
+
+// One point of a job.
+inline void project_one(const PointJob& job, std::size_t i) noexcept {
+    const glm::dvec3 v = job.interleaved_xyz ? widened(glm::vec3(job.x[3 * i], job.x[3 * i + 1], job.x[3 * i + 2]))
+                                             : widened(glm::vec3(job.x[i], job.y[i], job.z[i]));
+    const std::optional<glm::vec2> value = divide_point({job.numerator[0], job.numerator[1]}, job.q, v);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(job.numerators); ++k)
+        (job.interleaved_st ? job.out[0][2 * i + k] : job.out[k][i]) =
+            value ? (*value)[static_cast<glm::length_t>(k)] : 0.0f;
+    if (job.lit != nullptr) job.lit[i] = value && is_inside(value->x, value->y, job.min, job.max) ? 1.0f : 0.0f;
 }
 
 }  // namespace TEXGEN_DETAIL

@@ -20,11 +20,10 @@ void copy_points(const Positions<Space>& positions, std::size_t first, std::size
     }
 }
 
-// Calls run(input, part) for parts of the positions that the kernels can read: as they are, or, where the count is no
+// Calls run(input, part) for parts of the first `count` positions that the kernels can read: as they are, or, where the count is no
 // multiple of point_quantum or the layout is none of theirs, copied, and padded with the last point.
 template <class Space, class Run>
-void for_each_part(const Positions<Space>& positions, const Run& run) noexcept {
-    const std::size_t count = positions.size();
+void for_each_part(const Positions<Space>& positions, std::size_t count, const Run& run) noexcept {
     std::size_t first = 0;
     if (positions.is_planar() || positions.is_interleaved()) {
         first = count / point_quantum * point_quantum;
@@ -44,14 +43,20 @@ void for_each_part(const Positions<Space>& positions, const Run& run) noexcept {
     }
 }
 
-// A job without points: the forms of these rows over the row of q.
+// A job without points and outputs: the forms of these rows over the row of q; one alone is in both places. What is not
+// known yet is left as it is: compilers clear so large a struct in ten times as long as all else takes.
 inline PointJob point_job(const glm::dmat4& matrix, int row, int numerators, const LitTest& lit,
                           Tolerance tolerance) noexcept {
-    PointJob job{};
+    PointJob job;
     job.numerators = numerators;
-    for (int k = 0; k < numerators; ++k) job.numerator[k] = form(matrix, row + k);
+    job.interleaved_st = false;
+    job.lit = nullptr;
+    job.numerator[0] = form(matrix, row);
+    job.numerator[1] = form(matrix, row + numerators - 1);
     job.q = form(matrix, 3);
     job.tolerance = accepted(tolerance);
+    job.is_certified = false;
+    job.ulps = 0;
     lit.copy_to(job.min, job.max);
     return job;
 }
@@ -108,69 +113,68 @@ inline void take_bounds(PointJob& job, const Box& box) noexcept {
 
 inline namespace TEXGEN_BUILD {
 
-// Points begin to end of a job: in vectors; what those cannot decide point by point.
-inline void project_exact(const PointKernels& kernels, PointJob& job, std::size_t begin, std::size_t end) noexcept {
-    job.count = end;
-    fill_blocks(kernels.fill_exact, job, begin, project_one);
-}
-
-// Points begin to end by a kernel that stops at a block whose error is not certified to be inside the tolerance. Such a
-// block has company: `otherwise` gets more points after each failure, until the kernel is tried again.
-void project_within(auto kernel, PointJob& job, std::size_t begin, std::size_t end, const auto& otherwise) noexcept {
-    std::size_t pause = float_block;
-    for (std::size_t i = begin; i < end;) {
-        job.count = end;
-        i = kernel(job, i);
-        pause = pause < (end - begin) / 8 ? 8 * pause : end - begin;
-        const std::size_t resume = pause < end - i ? i + pause : end;
-        if (i < end) otherwise(job, i, resume);
-        i = resume;
+// Positions from `first` on, one by one.
+template <class Space>
+void project_each(const Positions<Space>& positions, std::size_t first, const PointJob& job,
+                  const PointOutputs& out) noexcept {
+    const FormPair numerators(job.numerator[0], job.numerator[1]);
+    const PointForm q_form = job.q;
+    for (std::size_t i = first; i < positions.size(); ++i) {
+        const std::optional<glm::vec2> divided = divide_point(numerators, q_form, widened(positions[i]));
+        const glm::vec2 value = divided ? *divided : glm::vec2(0.0f);
+        if (out.st != nullptr) std::memcpy(out.st + 2 * i, &value.x, 2 * sizeof(float));
+        for (std::size_t k = 0; k < 2; ++k)
+            if (out.coordinate[k] != nullptr) out.coordinate[k][i] = value[static_cast<glm::length_t>(k)];
+        if (out.lit == nullptr) continue;
+        if (job.numerators == 2) {
+            out.lit[i] = divided && is_inside(value.x, value.y, job.min, job.max) ? 1.0f : 0.0f;
+        } else if (!(value.x >= out.r_min && value.x <= out.r_max)) {
+            out.lit[i] = 0.0f;
+        }
     }
 }
 
-// By tolerance: all_float, else float_divided, else exact.
-inline void project_job(const PointKernels& kernels, PointJob& points) noexcept {
-    const auto exactly = [&kernels](PointJob& job, std::size_t begin, std::size_t end) {
-        project_exact(kernels, job, begin, end);
-    };
-    if (points.tolerance == 0.0) return exactly(points, 0, points.count);
-    if (points.is_certified) return static_cast<void>(kernels.fill_all_float(points, 0));
-    const auto float_divided = [&](PointJob& job, std::size_t begin, std::size_t end) {
-        project_within(kernels.fill_float_divided, job, begin, end, exactly);
-    };
-    project_within(kernels.fill_all_float, points, 0, points.count, float_divided);
-}
+// Below this tolerance floats serve few coordinates in [0, 1], and are not tried: a quotient of about 1 errs by 12 u.
+inline constexpr double least_in_float = 16.0 * unit_roundoff_float;
 
 template <class Space>
 void project_all(const Positions<Space>& positions, PointJob& job, const PointOutputs& out) noexcept {
+    // So many beyond whole vectors take less time one by one than preparing these does.
+    constexpr std::size_t few = 5;
+    const std::size_t beyond = positions.size() % point_quantum;
+    const std::size_t count = positions.size() - (beyond <= few ? beyond : 0);
+    project_each(positions, count, job, out);
+    if (count == 0) return;
     const PointKernels& kernels = chosen<PointKernels>();
     take_bounds(job, positions.bounds());
-    for_each_part(positions, [&](const PointInput& input, const JobPart& part) {
+    for_each_part(positions, count, [&](const PointInput& input, const JobPart& part) {
         static_cast<PointInput&>(job) = input;
-        run_part(job, out, part, [&](PointJob& points) { project_job(kernels, points); });
+        run_part(job, out, part, [&](const PointJob& points) {
+            const bool is_in_float = points.is_certified || points.tolerance > least_in_float;
+            fill_blocks(is_in_float ? kernels.fill_within : kernels.fill_exact, points, 0, project_one);
+        });
     });
 }
 
 template <class Space>
 void generate_all(const glm::dmat4& matrix, const Positions<Space>& positions, float* const (&out)[4],
                   float* strq) noexcept {
-    GenerateJob job{};
+    GenerateJob job;
     for (int k = 0; k < 4; ++k) job.form[k] = form(matrix, k);
-    for_each_part(positions, [&](const PointInput& input, const JobPart& job_part) {
-        const auto [first, count, whole] = job_part;
-        GenerateJob part = job;
-        static_cast<PointInput&>(part) = input;
-        part.count = whole;
+    for_each_part(positions, positions.size(), [&](const PointInput& input, const JobPart& part) {
+        const auto [first, count, whole] = part;
+        static_cast<PointInput&>(job) = input;
+        job.count = whole;
         const bool is_padded = count != whole;
         float buffer[4 * copy_size];  // a part that is padded is a copy
-        if (strq != nullptr) part.strq = is_padded ? buffer : strq + 4 * first;
+        job.strq = strq == nullptr ? nullptr : is_padded ? buffer : strq + 4 * first;
         for (std::size_t k = 0; k < 4; ++k)
-            if (out[k] != nullptr) part.out[k] = is_padded ? buffer + k * copy_size : out[k] + first;
-        chosen<PointKernels>().generate(part);
+            job.out[k] = out[k] == nullptr ? nullptr : is_padded ? buffer + k * copy_size : out[k] + first;
+        chosen<PointKernels>().generate(job);
         if (!is_padded) return;
-        if (strq != nullptr) std::memcpy(strq + 4 * first, part.strq, 4 * count * sizeof(float));
+        if (strq != nullptr) std::memcpy(strq + 4 * first, buffer, 4 * count * sizeof(float));
         for (std::size_t k = 0; k < 4; ++k)
-            if (out[k] != nullptr) std::memcpy(out[k] + first, part.out[k], count * sizeof(float));
+            if (out[k] != nullptr) std::memcpy(out[k] + first, job.out[k], count * sizeof(float));
     });
 }
 
@@ -207,26 +211,58 @@ template <class Space>
 glm::dvec2 project_error_bound(const Transform<Texture, Space>& texture_from_space, Positions<Space> positions,
                                Tolerance tolerance) noexcept {
     const glm::dmat4& matrix = texture_from_space.matrix();
+    const detail::PointForm form[2] = {detail::form(matrix, 0), detail::form(matrix, 1)};
     const detail::PointForm q_form = detail::form(matrix, 3);
-    glm::dvec2 largest(0.0);
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-        const glm::dvec3 v = detail::widened(positions[i]);
-        const detail::Bounded q = detail::accurately_at(q_form, v);
-        if (!(q.error < 0x1p1000)) return glm::dvec2(detail::infinity);
-        if (q.value <= 0.0) continue;
-        for (glm::length_t k = 0; k < 2; ++k) {
-            const detail::PointForm form = detail::form(matrix, k);
-            const detail::Bounded s = detail::accurately_at(form, v);
-            const double quotient = (std::fabs(s.value) + s.error) / (q.value - q.error) * (1.0 + detail::gamma(4));
-            const double of_nearest = detail::half_ulp(quotient);
-            // Of the three ways to divide, the one in float errs most.
-            const double of_float = detail::all_float.error(detail::terms_at(form, v), detail::terms_at(q_form, v),
-                                                            std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z) + 1.0,
-                                                            q.value - q.error, quotient);
-            const double bound = detail::larger(detail::smaller(of_float, detail::accepted(tolerance)), of_nearest);
-            largest[k] = detail::larger_or_nan(largest[k], bound);
+    const double accepted = detail::accepted(tolerance);
+    const auto bound_of_float = [&](const detail::FloatDivision& division, std::size_t k, const glm::dvec3& size,
+                                    double least_q, double quotient) {
+        return division.error(detail::terms_at(form[k], size), detail::terms_at(q_form, size),
+                              size.x + size.y + size.z + 1.0, least_q, quotient);
+    };
+    // Calls visit(|v|, the least q, the largest quotients) for each position, if there are bounds for all.
+    const auto visit_all = [&](const auto& visit) {
+        for (std::size_t i = 0; i < positions.size(); ++i) {
+            const glm::dvec3 v = detail::widened(positions[i]);
+            const detail::Bounded q = detail::accurately_at(q_form, v);
+            if (!(q.error < 0x1p1000)) return false;
+            const double least_q = q.value > 0.0 ? q.value - q.error : 0.0;
+            double quotient[2] = {};
+            for (std::size_t k = 0; k < 2 && least_q > 0.0; ++k) {
+                const detail::Bounded s = detail::accurately_at(form[k], v);
+                quotient[k] = (std::fabs(s.value) + s.error) / least_q * (1.0 + detail::gamma(4));
+            }
+            visit(glm::dvec3(std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)), least_q, quotient);
         }
-    }
+        return true;
+    };
+    glm::dvec3 size(0.0);
+    double least_of_q = detail::infinity, largest_quotient[2] = {};
+    const bool are_bounded = visit_all([&](const glm::dvec3& v, double least_q, const double(&quotient)[2]) {
+        for (glm::length_t j = 0; j < 3; ++j) size[j] = detail::larger(size[j], v[j]);
+        least_of_q = detail::smaller(least_of_q, least_q);
+        for (std::size_t k = 0; k < 2; ++k)
+            largest_quotient[k] = detail::larger_or_nan(largest_quotient[k], quotient[k]);
+    });
+    if (!are_bounded) return glm::dvec2(detail::infinity);
+    // Where that certifies all blocks with room, errors are those of a point's own terms. Else some may be divided about
+    // another point, whose differences are at most twice, and terms as much as, those of the farthest.
+    bool are_in_front = detail::all_float.form_error * detail::terms_at(q_form, size) < 0.04 * least_of_q;
+    for (std::size_t k = 0; k < 2; ++k)
+        are_in_front = are_in_front && 1.1 * bound_of_float(detail::all_float, k, size, 0.9 * least_of_q,
+                                                            largest_quotient[k] + accepted) <
+                                           accepted;
+    glm::dvec2 largest(0.0);
+    visit_all([&](const glm::dvec3& v, double least_q, const double(&quotient)[2]) {
+        for (std::size_t k = 0; k < 2 && least_q > 0.0; ++k) {
+            // Of the ways to divide, those in float err most.
+            const double of_float = are_in_front
+                                        ? bound_of_float(detail::all_float, k, v, least_q, quotient[k])
+                                        : bound_of_float(detail::about_point, k, size * 3.0, least_q, quotient[k]);
+            const double bound = detail::larger(detail::smaller(of_float, accepted), detail::half_ulp(quotient[k]));
+            double& of_all = largest[static_cast<glm::length_t>(k)];
+            of_all = detail::larger_or_nan(of_all, bound);
+        }
+    });
     return largest;
 }
 
@@ -273,7 +309,9 @@ void project(const Transform<Texture, Space>& texture_from_space, Positions<Spac
 template <class Space>
 std::optional<glm::vec2> project(const Transform<Texture, Space>& texture_from_space,
                                  Position<Space> position) noexcept {
-    return detail::project_point(texture_from_space.matrix(), detail::widened(position.point));
+    const glm::dmat4& matrix = texture_from_space.matrix();
+    return detail::divide_point({detail::form(matrix, 0), detail::form(matrix, 1)}, detail::form(matrix, 3),
+                                detail::widened(position.point));
 }
 
 }  // namespace TEXGEN_BUILD

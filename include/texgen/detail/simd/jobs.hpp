@@ -204,7 +204,7 @@ struct PointJob : DividedOutput, PointInput {
     PointForm q;
     double tolerance;
     // What the caller's word on all of them makes of their errors.
-    bool is_certified;  // fill_all_float is inside the tolerance
+    bool is_certified;  // all of it in float is inside the tolerance
     std::int32_t ulps;  // that quotients in double are within, 1 less than a power of two; 0 where that is not known
 };
 
@@ -311,9 +311,8 @@ struct Undecided {
 
 struct PointKernels {
     Undecided (*fill_exact)(const PointJob&, std::size_t first) noexcept;
-    // The first point from `first` on of a block of float_block points that is not inside the tolerance, or the count.
-    std::size_t (*fill_all_float)(const PointJob&, std::size_t first) noexcept;
-    std::size_t (*fill_float_divided)(const PointJob&, std::size_t first) noexcept;
+    // The same inside the tolerance.
+    Undecided (*fill_within)(const PointJob&, std::size_t first) noexcept;
     void (*generate)(const GenerateJob&) noexcept;
 };
 

@@ -7,7 +7,7 @@
 //                   doubles; and what those leave, one by one, by exact sums
 //   in_double       numerators and quotient in double, rounded once
 //   float_divided   numerators and q in double, rounded; the quotient in float
-//   all_float       numerators, q and quotient in float
+//   all_float       numerators, q and quotient in float; of points about the origin, or about one of them
 //   polynomial      in float about the middle of a chunk, with a polynomial instead of a division
 //
 // CONTRIBUTING.md has a table of which serve what.
@@ -35,10 +35,12 @@ struct FloatDivision {
     }
 };
 
-// With u = 2^-24: rounded coefficients and four terms, 5 u; the reciprocal and the product, 2 u. And forms in double,
-// with four roundings to float: of both, of the reciprocal and of the product.
+// With u = 2^-24: rounded coefficients and four terms, 5 u, and one more about a point, from which differences are
+// rounded; the reciprocal and the product, 2 u.
 inline constexpr FloatDivision all_float{5.01 * unit_roundoff_float, 2.01 * unit_roundoff_float};
-inline constexpr FloatDivision float_divided{gamma(5), 4.01 * unit_roundoff_float};
+inline constexpr FloatDivision about_point{6.01 * unit_roundoff_float, 2.01 * unit_roundoff_float};
+// Numerator and q that are rounded to float, the reciprocal and the product.
+inline constexpr double float_divided_roundings = 4.01 * unit_roundoff_float;
 
 // q is well in front where it is so many times its error: what it errs by is below 2^-24 of it.
 inline constexpr double well_in_front = 0x1p24;

@@ -112,7 +112,7 @@ struct Corners {
     // of F that is subnormal, or flushed to zero, adds less than 2^-104.
     Double2 float_divided_error() const noexcept {
         const Double2 largest = largest_quotient();
-        return largest * float_divided.roundings + 0x1p-104 + quotient_error(largest);
+        return largest * float_divided_roundings + 0x1p-104 + quotient_error(largest);
     }
 
     // How many of its own ulps the error of a quotient in double is at most, two more roundings included, as 1 less
