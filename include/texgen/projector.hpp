@@ -148,13 +148,13 @@ inline TextureRegion cover(const OrthographicLens& lens, double aspect,
 
 // Makes the view V_p of a projector that stands at the position and looks at the target.
 // Guarantee: each element of the rotation within 4 double ulp of 1 (2^-50) of the definition's, its rows orthonormal
-// within that, with `up` as near to the view as 2^-98 rad; the translation -R position is within 1 ulp of its exact
+// within that, with `up` as near to the view as 2^-97 rad; the translation -R position is within 1 ulp of its exact
 // value for the rotation that is returned, at any distance from the origin and however it cancels. No allocation,
 // noexcept.
 // Shape: world to projector eye space; the position goes to 0, the target onto the negative z axis (positive where
 // world and eye are left-handed), up has x = 0.
-// Bad input: empty where target equals position, up is zero or parallel to the view, or a number is not finite, that of
-// the translation among them.
+// Bad input: empty where target equals position, up is zero or parallel to the view to 2^-98 rad, or a number is not
+// finite, those of the translation among them.
 // Source: Everitt, Projective Texture Mapping, V_p in (3); OpenGL utility library, gluLookAt; DirectXMath,
 // XMMatrixLookAtLH.
 inline std::optional<ProjectorView> look_at(const Aim& aim, Handedness handedness = Handedness::right) noexcept;
