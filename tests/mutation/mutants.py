@@ -731,6 +731,7 @@ MUTANTS = [
     *_of("detail/kernels/points_in_float.inc.hpp",
          ("forms about a point are those about the origin", "form.w += terms[0] + terms[1] + terms[2];", "", "texcoord_test"),
          ("what a sum in double errs by is nothing about a point", " + sum * 0x1p-28", "", "bounds_test texcoord_test"),
+         ("differences are never taken for 0", " + slopes * 0x1p-104", "", "float_state_test"),
          ("what is next to q = 0 is behind", "less(errors.of_form[0] * 1.001f, -1.0f * q)", "less(WideFloats{}, -1.0f * q)", "texcoord_test"),
          ("a vector in doubt is not done again", "doubtful |= std::uint64_t{1} << (i - begin) / wide_at_once;", "", "texcoord_test"),
          ("the error of q is forgotten about a point", "magnitude(value[k]), reciprocal * 1.002f", "WideFloats{}, reciprocal * 1.002f", "texcoord_test bounds_test"),

@@ -329,7 +329,7 @@ TEST_CASE("points: the sign of q is exact where its terms cancel, and errors are
             glm::dmat4 matrix(0.0);
             for (int column = 0; column < 4; ++column)
                 for (int row = 0; row < 4; ++row) matrix[column][row] = random.uniform(-1.0, 1.0);
-            const int kind = random.integer(0, 4);
+            const int kind = random.integer(0, 5);
             if (kind == 0) matrix[3][3] = 4.0;
             if (kind == 1)  // q cancels, to its last bits or to 0: next to points with x = y and z = 0
                 matrix[1][3] = -matrix[0][3] * (1.0 + random.integer(-1, 1) * 0x1p-52), matrix[3][3] = 0.0;
@@ -343,11 +343,15 @@ TEST_CASE("points: the sign of q is exact where its terms cancel, and errors are
                 for (int column = 0; column < 4; ++column) matrix[column][0] *= 0x1p-128;
             if (kind == 2)
                 for (int column = 0; column < 4; ++column) matrix[column] *= random.power_of_ten(-12.0, 12.0);
+            if (kind == 5)  // the least normal numbers, whose differences are subnormal, on either side
+                for (int column = 0; column < 3; ++column) matrix[column] *= 0x1p126;
             std::vector<glm::vec3> points(static_cast<std::size_t>(random.integer(1, 40)));
             for (glm::vec3& point : points) {
                 point = random.vector3(1.0);
                 if (kind == 1) point.y = point.x, point.z = random.coin() ? 0.0f : random.uniform_float(-1e-30, 1e-30);
                 if (kind == 4) point.y = point.x, point.z = support::neighbour(0.5f, random.integer(-1, 1));
+                if (kind == 5)
+                    for (int k = 0; k < 3; ++k) point[k] = 0x1p-126f * random.uniform_float(1.0, 1.9);
                 if (random.integer(0, 19) == 0) point[random.integer(0, 2)] = 0x1p-140f;
             }
             const ObjectTexgen texgen(matrix);

@@ -117,10 +117,12 @@ TEXGEN_APART std::uint64_t fill_about_point(const PointJob& job, std::size_t beg
         PointForm& form = about[k];
         const double terms[3] = {form.x * point[0], form.y * point[1], form.z * point[2]};
         const double sum = std::fabs(terms[0]) + std::fabs(terms[1]) + std::fabs(terms[2]) + std::fabs(form.w);
+        const double slopes = std::fabs(form.x) + std::fabs(form.y) + std::fabs(form.z);
         form.w += terms[0] + terms[1] + terms[2];
         round_to_float(form, coefficient[k]);
-        // For its error: that of the sum in double is less than form_error of this share.
-        form.w = std::fabs(form.w) + sum * 0x1p-28;
+        // For its error: that of the sum in double, and differences of floats that are taken for 0 where subnormal ones
+        // are, are less than form_error of these shares.
+        form.w = std::fabs(form.w) + sum * 0x1p-28 + slopes * 0x1p-104;
     }
     const FloatErrors errors(about_point, about, extent, job.tolerance);
     // So far in front 1 / q errs by less than 2^-9 of itself.

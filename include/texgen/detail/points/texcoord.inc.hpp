@@ -251,13 +251,14 @@ glm::dvec2 project_error_bound(const Transform<Texture, Space>& texture_from_spa
         are_in_front = are_in_front && 1.1 * bound_of_float(detail::all_float, k, size, 0.9 * least_of_q,
                                                             largest_quotient[k] + accepted) <
                                            accepted;
+    constexpr double least_difference = 0x1p-104;  // of floats, where a subnormal one is 0, over form_error
     glm::dvec2 largest(0.0);
     visit_all([&](const glm::dvec3& v, double least_q, const double(&quotient)[2]) {
         for (std::size_t k = 0; k < 2 && least_q > 0.0; ++k) {
             // Of the ways to divide, those in float err most.
-            const double of_float = are_in_front
-                                        ? bound_of_float(detail::all_float, k, v, least_q, quotient[k])
-                                        : bound_of_float(detail::about_point, k, size * 3.0, least_q, quotient[k]);
+            const double of_float = are_in_front ? bound_of_float(detail::all_float, k, v, least_q, quotient[k])
+                                                 : bound_of_float(detail::about_point, k, size * 3.0 + least_difference,
+                                                                  least_q, quotient[k]);
             const double bound = detail::larger(detail::smaller(of_float, accepted), detail::half_ulp(quotient[k]));
             double& of_all = largest[static_cast<glm::length_t>(k)];
             of_all = detail::larger_or_nan(of_all, bound);
