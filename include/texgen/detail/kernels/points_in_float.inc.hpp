@@ -112,17 +112,18 @@ TEXGEN_APART std::uint64_t fill_about_point(const PointJob& job, std::size_t beg
         extent.add(next[0], next[1], next[2]);
     }
     PointForm about[3] = {job.q, job.numerator[0], job.numerator[job.numerators - 1]};
+    // Of less than form_error of the terms there, times 2^-28, are what sums in double lose, and differences that are
+    // taken for 0 where subnormal numbers are.
+    double reach[3];
+    for (std::size_t j = 0; j < 3; ++j) reach[j] = std::fabs(point[j]) + 0x1p-76;
     float coefficient[3][4];
     for (std::size_t k = 0; k < 3; ++k) {
         PointForm& form = about[k];
-        const double terms[3] = {form.x * point[0], form.y * point[1], form.z * point[2]};
-        const double sum = std::fabs(terms[0]) + std::fabs(terms[1]) + std::fabs(terms[2]) + std::fabs(form.w);
-        const double slopes = std::fabs(form.x) + std::fabs(form.y) + std::fabs(form.z);
-        form.w += terms[0] + terms[1] + terms[2];
+        const double terms = std::fabs(form.x) * reach[0] + std::fabs(form.y) * reach[1] +
+                             std::fabs(form.z) * reach[2] + std::fabs(form.w);
+        form.w += form.x * point[0] + form.y * point[1] + form.z * point[2];
         round_to_float(form, coefficient[k]);
-        // For its error: that of the sum in double, and differences of floats that are taken for 0 where subnormal ones
-        // are, are less than form_error of these shares.
-        form.w = std::fabs(form.w) + sum * 0x1p-28 + slopes * 0x1p-104;
+        form.w = std::fabs(form.w) + terms * 0x1p-28;
     }
     const FloatErrors errors(about_point, about, extent, job.tolerance);
     // So far in front 1 / q errs by less than 2^-9 of itself.
