@@ -78,7 +78,8 @@ inline constexpr double window_linear_error = 0x1p-47;
 //     vec4 strq = texture_from_window * vec4(gl_FragCoord.xy, texelFetch(depth, ivec2(gl_FragCoord.xy), 0).r, 1.0);
 //
 // Guarantee: in double, each row solved against V_c and P_c as they are. s/q and t/q of a fragment are within
-// window_linear_error of their exact values, as far from the origin as 1e7, while the condition of V_c and of P_c (rows and columns scaled) stays below 1e8. No allocation, noexcept.
+// window_linear_error of their exact values, as far from the origin as 1e7, while the condition of V_c and of P_c (rows
+// and columns scaled) stays below 1e8. No allocation, noexcept.
 // Shape: (x, y, depth, 1) to homogeneous (s, t, r, q) over the camera's w: q > 0 in front of the projector for all that
 // the camera sees. The depth is what the buffer holds: NDC z, or (z + 1)/2 under OpenGL's range. y grows as NDC y does:
 // for pixels from the top down (Direct3D, Metal) give the viewport {x, y + height, width, -height}; with Vulkan's y

@@ -40,11 +40,12 @@ struct Viewport {
 };
 
 // What the fragments of a rectangle need, in the order of its cost.
-//   nothing          no fragment is lit: all are behind the projector, or outside one side of the region or of its depth
-//   affine           q/w is constant there (an orthographic projector, a parallel view), or varies so little that straight
-//                    lines stay inside the tolerance: no division
-//   quadratic        q/w varies, and a certified quadratic stays inside the tolerance: no division a fragment
-//   divide           one division a fragment; every fragment is in front of the projector, inside the region and its depth
+//   nothing          no fragment is lit: all are behind the projector, or outside one side of the region or its depth
+//   affine           q/w is constant there (an orthographic projector, a parallel view), or varies so little that
+//                    straight lines stay inside the tolerance: no division
+//   quadratic        q/w varies, and certified polynomials of a few powers stay inside the tolerance: no division a
+//                    fragment
+//   divide           one division a fragment; all are in front of the projector, inside the region and its depth
 //   divide_and_test  one division a fragment; the sign of q or the sides of the region are tested, or its depth
 // Where the region's border crosses an affine or quadratic rectangle, the mask is compared from the coordinates. Rows
 // of less than 16 fragments, and rectangles of no more than 128, are divided though q/w varies: there a polynomial

@@ -128,8 +128,8 @@ inline DoubleDouble quick_two_sum(double a, double b) noexcept {
     return {sum, b - (sum - a)};
 }
 
-// a b, rounded. Where there is an instruction for it, by a fused one: what is only multiplied GCC at -O3 may copy, and fuse
-// with a sum in one copy alone, so that the sum has the exact product and what it lost is taken from the rounded one.
+// a b, rounded; by a fused instruction where there is one. What is only multiplied GCC may copy at -O3, and fuse with a
+// sum in one copy alone: then the sum has the exact product, and what it lost is taken from the rounded one.
 inline double rounded_product(double a, double b) noexcept {
 #ifdef __FP_FAST_FMA
     return std::fma(a, b, -0.0);

@@ -207,7 +207,7 @@ Undecided fill_batch_footprints(const BatchFootprintsJob& original, std::size_t 
     // w is 0: refused, and with an area, so that nobody looks for it.
     static constexpr float dark[3 * BatchVertex::size + 1] = {0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 1};
     const BatchFootprintsJob job = original;
-    const bool filters = job.level != nullptr || job.has_shape();
+    const bool filters = job.are_filtered();
     const auto vertices = [&](std::uint32_t id) { return id < job.triangles ? vertices_of(job, id) : dark; };
     FragmentCentres centres(job, first);
     FootprintLanes known;

@@ -165,7 +165,7 @@ TEXGEN_INLINE int filter_rows(const FootprintJob& job, int first) noexcept {
 template <class CompiledWhereCalled = void>
 int filter(const FootprintJob& original, int first) noexcept {
     const FootprintJob job = original;
-    const bool shape = job.anisotropy != nullptr || job.major[0] != nullptr || job.major[1] != nullptr;
+    const bool shape = job.has_shape();
     if (job.filters_in_float) return shape ? filter_rows<true, true>(job, first) : filter_rows<true, false>(job, first);
     return shape ? filter_rows<false, true>(job, first) : filter_rows<false, false>(job, first);
 }

@@ -230,7 +230,7 @@ struct PointTerms {
     TwofoldForm q;
     TwofoldForm numerator[2];
 
-    TEXGEN_APART explicit PointTerms(const PointJob& job) noexcept : q(job.q) {
+    TEXGEN_INLINE explicit PointTerms(const PointJob& job) noexcept : q(job.q) {
         for (int k = 0; k < job.numerators; ++k) numerator[k] = TwofoldForm(job.numerator[k]);
     }
     // Which are behind whatever their q, being no numbers.

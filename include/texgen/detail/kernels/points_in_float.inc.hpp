@@ -170,9 +170,9 @@ TEXGEN_APART inline Undecided fill_vectors_again(const PointJob& job, std::size_
 }
 
 // Blocks of float_block points, about a point where one is not certainly in front, and of four times as many once one
-// is. Where most vectors of a block are in doubt, they have company: more points after each such block are done exactly.
-// The job is copied for the loops, field by field: what was written by fields is waited for when it is read whole, as it
-// would be were its forms, which are found by their number, in the copy.
+// is. Where more than an eighth of a block's vectors is in doubt they have company: more points after each such block
+// are done exactly. The job is copied for the loops, field by field: what was written by fields is waited for when it is
+// read whole, as it would be were its forms, which are found by their number, in the copy.
 template <std::size_t Numerators>
 TEXGEN_INLINE Undecided fill_points_within_of(const PointJob& original, std::size_t first) noexcept {
     const FormsInFloat<Numerators> forms(original);

@@ -14,14 +14,9 @@
 
 namespace TEXGEN_DETAIL {
 
-inline double dot(const glm::dvec3& a, const glm::dvec3& b) noexcept {
-    return std::fma(a.z, b.z, std::fma(a.y, b.y, a.x * b.x));
+inline double length(const glm::dvec3& v) noexcept {
+    return std::sqrt(std::fma(v.z, v.z, std::fma(v.y, v.y, v.x * v.x)));
 }
-inline double dot(const glm::dvec4& a, const glm::dvec4& b) noexcept {
-    return std::fma(a.w, b.w, std::fma(a.z, b.z, std::fma(a.y, b.y, a.x * b.x)));
-}
-
-inline double length(const glm::dvec3& v) noexcept { return std::sqrt(dot(v, v)); }
 
 // Each component within 1.5 ulp, however its products cancel.
 inline glm::dvec3 cross(const glm::dvec3& a, const glm::dvec3& b) noexcept {

@@ -210,15 +210,6 @@ TEXGEN_APART bool divide_beside_ties(const FormPair& numerators, const PointForm
     return are_whole;
 }
 
-// What divide_point() leaves.
-inline std::optional<glm::vec2> divide_point_closely(const FormPair& numerators, const PointForm& q_form,
-                                                     const glm::dvec3& v) noexcept {
-    float value[2];
-    if (!divide_beside_ties<WideInteger>(numerators, q_form, v, value) && !divide_closely(numerators, q_form, v, value))
-        return std::nullopt;
-    return glm::vec2(value[0], value[1]);
-}
-
 // Two numerators over q at a point, empty behind.
 inline std::optional<glm::vec2> divide_point(const FormPair& numerators, const PointForm& q_form,
                                              const glm::dvec3& v) noexcept {
@@ -229,7 +220,10 @@ inline std::optional<glm::vec2> divide_point(const FormPair& numerators, const P
             return glm::vec2(static_cast<float>(quotient.value[0]), static_cast<float>(quotient.value[1]));
     }
     if (q.value < -q.error) return std::nullopt;
-    return divide_point_closely(numerators, q_form, v);
+    float value[2];
+    if (!divide_beside_ties<WideInteger>(numerators, q_form, v, value) && !divide_closely(numerators, q_form, v, value))
+        return std::nullopt;
+    return glm::vec2(value[0], value[1]);
 }
 
 // One point of a job.

@@ -20,8 +20,8 @@ void copy_points(const Positions<Space>& positions, std::size_t first, std::size
     }
 }
 
-// Calls run(input, part) for parts of the first `count` positions that the kernels can read: as they are, or, where the count is no
-// multiple of point_quantum or the layout is none of theirs, copied, and padded with the last point.
+// Calls run(input, part) for parts of the first `count` positions that the kernels can read: as they are, or, where the
+// count is no multiple of point_quantum or the layout is none of theirs, copied, and padded with the last point.
 template <class Space, class Run>
 void for_each_part(const Positions<Space>& positions, std::size_t count, const Run& run) noexcept {
     std::size_t first = 0;

@@ -79,19 +79,12 @@ struct VisibilityBuffer {
 // Of no triangle planes[triangles] are the functions.
 struct FragmentsJob : BatchJob, VisibilityBuffer {};
 
-// The same for footprints: derivatives by x and by y of s and of t, and what filters make of them.
-struct BatchFootprintsJob : VisibilityBuffer {
+// The same for footprints.
+struct BatchFootprintsJob : VisibilityBuffer, FootprintArrays {
     const float* vertices;
     std::size_t count;
     double texels[2];  // per unit of s and t
     float per_texel[2];
-    float* dx[2];
-    float* dy[2];
-    float* level;
-    float* anisotropy;
-    float* major[2];
-
-    bool has_shape() const noexcept { return anisotropy != nullptr || major[0] != nullptr || major[1] != nullptr; }
 };
 
 struct BatchKernels {

@@ -258,9 +258,23 @@ struct GenerateJob : PointInput {
     float* strq;
 };
 
-// The derivatives of s (0) and t (1) over a rectangle, and what filters make of them. Slopes are d/dx Q^2 and
-// d/dy Q^2. An output is null or an array whose rows are pitch apart.
-struct FootprintJob {
+// The outputs of footprints, null or arrays: derivatives by x and by y of s and of t, and what filters make of them.
+struct FootprintArrays {
+    float* dx[2];
+    float* dy[2];
+    float* level;
+    float* anisotropy;
+    float* major[2];
+
+    bool has_derivatives() const noexcept {
+        return dx[0] != nullptr || dx[1] != nullptr || dy[0] != nullptr || dy[1] != nullptr;
+    }
+    bool has_shape() const noexcept { return anisotropy != nullptr || major[0] != nullptr || major[1] != nullptr; }
+    bool are_filtered() const noexcept { return level != nullptr || has_shape(); }
+};
+
+// The same over a rectangle. Slopes are d/dx Q^2 and d/dy Q^2, the rows of the arrays pitch apart.
+struct FootprintJob : FootprintArrays {
     struct Slope {
         double dx, dy;
         double twist;  // a step of y adds it to dx, a step of x takes it from dy
@@ -275,11 +289,6 @@ struct FootprintJob {
     Slope texels[2];  // the same in texels, times a factor that level_offset and the factors below make good
     bool derivatives_in_float, filters_in_float;
     float level_offset, anisotropy_factor, major_factor[2];
-    float* dx[2];
-    float* dy[2];
-    float* level;
-    float* anisotropy;
-    float* major[2];
     std::ptrdiff_t pitch;
 
     float* row(float* output, int y) const noexcept { return output == nullptr ? nullptr : output + y * pitch; }

@@ -32,7 +32,6 @@ struct PointLanes {
 struct PointFormLanes {
     Doubles x, y, z, w;
 
-    PointFormLanes() = default;
     TEXGEN_INLINE PointFormLanes(const PointForm& of) noexcept
         : x(Doubles{} + of.x), y(Doubles{} + of.y), z(Doubles{} + of.z), w(Doubles{} + of.w) {}
 };
@@ -73,7 +72,7 @@ struct TwofoldForm {
     bool is_finite;
 
     TwofoldForm() = default;
-    TEXGEN_INLINE explicit TwofoldForm(const PointForm& given) noexcept
+    TEXGEN_APART explicit TwofoldForm(const PointForm& given) noexcept
         : form(given),
           size_of_w(std::fabs(form.w)),
           grain_of_w(last_bit(form.w)),

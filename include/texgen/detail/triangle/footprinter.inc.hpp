@@ -3,6 +3,16 @@
 namespace TEXGEN_DETAIL {
 inline namespace TEXGEN_BUILD {
 
+// The outputs of fragments from `first` on.
+inline void take_arrays(FootprintArrays& to, const Footprints& out, std::size_t first) noexcept {
+    const auto array = [first](const std::span<float>& span) { return span.empty() ? nullptr : span.data() + first; };
+    to = {{array(out.dsdx), array(out.dtdx)},
+          {array(out.dsdy), array(out.dtdy)},
+          array(out.level),
+          array(out.anisotropy),
+          {array(out.major_s), array(out.major_t)}};
+}
+
 // Footprints into the caller's arrays: in vectors where the tile is well in front, else in its halves, and at last one
 // by one.
 template <class CompiledWhereCalled = void>
@@ -68,21 +78,13 @@ private:
         job.q = {at.q_ramp.base * q_scale, at.q_ramp.dx * q_scale, at.q_ramp.dy * q_scale};
         job.derivatives_in_float = float_fits(tile, at, numerator);
         job.pitch = rect_.width;
-        const std::size_t offset = offset_in(rect_, tile.x, tile.y);
-        const auto array = [offset](const std::span<float>& span) {
-            return span.empty() ? nullptr : span.data() + offset;
-        };
+        take_arrays(job, out_, offset_in(rect_, tile.x, tile.y));
         for (std::size_t k = 0; k < 2; ++k) {
             const Slope::Terms first = functions_.at_first(k, tile);
             job.slope[k] = scaled(first, q_scale_squared);
             if (filters) job.texels[k] = scaled(first, (k == 0 ? texels_.s : texels_.t) * texel_scale);
         }
-        job.dx[0] = array(out_.dsdx);
-        job.dx[1] = array(out_.dtdx);
-        job.dy[0] = array(out_.dsdy);
-        job.dy[1] = array(out_.dtdy);
-        if (job.dx[0] != nullptr || job.dx[1] != nullptr || job.dy[0] != nullptr || job.dy[1] != nullptr)
-            kernels_.differentiate(job);
+        if (job.has_derivatives()) kernels_.differentiate(job);
         if (!filters) return true;
 
         const double back = q_scale_squared / texel_scale;  // from a length of the job to texels, but for 1 / Q^2
@@ -98,10 +100,6 @@ private:
         job.anisotropy_factor = static_cast<float>(anisotropy_factor);
         job.major_factor[0] = static_cast<float>(back / texels_.s);
         job.major_factor[1] = static_cast<float>(back / texels_.t);
-        job.level = array(out_.level);
-        job.anisotropy = array(out_.anisotropy);
-        job.major[0] = array(out_.major_s);
-        job.major[1] = array(out_.major_t);
         for (int row = 0; (row = kernels_.filter(job, row)) < tile.height; ++row)
             fill_one_by_one({tile.x, tile.y + row, tile.width, 1});
         return true;

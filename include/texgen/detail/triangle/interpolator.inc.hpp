@@ -26,7 +26,7 @@ public:
         : triangle_(triangle),
           rect_(rect),
           count_(1),
-          coordinate_{coordinate},
+          coordinate_{coordinate, coordinate},
           planes_(&alone_),
           alone_(triangle.planes.plane_twice(coordinate)),
           close_(close),
@@ -38,7 +38,7 @@ public:
     TEXGEN_APART Corners corners_at(const Tile& tile) noexcept {
         Corners at = corners_of(triangle_.planes, *planes_, triangle_.q, tile);
         if (!at.all_behind() && at.cancel() &&
-            cancel_beyond_zeros(at, triangle_.planes, coordinate_of(0), coordinate_of(1), tile))
+            cancel_beyond_zeros(at, triangle_.planes, coordinate_[0], coordinate_[1], tile))
             take_corners(at, close_ramps(tile));
         return at;
     }
@@ -100,11 +100,9 @@ private:
 
     // They are made when a tile first needs them, for all of the rectangle.
     TEXGEN_RARE CloseRamps close_ramps(const Tile& tile) noexcept {
-        if (!close_) close_.make(ClosePlanes(triangle_.planes, rect_).ramps(coordinate_of(0), coordinate_of(1)));
+        if (!close_) close_.make(ClosePlanes(triangle_.planes, rect_).ramps(coordinate_[0], coordinate_[1]));
         return close_->moved_to(tile);
     }
-
-    glm::length_t coordinate_of(std::size_t k) const noexcept { return coordinate_[count_ == 1 ? 0 : k]; }
 
     // What is known of the functions of a tile at first: what corners say, or two doubles where those are made already.
     TEXGEN_RARE DoubtfulFunctions functions_of(const Tile& tile, const Corners& at) noexcept {
@@ -120,7 +118,7 @@ private:
     // alone does.
     TEXGEN_RARE void take_close(const Tile& tile, CloseFunctions& functions, bool leave_doubt) noexcept {
         if ((leave_doubt || close_ramps(tile).cancel()) && !are_exact_) {
-            take_exact_growths(triangle_.planes, coordinate_of(0), coordinate_of(1), *close_);
+            take_exact_growths(triangle_.planes, coordinate_[0], coordinate_[1], *close_);
             are_exact_ = true;
         }
         close_ramps(tile).copy_to(functions);
@@ -129,7 +127,7 @@ private:
     TEXGEN_RARE void add_residues(const Tile& tile, DoubtfulFunctions& functions) noexcept {
         if (!residues_) residues_.make(triangle_.planes, rect_);
         for (std::size_t k = 0; k < 3; ++k)
-            residues_->add_to(functions.function[k], k == CloseFunctions::q ? 3 : coordinate_of(k), tile);
+            residues_->add_to(functions.function[k], k == CloseFunctions::q ? 3 : coordinate_[k], tile);
         functions.have_residues = true;
     }
 
@@ -225,7 +223,7 @@ private:
         // A numerator without a plane is that of its zeros already.
         for (std::size_t k = 0; k < count_; ++k)
             if (planes_->magnitude.dx[k] + planes_->magnitude.dy[k] != 0.0)
-                if (const Stretch zeros = zeros_of(triangle_.planes, coordinate_of(k), tile); zeros.end != 0)
+                if (const Stretch zeros = zeros_of(triangle_.planes, coordinate_[k], tile); zeros.end != 0)
                     return fill_around(tile, zeros, k);
         if (is_one()) return fill_one(tile.x, tile.y);
         DoubtfulFunctions functions = functions_of(tile, at);

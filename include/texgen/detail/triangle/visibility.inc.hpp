@@ -143,14 +143,7 @@ inline void describe(BatchFootprintsJob& job, const TriangleBatch& batch, std::s
     job.texels[1] = texels.t;
     job.per_texel[0] = static_cast<float>(1.0 / texels.s);
     job.per_texel[1] = static_cast<float>(1.0 / texels.t);
-    job.dx[0] = array_of(out.dsdx, job.count);
-    job.dx[1] = array_of(out.dtdx, job.count);
-    job.dy[0] = array_of(out.dsdy, job.count);
-    job.dy[1] = array_of(out.dtdy, job.count);
-    job.level = array_of(out.level, job.count);
-    job.anisotropy = array_of(out.anisotropy, job.count);
-    job.major[0] = array_of(out.major_s, job.count);
-    job.major[1] = array_of(out.major_t, job.count);
+    take_arrays(job, out, 0);
 }
 
 // The footprints of a visibility buffer: of long runs by set-ups, of others in lanes, and by set-ups what these leave.
@@ -180,7 +173,7 @@ private:
         BatchFootprintsJob job{};
         describe(job, batch_, ids_, rect_, texels_, out_);
         job.count = end;
-        if ((job.level != nullptr || job.has_shape()) && !are_ordinary(texels_))
+        if (job.are_filtered() && !are_ordinary(texels_))
             return fill_runs(begin, end - begin, [](std::size_t) { return true; });
         const BatchFootprintKernels& kernels = chosen<BatchFootprintKernels>();
         for (Undecided doubt = kernels.fill(job, begin); doubt.begin < end;) {
