@@ -494,7 +494,7 @@ MUTANTS = [
           "interpolate_apart", "batch_test"),
          ("rows that are no run are done together", "if (end - begin == width && width >= long_run)", "if (width >= long_run)", "batch_test"),
          ("rows that are one are done as one", "static_cast<int>((count - 1) / width) + 1};", "1};", "batch_test"),
-         ("a footprint in doubt may be dark", "begin, true);", "begin, false);", "footprint_test")),
+         ("a footprint in doubt may be dark", "fill_run(id, part, first, true);", "fill_run(id, part, first, false);", "footprint_test")),
     *_of("detail/kernels/batch_footprints.inc.hpp",
          ("the twist of a visibility buffer's footprints is lost", "(of.dy[k] - p_x * of.twist[k]) * factor", "of.dy[k] * factor", "footprint_test"),
          ("a visibility buffer's derivatives err by 2^-30", "(of.given.area * reciprocal) * (of.w * reciprocal);",

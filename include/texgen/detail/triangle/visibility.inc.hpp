@@ -87,22 +87,25 @@ void for_each_run(std::span<const std::uint32_t> ids, const FragmentRect& rect, 
     }
 }
 
-// The fragments of a visibility buffer from `begin` to `end`.
+// Fragments of a visibility buffer from `begin` to `end` by a kernel, and by run() as above the runs that it leaves in
+// doubt.
+void fill_buffer(auto kernel, auto& job, const FragmentRect& rect, std::size_t begin, std::size_t end,
+                 const auto& run) noexcept {
+    job.count = end;
+    for (Undecided doubt = kernel(job, begin); doubt.begin < end;) {
+        const std::size_t left = (std::min)(exact_block, end - doubt.begin);
+        const auto is_doubtful = [&](std::size_t i) { return (doubt.values >> (i - doubt.begin) & 1u) != 0; };
+        for_each_run({job.ids, end}, rect, doubt.begin, left, is_doubtful, run);
+        doubt = kernel(job, doubt.begin + left);
+    }
+}
 template <class CompiledWhereCalled = void>
 void interpolate_ids(const TriangleBatch& batch, FragmentsJob& job, const FragmentRect& rect, std::size_t begin,
                      std::size_t end, const Texcoords& out) noexcept {
-    const BatchKernels& kernels = chosen<BatchKernels>();
-    job.count = end;
-    for (Undecided doubt = kernels.divide_fragments(job, begin); doubt.begin < end;) {
-        const std::size_t left = (std::min)(exact_block, end - doubt.begin);
-        for_each_run(
-            {job.ids, end}, rect, doubt.begin, left,
-            [&](std::size_t fragment) { return (doubt.values >> (fragment - doubt.begin) & 1u) != 0; },
-            [&](std::uint32_t id, const Tile& part, std::size_t first) {
-                interpolate_apart(set_up(batch, id), part, subspans(out, first, static_cast<std::size_t>(part.width)));
-            });
-        doubt = kernels.divide_fragments(job, doubt.begin + left);
-    }
+    const auto run = [&](std::uint32_t id, const Tile& part, std::size_t first) {
+        interpolate_apart(set_up(batch, id), part, subspans(out, first, static_cast<std::size_t>(part.width)));
+    };
+    fill_buffer(chosen<BatchKernels>().divide_fragments, job, rect, begin, end, run);
 }
 
 // Calls of_one(first, count) for the long runs of one id in a row, and of_any(begin, end) for what is between them.
@@ -172,21 +175,13 @@ private:
     void fill_in_lanes(std::size_t begin, std::size_t end) noexcept {
         BatchFootprintsJob job{};
         describe(job, batch_, ids_, rect_, texels_, out_);
-        job.count = end;
+        const auto run = [&](std::uint32_t id, const Tile& part, std::size_t first) {
+            fill_run(id, part, first, true);
+        };
         if (job.are_filtered() && !are_ordinary(texels_))
-            return fill_runs(begin, end - begin, [](std::size_t) { return true; });
-        const BatchFootprintKernels& kernels = chosen<BatchFootprintKernels>();
-        for (Undecided doubt = kernels.fill(job, begin); doubt.begin < end;) {
-            const std::size_t left = (std::min)(exact_block, end - doubt.begin);
-            fill_runs(doubt.begin, left,
-                      [&](std::size_t fragment) { return (doubt.values >> (fragment - doubt.begin) & 1u) != 0; });
-            doubt = kernels.fill(job, doubt.begin + left);
-        }
-    }
-
-    void fill_runs(std::size_t first, std::size_t count, const auto& is_wanted) noexcept {
-        for_each_run(ids_, rect_, first, count, is_wanted,
-                     [&](std::uint32_t id, const Tile& part, std::size_t begin) { fill_run(id, part, begin, true); });
+            return for_each_run(
+                ids_, rect_, begin, end - begin, [](std::size_t) { return true; }, run);
+        fill_buffer(chosen<BatchFootprintKernels>().fill, job, rect_, begin, end, run);
     }
 
     // What is not lit is written only if `always`, or 0.
