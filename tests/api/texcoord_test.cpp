@@ -372,7 +372,7 @@ TEST_CASE(
     }
     CHECK(tally.in_front > 20000);
     CHECK(tally.behind > 20000);
-    CHECK(in_float > 4000);
+    CHECK(in_float > 1000);
     CHECK(of_company > 100);
 }
 
