@@ -729,7 +729,7 @@ MUTANTS = [
           "texcoord_test segment_test"),
          ("a point spoils the one that shares its division", "sum = sum + reciprocal;", "", "within_test")),
     *_of("detail/kernels/points_in_float.inc.hpp",
-         ("forms about a point are those about the origin", "form.w += form.x * point[0] + form.y * point[1] + form.z * point[2];", "", "texcoord_test"),
+         ("forms about a point are those about the origin", "form.w += form.x * at[0] + form.y * at[1] + form.z * at[2];", "", "texcoord_test"),
          ("what a sum in double errs by is nothing about a point", " + terms * 0x1p-28", "", "bounds_test texcoord_test"),
          ("differences are never taken for 0", " + 0x1p-76", "", "float_state_test"),
          ("what is next to q = 0 is behind", "less(errors.of_form[0] * 1.001f, -1.0f * q)", "less(WideFloats{}, -1.0f * q)", "texcoord_test"),

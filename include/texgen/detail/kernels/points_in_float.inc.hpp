@@ -114,14 +114,17 @@ TEXGEN_APART std::uint64_t fill_about_point(const PointJob& job, std::size_t beg
     PointForm about[3] = {job.q, job.numerator[0], job.numerator[job.numerators - 1]};
     // Of less than form_error of the terms there, times 2^-28, are what sums in double lose, and differences that are
     // taken for 0 where subnormal numbers are.
-    double reach[3];
-    for (std::size_t j = 0; j < 3; ++j) reach[j] = std::fabs(point[j]) + 0x1p-76;
+    double at[3], reach[3];
+    for (std::size_t j = 0; j < 3; ++j) {
+        at[j] = static_cast<double>(point[j]);
+        reach[j] = std::fabs(at[j]) + 0x1p-76;
+    }
     float coefficient[3][4];
     for (std::size_t k = 0; k < 3; ++k) {
         PointForm& form = about[k];
         const double terms = std::fabs(form.x) * reach[0] + std::fabs(form.y) * reach[1] +
                              std::fabs(form.z) * reach[2] + std::fabs(form.w);
-        form.w += form.x * point[0] + form.y * point[1] + form.z * point[2];
+        form.w += form.x * at[0] + form.y * at[1] + form.z * at[2];
         round_to_float(form, coefficient[k]);
         form.w = std::fabs(form.w) + terms * 0x1p-28;
     }
