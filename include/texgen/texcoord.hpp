@@ -191,9 +191,10 @@ void generate(const Transform<Texture, Space>& texture_from_space, Positions<Spa
 // Guarantee: in front (q > 0, decided exactly) each is within max(tolerance, 1/2 ulp) of the exact value of the given
 // numbers (r: the tolerance relative to max(1, |r|)). With `exact` each is the nearest float, whatever the layout, the
 // count, the place or the build, as long as no product of a matrix element and a coordinate leaves 2^-900 .. 2^1000.
-// lit = 1 inside the closed region, decided from the s and t, and with a depth from the r, that are (or would be)
-// written. Behind, s = t = r = lit = 0. A depth costs at most what r costs; where s and t leave many
-// neighbours dark, r is not computed for them. No allocation, noexcept.
+// lit = 1 inside the closed region, decided from the s and t, and with a depth from the r, that are written, or with
+// `exact` would be; with a tolerance one that is not asked for is decided from some value inside it. Behind,
+// s = t = r = lit = 0. A depth costs at most what r costs; where s and t leave many neighbours dark, r is not computed
+// for them. No allocation, noexcept.
 // Shapes: as many values of an output as positions, or none (asserted; else that output is not written); outputs must
 // not overlap the positions.
 // Bad input: NaN and infinity spoil their own point only; a point whose q is NaN is behind.
