@@ -359,6 +359,18 @@ TEST_CASE("vectors of any length do, from the smallest to the largest") {
     }
 }
 
+TEST_CASE("up is parallel to the view to 2^-98 rad, and is not from 2^-97 on") {
+    for (const double sign : {-1.0, 1.0}) {
+        const auto aim_at = [&](double angle) { return Aim{{0.0, 0.0, 0.0}, {0.0, sign, 0.0}, {angle, 1.0, 0.0}}; };
+        const auto view = look_at(aim_at(0x1p-97));
+        REQUIRE(view);
+        CHECK(rotation_error(view->matrix(), aim_at(0x1p-97)) <= 0x1p-50);
+        CHECK(orthonormality_error(view->matrix()) <= 0x1p-50);
+        CHECK_FALSE(look_at(aim_at(0x1p-98)));
+        CHECK_FALSE(look_at(aim_at(0.0)));
+    }
+}
+
 TEST_CASE("an aim without a direction gives nothing") {
     const glm::dvec3 position(2, 5, 5), target(-2, -4, 0), up(0, 1, 0);
     REQUIRE(look_at({position, target, up}));

@@ -2,21 +2,18 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-TEXGEN_INLINE void round_to_float(const PointForm& form, float (&to)[4]) noexcept {
-    to[0] = static_cast<float>(form.x);
-    to[1] = static_cast<float>(form.y);
-    to[2] = static_cast<float>(form.z);
-    to[3] = static_cast<float>(form.w);
-}
-
 // The forms of q and of the numerators in float, in the order in which they are computed.
 template <std::size_t Numerators>
 struct FormsInFloat {
     float coefficient[1 + Numerators][4];
 
-    TEXGEN_INLINE explicit FormsInFloat(const PointJob& job) noexcept {
-        round_to_float(job.q, coefficient[0]);
-        for (std::size_t k = 0; k < Numerators; ++k) round_to_float(job.numerator[k], coefficient[1 + k]);
+    TEXGEN_INLINE explicit FormsInFloat(const PointForm (&form)[1 + Numerators]) noexcept {
+        for (std::size_t k = 0; k < 1 + Numerators; ++k) {
+            coefficient[k][0] = static_cast<float>(form[k].x);
+            coefficient[k][1] = static_cast<float>(form[k].y);
+            coefficient[k][2] = static_cast<float>(form[k].z);
+            coefficient[k][3] = static_cast<float>(form[k].w);
+        }
     }
     TEXGEN_INLINE WideFloats at(std::size_t k, const WideFloats& x, const WideFloats& y,
                                 const WideFloats& z) const noexcept {
@@ -33,19 +30,20 @@ struct FormsInFloat {
 // What bounds the errors of quotients in float, by FloatDivision::error(), in each lane: in float itself, whose
 // roundings, 16 units each at most, the factors cover.
 struct FloatErrors {
-    WideFloats of_form[3];   // of q and of two numerators
+    WideFloats of_form[3];   // of q and of the numerators
     WideWords are_in_range;  // the forms
     float roundings, accepted;
 
     // Where these are the largest |x|, |y|, |z|.
-    TEXGEN_INLINE FloatErrors(const FloatDivision& division, const PointForm (&form)[3], const PointExtent& extent,
+    template <std::size_t Count>
+    TEXGEN_INLINE FloatErrors(const FloatDivision& division, const PointForm (&form)[Count], const PointExtent& extent,
                               double tolerance) noexcept
         : are_in_range(~WideWords{}),
           roundings(static_cast<float>(division.roundings * 1.0001)),
           accepted(static_cast<float>(tolerance > 0x1p-100 ? 0.9999 * tolerance : 0.0)) {
         const auto form_error = static_cast<float>(division.form_error * 1.0001);
         const WideFloats underflow = (extent.x + extent.y + extent.z + 1.0f) * 0x1.01p-124f;
-        for (std::size_t k = 0; k < 3; ++k) {
+        for (std::size_t k = 0; k < Count; ++k) {
             const WideFloats terms = extent.terms_of(form[k]);
             are_in_range &= less(terms, WideFloats{} + 0x1p126f);
             of_form[k] = terms * form_error + underflow;
@@ -67,8 +65,8 @@ struct FloatErrors {
 // and the least q, found on the way, the error of every point. Returns whether all are inside the tolerance (they are
 // written all the same). A NaN makes the largest quotient one, and fails.
 template <std::size_t Numerators>
-TEXGEN_INLINE bool fill_in_front(const PointJob& original, const PointJob& job, const FormsInFloat<Numerators>& forms,
-                                 std::size_t begin, std::size_t end) noexcept {
+TEXGEN_INLINE bool fill_in_front(const PointJob& job, const PointForm (&of)[1 + Numerators],
+                                 const FormsInFloat<Numerators>& forms, std::size_t begin, std::size_t end) noexcept {
     PointExtent extent;
     WideWords largest[Numerators] = {};
     // The bits of positive floats have their order; those of a negative one, and of -0, are below them all. A q that
@@ -84,8 +82,7 @@ TEXGEN_INLINE bool fill_in_front(const PointJob& original, const PointJob& job, 
         for (std::size_t k = 0; k < Numerators; ++k) largest[k] = maximum(magnitude_bits(value[k]), largest[k]);
         store_points(job, i, Numerators, value, ~WideWords{});
     }
-    const PointForm of[3] = {original.q, original.numerator[0], original.numerator[Numerators - 1]};
-    const FloatErrors errors(all_float, of, extent, original.tolerance);
+    const FloatErrors errors(all_float, of, extent, job.tolerance);
     const WideFloats q = errors.least(from_bits(least_q));
     WideWords are_within = errors.are_in_range & less(WideFloats{} + 0x1p-59f, q);
     for (std::size_t k = 0; k < Numerators; ++k)
@@ -119,15 +116,16 @@ TEXGEN_APART std::uint64_t fill_about_point(const PointJob& job, std::size_t beg
         at[j] = static_cast<double>(point[j]);
         reach[j] = std::fabs(at[j]) + 0x1p-76;
     }
-    float coefficient[3][4];
+    double lost[3];
     for (std::size_t k = 0; k < 3; ++k) {
         PointForm& form = about[k];
-        const double terms = std::fabs(form.x) * reach[0] + std::fabs(form.y) * reach[1] +
-                             std::fabs(form.z) * reach[2] + std::fabs(form.w);
+        lost[k] = (std::fabs(form.x) * reach[0] + std::fabs(form.y) * reach[1] + std::fabs(form.z) * reach[2] +
+                   std::fabs(form.w)) *
+                  0x1p-28;
         form.w += form.x * at[0] + form.y * at[1] + form.z * at[2];
-        round_to_float(form, coefficient[k]);
-        form.w = std::fabs(form.w) + terms * 0x1p-28;
     }
+    const FormsInFloat<2> forms(about);
+    for (std::size_t k = 0; k < 3; ++k) about[k].w = std::fabs(about[k].w) + lost[k];
     const FloatErrors errors(about_point, about, extent, job.tolerance);
     // So far in front 1 / q errs by less than 2^-9 of itself.
     const WideFloats least_q = errors.of_form[0] * 0x1p10f + 0x1p-58f;
@@ -135,17 +133,15 @@ TEXGEN_APART std::uint64_t fill_about_point(const PointJob& job, std::size_t beg
     std::size_t count = 0;
     next = difference[0];
     for (std::size_t i = begin; i < end; i += wide_at_once, next += 3) {
-        const auto value_of = [&](const float(&c)[4]) {
-            return next[0] * c[0] + (next[1] * c[1] + (next[2] * c[2] + c[3]));
-        };
-        const WideFloats q = value_of(coefficient[0]), reciprocal = 1.0f / q;
+        const auto value_of = [&](std::size_t k) { return forms.at(k, next[0], next[1], next[2]); };
+        const WideFloats q = value_of(0), reciprocal = 1.0f / q;
         const WideWords are_in_front = errors.are_in_range & less(least_q, q);
         const WideWords are_behind = errors.are_in_range & less(errors.of_form[0] * 1.001f, -1.0f * q);
         WideWords are_certain = are_in_front;
         WideFloats value[2];
         TEXGEN_UNROLL
         for (std::size_t k = 0; k < 2; ++k) {
-            value[k] = from_bits(are_in_front & signed_bits(value_of(coefficient[1 + k]) * reciprocal));
+            value[k] = from_bits(are_in_front & signed_bits(value_of(1 + k) * reciprocal));
             are_certain &= errors.are_within(1 + k, magnitude(value[k]), reciprocal * 1.002f);
         }
         store_points(job, i, static_cast<std::size_t>(job.numerators), value, are_in_front);
@@ -178,7 +174,9 @@ TEXGEN_APART inline Undecided fill_vectors_again(const PointJob& job, std::size_
 // read whole, as it would be were its forms, which are found by their number, in the copy.
 template <std::size_t Numerators>
 TEXGEN_INLINE Undecided fill_points_within_of(const PointJob& original, std::size_t first) noexcept {
-    const FormsInFloat<Numerators> forms(original);
+    PointForm of[1 + Numerators] = {original.q};
+    for (std::size_t k = 0; k < Numerators; ++k) of[1 + k] = original.numerator[k];
+    const FormsInFloat<Numerators> forms(of);
     const PointJob job = original;
     if (job.is_certified) {
         WideFloats x, y, z, value[2];
@@ -195,7 +193,7 @@ TEXGEN_INLINE Undecided fill_points_within_of(const PointJob& original, std::siz
     for (std::size_t begin = first, end; begin < job.count; begin = end) {
         end = end_of_block(job.count, begin, size);
         size = 4 * float_block;
-        if (failures % 8 == 0 && fill_in_front<Numerators>(original, job, forms, begin, end)) continue;
+        if (failures % 8 == 0 && fill_in_front<Numerators>(job, of, forms, begin, end)) continue;
         ++failures;
         size = float_block;
         end = end_of_block(job.count, begin, size);
