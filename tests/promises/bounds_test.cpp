@@ -54,9 +54,9 @@ TEST_CASE("forms in float whose coefficients and sums are all rounded the same w
     glm::dmat4 matrix(0.0);
     for (int j = 0; j < 3; ++j) matrix[j] = {last, last, last, -unit_roundoff};
     matrix[3] = {8.0 + last, 8.0 + last, 8.0 + last, 1.0 + 3.0 * unit_roundoff};
-    // About the origin; and, in blocks that follow one which is not all in front, about points of which some are there.
-    std::vector<glm::vec3> in_front(512, glm::vec3(1.0f)), about_points = in_front;
-    for (std::size_t i = 1; i < 512; i += 2) about_points[i] = glm::vec3(0.0f);
+    // About the origin; and, in blocks that follow those of one which is not in front, about points of which some are there.
+    std::vector<glm::vec3> in_front(2048, glm::vec3(1.0f)), about_points = in_front;
+    for (std::size_t i = 1; i < 2048; i += 2) about_points[i] = glm::vec3(0.0f);
     about_points[0] = glm::vec3(1e7f);
     for (const std::vector<glm::vec3>* points : {&in_front, &about_points}) {
         int cheap = 0;
