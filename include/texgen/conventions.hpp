@@ -11,8 +11,8 @@
 
 #include "detail/matrices/required.hpp"
 
-// 0.4.22: 10000 major + 100 minor + patch.
-#define TEXGEN_VERSION 422
+// 0.4.23: 10000 major + 100 minor + patch.
+#define TEXGEN_VERSION 423
 
 namespace TEXGEN_NAMESPACE {
 

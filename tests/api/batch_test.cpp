@@ -152,8 +152,10 @@ Shot ties_everywhere(Random& random, float off = 1.0f) {
 
 Shot draw(Random& random) {
     Shot shot{};
-    const int kind = random.integer(0, 31);
-    if (kind < 18) {
+    const int kind = random.integer(0, 33);
+    if (kind >= 32) {
+        shot = support::detail::zeros_along_edges(random);
+    } else if (kind < 18) {
         shot = support::hard_families[static_cast<std::size_t>(kind)].make(random);
     } else if (kind < 21) {
         const support::NearCut cut = support::near_cut(random, random.integer(1, 20), random.integer(1, 8));
@@ -283,6 +285,7 @@ std::vector<std::pair<std::size_t, std::size_t>> long_runs(const std::vector<std
 TEST_CASE("with exact, rectangles of a batch have the bits that each has alone, whatever is asked for") {
     Random random(1);
     int apart = 0, large = 0, overlapping = 0;  // tiles for a setup; beyond scratch; with vectors that overlap
+    int zeros = 0;                              // along an edge
     for (int round = 0; round < 400; ++round) {
         const texgen::TextureRegion region = draw_region(random);
         TriangleBatch batch(region);
@@ -302,6 +305,9 @@ TEST_CASE("with exact, rectangles of a batch have the bits that each has alone, 
                 overlapping += count <= texgen::detail::largest_in_scratch && drawn.rects[i].width > 8 &&
                                drawn.rects[i].width % 8 != 0;
                 const Expected expected(drawn.triangles[i], region, drawn.rects[i], asked, texgen::exact);
+                for (std::size_t k = 0; k < 2 && expected.work != Work::nothing; ++k)
+                    zeros +=
+                        expected.out.asked(k) && std::count(expected.out[k].begin(), expected.out[k].end(), 0.0f) > 1;
                 if (!agree(expected, 0, out, first, count))
                     FAIL_CHECK(support::hex(drawn.triangles[i]), " at ", drawn.rects[i].x, " ", drawn.rects[i].y, " ",
                                drawn.rects[i].width, " x ", drawn.rects[i].height, " asked ", asked);
@@ -312,6 +318,7 @@ TEST_CASE("with exact, rectangles of a batch have the bits that each has alone, 
     CHECK(apart > 100);
     CHECK(large > 100);
     CHECK(overlapping > 300);
+    CHECK(zeros > 300);
 }
 
 TEST_CASE("with exact, a visibility buffer has the bits that each fragment has alone") {

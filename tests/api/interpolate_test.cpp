@@ -606,24 +606,7 @@ TEST_CASE("where a coordinate is 0 along an edge in a row or a column of fragmen
     Seen seen;
     int zeros = 0, both = 0;
     for (int i = 0; i < 1000; ++i) {
-        Shot shot = support::detail::ordinary(support::Family::friendly, random);
-        shot.rect = {random.integer(-50, 200), random.integer(-50, 200), 1, 1};
-        if (random.integer(0, 3) != 0) shot.rect.width = random.integer(1, 20);
-        if (random.integer(0, 3) != 0) shot.rect.height = random.integer(1, 20);
-        const auto put_zeros = [&](std::size_t first, glm::length_t coordinate, glm::length_t axis) {
-            const int place = axis == 0 ? shot.rect.x + random.integer(0, shot.rect.width - 1)
-                                        : shot.rect.y + random.integer(0, shot.rect.height - 1);
-            const float at = random.integer(0, 3) != 0 ? 0.5f : random.uniform_float(0.0, 1.0);
-            for (std::size_t j = first; j < first + 2; ++j) {
-                WindowVertex& vertex = *vertices(shot.triangle)[j % 3];
-                vertex.window[axis] = static_cast<float>(place) + at;
-                vertex.strq[coordinate] = random.coin() ? 0.0f : -0.0f;
-            }
-        };
-        const auto first = static_cast<std::size_t>(random.integer(0, 2));
-        const int coordinate = random.integer(0, 2), axis = random.integer(0, 1);
-        put_zeros(first, coordinate, axis);
-        if (random.coin()) put_zeros(first + 1, (coordinate + 1) % 3, 1 - axis);  // they cross at a corner
+        const Shot shot = support::detail::zeros_along_edges(random);
         const auto side = [&](double other) { return random.coin() ? 0.0 : other; };
         texgen::TextureRegion region = texgen::atlas_tile({side(-HUGE_VAL), side(-1.0)}, {side(HUGE_VAL), side(1.0)});
         if (random.integer(0, 2) == 0) region = region.with_depth(side(-HUGE_VAL), side(1.0));

@@ -17,7 +17,7 @@ set(calls
     "35000 coverage.hpp Coverage coverage coverage(texgen, whole_texture(), box)"
     "62000 segment.hpp void along interpolate(segment, alpha, whole_texture(), out)"
     "48000 footprint.hpp bool footprints footprint(setup, rect, out)"
-    "323000 batch.hpp void batch interpolate(batch, rects, out)"
+    "328000 batch.hpp void batch interpolate(batch, rects, out)"
     "124000 batch.hpp void buffer footprint(batch, ids, rect, {1024, 1024}, out)")
 
 find_program(size size)

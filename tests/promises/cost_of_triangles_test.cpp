@@ -207,12 +207,18 @@ TEST_CASE("a tile that q = 0 crosses costs at most 24 times the ordinary one") {
     CHECK(crossed > 80);
 }
 
+namespace {
+
+// t is 0 along the upper edge, s along the left one: as of a quadrilateral of a user interface, or of a chart of a
+// lightmap, whose corners are centres of fragments.
+Triangle with_edges_at(float x, float y) {
+    return {vertex(x, y, 1.0f, 0.0f, 0.0f, 1.25f), vertex(x + 600.0f, y, 2.0f, 1.5f, 0.0f, 2.0f),
+            vertex(x, y + 512.0f, 1.5f, 0.0f, 1.0f, 1.5f)};
+}
+
+}  // namespace
+
 TEST_CASE("fragments on an edge along which a coordinate is 0 cost at most 8 times the ordinary ones, 20 in a column") {
-    // As of a quadrilateral of a user interface, or a chart of a lightmap, whose corners are centres of fragments.
-    const auto with_edge_at = [](float x, float y) {
-        return Triangle{vertex(x, y, 1.0f, 0.0f, 0.0f, 1.25f), vertex(x + 600.0f, y, 2.0f, 1.5f, 0.0f, 2.0f),
-                        vertex(x, y + 512.0f, 1.5f, 0.0f, 1.0f, 1.5f)};
-    };
     for (const Tolerance tolerance : dial) {
         for (const auto& [width, height] :
              {std::pair{1, 1}, {8, 1}, {1, 8}, {8, 8}, {64, 1}, {1, 64}, {64, 4}, {512, 1}}) {
@@ -229,12 +235,34 @@ TEST_CASE("fragments on an edge along which a coordinate is 0 cost at most 8 tim
                 if (is_mask && height > 8) continue;  // each row has a span
                 const double most = is_mask ? 16.0 : width == 1 && height > 1 ? 20.0 : 8.0;
                 const auto ratio = [&](float x, float y, FragmentRect rect) {
-                    return support::worst_over_ordinary_within(most, call(with_edge_at(90.3f, 190.3f), rect, is_mask),
-                                                               call(with_edge_at(x, y), rect, is_mask));
+                    return support::worst_over_ordinary_within(most, call(with_edges_at(90.3f, 190.3f), rect, is_mask),
+                                                               call(with_edges_at(x, y), rect, is_mask));
                 };
                 INFO(width, " x ", height, ", tolerance ", tolerance.value, std::string(is_mask ? ", mask" : ""));
                 CHECK(ratio(90.3f, 200.5f, {140, 200, width, height}) <= most);
                 CHECK(ratio(100.5f, 190.3f, {100, 240, width, height}) <= most);
+            }
+        }
+    }
+}
+
+TEST_CASE("tiles of a batch on such edges cost at most 8 times the ordinary ones, and their masks alone 32 times") {
+    for (const auto& [width, height] : {std::pair{8, 8}, {64, 1}, {1, 64}, {64, 4}, {16, 16}}) {
+        const std::vector<FragmentRect> rects(8, {100, 200, width, height});
+        std::vector<float> s(8 * support::count_of(rects[0])), t(s.size());
+        for (const bool is_mask : {false, true}) {
+            const auto call = [&](float x, float y) {
+                texgen::TriangleBatch batch(texgen::whole_texture());
+                batch.assign(std::vector<Triangle>(8, with_edges_at(x, y)));
+                return [&, is_mask, batch] {
+                    interpolate(batch, rects, is_mask ? texgen::Texcoords{{}, {}, {}, s} : texgen::Texcoords{s, t});
+                };
+            };
+            const double most = is_mask ? 32.0 : 8.0;
+            for (const auto& [x, y] : {std::pair{90.3f, 200.5f}, {100.5f, 190.3f}, {100.5f, 200.5f}}) {
+                const double ratio = support::worst_over_ordinary_within(most, call(90.3f, 190.3f), call(x, y));
+                CHECK_MESSAGE(ratio <= most, width, " x ", height, std::string(is_mask ? ", mask: " : ": "), ratio,
+                              " times");
             }
         }
     }

@@ -240,6 +240,30 @@ inline Shot grazing(Random& random) {
     return shot;
 }
 
+// Edges along which a coordinate is 0, and that stand in a row or a column of the rectangle, between the middles of its
+// fragments or, most of them, in these; two of them cross at a corner.
+inline Shot zeros_along_edges(Random& random) {
+    Shot shot = ordinary(Family::friendly, random);
+    shot.rect = {random.integer(-50, 200), random.integer(-50, 200), 1, 1};
+    if (random.integer(0, 3) != 0) shot.rect.width = random.integer(1, 20);
+    if (random.integer(0, 3) != 0) shot.rect.height = random.integer(1, 20);
+    const auto put_zeros = [&](std::size_t first, glm::length_t coordinate, glm::length_t axis) {
+        const int place = axis == 0 ? shot.rect.x + random.integer(0, shot.rect.width - 1)
+                                    : shot.rect.y + random.integer(0, shot.rect.height - 1);
+        const float at = random.integer(0, 3) != 0 ? 0.5f : random.uniform_float(0.0, 1.0);
+        for (std::size_t j = first; j < first + 2; ++j) {
+            texgen::WindowVertex& vertex = *vertices(shot.triangle)[j % 3];
+            vertex.window[axis] = static_cast<float>(place) + at;
+            vertex.strq[coordinate] = random.coin() ? 0.0f : -0.0f;
+        }
+    };
+    const auto first = static_cast<std::size_t>(random.integer(0, 2));
+    const int coordinate = random.integer(0, 2), axis = random.integer(0, 1);
+    put_zeros(first, coordinate, axis);
+    if (random.coin()) put_zeros(first + 1, (coordinate + 1) % 3, 1 - axis);
+    return shot;
+}
+
 inline bool changes_sign(const Shot& shot, const ExactTriangle& exact, std::size_t coordinate) {
     bool negative = false, positive = false;
     for (const std::int64_t x : {0, shot.rect.width - 1}) {

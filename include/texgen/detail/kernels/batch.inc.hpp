@@ -14,6 +14,8 @@
 #include "batch_shapes.inc.hpp"
 #include "batch_survey.inc.hpp"
 
+#include "batch_doubt.inc.hpp"
+
 #include "batch_tiles.inc.hpp"
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {

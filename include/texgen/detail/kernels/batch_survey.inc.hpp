@@ -197,4 +197,27 @@ TEXGEN_APART void prepare(const BatchJob& job, const BatchPlanes* of_tiles, cons
     tiles.add(BatchTiles::has_middles, have_middles & greater(Doubles{} + 0x1p14, ulps), first);
 }
 
+using TileScratch = ScratchOutputs<largest_in_scratch + wide_lanes>;
+
+// What the kernels in double know of a tile: its functions as base, along a row and down.
+template <std::size_t Numerators>
+struct TileFunctions {
+    double base[Numerators + 1], along[Numerators + 1], down[Numerators + 1];  // q last
+
+    TEXGEN_INLINE TileFunctions(const BatchPlanes& planes, const BatchTiles& tiles, std::size_t i, bool is_turned,
+                                std::size_t known = Numerators) noexcept {
+        TEXGEN_UNROLL
+        for (std::size_t k = 0; k <= Numerators; ++k) {
+            if (k >= known && k < Numerators) continue;
+            const double* const plane = &planes.value[k < Numerators ? BatchPlanes::of_numerator[k] : BatchPlanes::q];
+            base[k] = k < Numerators ? tiles.base[k][i] : tiles.q[i];
+            along[k] = plane[1];  // a row alone is a column, whose x is 0
+            down[k] = plane[is_turned ? 1 : 2];
+        }
+    }
+    TEXGEN_INLINE Doubles at(std::size_t k, const Doubles& x, const Doubles& y) const noexcept {
+        return (x * along[k] + base[k]) + y * down[k];
+    }
+};
+
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA

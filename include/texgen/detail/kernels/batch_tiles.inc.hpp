@@ -14,28 +14,6 @@ struct TileOutputs {
     }
 };
 
-using TileScratch = ScratchOutputs<largest_in_scratch + wide_lanes>;
-
-// What the kernels in double know of a tile: its functions as base, along a row and down.
-template <std::size_t Numerators>
-struct TileFunctions {
-    double base[Numerators + 1], along[Numerators + 1], down[Numerators + 1];  // q last
-
-    TEXGEN_INLINE TileFunctions(const BatchPlanes& planes, const BatchTiles& tiles, std::size_t i,
-                                bool is_turned) noexcept {
-        TEXGEN_UNROLL
-        for (std::size_t k = 0; k <= Numerators; ++k) {
-            const double* const plane = &planes.value[k < Numerators ? BatchPlanes::of_numerator[k] : BatchPlanes::q];
-            base[k] = k < Numerators ? tiles.base[k][i] : tiles.q[i];
-            along[k] = plane[1];  // a row alone is a column, whose x is 0
-            down[k] = plane[is_turned ? 1 : 2];
-        }
-    }
-    TEXGEN_INLINE Doubles at(std::size_t k, const Doubles& x, const Doubles& y) const noexcept {
-        return (x * along[k] + base[k]) + y * down[k];
-    }
-};
-
 // Quotients in double, rounded with a certificate. False where a value is in doubt. Apart, so that its loop has all
 // registers.
 template <std::size_t Numerators>
@@ -243,59 +221,6 @@ TEXGEN_APART inline void fill_all(const FragmentOutputs& out, std::size_t begin,
     }
 }
 
-// Tiles of the block from `first` on that are in doubt, a bit each, again; its values begin at `of_block`. From the
-// first that stays so on they have functions about corners, too. Returns those that this leaves.
-TEXGEN_APART inline std::uint64_t decide_tiles(const TilesJob& job, const FragmentOutputs& out, std::size_t first,
-                                               const int (*block)[4], std::uint64_t doubtful, std::size_t of_block,
-                                               bool about_corners = false) noexcept {
-    BatchFunctions functions;
-    TileScratch scratch;
-    const auto known = static_cast<std::size_t>(std::countr_zero(doubtful));  // finite, where others may be no numbers
-    for (std::size_t i = 0; i < batch_block; i += at_once) {
-        constexpr auto all_lanes = (std::uint64_t{1} << lanes) - 1;
-        if ((doubtful >> i & all_lanes) == 0) continue;
-        const float* of_lane[lanes];
-        TEXGEN_UNROLL
-        for (std::size_t j = 0; j < at_once; ++j)
-            of_lane[j] = vertices_of(job, first + ((doubtful >> (i + j) & 1u) != 0 ? i + j : known));
-        Words tile[4];
-        load_fours(block[i], tile);
-        functions.take(of_lane, job.needs_r(), to_doubles(tile[0]) + 0.5, to_doubles(tile[1]) + 0.5,
-                       to_doubles(tile[2]), to_doubles(tile[3]), i, about_corners);
-    }
-    std::uint64_t undecided = 0;
-    std::size_t done = of_block;
-    for (std::size_t i = 0; i < batch_block; ++i) {
-        if (block[i][2] <= 0 || block[i][3] <= 0) continue;
-        TileShape shape;
-        shape.take(block[i][2], block[i][3]);
-        const std::size_t begin = done;
-        done += shape.count;
-        if ((doubtful >> i & 1u) == 0) continue;
-        // What follows is there already.
-        const bool in_scratch = shape.count % at_once != 0;
-        const FragmentOutputs here = in_scratch ? scratch.in_place_of(out) : out;
-        FragmentWalk<Doubles, double> walk(shape.width, shape.per_width, 0.0);
-        Words left{};
-        for (std::size_t n = 0; n < shape.count && !any(left); n += at_once, walk.advance()) {
-            const Doubles row = minimum(walk.y, Doubles{} + shape.last_row);
-            CloseFragments<3> fragments;
-            const BatchFunctionsAt<BatchFunction> at{functions.of[i], shape.is_turned ? row : walk.x,
-                                                     shape.is_turned ? walk.x : row};
-            const CloseDivisor q(at.values(3));
-            fragments.quotient[2] = Floats{};
-            fragments.divide(at, q, job.needs_r() ? 3 : 2, job.tolerance, true);
-            here.put(in_scratch ? n : begin + n, fragments.quotient, q.front);
-            left = narrow(fragments.doubtful);
-        }
-        if (in_scratch) scratch.copy_to(out, begin, shape.count);
-        if (!any(left)) continue;
-        if (!about_corners) return decide_tiles(job, out, first, block, doubtful >> i << i, of_block, true);
-        undecided |= std::uint64_t{1} << i;
-    }
-    return undecided;
-}
-
 template <std::size_t Numerators>
 TEXGEN_INLINE Undecided divide_all_tiles(const TilesJob& job, std::size_t first, std::size_t done) noexcept {
     const FragmentOutputs out(job);
@@ -347,7 +272,7 @@ TEXGEN_INLINE Undecided divide_all_tiles(const TilesJob& job, std::size_t first,
                 fill_tile<Numerators>(job.planes[first + i], tiles, i, shape, out, begin, is_at_end, scratch);
             if (!is_certain) (is_large ? doubtful : in_doubt) |= std::uint64_t{1} << i;
         }
-        if (in_doubt != 0) doubtful |= decide_tiles(job, out, first, block, in_doubt, begin_of_block);
+        if (in_doubt != 0) doubtful |= decide_tiles(job, out, first, block, tiles, in_doubt, begin_of_block);
         if (doubtful != 0) return {first, doubtful};
     }
     return {job.tile_count, 0};

@@ -9,6 +9,7 @@
 #include <glm/vec4.hpp>
 
 #include "../arithmetic/rounding.hpp"
+#include "../arithmetic/widen.hpp"
 #include "../language.hpp"
 #include "jobs.hpp"
 
@@ -85,6 +86,25 @@ struct BatchFootprintsJob : VisibilityBuffer, FootprintArrays {
     std::size_t count;
     double texels[2];  // per unit of s and t
     float per_texel[2];
+};
+
+// Where s, t and r of a triangle are 0 along an edge that stands in a column or a row of a tile: which one; else -1.
+struct ZerosOfTile {
+    int column[3] = {-1, -1, -1}, row[3] = {-1, -1, -1};
+
+    TEXGEN_APART ZerosOfTile(const float* triangle, const int (&tile)[4]) noexcept {
+        for (std::size_t i = 0; i < 3; ++i) {
+            const float* const from = triangle + i * BatchVertex::size;
+            const float* const to = triangle + (i + 1) % 3 * BatchVertex::size;
+            for (std::size_t axis = 0; axis < 2; ++axis) {
+                if (from[axis] != to[axis]) continue;
+                const int index = index_at(detail::widened(from[axis]), tile[axis], tile[2 + axis]);
+                for (std::size_t k = 0; k < 3; ++k)
+                    if (index >= 0 && from[BatchVertex::strq + k] == 0.0f && to[BatchVertex::strq + k] == 0.0f)
+                        (axis == 0 ? column : row)[k] = index;
+            }
+        }
+    }
 };
 
 struct BatchKernels {

@@ -41,6 +41,13 @@ using Plane = PlaneOf<double>;
 
 inline constexpr int longest_chunk = 256;
 
+// The column or row of a rectangle, of `size` from `first` on, whose fragments have this coordinate in the window; -1 if
+// none has.
+inline int index_at(double coordinate, std::int64_t first, int size) noexcept {
+    const double index = (coordinate - 0.5) - static_cast<double>(first);  // integers
+    return index >= 0.0 && index < size && static_cast<int>(index) == index ? static_cast<int>(index) : -1;
+}
+
 // numerator[k] / q over a rectangle; out[k], and lit (or null) from the closed region. One numerator alone is in both
 // places. Rows of the outputs are pitch apart; those of an output that only the mask needs are one and the same.
 struct TileJob {

@@ -200,10 +200,9 @@ TEXGEN_RARE inline Stretch zeros_of(const TrianglePlanes& planes, glm::length_t 
         const std::size_t j = (i + 1) % 3;
         if (planes.value(i, coordinate) != 0.0 || planes.value(j, coordinate) != 0.0) continue;
         for (glm::length_t axis = 0; axis < 2; ++axis) {
-            const double place = (planes.corner(i)[axis] - 0.5) - static_cast<double>(first[axis]);  // integers
-            if (planes.corner(j)[axis] != planes.corner(i)[axis] || !(place >= 0.0 && place < size[axis])) continue;
-            const int index = static_cast<int>(place);
-            if (index == place) return {axis == 0, index, index + 1};
+            const double place = planes.corner(i)[axis];
+            const int index = planes.corner(j)[axis] == place ? index_at(place, first[axis], size[axis]) : -1;
+            if (index >= 0) return {axis == 0, index, index + 1};
         }
     }
     return {};
