@@ -2,15 +2,16 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// The functions of a tile once more, with what is known of their zeros, so that of a tile in doubt few vectors are.
-struct TileAgain {
+// The functions of a tile in double, and where they are 0: there quotients have no error. Of a tile that is in doubt for
+// its zeros alone none is left.
+struct TileWithZeros {
     const TileFunctions<3> f;
     double error[3];
     Doubles zero_x[3], zero_y[3];
     std::size_t count;
 
-    TEXGEN_INLINE TileAgain(const TilesJob& job, const BatchTiles& tiles, std::size_t triangle, std::size_t i,
-                            const int (&tile)[4], bool is_turned) noexcept
+    TEXGEN_INLINE TileWithZeros(const TilesJob& job, const BatchTiles& tiles, std::size_t triangle, std::size_t i,
+                                const int (&tile)[4], bool is_turned) noexcept
         : f(job.planes[triangle], tiles, i, is_turned, job.needs_r() ? 3 : 2), count(job.needs_r() ? 3 : 2) {
         const ZerosOfTile zeros(vertices_of(job, triangle), tile);
         for (std::size_t k = 0; k < count; ++k) {
@@ -70,7 +71,7 @@ TEXGEN_APART inline std::uint64_t decide_tiles(const TilesJob& job, const Fragme
         // What follows is there already.
         const bool in_scratch = shape.count % at_once != 0;
         const FragmentOutputs here = in_scratch ? scratch.in_place_of(out) : out;
-        const TileAgain again(job, tiles, first + i, i, block[i], shape.is_turned);
+        const TileWithZeros in_double(job, tiles, first + i, i, block[i], shape.is_turned);
         FragmentWalk<Doubles, double> walk(shape.width, shape.per_width, 0.0);
         Words left{};
         bool is_certain = tiles.has(BatchTiles::is_exact, i);  // doubt that is left has company
@@ -79,7 +80,7 @@ TEXGEN_APART inline std::uint64_t decide_tiles(const TilesJob& job, const Fragme
             CloseFragments<3> fragments;
             fragments.quotient[2] = Floats{};
             LongWords front = ~LongWords{};
-            is_certain = is_certain && again.divide(walk.x, row, fragments.quotient);
+            is_certain = is_certain && in_double.divide(walk.x, row, fragments.quotient);
             if (!is_certain) {
                 if ((taken >> i & 1u) == 0) take(i);
                 const BatchFunctionsAt<BatchFunction> at{functions.of[i], shape.is_turned ? row : walk.x,
