@@ -63,8 +63,10 @@ inline namespace TEXGEN_COMPILER {
 // Keeps what of a scene is lit by which projector, from frame to frame.
 // Guarantee: after update() no pair is missing of which a point of the object's closed box is lit by T_o =
 // object_linear() of the engine's matrices, and pairs() are those that coverage() of T_o and the box does not call
-// outside, with its answer, whatever the numbers are. They are in the order of the objects, and for each in that of the
-// projectors, whatever happened before: two scenes that see the same arrays have the same pairs and the same matrices.
+// outside, with its answer, whatever the numbers are. T_o is that of texgen(): where a compiler contracts products and
+// sums (g++ with FMA does) it may round one of a call elsewhere otherwise. Pairs are in the order of the objects, and
+// for each in that of the projectors, whatever happened before: two scenes that see the same arrays have the same pairs
+// and the same matrices.
 // Nothing of the engine's is kept but copies. Memory is allocated only in an update, and only when the number of
 // objects, of projectors or of lit pairs exceeds all former ones; noexcept.
 // Cost: an update in which nothing changed does nothing. Otherwise only pairs of which a part changed are tested,
