@@ -432,6 +432,40 @@ TEST_CASE("project_error_bound is never below the error, and is tight in every t
     }
 }
 
+TEST_CASE(
+    "where all are in front but q is too large or too small for floats, project_error_bound is of what is done then") {
+    Random random(77);
+    double largest_share = 0.0;
+    for (int i = 0; i < 2000; ++i) {
+        // q is scale (1 + x): every fourth point is far away, and one is next to q = 0.
+        const double scale =
+            std::ldexp(random.uniform(0.5, 1.0), i % 2 == 0 ? random.integer(98, 113) : random.integer(-60, -53));
+        glm::dmat4 matrix(0.0);
+        matrix[0] = {0.7 * scale, -0.2 * scale, 0.0, scale};
+        matrix[3] = {0.3 * scale, 0.6 * scale, 0.0, scale};
+        const float far = support::to_float(random.power_of_ten(0.0, 4.0));
+        std::vector<glm::vec3> points(64);
+        for (std::size_t j = 0; j < points.size(); ++j)
+            points[j].x = j == 6 ? -0.9f : random.uniform_float(0.0, 1.0) + (j % 4 == 1 ? far : 0.0f);
+        const ObjectTexgen texgen(matrix);
+        const auto positions = texgen::object_space(points);
+        const Tolerance tolerance{random.power_of_ten(-6.0, -1.0)};
+        Outputs out(points.size(), 3u);
+        project(texgen, positions, texgen::whole_texture(), out.spans(), tolerance);
+        const glm::dvec2 bound = project_error_bound(texgen, positions, tolerance);
+        for (std::size_t j = 0; j < points.size(); ++j) {
+            const Homogeneous at = support::exactly_at(matrix, points[j]);
+            for (std::size_t k = 0; k < 2; ++k) {
+                const double share = support::distance(out[k][j], at.over_q(k)) / bound[static_cast<glm::length_t>(k)];
+                largest_share = std::max(largest_share, share);
+                REQUIRE_MESSAGE(share <= 1.0 + 1e-12, hex(points[j]), " by ", hex(matrix), ", tolerance ",
+                                hex(tolerance.value));
+            }
+        }
+    }
+    CHECK(largest_share > 0.1);
+}
+
 TEST_CASE("points without an error have no bound above 0, and a NaN or an infinity leaves none below infinity") {
     const ObjectTexgen texgen(glm::dmat4(1.0));
     CHECK(project_error_bound(texgen, texgen::object_space(std::span<const glm::vec3>())) == glm::dvec2(0.0));
