@@ -199,8 +199,8 @@ MUTANTS = [
          ("divide gives zero behind", "if (!(strq.w > 0.0f)) return std::nullopt;",
           "if (!(strq.w != 0.0f)) return std::nullopt;", "texcoord_test")),
     *_of("detail/points/texcoord.inc.hpp",
-         ("points of any q in front are divided about the origin", "least_of_q = 0x1p100", "least_of_q = detail::infinity", "error_bound_test"),
-         ("points of a q next to 0 in front are divided about the origin", "least_of_q > 0x1p-58 && ", "", "error_bound_test"),
+         ("points of any q in front are divided about the origin", "least_of_q = detail::largest_q_in_front", "least_of_q = detail::infinity", "error_bound_test"),
+         ("points of a q next to 0 in front are divided about the origin", "least_of_q > 2.0 * detail::least_q_in_front && ", "", "error_bound_test"),
          ("the tail repeats its first point", "points + 3 * (size - 1)", "points", "texcoord_test",
           {"survives": "The padding is never written back; that it is a point of the part, and no poison, only keeps "
                        "certificates from failing."}),

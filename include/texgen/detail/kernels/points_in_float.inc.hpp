@@ -45,7 +45,7 @@ struct FloatErrors {
         const WideFloats underflow = (extent.x + extent.y + extent.z + 1.0f) * 0x1.01p-124f;
         for (std::size_t k = 0; k < Count; ++k) {
             const WideFloats terms = extent.terms_of(form[k]);
-            are_in_range &= less(terms, WideFloats{} + 0x1p126f);
+            are_in_range &= less(terms, WideFloats{} + static_cast<float>(largest_terms_in_float));
             of_form[k] = terms * form_error + underflow;
         }
     }
@@ -71,7 +71,7 @@ TEXGEN_INLINE bool fill_in_front(const PointJob& job, const PointForm (&of)[1 + 
     WideWords largest[Numerators] = {};
     // The bits of positive floats have their order; those of a negative one, and of -0, are below them all. A q that
     // overflowed in float would go unnoticed, not being the least; its terms tell.
-    WideWords least_q = signed_bits(WideFloats{} + 0x1p100f);
+    WideWords least_q = signed_bits(WideFloats{} + static_cast<float>(largest_q_in_front));
     WideFloats x, y, z, value[2];
     for (std::size_t i = begin; i < end; i += wide_at_once) {
         load_points(job, i, x, y, z);
@@ -84,7 +84,7 @@ TEXGEN_INLINE bool fill_in_front(const PointJob& job, const PointForm (&of)[1 + 
     }
     const FloatErrors errors(all_float, of, extent, job.tolerance);
     const WideFloats q = errors.least(from_bits(least_q));
-    WideWords are_within = errors.are_in_range & less(WideFloats{} + 0x1p-59f, q);
+    WideWords are_within = errors.are_in_range & less(WideFloats{} + static_cast<float>(least_q_in_front), q);
     for (std::size_t k = 0; k < Numerators; ++k)
         are_within &= errors.are_within(1 + k, from_bits(largest[k]), 1.0f / q);
     return !any(~are_within);

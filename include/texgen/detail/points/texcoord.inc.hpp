@@ -236,7 +236,7 @@ glm::dvec2 project_error_bound(const Transform<Texture, Space>& texture_from_spa
         return true;
     };
     glm::dvec3 size(0.0);
-    double least_of_q = 0x1p100, largest_quotient[2] = {};  // beyond it the certificate takes no q
+    double least_of_q = detail::largest_q_in_front, largest_quotient[2] = {};
     const bool are_bounded = visit_all([&](const glm::dvec3& v, double least_q, const double(&quotient)[2]) {
         for (glm::length_t j = 0; j < 3; ++j) size[j] = detail::larger(size[j], v[j]);
         least_of_q = detail::smaller(least_of_q, least_q);
@@ -247,11 +247,11 @@ glm::dvec2 project_error_bound(const Transform<Texture, Space>& texture_from_spa
     // Where that certifies all blocks with room, errors are those of a point's own terms. Else some may be divided about
     // another point, whose differences are at most twice, and terms as much as, those of the farthest.
     const double q_terms = detail::terms_at(q_form, size);
-    bool are_in_front =
-        least_of_q > 0x1p-58 && q_terms < 0x1p125 && detail::all_float.form_error * q_terms < 0.04 * least_of_q;
+    bool are_in_front = least_of_q > 2.0 * detail::least_q_in_front && q_terms < 0.5 * detail::largest_terms_in_float &&
+                        detail::all_float.form_error * q_terms < 0.04 * least_of_q;
     for (std::size_t k = 0; k < 2; ++k)
         are_in_front =
-            are_in_front && detail::terms_at(form[k], size) < 0x1p125 &&
+            are_in_front && detail::terms_at(form[k], size) < 0.5 * detail::largest_terms_in_float &&
             1.1 * bound_of_float(detail::all_float, k, size, 0.9 * least_of_q, largest_quotient[k] + accepted) <
                 accepted;
     constexpr double least_difference = 0x1p-104;  // of floats, where a subnormal one is 0, over form_error
