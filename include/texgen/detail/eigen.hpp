@@ -20,19 +20,29 @@ namespace TEXGEN_DETAIL {
 template <class T>
 concept FloatOrDouble = std::same_as<T, float> || std::same_as<T, double>;
 
+// Concepts ask which of these take an object. Not closures, as nvcc's front end finds that none of them takes any.
+template <class Derived>
+void take_dense(const Eigen::DenseBase<Derived>&);
+template <class Derived>
+void take_owner(const Eigen::PlainObjectBase<Derived>&);
+template <FloatOrDouble Scalar, int Mode, int Options>
+void take_transform(const Eigen::Transform<Scalar, 3, Mode, Options>&);
+template <class To, class From>
+void take_transform_of_spaces(const Transform<To, From>&);
+
 template <class T>
 concept EigenDense = requires(const T& t) {
-    []<class Derived>(const Eigen::DenseBase<Derived>&) {}(t);
+    take_dense(t);
 };
 
 template <class T>
 concept EigenTransform = requires(const T& t) {
-    []<FloatOrDouble Scalar, int Mode, int Options>(const Eigen::Transform<Scalar, 3, Mode, Options>&) {}(t);
+    take_transform(t);
 };
 
 template <class T>
 concept TransformOfSpaces = requires(const T& t) {
-    []<class To, class From>(const Transform<To, From>&) {}(t);
+    take_transform_of_spaces(t);
 };
 
 template <class T>
@@ -42,7 +52,7 @@ concept EigenMatrix4 =
 // A class derived from a matrix owns them as well.
 template <class T>
 inline constexpr bool owns_elements = requires(const std::remove_cvref_t<T>& t) {
-    []<class Derived>(const Eigen::PlainObjectBase<Derived>&) {}(t);
+    take_owner(t);
 };
 
 // What is seen as MatrixBase or ArrayBase.

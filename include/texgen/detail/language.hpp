@@ -30,12 +30,17 @@ static_assert(glm::defaultp == glm::packed_highp, "GLM was configured otherwise 
 
 #define TEXGEN_JOINED(name, version) name##version
 #define TEXGEN_NAMED(name, version) TEXGEN_JOINED(name, version)
+#ifdef __NVCC__  // writes the program anew for the compiler of the host, whose name it bears
+#define TEXGEN_HOST(name) nvcc_##name
+#else
+#define TEXGEN_HOST(name) name
+#endif
 #if defined(__clang__)
-#define TEXGEN_COMPILER TEXGEN_NAMED(clang, __clang_major__)
+#define TEXGEN_COMPILER TEXGEN_NAMED(TEXGEN_HOST(clang), __clang_major__)
 #elif defined(__GNUC__)
-#define TEXGEN_COMPILER TEXGEN_NAMED(gcc, __GNUC__)
+#define TEXGEN_COMPILER TEXGEN_NAMED(TEXGEN_HOST(gcc), __GNUC__)
 #elif defined(_MSC_VER)
-#define TEXGEN_COMPILER TEXGEN_NAMED(msvc, _MSC_VER)
+#define TEXGEN_COMPILER TEXGEN_NAMED(TEXGEN_HOST(msvc), _MSC_VER)
 #else
 #define TEXGEN_COMPILER other_compiler
 #endif

@@ -30,7 +30,10 @@
 
 // TEXGEN_BUILD names the compiler and what the flags decide. Every function that reaches the kernels stands in an
 // inline namespace of that name, so that translation units of different ones link, each with its own kernels.
-#if !defined(TEXGEN_SCALAR) && (defined(__GNUC__) || defined(__clang__)) && defined(__has_builtin)
+//
+// The front end of nvcc, which others have, too, says that it is its host's compiler, but stops at vectors in templates.
+#if !defined(TEXGEN_SCALAR) && (defined(__GNUC__) || defined(__clang__)) && !defined(__NVCC__) && !defined(__EDG__) && \
+    defined(__has_builtin)
 #if __has_builtin(__builtin_shufflevector)
 #define TEXGEN_HAS_VECTORS
 #endif

@@ -42,8 +42,12 @@ struct Lanes {
     friend Lanes operator-(T a, const Lanes& b) noexcept {
         return of([&](int i) { return a - b.lane[i]; });
     }
-    friend Lanes operator/(const auto& a, const Lanes& b) noexcept {
-        return of([&](int i) { return at(a, i) / b.lane[i]; });
+    // Not one for both: behind a friend with `auto` the front end of nvcc forgets the other members.
+    friend Lanes operator/(T a, const Lanes& b) noexcept {
+        return of([&](int i) { return a / b.lane[i]; });
+    }
+    friend Lanes operator/(const Lanes& a, const Lanes& b) noexcept {
+        return of([&](int i) { return a.lane[i] / b.lane[i]; });
     }
     friend Lanes operator|(const Lanes& a, const Lanes& b) noexcept {
         return of([&](int i) { return a.lane[i] | b.lane[i]; });
