@@ -95,7 +95,7 @@ private:
 // r - r_min q, r_max q - r. A point of the space is lit where all are >= 0 (and q > 0): for gl_ClipDistance, or in eye
 // space for glClipPlane. An infinite limit of depth is none: in its place q stands again.
 // Guarantee: each coefficient is the exact one of the matrix in double, rounded to double and then to float: within
-// (1/2 + 2^-29) float ulp, and of its sign. No allocation, noexcept.
+// (1/2 + 2^-29) float ulp, and of its sign, or 0. No allocation, noexcept.
 // Shape: coefficients (x, y, z, w) of points (x, y, z, 1) of the space that the matrix takes to the texture.
 // Bad input: NaN and infinity of the matrix or the region stay in the coefficients that they reach.
 // Source: Segal, Korobkin, van Widenfelt, Foran, Haeberli, Fast Shadows and Lighting Effects Using Texture Mapping

@@ -44,7 +44,7 @@ inline namespace TEXGEN_COMPILER {
 // Tells the work that the values of a segment need, for all alpha in [0, 1].
 // Guarantee: never nothing where a value is lit (in the region, and its depth where it has one); else affine where q is
 // the same at both ends, and never less than divide_and_test where it is not and a value is dark or behind. noexcept.
-// Bad input: an end whose s, t or q is not finite needs divide_and_test; an r that is not is in no depth.
+// Bad input: an end whose s, t or q is not finite needs divide_and_test; a NaN for r is in no depth.
 inline Work work(const Segment& segment, TextureRegion region, Tolerance tolerance = exact) noexcept;
 
 // Bounds the error of s (x) and t (y) along a segment.

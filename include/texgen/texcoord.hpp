@@ -174,7 +174,8 @@ inline namespace TEXGEN_BUILD {
 inline constexpr double generate_error = 0x1p-50;
 
 // Writes T v of every position, homogeneous: q <= 0 is kept, and is the caller's to test.
-// Guarantee: each coordinate within 1/2 ulp + generate_error of its exact value; no allocation, noexcept.
+// Guarantee: each coordinate within 1/2 ulp + generate_error of its exact value, as long as no product of a matrix
+// element and a coordinate reaches 2^1000; no allocation, noexcept.
 // Shapes: as many outputs as positions (asserted); outputs must not overlap the positions. Units of T's region.
 // Bad input: NaN and infinity spoil their own point only.
 // Source: Everitt, Projective Texture Mapping, (3) and (4).
@@ -188,13 +189,13 @@ void generate(const Transform<Texture, Space>& texture_from_space, Positions<Spa
               HomogeneousTexcoords out) noexcept;
 
 // Writes s/q, t/q and r/q of every position in front of the projector, and whether it is lit.
-// Guarantee: in front (q > 0, decided exactly) each is within max(tolerance, 1/2 ulp) of the exact value of the given
-// numbers (r: the tolerance relative to max(1, |r|)). With `exact` each is the nearest float, whatever the layout, the
-// count, the place or the build, as long as no product of a matrix element and a coordinate leaves 2^-900 .. 2^1000.
-// lit = 1 inside the closed region, decided from the s and t, and with a depth from the r, that are written, or with
-// `exact` would be; with a tolerance one that is not asked for is decided from some value inside it. Behind,
-// s = t = r = lit = 0. A depth costs at most what r costs; where s and t leave many neighbours dark, r is not computed
-// for them. No allocation, noexcept.
+// Guarantee, as long as no product of a matrix element and a coordinate, but 0, leaves 2^-900 .. 2^1000: in front
+// (q > 0, decided exactly) each is within max(tolerance, 1/2 ulp) of the exact value of the given numbers (r: the
+// tolerance relative to max(1, |r|)). With `exact` each is the nearest float, whatever the layout, the count, the place
+// or the build. lit = 1 inside the closed region, decided from the s and t, and with a depth from the r, that are
+// written, or with `exact` would be; with a tolerance one that is not asked for is decided from some value inside it.
+// Behind, s = t = r = lit = 0. A depth costs at most what r costs; where s and t leave many neighbours dark, r is not
+// computed for them. No allocation, noexcept.
 // Shapes: as many values of an output as positions, or none (asserted; else that output is not written); outputs must
 // not overlap the positions.
 // Bad input: NaN and infinity spoil their own point only; a point whose q is NaN is behind.
@@ -229,8 +230,9 @@ glm::dvec4 generate_error_bound(const Transform<Texture, Space>& texture_from_sp
 
 // Bounds the error of s (x) and t (y) that project() gives of these positions.
 // Guarantee: |computed - exact| is at most this for every position with q > 0, the rounding to float included; infinite
-// where no finite bound exists. No allocation, noexcept; it looks at every position.
-// Bad input: a NaN or an infinity of the matrix or of a position makes the bounds infinite.
+// where none is known, as where a product leaves what project() says. No allocation, noexcept; it looks at every
+// position.
+// Bad input: a NaN or an infinity of a position, or of the rows of s, t and q, makes the bounds infinite that it reaches.
 template <class Space>
 glm::dvec2 project_error_bound(const Transform<Texture, Space>& texture_from_space, Positions<Space> positions,
                                Tolerance tolerance = exact) noexcept;

@@ -162,6 +162,16 @@ const std::array point_families{
                     return m;
                 },
                 1.0},
+    PointFamily{"quotients that are subnormal floats",
+                [](Random& random) {
+                    glm::dmat4 m(0.0);
+                    for (int column = 0; column < 4; ++column)
+                        for (int row = 0; row < 4; ++row)
+                            m[column][row] = random.uniform(-1.0, 1.0) * (row == 3 ? 0x1p30 : 0x1p-98);
+                    m[3][3] = (random.integer(0, 9) == 0 ? -0x1p30 : 0x1p30) * random.uniform(4.0, 8.0);
+                    return m;
+                },
+                1.0},
     PointFamily{"every element from 1e-9 to 1e9",
                 [](Random& random) {
                     glm::dmat4 m(0.0);
@@ -495,6 +505,27 @@ TEST_CASE("points without an error have no bound above 0, and a NaN or an infini
                 if (row != 1) CHECK(is_no_bound(of_project.x));
                 if (row != 0) CHECK(is_no_bound(of_project.y));
             }
+        }
+    }
+}
+
+TEST_CASE("a product below 2^-900 leaves project_error_bound infinite, and one that is 0 does not") {
+    for (const int row : {0, 1, 3}) {
+        for (int column = 0; column < 3; ++column) {
+            glm::dmat4 matrix(0.0);
+            matrix[3] = {0.25, 0.5, 0.0, 1.0};
+            matrix[column][row] = 0x1.8p-840;
+            glm::vec3 point(0.5f);
+            const auto bound = [&] {
+                return project_error_bound(ObjectTexgen(matrix), texgen::object_space(std::span(&point, 1)));
+            };
+            CHECK(bound().x < 0x1p-25);
+            CHECK(bound().y < 0x1p-24);
+            point[column] = 0x1.8p-70f;
+            CHECK((bound().x == infinity_double) == (row != 1));
+            CHECK((bound().y == infinity_double) == (row != 0));
+            point[column] = 0.0f;
+            CHECK(bound().x < 0x1p-25);
         }
     }
 }

@@ -329,8 +329,8 @@ TEST_CASE("points: the sign of q is exact where its terms cancel, and errors are
             glm::dmat4 matrix(0.0);
             for (int column = 0; column < 4; ++column)
                 for (int row = 0; row < 4; ++row) matrix[column][row] = random.uniform(-1.0, 1.0);
-            const int kind = random.integer(0, 5);
-            if (kind == 0) matrix[3][3] = 4.0;
+            const int kind = random.integer(0, 6);
+            if (kind == 0 || kind == 6) matrix[3][3] = 4.0;
             if (kind == 1)  // q cancels, to its last bits or to 0: next to points with x = y and z = 0
                 matrix[1][3] = -matrix[0][3] * (1.0 + random.integer(-1, 1) * 0x1p-52), matrix[3][3] = 0.0;
             const double far_below = random.power_of_ten(-30.0, -14.0);
@@ -343,6 +343,8 @@ TEST_CASE("points: the sign of q is exact where its terms cancel, and errors are
                 for (int column = 0; column < 4; ++column) matrix[column][0] *= 0x1p-128;
             if (kind == 2)
                 for (int column = 0; column < 4; ++column) matrix[column] *= random.power_of_ten(-12.0, 12.0);
+            if (kind == 6)  // 1 / q is next to the least normal number
+                matrix *= std::ldexp(random.uniform(1.0, 2.0), random.integer(122, 124));
             if (kind == 5)  // the least normal numbers, whose differences are subnormal, on either side
                 for (int column = 0; column < 3; ++column) matrix[column] *= 0x1p126;
             std::vector<glm::vec3> points(static_cast<std::size_t>(random.integer(1, 40)));
@@ -355,7 +357,8 @@ TEST_CASE("points: the sign of q is exact where its terms cancel, and errors are
                 if (random.integer(0, 19) == 0) point[random.integer(0, 2)] = 0x1p-140f;
             }
             const ObjectTexgen texgen(matrix);
-            const auto positions = texgen::object_space(points);
+            auto positions = texgen::object_space(points);
+            if (random.coin()) positions = positions.within({glm::vec3(-1.0f), glm::vec3(1.0f)});
             const Tolerance tolerance = any_tolerance(random);
             const TextureRegion region = any_region(random);
             Outputs out(points.size());

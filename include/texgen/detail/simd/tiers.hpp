@@ -17,8 +17,11 @@
 
 namespace TEXGEN_DETAIL {
 
+// Sums of a form's terms below this are floats in range, and their reciprocals no subnormal ones.
+inline constexpr double largest_terms_in_float = 0x1p125;
+
 // The error of a division in float: the forms of s and q err by form_error of their terms, and what is rounded after
-// them adds `roundings` of the quotient.
+// them adds `roundings` of the quotient, and half of the least subnormal number.
 struct FloatDivision {
     double form_error, roundings;
 
@@ -30,8 +33,8 @@ struct FloatDivision {
         const double s_error = form_error * s_terms + underflow;
         const double q_error = form_error * q_terms + underflow;
         const double q = least_q * (1.0 - roundings) - q_error;
-        if (!(q > 0x1p-60 && s_terms < 0x1p127 && q_terms < 0x1p127)) return infinity;
-        return 1.001 * (s_error + largest * q_error) / q + roundings * largest;
+        if (!(q > 0x1p-60 && s_terms < largest_terms_in_float && q_terms < largest_terms_in_float)) return infinity;
+        return 1.001 * (s_error + largest * q_error) / q + roundings * largest + 0x1p-150;
     }
 };
 
@@ -39,9 +42,9 @@ struct FloatDivision {
 // rounded; the reciprocal and the product, 2 u.
 inline constexpr FloatDivision all_float{5.01 * unit_roundoff_float, 2.01 * unit_roundoff_float};
 inline constexpr FloatDivision about_point{6.01 * unit_roundoff_float, 2.01 * unit_roundoff_float};
-// Points in front are certified about the origin where q is between these, or is taken for the larger, and the terms of
-// all forms are below that; others are divided about a point.
-inline constexpr double least_q_in_front = 0x1p-59, largest_q_in_front = 0x1p100, largest_terms_in_float = 0x1p126;
+// Points in front are certified about the origin where q is between these, or is taken for the larger; others are divided
+// about a point.
+inline constexpr double least_q_in_front = 0x1p-59, largest_q_in_front = 0x1p100;
 // Numerator and q that are rounded to float, the reciprocal and the product.
 inline constexpr double float_divided_roundings = 4.01 * unit_roundoff_float;
 
