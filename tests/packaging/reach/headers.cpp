@@ -9,12 +9,14 @@
 #define min(a, b) (((a) < (b)) ? (a) : (b))
 #define max(a, b) (((a) > (b)) ? (a) : (b))
 #else
-// What it makes macros of, and what <sys/types.h> does on macOS and the BSDs.
+// What it makes macros of, and what <sys/types.h> does on macOS and the BSDs, X11 and macOS's <AssertMacros.h>.
 #define near
 #define far
 #define small char
 #define major(device) device
 #define minor(device) device
+#define TileShape 1
+#define require(assertion, label) ((void)0)
 #endif
 
 #include <texgen/batch.hpp>

@@ -8,8 +8,8 @@ inline void require_finite(std::initializer_list<double> numbers, Diagnosis& dia
 }
 
 // Of numbers that are finite: whether they keep the rule. The others are said by themselves.
-inline void require(bool keeps_rule, std::initializer_list<double> numbers, Defect defect,
-                    Diagnosis& diagnosis) noexcept {
+inline void refuse_unless(bool keeps_rule, std::initializer_list<double> numbers, Defect defect,
+                          Diagnosis& diagnosis) noexcept {
     bool all_finite = true;
     for (const double number : numbers) all_finite = all_finite && is_finite(number);
     if (all_finite && !keeps_rule) diagnosis.add(defect);
@@ -18,15 +18,15 @@ inline void require(bool keeps_rule, std::initializer_list<double> numbers, Defe
 // Of a lens whose far plane may be infinitely far.
 inline void examine_planes(double z_near, double z_far, Diagnosis& diagnosis) noexcept {
     require_finite({z_near, z_far == infinity ? 0.0 : z_far}, diagnosis);
-    require(z_near > 0.0, {z_near}, Defect::near_not_in_front, diagnosis);
-    require(z_near < z_far, {z_near, z_far}, Defect::far_not_beyond_near, diagnosis);
+    refuse_unless(z_near > 0.0, {z_near}, Defect::near_not_in_front, diagnosis);
+    refuse_unless(z_near < z_far, {z_near, z_far}, Defect::far_not_beyond_near, diagnosis);
 }
 
 void examine_rectangle(const auto& lens, Diagnosis& diagnosis) noexcept {
     require_finite({lens.left, lens.right, lens.bottom, lens.top, lens.z_near, lens.z_far}, diagnosis);
-    require(lens.left != lens.right, {lens.left, lens.right}, Defect::lens_without_extent, diagnosis);
-    require(lens.bottom != lens.top, {lens.bottom, lens.top}, Defect::lens_without_extent, diagnosis);
-    require(lens.z_near < lens.z_far, {lens.z_near, lens.z_far}, Defect::far_not_beyond_near, diagnosis);
+    refuse_unless(lens.left != lens.right, {lens.left, lens.right}, Defect::lens_without_extent, diagnosis);
+    refuse_unless(lens.bottom != lens.top, {lens.bottom, lens.top}, Defect::lens_without_extent, diagnosis);
+    refuse_unless(lens.z_near < lens.z_far, {lens.z_near, lens.z_far}, Defect::far_not_beyond_near, diagnosis);
 }
 
 inline void examine(const PerspectiveLens& lens, Diagnosis& diagnosis) noexcept {
@@ -34,22 +34,22 @@ inline void examine(const PerspectiveLens& lens, Diagnosis& diagnosis) noexcept 
     require_finite({angle, lens.aspect}, diagnosis);
     const bool has_turns = std::fabs(angle) > 2.0 * std::numbers::pi;
     // Not of its half, as the lens has it: an angle above 0 whose half is none is in range, and its lens beyond double.
-    require(angle > 0.0 && 0.5 * angle < 0.5 * std::numbers::pi, {angle},
-            has_turns ? Defect::angle_unit_mistaken : Defect::angle_out_of_range, diagnosis);
-    require(lens.aspect > 0.0, {lens.aspect}, Defect::aspect_not_positive, diagnosis);
+    refuse_unless(angle > 0.0 && 0.5 * angle < 0.5 * std::numbers::pi, {angle},
+                  has_turns ? Defect::angle_unit_mistaken : Defect::angle_out_of_range, diagnosis);
+    refuse_unless(lens.aspect > 0.0, {lens.aspect}, Defect::aspect_not_positive, diagnosis);
     examine_planes(lens.z_near, lens.z_far, diagnosis);
 }
 inline void examine(const FrustumLens& lens, Diagnosis& diagnosis) noexcept {
     examine_rectangle(lens, diagnosis);
-    require(lens.z_near > 0.0, {lens.z_near}, Defect::near_not_in_front, diagnosis);
+    refuse_unless(lens.z_near > 0.0, {lens.z_near}, Defect::near_not_in_front, diagnosis);
 }
 inline void examine(const OrthographicLens& lens, Diagnosis& diagnosis) noexcept { examine_rectangle(lens, diagnosis); }
 inline void examine(const PinholeLens& lens, Diagnosis& diagnosis) noexcept {
     require_finite({lens.fx, lens.fy, lens.cx, lens.cy, lens.width, lens.height, lens.skew}, diagnosis);
-    require(lens.fx > 0.0, {lens.fx}, Defect::focal_length_not_positive, diagnosis);
-    require(lens.fy > 0.0, {lens.fy}, Defect::focal_length_not_positive, diagnosis);
-    require(lens.width > 0.0, {lens.width}, Defect::picture_without_size, diagnosis);
-    require(lens.height > 0.0, {lens.height}, Defect::picture_without_size, diagnosis);
+    refuse_unless(lens.fx > 0.0, {lens.fx}, Defect::focal_length_not_positive, diagnosis);
+    refuse_unless(lens.fy > 0.0, {lens.fy}, Defect::focal_length_not_positive, diagnosis);
+    refuse_unless(lens.width > 0.0, {lens.width}, Defect::picture_without_size, diagnosis);
+    refuse_unless(lens.height > 0.0, {lens.height}, Defect::picture_without_size, diagnosis);
     examine_planes(lens.z_near, lens.z_far, diagnosis);
 }
 

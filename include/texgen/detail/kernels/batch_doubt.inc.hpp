@@ -63,7 +63,7 @@ TEXGEN_APART inline std::uint64_t decide_tiles(const TilesJob& job, const Fragme
     std::size_t done = of_block;
     for (std::size_t i = 0; i < batch_block; ++i) {
         if (block[i][2] <= 0 || block[i][3] <= 0) continue;
-        TileShape shape;
+        ShapeOfTile shape;
         shape.take(block[i][2], block[i][3]);
         const std::size_t begin = done;
         done += shape.count;

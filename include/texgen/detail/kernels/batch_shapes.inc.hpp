@@ -6,7 +6,7 @@ namespace TEXGEN_DETAIL::TEXGEN_ISA {
 TEXGEN_INLINE bool divides(int a, int power_of_two) noexcept { return (a & (a - 1)) == 0 && a <= power_of_two; }
 
 // The rectangle of a tile as its kernels walk it: a row alone is a column. Most tiles have the shape of the one before.
-struct TileShape {
+struct ShapeOfTile {
     int width = 0;
     bool is_turned = false;
     std::size_t count = 0;
@@ -20,7 +20,7 @@ struct TileShape {
     WideFloats wide_x{}, wide_y{};
     float wide_rows = 1.0f;
 
-    TEXGEN_INLINE TileShape() noexcept = default;
+    TEXGEN_INLINE ShapeOfTile() noexcept = default;
 
     TEXGEN_INLINE bool is_of(int tile_width, int tile_height) const noexcept {
         return given_[0] == tile_width && given_[1] == tile_height;

@@ -17,8 +17,8 @@ struct TileOutputs {
 // Quotients in double, rounded with a certificate. False where a value is in doubt. Apart, so that its loop has all
 // registers.
 template <std::size_t Numerators>
-TEXGEN_APART bool divide_tile(const BatchPlanes& planes, const BatchTiles& tiles, std::size_t i, const TileShape& shape,
-                              const TileOutputs<Numerators>& original) noexcept {
+TEXGEN_APART bool divide_tile(const BatchPlanes& planes, const BatchTiles& tiles, std::size_t i,
+                              const ShapeOfTile& shape, const TileOutputs<Numerators>& original) noexcept {
     const TileOutputs<Numerators> out = original;
     const TileFunctions<Numerators> f(planes, tiles, i, shape.is_turned);
     const Doubles last_row = Doubles{} + shape.last_row;
@@ -66,7 +66,7 @@ struct TileColumn {
 // The same where is_whole, of no quotient but normal ones. The last vector of a row may begin in the one before.
 template <std::size_t Numerators, bool HasWholeRows>
 TEXGEN_APART bool divide_whole_tile(const BatchPlanes& planes, const BatchTiles& tiles, std::size_t i,
-                                    const TileShape& shape, const TileOutputs<Numerators>& original) noexcept {
+                                    const ShapeOfTile& shape, const TileOutputs<Numerators>& original) noexcept {
     const TileOutputs<Numerators> out = original;
     const TileFunctions<Numerators> f(planes, tiles, i, shape.is_turned);
     const std::size_t end = shape.count;
@@ -121,7 +121,7 @@ TEXGEN_INLINE WideFloats bent_factor(const WideFloats& x) noexcept {
 }
 
 template <std::size_t Numerators, bool HasWholeRows, bool IsPolynomial>
-TEXGEN_APART void divide_tile_float(const BatchTiles& tiles, std::size_t i, const TileShape& shape,
+TEXGEN_APART void divide_tile_float(const BatchTiles& tiles, std::size_t i, const ShapeOfTile& shape,
                                     const TileOutputs<Numerators>& original) noexcept {
     const TileOutputs<Numerators> out = original;
     const std::size_t end = shape.count;
@@ -165,7 +165,7 @@ TEXGEN_APART void divide_tile_float(const BatchTiles& tiles, std::size_t i, cons
 // False where a value is in doubt.
 template <std::size_t Numerators>
 TEXGEN_INLINE bool divide_tile_by_tier(const BatchPlanes& planes, const BatchTiles& tiles, std::size_t i,
-                                       const TileShape& shape, const TileOutputs<Numerators>& out) noexcept {
+                                       const ShapeOfTile& shape, const TileOutputs<Numerators>& out) noexcept {
     if (!tiles.has(BatchTiles::is_float, i)) {
         if (!tiles.has(BatchTiles::has_middles, i) || !shape.is_whole)
             return divide_tile<Numerators>(planes, tiles, i, shape, out);
@@ -184,8 +184,8 @@ TEXGEN_INLINE bool divide_tile_by_tier(const BatchPlanes& planes, const BatchTil
 // A tile's values to its place in the outputs, from `begin` on; by way of scratch where whole vectors might reach
 // beyond what may be written.
 template <std::size_t Numerators>
-TEXGEN_INLINE bool fill_tile(const BatchPlanes& planes, const BatchTiles& tiles, std::size_t i, const TileShape& shape,
-                             const FragmentOutputs& out, std::size_t begin, bool in_scratch,
+TEXGEN_INLINE bool fill_tile(const BatchPlanes& planes, const BatchTiles& tiles, std::size_t i,
+                             const ShapeOfTile& shape, const FragmentOutputs& out, std::size_t begin, bool in_scratch,
                              TileScratch& scratch) noexcept {
     TileOutputs<Numerators> here;
     TEXGEN_UNROLL
@@ -226,7 +226,7 @@ TEXGEN_INLINE Undecided divide_all_tiles(const TilesJob& job, std::size_t first,
     const FragmentOutputs out(job);
     TileScratch scratch;
     BatchTiles tiles;
-    TileShape shape;
+    ShapeOfTile shape;
     // Few lanes divide large tiles in float no faster than a set-up by chunks.
     std::size_t most = job.tolerance > 0.0 && lanes < 4 ? largest_in_scratch : largest_batch_tile;
     for (std::size_t k = 0; k < Numerators; ++k)

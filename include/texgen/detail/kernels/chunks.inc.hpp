@@ -29,6 +29,9 @@ TEXGEN_INLINE Number chunk_error(const Number& u, const Number& reach, const Err
            ((u + reach) * q_error + numerator_error) * (reciprocal * 1.001);
 }
 
+// One rule in all lanes. Not a closure: behind a precompiled header GCC warns of one that takes no vector and returns one.
+TEXGEN_INLINE Doubles in_all_lanes(StepRule rule) noexcept { return Doubles{} + static_cast<double>(rule); }
+
 // The coefficients of `count` chunks from the given one of row y on.
 template <class CompiledWhereCalled = void>
 void weigh_chunks(const TileJob& job, ChunkGroup& group, int chunks_of_row, int y, int chunk, int count) noexcept {
@@ -68,15 +71,14 @@ void weigh_chunks(const TileJob& job, ChunkGroup& group, int chunks_of_row, int 
                                                   reciprocal * stretch, fourth);
         }
         // The cheapest rule with which a chunk stays inside the tolerance.
-        const auto all = [](StepRule rule_of_all) { return Doubles{} + static_cast<double>(rule_of_all); };
         const auto fits = [&](const Doubles& share) {
             return at_most(share * reaches[0], room[0]) & at_most(share * reaches[1], room[1]);
         };
-        Doubles rules = select(fits(fourth * fourth), all(StepRule::degree8), all(StepRule::divide));
-        rules = select(fits(fourth), all(StepRule::degree4), rules);
-        rules = select(at_most(extents, Doubles{} + 0.25), rules, all(StepRule::divide));
+        Doubles rules = select(fits(fourth * fourth), in_all_lanes(StepRule::degree8), in_all_lanes(StepRule::divide));
+        rules = select(fits(fourth), in_all_lanes(StepRule::degree4), rules);
+        rules = select(at_most(extents, Doubles{} + 0.25), rules, in_all_lanes(StepRule::divide));
         const LongWords holds = at_most(extents, Doubles{} + 0.75) & greater(q - q * extents, job.least_q);
-        store(&group.rule[i], to_floats(select(holds & fits(Doubles{}), rules, all(StepRule::none))));
+        store(&group.rule[i], to_floats(select(holds & fits(Doubles{}), rules, in_all_lanes(StepRule::none))));
     }
 }
 

@@ -1,10 +1,15 @@
 // TEXGEN_KERNELS once per instruction set, inside that set's target region. Included by lanes.hpp, and by what has
 // kernels that not all files pay for (batch_lanes.hpp).
 
-// Vector arguments never cross a call that is not inlined, so their calling convention does not matter.
+// Vector arguments never cross a call that is not inlined, so their calling convention does not matter. GCC 12 stops at
+// masks whose code its tracer copies, which -fprofile-use has it do.
 #ifdef TEXGEN_HAS_VECTORS
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wpsabi"
+#ifndef __clang__
+#pragma GCC push_options
+#pragma GCC optimize("no-tracer")
+#endif
 #endif
 
 #define TEXGEN_ISA TEXGEN_FLAGS(flags_)
@@ -53,5 +58,8 @@
 #endif
 
 #ifdef TEXGEN_HAS_VECTORS
+#ifndef __clang__
+#pragma GCC pop_options
+#endif
 #pragma GCC diagnostic pop
 #endif

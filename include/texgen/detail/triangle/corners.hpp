@@ -75,9 +75,9 @@ struct Corners {
         const double per_step = 1.0 / std::fabs(step);
         // Counted from where q is least: it is at most largest_q - (size - 1 - i) |step|, and at least least_q + i
         // |step|.
-        const auto index = [size](double i) { return i > 0.0 ? (i < size ? static_cast<int>(i) : size) : 0; };
-        int begin = index(size - 1 - (largest_q + q_error) * per_step);
-        int end = index((0x1p-2 * largest_q - least_q) * per_step + 1.0);
+        const auto clamped = [size](double i) { return i > 0.0 ? (i < size ? static_cast<int>(i) : size) : 0; };
+        int begin = clamped(size - 1 - (largest_q + q_error) * per_step);
+        int end = clamped((0x1p-2 * largest_q - least_q) * per_step + 1.0);
         if (begin >= end) {
             begin = 0;
             end = size;

@@ -112,8 +112,8 @@ inline double largest_along(const glm::dvec2& a, const glm::dvec2& b, double c, 
     const double discriminant = first * first - 4.0 * second * constant;
     if (discriminant >= 0.0) {
         const double root = -0.5 * (first + std::copysign(std::sqrt(discriminant), first));
-        consider(root / second);
-        consider(constant / root);
+        if (second != 0.0) consider(root / second);
+        if (root != 0.0) consider(constant / root);
     }
     return largest;
 }

@@ -82,6 +82,7 @@ inline std::optional<double> slide_area(glm::vec4 a, glm::vec4 b, glm::vec4 c) n
 inline std::optional<glm::dvec3> receiver_plane(glm::vec4 a, glm::vec4 b, glm::vec4 c) noexcept {
     const glm::dvec4 corner[] = {detail::widened(a), detail::widened(b), detail::widened(c)};
     const double divisor = detail::slide_determinant(corner[0], corner[1], corner[2]).value();
+    if (divisor == 0.0) return std::nullopt;
     // Cramer's rule, with r in the place of a column.
     glm::dvec3 plane(0.0);
     for (glm::length_t k = 0; k < 3; ++k) {
