@@ -59,7 +59,7 @@ TEXGEN_INLINE void load_about_farthest(const float* const (&triangle)[lanes], Do
 }
 
 // As TrianglePlanes, with the same operations in the same order: what they err by is said there. Where the sign of the
-// area is in doubt, or a number is not one, the error of q is infinite: those lanes are returned.
+// area is in doubt, or a number is not one, as in lanes without a triangle, q is -1: those lanes are returned.
 TEXGEN_INLINE LongWords set_up_lanes(const float* triangles, BatchPlanes* planes) noexcept {
     const float* of_lane[lanes];
     TEXGEN_UNROLL
@@ -125,7 +125,9 @@ TEXGEN_INLINE LongWords set_up_lanes(const float* triangles, BatchPlanes* planes
     const LongWords is_known = greater(magnitude(area), area_terms * gamma(4)) & greater(a[2], 0.0) &
                                greater(b[2], 0.0) & greater(c[2], 0.0) &
                                at_most(magnitude(all_slopes), Doubles{} + 0x1p1000);
-    value[BatchPlanes::q + 3] = where(is_known, value[BatchPlanes::q + 3]) + where(~is_known, Doubles{} + infinity);
+    Doubles* const q = &value[BatchPlanes::q];
+    q[0] = select(is_known, q[0], Doubles{} - 1.0);
+    for (std::size_t i = 1; i < 4; ++i) q[i] = where(is_known, q[i]);
     value[BatchPlanes::origin] = a[0];
     value[BatchPlanes::origin + 1] = a[1];
     value[BatchPlanes::per_reach] = 1.0 / reach_x;

@@ -2,11 +2,6 @@
 
 namespace TEXGEN_DETAIL {
 
-// So many triangles, with those that fill the last block.
-inline std::size_t whole_blocks(std::size_t count) noexcept {
-    return (count + batch_block - 1) / batch_block * batch_block;
-}
-
 // Of what is refused, or no triangle: behind everywhere, without a doubt.
 inline BatchPlanes planes_behind() noexcept {
     BatchPlanes result{};
@@ -108,10 +103,11 @@ namespace TEXGEN_NAMESPACE {
 inline namespace TEXGEN_COMPILER {
 
 inline void TriangleBatch::take(std::span<const Triangle> triangles) noexcept {
+    using detail::batch_block;
     static_assert(sizeof(Triangle) == 3 * sizeof(detail::BatchVertex::Layout));
     TEXGEN_ASSERT(triangles.size() < no_triangle);
     size_ = triangles.size();
-    const std::size_t whole = detail::whole_blocks(size_);
+    const std::size_t whole = (size_ + batch_block - 1) / batch_block * batch_block;
     if (whole >= planes_.size()) {  // kernels read beyond the last
         triangles_.resize(whole + 1);
         planes_.resize(whole + 1);
@@ -128,8 +124,7 @@ void TriangleBatch::set_up() noexcept {
         for (std::size_t i = first; unknown != 0 && i < size_; unknown >>= 1, ++i)
             if ((unknown & 1u) != 0) planes_[i] = detail::batch_planes(triangles_[i]);
     }
-    // Kernels read those as well; what was set up of no triangles would raise exceptions.
-    for (std::size_t i = size_; i <= detail::whole_blocks(size_); ++i) planes_[i] = detail::planes_behind();
+    planes_[size_] = detail::planes_behind();
 }
 
 template <class CompiledWhereCalled>
