@@ -109,7 +109,7 @@ public:
     // is reached within 1 % at some point of the rectangle (that is levels within 0.015) where q is well away from 0,
     // also beside its terms; largest_level, largest_area and largest_anisotropy are infinite where q is not. Empty
     // where all is behind the projector or the rectangle is empty. A level of the Jacobian 0 is -infinity, and NaN
-    // where the texels are bad. It takes as long as some tens of fragments, and never visits them. No allocation,
+    // where the texels are bad. It takes as long as some hundreds of fragments, and never visits them. No allocation,
     // noexcept.
     std::optional<FootprintExtremes> extremes(FragmentRect rect) const noexcept;
 

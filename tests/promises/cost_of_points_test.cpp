@@ -12,6 +12,7 @@
 #include "support/doubtful.hpp"
 #include "support/limits.hpp"
 #include "support/random.hpp"
+#include "support/special_values.hpp"
 #include "support/stopwatch.hpp"
 #include "texgen/interpolate.hpp"
 #include "texgen/texcoord.hpp"
@@ -147,6 +148,26 @@ TEST_CASE("within a sixteenth of a texel points behind the projector cost little
             const double cost = support::worst_over_ordinary_within(most, Projection(in_front, way, tolerance),
                                                                     Projection(*cloud, way, tolerance));
             CHECK_MESSAGE(cost <= most, cloud->name, ": ", cost, " times, layout ", static_cast<int>(way));
+        }
+    }
+}
+
+TEST_CASE("points among which some are no numbers cost little more than those that are numbers") {
+    Random random(61);
+    constexpr std::size_t count = 4096;
+    const support::Cloud ordinary = support::ordinary_cloud(count, random);
+    for (const std::size_t step : {8u, 32u, 256u}) {
+        support::Cloud some = ordinary;
+        for (std::size_t i = step / 2; i < count; i += step) some.points[i][random.integer(0, 2)] = support::nan_float;
+        for (const Projection::Way way :
+             {Projection::Way::interleaved_lit, Projection::Way::planar, Projection::Way::pairs}) {
+            for (const Tolerance tolerance : {texgen::exact, texgen::texels(1.0 / 16.0, 1024.0)}) {
+                const double most = 4.0;
+                const double cost = support::worst_over_ordinary_within(most, Projection(ordinary, way, tolerance),
+                                                                        Projection(some, way, tolerance));
+                CHECK_MESSAGE(cost <= most, "one of ", step, ": ", cost, " times, layout ", static_cast<int>(way),
+                              ", tolerance ", tolerance.value);
+            }
         }
     }
 }

@@ -57,7 +57,9 @@ TEXGEN_INLINE LongWords divide_certainly(std::size_t numerators, const PointDivi
     if constexpr (Signed) {
         in_front = greater(of.q, q_error * 0x1p20);
         doubt.behind |= ~in_front;
-        doubt.side |= ~(in_front | greater(-1.0 * of.q - q_error, 0.0));
+        // A q that is no number, though its terms are finite, is that of a point that is none.
+        const LongWords are_behind = greater(-1.0 * of.q - q_error, 0.0) | ~at_most(of.q, of.q);
+        doubt.side |= ~(in_front | (are_behind & greater(Doubles{} + infinity, q_error)));
         reciprocal = where(in_front, reciprocal);
     }
     for (std::size_t k = 0; k < numerators; ++k) {
