@@ -288,6 +288,47 @@ TEST_CASE("fragments of triangles: the sign of q is exact, and errors are within
     });
 }
 
+TEST_CASE("steps to the next row that are below the normal floats lose no more than the tolerance") {
+    in_every_state([](const FloatState& state, Random&) {
+        const auto vertex = [](float x, float y) {
+            return texgen::WindowVertex{{x, y}, 1.0f, {0x1.fp-126f * (y - 256.5f), 0.0f, 0.0f, 0x1.1p-20f}};
+        };
+        const texgen::Triangle triangle{vertex(0.5f, 0.5f), vertex(8.5f, 0.5f), vertex(0.5f, 512.5f)};
+        const support::ExactTriangle exact(triangle);
+        for (const double tolerance : {0x1p-98, 0x1p-97, 0x1p-96, 0x1p-95}) {
+            Outputs out(8 * 512);
+            under(state, [&] {
+                const auto setup = TriangleSetup::of(triangle, support::everywhere(), Tolerance{tolerance});
+                interpolate(*setup, {0, 0, 8, 512}, out.spans());
+            });
+            for (std::size_t i = 0; i < out.size(); i += 29) {
+                const Quotient u =
+                    exact.at(static_cast<std::int64_t>(i % 8), static_cast<std::int64_t>(i / 8)).over_q(0);
+                CHECK(support::distance(out.s()[i], u) <= tolerance);
+            }
+        }
+    });
+}
+
+TEST_CASE("what is cut next to the eye or q = 0 is in front") {
+    const std::array<texgen::ClipVertex, 3> by_eye{{{{0.0f, 0.0f, 1.0f, 0x1p-110f}, {0.0f, 0.0f, 0.0f, 1.0f}},
+                                                    {{1.0f, 0.0f, 1.0f, -1.0f}, {1.0f, 0.0f, 0.0f, 1.0f}},
+                                                    {{0.0f, 1.0f, 1.0f, -1.0f}, {0.0f, 1.0f, 0.0f, 1.0f}}}};
+    const std::array<texgen::ClipVertex, 3> by_q{{{{0.0f, 0.0f, 1.0f, 1.0f}, {0.0f, 0.0f, 0.0f, 0.0f}},
+                                                  {{1.0f, 0.0f, 1.0f, 1.0f}, {0.0f, 0.0f, 0.0f, 0x1p-110f}},
+                                                  {{0.0f, 1.0f, 1.0f, 1.0f}, {0x1p-111f, 0x1p-111f, 0.0f, 0x1p-110f}}}};
+    in_every_state([&](const FloatState& state, Random&) {
+        std::array<texgen::ClipVertex, 10> out{};
+        std::size_t count = 0;
+        under(state, [&] { count = clip_to_near(by_eye, out, texgen::DepthRange::zero_to_one); });
+        CHECK(count >= 3);
+        for (std::size_t i = 0; i < count; ++i) CHECK(as_read(out[i].position.w, state) > 0.0f);
+        under(state, [&] { count = clip_to_slide(by_q, texgen::whole_texture(), out); });
+        CHECK(count >= 3);
+        for (std::size_t i = 0; i < count; ++i) CHECK(as_read(out[i].strq.w, state) > 0.0f);
+    });
+}
+
 TEST_CASE("segments: the sign of q is exact, and errors are within half an ulp or the tolerance") {
     in_every_state([](const FloatState& state, Random& random) {
         Seen seen;

@@ -2,7 +2,10 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+#include <cstddef>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,6 +14,7 @@
 #include "judges/verdict.hpp"
 #include "support/outputs.hpp"
 #include "support/special_values.hpp"
+#include "texgen/footprint.hpp"
 #include "texgen/interpolate.hpp"
 #include "texgen/texcoord.hpp"
 
@@ -64,4 +68,53 @@ TEST_CASE("no points at no address are no layout that needs a look at them") {
     const texgen::Positions<texgen::Object> none = texgen::object_space(std::span<const glm::vec3>());
     CHECK(none.size() == 0);
     CHECK_FALSE(none.is_interleaved());
+}
+
+TEST_CASE("from a chunk of one fragment there are no steps, though they might be infinite") {
+    // 3841 is 16 chunks of 240 fragments and one more.
+    const auto vertex = [](float x, float y) {
+        return texgen::WindowVertex{{x, y}, 1.0f, {0x1p110f * (x - 3840.5f), 0.0f, 0.0f, 0x1p-20f}};
+    };
+    const texgen::Triangle triangle{vertex(0.5f, 0.5f), vertex(3840.5f, 0.5f), vertex(0.5f, 64.5f)};
+    const auto setup = texgen::TriangleSetup::of(triangle, texgen::whole_texture(), Tolerance{0x1p99});
+    REQUIRE(setup);
+    Outputs out(2 * 3841);
+    interpolate(*setup, {0, 0, 3841, 2}, out.spans());
+    for (const std::size_t last : {3840u, 7681u}) {
+        CHECK(std::fabs(out.s()[last]) <= 0x1p99f);
+        CHECK(out.lit()[last] == 1.0f);
+    }
+}
+
+TEST_CASE("footprints whose lengths have a factor that is no normal float keep their bound") {
+    constexpr int width = 4096, height = 8;
+    const auto vertex = [](float x, float y) {
+        const float q = 1.0f + (x - 0.5f) / 4095.0f * (0x1p-11f - 1.0f);
+        return texgen::WindowVertex{{x, y}, 1.0f, {0x1.5p-126f, 0x1.1p-124f * ((y + 3.5f) / 16.0f), 0.0f, q}};
+    };
+    const texgen::Triangle triangle{vertex(0.5f, 0.5f), vertex(4095.5f, 0.5f), vertex(0.5f, 16.5f)};
+    const auto setup = texgen::TriangleSetup::of(triangle, texgen::whole_texture());
+    REQUIRE(setup);
+    const glm::dvec2 texels(1.7 * 0x1p100, 1.3 * 0x1p60);
+    const texgen::FootprintSetup footprints(*setup, {texels.x, texels.y});
+    std::vector<float> major_s(width * height), major_t(width * height);
+    texgen::Footprints out;
+    out.major_s = major_s;
+    out.major_t = major_t;
+    footprint(footprints, {0, 0, width, height}, out);
+    double worst = 0.0;
+    int compared = 0;
+    for (int i = 0; i < width * height; ++i) {
+        const auto expected = footprints.at(i % width, i / width);
+        REQUIRE(expected);
+        const auto place = static_cast<std::size_t>(i);
+        const glm::dvec2 right = glm::dvec2(expected->major) * texels;
+        const glm::dvec2 error =
+            glm::dvec2(static_cast<double>(major_s[place]), static_cast<double>(major_t[place])) * texels - right;
+        if (std::fabs(expected->major.x) < 0x1p-120f) continue;  // what subnormal floats lose
+        ++compared;
+        worst = std::fmax(worst, std::hypot(error.x, error.y) / std::hypot(right.x, right.y));
+    }
+    CHECK(compared > 50);
+    CHECK(worst <= 0x1p-16);
 }

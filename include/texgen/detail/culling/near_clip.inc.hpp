@@ -46,10 +46,12 @@ inline ClipVertex between(double weight_a, const ClipVertex& a, double weight_b,
     return result;
 }
 
-// The w, or q, at which an edge is cut that leads behind: a small part of that of its end in front, and above 0.
+// The w, or q, at which an edge is cut that leads behind: a small part of that of its end in front, and above 0, also
+// where subnormal numbers are.
 inline float just_in_front(float inside) noexcept {
-    constexpr float least = std::numeric_limits<float>::denorm_min();
-    return 0x1p-20f * inside > least ? 0x1p-20f * inside : least;
+    constexpr float least = 0x1p-126f;
+    const float part = 0x1p-20f * inside;
+    return part > least ? part : inside < least ? inside : least;
 }
 
 // Cuts the convex polygon in storage[0, count) and returns the new count. cut(inside, outside) makes the new vertex of

@@ -68,7 +68,7 @@ struct JacobianLanes {
         front = greater(q * cancelled_share, error) & ~of.is_refused;
         doubtful = ~(front | greater(q * -1.0, error) | of.is_refused);
         if (any(doubtful)) find_q_closely(of.given, x, y);
-        const Doubles reciprocal = where(front, 1.0 / q);
+        const Doubles reciprocal = where(front, 1.0 / select(front, q, Doubles{} + 1.0));
         factor = (of.given.area * reciprocal) * (of.w * reciprocal);
         const Doubles size = magnitude(factor);  // the one product that may leave the range
         doubtful |= front & ~(greater(size, 0x1p-1000) & greater(Doubles{} + 0x1p1000, size));
@@ -165,7 +165,7 @@ struct JacobianBlock {
             det = magnitude((closely.value * of_s) * (of.q * of_t));
             is_known = closely.is_known & (greater(det, 0x1p-120) | ~are_nonzero(closely.value));
         }
-        store(determinant + n, to_floats(det));
+        store(determinant + n, to_floats(select(of.front, det, Doubles{} + 1.0)));
         return ~(is_held & is_known);
     }
 
@@ -214,6 +214,7 @@ Undecided fill_batch_footprints(const BatchFootprintsJob& original, std::size_t 
     Words known_ids{};
     bool has_known = false;
     JacobianBlock block{};  // vectors read beyond the last fragment
+    for (float& determinant : block.determinant) determinant = 1.0f;
     for (std::size_t n = first; n < job.count;) {
         const std::size_t begin = n;
         const std::size_t end = job.count - begin < exact_block ? job.count : begin + exact_block;

@@ -132,7 +132,7 @@ TEXGEN_INLINE LongWords prepare_in_float(const BatchJob& job, const BatchPlanes*
         store(&tiles.dy[k][first], to_floats(slope_y));
         const Doubles step = (magnitude(slope_x) * half_x + magnitude(slope_y) * half_y) * stretched;
         const Doubles size_u = magnitude(u);
-        const Doubles rest = size_u * (2.001 * unit_roundoff_float) + (step * step_error + 0x1p-115) +
+        const Doubles rest = size_u * (2.001 * unit_roundoff_float) + (step * step_error + 0x1p-113) +
                              ((size_u + step) * q_error + f[3] * tile.stretch) * error_share;
         is_float &= at_most(rest, tolerance);
         is_polynomial &= at_most(rest + step * share, tolerance);

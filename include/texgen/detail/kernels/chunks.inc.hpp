@@ -24,7 +24,7 @@ TEXGEN_INLINE Number chunk_error(const Number& u, const Number& reach, const Err
                                  const Extent& reciprocal, const Extent& fourth) noexcept {
     constexpr double middle_roundings = 2.001 * unit_roundoff_float;
     const Extent step_roundings = fourth * (24.0 * unit_roundoff_float) + 6.4 * unit_roundoff_float;
-    constexpr double underflow = 0x1p-115;
+    constexpr double underflow = 0x1p-113;
     return u * middle_roundings + reach * step_roundings + underflow +
            ((u + reach) * q_error + numerator_error) * (reciprocal * 1.001);
 }
@@ -56,7 +56,8 @@ void weigh_chunks(const TileJob& job, ChunkGroup& group, int chunks_of_row, int 
         for (std::size_t k = 0; k < 2; ++k) {
             const double dx = job.numerator.dx[k];
             u[k] = value(job.numerator.base[k], dx, job.numerator.dy[k]) * reciprocal;
-            d[k] = (u[k] * -job.q.dx + dx) * reciprocal;
+            // From a single fragment there are no steps, which nothing bounds.
+            d[k] = where(greater(half, 0.0), (u[k] * -job.q.dx + dx) * reciprocal);
             store(&group.middle[k][i], to_floats(u[k]));
             store(&group.slope[k][i], to_floats(d[k]));
         }

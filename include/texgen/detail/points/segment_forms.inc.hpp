@@ -51,7 +51,8 @@ struct Asymptote {
     Double2 base, slope;
 
     Asymptote(const SegmentEnds& ends, const EndQuotients& u) noexcept : ratio(larger(1.0, ends.q_a * u.of_q_b)) {
-        const double inverse = 1.0 / (ends.q_b - ends.q_a);
+        const double difference = ends.q_b - ends.q_a;
+        const double inverse = difference != 0.0 ? 1.0 / difference : 0.0;  // then the pole is not in range
         pole = ends.q_a * inverse;
         base = (ends.b - ends.a) * inverse;
         slope = (ends.a * ends.q_b - ends.b * ends.q_a) * inverse * inverse;

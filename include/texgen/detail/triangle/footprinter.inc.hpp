@@ -90,9 +90,10 @@ private:
         const double back = q_scale_squared / texel_scale;  // from a length of the job to texels, but for 1 / Q^2
         const double determinant = std::fabs(functions_.determinant * texels_.s * texels_.t);
         const double anisotropy_factor = q_scale / (texel_scale * texel_scale * determinant);
-        // An infinite factor is right for a J without a determinant alone.
+        // Normal floats; an infinite factor is right for a J without a determinant alone.
         constexpr double largest_factor = 0x1p126;
-        if (!(back < largest_factor * smaller(texels_.s, texels_.t)) ||
+        if (!(back < largest_factor * smaller(texels_.s, texels_.t) &&
+              back > 0x1p-126 * larger(texels_.s, texels_.t)) ||
             (anisotropy_factor > largest_factor && anisotropy_factor < infinity))
             return false;
         job.filters_in_float = job.derivatives_in_float || float_serves_filters(tile, at, job.texels);

@@ -108,7 +108,7 @@ inline SmallAnswer ask(const LitTest& lit, double tolerance, const SmallFunction
 // normal. In float, with u = 2^-24 and b the steps to the last row, of which y is at most half: F is rounded with its
 // column, its step, the product with y, and the sum, by u (2 F + 1.5 b), as is q, and the reciprocal and the product
 // round by 2 u. Of quotients that are `greatest` at most this is 6 u greatest + 1.5 u (b_F + greatest b_q) / q, and what
-// floats below 2^-126 lose is less than 2^-100.
+// floats below 2^-126 lose, one of them times y and over q, is less than 2^-96.
 inline bool serves(const SmallFunction<Double2>& f, const SmallDivisor& divisor, double tolerance,
                    SmallTile& tile) noexcept {
     const SmallFunction<double>& q = divisor.function;
@@ -117,7 +117,7 @@ inline bool serves(const SmallFunction<Double2>& f, const SmallDivisor& divisor,
     tile.is_in_float = false;
     if (tolerance != 0.0 && tile.width == 8 && read_alone(tile.height) % 2 == 0) {
         const Double2 greatest = larger(largest, -least) * (1.001 / divisor.least);
-        const double allowed = (tolerance - 0x1p-100) * (divisor.least - q.error);
+        const double allowed = (tolerance - 0x1p-96) * (divisor.least - q.error);
         const Double2 error = f.error + greatest * q.error;
         const Double2 rounded = larger(f.bottom, -f.bottom) + greatest * (4.02 * divisor.least + std::fabs(q.bottom));
         tile.is_in_float =
