@@ -57,9 +57,7 @@ TEXGEN_INLINE LongWords divide_certainly(std::size_t numerators, const PointDivi
     if constexpr (Signed) {
         in_front = greater(of.q, q_error * 0x1p20);
         doubt.behind |= ~in_front;
-        // A q that is no number, though its terms are finite, is that of a point that is none.
-        const LongWords are_behind = greater(-1.0 * of.q - q_error, 0.0) | ~at_most(of.q, of.q);
-        doubt.side |= ~(in_front | (are_behind & greater(Doubles{} + infinity, q_error)));
+        doubt.side |= ~in_front & greater(of.q + q_error, 0.0);  // no doubt of a q that is no number
         reciprocal = where(in_front, reciprocal);
     }
     for (std::size_t k = 0; k < numerators; ++k) {
@@ -212,7 +210,8 @@ TEXGEN_INLINE Doubt fill_points_block(const PointJob& job, std::size_t begin, st
     };
     Doubles numerator_error[2];
     for (std::size_t k = 0; k < Numerators; ++k) numerator_error[k] = error_of(job.numerator[k]);
-    const Doubles q_error = error_of(job.q);
+    // A NaN, of an infinite coordinate of another point, bounds nothing.
+    const Doubles q_error = minimum(error_of(job.q), Doubles{} + infinity);
     Doubt doubt;
     ReciprocalRange range;
     next = division;

@@ -128,7 +128,6 @@ TEXGEN_APART std::uint64_t fill_about_point(const PointJob& job, std::size_t beg
     const FormsInFloat<2> forms(about);
     for (std::size_t k = 0; k < 3; ++k) about[k].w = std::fabs(about[k].w) + lost[k];
     const FloatErrors errors(about_point, about, extent, job.tolerance);
-    constexpr auto infinite = static_cast<float>(infinity);
     // So far in front 1 / q errs by less than 2^-9 of itself.
     const WideFloats least_q = errors.of_form[0] * 0x1p10f + 0x1p-58f;
     std::uint64_t doubtful = 0;
@@ -138,10 +137,8 @@ TEXGEN_APART std::uint64_t fill_about_point(const PointJob& job, std::size_t beg
         const auto value_of = [&](std::size_t k) { return forms.at(k, next[0], next[1], next[2]); };
         const WideFloats q = value_of(0), reciprocal = 1.0f / q;
         const WideWords are_in_front = errors.are_in_range & less(least_q, q);
-        // Where the sum of a point is no number, a coordinate is none: all others are finite, if the forms are in range.
-        const WideFloats sum = next[0] + next[1] + next[2];
-        const WideWords are_numbers = less(sum, WideFloats{} + infinite) | less(WideFloats{} - infinite, sum);
-        const WideWords are_behind = errors.are_in_range & (less(errors.of_form[0] * 1.001f, -1.0f * q) | ~are_numbers);
+        // So is a q that is no number, of a point that is none.
+        const WideWords are_behind = errors.are_in_range & ~less(errors.of_form[0] * -1.001f, q);
         WideWords are_certain = are_in_front;
         WideFloats value[2];
         TEXGEN_UNROLL
