@@ -63,8 +63,8 @@ public:
     constexpr const glm::dvec2&(max)() const noexcept { return max_; }
 
     // Makes the region of the same rectangle that is lit only where r_min <= r <= r_max too: in a projector's volume,
-    // from its near plane to its far one, as the matrix maps them to r. An r_min of -infinity
-    // is no limit, nor is an r_max of infinity.
+    // from its near plane to its far one, as the matrix maps them to r. An r_min of -infinity is no limit, nor is
+    // an r_max of infinity.
     [[nodiscard]] GLM_CONSTEXPR TextureRegion with_depth(double r_min = 0.0, double r_max = 1.0) const noexcept {
         TextureRegion region(min_, max_);
         region.depth_ = glm::dvec2(r_min, r_max);

@@ -42,9 +42,10 @@ inline bool are_from_0_to_1(std::span<const float> alpha) noexcept {
         const auto bits = bit_cast<std::uint32_t>(a);
         signs |= bits | (bit_cast<std::uint32_t>(1.0f) - bits);
     };
+    const float* const first = alpha.data();
     const std::size_t whole = alpha.size() / 16 * 16;
     for (std::size_t i = 0; i < whole; i += 16)
-        for (std::size_t j = 0; j < 16; ++j) look_at(alpha[i + j]);
+        for (std::size_t j = 0; j < 16; ++j) look_at(first[i + j]);
     for (const float a : alpha.subspan(whole)) look_at(a);
     if ((signs & 0x80000000) == 0) return true;
     for (const float a : alpha)
