@@ -9,7 +9,8 @@
 #define min(a, b) (((a) < (b)) ? (a) : (b))
 #define max(a, b) (((a) > (b)) ? (a) : (b))
 #else
-// What it makes macros of, and what <sys/types.h> does on macOS and the BSDs, X11 and macOS's <AssertMacros.h>.
+// What it makes macros of, and what <sys/types.h> does on macOS and the BSDs, X11 and macOS's <AssertMacros.h>; and
+// <X11/Xos.h>, behind what declares functions of that name.
 #define near
 #define far
 #define small char
@@ -17,6 +18,10 @@
 #define minor(device) device
 #define TileShape 1
 #define require(assertion, label) ((void)0)
+#include <cstring>
+#include <string>
+#include <variant>
+#define index(s, c) strchr((s), (c))
 #endif
 
 #include <texgen/batch.hpp>
