@@ -172,6 +172,37 @@ TEST_CASE("points among which some are no numbers cost little more than those th
     }
 }
 
+TEST_CASE("the points of an orthographic decal, and a few at the projector's own place, cost little more than others") {
+    Random random(62);
+    constexpr std::size_t count = 4096;
+    const support::Cloud ordinary = support::ordinary_cloud(count, random);
+    // x/16 + 1/2 is a tie for a large part of the floats up to 8; decimals make fewer, but in most blocks one.
+    const glm::dmat4 aligned = support::matrix_of_rows({0x1p-4, 0.0, 0.0, 0.5}, {0.0, 0x1p-4, 0.0, 0.5},
+                                                       {0.0, 0.0, 0x1p-4, 0.5}, {0.0, 0.0, 0.0, 1.0});
+    const glm::dmat4 turned = support::matrix_of_rows({0.04, 0.03, 0.0, 0.5}, {-0.03, 0.04, 0.0, 0.5},
+                                                      {0.0, 0.0, 0.05, 0.5}, {0.0, 0.0, 0.0, 1.0});
+    std::vector<support::Cloud> clouds{{"aligned", aligned, {}}, {"turned", turned, {}}, ordinary};
+    for (std::size_t i = 0; i < count; ++i) {
+        clouds[0].points.push_back(random.vector3(8.0));
+        clouds[1].points.push_back(random.vector3(10.0));
+        if (i % 64 == 0) clouds[2].points[i] = glm::vec3(0.0f, 0.0f, 0.5f);
+    }
+    clouds[2].name = "one of 64 at q = 0";
+    for (const support::Cloud& cloud : clouds) {
+        for (const Projection::Way way :
+             {Projection::Way::interleaved_lit, Projection::Way::planar, Projection::Way::pairs}) {
+            for (const Tolerance tolerance : {texgen::exact, texgen::texels(1.0 / 512.0, 4096.0)}) {
+                const bool may_be_rounded = tolerance.value > 0.0 && &cloud != &clouds[2];
+                const double most = may_be_rounded ? 2.5 : 6.0;
+                const double cost = support::worst_over_ordinary_within(most, Projection(ordinary, way, tolerance),
+                                                                        Projection(cloud, way, tolerance));
+                CHECK_MESSAGE(cost <= most, cloud.name, ": ", cost, " times, layout ", static_cast<int>(way),
+                              ", tolerance ", tolerance.value);
+            }
+        }
+    }
+}
+
 TEST_CASE("one point in an array costs less than a vector of them") {
     constexpr double most = 0.9;
     Random random(60);

@@ -92,6 +92,23 @@ inline std::vector<Cloud> doubtful_clouds(std::size_t count, Random& random) {
         [&] {
             return glm::vec3(random.uniform_float(1.0, 2.0), 1.0f, std::nextafter(1.0f, random.coin() ? 2.0f : 0.0f));
         });
+    // By decimals of few digits, that no float has: many sums are next to ties, and few on one.
+    add("a turned decal of half extent 10",
+        matrix_of_rows({0.04, 0.03, 0.0, 0.5}, {-0.03, 0.04, 0.0, 0.5}, {0.0, 0.0, 0.05, 0.5}, {0.0, 0.0, 0.0, 1.0}),
+        within(10.0));
+    // What the leading sums lose cancels, or all but a little of it.
+    add("ties of sums that lose what cancels",
+        matrix_of_rows({1.0, 0x1p-60, -0x1p-60, 0x1p-24}, {1.0, tenth * 0x1p-50, tenth * -0x1p-50, -0x1p-24},
+                       {-1.0, 0x1p-30, -0x1p-30, -0x1p-24}, {0.0, 0.0, 0.0, 1.0}),
+        [&] {
+            const float y = random.uniform_float(1.0, 2.0);
+            return glm::vec3(random.uniform_float(1.0, 2.0), y,
+                             random.coin() ? y : std::nextafter(y, random.coin() ? 4.0f : 0.0f));
+        });
+    add("ties but for tiny products",
+        matrix_of_rows({1.0, 0x1p-780, 0.0, 0x1p-24}, {1.0, -0x1p-780, 0.0, 0x1p-24}, {1.0, 0.0, 0.0, 0x1p-24},
+                       {0.0, 0.0, 0.0, 1.0}),
+        [&] { return glm::vec3(random.uniform_float(1.0, 2.0), 0x1p-100f, 0.0f); });
     add("next to q = 0", ordinary.matrix, [&] {
         const float x = random.uniform_float(-3.0, 3.0), y = random.uniform_float(-3.0, 3.0);
         return glm::vec3(x, y, to_float(0.01 * static_cast<double>(x) + 0.02 * static_cast<double>(y) + 0.5));

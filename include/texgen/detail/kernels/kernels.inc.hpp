@@ -22,6 +22,7 @@
 #include "tiles.inc.hpp"
 
 #include "points.inc.hpp"
+#include "points_exactly.inc.hpp"
 #include "points_in_float.inc.hpp"
 
 #include "generate.inc.hpp"

@@ -154,22 +154,6 @@ TEXGEN_APART std::uint64_t fill_about_point(const PointJob& job, std::size_t beg
     return doubtful;
 }
 
-// Those vectors of a block again, exactly. Returns what stays in doubt of one exact_block, or that nothing is.
-TEXGEN_APART inline Undecided fill_vectors_again(const PointJob& job, std::size_t begin, std::size_t end,
-                                                 std::uint64_t doubtful, Effort& effort) noexcept {
-    const PointTerms terms(job);
-    Undecided left{begin, 0};
-    for (; doubtful != 0; doubtful &= doubtful - 1) {
-        const std::size_t i = begin + static_cast<std::size_t>(std::countr_zero(doubtful)) * wide_at_once;
-        if (i / exact_block != left.begin / exact_block) {
-            if (left.values != 0) return left;
-            left.begin = i / exact_block * exact_block;
-        }
-        left.values |= fill_block_again(job, terms, i, i + wide_at_once, effort) << (i - left.begin);
-    }
-    return left.values != 0 ? left : Undecided{end, 0};
-}
-
 // Blocks of float_block points, about a point where one is not certainly in front, and of four times as many once one
 // is. Where more than an eighth of a block's vectors is in doubt they have company: more points after each such block
 // are done exactly. The job is copied for the loops, field by field: what was written by fields is waited for when it is

@@ -96,13 +96,42 @@ struct TwofoldForm {
         return (of.size[0] * size[0] + (of.size[1] * size[1] + (of.size[2] * size[2] + size_of_w))) * gamma(5);
     }
 
+    // The floats nearest to the sums of a finite form, which are quotients where q is 1. What the leading products
+    // leave of theirs, and the others, are six numbers; where all are 0, as of most ties, nothing is lost. A sum that is
+    // the middle of two floats but for these is on their side of it. `is_known` loses the lanes in doubt.
+    TEXGEN_INLINE Floats nearest_at(const PointLanes& at, const PointSizes& of, LongWords& is_known) const noexcept {
+        const RoundedEnds ends(value_at(form, at), error_at(of));
+        if (!any(ends.differ())) return ends.below;
+        Doubles sum = Doubles{} + form.w, second{}, size_of_second{};
+        const auto keep = [&](const Doubles& term) {
+            second = second + term;
+            size_of_second = size_of_second + magnitude(term);
+        };
+        TEXGEN_UNROLL
+        for (unsigned j = 0; j < 3; ++j) {
+            if ((used >> j & 1u) == 0) continue;
+            Doubles left;
+            sum = two_sum(sum, at.v[j] * high[j], left);
+            keep(left);
+            if ((with_low >> j & 1u) != 0) keep(at.v[j] * low[j]);
+        }
+        sum = two_sum(sum, second, second) + 0.0;
+        const Doubles lost = size_of_second * gamma(8);
+        const Doubles size_of_sum = magnitude(sum);
+        const LongWords is_middle = are_near_middles(sum, 0);
+        const LongWords is_small = greater(Doubles{} + 0x1p-125, size_of_sum) & are_nonzero(sum);
+        is_known &= at_most(lost, size_of_sum * 0x1p-54) & ~is_small;
+        is_known &= ~is_middle | at_most(lost * 2.0, magnitude(second));
+        const Doubles beside = sum + where(are_nonzero(second), with_sign_of(size_of_sum * 0x1p-48, second));
+        return to_floats(select(is_middle, beside, sum));
+    }
+
     // Of points that are numbers: a coordinate without a coefficient is not looked at. With T the sum of the terms'
     // magnitudes, what is left of the sum are six terms of less than 2^-50 T together, and precisely what is left of
     // their sum five of less than 2^-101 T. The last are added in one double, but for five roundings: exactly where
     // their grain, if it is asked, is at least 2^-102 T, as that of numbers of about one size is, or 2^-152 T.
-    template <class... Grains>
     TEXGEN_INLINE PointSum at(const PointLanes& at, const PointSizes& of, bool precisely,
-                              const Grains&... grains) const noexcept {
+                              const PointGrains* grains = nullptr) const noexcept {
         Doubles sum = Doubles{} + form.w;
         Doubles terms = Doubles{} + size_of_w;
         Doubles second{}, third{};  // what the sum leaves, and what that leaves
@@ -130,12 +159,11 @@ struct TwofoldForm {
                 sum = product;
             }
             terms = terms + of.size[j] * size[j];
-            ((result.grain = minimum(grains.grain[j] * grain[j], result.grain)), ...);
+            if (grains != nullptr) result.grain = minimum(grains->grain[j] * grain[j], result.grain);
         }
         const auto lost_beyond = [&](double range) {
             const Doubles lost = terms * (4.0 / range) + 0x1p-1000;
-            if constexpr (sizeof...(grains) == 0) return lost;
-            return where(greater(terms, result.grain * range), lost);
+            return grains == nullptr ? lost : where(greater(terms, result.grain * range), lost);
         };
         result.rest = third;
         if (precisely) {

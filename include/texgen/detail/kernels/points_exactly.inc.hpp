@@ -1,0 +1,218 @@
+// Points as the floats nearest to their quotients: blocks of them in double, and again what that leaves in doubt.
+// Included by kernels.inc.hpp.
+
+namespace TEXGEN_DETAIL::TEXGEN_ISA {
+
+// What decided a vector or a block of points, and is tried first with the next, so that company is not tried in vain.
+enum class Rung {
+    in_front,     // in double, with errors that hold for the block, which is all in front
+    either_side,  // the same on both sides of the projector
+    each_lane     // with errors of each lane, or else in two doubles
+};
+struct Effort {
+    Rung rung = Rung::in_front;
+    int in_vain = 0;         // so many vectors in a row needed two doubles
+    bool are_ties = false;   // in two doubles: the numerators as well as q
+    bool precisely[3] = {};  // all of the numerators' sums and of q's, or their leading part
+
+    // Whether the next vector is likely to need them, too.
+    TEXGEN_INLINE bool has_company() const noexcept { return in_vain >= 4; }
+
+    // Where lanes of numerator k, or of q, are unknown they ask for more. False if that is all there is.
+    TEXGEN_INLINE bool sharpen(std::size_t k, std::uint64_t unknown) noexcept {
+        if (unknown == 0 || (precisely[k] && precisely[2])) return false;
+        return precisely[precisely[k] ? 2 : k] = true;
+    }
+};
+
+// The sums at points: q and the numerators, nearly and in two doubles.
+struct PointTerms {
+    TwofoldForm q;
+    TwofoldForm numerator[2];
+    bool are_quotients;  // the numerators: q is 1
+
+    TEXGEN_APART explicit PointTerms(const PointJob& job) noexcept
+        : q(job.q), are_quotients(q.used == 0 && job.q.w == 1.0) {
+        for (int k = 0; k < job.numerators; ++k) {
+            numerator[k] = TwofoldForm(job.numerator[k]);
+            are_quotients &= numerator[k].is_finite;
+        }
+    }
+    // Which are behind whatever their q, being no numbers.
+    TEXGEN_INLINE LongWords are_dark(const PointLanes& at) const noexcept {
+        const Doubles zero = (at.v[0] + at.v[1] + at.v[2]) * (q.is_finite ? 0.0 : nan);
+        return ~at_most(zero, zero);
+    }
+};
+
+// Does points again: as sums where q is 1, and with errors of each lane, unless some vectors in a row needed more, of
+// which one in eight blocks sees whether they still do; and in two doubles, of which those that follow get at once what
+// one needed. Returns what stays in doubt, bit i for point begin + i.
+template <class CompiledWhereCalled = void>
+TEXGEN_APART std::uint64_t fill_block_again(const PointJob& job, const PointTerms& terms, std::size_t begin,
+                                            std::size_t end, Effort& effort) noexcept {
+    const std::size_t numerators = job.numerators == 2 ? 2 : 1;  // never 0: GCC 12 fails on a loop that may be none
+    const Doubles within = limit_within(job.tolerance);
+    std::uint64_t doubtful = 0;
+    for (std::size_t i = begin; i < end; i += at_once) {
+        const PointLanes at = load_points(job, i);
+        const PointSizes sizes(at);
+        const LongWords are_dark = terms.are_dark(at);
+        Floats value[2];
+        Words in_front{};
+        std::uint64_t unknown = 0;
+        bool is_decided = false;
+        const bool is_tried = !effort.has_company() || i % (8 * exact_block) == 0;
+        if (is_tried && terms.are_quotients) {
+            LongWords is_known = ~LongWords{};
+            in_front = narrow(~are_dark);
+            for (std::size_t k = 0; k < numerators; ++k)
+                value[k] = select(in_front, terms.numerator[k].nearest_at(at, sizes, is_known), Floats{});
+            is_decided = !any(~(is_known | are_dark));
+        }
+        if (is_tried && !is_decided) {
+            PointDivision division;
+            Doubles numerator_error[2];
+            division.q = value_at(terms.q.form, at);
+            division.reciprocal = 1.0 / division.q;
+            for (std::size_t k = 0; k < numerators; ++k) {
+                division.numerator[k] = value_at(terms.numerator[k].form, at);
+                numerator_error[k] = terms.numerator[k].error_at(sizes);
+            }
+            Doubt doubt;
+            in_front = narrow(divide_certainly<true>(numerators, division, numerator_error, terms.q.error_at(sizes),
+                                                     job.tolerance, value, doubt));
+            is_decided = !any(doubt.rounding | narrow(doubt.side & ~are_dark));
+            effort.in_vain = is_decided ? 0 : effort.in_vain + 1;
+        }
+        while (!is_decided) {
+            const PointGrains grains(sizes);
+            TwofoldDivisor q(terms.q.at(at, sizes, effort.precisely[2], effort.are_ties ? &grains : nullptr));
+            q.in_front &= ~are_dark;
+            in_front = narrow(q.in_front);
+            unknown = lane_bits(~(q.is_known | are_dark));
+            // q alone in two doubles: what it loses is small beside it unless ties, or q = 0, ask for the last bits of
+            // coordinates.
+            if (!effort.are_ties) {
+                is_decided = unknown == 0;
+                for (std::size_t k = 0; k < numerators; ++k)
+                    is_decided &= divide_nearly(value_at(terms.numerator[k].form, at),
+                                                terms.numerator[k].error_at(sizes), q, value[k]);
+                if (is_decided) break;
+                effort.are_ties = unknown == 0 || effort.precisely[2];
+                effort.precisely[2] = !effort.are_ties;
+                continue;
+            }
+            is_decided = !effort.sharpen(2, unknown);
+            for (std::size_t k = 0; k < numerators; ++k) {
+                const auto& numerator = terms.numerator[k];
+                if (!numerator.is_finite) {
+                    value[k] = to_floats(where(q.in_front, value_at(numerator.form, at) * q.reciprocal));
+                    continue;
+                }
+                LongWords is_known;
+                value[k] = nearest_quotients(numerator.at(at, sizes, effort.precisely[k], &grains), q, within,
+                                             effort.precisely[k], is_known);
+                const std::uint64_t unknown_of_it = lane_bits(~is_known);
+                unknown |= unknown_of_it;
+                is_decided &= !effort.sharpen(k, unknown_of_it);
+            }
+        }
+        store_points(job, i, numerators, value, in_front);
+        doubtful |= unknown << (i - begin);
+    }
+    return doubtful;
+}
+
+// Does these vectors of a block again, a bit for each. Returns what stays in doubt of one exact_block, or that nothing
+// is.
+TEXGEN_APART inline Undecided fill_vectors_again(const PointJob& job, std::size_t begin, std::size_t end,
+                                                 std::uint64_t doubtful, Effort& effort) noexcept {
+    const PointTerms terms(job);
+    Undecided left{begin, 0};
+    for (; doubtful != 0; doubtful &= doubtful - 1) {
+        const std::size_t i = begin + static_cast<std::size_t>(std::countr_zero(doubtful)) * wide_at_once;
+        if (i / exact_block != left.begin / exact_block) {
+            if (left.values != 0) return left;
+            left.begin = i / exact_block * exact_block;
+        }
+        left.values |= fill_block_again(job, terms, i, i + wide_at_once, effort) << (i - left.begin);
+    }
+    return left.values != 0 ? left : Undecided{end, 0};
+}
+
+// Does a block on both sides of the projector, and again those of its vectors that are in doubt. Where they are more
+// than a quarter, the blocks that follow are done so at once, up to the first of eight, or further as long as they need
+// two doubles. Returns where the next begins, or that with values which stay in doubt.
+template <class CompiledWhereCalled = void>
+TEXGEN_APART Undecided fill_points_again(const PointJob& original, std::size_t begin, Effort& effort) noexcept {
+    std::size_t end = end_of_block(original.count, begin, exact_block);
+    if (effort.rung <= Rung::either_side) {
+        PointJob job = original;
+        if (job.numerators == 1) {  // twice: this is not compiled for one
+            job.numerator[1] = job.numerator[0];
+            job.out[1] = job.out[0];
+        }
+        LongWords behind{};
+        const std::uint64_t doubtful = fill_points_block<true, 2>(job, begin, end, behind);
+        const Rung rung = any(behind) ? Rung::either_side : Rung::in_front;
+        if (doubtful == 0) {
+            effort = {rung};
+            return {end, 0};
+        }
+        effort.rung = rung;
+        if (4 * wide_at_once * static_cast<std::size_t>(std::popcount(doubtful)) <= end - begin)
+            return fill_vectors_again(original, begin, end, doubtful, effort);
+    }
+    const PointTerms terms(original);
+    effort.rung = Rung::each_lane;
+    for (;;) {
+        const std::uint64_t doubtful = fill_block_again(original, terms, begin, end, effort);
+        if (doubtful != 0) return {begin, doubtful};
+        begin = end;
+        const bool is_first_of_eight = begin / exact_block % 8 == 0;
+        if (begin == original.count || (is_first_of_eight && !effort.has_company())) return {begin, 0};
+        end = end_of_block(original.count, begin, exact_block);
+    }
+}
+
+// Most points are all in front and in no doubt, four blocks at once; blocks of which one is not are done again one by
+// one, and those that follow are taken for what it was, seven of them.
+// The job is copied, here and below, so that the compiler knows that no store changes it: nothing that the loop reads
+// may be reached from elsewhere.
+template <std::size_t Numerators>
+TEXGEN_INLINE Undecided fill_points_exact_of(const PointJob& original, std::size_t first) noexcept {
+    const PointJob job = original;
+    Effort effort;
+    constexpr std::uint64_t all = ~std::uint64_t{};
+    std::uint64_t doubtful = all;  // of the blocks of a float_block
+    for (std::size_t begin = first; begin < job.count;) {
+        if (begin / exact_block % 8 == 0 && effort.rung == Rung::each_lane && !effort.has_company()) effort = {};
+        if (begin % float_block == 0) {
+            const std::size_t end = end_of_block(job.count, begin, float_block);
+            LongWords unused{};
+            if (effort.rung != Rung::in_front) {
+                doubtful = all;
+            } else if (job.ulps != 0) {
+                doubtful = fill_bounded_block<Numerators>(job, begin, end) ? 0 : all;
+            } else {
+                doubtful = fill_points_block<false, Numerators>(job, begin, end, unused);
+            }
+        }
+        if ((doubtful >> begin % float_block / exact_block & 1) == 0) {
+            begin = end_of_block(job.count, begin, exact_block);
+            continue;
+        }
+        const Undecided left = fill_points_again(original, begin, effort);
+        if (left.values != 0) return left;
+        begin = left.begin;
+    }
+    return {job.count, 0};
+}
+
+template <class CompiledWhereCalled = void>
+Undecided fill_points_exact(const PointJob& job, std::size_t first) noexcept {
+    return job.numerators == 2 ? fill_points_exact_of<2>(job, first) : fill_points_exact_of<1>(job, first);
+}
+
+}  // namespace TEXGEN_DETAIL::TEXGEN_ISA
