@@ -206,18 +206,19 @@ TEXGEN_INLINE std::uint64_t fill_points_block(const PointJob& job, std::size_t b
     for (std::size_t k = 0; k < Numerators; ++k) numerator_error[k] = error_of(job.numerator[k]);
     // A NaN, of an infinite coordinate of another point, bounds nothing.
     const Doubles q_error = minimum(error_of(job.q), Doubles{} + infinity);
-    constexpr std::size_t size = Signed ? wide_at_once : exact_block;
+    const auto divide = [&](const PointDivision& of, Floats(&value)[2], Doubt& doubt) {
+        return divide_certainly<Signed>(Numerators, of, numerator_error, q_error, job.tolerance, value, doubt);
+    };
     std::uint64_t doubtful = 0;
     next = division;
-    for (std::size_t first = begin; first < end; first += size) {
+    for (std::size_t first = begin; first < end; first += exact_block) {
         Doubt doubt;
         ReciprocalRange range;
         const PointDivision* const first_division = next;
-        for (std::size_t i = first; i < first + size && i < end; i += at_once) {
+        for (std::size_t i = first; i < first + exact_block && i < end; i += at_once) {
             if constexpr (!Signed) range.add(next->reciprocal);
             Floats value[2];
-            const LongWords in_front =
-                divide_certainly<Signed>(Numerators, *next++, numerator_error, q_error, job.tolerance, value, doubt);
+            const LongWords in_front = divide(*next++, value, doubt);
             store_points(job, i, Numerators, value, narrow(in_front));
         }
         if constexpr (!Signed) {
@@ -232,9 +233,17 @@ TEXGEN_INLINE std::uint64_t fill_points_block(const PointJob& job, std::size_t b
                 const Doubles error = maximum(numerator_error[0], numerator_error[Numerators - 1]) + quotient * q_error;
                 doubt.rounding = ~narrow(is_within(job.tolerance, quotient, reciprocal * error));
             }
+            doubtful |= std::uint64_t{doubt.any_lane()} << (first - begin) / exact_block;
+        } else {
+            behind = doubt.behind;
+            if (!doubt.any_lane()) continue;
+            for (std::size_t v = 0; first_division + v != next; ++v) {
+                Doubt of_vector;
+                Floats unused[2];
+                divide(first_division[v], unused, of_vector);
+                doubtful |= std::uint64_t{of_vector.any_lane()} << v * at_once / wide_at_once;
+            }
         }
-        doubtful |= std::uint64_t{doubt.any_lane()} << (first - begin) / size;
-        behind |= doubt.behind;
     }
     return doubtful;
 }

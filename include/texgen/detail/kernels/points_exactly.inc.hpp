@@ -80,8 +80,9 @@ TEXGEN_APART std::uint64_t fill_block_again(const PointJob& job, const PointTerm
                 numerator_error[k] = terms.numerator[k].error_at(sizes);
             }
             Doubt doubt;
+            // Most of what the tolerance allows is decided before, and the rest below.
             in_front = narrow(divide_certainly<true>(numerators, division, numerator_error, terms.q.error_at(sizes),
-                                                     job.tolerance, value, doubt));
+                                                     0.0, value, doubt));
             is_decided = !any(doubt.rounding | narrow(doubt.side & ~are_dark));
             effort.in_vain = is_decided ? 0 : effort.in_vain + 1;
         }
