@@ -11,8 +11,8 @@
 
 #include "detail/matrices/required.hpp"
 
-// 0.4.24: 10000 major + 100 minor + patch.
-#define TEXGEN_VERSION 424
+// 0.4.25: 10000 major + 100 minor + patch.
+#define TEXGEN_VERSION 425
 
 namespace TEXGEN_NAMESPACE {
 

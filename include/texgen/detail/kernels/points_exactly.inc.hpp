@@ -88,7 +88,7 @@ TEXGEN_APART std::uint64_t fill_block_again(const PointJob& job, const PointTerm
         }
         while (!is_decided) {
             const PointGrains grains(sizes);
-            TwofoldDivisor q(terms.q.at(at, sizes, effort.precisely[2], effort.are_ties ? &grains : nullptr));
+            TwofoldDivisor q(terms.q.at(at, sizes, effort.precisely[2], grains));
             q.in_front &= ~are_dark;
             in_front = narrow(q.in_front);
             unknown = lane_bits(~(q.is_known | are_dark));
@@ -112,7 +112,7 @@ TEXGEN_APART std::uint64_t fill_block_again(const PointJob& job, const PointTerm
                     continue;
                 }
                 LongWords is_known;
-                value[k] = nearest_quotients(numerator.at(at, sizes, effort.precisely[k], &grains), q, within,
+                value[k] = nearest_quotients(numerator.at(at, sizes, effort.precisely[k], grains), q, within,
                                              effort.precisely[k], is_known);
                 const std::uint64_t unknown_of_it = lane_bits(~is_known);
                 unknown |= unknown_of_it;

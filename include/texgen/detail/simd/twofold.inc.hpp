@@ -129,9 +129,9 @@ struct TwofoldForm {
     // Of points that are numbers: a coordinate without a coefficient is not looked at. With T the sum of the terms'
     // magnitudes, what is left of the sum are six terms of less than 2^-50 T together, and precisely what is left of
     // their sum five of less than 2^-101 T. The last are added in one double, but for five roundings: exactly where
-    // their grain, if it is asked, is at least 2^-102 T, as that of numbers of about one size is, or 2^-152 T.
+    // their grain is at least 2^-102 T, as that of numbers of about one size is, or 2^-152 T.
     TEXGEN_INLINE PointSum at(const PointLanes& at, const PointSizes& of, bool precisely,
-                              const PointGrains* grains = nullptr) const noexcept {
+                              const PointGrains& grains) const noexcept {
         Doubles sum = Doubles{} + form.w;
         Doubles terms = Doubles{} + size_of_w;
         Doubles second{}, third{};  // what the sum leaves, and what that leaves
@@ -159,11 +159,11 @@ struct TwofoldForm {
                 sum = product;
             }
             terms = terms + of.size[j] * size[j];
-            if (grains != nullptr) result.grain = minimum(grains->grain[j] * grain[j], result.grain);
+            result.grain = minimum(grains.grain[j] * grain[j], result.grain);
         }
         const auto lost_beyond = [&](double range) {
             const Doubles lost = terms * (4.0 / range) + 0x1p-1000;
-            return grains == nullptr ? lost : where(greater(terms, result.grain * range), lost);
+            return where(greater(terms, result.grain * range), lost);
         };
         result.rest = third;
         if (precisely) {
