@@ -179,8 +179,8 @@ TEXGEN_INLINE bool fill_bounded_block(const PointJob& job, std::size_t begin, st
     return !any(~range.holds()) && !any_zero(distance);
 }
 
-// A block of points, with errors that hold for all of it, all in front if not Signed. Returns a bit for each vector
-// (Signed) or exact_block of which a value is in doubt (it is written all the same).
+// A block of points, with errors that hold for all of it, all in front if not Signed. Returns a bit for each wide vector
+// of which a value is in doubt (it is written all the same).
 // All divisions are begun before the first result is asked for: instructions that wait for one keep others from being
 // begun.
 template <bool Signed, std::size_t Numerators>
@@ -206,9 +206,6 @@ TEXGEN_INLINE std::uint64_t fill_points_block(const PointJob& job, std::size_t b
     for (std::size_t k = 0; k < Numerators; ++k) numerator_error[k] = error_of(job.numerator[k]);
     // A NaN, of an infinite coordinate of another point, bounds nothing.
     const Doubles q_error = minimum(error_of(job.q), Doubles{} + infinity);
-    const auto divide = [&](const PointDivision& of, Floats(&value)[2], Doubt& doubt) {
-        return divide_certainly<Signed>(Numerators, of, numerator_error, q_error, job.tolerance, value, doubt);
-    };
     std::uint64_t doubtful = 0;
     next = division;
     for (std::size_t first = begin; first < end; first += exact_block) {
@@ -218,31 +215,36 @@ TEXGEN_INLINE std::uint64_t fill_points_block(const PointJob& job, std::size_t b
         for (std::size_t i = first; i < first + exact_block && i < end; i += at_once) {
             if constexpr (!Signed) range.add(next->reciprocal);
             Floats value[2];
-            const LongWords in_front = divide(*next++, value, doubt);
+            const LongWords in_front =
+                divide_certainly<Signed>(Numerators, *next++, numerator_error, q_error, 0.0, value, doubt);
             store_points(job, i, Numerators, value, narrow(in_front));
         }
+        behind |= doubt.behind;
+        if constexpr (!Signed) doubt.side = ~(range.holds() & greater(Doubles{} + 0x1p-13, range.sum * q_error));
+        if (!doubt.any_lane()) continue;
         if constexpr (!Signed) {
-            doubt.side = ~(range.holds() & greater(Doubles{} + 0x1p-13, range.sum * q_error));
-            if (job.tolerance > 0.0 && any(doubt.rounding)) {
-                Doubles quotient{}, reciprocal{};
-                for (const PointDivision* of = first_division; of != next; ++of) {
-                    reciprocal = maximum(of->reciprocal, reciprocal);
+            bool is_all = any(doubt.side);  // what is behind may be among it
+            if (!is_all && job.tolerance > 0.0) {
+                Doubles quotient{};
+                for (const PointDivision* of = first_division; of != next; ++of)
                     for (std::size_t k = 0; k < Numerators; ++k)
                         quotient = maximum(magnitude(of->numerator[k] * of->reciprocal), quotient);
-                }
                 const Doubles error = maximum(numerator_error[0], numerator_error[Numerators - 1]) + quotient * q_error;
-                doubt.rounding = ~narrow(is_within(job.tolerance, quotient, reciprocal * error));
+                is_all = any(~is_within(job.tolerance, quotient, range.sum * error));
+                if (!is_all) continue;
             }
-            doubtful |= std::uint64_t{doubt.any_lane()} << (first - begin) / exact_block;
-        } else {
-            behind = doubt.behind;
-            if (!doubt.any_lane()) continue;
-            for (std::size_t v = 0; first_division + v != next; ++v) {
-                Doubt of_vector;
-                Floats unused[2];
-                divide(first_division[v], unused, of_vector);
-                doubtful |= std::uint64_t{of_vector.any_lane()} << v * at_once / wide_at_once;
+            if (is_all) {
+                doubtful |= ~(~std::uint64_t{} << (exact_block / wide_at_once)) << (first - begin) / wide_at_once;
+                continue;
             }
+        }
+        for (const PointDivision* of = first_division; of != next; ++of) {
+            Doubt of_vector;
+            Floats unused[2];
+            divide_certainly<true>(Numerators, *of, numerator_error, q_error, Signed ? job.tolerance : 0.0, unused,
+                                   of_vector);
+            const auto v = static_cast<std::size_t>(of - division) * at_once / wide_at_once;
+            doubtful |= std::uint64_t{of_vector.any_lane()} << v;
         }
     }
     return doubtful;

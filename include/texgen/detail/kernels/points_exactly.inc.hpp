@@ -3,17 +3,12 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// What decided a vector or a block of points, and is tried first with the next, so that company is not tried in vain.
-enum class Rung {
-    in_front,     // in double, with errors that hold for the block, which is all in front
-    either_side,  // the same on both sides of the projector
-    each_lane     // with errors of each lane, or else in two doubles
-};
+// What the last points needed, so that company is not tried in vain.
 struct Effort {
-    Rung rung = Rung::in_front;
-    int in_vain = 0;         // so many vectors in a row needed two doubles
-    bool are_ties = false;   // in two doubles: the numerators as well as q
-    bool precisely[3] = {};  // all of the numerators' sums and of q's, or their leading part
+    bool is_either_side = false;  // some were behind the projector
+    int in_vain = 0;              // so many vectors in a row needed two doubles
+    bool are_ties = false;        // in two doubles: the numerators as well as q
+    bool precisely[3] = {};       // all of the numerators' sums and of q's, or their leading part
 
     // Whether the next vector is likely to need them, too.
     TEXGEN_INLINE bool has_company() const noexcept { return in_vain >= 4; }
@@ -142,43 +137,43 @@ TEXGEN_APART inline Undecided fill_vectors_again(const PointJob& job, std::size_
     return left.values != 0 ? left : Undecided{end, 0};
 }
 
+// Of a block's vectors, so many as are done again by themselves.
+TEXGEN_INLINE bool are_few(std::uint64_t vectors) noexcept {
+    return vectors != 0 && 4 * wide_at_once * static_cast<std::size_t>(std::popcount(vectors)) <= exact_block;
+}
+
 // Does a block on both sides of the projector, and again those of its vectors that are in doubt. Where they are more
 // than a quarter, the blocks that follow are done so at once, up to the first of eight, or further as long as they need
 // two doubles. Returns where the next begins, or that with values which stay in doubt.
 template <class CompiledWhereCalled = void>
 TEXGEN_APART Undecided fill_points_again(const PointJob& original, std::size_t begin, Effort& effort) noexcept {
     std::size_t end = end_of_block(original.count, begin, exact_block);
-    if (effort.rung <= Rung::either_side) {
-        PointJob job = original;
-        if (job.numerators == 1) {  // twice: this is not compiled for one
-            job.numerator[1] = job.numerator[0];
-            job.out[1] = job.out[0];
-        }
-        LongWords behind{};
-        const std::uint64_t doubtful = fill_points_block<true, 2>(job, begin, end, behind);
-        const Rung rung = any(behind) ? Rung::either_side : Rung::in_front;
-        if (doubtful == 0) {
-            effort = {rung};
-            return {end, 0};
-        }
-        effort.rung = rung;
-        if (4 * wide_at_once * static_cast<std::size_t>(std::popcount(doubtful)) <= end - begin)
-            return fill_vectors_again(original, begin, end, doubtful, effort);
+    PointJob job = original;
+    if (job.numerators == 1) {  // twice: this is not compiled for one
+        job.numerator[1] = job.numerator[0];
+        job.out[1] = job.out[0];
     }
+    LongWords behind{};
+    const std::uint64_t vectors = fill_points_block<true, 2>(job, begin, end, behind);
+    if (vectors == 0) effort = {};
+    effort.is_either_side = any(behind);
+    if (vectors == 0) return {end, 0};
+    if (are_few(vectors)) return fill_vectors_again(original, begin, end, vectors, effort);
     const PointTerms terms(original);
-    effort.rung = Rung::each_lane;
     for (;;) {
         const std::uint64_t doubtful = fill_block_again(original, terms, begin, end, effort);
         if (doubtful != 0) return {begin, doubtful};
         begin = end;
         const bool is_first_of_eight = begin / exact_block % 8 == 0;
-        if (begin == original.count || (is_first_of_eight && !effort.has_company())) return {begin, 0};
+        if (begin == original.count || (is_first_of_eight && !effort.has_company())) break;
         end = end_of_block(original.count, begin, exact_block);
     }
+    effort = {};
+    return {begin, 0};
 }
 
-// Most points are all in front and in no doubt, four blocks at once; blocks of which one is not are done again one by
-// one, and those that follow are taken for what it was, seven of them.
+// Most points are all in front and in no doubt, four blocks at once; blocks of which a few vectors are have these done
+// again, and others are done again one by one, and those that follow are taken for what it was, seven of them.
 // The job is copied, here and below, so that the compiler knows that no store changes it: nothing that the loop reads
 // may be reached from elsewhere.
 template <std::size_t Numerators>
@@ -186,13 +181,13 @@ TEXGEN_INLINE Undecided fill_points_exact_of(const PointJob& original, std::size
     const PointJob job = original;
     Effort effort;
     constexpr std::uint64_t all = ~std::uint64_t{};
-    std::uint64_t doubtful = all;  // of the blocks of a float_block
+    constexpr std::size_t vectors = exact_block / wide_at_once;
+    std::uint64_t doubtful = all;  // a bit for each vector of a float_block
     for (std::size_t begin = first; begin < job.count;) {
-        if (begin / exact_block % 8 == 0 && effort.rung == Rung::each_lane && !effort.has_company()) effort = {};
         if (begin % float_block == 0) {
             const std::size_t end = end_of_block(job.count, begin, float_block);
             LongWords unused{};
-            if (effort.rung != Rung::in_front) {
+            if (effort.is_either_side) {
                 doubtful = all;
             } else if (job.ulps != 0) {
                 doubtful = fill_bounded_block<Numerators>(job, begin, end) ? 0 : all;
@@ -200,11 +195,12 @@ TEXGEN_INLINE Undecided fill_points_exact_of(const PointJob& original, std::size
                 doubtful = fill_points_block<false, Numerators>(job, begin, end, unused);
             }
         }
-        if ((doubtful >> begin % float_block / exact_block & 1) == 0) {
-            begin = end_of_block(job.count, begin, exact_block);
-            continue;
-        }
-        const Undecided left = fill_points_again(original, begin, effort);
+        const std::uint64_t of_block = doubtful >> begin % float_block / wide_at_once & all >> (64 - vectors);
+        Undecided left{end_of_block(job.count, begin, exact_block), 0};
+        if (are_few(of_block))
+            left = fill_vectors_again(original, begin, left.begin, of_block, effort);
+        else if (of_block != 0)
+            left = fill_points_again(original, begin, effort);
         if (left.values != 0) return left;
         begin = left.begin;
     }
