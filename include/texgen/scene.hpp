@@ -68,21 +68,22 @@ inline namespace TEXGEN_COMPILER {
 // for each in that of the projectors, whatever happened before: two scenes that see the same arrays have the same pairs
 // and the same matrices.
 // Nothing of the engine's is kept but copies. Memory is allocated only in an update, and only when the number of
-// objects, of projectors or of lit pairs exceeds all former ones; noexcept.
+// objects, of projectors or of lit pairs exceeds all former ones (a copy has none); noexcept.
 // Cost: an update in which nothing changed does nothing. Otherwise only pairs of which a part changed are tested,
 // through a tree over the objects' bounds in the world: a changed projector costs what its light is near to, a changed
 // object at most one test a projector and level (5 for 10 000 objects), fewer where the light is far from all that
 // changed; what is found costs a T_o and a coverage(); and the lit pairs are gone through once, at some nanoseconds
-// each. The tree is sorted anew as objects change, a few objects for each: no update sorts all, but one that changes or
-// adds as many. Memory: 250 bytes an object, 1050 a projector, 170 a lit pair, up to twice that where they came one by
+// each. The tree is sorted anew as objects change, a few objects for each: no update sorts all, but one that changes as
+// many, or allocates memory for more. Memory: 250 bytes an object, 1050 a projector, 170 a lit pair, up to twice that where they came one by
 // one.
 // Bad input: where T_o, as it is computed, or a box is not finite, the pair is partial and kept, as coverage() has it:
 // where a product of finite matrices overflows, too. An empty box is never lit. Where exponents are so far apart that
 // coverage() might not say (elements beyond 2^+-200, or 2^190 apart), an object meets every projector, a projector
 // every object.
 // Spans that disagree in size, and an index that names nothing, are asserted; beyond the shortest nothing is
-// looked at. What changed without being named stays as it was; with assertions on, that is asserted too, as far as the
-// bounds in the world show it, so that an update looks at every object: it takes 50 ns for each.
+// looked at. Of what changed without being named pairs stay as they were, and new ones may be of what it was, what it is,
+// or by halves of both; with assertions on, it is asserted, as far as the bounds in the world show it, so that an update
+// looks at every object: it takes 50 ns for each.
 // Source: Everitt, Projective Texture Mapping: T_o "must be updated every time the model matrix changes".
 class Scene {
 public:

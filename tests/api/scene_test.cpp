@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -505,6 +506,44 @@ TEST_CASE("work grows with what is lit, not with what stands in the dark") {
     CHECK(works[1].bounds_tested < 600);
 }
 
+TEST_CASE("objects far away, or twice so far, leave the others to be found as quickly") {
+    Random random(1210);
+    const auto projector = make_projector(texgen::PerspectiveLens{texgen::degrees(20), 1.0, 0.1, 100.0},
+                                          texgen::Aim{{0, 30, 0}, {0, 0, 0}, {0, 0, 1}}, texgen::opengl);
+    REQUIRE(projector);
+    Engine engine;
+    for (int i = 0; i < 10000; ++i) {
+        glm::dmat4 m(1.0);
+        m[3] = glm::dvec4(random.vector3(500.0), 1.0);
+        engine.models.push_back(ModelMatrix(m));
+    }
+    engine.bounds.assign(engine.models.size(), box_of(glm::vec3(0.5f)));
+    engine.projectors.assign(1, *projector);
+    engine.regions.assign(1, texgen::whole_texture());
+    const Indices turned{0};
+    Indices all(engine.models.size());
+    std::iota(all.begin(), all.end(), 0u);
+    const auto tested_beside = [&](const std::vector<double>& distances) {
+        Engine with = engine;
+        for (std::size_t i = 0; i < distances.size(); ++i)
+            with.models[7 + i] = ModelMatrix(
+                glm::dmat4(1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, distances[i], distances[i], distances[i], 1));
+        Scene scene;
+        scene.update(with.view(), {});
+        const std::size_t at_once = scene.update(with.view(), {{}, turned}).bounds_tested;
+        // In a scene that was sorted before, they are sorted out in some frames in which all move.
+        Scene later;
+        later.update(engine.view(), {});
+        for (int frame = 0; frame < 4; ++frame) later.update(with.view(), {all, {}});
+        CHECK(later.update(with.view(), {{}, turned}).bounds_tested < 2 * at_once + 200);
+        return at_once;
+    };
+    const std::size_t ordinary = tested_beside({});
+    for (const std::vector<double>& distances :
+         {std::vector{1e6}, {-1e6, 1e9}, {1e9}, {1e9, 1e20}, {1e300}, {HUGE_VAL, 1e9}, {NAN, 1e9}})
+        CHECK(tested_beside(distances) < 4 * ordinary);
+}
+
 TEST_CASE("once every count was reached, nothing is allocated") {
     Random random(1205);
     // Frames that come again: objects and projectors move, and some of them go and come back.
@@ -820,6 +859,15 @@ TEST_CASE("what moved without being named is asserted, and stays as it was") {
     CHECK(std::exchange(broken_preconditions, 0) == 1);
     CHECK(
         std::all_of(scene.pairs().begin(), scene.pairs().end(), [](const LitPair& pair) { return pair.object < 29; }));
+    engine = given;
+    engine.regions.pop_back();
+    Scene one_region_less, one_projector_less;
+    one_region_less.update(engine.view(), {});
+    CHECK(std::exchange(broken_preconditions, 0) == 1);
+    engine.projectors.pop_back();
+    one_projector_less.update(engine.view(), {});
+    CHECK(broken_preconditions == 0);
+    require_same(one_region_less, one_projector_less);
 }
 
 TEST_CASE("a scene that was moved from is empty, and sees the next arrays as a new one does") {

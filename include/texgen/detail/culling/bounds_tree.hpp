@@ -29,13 +29,13 @@ public:
         const bool grows = count > bounds_.size();
         if (grows) grow(count);
         for (const std::uint32_t object : objects) bounds_[object] = bounds_of(object);
-        // What moved is no longer where it was sorted in. Sorting costs less than as many moves.
+        // What moved is no longer where it was sorted in. Sorting costs less than as many moves, or than growing.
         moves_ += objects.size();
         if (grows || (stage_ == Stage::sorted && moves_ > bounds_.size())) {
             moves_ = 0;
-            begin(Stage::measure);
+            sort_all();
         }
-        sort(steps_a_move * objects.size());
+        sort(grows ? (std::numeric_limits<std::size_t>::max)() : steps_a_move * objects.size());
         for (const std::uint32_t object : objects) mark(object);
         if (height_ > 0) refit(height_ - 1, 0);
     }
@@ -122,7 +122,7 @@ private:
     }
 
     // New objects stand behind the others, until they are sorted in. Room for half as much again, so that objects which
-    // come one by one do not move all memory each time.
+    // come one by one do not move all memory each time. A sorting that is interrupted begins with all.
     void grow(std::size_t count) noexcept {
         const std::size_t before = bounds_.size();
         const std::size_t size = count + count / 2;
@@ -132,6 +132,7 @@ private:
         object_at_.resize(size);
         place_.resize(size);
         for (std::size_t i = before; i < size; ++i) object_at_[i] = place_[i] = static_cast<std::uint32_t>(i);
+        for (std::size_t i = 0; i < size; ++i) keys_[i] = i;
         std::size_t blocks = size;
         std::size_t height = 0;
         do {
@@ -145,44 +146,85 @@ private:
     }
 
     // Neighbours in the world become neighbours in the tree, by the Morton code of their middle. That is done in
-    // slices, of some steps for each object that moves, and so at most once for as many moves as there are objects: the
-    // extent of the world, the codes, a radix sort by their bytes, and at last place after place gets its object.
-    // Meanwhile the tree is as right as ever, whatever stands where.
-    enum class Stage { measure, encode, sort_by_byte, place, sorted };
+    // slices, of some steps for each object that moves, and so about once for as many moves as there are objects: the
+    // extent of the world, the codes, a radix sort by their bytes. Then crowds, runs of objects with one code, as most
+    // are where one is far away, are sorted in the same way by the extents of their own, twice if need be; and at last
+    // place after place gets its object. Meanwhile the tree is as right as ever, whatever stands where.
+    enum class Stage { measure, encode, sort_by_byte, find_crowd, place, sorted };
     static constexpr std::size_t steps_a_move = 12;
     static constexpr std::size_t code_bytes = 4;
+    static constexpr std::size_t crowd_size = 64;
+    static constexpr int crowd_passes = 2;
 
-    void begin(Stage stage) noexcept {
+    void begin(Stage stage, std::size_t next) noexcept {
         stage_ = stage;
-        next_ = 0;
+        next_ = next;
+    }
+
+    void sort_all() noexcept {
+        first_ = 0;
+        last_ = bounds_.size();
+        pass_ = 0;
+        begin(Stage::measure, first_);
     }
 
     void sort(std::size_t steps) noexcept {
         while (steps > 0 && stage_ != Stage::sorted) {
-            const std::size_t end = (std::min)(bounds_.size(), next_ + steps);
+            const std::size_t last = stage_ < Stage::find_crowd ? last_ : bounds_.size();
+            const std::size_t end = next_ + (std::min)(last - next_, steps);
             steps -= end - next_;
+            if (stage_ == Stage::find_crowd && find_crowd(end)) {
+                steps += end - last_;  // that were not looked at
+                continue;
+            }
             if (stage_ == Stage::measure) measure(end);
             if (stage_ == Stage::encode) encode(end);
             if (stage_ == Stage::sort_by_byte) sort_by_byte(end);
             if (stage_ == Stage::place) put_in_place(end);
             next_ = end;
-            if (next_ == bounds_.size()) begin_next_stage();
+            if (next_ == last) begin_next_stage();
         }
     }
 
     void begin_next_stage() noexcept {
-        if (stage_ == Stage::encode) {
+        if (stage_ == Stage::measure) {
+            // What has no extent is as near as it can be.
+            bool is_extended = false;
+            for (std::size_t j = 0; j < 3; ++j) is_extended = is_extended || low_[j] < high_[j];
+            if (pass_ == 0 || is_extended) return begin(Stage::encode, first_);
+        } else if (stage_ == Stage::encode) {
             byte_ = 0;
             for (auto& places : first_place_) {
-                std::uint32_t sum = 0;
+                auto sum = static_cast<std::uint32_t>(first_);
                 for (std::uint32_t& first : places) sum += std::exchange(first, sum);
             }
+            return begin(Stage::sort_by_byte, first_);
+        } else if (stage_ == Stage::sort_by_byte && ++byte_ < code_bytes) {
+            return begin(stage_, first_);
+        } else if (stage_ == Stage::place) {
+            return begin(Stage::sorted, 0);
         }
-        if (stage_ == Stage::sort_by_byte) {
-            std::swap(keys_, sorted_keys_);
-            if (++byte_ < code_bytes) return begin(stage_);
+        const bool is_last = last_ == bounds_.size();
+        if (is_last && pass_ == crowd_passes) return begin(Stage::place, 0);
+        first_ = is_last ? 0 : last_;
+        pass_ += is_last;
+        begin(Stage::find_crowd, first_);
+    }
+
+    // A crowd that ends before `end` becomes what is sorted.
+    bool find_crowd(std::size_t end) noexcept {
+        for (std::size_t i = next_; i < end; ++i) {
+            const bool is_last = i + 1 == bounds_.size();
+            if (!is_last && code_of(keys_[i]) == code_of(keys_[i + 1])) continue;
+            const std::size_t first = std::exchange(first_, i + 1);
+            if (i + 1 - first <= crowd_size || code_of(keys_[i]) == code_of_nowhere) continue;
+            first_ = first;
+            last_ = i + 1;
+            begin(Stage::measure, first_);
+            return true;
         }
-        begin(static_cast<Stage>(static_cast<int>(stage_) + 1));
+        if (end == bounds_.size()) last_ = end;
+        return false;
     }
 
     bool is_somewhere(std::size_t object) const noexcept {
@@ -193,11 +235,12 @@ private:
     }
 
     void measure(std::size_t end) noexcept {
-        if (next_ == 0) {
+        if (next_ == first_) {
             low_.fill((std::numeric_limits<double>::max)());
             high_.fill(std::numeric_limits<double>::lowest());
         }
-        for (std::size_t object = next_; object < end; ++object) {
+        for (std::size_t i = next_; i < end; ++i) {
+            const std::size_t object = object_of(keys_[i]);
             for (std::size_t j = 0; j < 3 && is_somewhere(object); ++j) {
                 low_[j] = smaller(low_[j], middle(object, j));
                 high_[j] = larger(high_[j], middle(object, j));
@@ -207,9 +250,10 @@ private:
 
     // What moved beyond the extent since stands at its end; what is nowhere comes last.
     void encode(std::size_t end) noexcept {
-        if (next_ == 0) first_place_ = {};
-        for (std::size_t object = next_; object < end; ++object) {
-            std::uint64_t code = 0x7fffffff;
+        if (next_ == first_) first_place_ = {};
+        for (std::size_t i = next_; i < end; ++i) {
+            const std::size_t object = object_of(keys_[i]);
+            std::uint64_t code = code_of_nowhere;
             if (is_somewhere(object)) {
                 code = 0;
                 for (std::size_t j = 0; j < 3; ++j) {
@@ -218,21 +262,27 @@ private:
                     code |= every_third_bit(static_cast<std::uint32_t>(1023.0 * smaller(larger(along, 0.0), 1.0))) << j;
                 }
             }
-            keys_[object] = code << 32 | object;
-            for (std::size_t byte = 0; byte < code_bytes; ++byte) ++first_place_[byte][byte_of(keys_[object], byte)];
+            keys_[i] = code << 32 | object;
+            for (std::size_t byte = 0; byte < code_bytes; ++byte) ++first_place_[byte][byte_of(keys_[i], byte)];
         }
     }
 
+    static constexpr std::uint64_t code_of_nowhere = 0x7fffffff;
+    static std::uint64_t code_of(std::uint64_t key) noexcept { return key >> 32; }
+    static std::uint32_t object_of(std::uint64_t key) noexcept { return static_cast<std::uint32_t>(key); }
     static std::size_t byte_of(std::uint64_t key, std::size_t byte) noexcept { return key >> (32 + 8 * byte) & 0xff; }
 
+    // There and back, so that the last of an even number of bytes leaves keys_ sorted.
     void sort_by_byte(std::size_t end) noexcept {
-        for (std::size_t i = next_; i < end; ++i)
-            sorted_keys_[first_place_[byte_][byte_of(keys_[i], byte_)]++] = keys_[i];
+        static_assert(code_bytes % 2 == 0);
+        const auto& from = byte_ % 2 == 0 ? keys_ : sorted_keys_;
+        auto& to = byte_ % 2 == 0 ? sorted_keys_ : keys_;
+        for (std::size_t i = next_; i < end; ++i) to[first_place_[byte_][byte_of(from[i], byte_)]++] = from[i];
     }
 
     void put_in_place(std::size_t end) noexcept {
         for (std::size_t place = next_; place < end; ++place) {
-            const auto object = static_cast<std::uint32_t>(keys_[place]);
+            const std::uint32_t object = object_of(keys_[place]);
             const std::uint32_t other = object_at_[place];
             if (object == other) continue;
             std::swap(object_at_[place], object_at_[place_[object]]);
@@ -253,13 +303,15 @@ private:
     std::vector<WorldBounds> bounds_;                // of each object
     std::vector<std::uint32_t> place_;               // of each object
     std::vector<std::uint32_t> object_at_;           // of each place
-    std::vector<std::uint64_t> keys_, sorted_keys_;  // a Morton code, and below it the object
+    std::vector<std::uint64_t> keys_, sorted_keys_;  // a Morton code, and below it the object: each has one
     std::array<std::vector<Block>, 11> levels_;      // the objects' first; 8^11 is above 2^32
     HeldCount height_;
     std::size_t moves_ = 0;  // since the last sorting began
 
     Stage stage_ = Stage::sorted;
-    std::size_t next_ = 0;  // of the stage: an object, or a place
+    std::size_t next_ = 0;              // of the stage: a key, or a place
+    std::size_t first_ = 0, last_ = 0;  // the keys that are sorted
+    int pass_ = 0;
     std::size_t byte_ = 0;
     std::array<double, 3> low_{}, high_{};
     std::array<std::array<std::uint32_t, 256>, code_bytes> first_place_{};  // of each byte's values

@@ -19,6 +19,15 @@ inline bool have_same_bits(const glm::dmat4& a, const glm::dmat4& b) noexcept {
     return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
+// Whether products of the same matrices may be these: of two NaNs a compiler may take either.
+inline bool are_same(const glm::dmat4& a, const glm::dmat4& b) noexcept {
+    for (glm::length_t i = 0; i < 16; ++i) {
+        const double of_a = a[i / 4][i % 4], of_b = b[i / 4][i % 4];
+        if (!(of_a == of_b || (of_a != of_a && of_b != of_b))) return false;
+    }
+    return true;
+}
+
 }  // namespace TEXGEN_DETAIL
 
 namespace TEXGEN_NAMESPACE {
@@ -26,7 +35,9 @@ inline namespace TEXGEN_COMPILER {
 
 inline Scene::Scene(DepthMapping depth) noexcept : depth_(depth) {}
 
-inline Scene::Prepared::Prepared(const Projector& projector, const TextureRegion& slide, DepthMapping depth) noexcept
+// In one copy, which rounds alike wherever it is called.
+TEXGEN_APART inline Scene::Prepared::Prepared(const Projector& projector, const TextureRegion& slide,
+                                              DepthMapping depth) noexcept
     : texture_from_eye(detail::texture_from_projector_eye(projector, slide, depth)),
       view(projector.view),
       region(slide),
@@ -35,10 +46,11 @@ inline Scene::Prepared::Prepared(const Projector& projector, const TextureRegion
 inline SceneWork Scene::update(const SceneView& view, const SceneChanges& changes) noexcept {
     SceneWork work;
     const std::size_t objects = (std::min)(view.models.size(), view.bounds.size());
-    const std::size_t projectors = view.projectors.size();
+    const std::size_t projectors =
+        view.regions.empty() ? view.projectors.size() : (std::min)(view.projectors.size(), view.regions.size());
     TEXGEN_ASSERT(view.models.size() == view.bounds.size());
-    TEXGEN_ASSERT(view.regions.empty() || view.regions.size() == projectors);
-    const auto region_of = [&](std::size_t i) { return i < view.regions.size() ? view.regions[i] : whole_texture(); };
+    TEXGEN_ASSERT(view.regions.empty() || view.regions.size() == view.projectors.size());
+    const auto region_of = [&](std::size_t i) { return view.regions.empty() ? whole_texture() : view.regions[i]; };
 
     objects_.begin(changes.objects, objects);
     projectors_.begin(changes.projectors, projectors);
@@ -104,8 +116,8 @@ bool Scene::is_as_it_was(const SceneView& view, const auto& region_of) const noe
         if (projectors_.is_changed(i)) continue;
         const Prepared now(view.projectors[i], region_of(i), depth_);
         const Prepared& then = prepared_[i];
-        if (!detail::have_same_bits(now.texture_from_eye.matrix(), then.texture_from_eye.matrix()) ||
-            !detail::have_same_bits(now.view.matrix(), then.view.matrix()))
+        if (!detail::are_same(now.texture_from_eye.matrix(), then.texture_from_eye.matrix()) ||
+            !detail::are_same(now.view.matrix(), then.view.matrix()))
             return false;
     }
     return true;
