@@ -761,6 +761,54 @@ TEST_CASE("the fragments of a camera's window are not found fault with, nor what
     CHECK(diagnose(*keystone).empty());
 }
 
+TEST_CASE("models of any size, and lenses whose planes are next to one another, are not found fault with") {
+    Random random(3711);
+    const auto named = [](const auto& setup) {
+        const Diagnosis diagnosis = diagnose(setup);
+        return std::any_of(diagnosis.begin(), diagnosis.end(),
+                           [](const auto& finding) { return finding.defect != Defect::precision_lost; });
+    };
+    const Projector projector =
+        make_projector(texgen::PerspectiveLens{texgen::degrees(40.0), 1.3, 0.1, 100.0},
+                       texgen::Aim{{1.0, 2.0, 3.0}, {0.0, 0.3, 0.1}, {0.0, 1.0, 0.0}}, texgen::opengl)
+            .value();
+    for (int exponent = -1000; exponent <= 1000; ++exponent) {
+        const double size = std::ldexp(random.uniform(0.5, 1.0), exponent);
+        glm::dmat4 matrix = glm::rotate(glm::translate(glm::dmat4(1.0), 0.5 * random.direction()),
+                                        random.uniform(0.0, 6.0), random.direction()) *
+                            glm::scale(glm::dmat4(1.0), glm::dvec3(size));
+        const texgen::ModelMatrix model(matrix);
+        texgen::ProjectionSetup<Object> setup{
+            .projector = projector, .world_from_space = model, .texgen = object_linear(projector, model)};
+        INFO(exponent, ": ", hex(matrix));
+        REQUIRE(!named(setup));
+        if (exponent < -148 || exponent > 126) continue;
+        setup.texgen = texgen::ObjectTexgen(setup.texgen->rounded());
+        REQUIRE(!named(setup));
+    }
+    for (int i = 0; i < 20000; ++i) {
+        const Conventions conventions = any_conventions(random);
+        const double z_near = random.uniform(0.1, 10.0);
+        const bool is_float = random.coin();
+        const double gap = random.power_of_ten(is_float ? -7.0 : -15.0, -1.0);
+        const texgen::PerspectiveLens lens{texgen::degrees(random.uniform(20.0, 100.0)), 1.3, z_near,
+                                           z_near * (1.0 + gap), random.coin()};
+        std::optional<Projector> of_lens = make_projector(
+            lens, texgen::Aim{random.direction(), 9.0 * random.direction(), random.direction()}, conventions);
+        if (!of_lens) continue;
+        if (is_float) {
+            of_lens->projection = texgen::ProjectorProjection(of_lens->projection.rounded());
+            of_lens->view = texgen::ProjectorView(of_lens->view.rounded());
+        }
+        texgen::ProjectionSetup<texgen::World> setup{.projector = of_lens,
+                                                     .lens = {.z_near = lens.z_near, .z_far = lens.z_far}};
+        INFO(hex(lens.z_near), " to ", hex(lens.z_far), is_float ? " in float" : "");
+        REQUIRE(!named(setup));
+        setup.texgen = texture_from_world(*of_lens);
+        REQUIRE(!named(setup));
+    }
+}
+
 TEST_CASE("a model that is scaled to nothing shows without any matrix") {
     Random random(625);
     for (int i = 0; i < 200; ++i) {

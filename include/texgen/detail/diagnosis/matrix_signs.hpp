@@ -65,19 +65,28 @@ inline glm::dmat4 rounded_magnitudes(const glm::dmat4& m) noexcept {
 
 // A determinant of three rows and three columns, and whether it stands out of the rounding of the elements and of its
 // own: with its cofactors C, an error e_ij of the elements changes it by sum e_ij C_ij at first order. That does not
-// depend on the scale of any row or column.
+// depend on the scale of any row or column, so these are scaled by powers of two, as far as products are in range.
 struct Minor {
-    double value;
+    double value;  // of what was scaled
     bool stands_out;
 };
 
 inline Minor minor_of(const glm::dmat4& m, const std::array<glm::length_t, 3>& rows,
                       const std::array<glm::length_t, 3>& columns) noexcept {
-    const auto row = [&](std::size_t i) {
-        return glm::dvec3(m[columns[0]][rows[i]], m[columns[1]][rows[i]], m[columns[2]][rows[i]]);
-    };
+    glm::dmat3 scaled;
+    for (glm::length_t i = 0; i < 3; ++i)
+        for (glm::length_t j = 0; j < 3; ++j)
+            scaled[i][j] = m[columns[static_cast<std::size_t>(j)]][rows[static_cast<std::size_t>(i)]];
+    for (const bool is_row : {true, false}) {
+        for (glm::length_t i = 0; i < 3; ++i) {
+            const auto element = [&](glm::length_t j) -> double& { return is_row ? scaled[i][j] : scaled[j][i]; };
+            const double largest = larger(larger(std::fabs(element(0)), std::fabs(element(1))), std::fabs(element(2)));
+            if (!(largest > 0.0 && largest < infinity)) continue;
+            for (glm::length_t j = 0; j < 3; ++j) element(j) = times_power_of_two(element(j), -exponent_of(largest));
+        }
+    }
     const auto magnitude = [](const glm::dvec3& v, const glm::dvec3& w) { return glm::dot(glm::abs(v), glm::abs(w)); };
-    const glm::dvec3 a = row(0), b = row(1), c = row(2);
+    const glm::dvec3 a = scaled[0], b = scaled[1], c = scaled[2];
     const glm::dvec3 of_a = glm::cross(b, c);
     const double value = glm::dot(a, of_a);
     const double change = magnitude(a, of_a) + magnitude(b, glm::cross(c, a)) + magnitude(c, glm::cross(a, b));
@@ -152,8 +161,11 @@ inline bool mistakes_depth(const glm::dmat4& p, DepthRange range, Handedness han
     const auto lands_on_other = [&](const std::optional<double>& distance) {
         if (!distance) return false;
         const double z = ahead_of(p, handedness) * *distance;
-        const double depth = is_finite(z) ? (p[2].z * z + p[3].z) / (p[2].w * z + p[3].w) : at_infinity;
-        return std::fabs(depth - other_low) < rounding;
+        if (!is_finite(z)) return std::fabs(at_infinity - other_low) < rounding;
+        // Of ends that are next to one another depth is the difference of large numbers.
+        const double w = p[2].w * z + p[3].w;
+        const double lost = rounding_of(p) * (std::fabs(p[2].z * z) + std::fabs(p[3].z));
+        return std::fabs((p[2].z * z + p[3].z) / w - other_low) < rounding && lost < 0.5 * rounding * std::fabs(w);
     };
     return lands_on_other(z_near) || lands_on_other(z_far);
 }

@@ -40,6 +40,9 @@ inline Product pose_factor(const glm::dmat4& m) noexcept {
     return result;
 }
 
+// What floats below 2^-126 lose besides, in three products.
+inline constexpr double lost_by_subnormal_floats = 0x1p-147;
+
 // What a matrix may differ from a product by: a share of the element, and of the magnitudes of its terms.
 struct Closeness {
     double of_element, of_magnitude;
@@ -65,8 +68,9 @@ public:
                 const double magnitude = product.magnitude[column][row];
                 if (!(magnitude > 0.0) || says_nothing(column)) continue;
                 const double value = product.value[column][row] / magnitude;
-                along += given[column][row] / magnitude * value;
-                norm += value * value;
+                const double weight = magnitude / (magnitude + 0x1p-100);  // where floats may be subnormal, little
+                along += weight * (given[column][row] / magnitude * value);
+                norm += weight * (value * value);
             }
         }
         multiple_ = along / norm;
@@ -80,8 +84,8 @@ public:
                 const double value = product_.value[column][row];
                 const double accepted =
                     closeness.of_element * std::fabs(value) + closeness.of_magnitude * product_.magnitude[column][row];
-                if (!(std::fabs(given_[column][row] - multiple_ * value) <= std::fabs(multiple_) * accepted))
-                    return 0.0;
+                const double error = std::fabs(given_[column][row] - multiple_ * value);
+                if (!(error <= std::fabs(multiple_) * accepted + lost_by_subnormal_floats)) return 0.0;
             }
         }
         return is_finite(multiple_) ? multiple_ : 0.0;
