@@ -138,6 +138,34 @@ TEST_CASE("a triangle that the near plane cuts costs at most 16 times the ordina
     }
 }
 
+TEST_CASE("footprints by ids of triangles that are refused cost what others do") {
+    Random random(75);
+    constexpr int width = 128, height = 16;
+    std::vector<Triangle> triangles, refused;
+    for (int i = 0; i < 500; ++i) {
+        triangles.push_back(support::make_triangle(support::Family::friendly, random));
+        refused.push_back(triangles.back());
+        refused.back().b = refused.back().a;
+    }
+    std::vector<std::uint32_t> ids;
+    for (int i = 0; i < width * height; ++i) ids.push_back(static_cast<std::uint32_t>(random.integer(0, 499)));
+    std::vector<float> dx(ids.size()), dy(ids.size()), level(ids.size());
+    texgen::TriangleBatch of_triangles(everywhere()), of_refused(everywhere());
+    of_triangles.assign(triangles);
+    of_refused.assign(refused);
+    const auto run = [&](const texgen::TriangleBatch& batch) {
+        return [&] {
+            texgen::Footprints out;
+            out.dsdx = dx;
+            out.dsdy = dy;
+            out.level = level;
+            footprint(batch, ids, {300, 300, width, height}, {1024.0, 1024.0}, out);
+        };
+    };
+    const double ratio = support::worst_over_ordinary_within(2.0, run(of_triangles), run(of_refused));
+    CHECK_MESSAGE(ratio <= 2.0, ratio, " times");
+}
+
 TEST_CASE("a tolerance finer than the floats of a tile costs at most three times what exact does") {
     Random random(73);
     const Tolerance fine = dial[1];

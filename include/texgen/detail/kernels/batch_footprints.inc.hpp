@@ -208,7 +208,9 @@ Undecided fill_batch_footprints(const BatchFootprintsJob& original, std::size_t 
     static constexpr float dark[3 * BatchVertex::size + 1] = {0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 1};
     const BatchFootprintsJob job = original;
     const bool filters = job.are_filtered();
-    const auto vertices = [&](std::uint32_t id) { return id < job.triangles ? vertices_of(job, id) : dark; };
+    const auto vertices = [&](std::uint32_t id) {
+        return id < job.triangles && !job.planes[id].is_behind() ? vertices_of(job, id) : dark;
+    };
     FragmentCentres centres(job, first);
     FootprintLanes known;
     Words known_ids{};

@@ -37,6 +37,11 @@ struct alignas(64) BatchPlanes {
     static constexpr std::size_t of_numerator[3] = {s, t, r};
 
     double value[count];
+
+    // Without a doubt, as what is refused.
+    bool is_behind() const noexcept {
+        return value[q] < 0.0 && value[q + 1] == 0.0 && value[q + 2] == 0.0 && value[q + 3] == 0.0;
+    }
 };
 
 // Of the magnitudes of a plane's terms, see TrianglePlanes::error().
@@ -82,6 +87,7 @@ struct FragmentsJob : BatchJob, VisibilityBuffer {};
 
 // The same for footprints.
 struct BatchFootprintsJob : VisibilityBuffer, FootprintArrays {
+    const BatchPlanes* planes;
     const float* vertices;
     std::size_t count;
     double texels[2];  // per unit of s and t

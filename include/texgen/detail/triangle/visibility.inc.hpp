@@ -140,6 +140,7 @@ TEXGEN_APART void interpolate_runs(const TriangleBatch& batch, FragmentsJob& job
 inline void describe(BatchFootprintsJob& job, const TriangleBatch& batch, std::span<const std::uint32_t> ids,
                      const FragmentRect& rect, const TexelsPerUnit& texels, const Footprints& out) noexcept {
     describe(job, batch, ids, rect);
+    job.planes = Inside::planes(batch);
     job.vertices = &Inside::triangle(batch, 0).a.window.x;
     job.count = ids.size();
     job.texels[0] = texels.s;
