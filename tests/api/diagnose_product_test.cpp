@@ -786,16 +786,11 @@ TEST_CASE("models of any size, and lenses whose planes are next to one another, 
         setup.texgen = texgen::ObjectTexgen(setup.texgen->rounded());
         REQUIRE(!named(setup));
     }
-    for (int i = 0; i < 20000; ++i) {
-        const Conventions conventions = any_conventions(random);
-        const double z_near = random.uniform(0.1, 10.0);
-        const bool is_float = random.coin();
-        const double gap = random.power_of_ten(is_float ? -7.0 : -15.0, -1.0);
-        const texgen::PerspectiveLens lens{texgen::degrees(random.uniform(20.0, 100.0)), 1.3, z_near,
-                                           z_near * (1.0 + gap), random.coin()};
-        std::optional<Projector> of_lens = make_projector(
-            lens, texgen::Aim{random.direction(), 9.0 * random.direction(), random.direction()}, conventions);
-        if (!of_lens) continue;
+    // In float, and in double. Depth is a difference of large numbers there: two that once fell on the other low end.
+    const auto check = [&](const texgen::PerspectiveLens& lens, const texgen::Aim& aim, Conventions conventions,
+                           bool is_float) {
+        std::optional<Projector> of_lens = make_projector(lens, aim, conventions);
+        if (!of_lens) return;
         if (is_float) {
             of_lens->projection = texgen::ProjectorProjection(of_lens->projection.rounded());
             of_lens->view = texgen::ProjectorView(of_lens->view.rounded());
@@ -806,6 +801,20 @@ TEST_CASE("models of any size, and lenses whose planes are next to one another, 
         REQUIRE(!named(setup));
         setup.texgen = texture_from_world(*of_lens);
         REQUIRE(!named(setup));
+    };
+    for (const auto& [fovy, z_near, z_far] :
+         {std::array{35.0, 0x1.999999999999ap+2, 0x1.99999e6b26844p+2}, {43.0, 0x1.cp+1, 0x1.c00005a70aa6ep+1}})
+        for (const Conventions& api : {texgen::opengl, texgen::direct3d})
+            for (const Conventions& conventions : {api, left_handed(api)})
+                for (const bool is_reversed : {false, true})
+                    check({texgen::degrees(fovy), 1.3, z_near, z_far, is_reversed},
+                          {{1.0, 2.0, 3.0}, {0.0, 0.3, 0.1}, {0.0, 1.0, 0.0}}, conventions, true);
+    for (int i = 0; i < 20000; ++i) {
+        const double z_near = random.uniform(0.1, 10.0);
+        const bool is_float = random.coin();
+        const double gap = random.power_of_ten(is_float ? -7.0 : -15.0, -1.0);
+        check({texgen::degrees(random.uniform(20.0, 100.0)), 1.3, z_near, z_near * (1.0 + gap), random.coin()},
+              {random.direction(), 9.0 * random.direction(), random.direction()}, any_conventions(random), is_float);
     }
 }
 

@@ -539,8 +539,19 @@ TEST_CASE("objects far away, or twice so far, leave the others to be found as qu
         return at_once;
     };
     const std::size_t ordinary = tested_beside({});
-    for (const std::vector<double>& distances :
-         {std::vector{1e6}, {-1e6, 1e9}, {1e9}, {1e9, 1e20}, {1e300}, {HUGE_VAL, 1e9}, {NAN, 1e9}})
+    CHECK(ordinary < 2000);
+    std::vector<double> another_town;
+    for (int k = 0; k < 4000; ++k) another_town.push_back(1e9 + 10.0 * k);
+    CHECK(tested_beside(another_town) < 4 * ordinary);
+    for (const std::vector<double>& distances : {std::vector{1e6},
+                                                 {-1e6, 1e9},
+                                                 {1e9},
+                                                 {-1e9},
+                                                 {1e9, 1e20},
+                                                 {-1e9, -1e20},
+                                                 {1e300},
+                                                 {HUGE_VAL, 1e9},
+                                                 {NAN, 1e9}})
         CHECK(tested_beside(distances) < 4 * ordinary);
 }
 
