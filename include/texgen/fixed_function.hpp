@@ -62,7 +62,8 @@ public:
     // Stores p M^-1, the plane of the eye's space that `plane` is under this MODELVIEW. It is a snapshot: whatever
     // MODELVIEW becomes later, the stored plane stays. T(10, 20, 30) with p = (1, 2, 3, 4) stores (1, 2, 3, -136).
     // Guarantee: solved in double and rounded once: each component within 0.54 float ulp of the exact one, or within
-    // 2^-60 of the largest one, while the condition of M (rows and columns scaled) stays below 1e8.
+    // 2^-60 of the largest one, while the condition of M (rows and columns scaled) stays below 1e8 and no row of M is
+    // more than 2^20 times as large as another; beyond that, eye_plane_error_bound() says.
     // Shape: `plane` is a row p over the space that `modelview` takes to the eye; the stored plane is a row over the
     // eye.
     // Bad input: false, and the state as it was, where M is singular to working precision (by its residual, never by
@@ -106,7 +107,8 @@ public:
     //     reflection_map  (s, t, r) = r           normal_map   (s, t, r) = n
     //     sphere_map      m = 2 sqrt(rx^2 + ry^2 + (rz + 1)^2), s = rx / m + 1/2, t = ry / m + 1/2
     // n uses the upper 3x3 of M^-1. For a MODELVIEW with a projective last row OpenGL leaves a choice; this is Mesa's.
-    // Bad input: m = 0, the singularity of the sphere map, gives (1/2, 1/2). A vertex at the eye has no direction: u =
+    // Bad input: m = 0, the singularity of the sphere map, gives (1/2, 1/2) where no rounding comes before it, and else
+    // any direction of 1/2 about that. A vertex at the eye has no direction: u =
     // 0. A zero normal stays zero under normalize. Where M is singular or not finite, OpenGL leaves normals undefined:
     // sphere_map, reflection_map and normal_map give NaN, and the other modes are not touched by it. A NaN or an
     // infinity spoils the coordinates that are made from it (a texture matrix other than the identity mixes them).

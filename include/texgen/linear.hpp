@@ -106,7 +106,8 @@ inline glm::dvec2 depth_error_bound(const WindowTexgen& texture_from_window, glm
 // Returns what OpenGL stores when the rows of `planes` are given to glTexGen under that MODELVIEW: each row p becomes p
 // M^-1.
 // Guarantee: solved and refined, so that rounded to float it is within 0.54 ulp of its largest component while the
-// condition of M (rows and columns scaled) stays below 1e8; no allocation, noexcept.
+// condition of M (rows and columns scaled) stays below 1e8 and no row of M is more than 2^20 times as large as another;
+// beyond that, eye_planes_error_bound() says. No allocation, noexcept.
 // Shape: planes over the space that M takes to the eye. The rows of S P_p V_p under MODELVIEW = V_e give T_e.
 // Bad input: empty where inverse() refuses M, but for what overflows, or where a plane, M or a result is not finite.
 // Source: OpenGL compatibility specification, "Generating Texture Coordinates": p' = p M^-1, M current at the time of

@@ -818,6 +818,34 @@ TEST_CASE("models of any size, and lenses whose planes are next to one another, 
     }
 }
 
+TEST_CASE("angles in whole radians, and tiny ones, are not taken for degrees") {
+    Random random(3712);
+    int lenses = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const bool is_whole = i % 2 == 0;
+        const texgen::Angle fovy =
+            texgen::radians(is_whole ? random.integer(1, 12) / 4.0 : random.power_of_ten(-9.0, -2.0));
+        const texgen::Aim aim{9.0 * random.direction(), 9.0 * random.direction(), random.direction()};
+        const std::optional<Projector> projector =
+            make_projector(texgen::PerspectiveLens{fovy, 1.5, 0.1, 100.0}, aim, any_conventions(random));
+        if (!projector) continue;
+        ++lenses;
+        const auto takes_for_degrees = [&](const texgen::ProjectionSetup<texgen::World>& setup) {
+            const Diagnosis diagnosis = diagnose(setup);
+            return std::any_of(diagnosis.begin(), diagnosis.end(),
+                               [](const auto& finding) { return finding.defect == Defect::angle_unit_mistaken; });
+        };
+        INFO(hex(fovy.in_radians()));
+        const texgen::WorldTexgen texgen = texture_from_world(*projector);
+        REQUIRE(!takes_for_degrees({.projector = projector}));
+        REQUIRE(!takes_for_degrees({.projector = projector, .texgen = texgen}));
+        REQUIRE(!takes_for_degrees({.texgen = texgen}));
+        REQUIRE(!takes_for_degrees({.texgen = texgen, .lens = {.fovy = fovy}}));
+        REQUIRE(!takes_for_degrees({.projector = projector, .lens = {.fovy = fovy}}));
+    }
+    CHECK(lenses > 1500);
+}
+
 TEST_CASE("a model that is scaled to nothing shows without any matrix") {
     Random random(625);
     for (int i = 0; i < 200; ++i) {

@@ -292,3 +292,10 @@ TEST_CASE("a camera without an inverse, a viewport without an area and what is n
         }
     }
 }
+
+TEST_CASE("what is below all doubles is not 0 in a bound") {
+    glm::dmat4 m(0.0);
+    m[3][3] = 1.0;
+    m[2][0] = 0x1p-1060;
+    CHECK(depth_error_bound(texgen::WindowTexgen(m), glm::vec3(0.5f), DepthBuffer::float32).x > 0.0);
+}

@@ -179,7 +179,8 @@ inline bool mistakes_unit(double focal_length, const Angle& fovy) noexcept {
     };
     if (is_of(fovy.in_radians())) return false;
     const double turned = 2.0 * std::atan2(1.0, focal_length) - fovy.in_degrees();
-    return std::fabs(std::sin(0.5 * turned)) <= 0x1p-16 || is_of(degrees(fovy.in_radians()).in_radians());
+    return std::fabs(std::sin(0.5 * turned)) <= 0x1p-16 * smaller(fovy.in_degrees(), 1.0) ||
+           is_of(degrees(fovy.in_radians()).in_radians());
 }
 
 // Row r against row q. Every lens has (0, 0, e, f) in row z and (0, 0, w, h) in row w, so that r = limit q + constant,

@@ -142,14 +142,14 @@ inline bool is_of_round_angle(const Estimate& focal_length) noexcept {
 }
 
 // The number of whole degrees that make that focal length, but for its sign, if they are taken for radians; 0 where
-// none do.
+// none do. Below half a turn it is a number of radians that people write, too.
 inline double degrees_as_radians(const Estimate& focal_length) noexcept {
     constexpr double turn = 2.0 * std::numbers::pi;
     const double step = focal_length.error < 0x1p-30 ? 1.0 : 5.0;
     const double angle = 2.0 * std::atan2(1.0, focal_length.value);
     const double accepted = focal_length.error * std::sin(angle) + 0x1p-44;
     for (double turns = 0.0; turns < 180.0; turns += turn) {
-        for (const double number : {turns + angle, turns + turn - angle}) {
+        for (const double number : {turns + turn - angle, turns + turn + angle}) {
             // The nearest whole number, of numbers that are small.
             const double round = step * ((number / step + 0x1.8p52) - 0x1.8p52);
             if (std::fabs(number - round) <= accepted && round > 0.0 && round < 180.0) return round;

@@ -84,7 +84,7 @@ inline glm::dvec2 depth_error_bound(const WindowTexgen& texture_from_window, glm
         const double size = detail::magnitude(slope) * (q.error + detail::gamma(2) * detail::magnitude(q.value)) +
                             detail::magnitude(slope_q) * (s.error + detail::gamma(2) * detail::magnitude(s.value));
         const double error = 1.001 * rounding * (numerator + size) / least_q / last_q;
-        if (error >= 0.0) bound[row] = error;
+        if (error >= 0.0) bound[row] = error + 0x1p-1000;  // of what underflows
     }
     return bound;
 }
