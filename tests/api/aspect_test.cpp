@@ -140,3 +140,15 @@ TEST_CASE("an aspect that is none makes no lens, and a region without points") {
         CHECK_FALSE(perspective(contain(without_angle, 3.0), texgen::opengl));
     }
 }
+
+TEST_CASE("a picture of a lens's aspect stays as it is where the sides are the least doubles, or the largest") {
+    for (const int exponent : {-1074, -1060, 0, 1000, 1021}) {
+        const double unit = std::ldexp(1.0, exponent);
+        for (const auto& [width, height] : {std::array{3.0, 2.0}, {1.0, 1.0}, {3.0, 1.0}}) {
+            const FrustumLens lens{0.0, width * unit, 0.0, height * unit, 0.5, 10.0};
+            CAPTURE(exponent);
+            CHECK(cover(lens, width / height) == texgen::whole_texture());
+            CHECK(contain(lens, width / height).right == lens.right);
+        }
+    }
+}

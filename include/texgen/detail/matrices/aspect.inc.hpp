@@ -6,9 +6,12 @@ namespace TEXGEN_DETAIL {
 inline bool is_half_angle(double radians) noexcept { return radians > 0.0 && radians < 0.5 * std::numbers::pi; }
 inline bool is_aspect(double aspect) noexcept { return aspect > 0.0 && is_finite(aspect); }
 
-// In halves: no difference leaves the range.
+// Of large numbers in halves: no difference leaves the range. Those of subnormal ones would be rounded.
 double aspect_of(const auto& lens) noexcept {
-    return std::fabs((0.5 * lens.right - 0.5 * lens.left) / (0.5 * lens.top - 0.5 * lens.bottom));
+    const double largest = larger(larger(std::fabs(lens.left), std::fabs(lens.right)),
+                                  larger(std::fabs(lens.bottom), std::fabs(lens.top)));
+    const double unit = largest < 0x1p1000 ? 1.0 : 0.5;
+    return std::fabs((unit * lens.right - unit * lens.left) / (unit * lens.top - unit * lens.bottom));
 }
 
 // Narrows [low, high] to that fraction about its middle.
