@@ -612,7 +612,7 @@ MUTANTS = [
     *_of("detail/diagnosis/seen_lens.hpp",
          ("every number is round", "if (std::fabs(scaled - round) > 4.0 * number.error * scaled) continue;", "",
           "diagnose_product_test"),
-         ("the angle's other sign is not tried", "{turns + angle, turns + turn - angle}", "{turns + angle, turns + angle}",
+         ("the angle's other sign is not tried", "{turns + turn - angle, turns + turn + angle}", "{turns + turn + angle, turns + turn + angle}",
           "diagnose_product_test"),
          ("what an object's unit makes of a number is a mistake", "(unit == 1.0 || !knows_unit)", "unit == 1.0",
           "diagnose_product_test"),
