@@ -119,7 +119,7 @@ private:
         bool has_eye_texgen = false;
     };
 
-    bool is_as_it_was(const SceneView& view, const auto& region_of) const noexcept;
+    bool is_as_it_was(const SceneView& view, std::size_t projectors, const auto& region_of) const noexcept;
     void drop_changed_pairs() noexcept;
     void reserve_a_pair() noexcept;
     void add_pair(std::uint32_t object, std::uint32_t projector, const ModelMatrix& model, const Box& box,

@@ -54,7 +54,7 @@ inline SceneWork Scene::update(const SceneView& view, const SceneChanges& change
 
     objects_.begin(changes.objects, objects);
     projectors_.begin(changes.projectors, projectors);
-    TEXGEN_ASSERT(is_as_it_was(view, region_of));
+    TEXGEN_ASSERT(is_as_it_was(view, projectors, region_of));
     if (objects_.changed().empty() && projectors_.changed().empty()) return work;
 
     tree_.change(objects_.changed(), objects, [&](std::uint32_t i) {
@@ -107,12 +107,12 @@ inline std::size_t Scene::update_eye(const CameraPose& world_from_eye) noexcept 
     return computed;
 }
 
-bool Scene::is_as_it_was(const SceneView& view, const auto& region_of) const noexcept {
+bool Scene::is_as_it_was(const SceneView& view, std::size_t projectors, const auto& region_of) const noexcept {
     for (std::size_t i = 0; i < (std::min)(view.models.size(), view.bounds.size()); ++i) {
         if (objects_.is_changed(i)) continue;
         if (!(tree_[i] == detail::world_bounds(view.models[i].matrix(), view.bounds[i]))) return false;
     }
-    for (std::size_t i = 0; i < view.projectors.size(); ++i) {
+    for (std::size_t i = 0; i < projectors; ++i) {
         if (projectors_.is_changed(i)) continue;
         const Prepared now(view.projectors[i], region_of(i), depth_);
         const Prepared& then = prepared_[i];

@@ -120,7 +120,7 @@ struct TwofoldForm {
         const Doubles size_of_sum = magnitude(sum);
         const LongWords is_middle = are_near_middles(sum, 0);
         const LongWords is_small = greater(Doubles{} + 0x1p-125, size_of_sum) & are_nonzero(sum);
-        is_known &= at_most(lost, size_of_sum * 0x1p-54) & ~is_small;
+        is_known &= at_most(lost, size_of_sum * 0x1p-55) & ~is_small;
         is_known &= ~is_middle | at_most(lost * 2.0, magnitude(second));
         const Doubles beside = sum + where(are_nonzero(second), with_sign_of(size_of_sum * 0x1p-48, second));
         return to_floats(select(is_middle, beside, sum));
