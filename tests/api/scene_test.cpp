@@ -555,6 +555,59 @@ TEST_CASE("objects far away, or twice so far, leave the others to be found as qu
         CHECK(tested_beside(distances) < 4 * ordinary);
 }
 
+TEST_CASE("towns far from one another that move, grow and vanish have the pairs of a new scene, whatever was sorted") {
+    Random random(1211);
+    Tally tally;
+    for (int run = 0; run < 12; ++run) {
+        // Some crowds within crowds, and objects that are nowhere or everywhere.
+        std::vector<glm::dvec3> towns{glm::dvec3(0.0)};
+        for (int i = 0; i < 4; ++i)
+            towns.push_back(towns[towns.size() / 2] + random.power_of_ten(2.0, 12.0) * random.direction());
+        const auto place = [&](ModelMatrix& model) {
+            glm::dmat4 m = random.rigid(10.0);
+            m[3] += glm::dvec4(towns[static_cast<std::size_t>(random.integer(0, 4))], 0.0);
+            if (random.integer(0, 200) == 0) m[3][random.integer(0, 2)] = random.coin() ? HUGE_VAL : 1e300;
+            model = ModelMatrix(m);
+        };
+        Engine engine = some_engine(random, 700, 6, 10.0);
+        for (ModelMatrix& model : engine.models) place(model);
+        const Engine all = engine;
+        Scene scene;
+        scene.update(engine.view(), {});
+        for (int frame = 0; frame < 60; ++frame) {
+            Indices moved;
+            const int share = random.integer(0, 3) == 0 ? 1 : random.integer(2, 100);
+            for (std::uint32_t i = 0; i < engine.models.size(); ++i) {
+                if (random.integer(1, share) != 1) continue;
+                place(engine.models[i]);
+                moved.push_back(i);
+            }
+            if (random.integer(0, 5) == 0) {
+                const auto count = static_cast<std::size_t>(random.integer(100, 1400));
+                while (engine.models.size() > count) {
+                    engine.models.pop_back();
+                    engine.bounds.pop_back();
+                }
+                while (engine.models.size() < count) {
+                    moved.push_back(static_cast<std::uint32_t>(engine.models.size()));
+                    engine.models.push_back(all.models[0]);
+                    place(engine.models.back());
+                    engine.bounds.push_back(all.bounds[engine.bounds.size() % 700]);
+                }
+                std::erase_if(moved, [&](std::uint32_t i) { return i >= count; });
+            }
+            scene.update(engine.view(), {moved, {}});
+            Scene fresh;
+            fresh.update(engine.view(), {});
+            require_same(scene, fresh);
+            if (frame % 20 == 19) require_all_pairs(scene, engine, tally);
+        }
+    }
+    CHECK(broken_preconditions == 0);
+    CHECK(tally.partial + tally.inside > 1000);
+    CHECK(tally.outside > 10000);
+}
+
 TEST_CASE("once every count was reached, nothing is allocated") {
     Random random(1205);
     // Frames that come again: objects and projectors move, and some of them go and come back.
