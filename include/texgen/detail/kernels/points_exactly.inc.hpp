@@ -182,6 +182,7 @@ TEXGEN_INLINE Undecided fill_points_exact_of(const PointJob& original, std::size
     Effort effort;
     constexpr std::uint64_t all = ~std::uint64_t{};
     constexpr std::size_t vectors = exact_block / wide_at_once;
+    static_assert(float_block / wide_at_once <= 64);
     std::uint64_t doubtful = all;  // a bit for each vector of a float_block
     for (std::size_t begin = first; begin < job.count;) {
         if (begin % float_block == 0) {
