@@ -671,6 +671,34 @@ TEST_CASE("only what is asked for is written, the same whatever else is asked fo
     }
 }
 
+TEST_CASE("the footprints of a column are those that it has in a wider rectangle") {
+    Random random(6401);
+    for (int i = 0; i < 200; ++i) {
+        Shot shot = support::detail::ordinary(support::families[static_cast<std::size_t>(i) % support::families.size()],
+                                              random);
+        shot.rect.width = 3;
+        shot.rect.height = random.integer(2, 90);
+        const FootprintSetup setup(setup_of(shot.triangle), some_texels(random));
+        FootprintOutputs wide(shot.rect);
+        if (!footprint(setup, shot.rect, wide.spans())) continue;
+        for (int x = 0; x < 3; ++x) {
+            const FragmentRect column{shot.rect.x + x, shot.rect.y, 1, shot.rect.height};
+            FootprintOutputs of_column(column);
+            if (!footprint(setup, column, of_column.spans())) continue;
+            REQUIRE(of_column.pads_are_intact());
+            for (std::size_t k = 0; k < 6; ++k)  // but for major, which of a circle may be any
+                for (std::size_t y = 0; y < count_of(column); ++y) {
+                    const std::size_t f = 3 * y + static_cast<std::size_t>(x);
+                    const double value = wide.at(k, f), difference = std::fabs(of_column.at(k, y) - value);
+                    const double least = k == 4 ? 1.0 : 0.0;  // the level is a logarithm
+                    REQUIRE_MESSAGE((same_bits(of_column[k][y], wide[k][f]) ||
+                                     (k >= 4 && difference <= 0x1p-15 * std::fmax(least, std::fabs(value)))),
+                                    k, " at ", y, " of ", hex(Shot{shot.triangle, column}));
+                }
+        }
+    }
+}
+
 TEST_CASE("no fragment of ten million is outside the extremes, and they are reached") {
     Random random(6500);
     std::size_t fragments = 0;

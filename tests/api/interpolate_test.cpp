@@ -14,6 +14,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "judges/fragments.hpp"
@@ -55,11 +56,22 @@ std::vector<int> awkward_widths() {
     return widths;
 }
 
+// A row as a column.
+Shot mirrored(Shot shot) {
+    for (WindowVertex* const vertex : {&shot.triangle.a, &shot.triangle.b, &shot.triangle.c})
+        std::swap(vertex->window.x, vertex->window.y);
+    std::swap(shot.rect.x, shot.rect.y);
+    std::swap(shot.rect.width, shot.rect.height);
+    return shot;
+}
+
+// And a row as the column of the mirrored triangle, too.
 void require_right(const Shot& shot, const texgen::TextureRegion& region, Outputs& out, Seen& seen) {
     const Work work = interpolate(setup_of(shot.triangle, region), shot.rect, out.spans());
     const std::string wrong = first_wrong(shot, ExactTriangle(shot.triangle), region, texgen::exact, work, out, seen);
     REQUIRE_MESSAGE(wrong.empty(), wrong, " in ", hex(shot));
     REQUIRE_MESSAGE(out.pads_are_intact(), hex(shot));
+    if (shot.rect.height == 1 && shot.rect.width > 1) require_right(mirrored(shot), region, out, seen);
 }
 
 // s at fragment i of every row is (2 m + 1) 2^-25 for some integer m: the middle of two floats. q/w is constant.
@@ -476,6 +488,34 @@ TEST_CASE("the fragments of a tile of any width are those that are asked for alo
             REQUIRE(whole.pads_are_intact());
         }
     }
+}
+
+TEST_CASE("a column is as right as a row, of any height, within any region and tolerance") {
+    Random random(351);
+    Seen seen;
+    constexpr std::array asked{Outputs::all, 0b1011u, 0b1000u, 0b1001u, 0b0001u, 0b1110u};
+    for (const HardFamily& family : support::hard_families) {
+        CAPTURE(std::string(family.name));
+        for (int i = 0; i < 60; ++i) {
+            Shot shot = family.make(random);
+            if (random.coin()) shot = mirrored(shot);  // what is hard of a row is of a column then
+            shot.rect.x += random.integer(0, shot.rect.width - 1);
+            shot.rect.width = 1;
+            if (shot.rect.height == 1 || random.coin()) shot.rect.height = random.integer(2, i % 3 == 0 ? 700 : 70);
+            const ExactTriangle exact(shot.triangle);
+            const texgen::TextureRegion region =
+                random.coin() ? support::region_at(shot, exact, random) : texgen::whole_texture().with_depth();
+            const Tolerance tolerance = random.coin() ? texgen::exact : texgen::texels(1.0 / 512.0, 4096.0);
+            Outputs out(count_of(shot.rect), asked[static_cast<std::size_t>(random.integer(0, 5))]);
+            const Work work = interpolate(setup_of(shot.triangle, region, tolerance), shot.rect, out.spans());
+            const std::string wrong = first_wrong(shot, exact, region, tolerance, work, out, seen);
+            REQUIRE_MESSAGE(wrong.empty(), wrong, " in ", hex(shot));
+            REQUIRE(out.pads_are_intact());
+        }
+    }
+    CHECK(seen.in_front > 1000);
+    CHECK(seen.lit > 1000);
+    CHECK(seen.dark > 1000);
 }
 
 TEST_CASE("a value depends neither on what else is asked, nor on the alignment, nor on the length") {

@@ -22,6 +22,7 @@
 #include "support/random.hpp"
 #include "support/stopwatch.hpp"
 #include "texgen/batch.hpp"
+#include "texgen/footprint.hpp"
 #include "texgen/interpolate.hpp"
 
 namespace {
@@ -409,7 +410,7 @@ TEST_CASE(
 }
 
 TEST_CASE("a column takes little more than a row of as many fragments, and a narrow tile than a wide one") {
-    std::vector<float> s(256), t(256), lit(256);
+    std::vector<float> s(4000), t(4000), lit(4000);
     struct Pair {
         int width, height, other_width, other_height;
         double most;
@@ -420,6 +421,7 @@ TEST_CASE("a column takes little more than a row of as many fragments, and a nar
         for (const Pair& pair : {Pair{1, 8, 8, 1, 1.5},
                                  {1, 64, 64, 1, 1.5},
                                  {1, 200, 200, 1, 1.75},
+                                 {1, 4000, 4000, 1, 1.5},
                                  {2, 64, 16, 8, 4.0},
                                  {7, 16, 8, 16, 2.5}}) {
             const auto call = [&](int width, int height) {
@@ -434,6 +436,28 @@ TEST_CASE("a column takes little more than a row of as many fragments, and a nar
                 pair.most, call(pair.other_width, pair.other_height), call(pair.width, pair.height));
             INFO(pair.width, " x ", pair.height, ", tolerance ", tolerance.value);
             CHECK(ratio <= pair.most);
+        }
+    }
+}
+
+TEST_CASE("the footprints of a column take little more than those of a row") {
+    constexpr double most = 2.5;
+    std::vector<float> values[4];
+    for (std::vector<float>& all : values) all.resize(4000);
+    for (const Tolerance tolerance : dial) {
+        const texgen::FootprintSetup setup(
+            support::setup_of(ordinary(1, 1).triangle, texgen::whole_texture(), tolerance), {1024.0, 1024.0});
+        for (const int size : {64, 4000}) {
+            const auto part = [&](std::size_t i) { return std::span(values[i]).first(static_cast<std::size_t>(size)); };
+            texgen::Footprints level;
+            level.level = part(0);
+            for (const texgen::Footprints& out : {texgen::Footprints{part(0), part(1), part(2), part(3)}, level}) {
+                const auto call = [&](FragmentRect rect) { return [&, rect] { footprint(setup, rect, out); }; };
+                const double ratio =
+                    support::worst_over_ordinary_within(most, call({300, 100, size, 1}), call({300, 100, 1, size}));
+                INFO(size, " fragments, tolerance ", tolerance.value);
+                CHECK(ratio <= most);
+            }
         }
     }
 }

@@ -171,15 +171,25 @@ private:
 // The footprints of a rectangle, for outputs that are computed; false where the slide lights none of it, and nothing is
 // written unless `always`.
 template <class CompiledWhereCalled = void>
-inline bool footprint_tile(const FootprintSetup& setup, const Tile& tile, const Footprints& out,
-                           bool always = false) noexcept {
-    const FootprintFunctions& functions = Inside::functions(setup);
+bool footprint_tile(const FootprintFunctions& functions, const TexelsPerUnit& texels, const Tile& tile,
+                    const Footprints& out, bool always) noexcept {
     const TileSurvey found = survey(functions.triangle, tile);
     const bool may_be_lit = found.plan.work != Work::nothing;
     if (may_be_lit || always)
-        TileFootprinter<>(chosen<FootprintKernels>(), functions, Inside::texels(setup), tile, out)
-            .fill_all(tile, found.at);
+        TileFootprinter<>(chosen<FootprintKernels>(), functions, texels, tile, out).fill_all(tile, found.at);
     return may_be_lit;
+}
+
+// A column is a row of the mirrored triangle, whose derivatives by x are those by y.
+template <class CompiledWhereCalled = void>
+inline bool footprint_tile(const FootprintSetup& setup, const Tile& tile, Footprints& out,
+                           bool always = false) noexcept {
+    const FootprintFunctions& functions = Inside::functions(setup);
+    const TexelsPerUnit& texels = Inside::texels(setup);
+    if (!tile.is_column()) return footprint_tile(functions, texels, tile, out, always);
+    std::swap(out.dsdx, out.dsdy);
+    std::swap(out.dtdx, out.dtdy);
+    return footprint_tile(functions.mirrored(), texels, tile.mirrored(), out, always);
 }
 
 }  // namespace TEXGEN_BUILD

@@ -1,16 +1,8 @@
-// The outputs of a triangle, one after another, and the body of interpolate(). Included by interpolate.hpp.
+// The outputs of a triangle, one after another, and the body of interpolate(). Included by interpolate.hpp. A column
+// that one certificate does not serve is a row of the mirrored triangle: vectors are parts of rows.
 
 namespace TEXGEN_DETAIL {
 inline namespace TEXGEN_BUILD {
-
-// One coordinate of a rectangle; without a plan nothing is known of it.
-template <class CompiledWhereCalled = void>
-TEXGEN_APART void interpolate_alone(const TriangleFunctions& triangle, const Tile& rect, glm::length_t coordinate,
-                                    const std::span<float>& output, const Plan* plan) noexcept {
-    if (output.empty()) return;
-    OnDemand<CloseRamps> close;
-    TileInterpolator<>(triangle, rect, close, coordinate, output).interpolate(rect, plan);
-}
 
 // Takes the light of a tile's fragments whose r, which nobody asked for, is beyond the depth, which cuts it. It is
 // halved until the buffer holds it; of a half where nothing is lit, or all is in the depth, r is not computed.
@@ -54,7 +46,9 @@ TEXGEN_APART void darken_beyond_depth(const TriangleFunctions& triangle, const T
 
 // The fragments of a rectangle by a plan, for outputs that are computed.
 template <class CompiledWhereCalled = void>
-inline Work interpolate_by_plan(const TriangleFunctions& triangle, const Tile& tile, const Texcoords& out) noexcept {
+TEXGEN_APART Work interpolate_by_plan(const TriangleFunctions& triangle, const Tile& tile,
+                                      const Texcoords& out) noexcept {
+    if (tile.is_column()) return interpolate_by_plan(triangle.mirrored(), tile.mirrored(), out);
     TileSurvey found = survey(triangle, tile);
     const Plan& plan = found.plan;
     if (plan.work == Work::nothing) {

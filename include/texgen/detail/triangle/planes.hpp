@@ -14,6 +14,7 @@
 #include <cstring>
 #include <limits>
 #include <span>
+#include <utility>
 
 #include <glm/vec2.hpp>
 
@@ -52,6 +53,9 @@ struct Tile {
         }
         return {first, second};
     }
+
+    bool is_column() const noexcept { return width == 1 && height > 1; }
+    Tile mirrored() const noexcept { return {y, x, height, width}; }
 };
 
 // A rectangle comes in two registers: GCC would spill those to load x and y at once, and the load wait for both stores.
@@ -120,6 +124,18 @@ public:
         weight_[2] = a * b;
         // The common factor is free: with this one F is about as large as its f, and products of several stay in range.
         factor_ = orientation_ * reciprocal_power_of_two(area_terms_ * (weight_[1] + weight_[2]));
+    }
+
+    // Of the window in which x and y are exchanged.
+    TrianglePlanes mirrored() const noexcept {
+        TrianglePlanes result = *this;
+        for (WindowVertex* const vertex : {&result.triangle_.a, &result.triangle_.b, &result.triangle_.c})
+            std::swap(vertex->window.x, vertex->window.y);
+        for (glm::dvec2* const vector : {&result.a_, &result.to_b_, &result.to_c_}) std::swap(vector->x, vector->y);
+        result.orientation_ = -orientation_;
+        result.area_ = -area_;
+        result.factor_ = -factor_;
+        return result;
     }
 
     // False where a number is not finite, a clip_w is not positive, or the area is zero (decided exactly): then nothing
@@ -328,6 +344,15 @@ struct TriangleFunctions {
     TriangleFunctions(const Triangle& triangle, const TextureRegion& region, double accepted) noexcept
         : planes(triangle), lit(region), tolerance(accepted) {
         planes.planes_of_stq(st, q);
+    }
+
+    // Of the window in which x and y are exchanged, where a column is a row.
+    TEXGEN_RARE TriangleFunctions mirrored() const noexcept {
+        TriangleFunctions result = *this;
+        result.planes = planes.mirrored();
+        for (RampOf<Double2>* const ramp : {&result.st.value, &result.st.magnitude}) std::swap(ramp->dx, ramp->dy);
+        for (Ramp* const ramp : {&result.q.value, &result.q.magnitude}) std::swap(ramp->dx, ramp->dy);
+        return result;
     }
 };
 

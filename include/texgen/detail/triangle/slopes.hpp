@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include <glm/vec2.hpp>
 
@@ -23,6 +24,19 @@ struct FootprintFunctions {
         : triangle(functions),
           slope{triangle.planes.slope(0), triangle.planes.slope(1)},
           determinant(triangle.planes.jacobian_determinant()) {}
+
+    // Of the window in which x and y are exchanged.
+    TEXGEN_RARE FootprintFunctions mirrored() const noexcept {
+        FootprintFunctions result = *this;
+        result.triangle = triangle.mirrored();
+        for (Slope& of : result.slope) {
+            std::swap(of.value.dx, of.value.dy);
+            std::swap(of.magnitude.dx, of.magnitude.dy);
+            of.value.twist = -of.value.twist;
+        }
+        result.determinant = -determinant;
+        return result;
+    }
 
     // At the first fragment of a tile.
     Slope::Terms at_first(std::size_t k, const Tile& tile) const noexcept {

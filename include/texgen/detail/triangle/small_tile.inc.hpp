@@ -130,7 +130,8 @@ inline bool serves(const SmallFunction<Double2>& f, const SmallDivisor& divisor,
 // What of a tile is left: nothing, what has to be divided again, or all, as no one bound serves.
 enum class SmallDoubt { none, of_unit, of_all };
 
-// The quotients of one or two coordinates, if one bound serves them; `tile` says where they go. A column is a row.
+// The quotients of one or two coordinates, if one bound serves them; `tile` says where they go. A column is a row, but
+// in doubt one of the mirrored triangle.
 template <class CompiledWhereCalled = void>
 TEXGEN_APART SmallDoubt divide_small(const TriangleFunctions& triangle, const Tile& rect, const RampOf<Double2>& ramp,
                                      const SmallFunction<Double2>& f, const SmallDivisor& q, SmallTile& tile) noexcept {
@@ -142,10 +143,20 @@ TEXGEN_APART SmallDoubt divide_small(const TriangleFunctions& triangle, const Ti
     store_ramps({f.base, is_column ? ramp.dy : ramp.dx, is_column ? ramp.dx : ramp.dy}, tile.numerator);
     tile.q = {q.function.base, is_column ? q_dy : q_dx, is_column ? q_dx : q_dy};
     if (chosen<TileKernels>().fill_small(tile)) return SmallDoubt::none;
-    return tile.width * tile.height <= TileJob::unit_size ? SmallDoubt::of_unit : SmallDoubt::of_all;
+    return !is_column && tile.width * tile.height <= TileJob::unit_size ? SmallDoubt::of_unit : SmallDoubt::of_all;
 }
 
-// One coordinate of a small tile in the place of both.
+// One coordinate of a rectangle; without a plan nothing is known of it.
+template <class CompiledWhereCalled = void>
+TEXGEN_APART void interpolate_alone(const TriangleFunctions& triangle, const Tile& rect, glm::length_t coordinate,
+                                    const std::span<float>& output, const Plan* plan) noexcept {
+    if (output.empty()) return;
+    if (rect.is_column()) return interpolate_alone(triangle.mirrored(), rect.mirrored(), coordinate, output, plan);
+    OnDemand<CloseRamps> close;
+    TileInterpolator<>(triangle, rect, close, coordinate, output).interpolate(rect, plan);
+}
+
+// The same of a small tile in the place of both.
 template <class CompiledWhereCalled = void>
 TEXGEN_APART void fill_small_alone(const TriangleFunctions& triangle, const Tile& rect, const SmallPlace& place,
                                    const SmallDivisor& q, glm::length_t coordinate, const std::span<float>& output,
@@ -155,9 +166,9 @@ TEXGEN_APART void fill_small_alone(const TriangleFunctions& triangle, const Tile
     tile.lit = nullptr;
     const SmallDoubt doubt = divide_small(triangle, rect, plane.value, SmallFunction<Double2>(plane, place), q, tile);
     if (doubt == SmallDoubt::none) return;
+    if (doubt == SmallDoubt::of_all) return interpolate_alone(triangle, rect, coordinate, output, nullptr);
     OnDemand<CloseRamps> close;
-    TileInterpolator<> interpolator(triangle, rect, close, coordinate, output);
-    doubt == SmallDoubt::of_unit ? interpolator.interpolate_from_doubt(rect) : interpolator.interpolate(rect, nullptr);
+    TileInterpolator<>(triangle, rect, close, coordinate, output).interpolate_from_doubt(rect);
 }
 
 // s, t, r and the mask of a small tile, if one certificate serves all of s and t that is asked for.
