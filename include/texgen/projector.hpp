@@ -119,7 +119,8 @@ inline std::optional<ProjectorProjection> orthographic(const OrthographicLens& l
 // Source: Hartley and Zisserman, Multiple View Geometry, 6.1; OpenCV's camera model without distortion.
 inline std::optional<ProjectorProjection> pinhole(const PinholeLens& lens, Conventions conventions) noexcept;
 
-// How far a side of a rectangle by contain() may be from the exact one: relative to the largest of the lens.
+// How far a side of a rectangle by contain() may be from the exact one: relative to the largest of the lens, which is
+// above 2^-960.
 inline constexpr double contain_error = 0x1p-50;
 
 // Narrows a lens to a picture of another aspect, width over height, so that all of the picture is in the light of the

@@ -54,7 +54,7 @@ Vector4<Scalar> strq(const Segment& segment, Scalar alpha) {
 
 // s/q, t/q, r/q, whatever the sign of q: it is the caller who looks at it.
 // Bad input: q = 0 is the Scalar's own division by zero.
-template <class Scalar>
+template <detail::HoldsFloats Scalar>
 Vector3<Scalar> quotient(const Vector4<Scalar>& strq) {
     return {Scalar(strq[0] / strq[3]), Scalar(strq[1] / strq[3]), Scalar(strq[2] / strq[3])};
 }
@@ -64,7 +64,7 @@ Vector3<Scalar> quotient(const Vector4<Scalar>& strq) {
 
 // (1), direct projection: C in space first, then C_u = ((1 - alpha) A_u + alpha B_u) / ((1 - alpha) A_q + alpha B_q).
 // Shape: the points before texture_from_space is applied, w = 1.
-template <class Scalar>
+template <detail::HoldsFloats Scalar>
 Vector3<Scalar> direct_projection(const Eigen::Matrix<Scalar, 4, 4>& texture_from_space, const Vector3<Scalar>& a,
                                   const Vector3<Scalar>& b, Scalar alpha) {
     const Vector3<Scalar> c = Scalar(Scalar(1.0f) - alpha) * a + alpha * b;
@@ -74,13 +74,13 @@ Vector3<Scalar> direct_projection(const Eigen::Matrix<Scalar, 4, 4>& texture_fro
 }
 
 // (2), interpolate then divide: what the library does.
-template <class Scalar>
+template <detail::HoldsFloats Scalar>
 Vector3<Scalar> interpolate_then_divide(const Vector4<Scalar>& a, const Vector4<Scalar>& b, Scalar alpha) {
     return quotient(detail::mix(a, b, alpha));
 }
 
 // (3), divide then interpolate: the wrong one, which bends every line. For pictures and tests only.
-template <class Scalar>
+template <detail::HoldsFloats Scalar>
 Vector3<Scalar> wrong_divide_then_interpolate(const Vector4<Scalar>& a, const Vector4<Scalar>& b, Scalar alpha) {
     return Scalar(Scalar(1.0f) - alpha) * quotient(a) + alpha * quotient(b);
 }

@@ -68,7 +68,8 @@ inline namespace TEXGEN_COMPILER {
 // for each in that of the projectors, whatever happened before: two scenes that see the same arrays have the same pairs
 // and the same matrices.
 // Nothing of the engine's is kept but copies. Memory is allocated only in an update, and only when the number of
-// objects, of projectors or of lit pairs exceeds all former ones (a copy has none); noexcept.
+// objects, of projectors or of lit pairs exceeds all former ones; but a copy has not all of the room, and takes it where
+// it first needs it, in update_eye() too. noexcept.
 // Cost: an update in which nothing changed does nothing. Otherwise only pairs of which a part changed are tested,
 // through a tree over the objects' bounds in the world: a changed projector costs what its light is near to, a changed
 // object at most one test a projector and level (5 for 10 000 objects), fewer where the light is far from all that

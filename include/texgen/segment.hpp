@@ -30,7 +30,8 @@ inline namespace TEXGEN_BUILD {
 // Guarantee: each within max(tolerance, 1/2 ulp) of the exact value of the given floats (r: the tolerance relative to
 // max(1, |r|)); with `exact` the nearest float, the ends included. The sign of q is exact, and behind the projector all
 // are 0. lit as for triangles. No allocation, noexcept.
-// Shapes: each output as long as alpha, or empty (asserted; else it is not written); alpha in [0, 1] (asserted).
+// Shapes: each output as long as alpha, or empty (asserted; else it is not written), and outputs must not overlap it;
+// alpha in [0, 1] (asserted).
 // Bad input: NaN and infinity spoil their own value only; an alpha that is NaN is never lit, and not asserted.
 // Source: the C_u note, (2).
 template <class CompiledWhereCalled = void>

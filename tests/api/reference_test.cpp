@@ -50,6 +50,17 @@ concept IsAlpha = requires(const texgen::Segment& segment, Number n) {
 };
 static_assert(AreNumbers<double> && AreNumbers<float> && AreNumbers<long double> && AreNumbers<Rational>);
 static_assert(!IsAlpha<int> && !IsAlpha<long> && !IsAlpha<bool>, "which drop the fractions of floats");
+template <class Number>
+concept AreDivided = requires(const reference::Vector4<Number>& strq, Number alpha) {
+    reference::quotient(strq);
+    reference::interpolate_then_divide(strq, strq, alpha);
+    reference::wrong_divide_then_interpolate(strq, strq, alpha);
+};
+template <class Number>
+concept IsDivided = requires(const reference::Vector4<Number>& strq) {
+    reference::quotient(strq);
+};
+static_assert(AreDivided<double> && AreDivided<Rational> && !IsDivided<int>, "whose quotients are integers");
 
 Rational centre(int pixel) { return Rational(2 * pixel + 1, 2); }
 
