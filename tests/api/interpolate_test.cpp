@@ -499,7 +499,8 @@ TEST_CASE("a column is as right as a row, of any height, within any region and t
         for (int i = 0; i < 60; ++i) {
             Shot shot = family.make(random);
             if (random.coin()) shot = mirrored(shot);  // what is hard of a row is of a column then
-            shot.rect.x += random.integer(0, shot.rect.width - 1);
+            const std::int64_t x = shot.x(random.integer(0, shot.rect.width - 1));
+            shot.rect.x = static_cast<int>(std::min<std::int64_t>(x, (std::numeric_limits<int>::max)()));
             shot.rect.width = 1;
             if (shot.rect.height == 1 || random.coin()) shot.rect.height = random.integer(2, i % 3 == 0 ? 700 : 70);
             const ExactTriangle exact(shot.triangle);
