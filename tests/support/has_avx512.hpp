@@ -12,4 +12,13 @@ inline bool has_avx512() {
 #endif
 }
 
+// Whether the processor does all of such a vector at once, as AMD's do from Zen 5 on, and not half by half.
+inline bool has_whole_avx512() {
+#if defined(__x86_64__)
+    return has_avx512() && __builtin_cpu_is("amd") && __builtin_cpu_supports("avx512vp2intersect");
+#else
+    return false;
+#endif
+}
+
 }  // namespace support
