@@ -508,7 +508,9 @@ TEST_CASE("a column is as right as a row, of any height, within any region and t
                 random.coin() ? support::region_at(shot, exact, random) : texgen::whole_texture().with_depth();
             const Tolerance tolerance = random.coin() ? texgen::exact : texgen::texels(1.0 / 512.0, 4096.0);
             Outputs out(count_of(shot.rect), asked[static_cast<std::size_t>(random.integer(0, 5))]);
-            const Work work = interpolate(setup_of(shot.triangle, region, tolerance), shot.rect, out.spans());
+            const TriangleSetup setup = setup_of(shot.triangle, region, tolerance);
+            const Work work = interpolate(setup, shot.rect, out.spans());
+            REQUIRE_MESSAGE(work == setup.work(shot.rect), hex(shot));
             const std::string wrong = first_wrong(shot, exact, region, tolerance, work, out, seen);
             REQUIRE_MESSAGE(wrong.empty(), wrong, " in ", hex(shot));
             REQUIRE(out.pads_are_intact());

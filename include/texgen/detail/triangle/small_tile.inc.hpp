@@ -10,7 +10,7 @@ inline bool is_small(const Tile& tile, double tolerance) noexcept {
     constexpr int longest_vector = 8;
     const int width = tile.width == 1 ? tile.height : tile.width;  // a column is a row
     const int most = width < longest_vector ? SmallTile::most_in_short_rows : width <= 64 ? 4096 : 512;
-    return tile.count() <= most && (tolerance == 0.0 || !pays_for_chunks(tile));
+    return tile.count() <= most && (tolerance == 0.0 || !pays_for_chunks(tile.is_column() ? tile.mirrored() : tile));
 }
 
 // Where a tile begins from the vertex that the planes are about, how far it reaches from there at least, and its last

@@ -110,7 +110,9 @@ inline void choose_plan(const TriangleFunctions& triangle, const Tile& tile, con
     if (at.is_well_in_front()) choose_steps(plan, at, triangle.tolerance * (1.0 - 0x1p-18));
 }
 
+// A column's is that of the row that it is made, see interpolate.inc.hpp.
 TEXGEN_APART inline TileSurvey survey(const TriangleFunctions& triangle, const Tile& tile) noexcept {
+    if (tile.is_column()) return survey(triangle.mirrored(), tile.mirrored());
     TileSurvey found(triangle, tile);
     for (;;) {
         choose_plan(triangle, tile, found.at, found.plan);
