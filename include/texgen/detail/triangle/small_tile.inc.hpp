@@ -135,7 +135,7 @@ enum class SmallDoubt { none, of_unit, of_all };
 template <class CompiledWhereCalled = void>
 TEXGEN_APART SmallDoubt divide_small(const TriangleFunctions& triangle, const Tile& rect, const RampOf<Double2>& ramp,
                                      const SmallFunction<Double2>& f, const SmallDivisor& q, SmallTile& tile) noexcept {
-    const bool is_column = rect.width == 1;
+    const bool is_column = rect.is_column();
     tile.width = is_column ? rect.height : rect.width;
     tile.height = is_column ? 1 : rect.height;
     if (!serves(f, q, triangle.tolerance, tile)) return SmallDoubt::of_all;
