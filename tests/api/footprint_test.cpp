@@ -686,15 +686,18 @@ TEST_CASE("the footprints of a column are those that it has in a wider rectangle
             FootprintOutputs of_column(column);
             if (!footprint(setup, column, of_column.spans())) continue;
             REQUIRE(of_column.pads_are_intact());
-            for (std::size_t k = 0; k < 6; ++k)  // but for major, which of a circle may be any
-                for (std::size_t y = 0; y < count_of(column); ++y) {
-                    const std::size_t f = 3 * y + static_cast<std::size_t>(x);
+            for (std::size_t y = 0; y < count_of(column); ++y) {
+                const std::size_t f = 3 * y + static_cast<std::size_t>(x);
+                const double length = std::hypot(wide.at(6, f), wide.at(7, f));
+                for (std::size_t k = 0; k < 8; ++k) {
+                    if (k >= 6 && !(wide.at(5, f) > 2.0)) continue;  // the axis of a circle may be any
                     const double value = wide.at(k, f), difference = std::fabs(of_column.at(k, y) - value);
-                    const double least = k == 4 ? 1.0 : 0.0;  // the level is a logarithm
-                    REQUIRE_MESSAGE((same_bits(of_column[k][y], wide[k][f]) ||
-                                     (k >= 4 && difference <= 0x1p-15 * std::fmax(least, std::fabs(value)))),
-                                    k, " at ", y, " of ", hex(Shot{shot.triangle, column}));
+                    const double size = k == 4 ? std::fmax(1.0, std::fabs(value)) : k == 5 ? value : length;
+                    REQUIRE_MESSAGE(
+                        (same_bits(of_column[k][y], wide[k][f]) || (k >= 4 && difference <= 0x1p-15 * size)), k, " at ",
+                        y, " of ", hex(Shot{shot.triangle, column}));
                 }
+            }
         }
     }
 }
