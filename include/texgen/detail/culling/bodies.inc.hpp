@@ -7,15 +7,13 @@ static_assert(Coverage{0} == Coverage::outside && Coverage{1} == Coverage::parti
 
 // The floats of a body, this far apart.
 inline void copy_floats(const Box& box, float* to, std::size_t distance) noexcept {
-    TEXGEN_UNROLL
-    for (std::size_t j = 0; j < 3; ++j) {
+    TEXGEN_FOR (std::size_t j = 0; j < 3; ++j) {
         to[j * distance] = box.min[static_cast<glm::length_t>(j)];
         to[(3 + j) * distance] = box.max[static_cast<glm::length_t>(j)];
     }
 }
 inline void copy_floats(const Sphere& sphere, float* to, std::size_t distance) noexcept {
-    TEXGEN_UNROLL
-    for (std::size_t j = 0; j < 3; ++j) to[j * distance] = sphere.centre[static_cast<glm::length_t>(j)];
+    TEXGEN_FOR (std::size_t j = 0; j < 3; ++j) to[j * distance] = sphere.centre[static_cast<glm::length_t>(j)];
     to[3 * distance] = sphere.radius;
 }
 

@@ -132,8 +132,7 @@ public:
         }
         bool is_inside = count_ > 0;
         // Unrolled, as each form's branch is foreseen by itself.
-        TEXGEN_UNROLL
-        for (std::size_t k = 0; k < SlidePlanes::max_size; ++k) {
+        TEXGEN_FOR (std::size_t k = 0; k < SlidePlanes::max_size; ++k) {
             if (k == count_) break;
             const LinearForm& form = forms_[k];
             const auto& a = form.a;

@@ -69,11 +69,10 @@ struct VertexLanes {
     // One triangle in all of them.
     TEXGEN_APART void take(const float* triangle) noexcept {
         const std::size_t* const of_turned = about_farthest(triangle);
-        TEXGEN_UNROLL
-        for (std::size_t i = 0; i < 3; ++i) {
+        TEXGEN_FOR (std::size_t i = 0; i < 3; ++i) {
             const float* const from = triangle + of_turned[i];
-            TEXGEN_UNROLL
-            for (std::size_t k = 0; k < BatchVertex::size; ++k) vertex[i][k] = Doubles{} + detail::widened(from[k]);
+            TEXGEN_FOR (std::size_t k = 0; k < BatchVertex::size; ++k)
+                vertex[i][k] = Doubles{} + detail::widened(from[k]);
         }
         find_area();
     }
@@ -120,8 +119,7 @@ struct CloseTerms {
     TEXGEN_INLINE void take(const VertexLanes& given, EdgeLanes (&edge)[3], const Doubles& edge_inexact) noexcept {
         inexact = edge_inexact;
         Doubles rest{};
-        TEXGEN_UNROLL
-        for (std::size_t i = 0; i < 3; ++i) {
+        TEXGEN_FOR (std::size_t i = 0; i < 3; ++i) {
             const Doubles w_j = given.number((i + 1) % 3, 2);
             const Doubles w_k = given.number((i + 2) % 3, 2);
             inexact = inexact + magnitude(edge[i].low);
@@ -141,8 +139,7 @@ struct CloseTerms {
     // Of coordinate k, 0 to 3 for s, t, r, q.
     TEXGEN_INLINE CloseValues function(const VertexLanes& given, std::size_t k) const noexcept {
         Doubles f[3];
-        TEXGEN_UNROLL
-        for (std::size_t i = 0; i < 3; ++i) f[i] = given.number(i, 3 + k);
+        TEXGEN_FOR (std::size_t i = 0; i < 3; ++i) f[i] = given.number(i, 3 + k);
         Doubles error[5];
         Doubles sum = two_sum(leading[0] * f[0], leading[1] * f[1], error[0]);
         sum = two_sum(sum, leading[2] * f[2], error[1]);
@@ -174,8 +171,7 @@ struct CloseLanes : CloseTerms {
         // Of side i from here to its corner j, and from there or here to k.
         DifferenceLanes to_x[3], to_y[3], from_x[3], from_y[3];
         Doubles lost{}, below{};
-        TEXGEN_UNROLL
-        for (std::size_t i = 0; i < 3; ++i) {
+        TEXGEN_FOR (std::size_t i = 0; i < 3; ++i) {
             to_x[i].set(given.number(i, 0), x);
             to_y[i].set(given.number(i, 1), y);
             lost = lost + (magnitude(to_x[i].lost) + magnitude(to_y[i].lost));
@@ -199,8 +195,7 @@ struct CloseLanes : CloseTerms {
         }
         const bool is_short = !is_lost && !any(greater(below, 0.0));
         EdgeLanes edge[3];
-        TEXGEN_UNROLL
-        for (std::size_t i = 0; i < 3; ++i) {
+        TEXGEN_FOR (std::size_t i = 0; i < 3; ++i) {
             const std::size_t j = (i + 1) % 3;
             edge[i].set(to_x[j], to_y[j], from_x[i], from_y[i], is_short, is_lost);
         }
@@ -212,8 +207,7 @@ struct CloseLanes : CloseTerms {
 struct CloseSteps : CloseTerms {
     TEXGEN_APART CloseSteps(const VertexLanes& given, std::size_t axis) noexcept {
         EdgeLanes edge[3];
-        TEXGEN_UNROLL
-        for (std::size_t i = 0; i < 3; ++i) {
+        TEXGEN_FOR (std::size_t i = 0; i < 3; ++i) {
             const std::size_t j = (i + (axis == 0 ? 1 : 2)) % 3;
             const std::size_t k = (i + (axis == 0 ? 2 : 1)) % 3;
             edge[i].high = two_sum(given.number(j, 1 - axis), given.number(k, 1 - axis) * -1.0, edge[i].low);
@@ -277,14 +271,12 @@ struct ResidueLanes {
         // Integers, of which a fragment far away has a product that is none of 63 bits.
         const Residues first_x = to_residues(at_x * 2.0) * known(one * 0.5, x.per_unit);
         const Residues first_y = to_residues(at_y * 2.0) * known(one * 0.5, y.per_unit);
-        TEXGEN_UNROLL
-        for (std::size_t i = 0; i < 3; ++i) {
+        TEXGEN_FOR (std::size_t i = 0; i < 3; ++i) {
             scale_[i] = known(weight.number[i], weight.per_unit);
             to_x_[i] = known(x.number[i], x.per_unit) - first_x;
             to_y_[i] = known(y.number[i], y.per_unit) - first_y;
         }
-        TEXGEN_UNROLL
-        for (std::size_t i = 0; i < 3; ++i) {
+        TEXGEN_FOR (std::size_t i = 0; i < 3; ++i) {
             const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
             side[i] = scale_[i] * (to_x_[j] * to_y_[k] - to_y_[j] * to_x_[k]);
         }
@@ -292,8 +284,7 @@ struct ResidueLanes {
 
     // By how much the sides' functions grow along a row, times one_x the same integers, and down, times one_y.
     TEXGEN_INLINE void steps(Residues (&dx)[3], Residues (&dy)[3]) const noexcept {
-        TEXGEN_UNROLL
-        for (std::size_t i = 0; i < 3; ++i) {
+        TEXGEN_FOR (std::size_t i = 0; i < 3; ++i) {
             const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
             dx[i] = scale_[i] * (to_y_[j] - to_y_[k]);
             dy[i] = scale_[i] * (to_x_[k] - to_x_[j]);
@@ -336,8 +327,7 @@ struct NearLanes {
     Doubles term[3], size[3];
 
     TEXGEN_INLINE NearLanes(const VertexLanes& given, const Doubles& x, const Doubles& y) noexcept {
-        TEXGEN_UNROLL
-        for (std::size_t i = 0; i < 3; ++i) {
+        TEXGEN_FOR (std::size_t i = 0; i < 3; ++i) {
             const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
             const Doubles left = (given.number(j, 0) - x) * (given.number(k, 1) - given.number(j, 1));
             const Doubles right = (given.number(j, 1) - y) * (given.number(k, 0) - given.number(j, 0));

@@ -26,8 +26,7 @@ struct CornerLanes {
                              const Doubles& y) noexcept
         : given_(given), residues_(residues), along_(given, 0), down_(given, 1) {
         Doubles distance[3];
-        TEXGEN_UNROLL
-        for (std::size_t i = 0; i < 3; ++i)
+        TEXGEN_FOR (std::size_t i = 0; i < 3; ++i)
             distance[i] = magnitude(x - given.number(i, 0)) + magnitude(y - given.number(i, 1));
         is_second_ = greater(distance[0], distance[1]);
         is_third_ = greater(minimum(distance[0], distance[1]), distance[2]);

@@ -25,8 +25,7 @@ struct TileWithZeros {
     TEXGEN_INLINE bool divide(const Doubles& x, const Doubles& y, Floats (&quotient)[3]) const noexcept {
         const Doubles reciprocal = 1.0 / f.at(3, x, y);
         Words doubtful{};
-        TEXGEN_UNROLL
-        for (std::size_t k = 0; k < 3; ++k) {
+        TEXGEN_FOR (std::size_t k = 0; k < 3; ++k) {
             if (k >= count) continue;
             const LongWords is_not_zero = are_nonzero(x - zero_x[k]) & are_nonzero(y - zero_y[k]);
             const RoundedEnds ends(where(is_not_zero, f.at(k, x, y) * reciprocal),
@@ -51,8 +50,7 @@ TEXGEN_APART inline std::uint64_t decide_tiles(const TilesJob& job, const Fragme
         const std::size_t i = tile / at_once * at_once;
         taken |= ((std::uint64_t{1} << lanes) - 1) << i;
         const float* of_lane[lanes];
-        TEXGEN_UNROLL
-        for (std::size_t j = 0; j < at_once; ++j)
+        TEXGEN_FOR (std::size_t j = 0; j < at_once; ++j)
             of_lane[j] = vertices_of(job, first + ((doubtful >> (i + j) & 1u) != 0 ? i + j : known));
         Words given[4];
         load_fours(block[i], given);

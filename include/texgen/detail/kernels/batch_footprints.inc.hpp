@@ -33,8 +33,7 @@ struct FootprintLanes {
         q_size = size_a * (size_b_x * size_c_y + size_b_y * size_c_x);
         q_size_dx = b_and_a * size_c_y + c_and_a * size_b_y;
         q_size_dy = c_and_a * size_b_x + b_and_a * size_c_x;
-        TEXGEN_UNROLL
-        for (std::size_t k = 0; k < 2; ++k) {
+        TEXGEN_FOR (std::size_t k = 0; k < 2; ++k) {
             const auto mu = [&](std::size_t i, std::size_t j, std::size_t other) {
                 return (number(i, 3 + k) * number(j, 6) - number(j, 3 + k) * number(i, 6)) * number(other, 2);
             };
@@ -45,8 +44,7 @@ struct FootprintLanes {
         }
         w = number(0, 2) * number(1, 2) * number(2, 2);
         Doubles sizes{};
-        TEXGEN_UNROLL
-        for (std::size_t i = 0; i < 3; ++i)
+        TEXGEN_FOR (std::size_t i = 0; i < 3; ++i)
             sizes = sizes + (magnitude(number(i, 3)) + magnitude(number(i, 4)) + magnitude(number(i, 5)));
         is_refused = ~(greater(number(0, 2), 0.0) & greater(number(1, 2), 0.0) & greater(number(2, 2), 0.0) &
                        greater(Doubles{} + infinity, sizes));
@@ -72,8 +70,7 @@ struct JacobianLanes {
         factor = (of.given.area * reciprocal) * (of.w * reciprocal);
         const Doubles size = magnitude(factor);  // the one product that may leave the range
         doubtful |= front & ~(greater(size, 0x1p-1000) & greater(Doubles{} + 0x1p1000, size));
-        TEXGEN_UNROLL
-        for (std::size_t k = 0; k < 2; ++k) {
+        TEXGEN_FOR (std::size_t k = 0; k < 2; ++k) {
             dx[k] = (of.dx[k] + p_y * of.twist[k]) * factor;
             dy[k] = (of.dy[k] - p_x * of.twist[k]) * factor;
         }
@@ -107,8 +104,7 @@ struct DeterminantLanes {
     TEXGEN_APART explicit DeterminantLanes(const VertexLanes& given) noexcept {
         const auto number = [&](std::size_t i, std::size_t k) { return given.number(i, k); };
         Doubles size{}, high{}, rest{};
-        TEXGEN_UNROLL
-        for (std::size_t k = 0; k < 3; ++k) {
+        TEXGEN_FOR (std::size_t k = 0; k < 3; ++k) {
             const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
             const Doubles left = number(i, 3) * number(j, 4), right = number(j, 3) * number(i, 4);
             EdgeLanes minor;
@@ -231,8 +227,7 @@ Undecided fill_batch_footprints(const BatchFootprintsJob& original, std::size_t 
                     known.take(vertices(ids.value[0]));
                 } else {
                     const float* of_lane[lanes];
-                    TEXGEN_UNROLL
-                    for (std::size_t i = 0; i < at_once; ++i) of_lane[i] = vertices(ids.value[i]);
+                    TEXGEN_FOR (std::size_t i = 0; i < at_once; ++i) of_lane[i] = vertices(ids.value[i]);
                     known.take(of_lane);
                 }
             }

@@ -30,8 +30,7 @@ struct FragmentLanes {
         const Doubles reciprocal = where(front, 1.0 / q);
         const Doubles stretched = stretch * (reciprocal * 1.0001);
         Doubles u[Numerators], largest{}, largest_error{};
-        TEXGEN_UNROLL
-        for (std::size_t k = 0; k < Numerators; ++k) {
+        TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k) {
             const std::size_t place = BatchPlanes::of_numerator[k];
             u[k] = (functions[place] + (functions[place + 1] * p_x + functions[place + 2] * p_y)) * reciprocal +
                    0.0;  // no -0
@@ -51,8 +50,7 @@ struct FragmentLanes {
         }
         if (!all(front)) doubtful = narrow(~(front | greater(q * -1.0, q_error)));
         const Doubles relative_error = functions[BatchPlanes::q + 3] * stretched + 8.0 * unit_roundoff_double;
-        TEXGEN_UNROLL
-        for (std::size_t k = 0; k < Numerators; ++k) {
+        TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k) {
             const Doubles error =
                 functions[BatchPlanes::of_numerator[k] + 3] * stretched + magnitude(u[k]) * relative_error;
             const RoundedEnds ends(u[k], error);
@@ -357,8 +355,7 @@ TEXGEN_APART Undecided divide_all_fragments(const FragmentsJob& job, std::size_t
                 fragments.divide(OneTriangle{planes_of(ids.value[0])->value}, centres.x, centres.y, job.tolerance);
             } else {
                 const BatchPlanes* of_lane[lanes];
-                TEXGEN_UNROLL
-                for (std::size_t i = 0; i < at_once; ++i) of_lane[i] = planes_of(ids.value[i]);
+                TEXGEN_FOR (std::size_t i = 0; i < at_once; ++i) of_lane[i] = planes_of(ids.value[i]);
                 fragments.divide(BatchLanes(of_lane, Numerators == 3), centres.x, centres.y, job.tolerance);
             }
             const FragmentOutputs& to = ids.is_whole ? out : in_scratch;

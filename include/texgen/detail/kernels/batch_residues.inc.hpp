@@ -72,8 +72,7 @@ private:
         const Doubles unit = power_of_two_below(size) * 0x1p-50;
         const Doubles rounder = unit * 0x1.8p52;
         Doubles part[8];
-        TEXGEN_UNROLL
-        for (std::size_t j = 0; j < 3; ++j) {
+        TEXGEN_FOR (std::size_t j = 0; j < 3; ++j) {
             part[j] = (term[j].high + rounder) - rounder;
             part[3 + j] = (term[j].high - part[j]) + term[j].low;
         }

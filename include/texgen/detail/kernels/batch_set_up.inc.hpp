@@ -10,30 +10,24 @@ TEXGEN_INLINE Residues load_lanes(const std::uint64_t* from) noexcept { return l
 // begins.
 template <class Vector, std::size_t Size, class From>
 TEXGEN_INLINE void load_columns(Vector (&columns)[Size], std::size_t count, const From& from) noexcept {
-    TEXGEN_UNROLL
-    for (std::size_t end = Size; end > 0; end -= at_once) {
+    TEXGEN_FOR (std::size_t end = Size; end > 0; end -= at_once) {
         const std::size_t first = end - at_once;
         if (first >= count) continue;
         Vector row[lanes];
-        TEXGEN_UNROLL
-        for (std::size_t j = 0; j < at_once; ++j) row[j] = load_lanes(from(j) + first);
+        TEXGEN_FOR (std::size_t j = 0; j < at_once; ++j) row[j] = load_lanes(from(j) + first);
         transpose(row);
-        TEXGEN_UNROLL
-        for (std::size_t j = 0; j < at_once; ++j) columns[first + j] = row[j];
+        TEXGEN_FOR (std::size_t j = 0; j < at_once; ++j) columns[first + j] = row[j];
     }
 }
 
 // The other way.
 template <class Vector, std::size_t Size, class To>
 TEXGEN_INLINE void store_columns(const Vector (&columns)[Size], const To& to) noexcept {
-    TEXGEN_UNROLL
-    for (std::size_t first = 0; first < Size; first += at_once) {
+    TEXGEN_FOR (std::size_t first = 0; first < Size; first += at_once) {
         Vector row[lanes];
-        TEXGEN_UNROLL
-        for (std::size_t j = 0; j < at_once; ++j) row[j] = columns[first + j];
+        TEXGEN_FOR (std::size_t j = 0; j < at_once; ++j) row[j] = columns[first + j];
         transpose(row);
-        TEXGEN_UNROLL
-        for (std::size_t j = 0; j < at_once; ++j) store(to(j) + first, row[j]);
+        TEXGEN_FOR (std::size_t j = 0; j < at_once; ++j) store(to(j) + first, row[j]);
     }
 }
 
@@ -51,10 +45,8 @@ TEXGEN_INLINE const std::size_t* about_farthest(const float* triangle) noexcept 
 // The triangle in each lane: its vertices, the one of the largest w first.
 TEXGEN_INLINE void load_about_farthest(const float* const (&triangle)[lanes], Doubles (&vertex)[3][8]) noexcept {
     const std::size_t* of_turned[lanes];
-    TEXGEN_UNROLL
-    for (std::size_t j = 0; j < at_once; ++j) of_turned[j] = about_farthest(triangle[j]);
-    TEXGEN_UNROLL
-    for (std::size_t i = 0; i < 3; ++i)
+    TEXGEN_FOR (std::size_t j = 0; j < at_once; ++j) of_turned[j] = about_farthest(triangle[j]);
+    TEXGEN_FOR (std::size_t i = 0; i < 3; ++i)
         load_columns(vertex[i], 8, [&](std::size_t j) { return triangle[j] + of_turned[j][i]; });
 }
 
@@ -62,8 +54,7 @@ TEXGEN_INLINE void load_about_farthest(const float* const (&triangle)[lanes], Do
 // area is in doubt, or a number is not one, as in lanes without a triangle, q is -1: those lanes are returned.
 TEXGEN_INLINE LongWords set_up_lanes(const float* triangles, BatchPlanes* planes) noexcept {
     const float* of_lane[lanes];
-    TEXGEN_UNROLL
-    for (std::size_t j = 0; j < at_once; ++j) of_lane[j] = triangles + 3 * BatchVertex::size * j;
+    TEXGEN_FOR (std::size_t j = 0; j < at_once; ++j) of_lane[j] = triangles + 3 * BatchVertex::size * j;
     Doubles vertex[3][8];
     load_about_farthest(of_lane, vertex);
     const Doubles* const a = vertex[0];
@@ -101,8 +92,7 @@ TEXGEN_INLINE LongWords set_up_lanes(const float* triangles, BatchPlanes* planes
 
     Doubles value[BatchPlanes::count]{};
     Doubles all_slopes{};
-    TEXGEN_UNROLL
-    for (std::size_t k = 0; k < 4; ++k) {
+    TEXGEN_FOR (std::size_t k = 0; k < 4; ++k) {
         constexpr std::size_t place[4] = {BatchPlanes::s, BatchPlanes::t, BatchPlanes::r, BatchPlanes::q};
         Doubles* const function = &value[place[k]];
         const Doubles at_a = a[BatchVertex::strq + k] * weight_a;
@@ -219,8 +209,7 @@ struct FragmentOutputs {
 
     template <std::size_t Numerators>
     TEXGEN_INLINE void put(std::size_t n, const Floats (&value)[Numerators], const LongWords& in_front) const noexcept {
-        TEXGEN_UNROLL
-        for (std::size_t k = 0; k < Numerators; ++k)
+        TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k)
             if (out[k] != nullptr) store(out[k] + n, value[k]);
         if (lit != nullptr) store(lit + n, one_where(narrow(in_front) & are_inside(value)));
     }

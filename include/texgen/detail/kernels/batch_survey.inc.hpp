@@ -78,8 +78,7 @@ struct Beyond {
         const double slack = size * 0x1p-22 + (0x1p-125 + 2.0 * tolerance);
         const Doubles margin = (f.error + q.error * (size + slack) + q.size * (slack + size * gamma(4))) * 1.0002;
         Doubles g[4];
-        TEXGEN_UNROLL
-        for (std::size_t i = 0; i < 4; ++i) g[i] = f.at[i] - q.at[i] * bound;
+        TEXGEN_FOR (std::size_t i = 0; i < 4; ++i) g[i] = f.at[i] - q.at[i] * bound;
         below = greater(margin * -1.0, TileFunction::largest_of(g));
         above = greater(TileFunction::least_of(g), margin);
     }
@@ -121,8 +120,7 @@ TEXGEN_INLINE LongWords prepare_in_float(const BatchJob& job, const BatchPlanes*
     LongWords is_polynomial = at_most(extent, Doubles{} + 0.25);
     LongWords is_inside = is_float;
     LongWords is_lit = is_float;
-    TEXGEN_UNROLL
-    for (std::size_t k = 0; k < Numerators; ++k) {
+    TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k) {
         const Doubles* const f = &planes.value[BatchPlanes::of_numerator[k]];
         const Doubles u = (f[0] + (f[1] * middle_x + f[2] * middle_y)) * per_q;
         const Doubles slope_x = where(has_columns, (f[1] - u * q[1]) * per_q);
@@ -170,8 +168,7 @@ TEXGEN_APART void prepare(const BatchJob& job, const BatchPlanes* of_tiles, cons
     Doubles ulps = Doubles{} + 4.0;
     // The product of two, and its reciprocal, are normal numbers.
     LongWords have_middles = is_exact & greater(q.least, 0x1p-500) & greater(Doubles{} + 0x1p500, q.largest);
-    TEXGEN_UNROLL
-    for (std::size_t k = 0; k < Numerators; ++k) {
+    TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k) {
         const TileFunction f(&value[BatchPlanes::of_numerator[k]], tile);
         const Doubles largest = (f.size + f.error) * reciprocal;
         const Doubles error =
@@ -206,8 +203,7 @@ struct TileFunctions {
 
     TEXGEN_INLINE TileFunctions(const BatchPlanes& planes, const BatchTiles& tiles, std::size_t i, bool is_turned,
                                 std::size_t known = Numerators) noexcept {
-        TEXGEN_UNROLL
-        for (std::size_t k = 0; k <= Numerators; ++k) {
+        TEXGEN_FOR (std::size_t k = 0; k <= Numerators; ++k) {
             if (k >= known && k < Numerators) continue;
             const double* const plane = &planes.value[k < Numerators ? BatchPlanes::of_numerator[k] : BatchPlanes::q];
             base[k] = k < Numerators ? tiles.base[k][i] : tiles.q[i];

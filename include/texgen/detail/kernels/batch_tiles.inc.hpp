@@ -9,8 +9,7 @@ struct TileOutputs {
 
     template <class Vector>
     TEXGEN_INLINE void put(std::size_t n, const Vector (&value)[Numerators]) const noexcept {
-        TEXGEN_UNROLL
-        for (std::size_t k = 0; k < Numerators; ++k) store(out[k] + n, value[k]);
+        TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k) store(out[k] + n, value[k]);
     }
 };
 
@@ -28,8 +27,7 @@ TEXGEN_APART bool divide_tile(const BatchPlanes& planes, const BatchTiles& tiles
         const Doubles y = minimum(walk.y, last_row);
         const Doubles reciprocal = 1.0 / f.at(Numerators, walk.x, y);
         Floats quotient[Numerators];
-        TEXGEN_UNROLL
-        for (std::size_t k = 0; k < Numerators; ++k) {
+        TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k) {
             const Doubles value = f.at(k, walk.x, y) * reciprocal;
             const RoundedEnds ends(value, tiles.error[k][i]);
             quotient[k] = ends.below;
@@ -46,8 +44,7 @@ struct TileColumn {
     Doubles value[Numerators + 1], step[Numerators + 1];
 
     TEXGEN_INLINE void divide(const Doubles& reciprocal, Doubles (&quotient)[Numerators]) noexcept {
-        TEXGEN_UNROLL
-        for (std::size_t k = 0; k < Numerators; ++k) {
+        TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k) {
             quotient[k] = value[k] * reciprocal;
             value[k] = value[k] + step[k];
         }
@@ -77,8 +74,7 @@ TEXGEN_APART bool divide_whole_tile(const BatchPlanes& planes, const BatchTiles&
     Distances least = far_from_middles();
     for (std::size_t begin = 0;;) {
         TileColumn<Numerators> column;
-        TEXGEN_UNROLL
-        for (std::size_t k = 0; k <= Numerators; ++k) {
+        TEXGEN_FOR (std::size_t k = 0; k <= Numerators; ++k) {
             column.value[k] = f.at(k, x, shape.y);
             column.step[k] = Doubles{} + f.down[k] * rows;
         }
@@ -86,18 +82,15 @@ TEXGEN_APART bool divide_whole_tile(const BatchPlanes& planes, const BatchTiles&
         for (std::size_t n = begin; n < end; n += 2 * pitch) {
             if (n + pitch >= end) {  // one alone, twice
                 to_next = 0;
-                TEXGEN_UNROLL
-                for (Doubles& step : column.step) step = Doubles{};
+                TEXGEN_FOR (Doubles& step : column.step) step = Doubles{};
             }
             Doubles quotient[2][Numerators];
             column.divide(quotient[0], quotient[1]);
-            TEXGEN_UNROLL
-            for (std::size_t k = 0; k < Numerators; ++k) least = nearer(least, quotient[0][k], quotient[1][k], ulps);
-            TEXGEN_UNROLL
-            for (std::size_t j = 0; j < 2; ++j) {
+            TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k)
+                least = nearer(least, quotient[0][k], quotient[1][k], ulps);
+            TEXGEN_FOR (std::size_t j = 0; j < 2; ++j) {
                 Floats rounded[Numerators];
-                TEXGEN_UNROLL
-                for (std::size_t k = 0; k < Numerators; ++k) rounded[k] = to_floats(quotient[j][k]);
+                TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k) rounded[k] = to_floats(quotient[j][k]);
                 out.put(n + j * to_next, rounded);
             }
         }
@@ -131,8 +124,7 @@ TEXGEN_APART void divide_tile_float(const BatchTiles& tiles, std::size_t i, cons
     const auto& down = shape.is_turned ? tiles.dx : tiles.dy;
     float dx[Numerators], dy[Numerators];
     WideFloats middle[Numerators], first[Numerators];
-    TEXGEN_UNROLL
-    for (std::size_t k = 0; k < Numerators; ++k) {
+    TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k) {
         dx[k] = tiles.dx[k][i];
         dy[k] = down[k][i];
         middle[k] = WideFloats{} + tiles.middle[k][i];
@@ -141,8 +133,7 @@ TEXGEN_APART void divide_tile_float(const BatchTiles& tiles, std::size_t i, cons
     const auto put = [&](std::size_t n, const WideFloats& bend, const auto& step) {
         const WideFloats factor = bent_factor<IsPolynomial>(bend);
         WideFloats value[Numerators];
-        TEXGEN_UNROLL
-        for (std::size_t k = 0; k < Numerators; ++k) value[k] = step(k) * factor + middle[k];
+        TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k) value[k] = step(k) * factor + middle[k];
         out.put(n, value);
     };
     if constexpr (HasWholeRows) {
@@ -188,8 +179,7 @@ TEXGEN_INLINE bool fill_tile(const BatchPlanes& planes, const BatchTiles& tiles,
                              const ShapeOfTile& shape, const FragmentOutputs& out, std::size_t begin, bool in_scratch,
                              TileScratch& scratch) noexcept {
     TileOutputs<Numerators> here;
-    TEXGEN_UNROLL
-    for (std::size_t k = 0; k < Numerators; ++k)
+    TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k)
         here.out[k] = out.out[k] == nullptr || in_scratch ? scratch.values[k] : out.out[k] + begin;
     const bool is_certain = divide_tile_by_tier<Numerators>(planes, tiles, i, shape, here);
     if (out.lit != nullptr) {
@@ -200,8 +190,7 @@ TEXGEN_INLINE bool fill_tile(const BatchPlanes& planes, const BatchTiles& tiles,
                 continue;
             }
             WideFloats value[Numerators];
-            TEXGEN_UNROLL
-            for (std::size_t k = 0; k < Numerators; ++k) value[k] = load<WideFloats>(here.out[k] + n);
+            TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k) value[k] = load<WideFloats>(here.out[k] + n);
             store(lit + n, one_where(out.are_inside(value)));
         }
     }

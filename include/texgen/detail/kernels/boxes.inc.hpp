@@ -21,8 +21,7 @@ TEXGEN_INLINE WideWords classes(const FloatForms& forms, const WideFloats (&twic
         least = minimum(value - change_k, least);
         middle = minimum(value, middle);
     };
-    TEXGEN_UNROLL
-    for (std::size_t k = 0; k < forms_without_depth; ++k) take(k);
+    TEXGEN_FOR (std::size_t k = 0; k < forms_without_depth; ++k) take(k);
     for (std::size_t k = forms_without_depth; k < forms.count; ++k) take(k);
     const WideFloats zero{};
     const WideFloats error = size * forms.error_per_size + forms.error;
@@ -44,8 +43,7 @@ void classify_boxes(const FloatForms& original, const float* boxes, std::size_t 
         WideFloats min[3], max[3], sum[3], extent[3];
         load_boxes(boxes + 6 * i, min, max);
         WideFloats size{};
-        TEXGEN_UNROLL
-        for (int j = 0; j < 3; ++j) {
+        TEXGEN_FOR (int j = 0; j < 3; ++j) {
             sum[j] = min[j] + max[j];
             extent[j] = max[j] - min[j];
             size = size + magnitude(sum[j]) + extent[j];
@@ -67,8 +65,7 @@ void classify_spheres(const FloatForms& original, const float* spheres, std::siz
         load_fours(spheres + 4 * i, sphere);
         const WideFloats diameter = sphere[3] + sphere[3];
         WideFloats size = diameter;
-        TEXGEN_UNROLL
-        for (int j = 0; j < 3; ++j) {
+        TEXGEN_FOR (int j = 0; j < 3; ++j) {
             twice[j] = sphere[j] + sphere[j];
             size = size + magnitude(twice[j]);
         }
@@ -88,8 +85,7 @@ TEXGEN_INLINE Doubles signed_form(const FormAtVertex& form, const BoxRows& row, 
                                   const LongWords& asked) noexcept {
     Doubles value = Doubles{} + form.coefficient[3];
     Doubles error = Doubles{} + form.error[3];
-    TEXGEN_UNROLL
-    for (std::size_t j = 0; j < 3; ++j) {
+    TEXGEN_FOR (std::size_t j = 0; j < 3; ++j) {
         value = value + row[form.row[j]] * form.coefficient[j];
         error = error + size[form.row[j]] * form.error[j];
     }
@@ -106,8 +102,7 @@ TEXGEN_INLINE Doubles signed_form(const FormAtVertex& form, const BoxRows& row, 
 TEXGEN_INLINE void bound_box(const DoubleForms& forms, const BoxRows& row, const LongWords& have_points,
                              LongWords& outside, LongWords& inside) noexcept {
     BoxRows size;
-    TEXGEN_UNROLL
-    for (std::size_t j = 0; j < 8; ++j) size[j] = minimum(magnitude(row[j]), Doubles{} + 0x1p128);
+    TEXGEN_FOR (std::size_t j = 0; j < 8; ++j) size[j] = minimum(magnitude(row[j]), Doubles{} + 0x1p128);
     inside = have_points;
     for (const bool largest : {true, false}) {
         for (std::size_t k = forms.count; k-- > 0 && any(inside);) {
@@ -130,13 +125,11 @@ void decide_boxes(const DoubleForms* forms, const SeparatingForms& planes, const
                   int* classes) noexcept {
     for (std::size_t i = 0; i < count; i += at_once) {
         BoxRows row;
-        TEXGEN_UNROLL
-        for (std::size_t j = 0; j < 6; ++j) row[j] = to_doubles(load<Floats>(boxes[j] + i));
+        TEXGEN_FOR (std::size_t j = 0; j < 6; ++j) row[j] = to_doubles(load<Floats>(boxes[j] + i));
         row[FormAtVertex::row_of_1] = Doubles{} + 1.0;
         row[FormAtVertex::row_of_0] = Doubles{};
         LongWords have_points = ~LongWords{};
-        TEXGEN_UNROLL
-        for (std::size_t j = 0; j < 3; ++j) have_points = have_points & at_most(Doubles{}, row[3 + j] - row[j]);
+        TEXGEN_FOR (std::size_t j = 0; j < 3; ++j) have_points = have_points & at_most(Doubles{}, row[3 + j] - row[j]);
         LongWords outside{}, inside{};
         if (forms != nullptr) bound_box(*forms, row, have_points, outside, inside);
         const LongWords open = have_points & ~(outside | inside);
@@ -157,8 +150,7 @@ void decide_spheres(const UnitForms& forms, std::size_t form_count, const OpenRo
                     int* classes) noexcept {
     for (std::size_t i = 0; i < count; i += at_once) {
         Doubles sphere[4];
-        TEXGEN_UNROLL
-        for (std::size_t j = 0; j < 4; ++j)
+        TEXGEN_FOR (std::size_t j = 0; j < 4; ++j)
             sphere[j] = count == 1 ? Doubles{} + widened(*spheres[j]) : to_doubles(load<Floats>(spheres[j] + i));
         const Doubles& radius = sphere[3];
         const Doubles size = magnitude(sphere[0]) + magnitude(sphere[1]) + magnitude(sphere[2]);

@@ -32,8 +32,8 @@ void weigh_forms(const glm::dmat4& matrix, const FormWeights& weights, FormLanes
     for (std::size_t i = 0; i < form_lanes; i += at_once) {
         const WeightLanes of(weights, i);
         Doubles form[4];
-        TEXGEN_UNROLL
-        for (int j = 0; j < 4; ++j) form[j] = CoefficientLanes(of, matrix[static_cast<glm::length_t>(j)]).rounded;
+        TEXGEN_FOR (int j = 0; j < 4; ++j)
+            form[j] = CoefficientLanes(of, matrix[static_cast<glm::length_t>(j)]).rounded;
         const Doubles largest = maximum(maximum(magnitude(form[0]), magnitude(form[1])), magnitude(form[2]));
         const Doubles size = select(greater(largest, 0.0), largest, maximum(magnitude(form[3]), Doubles{} + 0x1p-900));
         const Doubles scale = 1.0 / power_of_two_below(size);
@@ -151,8 +151,7 @@ int classify_box(const FormLanes& forms, const float* box_min, const float* box_
     constexpr std::size_t count = form_lanes / at_once;
     Doubles value[count], change[count], error[count];
     LongWords outside{}, negative{}, open{}, not_inside{}, dark{};
-    TEXGEN_UNROLL
-    for (std::size_t i = 0; i < count; ++i) {
+    TEXGEN_FOR (std::size_t i = 0; i < count; ++i) {
         const std::size_t first = i * at_once;
         const Doubles a[3] = {load<Doubles>(forms.a[0] + first), load<Doubles>(forms.a[1] + first),
                               load<Doubles>(forms.a[2] + first)};
@@ -167,8 +166,7 @@ int classify_box(const FormLanes& forms, const float* box_min, const float* box_
         outside = outside | greater(0.0 - error[i], value[i] + change[i]);
     }
     if (any(outside)) return 0;
-    TEXGEN_UNROLL
-    for (std::size_t i = 0; i < count; ++i) {
+    TEXGEN_FOR (std::size_t i = 0; i < count; ++i) {
         const Doubles least = value[i] - change[i];
         const auto narrowing = load<Doubles>(forms.narrowing + i * at_once);
         open = open | ~greater(value[i] + change[i], error[i]);
@@ -191,8 +189,7 @@ TEXGEN_INLINE Doubles signed_forms(const glm::dmat4& matrix, const WeightLanes& 
     const CoefficientLanes constant(weights, matrix[3]);
     CoefficientLanes coefficient[3];
     Doubles at[3], value = constant.rounded, size = magnitude(value);
-    TEXGEN_UNROLL
-    for (int j = 0; j < 3; ++j) {
+    TEXGEN_FOR (int j = 0; j < 3; ++j) {
         coefficient[j] = CoefficientLanes(weights, matrix[static_cast<glm::length_t>(j)]);
         const Doubles& rounded = coefficient[j].rounded;
         at[j] = where(are_nonzero(rounded),
@@ -207,15 +204,13 @@ TEXGEN_INLINE Doubles signed_forms(const glm::dmat4& matrix, const WeightLanes& 
     Doubles left[3][3];
     Doubles high = constant.part[0], low = constant.part[1];
     Doubles size_of_low = magnitude(low), last = magnitude(constant.part[2]);
-    TEXGEN_UNROLL
-    for (int j = 0; j < 3; ++j) {
+    TEXGEN_FOR (int j = 0; j < 3; ++j) {
         const Doubles(&part)[3] = coefficient[j].part;
         const Doubles first = leading_bits<27>(part[0]);
         high = two_sum(high, first * at[j], left[j][0]);
         high = two_sum(high, (part[0] - first) * at[j], left[j][1]);
         left[j][2] = part[1] * at[j];
-        TEXGEN_UNROLL
-        for (const Doubles& of_sum : left[j]) {
+        TEXGEN_FOR (const Doubles& of_sum : left[j]) {
             low = low + of_sum;
             size_of_low = size_of_low + magnitude(of_sum);
         }
@@ -231,16 +226,14 @@ TEXGEN_INLINE Doubles signed_forms(const glm::dmat4& matrix, const WeightLanes& 
     // more.
     Doubles rest = constant.part[2], lost = magnitude(rest);
     low = constant.part[1];
-    TEXGEN_UNROLL
-    for (int j = 0; j < 3; ++j) {
+    TEXGEN_FOR (int j = 0; j < 3; ++j) {
         const auto& [part, rounded] = coefficient[j];
         const Doubles first = leading_bits<27>(part[1]);
         Doubles of_low[5] = {{}, {}, {}, (part[1] - first) * at[j], part[2] * at[j]};
         low = two_sum(low, left[j][0], of_low[0]);
         low = two_sum(low, left[j][1], of_low[1]);
         low = two_sum(low, first * at[j], of_low[2]);
-        TEXGEN_UNROLL
-        for (const Doubles& number : of_low) {
+        TEXGEN_FOR (const Doubles& number : of_low) {
             rest = rest + number;
             lost = lost + magnitude(number);
         }
@@ -252,8 +245,7 @@ TEXGEN_INLINE Doubles signed_forms(const glm::dmat4& matrix, const WeightLanes& 
     Doubles* next = term;
     for (int k = 0; k < parts; ++k) {
         *next++ = constant.part[k];
-        TEXGEN_UNROLL
-        for (int j = 0; j < 3; ++j) {
+        TEXGEN_FOR (int j = 0; j < 3; ++j) {
             const Doubles first = leading_bits<27>(coefficient[j].part[k]);
             *next++ = first * at[j];
             *next++ = (coefficient[j].part[k] - first) * at[j];

@@ -9,13 +9,11 @@ void generate_points(const GenerateJob& original) noexcept {
     for (std::size_t i = 0; i < job.count; i += at_once) {
         const PointLanes point = load_points(job, i);
         Floats value[4];
-        TEXGEN_UNROLL
-        for (std::size_t k = 0; k < 4; ++k) value[k] = to_floats(value_at(form[k], point));
+        TEXGEN_FOR (std::size_t k = 0; k < 4; ++k) value[k] = to_floats(value_at(form[k], point));
         if (job.strq != nullptr) {
             store_interleaved(job.strq + 4 * i, value[0], value[1], value[2], value[3]);
         } else {
-            TEXGEN_UNROLL
-            for (std::size_t k = 0; k < 4; ++k)
+            TEXGEN_FOR (std::size_t k = 0; k < 4; ++k)
                 if (job.out[k] != nullptr) store(job.out[k] + i, value[k]);
         }
     }

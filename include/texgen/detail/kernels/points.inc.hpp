@@ -164,8 +164,7 @@ TEXGEN_INLINE bool fill_bounded_block(const PointJob& job, std::size_t begin, st
         load_points(job, i, x, y, z);
         PointDivision division[vectors_at_once];
         range.add(begin_division<Numerators, divides_pairs>(job, x, y, z, division));
-        TEXGEN_UNROLL
-        for (std::size_t j = 0; j < vectors_at_once; ++j) {
+        TEXGEN_FOR (std::size_t j = 0; j < vectors_at_once; ++j) {
             Doubles quotient[2];
             Floats value[2];
             for (std::size_t k = 0; k < Numerators; ++k) {

@@ -141,8 +141,7 @@ TEXGEN_APART std::uint64_t fill_about_point(const PointJob& job, std::size_t beg
         const WideWords are_behind = errors.are_in_range & ~less(errors.of_form[0] * -1.001f, q);
         WideWords are_certain = are_in_front;
         WideFloats value[2];
-        TEXGEN_UNROLL
-        for (std::size_t k = 0; k < 2; ++k) {
+        TEXGEN_FOR (std::size_t k = 0; k < 2; ++k) {
             value[k] = from_bits(are_in_front & signed_bits(value_of(1 + k) * reciprocal));
             are_certain &= errors.are_within(1 + k, magnitude(value[k]), reciprocal * 1.002f);
         }

@@ -96,8 +96,7 @@ Undecided fill_segment_closely(const SegmentJob& job, std::size_t first) noexcep
                                    mixture[Numerators - 1].template exactly_at<AreShort>(alpha)};
             Doubles quotient[2];
             Floats value[2];
-            TEXGEN_UNROLL
-            for (std::size_t k = 0; k < Numerators; ++k) quotient[k] = s[k].high * reciprocal + 0x1p-900;
+            TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k) quotient[k] = s[k].high * reciprocal + 0x1p-900;
             const Distances distance = nearer(far_from_middles(), quotient[0], quotient[Numerators - 1], 7);
             const bool are_near = any_zero(distance);
             // Where the float may be subnormal, and that is next to the middle of two. Elsewhere middle_near() serves:
@@ -105,12 +104,10 @@ Undecided fill_segment_closely(const SegmentJob& job, std::size_t first) noexcep
             LongWords is_small[2] = {};
             bool are_small = false;
             if (has_subnormal) {
-                TEXGEN_UNROLL
-                for (std::size_t k = 0; k < Numerators; ++k)
+                TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k)
                     is_small[k] = at_most(magnitude(quotient[k]), Doubles{} + 0x1p-125);
                 if (any(is_small[0] | is_small[Numerators - 1])) {
-                    TEXGEN_UNROLL
-                    for (std::size_t k = 0; k < Numerators; ++k) {
+                    TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k) {
                         const Doubles distance_to_it = magnitude(quotient[k] - middle_of_subnormals(quotient[k]));
                         is_small[k] &= at_most(distance_to_it, magnitude(quotient[k]) * 0x1p-48);
                     }
@@ -123,21 +120,18 @@ Undecided fill_segment_closely(const SegmentJob& job, std::size_t first) noexcep
                 return !any_nonzero_near(distance, select(is_inexact, Doubles{} + 1.0, q.low()));
             };
             if (!are_near && !are_small) {
-                TEXGEN_UNROLL
-                for (std::size_t k = 0; k < Numerators; ++k) value[k] = to_floats(where(in_front, quotient[k]));
+                TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k) value[k] = to_floats(where(in_front, quotient[k]));
             } else if (!are_small && are_finite && are_exact()) {
                 // The sign of s - middle q decides everywhere, and is exact near the middle, as q.low() is 0 and the
                 // sums are exact.
-                TEXGEN_UNROLL
-                for (std::size_t k = 0; k < Numerators; ++k) {
+                TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k) {
                     const Doubles middle = middle_near(quotient[k]);
                     value[k] = rounded_from(middle, small_difference(s[k], q, middle), in_front);
                 }
             } else {
                 LongWords in_doubt{};
                 const Doubles q_lost = has_inexact ? q_mixture.lost_at(alpha) : Doubles{};
-                TEXGEN_UNROLL
-                for (std::size_t k = 0; k < Numerators; ++k) {
+                TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k) {
                     Doubles middle = middle_near(quotient[k]);
                     if (are_small) middle = select(is_small[k], middle_of_subnormals(quotient[k]), middle);
                     const Doubles last_product = middle * q.low();
@@ -158,8 +152,7 @@ Undecided fill_segment_closely(const SegmentJob& job, std::size_t first) noexcep
                 const Floats ones = to_floats(where(in_front, Doubles{} + 1.0));
                 store(lit + i, select(in_region(job, value), ones, Floats{}));
             }
-            TEXGEN_UNROLL
-            for (std::size_t k = 0; k < Numerators; ++k) store(out[k] + i, value[k]);
+            TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k) store(out[k] + i, value[k]);
         }
         if (doubtful != 0) return {begin, doubtful};
         begin = end;
@@ -209,8 +202,7 @@ std::size_t fill_segment_in_double_of(const SegmentJob& job, std::size_t first, 
         Doubles* next = reciprocal;
         for (std::size_t i = begin; i < end; i += 2 * at_once) {
             Doubles q[2];
-            TEXGEN_UNROLL
-            for (std::size_t j = 0; j < 2; ++j) {
+            TEXGEN_FOR (std::size_t j = 0; j < 2; ++j) {
                 const Doubles alpha = to_doubles(load<Floats>(from + i + j * at_once));
                 q[j] = IsAsymptotic ? alpha + pole : alpha * bend + pole;
             }
@@ -224,14 +216,12 @@ std::size_t fill_segment_in_double_of(const SegmentJob& job, std::size_t first, 
             const Doubles alpha = IsAsymptotic ? Doubles{} : to_doubles(load<Floats>(from + i));
             Doubles quotient[2];
             Floats value[2];
-            TEXGEN_UNROLL
-            for (std::size_t k = 0; k < Numerators; ++k) {
+            TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k) {
                 quotient[k] = IsAsymptotic ? of_q * slope[k] + base[k] : (alpha * slope[k] + base[k]) * of_q;
                 value[k] = to_floats(quotient[k]);
             }
             distance = nearer(distance, quotient[0], quotient[Numerators - 1], ulps);
-            TEXGEN_UNROLL
-            for (std::size_t k = 0; k < Numerators; ++k) store(out[k] + i, value[k]);
+            TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k) store(out[k] + i, value[k]);
         }
         if ((!are_accepted && any_zero(distance)) || any(~at_most(sum - sum, Doubles{}))) return begin;
         begin = end;

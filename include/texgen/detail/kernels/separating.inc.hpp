@@ -24,8 +24,7 @@ TEXGEN_INLINE void add_plane(SeparatingForms& planes, const FormColumns* const (
         Doubles sum{};
         if (j != but_axis) {
             Doubles size{};
-            TEXGEN_UNROLL
-            for (std::size_t k = 0; k < N; ++k) {
+            TEXGEN_FOR (std::size_t k = 0; k < N; ++k) {
                 const auto a = load<Doubles>(form[k]->a[j] + i);
                 sum = sum + weight[k] * a;
                 size = size + magnitude(a);
@@ -35,8 +34,7 @@ TEXGEN_INLINE void add_plane(SeparatingForms& planes, const FormColumns* const (
         store(planes.a[j] + planes.count, sum);
     }
     Doubles d{}, size{}, all_weights{};
-    TEXGEN_UNROLL
-    for (std::size_t k = 0; k < N; ++k) {
+    TEXGEN_FOR (std::size_t k = 0; k < N; ++k) {
         const auto of_form = load<Doubles>(form[k]->d + i);
         d = d + weight[k] * of_form;
         size = size + weight[k] * magnitude(of_form);
@@ -113,12 +111,10 @@ TEXGEN_INLINE void add_axes(SeparatingForms& planes, const glm::dmat4& matrix, c
                 again[k][first + j] = matrix[static_cast<glm::length_t>(j)][coordinates[k]];
     for (std::size_t i = 0; i < 3; i += at_once) {
         Doubles row[3][3];  // the coefficient of an axis, and of the two that follow it
-        TEXGEN_UNROLL
-        for (std::size_t k = 0; k < 3; ++k)
+        TEXGEN_FOR (std::size_t k = 0; k < 3; ++k)
             for (std::size_t j = 0; j < 3; ++j) row[k][j] = load<Doubles>(again[k] + i + j);
         Doubles cofactor[3], error[3];
-        TEXGEN_UNROLL
-        for (std::size_t k = 0; k < 3; ++k) {
+        TEXGEN_FOR (std::size_t k = 0; k < 3; ++k) {
             const std::size_t f = (k + 1) % 3, g = (k + 2) % 3;
             const Doubles first = row[f][1] * row[g][2], second = row[f][2] * row[g][1];
             cofactor[k] = first - second;
@@ -190,8 +186,7 @@ bool is_separated(const SeparatingForms& planes, const float* box_min, const flo
     LongWords are_negative{};
     for (std::size_t k = 0; k < planes.count; k += at_once) {
         Doubles largest = load<Doubles>(planes.d + k) + load<Doubles>(planes.error + k) * size;
-        TEXGEN_UNROLL
-        for (std::size_t j = 0; j < 3; ++j) {
+        TEXGEN_FOR (std::size_t j = 0; j < 3; ++j) {
             const auto a = load<Doubles>(planes.a[j] + k);
             const Doubles vertex = select(greater(a, 0.0), Doubles{} + max[j], Doubles{} + min[j]);
             largest = select(are_nonzero(a), largest + vertex * a, largest);
@@ -205,8 +200,7 @@ bool is_separated(const SeparatingForms& planes, const float* box_min, const flo
 TEXGEN_INLINE LongWords are_separated(const SeparatingForms& planes, const Doubles (&box)[8]) noexcept {
     Doubles min[3], max[3];
     Doubles size{};
-    TEXGEN_UNROLL
-    for (std::size_t j = 0; j < 3; ++j) {
+    TEXGEN_FOR (std::size_t j = 0; j < 3; ++j) {
         const Doubles of_axis = maximum(0.0 - box[j], box[3 + j]);
         const LongWords is_bounded = greater(Doubles{} + infinity, of_axis);
         min[j] = select(is_bounded, box[j], Doubles{} - infinity);
@@ -217,8 +211,7 @@ TEXGEN_INLINE LongWords are_separated(const SeparatingForms& planes, const Doubl
     for (std::size_t k = 0; k < planes.count; ++k) {
         if (!(planes.d[k] < infinity)) continue;
         Doubles largest = planes.d[k] + size * planes.error[k];
-        TEXGEN_UNROLL
-        for (std::size_t j = 0; j < 3; ++j)
+        TEXGEN_FOR (std::size_t j = 0; j < 3; ++j)
             if (const double a = planes.a[j][k]; a != 0.0) largest = largest + (a > 0.0 ? max : min)[j] * a;
         least = minimum(largest, least);
     }

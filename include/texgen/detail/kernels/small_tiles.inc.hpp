@@ -36,16 +36,13 @@ TEXGEN_INLINE bool divide_small(const SmallTile& tile) noexcept {
             const Doubles q = y * q_dy + first_q, second_q = q + q_dy;
             const SharedDivision division(q, second_q);
             Doubles quotient[2][2];
-            TEXGEN_UNROLL
-            for (std::size_t k = 0; k < 2; ++k) {
+            TEXGEN_FOR (std::size_t k = 0; k < 2; ++k) {
                 const Doubles value = y * dy[k] + first[k];
                 quotient[0][k] = value * division.reciprocal[0];
                 quotient[1][k] = (value + dy[k]) * division.reciprocal[1];
             }
-            TEXGEN_UNROLL
-            for (int i = 0; i < 2; ++i) {
-                TEXGEN_UNROLL
-                for (std::size_t k = 0; k < 2; ++k) store(out[k] + (n + i * stride), to_floats(quotient[i][k]));
+            TEXGEN_FOR (int i = 0; i < 2; ++i) {
+                TEXGEN_FOR (std::size_t k = 0; k < 2; ++k) store(out[k] + (n + i * stride), to_floats(quotient[i][k]));
                 least = nearer(least, quotient[i][0], quotient[i][1], SmallTile::ulps);
             }
             if (n == last) break;
@@ -88,8 +85,7 @@ TEXGEN_INLINE void divide_small_in_float(const SmallTile& tile) noexcept {
         WideFloats y = row - static_cast<float>(middle);
         for (int n = begin; n < count; n += wide_lanes / columns * width) {
             const WideFloats reciprocal = 1.0f / (y * q_dy + first_q);
-            TEXGEN_UNROLL
-            for (std::size_t k = 0; k < 2; ++k) store(out[k] + n, (y * dy[k] + first[k]) * reciprocal);
+            TEXGEN_FOR (std::size_t k = 0; k < 2; ++k) store(out[k] + n, (y * dy[k] + first[k]) * reciprocal);
             y = y + static_cast<float>(wide_lanes / columns);
         }
     }

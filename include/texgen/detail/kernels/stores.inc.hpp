@@ -25,8 +25,7 @@ TEXGEN_INLINE void store_some(float* to, int count, const Vector& values) noexce
     float buffer[size];
     store(buffer, values);
     const float* from = buffer;
-    TEXGEN_UNROLL
-    for (int part = static_cast<int>(size) / 2; part > 0; part /= 2) {
+    TEXGEN_FOR (int part = static_cast<int>(size) / 2; part > 0; part /= 2) {
         if ((count & part) == 0) continue;
         std::memcpy(to, from, static_cast<std::size_t>(part) * sizeof(float));
         to += part;

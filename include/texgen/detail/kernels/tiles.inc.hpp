@@ -22,8 +22,7 @@ TEXGEN_INLINE std::uint64_t divide_vector(const TileJob& job, const TileRow& row
                                           Doubles& reciprocal, Floats (&quotient)[2]) noexcept {
     if (!job.q_is_constant) reciprocal = 1.0 / row.q_at(job, index);
     Words doubtful{};
-    TEXGEN_UNROLL
-    for (std::size_t k = 0; k < 2; ++k) {
+    TEXGEN_FOR (std::size_t k = 0; k < 2; ++k) {
         const Doubles value = row.numerator_at(job, k, index) * reciprocal;
         const RoundedEnds ends(value, job.quotient_error[k]);
         quotient[k] = ends.below;
@@ -66,8 +65,7 @@ std::uint64_t divide_tile(const TileJob& job, const TileJob::Unit& part) noexcep
             else
                 doubtful = rotated(doubtful | divide_vector(job, tile_row, index, reciprocal, quotient), 64 - lanes);
             if (x > last) break;
-            TEXGEN_UNROLL
-            for (std::size_t k = 0; k < 2; ++k) store(row.out[k] + x, quotient[k]);
+            TEXGEN_FOR (std::size_t k = 0; k < 2; ++k) store(row.out[k] + x, quotient[k]);
         }
         if (x < x_end)
             for (std::size_t k = 0; k < 2; ++k) store_some(row.out[k] + x, static_cast<int>(x_end - x), quotient[k]);

@@ -44,7 +44,7 @@
 #define TEXGEN_FLAGS(name) scalar
 #define TEXGEN_BUILD TEXGEN_NAMED(TEXGEN_COMPILER, _scalar)
 #define TEXGEN_INLINE inline
-#define TEXGEN_UNROLL
+#define TEXGEN_FOR for
 
 namespace TEXGEN_DETAIL {
 
@@ -116,7 +116,7 @@ inline bool all_less(const Double2& a, const Double2& b) noexcept { return a[0] 
 // generic way in parts; all of sixteen lanes, of which a mask has a sign to GCC; a masked or, of 512 bits two
 // instructions to GCC 12; and which of sixteen lanes of a mask have any of these bits.
 #ifdef __clang__
-#define TEXGEN_UNROLL
+#define TEXGEN_FOR for
 #define TEXGEN_DOUBLES_64(values) __builtin_convertvector(values, Doubles)
 #define TEXGEN_DOUBLES_32(values) TEXGEN_DOUBLES_64(values)
 #define TEXGEN_DOUBLES_16(values) TEXGEN_DOUBLES_64(values)
@@ -127,7 +127,7 @@ inline bool all_less(const Double2& a, const Double2& b) noexcept { return a[0] 
 #define TEXGEN_MASKED_OR(a, bits, b) (((a) & (bits)) | (b))
 #define TEXGEN_ANY_BITS(a, bits, mask) __builtin_ia32_cmpd512_mask((a) & (bits), WideWords{}, 4, mask)
 #else
-#define TEXGEN_UNROLL _Pragma("GCC unroll 32")
+#define TEXGEN_FOR _Pragma("GCC unroll 32") for
 #define TEXGEN_DOUBLES_64(values) __builtin_ia32_cvtps2pd512_mask(values, Doubles{}, static_cast<char>(-1), 4)
 #define TEXGEN_DOUBLES_32(values) __builtin_ia32_cvtps2pd256(values)
 #define TEXGEN_DOUBLES_OF_WORDS_64(values) __builtin_ia32_cvtdq2pd512_mask(values, Doubles{}, 0xff)

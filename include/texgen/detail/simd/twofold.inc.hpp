@@ -107,8 +107,7 @@ struct TwofoldForm {
             second = second + term;
             size_of_second = size_of_second + magnitude(term);
         };
-        TEXGEN_UNROLL
-        for (unsigned j = 0; j < 3; ++j) {
+        TEXGEN_FOR (unsigned j = 0; j < 3; ++j) {
             if ((used >> j & 1u) == 0) continue;
             Doubles left;
             sum = two_sum(sum, at.v[j] * high[j], left);
@@ -146,8 +145,7 @@ struct TwofoldForm {
                 second = second + term;
             }
         };
-        TEXGEN_UNROLL
-        for (unsigned j = 0; j < 3; ++j) {
+        TEXGEN_FOR (unsigned j = 0; j < 3; ++j) {
             if ((used >> j & 1u) == 0) continue;
             Doubles left;
             const Doubles product = quick_two_sum(at.v[j] * high[j], at.v[j] * low[j], left);

@@ -253,8 +253,7 @@ TEXGEN_INLINE void load_boxes(const float* from, WideFloats (&min)[3], WideFloat
     WideFloats first[3], second[3];
     load_interleaved(from, first[0], first[1], first[2]);
     load_interleaved(from + 3 * wide_lanes, second[0], second[1], second[2]);
-    TEXGEN_UNROLL
-    for (int j = 0; j < 3; ++j) {
+    TEXGEN_FOR (int j = 0; j < 3; ++j) {
         min[j] = every_second<0>(first[j], second[j], std::make_integer_sequence<int, wide_lanes>());
         max[j] = every_second<1>(first[j], second[j], std::make_integer_sequence<int, wide_lanes>());
     }
@@ -266,8 +265,7 @@ TEXGEN_INLINE void load_fours(const Number* from, Vector (&values)[4]) noexcept 
     constexpr int n = static_cast<int>(sizeof(Vector) / sizeof(Number));
     using Lanes = std::make_integer_sequence<int, n>;
     Vector four[4];
-    TEXGEN_UNROLL
-    for (int i = 0; i < 4; ++i) four[i] = load<Vector>(from + i * n);
+    TEXGEN_FOR (int i = 0; i < 4; ++i) four[i] = load<Vector>(from + i * n);
     const Vector even[2] = {every_second<0>(four[0], four[1], Lanes()), every_second<0>(four[2], four[3], Lanes())};
     const Vector odd[2] = {every_second<1>(four[0], four[1], Lanes()), every_second<1>(four[2], four[3], Lanes())};
     values[0] = every_second<0>(even[0], even[1], Lanes());
@@ -317,10 +315,8 @@ TEXGEN_INLINE void transpose(Vector (&rows)[lanes]) noexcept {
     constexpr int in_16_bytes = 16 * lanes / static_cast<int>(sizeof(Vector));
     constexpr int block = in_16_bytes < lanes ? in_16_bytes : lanes;
     Vector mixed[lanes];
-    TEXGEN_UNROLL
-    for (int size = 1; size < lanes; size *= 2) {
-        TEXGEN_UNROLL
-        for (int i = 0; i < lanes / 2; ++i) {
+    TEXGEN_FOR (int size = 1; size < lanes; size *= 2) {
+        TEXGEN_FOR (int i = 0; i < lanes / 2; ++i) {
             if (size < block) {
                 const Vector& a = rows[2 * i / block * block + i % (block / 2)];
                 const Vector& b = rows[2 * i / block * block + i % (block / 2) + block / 2];
@@ -333,8 +329,7 @@ TEXGEN_INLINE void transpose(Vector (&rows)[lanes]) noexcept {
                 mixed[i + lanes / 2] = every_second_block<1, block>(a, b, Lanes());
             }
         }
-        TEXGEN_UNROLL
-        for (int i = 0; i < lanes; ++i) rows[i] = mixed[i];
+        TEXGEN_FOR (int i = 0; i < lanes; ++i) rows[i] = mixed[i];
     }
 }
 

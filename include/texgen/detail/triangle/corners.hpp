@@ -95,8 +95,7 @@ struct Corners {
     TEXGEN_APART Double2 largest_quotient() const noexcept {
         if (largest_q < 1.25 * least_q) return (largest_numerator + numerator_error) * reciprocal;
         Double2 size[4];
-        TEXGEN_UNROLL
-        for (std::size_t i = 0; i < 4; ++i)
+        TEXGEN_FOR (std::size_t i = 0; i < 4; ++i)
             size[i] = (magnitude(numerator[i]) + numerator_error) / ((q[i] - q_error) * reciprocal);
         return larger(larger(size[0], size[1]), larger(size[2], size[3])) * reciprocal;
     }
@@ -257,8 +256,7 @@ inline Coverage coverage_by_sides(const Corners& at, const Double2& min, const D
     const double margin_of_bound = margin_of_bounds(at, q);
     const auto side_of = [&](const Double2& bound) {
         Double2 g[4];
-        TEXGEN_UNROLL
-        for (std::size_t i = 0; i < 4; ++i) g[i] = at.numerator[i] - bound * at.q[i];
+        TEXGEN_FOR (std::size_t i = 0; i < 4; ++i) g[i] = at.numerator[i] - bound * at.q[i];
         return Side{smaller(smaller(g[0], g[1]), smaller(g[2], g[3])), larger(larger(g[0], g[1]), larger(g[2], g[3])),
                     margin + magnitude(bound) * margin_of_bound};
     };

@@ -207,8 +207,8 @@ private:
         // The float next to a quotient in double errs by half an ulp more, of 2^-24 of it, or by what is flushed to
         // zero.
         const Double2 written = error * 1.001 + (largest * (1.0001 * unit_roundoff_float) + 0x1p-125);
-        TEXGEN_UNROLL
-        for (std::size_t k = 0; k < 2; ++k) job.quotient_error[k] = written[k] <= triangle_.tolerance ? 0.0 : error[k];
+        TEXGEN_FOR (std::size_t k = 0; k < 2; ++k)
+            job.quotient_error[k] = written[k] <= triangle_.tolerance ? 0.0 : error[k];
         // Less than a unit does not repay the search for its least quotient.
         job.ulps = tile.count() < TileJob::unit_size ? 0 : at.ulps_of_quotients();
         const TileJob::Unit first = from == nullptr ? job.unit_at(0, 0) : *from;
@@ -355,8 +355,7 @@ private:
         const auto& [base, dx, dy] = at.numerator_ramp;
         store_ramps({base * factor, dx * factor, dy * factor}, job.numerator);
         // One coordinate alone takes the place of both.
-        TEXGEN_UNROLL
-        for (std::size_t k = 0; k < 2; ++k) {
+        TEXGEN_FOR (std::size_t k = 0; k < 2; ++k) {
             const std::span<float>& output = output_[k < count_ ? k : 0];
             job.is_scratch[k] = output.empty();
             job.out[k] = output.empty() ? scratch_[k] : output.data() + offset(tile.x, tile.y);
