@@ -23,5 +23,7 @@ struct Eigen::NumTraits<support::Rational> : Eigen::GenericNumTraits<support::Ra
     };
     static Real epsilon() { return 0; }
     static Real dummy_precision() { return 0; }
+    static int digits() { return 0; }  // none: what has no epsilon has no last digit, of which Eigen 5 asks
     static int digits10() { return 0; }
+    static int max_digits10() { return 0; }
 };
