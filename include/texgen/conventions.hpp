@@ -11,8 +11,8 @@
 
 #include "detail/matrices/required.hpp"
 
-// 0.4.26: 10000 major + 100 minor + patch.
-#define TEXGEN_VERSION 426
+// 0.4.27: 10000 major + 100 minor + patch.
+#define TEXGEN_VERSION 427
 
 namespace TEXGEN_NAMESPACE {
 

@@ -629,6 +629,54 @@ TEST_CASE("no box of a hostile family is outside or inside that is not, and the 
         CHECK(of(family).inside > total / 5000);
 }
 
+TEST_CASE("an element far below the others bounds the slide where its region has no side") {
+    // Of boxes without an end: there the sign of a product of two such elements decides.
+    Random random(642);
+    Counts counts;
+    for (int n = 0; n < 6000; ++n) {
+        const double tiny = std::ldexp(random.uniform(1.0, 2.0), -random.integer(400, 597));
+        Slide slide{glm::dmat4(0.0), whole_texture()};
+        for (int j = 0; j < 4; ++j) {
+            for (const int k : {0, 1, 3}) {
+                const double sign = random.coin() ? 1.0 : -1.0;
+                const int kind = random.integer(0, 3);
+                slide.matrix[j][k] = kind == 0 ? 0.0 : kind == 1 ? sign * tiny : sign * random.integer(1, 4) / 4.0;
+            }
+        }
+        slide.matrix[3][3] = 1.0;  // the largest, so that nothing is below 2^-600 of it
+        glm::dvec2 min(0.0), max(1.0);
+        for (int k = 0; k < 2; ++k) {
+            if (random.coin()) min[k] = -infinite;
+            if (random.integer(0, 2) != 0) max[k] = infinite;
+        }
+        slide.region = atlas_tile(min, max);
+        const Judge judge(slide.matrix, slide.region);
+        const LitVolume<texgen::World> volume(WorldTexgen(slide.matrix), slide.region);
+        std::vector<Box> boxes(10);
+        for (Box& box : boxes) {
+            for (int j = 0; j < 3; ++j) {
+                box.min[j] = support::to_float(random.uniform(-4.0, 4.0));
+                box.max[j] = box.min[j] + 0.25f;
+            }
+            for (int ends = random.integer(1, 2); ends > 0; --ends)
+                random.coin() ? box.min[random.integer(0, 2)] = -infinity_float
+                              : box.max[random.integer(0, 2)] = infinity_float;
+        }
+        std::vector<Coverage> answers(boxes.size());
+        volume.coverage(boxes, answers);
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+            std::string wrong = what_is_wrong(answers[i], judge, true, boxes[i], counts);
+            if (volume.coverage(boxes[i]) != answers[i]) wrong = "one box alone is something else";
+            REQUIRE_MESSAGE(wrong.empty(), wrong << ": " << hex(slide) << ", " << hex(boxes[i]) << ": "
+                                                 << static_cast<int>(answers[i]));
+        }
+    }
+    MESSAGE("outside " << counts.outside << ", by a separating plane alone " << counts.separated << ", partial "
+                       << counts.partial << ", inside " << counts.inside);
+    CHECK(counts.separated > 100);
+    CHECK(counts.partial > 1000);
+}
+
 TEST_CASE("a box that touches an edge of the pyramid at one point is not outside") {
     // The apex in the origin, s = t = 0 exactly along the edge through P: rows P x A of integers have no rounding, but
     // the plane through that edge parallel to an axis has. Each box has P on an edge parallel to the axis, and nothing

@@ -14,7 +14,7 @@ set(calls
     "67000 interpolate.hpp Work interpolate interpolate(setup, rect, out)"
     "100000 texcoord.hpp void project project(texgen, positions, whole_texture(), out)"
     "8000 texcoord.hpp auto one project(texgen, world_space(position))"
-    "35000 coverage.hpp Coverage coverage coverage(texgen, whole_texture(), box)"
+    "36000 coverage.hpp Coverage coverage coverage(texgen, whole_texture(), box)"
     "62000 segment.hpp void along interpolate(segment, alpha, whole_texture(), out)"
     "49000 footprint.hpp bool footprints footprint(setup, rect, out)"
     "329000 batch.hpp void batch interpolate(batch, rects, out)"

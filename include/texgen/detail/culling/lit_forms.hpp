@@ -84,7 +84,9 @@ public:
 
     SeparatingForms separating(const SeparatingFormKernels& kernels) const noexcept {
         SeparatingForms result;
-        kernels.make(lanes_, matrix_, side_.data(), count_, result);
+        // Of elements from 2^-600 to 2: of so many times these no product underflows, so that a cofactor is 0 only where it
+        // is exactly that.
+        kernels.make(lanes_, matrix_ * 0x1p200, side_.data(), count_, result);
         return result;
     }
 

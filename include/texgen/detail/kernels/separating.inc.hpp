@@ -118,7 +118,7 @@ TEXGEN_INLINE void add_axes(SeparatingForms& planes, const glm::dmat4& matrix, c
             const std::size_t f = (k + 1) % 3, g = (k + 2) % 3;
             const Doubles first = row[f][1] * row[g][2], second = row[f][2] * row[g][1];
             cofactor[k] = first - second;
-            error[k] = (magnitude(first) + magnitude(second)) * gamma(3) + 0x1p-1000;
+            error[k] = (magnitude(first) + magnitude(second)) * gamma(3);
         }
         const auto bound = [&](const auto& s, const auto& t, const auto& q) {
             return (error[0] * s + error[1] * t + error[2] * q) * 1.001 +
@@ -139,8 +139,8 @@ TEXGEN_INLINE void add_axes(SeparatingForms& planes, const glm::dmat4& matrix, c
                     high = maximum(product + margin, high);
                 } else {
                     const Doubles growth = cofactor[k] * (j == 0 ? -1.0 : 1.0);
-                    low = select(greater(growth + 0x1p-999, error[k]), low, Doubles{} - infinity);
-                    high = select(greater(0x1p-999 - growth, error[k]), high, Doubles{} + infinity);
+                    low = select(at_most(error[k], growth), low, Doubles{} - infinity);
+                    high = select(at_most(error[k], 0.0 - growth), high, Doubles{} + infinity);
                 }
             }
             least = least + low;
