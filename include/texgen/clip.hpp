@@ -54,9 +54,9 @@ inline constexpr double clip_error = 0x1p-50;
 
 // Cuts off what of a convex polygon is behind the camera's near plane; the rest is in the order of the polygon, though
 // its first vertex may be another. Returns the count of vertices written to `out`; 0 where all is behind, or what is
-// not behind only touches the plane, with any number of corners. What lies in the plane as a whole is not behind. A
-// polygon whose own corners are collinear, or become so by rounding, is cut as any other: TriangleSetup::of() refuses
-// it.
+// not behind only touches the plane, with any number of corners, or there are fewer than three. What lies in the plane
+// as a whole is not behind. A polygon whose own corners are collinear, or become so by rounding, is cut as any other:
+// TriangleSetup::of() refuses it.
 // Guarantee: every vertex that comes out has w > 0, and z + w >= 0 (negative_one_to_one), z >= 0 (zero_to_one) or,
 // where reversed_depth says that the near plane is z = w, z <= w. Vertices in front keep their bits. Each component of
 // a new vertex is within 1/2 float ulp + clip_error of the exact intersection, w within that of itself, but z, which is

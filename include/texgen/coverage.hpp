@@ -26,13 +26,13 @@ inline namespace TEXGEN_BUILD {
 // body as they are given, and for `lit` of project() with `exact`, whose s, t and r are rounded: within a float of a
 // side, or of a limit of depth, a body is `partial`. (What a tolerance moves across a side is not looked for here.) A
 // box is `partial` only where it is so, or touches a plane through an edge or through the apex of the projector's
-// pyramid within 2^-47 of its terms, the largest coefficient for all; the pyramid's own planes, with its sides at the
-// floats next to the region's (next to 0 the normal ones), are decided exactly, as are the near and the far plane of a
-// depth. (Where nothing is lit at all, as no r in front is in the depth or no s and t go together, boxes about q = 0
-// may be `partial`.) A sphere is `partial` too where no plane but one through a vertex of the volume leaves it out, and
-// where a side that is moved inwards by those floats would cut it, at the largest q that points as far from the origin
-// may have. A batch answers as the single question does. No allocation, noexcept; what is prepared is never changed, so
-// threads may share it.
+// pyramid within 2^-47 of the terms that it is the sum of, the largest coefficient for all; the pyramid's own planes,
+// with its sides at the floats next to the region's (next to 0 the normal ones), are decided exactly, as are the near
+// and the far plane of a depth. (Where nothing is lit at all, as no r in front is in the depth or no s and t go
+// together, boxes about q = 0 may be `partial`.) A sphere is `partial` too where it only touches a plane, where no plane
+// but one through a vertex of the volume leaves it out, and where a side that is moved inwards by those floats would cut
+// it, at the largest q that points as far from the origin may have. A batch answers as the single question does. No
+// allocation, noexcept; what is prepared is never changed, so threads may share it.
 // Shape: bodies of Space, in order; both spans have one size (asserted; else nothing is written).
 // Bad input, the first that applies: a NaN anywhere in a body: partial. A box with min > max in some axis, a sphere
 // with a negative radius: outside. A matrix that is not finite: partial. An empty region (see TextureRegion): outside.
