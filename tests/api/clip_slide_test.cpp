@@ -26,6 +26,7 @@ using support::Bits;
 using support::bits;
 using support::exactly;
 using support::hex;
+using support::infinity_double;
 using support::infinity_float;
 using support::magnitude;
 using support::nan_float;
@@ -310,6 +311,17 @@ TEST_CASE("what is not finite in the matrix is not finite in the planes that it 
     }
 }
 
+TEST_CASE("an infinite side has no plane of its numbers, and an infinite w stays in what it reaches") {
+    const auto without_side =
+        clip_planes(texgen::WorldTexgen(glm::dmat4(1.0)), texgen::atlas_tile({-infinity_double, 0.0}, {1.0, 1.0}));
+    const auto finite = [](const glm::vec4& plane) { return std::isfinite(plane.x + plane.y + plane.z + plane.w); };
+    CHECK_FALSE(finite(without_side[1]));
+    for (const std::size_t side : {0u, 2u, 3u, 4u}) CHECK(finite(without_side[side]));
+    glm::dmat4 matrix(1.0);
+    matrix[2].w = infinity_double;
+    CHECK(clip_planes(texgen::WorldTexgen(matrix), whole_texture())[0] == glm::vec4(0, 0, infinity_float, 1));
+}
+
 TEST_CASE("a polygon inside the slide keeps every bit and its order, also where it touches the sides") {
     Random random(1103);
     int touching = 0;
@@ -329,6 +341,25 @@ TEST_CASE("a polygon inside the slide keeps every bit and its order, also where 
         REQUIRE_MESSAGE(bits(clipped(polygon, region)) == bits(polygon), hex_of(polygon, region));
     }
     CHECK(touching > 100);
+}
+
+TEST_CASE("a polygon that lies in a side as a whole, or in a limit of depth, stays as it is") {
+    const TextureRegion region = whole_texture().with_depth(0.0, 1.0);
+    const glm::vec2 free[] = {{0.125f, 0.25f}, {0.875f, 0.25f}, {0.5f, 0.75f}};
+    for (int coordinate = 0; coordinate < 3; ++coordinate) {
+        for (const float limit : {0.0f, 1.0f}) {
+            Polygon polygon(3);
+            for (std::size_t i = 0; i < 3; ++i) {
+                const float q = 1.0f + static_cast<float>(i);
+                polygon[i].position = {free[i], 0.0f, 1.0f};
+                polygon[i].strq[coordinate] = limit * q;
+                polygon[i].strq[(coordinate + 1) % 3] = free[i].x * q;
+                polygon[i].strq[(coordinate + 2) % 3] = free[i].y * q;
+                polygon[i].strq.w = q;
+            }
+            CHECK(bits(clipped(polygon, region)) == bits(polygon));
+        }
+    }
 }
 
 TEST_CASE("a polygon beyond one side leaves nothing, even where a corner touches") {

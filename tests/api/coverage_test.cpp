@@ -1379,6 +1379,37 @@ TEST_CASE("what is no body, no slide or no number gets a safe answer") {
             }
         }
     }
+    SUBCASE("numbers beyond the stated exponents make all that is not empty partial, wherever it is") {
+        for (const double beyond : {0x1p201, 0x1p-201}) {
+            for (int side = 0; side < 4; ++side) {
+                glm::dvec2 min(-0x1p202), max(0x1p199);
+                (side < 2 ? min : max)[side % 2] = side < 2 ? -beyond : beyond;
+                if (side < 2) (side == 0 ? min.y : min.x) = -1.0;
+                if (side >= 2) min = glm::dvec2(-1.0);
+                CHECK(coverage(transform, atlas_tile(min, max), behind) == Coverage::partial);
+                CHECK(coverage(transform, atlas_tile(min, max), ball) == Coverage::partial);
+            }
+        }
+        for (const double beyond : {0x1p1001, 0x1p-1003}) {
+            const WorldTexgen scaled(transform.matrix() * beyond);
+            CHECK(coverage(scaled, whole_texture(), behind) == Coverage::partial);
+            CHECK(coverage(scaled, whole_texture(), ball) == Coverage::partial);
+            CHECK(coverage(scaled, whole_texture(), Box{inside.max, inside.min}) == Coverage::outside);
+        }
+    }
+    SUBCASE("a sphere with a NaN in any number is partial, whatever else is wrong") {
+        const TextureRegion empty = atlas_tile({1.0, 1.0}, {0.0, 0.0});
+        for (int number = 0; number < 4; ++number) {
+            Sphere sphere{{0, 0, 0}, number == 3 ? 1.0f : -1.0f};
+            (number == 3 ? sphere.radius : sphere.centre[number]) = nan_float;
+            for (const TextureRegion& region : {whole_texture(), empty}) {
+                CHECK(coverage(transform, region, sphere) == Coverage::partial);
+                Coverage of_batch = Coverage::outside;
+                coverage(transform, region, std::span(&sphere, 1), std::span(&of_batch, 1));
+                CHECK(of_batch == Coverage::partial);
+            }
+        }
+    }
     SUBCASE("where q is 0 everywhere nothing is lit") {
         glm::dmat4 matrix = transform.matrix();
         for (int j = 0; j < 4; ++j) matrix[j][3] = 0.0;

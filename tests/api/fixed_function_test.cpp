@@ -232,6 +232,18 @@ TEST_CASE("values outside the enumerations are refused or ignored") {
     CHECK(unit.generate(vertex, identity) == before);
 }
 
+TEST_CASE("every normal scaling can be set after every other") {
+    constexpr NormalScaling all[] = {NormalScaling::none, NormalScaling::rescale, NormalScaling::normalize};
+    for (const NormalScaling first : all) {
+        for (const NormalScaling second : all) {
+            TexGenUnit unit;
+            unit.set_normal_scaling(first);
+            unit.set_normal_scaling(second);
+            CHECK(unit.normal_scaling() == second);
+        }
+    }
+}
+
 // Eye planes
 
 TEST_CASE("an eye plane is multiplied by the inverse of the MODELVIEW that is current when it is specified") {

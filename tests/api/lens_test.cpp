@@ -207,6 +207,14 @@ TEST_CASE("an orthographic lens is within 4 double ulp") {
     CHECK(worst <= bound_in_ulps);
 }
 
+TEST_CASE("an orthographic lens has no plane at infinity, in either range of depth") {
+    for (const DepthRange range : {DepthRange::negative_one_to_one, DepthRange::zero_to_one}) {
+        CHECK(orthographic({-1.0, 1.0, -1.0, 1.0, 0.5, 2.0}, with(range)));
+        CHECK_FALSE(orthographic({-1.0, 1.0, -1.0, 1.0, 0.5, infinity_double}, with(range)));
+        CHECK_FALSE(orthographic({-1.0, 1.0, -1.0, 1.0, -infinity_double, 2.0}, with(range)));
+    }
+}
+
 TEST_CASE("a lens of any finite numbers has its matrix, each element within 4 ulp, or has none of doubles") {
     Random random(75);
     // Of any size, subnormal too, and often next to another.

@@ -506,6 +506,29 @@ TEST_CASE("work grows with what is lit, not with what stands in the dark") {
     CHECK(works[1].bounds_tested < 600);
 }
 
+TEST_CASE("pairs that come at once allocate a few times, and an object that is named often is changed once") {
+    const auto projector = make_projector(texgen::PerspectiveLens{texgen::degrees(40), 1.0, 0.1, 100.0},
+                                          texgen::Aim{{0, 0, 0}, {0, 0, -1}, {0, 1, 0}}, texgen::opengl);
+    REQUIRE(projector);
+    Engine engine;
+    glm::dmat4 in_front(1.0);
+    in_front[3].z = -10.0;
+    engine.models.assign(5000, ModelMatrix(in_front));
+    engine.bounds.assign(5000, box_of(glm::vec3(0.5f)));
+    engine.projectors.assign(4, *projector);
+    engine.regions.assign(4, texgen::whole_texture());
+    Scene scene;
+    const std::size_t before = allocations;
+    scene.update(engine.view(), {});
+    CHECK(allocations - before < 200);
+    CHECK(scene.pairs().size() == 20000);
+    const Indices often(20000, 7);
+    const std::size_t named = allocations;
+    const SceneWork work = scene.update(engine.view(), {often, {}});
+    CHECK(allocations == named);
+    CHECK(work.pairs_tested == 4);
+}
+
 TEST_CASE("objects far away, or twice so far, leave the others to be found as quickly") {
     Random random(1210);
     const auto projector = make_projector(texgen::PerspectiveLens{texgen::degrees(20), 1.0, 0.1, 100.0},
@@ -908,6 +931,14 @@ TEST_CASE("what moved without being named is asserted, and stays as it was") {
     require_same(scene, other);
     engine = given;
     engine.projectors[2] = some_projector(random, 10.0);
+    scene.update(engine.view(), {});
+    CHECK(std::exchange(broken_preconditions, 0) == 1);
+    engine = given;
+    engine.projectors[2].view = texgen::ProjectorView(glm::dmat4(2.0));  // which T_e does not see
+    scene.update(engine.view(), {});
+    CHECK(std::exchange(broken_preconditions, 0) == 1);
+    engine = given;
+    engine.projectors[2].projection = texgen::ProjectorProjection(glm::dmat4(support::nan_double));
     scene.update(engine.view(), {});
     CHECK(std::exchange(broken_preconditions, 0) == 1);
     engine = given;

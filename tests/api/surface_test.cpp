@@ -136,6 +136,8 @@ TEST_CASE("a number that is not finite is seen edge on, has no area and no plane
             CHECK(slide_area(a, b, c).has_value() == of_r);
             CHECK_FALSE(receiver_plane(a, b, c));
         }
+        const glm::vec4 of_q_0(0, 1, 0, 0);  // whose q are in no product with it
+        CHECK_FALSE(receiver_plane({bad, 0, 1, 1}, {1, 0, 0, 0}, of_q_0));
     }
     for (int i = 0; i < 50000; ++i) {
         Corners corners{};
@@ -328,6 +330,12 @@ TEST_CASE("a quadrilateral whose s or t would lose digits, being below the norma
         ++(strq ? made : refused);
     }
     CHECK(std::min(made, refused) > 1000);
+    // Of t alone, and where the region has no height for it to be lost in.
+    const auto right_angled = [](double height) {
+        return Quadrilateral{glm::dvec2(0, 0), glm::dvec2(1, 0), glm::dvec2(1, 1), glm::dvec2(0, height)};
+    };
+    CHECK_FALSE(quadrilateral(right_angled(0x1p-120), texgen::atlas_tile({0.0, 0.0}, {1.0, 0x1p-20})));
+    CHECK_FALSE(quadrilateral(right_angled(0x1p-140), texgen::atlas_tile({0.0, 0.0}, {1.0, 0.0})));
 }
 
 TEST_CASE("between its corners a quadrilateral has the exact homography's coordinates to 2^-20 of the largest") {

@@ -81,12 +81,8 @@ private:
     void mark(std::uint32_t object) noexcept {
         std::size_t place = place_[object];
         levels_[0][place / width].bounds[place % width] = bounds_[object];
-        for (std::size_t level = 0; level < height_; ++level, place /= width) {
-            std::uint32_t& changed = levels_[level][place / width].changed;
-            const std::uint32_t bit = 1u << place % width;
-            if ((changed & bit) != 0) break;
-            changed |= bit;
-        }
+        for (std::size_t level = 0; level < height_; ++level, place /= width)
+            levels_[level][place / width].changed |= 1u << place % width;
     }
 
     void refit(std::size_t level, std::size_t index) noexcept {

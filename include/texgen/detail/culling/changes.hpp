@@ -25,7 +25,7 @@ public:
             add(static_cast<std::uint32_t>(i));
         for (const std::uint32_t i : named) {
             TEXGEN_ASSERT(i < count || i < before);
-            if (i < count || i < before) add(i);
+            if (i < count) add(i);  // what is gone is among those above
         }
         count_ = count;
     }

@@ -31,11 +31,6 @@ struct RoundedSide {
         if (std::fabs(min) < 0x1p-126) return {-0x1p-126, first > 0.0f ? 0x1p-126 : widened(first)};
         return {widened(float_before(first)), widened(first)};
     }
-    static RoundedSide of(const SlidePlane& plane) noexcept {
-        if (plane.sign > 0.0) return of_min(plane.bound);
-        const RoundedSide mirrored = of_min(-plane.bound);
-        return {-mirrored.outer, -mirrored.inner};
-    }
 };
 
 // The error that a kernel may make: 0 for exact, and never so much that a float could leave its range.

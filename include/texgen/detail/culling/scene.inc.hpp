@@ -72,7 +72,6 @@ inline SceneWork Scene::update(const SceneView& view, const SceneChanges& change
     const std::size_t kept = pairs_.size();
     for (std::uint32_t p = 0; p < projectors; ++p) {
         const bool is_changed = projectors_.is_changed(p);
-        if (!is_changed && objects_.changed().empty()) continue;
         work.bounds_tested += tree_.visit(prepared_[p].forms, is_changed, [&](std::uint32_t o, bool is_inside) {
             ++work.pairs_tested;
             add_pair(o, p, view.models[o], view.bounds[o], is_inside, work);

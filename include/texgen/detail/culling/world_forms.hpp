@@ -150,7 +150,7 @@ private:
     // the outer and the inner one, and may be off by that.
     static void set(LinearForm& form, const glm::dmat4& matrix, const glm::dmat4& magnitude,
                     const SlidePlane& plane) noexcept {
-        const RoundedSide side = RoundedSide::of(plane);
+        const RoundedSide side = RoundedSide::of_min(plane.sign * plane.bound);
         const double width = plane.coordinate == 3 ? 0.0 : std::fabs(side.inner - side.outer);
         const double of_q = -plane.sign * plane.bound;
         double sizes[4];

@@ -178,7 +178,6 @@ inline Product right_composition(const Factors& factors) noexcept {
 // the right one is within the rounding of a product in float, the rounding of the other rows says how large it is: row
 // r must be well beyond it, and the other range's within it.
 inline bool is_of_other_range(const glm::dmat4& texgen, const glm::dmat4& scale_bias, const Product& right) noexcept {
-    if (is_zero_row(texgen, 2)) return false;
     glm::dmat4 other_rows = texgen;
     for (glm::length_t column = 0; column < 4; ++column) other_rows[column][2] = 0.0;
     const double multiple = Multiple(right, other_rows).within(composed_in_float);

@@ -63,7 +63,7 @@ inline void examine(const Aim& aim, Diagnosis& diagnosis) noexcept {
     const Difference view = scaled_difference(aim.target, aim.position);
     const glm::dvec3 up = scaled_near_one(aim.up);
     const bool has_both = has_position && has_target;
-    const bool looks_somewhere = has_both && length(view.high) > 0.0, points_somewhere = has_up && length(up) > 0.0;
+    const bool looks_somewhere = length(view.high) > 0.0, points_somewhere = length(up) > 0.0;
     if (has_both && !looks_somewhere) diagnosis.add(Defect::target_at_position);
     if (has_up && !points_somewhere) diagnosis.add(Defect::up_is_zero);
     if (looks_somewhere && points_somewhere && !is_sideways(cross(view, up)))

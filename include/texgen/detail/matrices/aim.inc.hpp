@@ -78,11 +78,9 @@ inline std::optional<ProjectorView> look_at(const Aim& aim, Handedness handednes
     const detail::Difference view = detail::scaled_difference(aim.target, aim.position);
     const glm::dvec3& forward = view.high;
     const glm::dvec3 up = detail::scaled_near_one(aim.up);
-    if (!(detail::length(forward) > 0.0 && detail::length(up) > 0.0)) return std::nullopt;
     const glm::dvec3 sideways = detail::cross(view, up);
     if (!detail::is_sideways(sideways)) return std::nullopt;
     const glm::dvec3 side_direction = detail::scaled_near_one(sideways);
-    if (!(detail::length(side_direction) > 0.0)) return std::nullopt;
 
     // A left-handed cross product has the other sign, and a left-handed eye looks down +z: half a turn about up.
     const double sign = handedness == Handedness::left ? -1.0 : 1.0;
