@@ -506,6 +506,31 @@ TEST_CASE("work grows with what is lit, not with what stands in the dark") {
     CHECK(works[1].bounds_tested < 600);
 }
 
+TEST_CASE("objects that are gone leave no bounds where nothing stands") {
+    Random random(1205);
+    const auto projector = make_projector(texgen::PerspectiveLens{texgen::degrees(40), 1.0, 0.1, 100.0},
+                                          texgen::Aim{{0, 0, 0}, {0, 0, -1}, {0, 1, 0}}, texgen::opengl);
+    REQUIRE(projector);
+    Engine engine;
+    for (int i = 0; i < 1000; ++i) {
+        glm::dmat4 far_away(1.0);
+        far_away[3] = glm::dvec4(glm::dvec3(1000.0) + 10.0 * random.direction(), 1.0);
+        engine.models.push_back(ModelMatrix(far_away));
+    }
+    engine.bounds.assign(1000, box_of(glm::vec3(0.5f)));
+    engine.projectors.assign(1, *projector);
+    engine.regions.assign(1, texgen::whole_texture());
+    Scene scene;
+    scene.update(engine.view(), {});
+    engine.models.resize(333, engine.models[0]);
+    engine.bounds.resize(333);
+    scene.update(engine.view(), {});
+    const Indices turned{0};
+    const SceneWork work = scene.update(engine.view(), {{}, turned});
+    CHECK(work.bounds_tested < 100);
+    CHECK(work.pairs_tested == 0);
+}
+
 TEST_CASE("pairs that come at once allocate a few times, and an object that is named often is changed once") {
     const auto projector = make_projector(texgen::PerspectiveLens{texgen::degrees(40), 1.0, 0.1, 100.0},
                                           texgen::Aim{{0, 0, 0}, {0, 0, -1}, {0, 1, 0}}, texgen::opengl);

@@ -58,6 +58,20 @@ std::vector<support::Cloud> clouds(std::size_t count, Random& random) {
     return result;
 }
 
+// Exact points, in vectors and one by one.
+void check_points(const glm::dmat4& matrix, const std::vector<glm::vec3>& points) {
+    const texgen::WorldTexgen texgen(matrix);
+    Outputs out(points.size());
+    project(texgen, texgen::world_space(points), everywhere(), out.spans());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const std::string where = support::hex(points[i]);
+        check(out, i, support::exactly_at(matrix, points[i]), 0.0, where);
+        const glm::vec2 alone = project(texgen, texgen::world_space(points[i])).value();
+        REQUIRE_MESSAGE(support::same_bits(alone.x, out.s()[i]), where);
+        REQUIRE_MESSAGE(support::same_bits(alone.y, out.t()[i]), where);
+    }
+}
+
 }  // namespace
 
 TEST_CASE("points in doubt are what exact numbers make of them, at every tolerance and in every number") {
@@ -188,18 +202,6 @@ TEST_CASE("values of a segment in doubt have the same bits in vectors and one by
 TEST_CASE("next to ties that no two doubles tell from ties the nearest float is found all the same") {
     Random random(58);
     constexpr std::size_t count = 160;
-    const auto check_points = [](const glm::dmat4& matrix, const std::vector<glm::vec3>& points) {
-        const texgen::WorldTexgen texgen(matrix);
-        Outputs out(count);
-        project(texgen, texgen::world_space(points), everywhere(), out.spans());
-        for (std::size_t i = 0; i < count; ++i) {
-            const std::string where = support::hex(points[i]);
-            check(out, i, support::exactly_at(matrix, points[i]), 0.0, where);
-            const glm::vec2 alone = project(texgen, texgen::world_space(points[i])).value();
-            REQUIRE_MESSAGE(support::same_bits(alone.x, out.s()[i]), where);
-            REQUIRE_MESSAGE(support::same_bits(alone.y, out.t()[i]), where);
-        }
-    };
     std::vector<glm::vec3> points(count);
     for (const double factor : {0.1, 0.3, 1.7}) {
         for (const double least : {0x1p-120, 0x1p-170, 0x1p-220}) {
@@ -214,6 +216,22 @@ TEST_CASE("next to ties that no two doubles tell from ties the nearest float is 
     points.assign(count, {0x1p127f, 0.0f, 0.0f});
     const glm::dvec4 subnormal(0x1p-1024 - 0x1p-1074, 0.0, 0.0, 0x1.000001p-896 + 0x1p-947);
     check_points(support::matrix_of_rows(subnormal, subnormal, subnormal, {0.0, 0.0, 0.0, 0x1p-897}), points);
+}
+
+TEST_CASE("where q is 1 what a sum in double leaves decides a tie, and next to a tie nothing") {
+    Random random(59);
+    std::vector<glm::vec3> points(100);
+    for (int steps = -3; steps <= 3; ++steps) {
+        const double next_to_tie = 0x1.000001p+0 + steps * 0x1p-52;  // of two floats
+        for (const double left : {0x1p-54, 0x1p-60, 0x1p-100, -0x1p-54, -0x1p-60, -0x1p-100}) {
+            for (glm::vec3& point : points) {
+                const float x = std::ldexp(random.coin() ? 1.0f : -1.0f, random.integer(-20, 20));
+                point = {x, x, 0.0f};
+            }
+            const glm::dvec4 row(next_to_tie, left, 0.0, 0.0);
+            check_points(support::matrix_of_rows(row, -row, row, {0.0, 0.0, 0.0, 1.0}), points);
+        }
+    }
 }
 
 TEST_CASE("two doubles leave none of these points in doubt") {

@@ -117,7 +117,7 @@ struct TwofoldForm {
         sum = two_sum(sum, second, second) + 0.0;
         const Doubles lost = size_of_second * gamma(8);
         const Doubles size_of_sum = magnitude(sum);
-        const LongWords is_middle = are_near_middles(sum, 0);
+        const LongWords is_middle = ~are_nonzero(sum - middle_near(sum + 0x1p-900));
         const LongWords is_small = greater(Doubles{} + 0x1p-125, size_of_sum) & are_nonzero(sum);
         is_known &= at_most(lost, size_of_sum * 0x1p-55) & ~is_small;
         is_known &= ~is_middle | at_most(lost * 2.0, magnitude(second));
