@@ -197,6 +197,17 @@ TEST_CASE("a side that is none asks no fragment, and what a rectangle needs does
     CHECK(nothing > 300);
     CHECK(whole > 1000);
     CHECK(divide == whole);
+    // A constant q of corners so far out that two doubles see a slope of it.
+    const texgen::Triangle far_out{
+        {{0x1p+99f, 0x1p+126f}, 0x1.6p+14f, {-0x1.3e45fp+28f, 0x1p-1f, 0.0f, 0x1.6p+14f}},
+        {{-0x1p+35f, 0x1p+103f}, 0x1.b3ebd2p+9f, {0x1.d61788p-20f, 1.0f, 0.0f, 0x1.b3ebd2p+9f}},
+        {{0x1p+116f, -0x1p+121f}, 0x1.3c933cp-13f, {1.0f, 0x1.b3a83ap+20f, 0.0f, 0x1.3c933cp-13f}}};
+    const FragmentRect rect{1073741824, 1073741823, 8, 3};
+    const TriangleSetup setup = setup_of(far_out, texgen::whole_texture(), texgen::exact);
+    for (unsigned asked = 0; asked < 16; ++asked) {
+        Outputs out(count_of(rect), asked);
+        CHECK(interpolate(setup, rect, out.spans()) == setup.work(rect));
+    }
 }
 
 TEST_CASE("where nothing is lit by a margin nothing is done; where all is lit by a margin nothing is tested") {

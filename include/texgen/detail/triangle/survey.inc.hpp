@@ -104,7 +104,7 @@ inline void choose_plan(const TriangleFunctions& triangle, const Tile& tile, con
 
     const bool all_inside = sides == Coverage::inside && depth == Coverage::inside;
     plan.work = all_inside ? Work::divide : Work::divide_and_test;
-    if (at.is_well_in_front() && is_constant(at.q_ramp)) plan.work = Work::affine;
+    if (at.is_well_in_front() && is_constant(triangle.q.value)) plan.work = Work::affine;
     if (triangle.tolerance == 0.0 || !pays_for_chunks(tile)) return;
     plan.chunk = chunk_length(at, tile.width);
     if (at.is_well_in_front()) choose_steps(plan, at, triangle.tolerance * (1.0 - 0x1p-18));
