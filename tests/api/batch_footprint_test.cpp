@@ -173,6 +173,31 @@ TEST_CASE("few fragments of a visibility buffer are left to set-ups of their foo
     }
 }
 
+TEST_CASE("what vectors leave in doubt of a visibility buffer's footprints is that of a set-up") {
+    // A sliver 2^22 long, and fragments as far off it as there are.
+    const Triangle sliver{
+        {{-0x1.610d8ep-10f, 0x1.0cd416p+22f}, 1.0f, {0x1.61b07cp-1f, 0x1.45a8acp+0f, -0x1.6156cap-10f, 1.0f}},
+        {{-0x1.6156cap-10f, -0x1.e10c8ep-10f},
+         0x1.000004p+0f,
+         {0x1.d09ep+0f, 0x1.9f129ep-1f, 0x1.000104p-8f, 0x1.000004p+0f}},
+        {{-0x1.6156cap-10f, -0x1.aec8d6p+0f}, 1.0f, {0x1.d09dfep+0f, 0x1.d09ep+0f, 0x1.b0c988p-2f, 1.0f}}};
+    const std::vector<Triangle> triangles(8, sliver);
+    const FragmentRect rect{std::numeric_limits<int>::min(), std::numeric_limits<int>::min(), 64, 4};
+    std::vector<std::uint32_t> ids(256);
+    for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = i % 8;
+    CHECK(left_by_lanes(triangles, ids, rect) > 0);
+    TriangleBatch batch(texgen::whole_texture());
+    batch.assign(triangles);
+    FootprintOutputs out(rect);
+    footprint(batch, ids, rect, slide_texels, out.spans());
+    const texgen::FootprintSetup setup(*texgen::TriangleSetup::of(sliver, texgen::whole_texture()), slide_texels);
+    for (int i = 0; i < 256; ++i) {
+        const auto exact = setup.at(rect.x + i % 64, rect.y + i / 64);
+        CHECK(out[0][static_cast<std::size_t>(i)] == (exact ? static_cast<float>(exact->dx.x) : 0.0f));
+        CHECK(out[3][static_cast<std::size_t>(i)] == (exact ? static_cast<float>(exact->dy.y) : 0.0f));
+    }
+}
+
 TEST_CASE("a visibility buffer's slides may be very large or small, as those of a set-up") {
     Random random(10);
     int checked = 0;

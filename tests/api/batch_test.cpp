@@ -845,6 +845,51 @@ TEST_CASE(
     CHECK(ties > 3000);
 }
 
+TEST_CASE("a rectangle of negative size among tiles in doubt is empty") {
+    Random random(11);
+    for (int round = 0; round < 100; ++round) {
+        const Shot shot = ties_everywhere(random, 0.0f);
+        const std::vector<Triangle> triangles(3, shot.triangle);
+        TriangleBatch batch(support::everywhere());
+        batch.assign(triangles);
+        FragmentRect empty = shot.rect;
+        (random.coin() ? empty.width : empty.height) *= -1;
+        const std::size_t count = count_of(shot.rect);
+        Outputs three(2 * count), alone(count);
+        interpolate(batch, std::array{empty, shot.rect, shot.rect}, three.spans());
+        interpolate(TriangleSetup::of(shot.triangle, support::everywhere()).value(), shot.rect, alone.spans());
+        for (std::size_t i = 0; i < 2 * count; ++i) REQUIRE(support::same_bits(three.s()[i], alone.s()[i % count]));
+    }
+}
+
+TEST_CASE("ids beyond the batch are no triangle, in runs and one by one, and refused ones are dark") {
+    Random random(12);
+    const std::vector<Triangle> friendly(3, support::make_triangle(support::Family::friendly, random));
+    const FragmentRect rect{100, 100, 64, 3};
+    for (int k = 0; k < 4; ++k) {
+        for (const float bad : {std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()}) {
+            std::vector<Triangle> triangles = friendly;
+            triangles[1].c.strq[k] = bad;
+            TriangleBatch batch(texgen::whole_texture());
+            batch.assign(triangles);
+            for (const std::uint32_t id : {1u, 3u, 1000000u, 0xfffffffeu, 0xffffffffu}) {
+                for (const std::uint32_t others : {id, 0u}) {  // rows of it, and every other fragment
+                    std::vector<std::uint32_t> ids(count_of(rect), id);
+                    for (std::size_t i = 0; i < ids.size(); i += 2) ids[i] = others;
+                    Outputs values(ids.size());
+                    interpolate(batch, ids, rect, values.spans());
+                    support::FootprintOutputs footprints(rect);
+                    footprint(batch, ids, rect, {1024.0, 512.0}, footprints.spans());
+                    for (std::size_t i = 1; i < ids.size(); i += 2) {
+                        for (std::size_t j = 0; j < 4; ++j) REQUIRE(support::same_bits(values[j][i], 0.0f));
+                        for (std::size_t j = 0; j < 8; ++j) REQUIRE(support::same_bits(footprints[j][i], 0.0f));
+                    }
+                }
+            }
+        }
+    }
+}
+
 TEST_CASE("few friendly tiles need a set-up of their own") {
     for (const Tolerance tolerance : {texgen::exact, texgen::texels(1.0 / 512, 4096)}) {
         Random random(4);

@@ -1251,6 +1251,13 @@ TEST_CASE("the score is that of the triangle, in whatever order its corners are"
             INFO(hex(triangle), " ", turned_score, " ", score);
             REQUIRE((turned_score == score || (std::isnan(turned_score) && std::isnan(score))));
         }
+        float least_w = 4.0f, q_there = 0.0f;
+        for (const WindowVertex* vertex : support::vertices(triangle)) {
+            if (vertex->clip_w > least_w) continue;
+            q_there = vertex->clip_w < least_w ? vertex->strq.w : std::max(q_there, vertex->strq.w);
+            least_w = vertex->clip_w;
+        }
+        REQUIRE(std::isnan(score) == (q_there <= 0.0f));
         finite += std::isfinite(score);
         infinite += std::isinf(score);
         REQUIRE((std::isinf(score) || std::isnan(score)) == (a.strq.w <= 0 || b.strq.w <= 0 || c.strq.w <= 0));

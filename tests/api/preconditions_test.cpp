@@ -153,6 +153,10 @@ TEST_CASE("outputs of another length than the rectangle are asserted, and stay a
             check_nothing_is_written(1, rect, [&](std::span<texgen::FragmentRect> other_rects) {
                 texgen::interpolate(batch, other_rects, {.s = right});
             });
+            std::vector<float> of_two(2 * count, untouched);
+            texgen::interpolate(batch, std::array{rect, rect}, {.s = of_two});
+            CHECK(std::exchange(broken_preconditions, 0) != 0);
+            CHECK(std::count(of_two.begin(), of_two.end(), untouched) == static_cast<std::ptrdiff_t>(2 * count));
             check_nothing_is_written(count, untouched, [&](std::span<float> out) {
                 texgen::interpolate(batch, ids, rect, {out, out, out, out});
             });

@@ -18,6 +18,7 @@
 #include "support/outputs.hpp"
 #include "support/random.hpp"
 #include "support/special_values.hpp"
+#include "texgen/footprint.hpp"
 #include "texgen/interpolate.hpp"
 
 namespace {
@@ -454,11 +455,20 @@ TEST_CASE(
     CHECK(few > 1000);
 }
 
-TEST_CASE("a rectangle without fragments needs nothing and has no error") {
+TEST_CASE("a rectangle without fragments, or behind the projector, needs nothing and has no error") {
     Random random(3500);
     const TriangleSetup setup = setup_of(make_triangle(support::Family::friendly, random));
-    for (const FragmentRect& rect : {FragmentRect{0, 0, 0, 5}, FragmentRect{0, 0, 5, 0}}) {
+    const texgen::FootprintSetup footprints(setup, {256.0, 256.0});
+    for (const FragmentRect& rect : {FragmentRect{0, 0, 0, 5}, FragmentRect{0, 0, 5, 0}, FragmentRect{0, 0, -5, 5}}) {
         CHECK(setup.work(rect) == Work::nothing);
         CHECK(setup.error_bound(rect) == glm::dvec2(0.0, 0.0));
+        CHECK(footprints.error_bound(rect) == glm::dvec2(0.0, 0.0));
     }
+    texgen::Triangle behind = make_triangle(support::Family::friendly, random);
+    for (texgen::WindowVertex* vertex : support::vertices(behind)) vertex->strq *= -1.0f;
+    const FragmentRect rect{0, 0, 2, 2};
+    const TriangleSetup from_behind = setup_of(behind);
+    REQUIRE(from_behind.work(rect) == Work::nothing);
+    CHECK(from_behind.error_bound(rect) == glm::dvec2(0.0, 0.0));
+    CHECK(texgen::FootprintSetup(from_behind, {256.0, 256.0}).error_bound(rect) == glm::dvec2(0.0, 0.0));
 }
