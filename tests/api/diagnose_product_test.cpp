@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 #include <type_traits>
+#include <utility>
 
 #include <glm/ext/matrix_clip_space.hpp>
 #include <glm/ext/matrix_transform.hpp>
@@ -869,9 +870,10 @@ TEST_CASE("of a projector alone the numbers that people write name the wrong uni
     int angles = 0, ranges = 0;
     for (int i = 0; i < 1000; ++i) {
         const Meant m = human(Mistake::none, random);
-        const auto diagnosis_of_lens = [&](double fovy, bool zero_to_one) {
-            return diagnose(Projector{texgen::ProjectorProjection(Code<double>::lens(m, fovy, zero_to_one)),
-                                      texgen::ProjectorView(Code<double>::view(m)), m.conventions});
+        const auto diagnosis_of_lens = [&](double fovy, bool zero_to_one, const texgen::LensFacts& facts = {}) {
+            const Projector projector{texgen::ProjectorProjection(Code<double>::lens(m, fovy, zero_to_one)),
+                                      texgen::ProjectorView(Code<double>::view(m)), m.conventions};
+            return diagnose(texgen::ProjectionSetup<texgen::World>{.projector = projector, .lens = facts});
         };
         const double fovy = glm::radians(m.fovy);
         REQUIRE(diagnosis_of_lens(fovy, m.is_zero_to_one()).empty());
@@ -880,9 +882,67 @@ TEST_CASE("of a projector alone the numbers that people write name the wrong uni
         angles += of_degrees[0].defect == Defect::angle_unit_mistaken;
         const Diagnosis of_range = diagnosis_of_lens(fovy, !m.is_zero_to_one());
         ranges += !of_range.empty() && of_range[0].defect == Defect::depth_range_mismatch;
+        // Where a plane is known, numbers do not speak: the lens is one for this range that has another near plane.
+        if (!m.is_zero_to_one()) REQUIRE(diagnosis_of_lens(fovy, true, {.z_far = m.z_far}).empty());
+        REQUIRE(diagnosis_of_lens(fovy, !m.is_zero_to_one(), {.z_near = 1.5 * m.z_near}).empty());
     }
     CHECK(angles == 1000);
     CHECK(ranges >= 950);
+}
+
+TEST_CASE("a matrix that lacks a column, or whose lens is another that mirrors alike, is not of this set-up") {
+    Random random(655);
+    for (int i = 0; i < 300; ++i) {
+        Meant m = any_meant(Mistake::none, random);
+        const auto require_stale = [&](const glm::dmat4& texgen, bool mirrored) {
+            const Diagnosis diagnosis = diagnose(texgen::WorldTexgen(texgen), {.projector = right_projector(m),
+                                                                               .region = m.region,
+                                                                               .depth = m.depth,
+                                                                               .lens = {.mirrored = mirrored}});
+            REQUIRE_MESSAGE(diagnosis.size() == 1, text(m, texgen, diagnosis));
+            CHECK(diagnosis[0].defect == Defect::not_of_this_set_up);
+        };
+        m.kind = LensKind::perspective;
+        for (int column = 0; column < 4; ++column) {
+            glm::dmat4 texgen = texture_from_world(*right_projector(m), m.region, m.depth).matrix();
+            texgen[column] = glm::dvec4(0.0);
+            require_stale(texgen, false);
+        }
+        m.kind = LensKind::frustum;
+        if (i % 3 != 1) std::swap(m.left, m.right);
+        if (i % 3 != 0) std::swap(m.bottom, m.top);
+        Meant other = m;
+        other.left *= 1.5, other.right *= 1.7, other.bottom *= 1.3, other.top *= 1.1;
+        require_stale(texture_from_world(*right_projector(other), m.region, m.depth).matrix(), true);
+    }
+}
+
+TEST_CASE("a bias without w is named in a tile of an atlas too, where both s and t lack it and w is what it is") {
+    Random random(656);
+    for (int i = 0; i < 300; ++i) {
+        Meant m = any_meant(Mistake::bias_without_w, random);
+        m.region = texgen::atlas_tile({0.25, 0.5}, {0.5, 0.75});
+        const In in = put_in_space(m, random);
+        const auto is_named = [&](const glm::dmat4& texgen) {
+            return diagnosis_of(m, in, right_projector(m), Told::projector, false, texgen)
+                .contains(Defect::bias_without_w);
+        };
+        const glm::dmat4 s = Code<double>::bias(m), right = made<double>(m, Mistake::none, random);
+        glm::dmat4 mistaken = made<double>(m, Mistake::no_bias, random);
+        for (int row = 0; row < 2; ++row) {
+            // By the tile's scale, with s or t turned, or by 1/2.
+            const double scale = i % 3 == 2 ? 0.5 : i % 3 == row ? -s[row][row] : s[row][row];
+            for (int column = 0; column < 4; ++column) mistaken[column][row] *= scale;
+            mistaken[3][row] += i % 3 == 2 ? 0.5 : s[3][row];
+        }
+        REQUIRE_MESSAGE(is_named(mistaken), text(m, mistaken, {}));
+        for (const int row : {0, 1, 3}) {
+            glm::dmat4 other = mistaken;
+            for (int column = 0; column < 4; ++column)
+                other[column][row] = row == 3 ? 1.25 * other[column][3] : right[column][row];
+            REQUIRE_MESSAGE(!is_named(other), text(m, other, {}));
+        }
+    }
 }
 
 // Why there is no projector
@@ -1004,8 +1064,13 @@ TEST_CASE("each way in which an aim is refused has its name, up parallel to the 
         require_only(good_frustum, aim, Defect::up_is_zero);
         aim = {aim.position, aim.position, {0.0, 1.0, 0.0}};
         require_only(good_orthographic, aim, Defect::target_at_position);
-        aim.target.y = nan_double;
-        require_only(good_perspective, aim, Defect::not_finite);
+        for (glm::dvec3 Aim::*vector : {&Aim::position, &Aim::target, &Aim::up}) {
+            for (const double bad : {nan_double, infinity_double, -infinity_double}) {
+                Aim spoilt = good_aim;
+                (spoilt.*vector)[random.integer(0, 2)] = bad;
+                require_only(good_perspective, spoilt, Defect::not_finite);
+            }
+        }
     }
     // All that is wrong, in order.
     const Diagnosis all = diagnose(PerspectiveLens{texgen::degrees(0.0), 0.0, 0.0, nan_double},

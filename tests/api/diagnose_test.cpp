@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <initializer_list>
 #include <limits>
 #include <optional>
 #include <string>
@@ -1191,7 +1192,7 @@ TEST_CASE("what is not finite is said of every argument, and what can be seen be
                 return m;
             };
             Parts spoilt_parts = parts;
-            const int which = random.integer(0, 9);
+            const int which = random.integer(0, 12);
             if (which == 0)
                 spoilt_parts.projector->projection = texgen::ProjectorProjection(spoil(good.projection.matrix()));
             if (which == 1) spoilt_parts.projector->view = texgen::ProjectorView(spoil(rig.view));
@@ -1204,6 +1205,9 @@ TEST_CASE("what is not finite is said of every argument, and what can be seen be
             if (which == 7) spoilt_parts.lens.z_near = bad;
             if (which == 8) spoilt_parts.lens.aspect = bad;
             if (which == 9) spoilt_parts.lens.fovy = texgen::radians(bad);
+            if (which == 10) spoilt_parts.region = texgen::atlas_tile({0.0, 0.0}, {1.0, bad});
+            if (which == 11) spoilt_parts.region = texgen::whole_texture().with_depth(0.0, nan_double);
+            if (which == 12) spoilt_parts.lens.z_far = nan_double;
             const Diagnosis diagnosis = diagnosis_of(spoilt_parts);
             REQUIRE_MESSAGE(diagnosis.contains(Defect::not_finite), which, " ", text(diagnosis));
             REQUIRE_MESSAGE(diagnosis[0].defect == Defect::not_finite, which, " ", text(diagnosis));
@@ -1405,5 +1409,195 @@ TEST_CASE("far from the origin the rounding of float hides no depth range, where
                                                   .depth = rig.depth});
         REQUIRE_MESSAGE(diagnosis.contains(Defect::depth_range_mismatch), text(diagnosis));
         ++found;
+    }
+}
+
+namespace {
+
+// These are the findings, and all of them.
+void require_said(const Parts& parts, std::initializer_list<Defect> defects) {
+    const Diagnosis diagnosis = diagnosis_of(parts);
+    const bool is_said = std::equal(diagnosis.begin(), diagnosis.end(), defects.begin(), defects.end(),
+                                    [](const auto& finding, Defect defect) { return finding.defect == defect; });
+    REQUIRE_MESSAGE(is_said, text(diagnosis), " in ", text(parts));
+}
+
+// With a lens of that kind, in the world.
+Rig rig_of(LensKind kind, Random& random) {
+    Rig rig = random_rig(ordinary, random);
+    while (rig.lens.kind != kind || rig.in != In::world) rig = random_rig(ordinary, random);
+    return rig;
+}
+
+Parts parts_of(const Rig& rig, const glm::dmat4& p, const glm::dmat4& v) {
+    return {.projector = projector_of(rig, p, v), .in = rig.in, .region = rig.region, .depth = rig.depth};
+}
+
+glm::dmat4 with(glm::dmat4 m, int column, int row, double value) {
+    m[column][row] = value;
+    return m;
+}
+
+glm::dmat4 with_row_turned(const glm::dmat4& m, int row) { return with(glm::dmat4(1.0), row, row, -1.0) * m; }
+
+}  // namespace
+
+TEST_CASE("an element that no lens, no view and no transposed one has makes it none, and nothing is said of it") {
+    Random random(650);
+    for (int i = 0; i < 100; ++i) {
+        const bool is_parallel = i % 2 != 0;
+        const Rig rig = rig_of(is_parallel ? LensKind::orthographic : LensKind::perspective, random);
+        const glm::dmat4 p = projection(rig.lens, rig.conventions), mirrored = with_row_turned(p, 0),
+                         for_rows = transposed(p), v = rig.view, reflected = with_row_turned(v, 0);
+        for (int column = 0; column < 4; ++column) {
+            for (int row = 0; row < 4; ++row) {
+                const bool is_of_w = column == (is_parallel ? 3 : 2);  // off the axis, and w itself
+                if (is_of_w || (row == 2 ? column > 1 : row < 2 && column < 2 && column >= row)) continue;
+                require_said(parts_of(rig, with(mirrored, column, row, 0.25), v), {});
+                if (is_parallel || row == 3 || column == 3)
+                    require_said(parts_of(rig, with(for_rows, row, column, 0.25), v), {});
+            }
+            const double other = column == 3 ? 0.0 : 0.25;
+            if (!is_parallel || column < 3) require_said(parts_of(rig, p, with(reflected, column, 3, other)), {});
+            require_said(parts_of(rig, p, with(transposed(v), 3, column, other)), {});
+            const glm::dmat4 along_axis = with(glm::dmat4(1.0), 3, column % 3, 5.0);
+            require_said(parts_of(rig, p, transposed(along_axis)), {Defect::transposed});
+            require_said(parts_of(rig, p, with(along_axis, column % 3, 3, 0.25)), {});
+        }
+        require_said(parts_of(rig, 3.0 * p, v), {});
+        require_said(parts_of(rig, mirrored, v), {Defect::mirrored});
+        require_said(parts_of(rig, for_rows, v), {Defect::transposed});
+        require_said(parts_of(rig, p, reflected), {Defect::mirrored});
+        require_said(parts_of(rig, with(mirrored, 1, 1, 0.0), v), {Defect::rank_below_three});
+        if (!is_parallel)
+            require_said(parts_of(rig, with(with(p, 2, 3, 0.0), 3, 2, 1.0), v), {Defect::rank_below_three});
+    }
+}
+
+TEST_CASE("a projection of the other sign is of no other hand, and has its view's place where that is not as good") {
+    Random random(651);
+    for (int i = 0; i < 100; ++i) {
+        const Rig parallel = rig_of(LensKind::orthographic, random), rig = rig_of(LensKind::perspective, random);
+        const glm::dmat4 p = projection(rig.lens, rig.conventions), v = rig.view, one(1.0),
+                         of_parallel = projection(parallel.lens, parallel.conventions);
+        require_said(parts_of(parallel, -of_parallel, parallel.view), {Defect::everything_behind});
+        CHECK_FALSE(diagnosis_of(parts_of(rig, -p, v)).contains(Defect::mixed_handedness));
+        glm::dmat4 turned = p;
+        turned[2] = -turned[2];
+        require_said(parts_of(rig, with_row_turned(turned, 0), v), {Defect::mixed_handedness, Defect::mirrored});
+        require_said(parts_of(rig, with_row_turned(turned, 1), v), {Defect::mixed_handedness, Defect::upside_down});
+
+        const auto is_exchanged = [&](const glm::dmat4& lens, const glm::dmat4& view) {
+            return diagnosis_of(parts_of(rig, lens, view)).contains(Defect::view_projection_swapped);
+        };
+        INFO(hex(p), " ", hex(v), " ", hex(of_parallel));
+        REQUIRE((is_exchanged(v, p) && is_exchanged(one, p) && is_exchanged(v, of_parallel)));
+        REQUIRE_FALSE((is_exchanged(one, of_parallel) || is_exchanged(v, parallel.view) || is_exchanged(p, p)));
+        REQUIRE_FALSE(is_exchanged(v, with(p, 0, 0, nan_double)));
+    }
+}
+
+TEST_CASE("a matrix that holds no numbers, or was never written, is said alone, and a pose or view by itself") {
+    Random random(653);
+    for (int i = 0; i < 300; ++i) {
+        const Rig rig = random_rig(ordinary, random);
+        const glm::dmat4 p = projection(rig.lens, rig.conventions);
+        Parts parts = parts_of(rig, p, rig.view);
+        if (rig.in != In::world) {
+            const Transform<World, texgen::Window> of_window(transposed(rig.pose));
+            CHECK(diagnose(ProjectionSetup<texgen::Window>{.world_from_space = of_window}).empty());
+            parts.pose = of_window.matrix();
+            CHECK_MESSAGE(diagnosis_of(parts).contains(Defect::transposed), text(parts));
+            require_said({.pose = parts.pose, .in = rig.in}, {Defect::transposed});
+            parts.pose = with(rig.pose, 0, 1, nan_double);
+            require_said(parts, {Defect::not_finite});
+            parts.pose = rig.pose;
+        }
+        const Parts good = parts;
+        for (const bool has_texgen : {false, true}) {
+            for (const double bad : {0.0, nan_double}) {
+                const Defect defect = bad == 0.0 ? Defect::never_written : Defect::not_finite;
+                if (has_texgen) parts.texgen = bad * p, require_said(parts, {defect});
+                if (has_texgen) parts.texgen = composed(rig, *good.projector);
+                parts.projector = projector_of(rig, bad * p, rig.view);
+                require_said(parts, {defect});
+                parts.projector = projector_of(rig, p, bad * rig.view);
+                require_said(parts, {defect});
+                parts.projector = good.projector;
+            }
+        }
+        parts.projector = projector_of(rig, p, with(glm::dmat4(1.0), 2, 2, 0.0) * rig.view);
+        CHECK_MESSAGE(diagnosis_of(parts).contains(Defect::rank_below_three), text(parts));
+    }
+}
+
+TEST_CASE("points of one ray are smaller than a texel, unless one is behind, and where all are they are in no depth") {
+    const texgen::Aim along_z{{0.0, 0.0, 0.0}, {0.0, 0.0, -1.0}, {0.0, 1.0, 0.0}};
+    for (const Conventions& conventions : {texgen::opengl, texgen::direct3d, left_handed(texgen::vulkan)}) {
+        for (const bool is_reversed : {false, true}) {
+            const texgen::PerspectiveLens lens{texgen::degrees(40.0), 1.5, 0.5, 100.0, is_reversed};
+            Parts parts{.projector = make_projector(lens, along_z, conventions), .in = In::world, .has_points = true};
+            const auto place = [&](glm::vec3 a, glm::vec3 b, glm::vec3 c) { parts.points = {a, b, c, a, b, c, a, b}; };
+            place({0, 0, -8}, {0, 0, 8}, {0, 0, -8});
+            require_said(parts, {});
+            place({0, 0, -8}, {0, 0, -9}, {3, 1, 8});
+            require_said(parts, {});
+            place({0, 0, -8}, {0, 0, -9}, {0, 1e-5f, -8});
+            const double size = diagnosis_of(parts)[0].number;
+            CHECK(size > 0.0);
+            // The texture's size is known where both of its sides are.
+            for (const double other : {0.0, -256.0}) {
+                for (const glm::dvec2& texels : {glm::dvec2(256.0, other), {other, 256.0}, {other, other}}) {
+                    parts.texels_per_unit = texels;
+                    require_said(parts, {Defect::smaller_than_texel});
+                    CHECK(diagnosis_of(parts)[0].number == size);
+                }
+            }
+            for (const glm::dvec2& corner : {glm::dvec2(1.0, 0.0), {0.0, 1.0}}) {
+                const TextureRegion empty = texgen::atlas_tile(corner, glm::dvec2(1.0) - corner);
+                require_said({.in = In::world, .region = empty, .texels_per_unit = {256.0, 256.0}},
+                             {Defect::region_never_hit});
+                parts.texels_per_unit = {0.0, 0.0}, parts.region = empty;
+                require_said(parts, {Defect::region_never_hit});
+            }
+            place({0, 0, 8}, {1, 0, 8}, {0, 2, 9});
+            parts.region = texgen::whole_texture().with_depth(0.0, 1.0);
+            require_said(parts, {Defect::everything_behind, Defect::region_never_hit});
+            parts.projector = std::nullopt;
+            require_said(parts, {});
+        }
+    }
+}
+
+TEST_CASE("what is behind or beside the slide loses nothing, and what is lit what is measured where that is known") {
+    Random random(654);
+    const TextureRegion whole = texgen::whole_texture();
+    for (int i = 0; i < 300; ++i) {
+        const glm::dvec3 position = random.power_of_ten(1.0, 4.5) * random.direction(), forward = random.direction();
+        const auto projector = make_projector(texgen::PerspectiveLens{texgen::degrees(40.0), 1.0, 0.5, 10.0},
+                                              {position, position + forward, random.direction()}, texgen::opengl);
+        REQUIRE(projector);
+        const glm::dmat4 right = texture_from_world(*projector).matrix(), texgen = to_float(right);
+        // In texels of a picture of 4096; of what every point that is lit loses, on the far plane q is 10.
+        double measured = 409.6 * std::max(std::fabs(right[3].x - texgen[3].x), std::fabs(right[3].y - texgen[3].y));
+        const auto loss = [&](const glm::dvec3& from_projector, bool is_known) {
+            Parts parts{.texgen = texgen, .in = In::world, .has_points = true};
+            parts.points.fill(glm::vec3(position + 9.0 * forward));
+            parts.points[0] = glm::vec3(position + from_projector);
+            if (is_known) parts.projector = projector;
+            const Diagnosis diagnosis = diagnosis_of(parts);
+            return diagnosis.contains(Defect::precision_lost) ? diagnosis[0].number : 0.0;
+        };
+        for (const double distance : {8.0, 9.0}) {
+            const glm::vec3 point(position + distance * forward);
+            const glm::dvec2 error = seen(right, whole, point).st - seen(texgen, whole, point).st;
+            measured = std::max({measured, 4096.0 * std::fabs(error.x), 4096.0 * std::fabs(error.y)});
+        }
+        INFO(hex(texgen), " at ", hex(position), " along ", hex(forward));
+        CHECK(loss(8.0 * forward, true) <= 1.001 * measured);
+        const glm::dvec3 side = xyz(transposed(projector->view.matrix())[0]);
+        for (const bool is_known : {false, true})
+            for (const glm::dvec3& place : {5.0 * side + 0.01 * forward, -0.01 * forward})
+                CHECK(loss(place, is_known) == loss(9.0 * forward, is_known));
     }
 }
