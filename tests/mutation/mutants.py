@@ -673,7 +673,7 @@ MUTANTS = [
          ("planes next to one another are of another range", "&& lost < 0.5 * rounding * std::fabs(w);", ";", "diagnose_product_test"),
          ("a left-handed picture is mirrored", "return is_left != (conventions.handedness == Handedness::left);",
           "return is_left;", "diagnose_test"),
-         ("a lens may have any hand", "return is_perspective(p) && is_left !=", "return false && is_left !=", "diagnose_test"),
+         ("a lens may have any hand", "return is_perspective(p) && (p[2].w", "return false && (p[2].w", "diagnose_test"),
          ("a lens that is transposed is none", "return perspective || (is_affine_transposed(p) && is_lens(glm::transpose(p)));",
           "return false;", "diagnose_test"),
          ("every matrix is in float",

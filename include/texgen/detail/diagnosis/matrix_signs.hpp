@@ -135,10 +135,9 @@ inline bool is_lens_transposed(const glm::dmat4& p) noexcept {
 }
 
 // Whether the lens looks down the other axis than eyes of that handedness do. Parallel light does not say where it
-// looks; and where both axes of the picture are turned round as well, the matrix has the other sign.
-inline bool mistakes_handedness(const glm::dmat4& p, Handedness handedness, double width, double height) noexcept {
-    const bool is_left = p[2].w > 0.0;
-    return is_perspective(p) && is_left != (handedness == Handedness::left) && (width > 0.0 || height > 0.0);
+// looks.
+inline bool looks_away(const glm::dmat4& p, Handedness handedness) noexcept {
+    return is_perspective(p) && (p[2].w > 0.0) != (handedness == Handedness::left);
 }
 
 // NDC's depth of the near plane, or reversed of the far one; at the other it is 1.

@@ -27,11 +27,15 @@ inline void examine_numbers(const glm::dmat4& p, bool is_upright, Conventions co
 
 inline void examine_lens(const glm::dmat4& p, bool view_reflects, Conventions conventions, const LensFacts& facts,
                          const Picture& picture, Diagnosis& diagnosis) noexcept {
-    const double unit = is_perspective(p) ? std::fabs(p[2].w) : p[3].w;
-    const double width = p[0].x / unit;
-    const double height = (conventions.ndc_y == NdcY::up ? p[1].y : -p[1].y) / unit;
-    if (unit < 0.0) diagnosis.add(Defect::everything_behind);
-    if (mistakes_handedness(p, conventions.handedness, width, height)) diagnosis.add(Defect::mixed_handedness);
+    const bool is_away = looks_away(p, conventions.handedness);
+    const double x = p[0].x, y = conventions.ndc_y == NdcY::up ? p[1].y : -p[1].y;
+    // Where both axes of the picture are turned round as well the matrix has the other sign.
+    const double unit = !is_perspective(p) ? p[3].w : std::fabs(p[2].w) * (is_away && x < 0.0 && y < 0.0 ? -1.0 : 1.0);
+    const double width = x / unit, height = y / unit;
+    if (unit < 0.0)
+        diagnosis.add(Defect::everything_behind);
+    else if (is_away)
+        diagnosis.add(Defect::mixed_handedness);
     if (mistakes_depth(p, conventions.depth, conventions.handedness, facts.z_near, facts.z_far))
         diagnosis.add(Defect::depth_range_mismatch);
     if (is_perspective(p) && facts.fovy && mistakes_unit(height, *facts.fovy))

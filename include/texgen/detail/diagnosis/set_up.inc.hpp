@@ -44,8 +44,8 @@ inline bool are_numbers(const SetupMatrices& setup) noexcept {
     const std::optional<glm::dvec2> depth = region.depth();
     return is_side((region.min)()) && is_side((region.max)()) &&
            !(depth && (std::isnan(depth->x) || std::isnan(depth->y))) && is_finite(setup.picture.texels_per_unit) &&
-           is_given_finite(lens.aspect) && is_given_finite(lens.z_near) && !(lens.z_far && std::isnan(*lens.z_far)) &&
-           !(lens.fovy && !is_finite(lens.fovy->in_radians()));
+           is_given_finite(lens.aspect) && is_given_finite(lens.z_near) &&
+           !(lens.z_far && !(*lens.z_far > -infinity)) && !(lens.fovy && !is_finite(lens.fovy->in_radians()));
 }
 
 // Half the bound on the rounding of an element to float, relative to it.
@@ -87,7 +87,10 @@ inline Examined examine(const SetupMatrices& setup, Diagnosis& diagnosis) noexce
     }
     if (setup.pose != nullptr) {
         if (!examine_usable(*setup.pose, diagnosis)) factors.reset();
-        if (!setup.in_window && is_affine_transposed(*setup.pose)) diagnosis.add(Defect::transposed);
+        if (!setup.in_window && is_affine_transposed(*setup.pose)) {
+            diagnosis.add(Defect::transposed);
+            if (setup.texgen == nullptr) factors.reset();  // of their product nothing is known
+        }
         glm::dmat4 turned_and_scaled = *setup.pose;
         turned_and_scaled[3] = glm::dvec4(0.0);
         if (turned_and_scaled == glm::dmat4(0.0)) diagnosis.add(Defect::rank_below_three);
