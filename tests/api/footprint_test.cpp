@@ -1130,9 +1130,11 @@ TEST_CASE("a Jacobian of rank 1 or 0, and texels that are none, get what the hea
         const auto one = FootprintSetup(setup_of(thin), {64.0, 64.0}).at(200, 200);
         if (one && one->singular_values.x > 0.0) REQUIRE_MESSAGE(one->anisotropy == infinity_double, hex(thin));
     }
-    for (const double bad : {0.0, -1.0, nan_double, infinity_double}) {
-        const TexelsPerUnit texels = bad > 0.0 ? TexelsPerUnit{bad, 64.0} : TexelsPerUnit{64.0, bad};
-        const FootprintSetup setup(setup_of(line), texels), good(setup_of(line), {64.0, 64.0});
+    const Triangle plain = flat(window, {glm::vec3(0, 0, 2), glm::vec3(1, 0, 1), glm::vec3(0.25f, 1, 4)});
+    for (const double bad : {0.0, -1.0, nan_double, infinity_double, 0x1p200, 0x1p-202}) {
+        const double other = bad > 0.0 && bad < infinity_double ? 0x1p2 * bad : 64.0;
+        const TexelsPerUnit texels = bad > 0.0 ? TexelsPerUnit{bad, other} : TexelsPerUnit{64.0, bad};
+        const FootprintSetup setup(setup_of(plain), texels), good(setup_of(plain), {64.0, 64.0});
         FootprintOutputs out(rect), right(rect);
         REQUIRE(footprint(setup, rect, out.spans()));
         footprint(good, rect, right.spans());

@@ -526,6 +526,14 @@ TEST_CASE("a segment needs nothing only where nothing is lit, and no test only w
           texgen::Work::divide_and_test);
     CHECK(texgen::work({{0.5f, 0.5f, 0.0f, -1.0f}, {0.5f, 0.5f, 0.0f, 0.0f}}, texgen::whole_texture()) ==
           texgen::Work::nothing);
+    for (int k = 0; k < 3; ++k) {
+        for (const float beyond : {-1.0f, 2.0f}) {
+            Segment beside{{0.5f, 0.5f, 0.5f, 1.0f}, {0.5f, 0.5f, 0.5f, 2.0f}};
+            beside.a[k] = beyond;
+            beside.b[k] = 2.0f * beyond;
+            CHECK(texgen::work(beside, texgen::whole_texture().with_depth()) == texgen::Work::nothing);
+        }
+    }
 }
 
 TEST_CASE("half-way between two subnormal floats, along a segment, is rounded to even") {
