@@ -19,6 +19,7 @@
 #include "support/special_values.hpp"
 #include "support/stopwatch.hpp"
 #include "texgen/coverage.hpp"
+#include "texgen/fixed_function.hpp"
 #include "texgen/footprint.hpp"
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
@@ -316,4 +317,49 @@ TEST_CASE("no triangle's extremes cost more than those of 8 ordinary ones") {
         };
         CHECK(worst_over_ordinary_within(limit_of_functions, ordinary_ones, worst_ones) <= limit_of_functions);
     }
+}
+
+TEST_CASE("what is not asked for costs nothing: modes that are off, footprints where extremes are found") {
+    volatile double sink = 0.0;
+    using texgen::Coordinate;
+    texgen::TexGenUnit linear;
+    linear.enable(Coordinate::s);
+    texgen::TexGenUnit with_sphere_map = linear;  // which needs an inverse, and is off
+    REQUIRE(with_sphere_map.set_mode(Coordinate::t, texgen::TexGenMode::sphere_map));
+    const texgen::FixedFunctionVertex vertex{
+        .position = {1.0f, 2.0f, -3.0f, 1.0f}, .normal = {0.0f, 0.6f, 0.8f}, .texcoord = {0.0f, 0.0f, 0.0f, 1.0f}};
+    const glm::mat4 modelview(2.0f);
+    const auto generated_by = [&](const texgen::TexGenUnit& unit) {
+        return [&] {
+            for (int i = 0; i < 200; ++i) sink = static_cast<double>(unit.generate(vertex, modelview).x);
+        };
+    };
+    CHECK(worst_over_ordinary_within(4.0, generated_by(linear), generated_by(with_sphere_map)) <= 4.0);
+
+    const auto inverted = [&](const texgen::WorldTexgen& matrix) {
+        return [&, matrix] {
+            for (int i = 0; i < 200; ++i) sink = inverse(matrix).has_value() ? 1.0 : 0.0;
+        };
+    };
+    glm::dmat4 regular(0.0);
+    for (int j = 0; j < 4; ++j)
+        for (int i = 0; i < 4; ++i) regular[j][i] = 1.0 / (1.0 + i + j) + (i == j ? 1.0 : 0.0);
+    glm::dmat4 singular = regular;
+    singular[3] = singular[0] + singular[1];
+    REQUIRE(inverse(texgen::WorldTexgen(regular)).has_value());
+    REQUIRE_FALSE(inverse(texgen::WorldTexgen(singular)).has_value());
+    CHECK(worst_over_ordinary_within(2.5, inverted(texgen::WorldTexgen(regular)),
+                                     inverted(texgen::WorldTexgen(singular))) <= 2.5);
+
+    const texgen::Triangle triangle{{{0.0f, 0.0f}, 1.0f, {0.0f, 0.0f, 0.0f, 1.0f}},
+                                    {{64.0f, 0.0f}, 2.0f, {3.0f, 0.0f, 0.0f, 3.0f}},
+                                    {{0.0f, 64.0f}, 4.0f, {0.0f, 2.0f, 0.0f, 2.0f}}};
+    const texgen::FootprintSetup setup({*texgen::TriangleSetup::of(triangle, texgen::whole_texture()), {512, 512}});
+    const auto alone = [&] {
+        for (int i = 0; i < 40 * 20; ++i) sink = setup.at(i % 8, 9)->level;
+    };
+    const auto extremes = [&] {
+        for (int i = 0; i < 20; ++i) sink = setup.extremes()->least_level;
+    };
+    CHECK(worst_over_ordinary_within(1.0, alone, extremes) <= 1.0);  // 40 fragments
 }
