@@ -3,6 +3,7 @@
 // The frame of the benchmarks: rows that are checked before they are timed, the memory they share, and what is written
 // at most or at least (the floors).
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>

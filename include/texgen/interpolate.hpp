@@ -9,7 +9,6 @@
 
 #include "detail/language.hpp"
 
-#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstddef>

@@ -118,9 +118,11 @@ TEXGEN_APART inline Tile light_spans(const TriangleFunctions& triangle, const Ti
         kernels.light_all(lit.data() + static_cast<std::ptrdiff_t>(y) * tile.width + certain.begin,
                           static_cast<std::size_t>(certain.end - certain.begin));
         if (possible.begin == certain.begin && possible.end == certain.end) continue;
-        left = (std::min)(left, possible.begin < certain.begin ? possible.begin : certain.end);
-        right = (std::max)(right, certain.end < possible.end ? possible.end : certain.begin);
-        top = (std::min)(top, y);
+        const int first = possible.begin < certain.begin ? possible.begin : certain.end;
+        const int end = certain.end < possible.end ? possible.end : certain.begin;
+        if (first < left) left = first;
+        if (end > right) right = end;
+        if (bottom == 0) top = y;
         bottom = y + 1;
     }
     if (bottom == 0) return {};
