@@ -56,6 +56,14 @@ struct Engine {
 
 Box box_of(const glm::vec3& half) { return {-half, half}; }
 
+// From the origin along -z, so many times.
+void give_light_along_z(Engine& engine, std::size_t count) {
+    const auto projector = make_projector(texgen::PerspectiveLens{texgen::degrees(40), 1.0, 0.1, 100.0},
+                                          texgen::Aim{{0, 0, 0}, {0, 0, -1}, {0, 1, 0}}, texgen::opengl);
+    engine.projectors.assign(count, projector.value());
+    engine.regions.assign(count, texgen::whole_texture());
+}
+
 struct Hostile {
     int nan_model = 0, singular = 0, not_affine = 0, nan_box = 0, empty_box = 0, infinite_box = 0, flat_box = 0;
     int nan_projector = 0, empty_region = 0, far_region = 0;
@@ -474,9 +482,6 @@ TEST_CASE("only what changed is tested and computed: the other pairs keep their 
 
 TEST_CASE("work grows with what is lit, not with what stands in the dark") {
     Random random(1204);
-    const auto projector = make_projector(texgen::PerspectiveLens{texgen::degrees(40), 1.0, 0.1, 100.0},
-                                          texgen::Aim{{0, 0, 0}, {0, 0, -1}, {0, 1, 0}}, texgen::opengl);
-    REQUIRE(projector);
     std::array<SceneWork, 2> works;
     for (std::size_t k = 0; k < 2; ++k) {
         Engine engine;
@@ -492,8 +497,7 @@ TEST_CASE("work grows with what is lit, not with what stands in the dark") {
             engine.models.push_back(ModelMatrix(m));
         }
         engine.bounds.assign(engine.models.size(), box_of(glm::vec3(0.5f)));
-        engine.projectors.assign(1, *projector);
-        engine.regions.assign(1, texgen::whole_texture());
+        give_light_along_z(engine, 1);
         Scene scene;
         scene.update(engine.view(), {});
         const Indices turned{0};
@@ -508,9 +512,6 @@ TEST_CASE("work grows with what is lit, not with what stands in the dark") {
 
 TEST_CASE("objects that are gone leave no bounds where nothing stands") {
     Random random(1205);
-    const auto projector = make_projector(texgen::PerspectiveLens{texgen::degrees(40), 1.0, 0.1, 100.0},
-                                          texgen::Aim{{0, 0, 0}, {0, 0, -1}, {0, 1, 0}}, texgen::opengl);
-    REQUIRE(projector);
     Engine engine;
     for (int i = 0; i < 1000; ++i) {
         glm::dmat4 far_away(1.0);
@@ -518,8 +519,7 @@ TEST_CASE("objects that are gone leave no bounds where nothing stands") {
         engine.models.push_back(ModelMatrix(far_away));
     }
     engine.bounds.assign(1000, box_of(glm::vec3(0.5f)));
-    engine.projectors.assign(1, *projector);
-    engine.regions.assign(1, texgen::whole_texture());
+    give_light_along_z(engine, 1);
     Scene scene;
     scene.update(engine.view(), {});
     engine.models.resize(333, engine.models[0]);
@@ -532,16 +532,12 @@ TEST_CASE("objects that are gone leave no bounds where nothing stands") {
 }
 
 TEST_CASE("pairs that come at once allocate a few times, and an object that is named often is changed once") {
-    const auto projector = make_projector(texgen::PerspectiveLens{texgen::degrees(40), 1.0, 0.1, 100.0},
-                                          texgen::Aim{{0, 0, 0}, {0, 0, -1}, {0, 1, 0}}, texgen::opengl);
-    REQUIRE(projector);
     Engine engine;
     glm::dmat4 in_front(1.0);
     in_front[3].z = -10.0;
     engine.models.assign(5000, ModelMatrix(in_front));
     engine.bounds.assign(5000, box_of(glm::vec3(0.5f)));
-    engine.projectors.assign(4, *projector);
-    engine.regions.assign(4, texgen::whole_texture());
+    give_light_along_z(engine, 4);
     Scene scene;
     const std::size_t before = allocations;
     scene.update(engine.view(), {});
@@ -566,8 +562,7 @@ TEST_CASE("objects far away, or twice so far, leave the others to be found as qu
         engine.models.push_back(ModelMatrix(m));
     }
     engine.bounds.assign(engine.models.size(), box_of(glm::vec3(0.5f)));
-    engine.projectors.assign(1, *projector);
-    engine.regions.assign(1, texgen::whole_texture());
+    give_light_along_z(engine, 1);
     const Indices turned{0};
     Indices all(engine.models.size());
     std::iota(all.begin(), all.end(), 0u);

@@ -9,7 +9,6 @@
 #include "../arithmetic/nearest.hpp"
 #include "../arithmetic/widen.hpp"
 #include "../language.hpp"
-#include "slide_planes.hpp"
 
 namespace TEXGEN_DETAIL {
 
