@@ -29,7 +29,8 @@ public:
         const bool grows = count > bounds_.size();
         if (grows) grow(count);
         for (const std::uint32_t object : objects) bounds_[object] = bounds_of(object);
-        // What moved is no longer where it was sorted in. Sorting costs less than as many moves, or than growing.
+        // Objects that moved are no longer where the last sorting put them. Sorting costs less than as many moves do,
+        // or than growing does.
         moves_ += objects.size();
         if (grows || (stage_ == Stage::sorted && moves_ > bounds_.size())) {
             moves_ = 0;

@@ -2,7 +2,7 @@
 
 namespace TEXGEN_DETAIL {
 
-// What is said of a box of which no form is asked.
+// The coverage of a box about which no form is asked.
 inline Coverage coverage_without_forms(const LitForms& forms, const Box& box) noexcept {
     bool is_empty = false;
     for (glm::length_t j = 0; j < 3; ++j) {
@@ -82,7 +82,7 @@ void LitVolume<Space>::coverage(std::span<const Sphere> spheres, std::span<Cover
     detail::coverage_of_many(forms_, float_forms_, unit_forms_, spheres, out);
 }
 
-// One body needs no forms in float.
+// For a single body no forms are made in float.
 template <class Space>
 Coverage coverage(const Transform<Texture, Space>& texture_from_space, const TextureRegion& region,
                   const Box& box) noexcept {

@@ -20,7 +20,7 @@ public:
         return {value, gamma(1) * std::fabs(value) + product_error_ * std::fabs(product)};
     }
 
-    // In two doubles, which leave out `error`: 0 unless the digits are too far apart.
+    // The distance in two doubles, within `error`: that is 0 unless the digits are too far apart.
     struct Close {
         DoubleDouble value;
         double error;
@@ -78,7 +78,7 @@ public:
           of_inside_(side.closely(inside)),
           of_outside_(side.closely(outside)) {}
 
-    // Of a component that is i inside and o outside, with a quotient that may err by `error`.
+    // The component of the new vertex that is i inside and o outside, where its quotient may err by `error`.
     float nearest(double i, double o, double quotient, double error) const noexcept {
         if (!(error <= 0x1p-26 * std::fabs(quotient))) {
             const Bounded sum = beyond(0.0, i, o);
@@ -121,8 +121,8 @@ private:
     SlideDistance::Close of_inside_, of_outside_;
 };
 
-// The same from the begin. With weights v^ = v + e, |e| <= E, the numerator errs by E_o |inside| + E_i |outside| and by
-// three roundings, the quotient by that and E_i + E_o of it, over the difference, and by its own.
+// The vertex where the edge crosses the side. With weights v^ = v + e, |e| <= E, the numerator errs by E_o |inside| +
+// E_i |outside| and by three roundings, the quotient by that and E_i + E_o of it, over the difference, and by its own.
 inline ClipVertex cut_at(const SlideDistance& side, const ClipVertex& inside, const ClipVertex& outside) noexcept {
     const Bounded of_inside = side(inside);
     const Bounded of_outside = side(outside);
@@ -215,7 +215,7 @@ inline std::size_t clip_to_slide(std::span<const ClipVertex> polygon, TextureReg
         out[i] = polygon[i];
     }
 
-    // What is beyond a limit of depth stays so, whatever the cuts at the sides round r to.
+    // A vertex beyond a limit of depth stays so, whatever the cuts at the sides round r to.
     std::size_t count = polygon.size();
     for (std::size_t k = planes.without_depth; k < planes.size(); ++k) {
         const detail::SlideDistance limit(planes[k]);

@@ -2,7 +2,7 @@
 
 namespace TEXGEN_DETAIL {
 
-// What is said of a sphere of which no form is asked.
+// The coverage of a sphere about which no form is asked.
 inline Coverage coverage_without_forms(const LitForms& forms, const Sphere& sphere) noexcept {
     const glm::vec3& centre = sphere.centre;
     if (std::isnan(centre.x) || std::isnan(centre.y) || std::isnan(centre.z) || std::isnan(sphere.radius))

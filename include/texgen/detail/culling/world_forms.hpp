@@ -172,7 +172,7 @@ private:
         form.error_d = gamma(64) * scale * sizes[3] + 0x1p-100 + of_width * magnitude[3][3];
     }
 
-    // What is not set says nothing.
+    // Forms that are not set exclude nothing.
     static constexpr LinearForm nothing{{}, 0.0, 1.0, 1.0};
     std::array<LinearForm, SlidePlanes::max_size> forms_{};
     std::size_t count_ = 0;

@@ -5,8 +5,8 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// A difference: the leading 26 bits of the double next to it, the others, and what that lacks. Of two such products all
-// but that of the others are exact.
+// A difference: the leading 26 bits of the double next to it, the bits behind them, and what that double lacks. A
+// product of parts of two such differences is exact, but for that of the two low ones.
 struct DifferenceLanes {
     Doubles high, low, lost;
 
@@ -21,8 +21,8 @@ struct DifferenceLanes {
 struct EdgeLanes {
     Doubles high, low, size;
 
-    // What two differences span: within 2^-98 of the size. Not short are differences that have a low part, or have lost
-    // one.
+    // The cross product of two differences, within 2^-98 of the size. They are short if their low parts are 0, and
+    // is_lost says that some lack a part.
     TEXGEN_INLINE void set(const DifferenceLanes& to_x, const DifferenceLanes& to_y, const DifferenceLanes& from_x,
                            const DifferenceLanes& from_y, bool is_short, bool is_lost) noexcept {
         const Doubles left = to_x.high * from_y.high;
@@ -52,12 +52,12 @@ struct EdgeLanes {
     }
 };
 
-// The vertices of the triangle in each lane; of its numbers x, y, w, s, t, r, q.
+// The vertices of the triangle in each lane: x, y, w, s, t, r, q of each.
 struct VertexLanes {
     Doubles vertex[3][8];
     Doubles area;        // doubled, within 2^-40 of itself
     LongWords has_area;  // its sign is known
-    Doubles error_of_q;  // infinite elsewhere, so that all is in doubt
+    Doubles error_of_q;  // infinite where the sign is not known, which leaves everything in doubt
 
     VertexLanes() = default;
     TEXGEN_INLINE explicit VertexLanes(const float* const (&triangle)[lanes]) noexcept { take(triangle); }
@@ -66,7 +66,7 @@ struct VertexLanes {
         load_about_farthest(triangle, vertex);
         find_area();
     }
-    // One triangle in all of them.
+    // The same triangle in all lanes.
     TEXGEN_APART void take(const float* triangle) noexcept {
         const std::size_t* const of_turned = about_farthest(triangle);
         TEXGEN_FOR (std::size_t i = 0; i < 3; ++i) {
@@ -93,7 +93,7 @@ struct VertexLanes {
     }
 
 private:
-    // Of slivers it takes two doubles.
+    // The area of a sliver takes two doubles.
     TEXGEN_INLINE void find_area() noexcept {
         const Doubles left = (number(1, 0) - number(0, 0)) * (number(2, 1) - number(0, 1));
         const Doubles right = (number(1, 1) - number(0, 1)) * (number(2, 0) - number(0, 0));
@@ -115,7 +115,7 @@ struct CloseTerms {
     Doubles inexact;                          // 0 where all G_i are a double, exactly
     bool is_leading;                          // leading is all there is
 
-    // Of E_i, and what is not 0 where they are not exact differences.
+    // Takes edge functions E_i; edge_inexact is not 0 in lanes where they were made from rounded differences.
     TEXGEN_INLINE void take(const VertexLanes& given, EdgeLanes (&edge)[3], const Doubles& edge_inexact) noexcept {
         inexact = edge_inexact;
         Doubles rest{};
@@ -164,11 +164,12 @@ struct CloseTerms {
     }
 };
 
-// At a fragment: all are within 2^-98 of their size. Of one farther off than the corners are apart, what corner k is
-// off corner j takes the place of what it is off the fragment: E_i is the same, of terms that are less.
+// The terms at a fragment, all within 2^-98 of their size. Where it is farther from a corner than the corners are from
+// one another, E_i is made from the difference between corners j and k in the place of that between k and the fragment:
+// its value is the same, and its terms are smaller.
 struct CloseLanes : CloseTerms {
     TEXGEN_APART CloseLanes(const VertexLanes& given, const Doubles& x, const Doubles& y) noexcept {
-        // Of side i from here to its corner j, and from there or here to k.
+        // For E_i: from the fragment to corner j, and from the fragment, or from j, to corner k.
         DifferenceLanes to_x[3], to_y[3], from_x[3], from_y[3];
         Doubles lost{}, below{};
         TEXGEN_FOR (std::size_t i = 0; i < 3; ++i) {
@@ -203,7 +204,7 @@ struct CloseLanes : CloseTerms {
     }
 };
 
-// By how much the functions grow along a row (axis 0) or down (1), as ExactFragment::growth().
+// By how much the functions grow along a row (axis 0) or a column (1), as ExactFragment::growth().
 struct CloseSteps : CloseTerms {
     TEXGEN_APART CloseSteps(const VertexLanes& given, std::size_t axis) noexcept {
         EdgeLanes edge[3];
@@ -232,7 +233,7 @@ struct IntegerLanes {
     }
 };
 
-// Of the values of a function at the corners: integers times a grain are the function's terms.
+// The values of a function at the corners, as integers: these times the grain are its terms.
 struct ResidueValues {
     Residues value[3];
     Doubles grain;
@@ -247,9 +248,9 @@ struct ResidueValues {
 struct ResidueLanes {
     const VertexLanes& given;
     Residues side[3];    // with the weights
-    LongWords is_known;  // no number is too large, and the area is not next to 0
+    LongWords is_known;  // where no number is too large, and the area's sign is known
     Residues one_x, one_y;
-    Doubles per_x, per_y;  // what 1 is in the units of x and y, as they are
+    Doubles per_x, per_y;  // 1 in the units of x and of y, not reduced
 
     TEXGEN_APART ResidueLanes(const VertexLanes& vertices, const Doubles& at_x, const Doubles& at_y) noexcept
         : given(vertices) {
@@ -268,7 +269,7 @@ struct ResidueLanes {
         one_x = known(one, per_x);
         one_y = known(one, per_y);
         unit_ = x.unit * y.unit * weight.unit;
-        // Integers, of which a fragment far away has a product that is none of 63 bits.
+        // In halves, which are integers: those of a fragment far away, times the units, may need more than 63 bits.
         const Residues first_x = to_residues(at_x * 2.0) * known(one * 0.5, x.per_unit);
         const Residues first_y = to_residues(at_y * 2.0) * known(one * 0.5, y.per_unit);
         TEXGEN_FOR (std::size_t i = 0; i < 3; ++i) {
@@ -282,7 +283,8 @@ struct ResidueLanes {
         }
     }
 
-    // By how much the sides' functions grow along a row, times one_x the same integers, and down, times one_y.
+    // By how much the edge functions grow along a row and down a column, without the factors one_x and one_y, which
+    // they all share.
     TEXGEN_INLINE void steps(Residues (&dx)[3], Residues (&dy)[3]) const noexcept {
         TEXGEN_FOR (std::size_t i = 0; i < 3; ++i) {
             const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
@@ -309,7 +311,8 @@ private:
         is_known = before & greater(Doubles{} + 0x1p140, largest);
         are_large_ = any(greater(largest, 0x1p62));
     }
-    // Modulo 2^64, of at most 48 bits: so large numbers are multiples of what their sums here are rounded to.
+    // Modulo 2^64. Numbers have at most 48 bits, so large ones are multiples of what the sums in to_residues_of_any()
+    // are rounded to.
     TEXGEN_INLINE Residues known(const Doubles& number, const Doubles& per_unit) const noexcept {
         const Doubles integer = number * where(is_known, per_unit);
         return are_large_ ? to_residues_of_any(integer) : to_residues(integer);
@@ -320,9 +323,9 @@ private:
     bool are_large_;  // some numbers are
 };
 
-// The functions of a triangle in each lane at a fragment, in double, of which corner k is taken off corner j as one far
-// away has it in CloseLanes. With u = 2^-53 the differences are within u, an edge function 4 u of the sizes of its
-// terms, times its weight 6 u, the sum of three 9 u of theirs, and the sizes themselves 7 u.
+// The functions of a triangle in each lane at a fragment, in double, with the difference between corners j and k in
+// every E_i, as CloseLanes has it far away. With u = 2^-53 the differences are within u, an edge function within 4 u of
+// the sizes of its terms, times its weight 6 u, the sum of three 9 u of theirs, and the sizes themselves 7 u.
 struct NearLanes {
     Doubles term[3], size[3];
 
@@ -336,7 +339,7 @@ struct NearLanes {
             size[i] = (magnitude(left) + magnitude(right)) * weight;
         }
     }
-    // Within 1.01 times what it may err by, as a divisor takes it.
+    // The value of coordinate k, and 1.01 times what it may err by, as CloseDivisor takes it.
     TEXGEN_INLINE CloseValues function(const VertexLanes& given, std::size_t k) const noexcept {
         const Doubles* const f[3] = {&given.number(0, 3 + k), &given.number(1, 3 + k), &given.number(2, 3 + k)};
         return {term[0] * *f[0] + (term[1] * *f[1] + term[2] * *f[2]), Doubles{},
@@ -345,8 +348,9 @@ struct NearLanes {
     }
 };
 
-// Where the grain is coarse enough, one integer times it that has the residue is next to a value: what the leading part
-// is rounded to is within `reach`, or a grain, of it. Of their difference, the rest, 2^-50 is lost, or nothing.
+// A value with its residue's help. Where the grain is coarse enough, only one integer that has the residue is, times
+// the grain, within `reach` of the leading part. The difference of the two is the rest, of which 2^-50 is lost, or
+// nothing.
 TEXGEN_INLINE CloseValues sharpened(const CloseValues& f, const Residues& residue, const Doubles& grain) noexcept {
     const Doubles reach = magnitude(f.high) * 0x1p-48 + f.error;
     const LongWords is_one = greater(grain * 0x1p60, reach);
@@ -357,7 +361,7 @@ TEXGEN_INLINE CloseValues sharpened(const CloseValues& f, const Residues& residu
     return {select(is_one, high, f.high), select(is_one, low, f.low), select(is_one, reach * 0x1p-48, f.error)};
 }
 
-// Lane by lane what errs by less.
+// In each lane the one that errs by less.
 TEXGEN_INLINE CloseValues better(const CloseValues& a, const CloseValues& b) noexcept {
     const LongWords is_b = greater(a.error, b.error);
     return {select(is_b, b.high, a.high), select(is_b, b.low, a.low), minimum(a.error, b.error)};

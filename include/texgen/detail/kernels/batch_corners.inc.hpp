@@ -1,10 +1,10 @@
 // The functions of a batch's triangles far off slivers, where the terms of batch_closely.inc.hpp cancel: about a
-// corner, where but one of them is not 0, and from coefficients that residues have sharpened. Included by
+// corner, where only one of the three terms is not 0, and with coefficients that residues have sharpened. Included by
 // batch.inc.hpp.
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// Exact products with a difference, and what two doubles times it have beside them.
+// The product of two doubles and a difference: three exact products, and the rest.
 struct ProductLanes {
     Doubles high, middle[2], rest;
 
@@ -19,8 +19,9 @@ struct ProductLanes {
 };
 
 // With C the corner next to a fragment p, F(p) = F(C) + F_x (p - C).x + F_y (p - C).y, F(C) = area w_j w_k f_C. The
-// area, F_x and F_y have 96 bits of what they cancel from, or by residues 144. With u = 2^-53 the products here lack 12
-// u^2 of F(C) and 9 u^2 of the others, and sums of what is left of exact ones 48 u^2 of all three: 2^-98 covers them.
+// area, F_x and F_y are known to 96 bits of the terms that they cancel from, or by residues to 144. With u = 2^-53 the
+// products here lack 12 u^2 of F(C) and 9 u^2 of the others, and the sums of what exact ones leave 48 u^2 of all three:
+// 2^-98 covers them.
 struct CornerLanes {
     TEXGEN_APART CornerLanes(const VertexLanes& given, const ResidueLanes& residues, const Doubles& x,
                              const Doubles& y) noexcept
@@ -39,7 +40,7 @@ struct CornerLanes {
         residues.steps(dx_, dy_);
     }
 
-    // Of coordinate k: at the fragment, and by how much it grows along a row and down.
+    // The function of coordinate k at the fragment, and by how much it grows along a row and down a column.
     TEXGEN_APART void take(std::size_t k, const ResidueValues& values, CloseValues& base, CloseValues& dx,
                            CloseValues& dy) const noexcept {
         const Doubles grain = where(residues_.is_known, values.grain);
@@ -84,7 +85,8 @@ private:
     Residues dx_[3], dy_[3];
 };
 
-// What is known of s, t, r if it is needed, and q at fragments of a triangle each: without residues grains are 0.
+// What is known of s, t, q, and r where it is needed, at fragments of a triangle each. A grain of 0 says that there is
+// no residue.
 struct CloseFragmentsAt {
     const bool needs_r;
     bool are_sums_first;
@@ -94,7 +96,7 @@ struct CloseFragmentsAt {
 
     TEXGEN_INLINE explicit CloseFragmentsAt(bool with_r) noexcept : needs_r(with_r) {}
 
-    // One by one: GCC copies them in halves, which a load of the whole waits for.
+    // Member by member: GCC would copy them in halves, for which a load of the whole waits.
     TEXGEN_INLINE CloseValues values(std::size_t n) const noexcept {
         return {value[n].high, value[n].low, value[n].error};
     }
@@ -116,7 +118,8 @@ struct CloseFragmentsAt {
             of_grain[n] = where(lanes_of.is_known, of.grain);
         }
     }
-    // Where the terms cancel by more than two doubles, and residues beside them, know.
+    // Makes all functions about a corner, where terms cancel by more than two doubles and residues know. They replace
+    // what is there if this is the first try, else only in lanes that err by less so.
     TEXGEN_APART void take_about_corners(const VertexLanes& vertices, const Doubles& x, const Doubles& y,
                                          bool is_first) noexcept {
         are_sums_first = true;

@@ -2,8 +2,8 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// The functions of a tile in double, and where they are 0: there quotients have no error. Of a tile that is in doubt for
-// its zeros alone none is left.
+// The functions of a tile in double, and the column or row where each is 0, in which its quotients have no error. A
+// tile that was in doubt only for such zeros is decided by this.
 struct TileWithZeros {
     const TileFunctions<3> f;
     double error[3];
@@ -21,7 +21,7 @@ struct TileWithZeros {
         }
     }
 
-    // False where a value is in doubt.
+    // Divides a vector of fragments; false where a value stays in doubt.
     TEXGEN_INLINE bool divide(const Doubles& x, const Doubles& y, Floats (&quotient)[3]) const noexcept {
         const Doubles reciprocal = 1.0 / f.at(3, x, y);
         Words doubtful{};
@@ -37,14 +37,14 @@ struct TileWithZeros {
     }
 };
 
-// Tiles of the block from `first` on that are in doubt, a bit each, again; its values begin at `of_block`. From the
-// first that stays so on they have functions about corners, too. Returns those that this leaves.
+// Decides the tiles of the block from `first` on that are in doubt, a bit each; its values begin at `of_block`. From
+// the first tile that stays in doubt on, functions are made about corners, too. Returns the tiles that this leaves.
 TEXGEN_APART inline std::uint64_t decide_tiles(const TilesJob& job, const FragmentOutputs& out, std::size_t first,
                                                const int (*block)[4], const BatchTiles& tiles, std::uint64_t doubtful,
                                                std::size_t of_block, bool about_corners = false) noexcept {
     BatchFunctions functions;
     TileScratch scratch;
-    const auto known = static_cast<std::size_t>(std::countr_zero(doubtful));  // finite, where others may be no numbers
+    const auto known = static_cast<std::size_t>(std::countr_zero(doubtful));  // of finite numbers, as others may not be
     std::uint64_t taken = 0;
     const auto take = [&](std::size_t tile) {
         const std::size_t i = tile / at_once * at_once;
@@ -66,13 +66,13 @@ TEXGEN_APART inline std::uint64_t decide_tiles(const TilesJob& job, const Fragme
         const std::size_t begin = done;
         done += shape.count;
         if ((doubtful >> i & 1u) == 0) continue;
-        // What follows is there already.
+        // A last vector that is not full must not write over what follows, which is done.
         const bool in_scratch = shape.count % at_once != 0;
         const FragmentOutputs here = in_scratch ? scratch.in_place_of(out) : out;
         const TileWithZeros in_double(job, tiles, first + i, i, block[i], shape.is_turned);
         FragmentWalk<Doubles, double> walk(shape.width, shape.per_width, 0.0);
         Words left{};
-        bool is_certain = tiles.has(BatchTiles::is_exact, i);  // doubt that is left has company
+        bool is_certain = tiles.has(BatchTiles::is_exact, i);  // as long as no vector before was in doubt
         for (std::size_t n = 0; n < shape.count && !any(left); n += at_once, walk.advance()) {
             const Doubles row = minimum(walk.y, Doubles{} + shape.last_row);
             CloseFragments<3> fragments;

@@ -77,7 +77,7 @@ struct JacobianLanes {
     }
 
 private:
-    // In two doubles; 0 is what is less than a half of the grain of its terms.
+    // Finds q in two doubles; it is 0 where it is less than half of the grain of its terms.
     TEXGEN_APART void find_q_closely(const VertexLanes& given, const Doubles& x, const Doubles& y) noexcept {
         const CloseValues close = CloseLanes(given, x, y).function(given, 3);
         const Doubles error = close.error + given.error_of_q;
@@ -165,7 +165,7 @@ struct JacobianBlock {
         return ~(is_held & is_known);
     }
 
-    // What filters make of `count` of them.
+    // Computes what filters need of `count` fragments.
     TEXGEN_INLINE void filter(std::size_t begin, std::size_t count, const BatchFootprintsJob& job) const noexcept {
         for (std::size_t n = 0; n < count; n += wide_at_once) {
             const int some = count - n < wide_at_once ? static_cast<int>(count - n) : wide_lanes;

@@ -10,8 +10,8 @@ struct OneTriangle {
 
 TEXGEN_INLINE bool all(const LongWords& mask) noexcept { return lane_bits(mask) == (std::uint64_t{1} << lanes) - 1; }
 
-// A vector of fragments at (x, y): quotients, where they are in front, and the lanes in doubt, of their side or their
-// value.
+// A vector of fragments at (x, y): the quotients where they are in front, and the lanes whose side or value is in
+// doubt.
 template <std::size_t Numerators>
 struct FragmentLanes {
     Floats quotient[Numerators];
@@ -41,7 +41,8 @@ struct FragmentLanes {
         doubtful = Words{};
         LongWords is_certain{};
         if (tolerance > 0.0) {
-            // Half of it, whichever float is taken; what doubles are rounded by is within 1.0002.
+            // Either float next to a quotient errs by half of the distance between the two, and by what doubles are
+            // rounded by, within 1.0002.
             const Doubles written = (largest * functions[BatchPlanes::q + 3] + largest_error) * stretched +
                                     (largest * (0.5001 * unit_roundoff_float) + 0x1p-150);
             is_certain = front & at_most(written, Doubles{} + 0.5 * tolerance);
@@ -65,7 +66,7 @@ TEXGEN_INLINE const float* vertices_of(const auto& job, std::size_t triangle) no
     return job.vertices + 3 * BatchVertex::size * triangle;
 }
 
-// The ids of a vector of fragments from n on; behind the last one they are any.
+// The ids of a vector of fragments from n on. Lanes behind the last fragment have the id of the first one.
 struct FragmentIds {
     std::uint32_t last[lanes];
     const std::uint32_t* value;
@@ -95,7 +96,7 @@ public:
           first_(static_cast<double>(first)) {
         place();
     }
-    // Within a row the next ones are beside them.
+    // Goes to the next vector, which is beside this one if its row has room for it.
     TEXGEN_INLINE void advance() noexcept {
         first_ += lanes;
         column_ += lanes;
@@ -118,8 +119,8 @@ private:
     double first_, column_;  // of the first fragment: its number, and its column
 };
 
-// What vectors in doubt say of those that follow: that they ask for the triangles of others, what decides them, and the
-// functions of these triangles in so wide rows from the first one on.
+// What the vectors in doubt so far say about those to come: whether these are likely to share triangles, what to decide
+// them by first, and the functions of the triangles, over rows of this width from the first row on.
 struct Learned {
     enum Way { nearly, closely, about_corners };
     static constexpr double rows = 64.0;
@@ -131,18 +132,19 @@ struct Learned {
     BatchFunctions functions;
 };
 
-// Vectors of fragments that have lanes in doubt, and the triangles of those, as many as a block has: all are decided at
-// once, by what fragments of a triangle share. Few vectors, and what that leaves, are decided alone.
+// Collects vectors of fragments that have lanes in doubt, and up to a block of their triangles, and decides them at
+// once by functions that the fragments of a triangle share. Where only a few vectors were collected, and for lanes that
+// stay in doubt, each is decided by itself.
 class DoubtfulFragments {
 public:
     struct Vector {
         Doubles x, y;
         Words doubtful;
         const FragmentOutputs* out;
-        std::size_t n, place;  // of the first fragment: in `out`, and in the block
+        std::size_t n, place;  // where the first fragment goes: in `out`, and in the block
     };
 
-    // Of fragments of a rectangle; what is learned is for the next block, too.
+    // For fragments of a rectangle. What is learned outlives this block of them.
     TEXGEN_INLINE DoubtfulFragments(const FragmentsJob& job, Learned& learned, double left, double top, double width,
                                     double height) noexcept
         : job_(job), learned_(learned), left_(left), top_(top), width_(width), height_(height) {}
@@ -171,15 +173,15 @@ public:
 private:
     struct Known {
         Vector vector;
-        std::size_t triangle[lanes];  // where a lane is certain that of the first that is not
-        bool is_one;                  // the first is that of all
+        std::size_t triangle[lanes];  // of each lane; of a lane that is certain, that of the first one in doubt
+        bool is_one;                  // all lanes have the first one's
 
         TEXGEN_INLINE std::size_t place(std::size_t i) const noexcept { return triangle[is_one ? 0 : i]; }
     };
 
     TEXGEN_INLINE bool has(std::size_t place) const noexcept { return (triangles_ >> place & 1u) != 0; }
 
-    // False where there is no room for its triangles.
+    // Collects a vector; false where there is no room for its triangles.
     TEXGEN_INLINE bool has_taken(const Vector& vector, const FragmentIds& ids) noexcept {
         Known& known = vectors_[count_];
         known.vector = vector;
@@ -198,7 +200,7 @@ private:
         return true;
     }
 
-    // Puts what is decided to its place.
+    // Decides the vectors that are collected, and puts their values in place.
     TEXGEN_APART void decide() noexcept {
         const bool are_few = count_ <= 2;
         if (!are_few && !are_functions_known()) take_functions();
@@ -223,7 +225,8 @@ private:
         count_ = 0;
     }
 
-    // By what fragments share. Returns the lanes that stay in doubt, as all do that put a vector.
+    // Decides a vector by the shared functions. Returns the lanes that stay in doubt, as do all functions that put a
+    // vector.
     TEXGEN_APART std::uint64_t put_together(const Known& known) const noexcept {
         const Doubles x = known.vector.x - learned_.left, y = known.vector.y - learned_.top;
         const BatchFunction* const functions = learned_.functions.of;
@@ -242,7 +245,7 @@ private:
         return are_same;
     }
 
-    // Of all these triangles, and of those before that they leave a place.
+    // Makes the functions of all these triangles, and of earlier ones whose places they do not take.
     TEXGEN_APART void take_functions() noexcept {
         for (std::size_t i = 0; i < batch_block; ++i)
             if (has(i)) learned_.id[i] = id_[i];
@@ -270,7 +273,8 @@ private:
         return lane_bits(vector.doubtful & narrow(fragments.doubtful));
     }
 
-    // By residues and doubles, by two doubles, and about a corner: first by what decided the vector before.
+    // Decides a vector by itself: by residues and doubles, then by two doubles, then about a corner. It begins with
+    // what decided the vector before.
     TEXGEN_APART std::uint64_t put_closely(const float* const (&of_lane)[lanes], const Vector& vector) noexcept {
         const VertexLanes vertices(of_lane);
         CloseFragmentsAt at(job_.needs_r());
@@ -309,12 +313,12 @@ private:
     Known vectors_[exact_block / lanes];
 };
 
-// A block of fragments of which these lanes of its vectors are in doubt, again. Returns those that stay so, as bits.
+// Decides a block of fragments anew, of whose vectors these lanes are in doubt. Returns those that stay so, as bits.
 TEXGEN_APART inline std::uint64_t decide_fragments(const FragmentsJob& job, const FragmentOutputs& out,
                                                    const FragmentOutputs& in_scratch, std::size_t begin,
                                                    std::size_t end, const Words* doubtful, Learned& learned) noexcept {
     FragmentCentres centres(job, begin);
-    // A part of one row, or whole ones.
+    // The block is a part of one row, or of whole rows.
     const auto width = static_cast<std::size_t>(job.width);
     const std::size_t row = begin / width;
     const std::size_t rows = (end - 1) / width - row + 1;
@@ -333,7 +337,7 @@ TEXGEN_APART inline std::uint64_t decide_fragments(const FragmentsJob& job, cons
     return fragments.undecided();
 }
 
-// What is learned stands in another frame, which is large.
+// What is learned is large: the caller has it, so that this function's frame stays small.
 template <std::size_t Numerators>
 TEXGEN_APART Undecided divide_all_fragments(const FragmentsJob& job, std::size_t first, Learned& learned) noexcept {
     const FragmentOutputs out(job);

@@ -3,15 +3,15 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// The functions s, t, r, q of a triangle about a fragment: base, and by how much it grows along a row and down; of each
-// two doubles, and an error and a grain of all. In whole vectors: the last residues are 0. Of r only where it is
-// needed.
+// The functions s, t, r, q of a triangle about a fragment: each as base and its growth along a row and down a column,
+// in two doubles and as residues, with an error and a grain. In whole vectors, so that the last residues are 0; r only
+// where it is needed.
 struct alignas(64) BatchFunction {
     double part[4][8];  // high, low, error, grain
     std::uint64_t residues[16];
 };
 
-// Of one in each lane.
+// Those of one triangle in each lane.
 struct LaneFunctions {
     Doubles part[4][8];
     Residues residues[16];
@@ -23,13 +23,13 @@ struct LaneFunctions {
     }
 };
 
-// Of as many triangles as a block has.
+// Those of a block of triangles.
 struct BatchFunctions {
     BatchFunction of[batch_block];
 
-    // Those from `first` on, of a triangle in each lane about a fragment, for so many columns and rows: see
-    // CloseRamp::copy_to(). What residues do not know has a grain of 0. Where their terms cancel, or are said to, about
-    // corners.
+    // Makes the functions from `first` on, of a triangle in each lane about a fragment, for this many columns and rows:
+    // see CloseRamp::copy_to(). Where residues know nothing the grain is 0. They are made about corners where their
+    // terms cancel, or if about_corners asks for it.
     TEXGEN_APART void take(const float* const (&triangle)[lanes], bool needs_r, const Doubles& x, const Doubles& y,
                            const Doubles& width, const Doubles& height, std::size_t first,
                            bool about_corners) noexcept {
@@ -63,7 +63,7 @@ struct BatchFunctions {
     }
 
 private:
-    // Function n. Returns where more than one float in 2^12 would stay in doubt.
+    // Stores function n. Returns the lanes where it cancels: more than one float in 2^12 would stay in doubt.
     TEXGEN_INLINE LongWords put(std::size_t n, const CloseValues (&term)[3], const Doubles& grain, const Doubles& width,
                                 const Doubles& height, const VertexLanes& vertices, std::size_t first) noexcept {
         const Doubles size =
@@ -97,7 +97,7 @@ private:
     }
 };
 
-// At (x, y) from the fragment that they are about; sums of the high parts are exact.
+// The functions at (x, y) from the fragment that they are about. Sums of the high parts are exact.
 template <class Functions>
 struct BatchFunctionsAt {
     static constexpr bool are_sums_first = true;

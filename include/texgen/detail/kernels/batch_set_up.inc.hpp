@@ -110,8 +110,7 @@ TEXGEN_INLINE LongWords set_up_lanes(const float* triangles, BatchPlanes* planes
                                                            b_and_a * b_dy_terms + c_and_a * c_dy_terms));
         all_slopes = all_slopes + function[1];
     }
-    // What is not finite of a weight or of strq is in that sum, or makes a NaN of it; what is not of the window in the
-    // area.
+    // A weight, s, t, r or q that is not finite makes that sum infinite or a NaN; a window that is not, the area.
     const LongWords is_known = greater(magnitude(area), area_terms * gamma(4)) & greater(a[2], 0.0) &
                                greater(b[2], 0.0) & greater(c[2], 0.0) &
                                at_most(magnitude(all_slopes), Doubles{} + 0x1p1000);
@@ -139,7 +138,7 @@ unsigned set_up_batch(const float* triangles, BatchPlanes* planes) noexcept {
 struct BatchLanes {
     Doubles value[BatchPlanes::count]{};
 
-    // Of triangles that follow one another.
+    // The functions of triangles that follow one another.
     TEXGEN_INLINE BatchLanes(const BatchPlanes* planes, bool with_r) noexcept {
         load_columns(value, with_r ? BatchPlanes::count : BatchPlanes::r,
                      [&](std::size_t j) { return planes[j].value; });
@@ -189,7 +188,7 @@ private:
     }
 };
 
-// Where the values of fragments go: whole vectors, of which what is too much is written again by those that follow.
+// Where the values of fragments go: in whole vectors, of which those that follow overwrite what is too much.
 struct FragmentOutputs {
     float* out[3];
     float* lit;
@@ -197,7 +196,7 @@ struct FragmentOutputs {
     bool has_depth;
     float r_min, r_max;
 
-    // One by one: a copy of them all would stay in memory.
+    // Member by member: as one object it would stay in memory.
     TEXGEN_INLINE explicit FragmentOutputs(const BatchJob& job) noexcept
         : out{job.out[0], job.out[1], job.out[2]},
           lit(job.lit),
@@ -213,7 +212,7 @@ struct FragmentOutputs {
             if (out[k] != nullptr) store(out[k] + n, value[k]);
         if (lit != nullptr) store(lit + n, one_where(narrow(in_front) & are_inside(value)));
     }
-    // What stands in other lanes stays.
+    // Puts the lanes of the mask, and leaves the others as they are.
     template <std::size_t Numerators>
     TEXGEN_INLINE void put_where(const Words& mask, std::size_t n, const Floats (&value)[Numerators],
                                  const LongWords& in_front) const noexcept {
@@ -231,7 +230,7 @@ struct FragmentOutputs {
     }
 };
 
-// In place of those, where a vector would be written beyond their end.
+// Takes the place of the outputs where a vector would be written beyond their end.
 template <std::size_t Size>
 struct ScratchOutputs {
     float values[4][Size];

@@ -5,16 +5,17 @@ namespace TEXGEN_DETAIL::TEXGEN_ISA {
 // Whether a positive number divides a power of two: it is one, and no larger.
 TEXGEN_INLINE bool divides(int a, int power_of_two) noexcept { return (a & (a - 1)) == 0 && a <= power_of_two; }
 
-// The rectangle of a tile as its kernels walk it: a row alone is a column. Most tiles have the shape of the one before.
+// The rectangle of a tile as its kernels walk it: a single row is walked as a column. Most tiles have the shape of the
+// one before.
 struct ShapeOfTile {
     int width = 0;
     bool is_turned = false;
     std::size_t count = 0;
     double per_width = 1.0, last_row = 0.0;
-    bool is_whole = false;          // its rows hold vectors, or vectors have whole rows
-    bool has_wide_columns = false;  // wide vectors have whole rows
-    // The columns and rows of the first vector, by how many rows the next is below it, and the same in float about the
-    // middle.
+    bool is_whole = false;          // its rows consist of whole vectors, or its vectors of whole rows
+    bool has_wide_columns = false;  // its wide vectors consist of whole rows
+    // The columns and rows of the first vector, and how many rows further down the next one is; the same in float, from
+    // the middle of the tile.
     Doubles x{}, y{};
     double rows = 1.0;
     WideFloats wide_x{}, wide_y{};

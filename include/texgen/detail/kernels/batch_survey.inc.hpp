@@ -2,8 +2,8 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// Of a block of tiles what their kernels need: numerators, q and bounds for the quotients in double; in float, about
-// the middle of the tile, u + (dx x + dy y) / (1 + bend_x x + bend_y y).
+// What the kernels need to know of a block of tiles: numerators, q and bounds for the quotients in double; in float,
+// about the middle of the tile, u + (dx x + dy y) / (1 + bend_x x + bend_y y).
 struct BatchTiles {
     double base[3][batch_block], q[batch_block], error[3][batch_block];
     double ulps[batch_block];  // what quotients are within, of their own, a power of two
@@ -87,7 +87,8 @@ struct Beyond {
 // In float a tile is what a chunk is (chunks.inc.hpp), in two directions. With r = 2^-24 the numerator of a step D
 // carries 3 r D, x of the denominator 3 r X, X being its largest, so that the step has 3 r X / (1 - X) D of it; the
 // polynomial adds 3 r D (a division 2 r D), the product r D, and the value r D + 2 r |u|.
-// Where the middle is in the region no tile is dark: returns the tiles of which no more need be known.
+// Prepares tiles in float. One whose middle is in the region is not dark: returns the tiles of which no more need be
+// known.
 template <std::size_t Numerators>
 TEXGEN_INLINE LongWords prepare_in_float(const BatchJob& job, const BatchPlanes* of_tiles, const int (*block)[4],
                                          std::size_t first, BatchTiles& tiles) noexcept {
@@ -175,15 +176,15 @@ TEXGEN_APART void prepare(const BatchJob& job, const BatchPlanes* of_tiles, cons
             (f.error + largest * q.error) * (reciprocal * 1.0001) + largest * (10.0 * unit_roundoff_double);
         store(&tiles.base[k][first], f.at[0]);
         store(&tiles.error[k][first], error);
-        // Where numerators have one sign, a lower bound on what is above 2^-125 of the quotients, times q: they are
-        // normal floats, and an ulp of one in double is 2^-53 of it at least.
+        // For a numerator of one sign, q times a lower bound on what quotients have above 2^-125: if that is positive
+        // they are normal floats, and an ulp of one in double is at least 2^-53 of it.
         const Doubles least = (maximum(f.least, f.largest * -1.0) - f.error) - q.largest * 0x1p-125;
         const LongWords is_normal = greater(least, 0.0);
         ulps = maximum(ulps, where(is_normal, error * q.largest / least * (0x1p53 * 1.001)));
         have_middles &= is_normal;
         if (k == 2 && !job.has_depth) continue;
         const double min = job.least[k], max = job.greatest[k];
-        // Where no mask is asked for a corner in the region spares the rest.
+        // If no mask is asked for, one corner in the region is enough: the tile is not dark.
         if (k == 2 || job.lit != nullptr || any(greater(q.at[0] * min, f.at[0]) | greater(f.at[0], q.at[0] * max)))
             ask(f, min, max);
     }

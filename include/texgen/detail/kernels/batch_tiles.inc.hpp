@@ -60,7 +60,8 @@ struct TileColumn {
     }
 };
 
-// The same where is_whole, of no quotient but normal ones. The last vector of a row may begin in the one before.
+// The same for a tile whose shape is_whole and whose quotients are normal floats. The last vector of a row may overlap
+// the one before.
 template <std::size_t Numerators, bool HasWholeRows>
 TEXGEN_APART bool divide_whole_tile(const BatchPlanes& planes, const BatchTiles& tiles, std::size_t i,
                                     const ShapeOfTile& shape, const TileOutputs<Numerators>& original) noexcept {
@@ -198,7 +199,7 @@ TEXGEN_INLINE bool fill_tile(const BatchPlanes& planes, const BatchTiles& tiles,
     return is_certain;
 }
 
-// One value for a tile, wherever it has outputs.
+// Fills the outputs of a tile with one value.
 TEXGEN_APART inline void fill_all(const FragmentOutputs& out, std::size_t begin, std::size_t count,
                                   float value) noexcept {
     const WideFloats values = WideFloats{} + value;

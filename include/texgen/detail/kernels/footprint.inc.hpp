@@ -4,8 +4,8 @@ namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
 TEXGEN_INLINE const WideFloats& to_floats(const WideFloats& values) noexcept { return values; }
 
-// A row is done in vectors of `count` fragments, as many as there are up to the lanes; the last overlaps the one
-// before.
+// Where a vector of `count` fragments of a row begins, as many as the lanes if the row has them: the last one overlaps
+// the one before.
 TEXGEN_INLINE int start_of_vector(int x, int count, int width) noexcept {
     return x + count <= width ? x : width - count;
 }

@@ -47,7 +47,7 @@ struct Doubt {
     TEXGEN_INLINE bool any_lane() const noexcept { return any(rounding | narrow(side)); }
 };
 
-// What is divided at a vector of points.
+// The numerators and q at a vector of points, and 1 / q.
 struct PointDivision {
     Doubles numerator[2], q, reciprocal;
 };
@@ -119,7 +119,7 @@ TEXGEN_INLINE std::size_t end_of_block(std::size_t count, std::size_t begin, std
 inline constexpr bool divides_pairs = lanes == 8 && wide_lanes == 16;
 inline constexpr std::size_t vectors_at_once = wide_lanes / lanes;
 
-// What is divided at these points, the divisions begun. Returns 1 / (q q').
+// Computes what is divided at these points, and begins the divisions. Returns 1 / (q q').
 template <std::size_t Numerators, bool Shares>
 TEXGEN_INLINE Doubles begin_division(const PointJob& job, const WideFloats& x, const WideFloats& y, const WideFloats& z,
                                      PointDivision* division) noexcept {

@@ -1,26 +1,26 @@
-// Points as the floats nearest to their quotients: blocks of them in double, and again what that leaves in doubt.
+// Points as the floats nearest to their quotients: blocks of them in double, and anew what that leaves in doubt.
 // Included by kernels.inc.hpp.
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// What the last points needed, so that company is not tried in vain.
+// What the last points needed, so that cheaper ways are not tried in vain on those that follow.
 struct Effort {
     bool is_either_side = false;  // some were behind the projector
-    int in_vain = 0;              // so many vectors in a row needed two doubles
-    bool are_ties = false;        // in two doubles: the numerators as well as q
-    bool precisely[3] = {};       // all of the numerators' sums and of q's, or their leading part
+    int in_vain = 0;              // how many vectors in a row needed two doubles
+    bool are_ties = false;        // numerators need two doubles, and not q alone
+    bool precisely[3] = {};       // of each numerator and of q: whether all of its sum is kept, or its leading part
 
-    // Whether the next vector is likely to need them, too.
+    // Whether the next vector is likely to need two doubles, too.
     TEXGEN_INLINE bool has_company() const noexcept { return in_vain >= 4; }
 
-    // Where lanes of numerator k, or of q, are unknown they ask for more. False if that is all there is.
+    // Asks for more of numerator k and of q, where lanes are unknown; false if there is no more.
     TEXGEN_INLINE bool sharpen(std::size_t k, std::uint64_t unknown) noexcept {
         if (unknown == 0 || (precisely[k] && precisely[2])) return false;
         return precisely[precisely[k] ? 2 : k] = true;
     }
 };
 
-// The sums at points: q and the numerators, nearly and in two doubles.
+// The forms of q and of the numerators, to be summed in double or in two.
 struct PointTerms {
     TwofoldForm q;
     TwofoldForm numerator[2];
@@ -33,16 +33,16 @@ struct PointTerms {
             are_quotients &= numerator[k].is_finite;
         }
     }
-    // Which are behind whatever their q, being no numbers.
+    // The points that are behind whatever their q is, as they are no numbers.
     TEXGEN_INLINE LongWords are_dark(const PointLanes& at) const noexcept {
         const Doubles zero = (at.v[0] + at.v[1] + at.v[2]) * (q.is_finite ? 0.0 : nan);
         return ~at_most(zero, zero);
     }
 };
 
-// Does points again: as sums where q is 1, and with errors of each lane, unless some vectors in a row needed more, of
-// which one in eight blocks sees whether they still do; and in two doubles, of which those that follow get at once what
-// one needed. Returns what stays in doubt, bit i for point begin + i.
+// Decides points anew: as sums where q is 1; in double with the error of each lane, unless four vectors in a row needed
+// more (then one in eight blocks tries again); and in two doubles, where a vector begins with what the one before
+// needed. Returns what stays in doubt, bit i for point begin + i.
 template <class CompiledWhereCalled = void>
 TEXGEN_APART std::uint64_t fill_block_again(const PointJob& job, const PointTerms& terms, std::size_t begin,
                                             std::size_t end, Effort& effort) noexcept {
@@ -75,7 +75,7 @@ TEXGEN_APART std::uint64_t fill_block_again(const PointJob& job, const PointTerm
                 numerator_error[k] = terms.numerator[k].error_at(sizes);
             }
             Doubt doubt;
-            // Most of what the tolerance allows is decided before, and the rest below.
+            // Exactly: most of what the tolerance would allow is decided before this, and the rest below.
             in_front = narrow(divide_certainly<true>(numerators, division, numerator_error, terms.q.error_at(sizes),
                                                      0.0, value, doubt));
             is_decided = !any(doubt.rounding | narrow(doubt.side & ~are_dark));
@@ -87,8 +87,8 @@ TEXGEN_APART std::uint64_t fill_block_again(const PointJob& job, const PointTerm
             q.in_front &= ~are_dark;
             in_front = narrow(q.in_front);
             unknown = lane_bits(~(q.is_known | are_dark));
-            // q alone in two doubles: what it loses is small beside it unless ties, or q = 0, ask for the last bits of
-            // coordinates.
+            // With q alone in two doubles. What that loses is small beside q unless ties, or q = 0, ask for the last
+            // bits of coordinates.
             if (!effort.are_ties) {
                 is_decided = unknown == 0;
                 for (std::size_t k = 0; k < numerators; ++k)
@@ -120,8 +120,8 @@ TEXGEN_APART std::uint64_t fill_block_again(const PointJob& job, const PointTerm
     return doubtful;
 }
 
-// Does these vectors of a block again, a bit for each. Returns what stays in doubt of one exact_block, or that nothing
-// is.
+// Decides these vectors of a block anew, a bit for each. Returns the first exact_block of which some points stay in
+// doubt, and these; or that none is.
 TEXGEN_APART inline Undecided fill_vectors_again(const PointJob& job, std::size_t begin, std::size_t end,
                                                  std::uint64_t doubtful, Effort& effort) noexcept {
     const PointTerms terms(job);
@@ -137,14 +137,14 @@ TEXGEN_APART inline Undecided fill_vectors_again(const PointJob& job, std::size_
     return left.values != 0 ? left : Undecided{end, 0};
 }
 
-// Of a block's vectors, so many as are done again by themselves.
+// Whether so few vectors of a block are in doubt that only these are done anew.
 TEXGEN_INLINE bool are_few(std::uint64_t vectors) noexcept {
     return vectors != 0 && 4 * wide_at_once * static_cast<std::size_t>(std::popcount(vectors)) <= exact_block;
 }
 
-// Does a block on both sides of the projector, and again those of its vectors that are in doubt. Where they are more
-// than a quarter, the blocks that follow are done so at once, up to the first of eight, or further as long as they need
-// two doubles. Returns where the next begins, or that with values which stay in doubt.
+// Divides a block that may be on both sides of the projector, and anew those of its vectors that are in doubt. Where
+// these are more than a quarter, so are all blocks that follow, up to the next multiple of eight blocks, or further
+// while they need two doubles. Returns where the next block begins, or a block whose values stay in doubt.
 template <class CompiledWhereCalled = void>
 TEXGEN_APART Undecided fill_points_again(const PointJob& original, std::size_t begin, Effort& effort) noexcept {
     std::size_t end = end_of_block(original.count, begin, exact_block);
@@ -172,8 +172,8 @@ TEXGEN_APART Undecided fill_points_again(const PointJob& original, std::size_t b
     return {begin, 0};
 }
 
-// Most points are all in front and in no doubt, four blocks at once; blocks of which a few vectors are have these done
-// again, and others are done again one by one, and those that follow are taken for what it was, seven of them.
+// Most blocks are in front and in no doubt: they are divided four at once. Of one with a few vectors in doubt these are
+// done anew; another is done anew as a whole, and what it needed is expected of the blocks that follow, up to seven.
 // The job is copied, here and below, so that the compiler knows that no store changes it: nothing that the loop reads
 // may be reached from elsewhere.
 template <std::size_t Numerators>

@@ -53,7 +53,8 @@ struct FloatErrors {
     TEXGEN_INLINE WideFloats least(const WideFloats& q) const noexcept {
         return q * (1.0f - (roundings + 0x1p-20f)) - of_form[0];
     }
-    // Of quotients of this size at most, 1 / q at most the reciprocal. A NaN is not inside.
+    // Whether numerator k is within the tolerance for quotients of this size and 1 / q of this reciprocal at most. A
+    // NaN is not.
     TEXGEN_INLINE WideWords are_within(std::size_t k, const WideFloats& size,
                                        const WideFloats& reciprocal) const noexcept {
         const WideFloats error = (of_form[k] + size * of_form[0]) * (reciprocal * 1.0015f) + size * roundings;
@@ -110,8 +111,8 @@ TEXGEN_APART std::uint64_t fill_about_point(const PointJob& job, std::size_t beg
         extent.add(next[0], next[1], next[2]);
     }
     PointForm about[3] = {job.q, job.numerator[0], job.numerator[job.numerators - 1]};
-    // Of less than form_error of the terms there, times 2^-28, are what sums in double lose, and differences that are
-    // taken for 0 where subnormal numbers are.
+    // What sums in double lose, and differences that count as 0 as they are subnormal, are less than form_error of the
+    // terms there times 2^-28.
     double at[3], reach[3];
     for (std::size_t j = 0; j < 3; ++j) {
         at[j] = static_cast<double>(point[j]);

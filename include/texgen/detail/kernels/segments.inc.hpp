@@ -31,7 +31,7 @@ struct MixtureLanes {
         return {sum, low + alpha * rest};
     }
 
-    // What that is off by at most.
+    // The most that exactly_at() is off by.
     TEXGEN_INLINE Doubles lost_at(const Doubles& alpha) const noexcept {
         if (kind == Mixture::is_short || kind == Mixture::is_not_finite) return Doubles{};
         Doubles low, lost;

@@ -125,7 +125,8 @@ TEXGEN_INLINE void add_axes(SeparatingForms& planes, const glm::dmat4& matrix, c
                    (magnitude(cofactor[0]) * s + magnitude(cofactor[1]) * t + magnitude(cofactor[2]) * q) * gamma(13) +
                    0x1p-1000;
         };
-        // Of s, t and 1, between two sides each, with their errors.
+        // The least and the largest of each cofactor times s, t or 1, which lie between two sides each, with their
+        // errors.
         Doubles least = Doubles{} - 0x1p-999, largest = Doubles{} + 0x1p-999;
         for (std::size_t k = 0; k < 3; ++k) {
             const bool has_side = ends[k][0] > -infinity || ends[k][1] < infinity;
@@ -196,7 +197,7 @@ bool is_separated(const SeparatingForms& planes, const float* box_min, const flo
     return any(are_negative);
 }
 
-// The same of a box a lane, by rows: min and max.
+// The same for a box in each lane, by rows: min and max.
 TEXGEN_INLINE LongWords are_separated(const SeparatingForms& planes, const Doubles (&box)[8]) noexcept {
     Doubles min[3], max[3];
     Doubles size{};

@@ -62,7 +62,7 @@ TEXGEN_INLINE bool divide_small(const SmallTile& tile) noexcept {
     return !any_zero(least);
 }
 
-// Of eight columns: a vector has whole rows, or a part of one. Rows are counted from the middle.
+// Divides a tile of eight columns: a vector holds whole rows, or a part of one. Rows are counted from the middle.
 TEXGEN_INLINE void divide_small_in_float(const SmallTile& tile) noexcept {
     const auto& [f_base, f_dx, f_dy] = tile.numerator;
     const Ramp& of_q = tile.q;

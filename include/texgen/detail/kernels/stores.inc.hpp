@@ -56,7 +56,7 @@ TEXGEN_APART void light_apart(const float (&min)[2], const float (&max)[2], cons
         lit[x] = is_lit ? 1.0f : 0.0f;
     }
 }
-// Of a part of a row, where a mask is asked for.
+// Makes the mask of a part of a row, where one is asked for.
 template <class CompiledWhereCalled = void>
 TEXGEN_INLINE void light(const TileJob& job, const RowOutputs& row, std::int64_t x, std::int64_t end) noexcept {
     if (row.lit != nullptr) light_apart(job.min, job.max, row.out[0] + x, row.out[1] + x, row.lit + x, end - x);

@@ -30,7 +30,7 @@ TEXGEN_INLINE std::uint64_t divide_vector(const TileJob& job, const TileRow& row
     }
     return lane_bits(doubtful);
 }
-// The same of numerators and q that are rounded to float and divided there, with no doubt.
+// The same with numerators and q rounded to float and divided there, without doubt.
 TEXGEN_INLINE void divide_in_float(const TileJob& job, const TileRow& row, const Doubles& index,
                                    Floats (&quotient)[2]) noexcept {
     const Floats reciprocal = 1.0f / to_floats(row.q_at(job, index));
@@ -48,7 +48,7 @@ template <class CompiledWhereCalled = void>
 std::uint64_t divide_tile(const TileJob& job, const TileJob::Unit& part) noexcept {
     const auto [x_begin, x_end, y_begin, y_end] = part;
     Doubles reciprocal = Doubles{} + 1.0 / job.q.base;
-    // Of the next vector the first bit is the lowest one.
+    // Rotates with the vectors, so that the lowest bit is that of the next vector's first fragment.
     std::uint64_t doubtful = 0;
     const int beyond = (x_begin - x_end) & (lanes - 1);
     RowOutputs row(job, y_begin);

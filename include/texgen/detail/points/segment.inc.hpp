@@ -328,7 +328,7 @@ inline glm::dvec2 error_bound(const Segment& segment, Tolerance tolerance) noexc
         double largest = detail::accepts_rounding(u.largest()[0], accepted) ? 1.001 * rounded : rounded;
         const detail::LesserEnd end(ends, u);
         const double error = end.error(u)[0];
-        // Where both are next to one another, a file with other flags may have decided otherwise.
+        // If error and tolerance are that near to one another, a file with other flags may have decided otherwise.
         const bool is_in_float = end.is_in_range(u) && error * (1.0 - 0x1p-40) <= accepted;
         return is_in_float ? detail::larger(largest, error) : largest;
     };

@@ -71,7 +71,7 @@ inline bool is_inside(const Box& box, const glm::vec3& point) noexcept {
            box.min.z <= point.z && point.z <= box.max.z;
 }
 
-// What it makes of a job that all points lie in a box: nothing where one may be next to q = 0 or behind.
+// Takes what it means for a job that all points lie in a box: nothing if one of them may be next to q = 0 or behind.
 inline void take_bounds(PointJob& job, const Box& box) noexcept {
     if (!is_word(box)) return;
     const glm::dvec3 min = widened(box.min), max = widened(box.max);
@@ -139,7 +139,7 @@ inline constexpr double least_in_float = 16.0 * unit_roundoff_float;
 
 template <class Space>
 void project_all(const Positions<Space>& positions, PointJob& job, const PointOutputs& out) noexcept {
-    // So many beyond whole vectors take less time one by one than preparing these does.
+    // This many points beyond whole vectors take less time one by one than it takes to prepare the kernel.
     constexpr std::size_t few = 5;
     const std::size_t beyond = positions.size() % point_quantum;
     const std::size_t count = positions.size() - (beyond <= few ? beyond : 0);
@@ -258,7 +258,7 @@ glm::dvec2 project_error_bound(const Transform<Texture, Space>& texture_from_spa
     glm::dvec2 largest(0.0);
     visit_all([&](const glm::dvec3& v, double least_q, const double(&quotient)[2]) {
         for (std::size_t k = 0; k < 2 && least_q > 0.0; ++k) {
-            // Of the ways to divide, those in float err most.
+            // Of all ways to divide, those in float err most.
             const double of_float = are_in_front ? bound_of_float(detail::all_float, k, v, least_q, quotient[k])
                                                  : bound_of_float(detail::about_point, k, size * 3.0 + least_difference,
                                                                   least_q, quotient[k]);

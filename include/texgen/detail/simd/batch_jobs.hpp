@@ -82,7 +82,7 @@ struct VisibilityBuffer {
     int x, y, width;
 };
 
-// Of no triangle planes[triangles] are the functions.
+// planes[triangles] stands for ids that are no triangle.
 struct FragmentsJob : BatchJob, VisibilityBuffer {};
 
 // The same for footprints.

@@ -210,7 +210,7 @@ struct PointJob : DividedOutput, PointInput {
     PointForm numerator[2];
     PointForm q;
     double tolerance;
-    // What the caller's word on all of them makes of their errors.
+    // What bounds on all points make of the errors.
     bool is_certified;  // all of it in float is inside the tolerance
     std::int32_t ulps;  // that quotients in double are within, 1 less than a power of two; 0 where that is not known
 };
@@ -305,15 +305,15 @@ struct FootprintJob : FootprintArrays {
 struct TileKernels {
     // Whether no value is in doubt.
     bool (*fill_small)(const SmallTile&) noexcept;
-    // What of a part is in doubt, of a unit a bit for each fragment, row by row; and the first unit from `first` on
-    // that is, of a job that knows its ulps.
+    // Divide a part of a tile: all of it, and return which fragments are in doubt (of a unit, a bit for each, row by
+    // row); or, for a job that knows its ulps, unit by unit up to the first with doubt, which is returned.
     std::uint64_t (*divide)(const TileJob&, const TileJob::Unit& part) noexcept;
     TileJob::Unit (*divide_in_pairs)(const TileJob&, const TileJob::Unit& first) noexcept;
     // Makes a group of `count` chunks from one of row y on; and fills some of it that have one rule, from x of a row
     // on.
     void (*weigh_chunks)(const TileJob&, ChunkGroup&, int chunks_of_row, int y, int chunk, int count) noexcept;
     void (*fill_chunks)(const TileJob&, const RowOutputs&, ChunkGroup&, int first, int end, int x) noexcept;
-    // What is asked of a unit on either side of the projector: bits as above, as for those that stay in doubt.
+    // Decides what is asked of a unit on either side of the projector, bits as above. Returns those that stay in doubt.
     std::uint64_t (*fill_closely)(const TileJob&, const CloseFunctions&, TileJob::Unit unit,
                                   std::uint64_t asked) noexcept;
 };
@@ -327,7 +327,7 @@ struct Undecided {
 
 struct PointKernels {
     Undecided (*fill_exact)(const PointJob&, std::size_t first) noexcept;
-    // The same inside the tolerance.
+    // The same, within the tolerance.
     Undecided (*fill_within)(const PointJob&, std::size_t first) noexcept;
     void (*generate)(const GenerateJob&) noexcept;
 };

@@ -36,7 +36,7 @@ struct PointFormLanes {
         : x(Doubles{} + of.x), y(Doubles{} + of.y), z(Doubles{} + of.z), w(Doubles{} + of.w) {}
 };
 
-// Of either.
+// The value of a form of either kind.
 template <class Form>
 TEXGEN_INLINE Doubles value_at(const Form& form, const PointLanes& point) noexcept {
     return point.v[0] * form.x + (point.v[1] * form.y + (point.v[2] * form.z + form.w));

@@ -144,7 +144,7 @@ TEXGEN_INLINE Doubles with_sign_of(const Doubles& size, const Doubles& sign) noe
 TEXGEN_INLINE Doubles power_of_two_below(const Doubles& a) noexcept {
     return __builtin_bit_cast(Doubles, __builtin_bit_cast(LongWords, a) & 0x7ff0000000000000);
 }
-// Of powers of two that have normal reciprocals; 2^1023 of 0.
+// The reciprocals of powers of two, where they are normal; 2^1023 for 0.
 TEXGEN_INLINE Doubles reciprocals_of_powers(const Doubles& a) noexcept {
     return __builtin_bit_cast(Doubles, 0x7fe0000000000000 - __builtin_bit_cast(LongWords, a));
 }
@@ -354,7 +354,7 @@ TEXGEN_INLINE std::uint64_t lane_bits(const LongWords& mask) noexcept {
     return static_cast<std::uint64_t>((mask[0] & 1) | (mask[1] & 2));
 #endif
 }
-// Of words that are not 0.
+// Bit i where word i is not 0.
 TEXGEN_INLINE std::uint64_t lane_bits(const Words& words) noexcept {
 #if TEXGEN_LANE_BYTES == 64
     return static_cast<std::uint8_t>(__builtin_ia32_cmpd256_mask(words, Words{}, 4, 0xff));

@@ -2,14 +2,14 @@
 
 namespace TEXGEN_DETAIL {
 
-// Of what is refused, or no triangle: behind everywhere, without a doubt.
+// The functions of a triangle that is refused, or of none: behind everywhere, without doubt.
 inline BatchPlanes planes_behind() noexcept {
     BatchPlanes result{};
     result.value[BatchPlanes::q] = -1.0;
     return result;
 }
 
-// Where vectors leave open whether a triangle has an area, or is refused.
+// The functions of a triangle of which vectors leave open whether it has an area, or is refused.
 inline BatchPlanes batch_planes(const Triangle& triangle) noexcept {
     BatchPlanes result = planes_behind();
     const TrianglePlanes planes(triangle);
@@ -73,7 +73,7 @@ void interpolate_apart(const std::optional<TriangleSetup>& setup, const Tile& ti
     if (!setup || interpolate_tile(*setup, tile, out) == Work::nothing) clear(out);
 }
 
-// What every kernel is given of a batch.
+// Gives a job what every kernel needs of a batch.
 inline void describe(BatchJob& job, const TriangleBatch& batch, const Texcoords& out, std::size_t count) noexcept {
     job.planes = Inside::planes(batch);
     job.vertices = &Inside::triangle(batch, 0).a.window.x;

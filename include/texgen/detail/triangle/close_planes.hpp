@@ -18,7 +18,8 @@
 
 namespace TEXGEN_DETAIL {
 
-// Takes the multiples of the grain next to coefficients, if their errors leave no others.
+// Rounds the coefficients of a ramp to multiples of the grain, which they are, if their errors leave one candidate
+// each.
 TEXGEN_RARE inline bool take_multiples(Ramp& ramp, double error, double grain) noexcept {
     if (!(4.0 * error < grain)) return false;
     const double rounder = 0x1.8p52 * grain;  // they are below 2^46 grains, as the error has 20 u of them
@@ -81,15 +82,15 @@ struct CloseRamps {
         return false;
     }
 
-    // Residues stay.
+    // Leaves the residues as they are.
     void copy_to(CloseFunctions& result) const noexcept {
         for (std::size_t k = 0; k < 3; ++k) function[k].copy_to(tile, result.function[k]);
     }
 };
 
-// What all functions of a triangle share over a tile. With double-double sums within 2^-103 of their terms and products
-// within 2^-103, E_i errs by 2^-102 of the two products that it is the difference of, and the value by 2^-100 of theirs
-// times the c_i: 2^-97 leaves room.
+// What all functions of a triangle share over a tile: the edge functions. With double-double sums within 2^-103 of
+// their terms and products within 2^-103, E_i errs by 2^-102 of the two products that it is the difference of, and the
+// value by 2^-100 of theirs times the c_i: 2^-97 leaves room.
 class ClosePlanes {
 public:
     ClosePlanes(const TrianglePlanes& planes, const Tile& tile) noexcept : planes_(planes), tile_(tile) {
@@ -159,9 +160,9 @@ TEXGEN_RARE inline std::uint64_t residue_of(double number) noexcept {
     return 2 * static_cast<std::uint64_t>(static_cast<std::int64_t>(0.5 * std::fmod(number, 0x1p64)));
 }
 
-// The functions of a tile where it is in doubt: of the planes as they are, or close, and with residues or not. Those
-// cost less than two doubles, and decide where the planes are exact or err by less than residues know: not next to q =
-// 0.
+// What is known of the functions of a tile in doubt: the planes as they are or in two doubles, with residues or
+// without. Residues cost less than two doubles, and decide where the planes are exact, or err by less than residues
+// tell apart, but not next to q = 0.
 struct DoubtfulFunctions : CloseFunctions {
     bool residues_first = false;
 };
@@ -170,17 +171,17 @@ struct DoubtfulJob {
     DoubtfulFunctions functions;
 };
 
-// Whether sums decide ties too, if they err by `share` of what functions do now: by less than half a grain of F - m Q,
-// where m is a multiple of 2^-25 of itself.
+// Whether sums decide ties, too, if functions err by `share` of what they do now: then F - m Q, where m is a multiple
+// of 2^-25 of itself, errs by less than half of its grain.
 TEXGEN_RARE inline bool are_decided_by_sums(const CloseFunctions& functions, double share) noexcept {
     const auto& [first, second, q] = functions.function;
     return 4.0 * share * first.error < first.grain && 4.0 * share * second.error < second.grain &&
            0x1p27 * share * q.error < q.grain;
 }
 
-// Whether quotients of a tile well in front are decided by residues, of numerators as large as their errors let expect.
-// Planes that are multiples of their grains become exact: the error that is left is of what is computed of them, 2^-98
-// of the values.
+// Whether residues decide the quotients of a tile well in front, of numerators of the size that their errors let
+// expect. Coefficients that become multiples of their grains are exact: what is left is the error of computing with
+// them, 2^-98 of the values.
 TEXGEN_RARE inline bool are_decided_by_residues(CloseFunctions& functions) noexcept {
     for (CloseFunction& f : functions.function)
         if (take_multiples(f.high, f.error, f.grain)) f.error *= 0x1p-50;
@@ -204,7 +205,8 @@ TEXGEN_RARE inline bool is_multiple(const CloseFunction& f, std::size_t j, doubl
     return residue * residue_of(f.grain * per_finer) == q.residue.base * residue_of(u * q.grain * per_finer);
 }
 
-// Where q is constant the quotients are linear; of one that doubles hold exactly rounding to float decides every tie.
+// Where q is constant the quotients are linear. If doubles hold one of them exactly, rounding it to float decides every
+// tie.
 TEXGEN_RARE inline bool take_exact_quotients(const CloseFunctions& functions, TileJob& job) noexcept {
     const CloseFunction& q = functions.function[CloseFunctions::q];
     if (!is_multiple(q, 1, 0.0, q) || !is_multiple(q, 2, 0.0, q)) return false;
@@ -233,9 +235,9 @@ TEXGEN_RARE inline bool take_exact_quotients(const CloseFunctions& functions, Ti
     return is_any_exact;
 }
 
-// The linear functions of a triangle, modulo 2^64, in grains: powers of two of which they are multiples at every
-// fragment, as products and sums of floats are of the products of their last bits. So the lowest digits are known of
-// what two doubles have the leading ones of.
+// The linear functions of a triangle as integers modulo 2^64. Products and sums of floats are multiples of the products
+// of their last bits: so at every fragment a function is an integer times a power of two, its grain. Two doubles know
+// its leading digits, this its last ones.
 class PlaneResidues {
 public:
     PlaneResidues(const TrianglePlanes& planes, const Tile& tile) noexcept : planes_(planes), tile_(tile) {
@@ -281,11 +283,11 @@ public:
 private:
     const TrianglePlanes& planes_;
     Tile tile_;
-    double grain_;                   // but for the values
+    double grain_;                   // without the unit of the values
     RampOf<std::uint64_t> edge_[3];  // of the sides' functions, with the weights
 };
 
-// One function of a tile to twice the precision, and by its residue.
+// One function of a tile in two doubles and by its residue.
 class ClosePlane {
 public:
     ClosePlane(const TrianglePlanes& planes, glm::length_t coordinate, const Tile& tile) noexcept
@@ -299,8 +301,8 @@ public:
         return result;
     }
 
-    // At one fragment: with a small error beside the value, where 2^62 grains are more than that is without the
-    // residue.
+    // Its value at one fragment, with an error that is small beside it wherever two doubles, or 2^62 grains with the
+    // residue, allow that.
     Bounded at(std::int64_t x, std::int64_t y) const noexcept {
         const DoubleDouble close = moved_to(x, y).term[0];
         const double value = close.high + close.low;

@@ -25,7 +25,7 @@ struct Stretch {
     bool across_width;
     int begin, end;
 
-    // What is before it, it, and what is after.
+    // Part 0 is what comes before the stretch, 1 the stretch itself, 2 what comes after it.
     TEXGEN_RARE Tile part(const Tile& tile, std::size_t i) const noexcept {
         const int size = across_width ? tile.width : tile.height;
         const int first = i == 0 ? 0 : i == 1 ? begin : end;
@@ -61,20 +61,21 @@ struct Corners {
     }
     bool is_well_in_front() const noexcept { return least_q > well_in_front * q_error; }
     bool has_one_error() const noexcept { return is_well_in_front() && least_q > share_for_one_error * largest_q; }
-    // And whether two q have a product, as they share a division.
+    // The same, and the product of two q is in range, so that they may share a division.
     bool may_share_divisions() const noexcept { return has_one_error() && least_q > 0x1p-500 && largest_q < 0x1p500; }
 
-    // What of a tile is next to q = 0, along the side by which q varies more: before and after that it is behind, or q
-    // is no less than a fourth of its largest. All, if that is nothing; but where it is not few fragments, nothing in
-    // the middle of the longer side.
+    // The stretch of a tile that is next to q = 0, along the side by which q varies more: what comes before and after
+    // it is behind, or there q is no less than a fourth of its largest. The whole tile where no such stretch is found;
+    // where it would hold more than a few fragments, an empty one in the middle of the longer side, which halves the
+    // tile.
     static constexpr int few = 4 * TileJob::unit_size;
     TEXGEN_RARE Stretch next_to_zero(const Tile& tile) const noexcept {
         const bool across_width = std::fabs(q_ramp.dx) * tile.width >= std::fabs(q_ramp.dy) * tile.height;
         const int size = across_width ? tile.width : tile.height;
         const double step = across_width ? q_ramp.dx : q_ramp.dy;
         const double per_step = 1.0 / std::fabs(step);
-        // Counted from where q is least: it is at most largest_q - (size - 1 - i) |step|, and at least least_q + i
-        // |step|.
+        // Index i counts from where q is least: there q is at most largest_q - (size - 1 - i) |step|, and at least
+        // least_q + i |step|.
         const auto clamped = [size](double i) { return i > 0.0 ? (i < size ? static_cast<int>(i) : size) : 0; };
         int begin = clamped(size - 1 - (largest_q + q_error) * per_step);
         int end = clamped((0x1p-2 * largest_q - least_q) * per_step + 1.0);
@@ -132,7 +133,7 @@ struct Corners {
     }
 };
 
-// With its functions and errors known: the values at the corner fragments.
+// Takes the values at the corner fragments, once the functions and their errors are known.
 inline void take_corners(Corners& corners, const Tile& tile) noexcept {
     const double right = tile.width - 1;
     const double bottom = tile.height - 1;
@@ -163,8 +164,8 @@ TEXGEN_APART inline Corners corners_of(const TrianglePlanes& planes, const Plane
     return corners;
 }
 
-// Each coefficient is rounded to double; its product with an index, which is less than the width or the height, and two
-// sums are rounded once each.
+// Takes the functions from two doubles. Each coefficient is rounded to double; its product with an index, which is less
+// than the width or the height, and two sums are rounded once each.
 TEXGEN_RARE inline void take_corners(Corners& corners, const CloseRamps& close) noexcept {
     const auto& [s, t, q] = close.function;
     const auto high = [](const DoubleDouble& of_s, const DoubleDouble& of_t) {
@@ -179,7 +180,7 @@ TEXGEN_RARE inline void take_corners(Corners& corners, const CloseRamps& close) 
     take_corners(corners, close.tile);
 }
 
-// The planes of these corners, as they are.
+// Takes the planes of these corners as the functions of a tile in doubt.
 TEXGEN_RARE inline void take_planes(const Corners& at, CloseFunctions& functions) noexcept {
     const auto& [base, dx, dy] = at.numerator_ramp;
     for (std::size_t k = 0; k < 2; ++k) {
@@ -190,8 +191,8 @@ TEXGEN_RARE inline void take_planes(const Corners& at, CloseFunctions& functions
     functions.function[CloseFunctions::q].error = at.q_error;
 }
 
-// The row or column of a tile on an edge between corners at which a coordinate is 0, as it is all along that edge; or
-// none.
+// The row or column of a tile that lies on an edge along which a coordinate is 0, as it is at both of its corners; an
+// empty stretch where there is none.
 TEXGEN_RARE inline Stretch zeros_of(const TrianglePlanes& planes, glm::length_t coordinate, const Tile& tile) noexcept {
     const std::int64_t first[] = {tile.x, tile.y};
     const int size[] = {tile.width, tile.height};
@@ -207,7 +208,8 @@ TEXGEN_RARE inline Stretch zeros_of(const TrianglePlanes& planes, glm::length_t 
     return {};
 }
 
-// Whether q cancels, or a numerator that is not as small as it is for its zeros: of those two doubles say no more.
+// Whether q cancels, or a numerator does for another reason than that it is 0 in a row or column, where two doubles
+// would tell no more.
 TEXGEN_RARE inline bool cancel_beyond_zeros(const Corners& at, const TrianglePlanes& planes, glm::length_t of_first,
                                             glm::length_t of_second, const Tile& tile) noexcept {
     if (at.q_cancels()) return true;

@@ -15,8 +15,8 @@
 
 namespace TEXGEN_DETAIL {
 
-// The functions at one fragment, exactly: F = sum G_i f_i with G_i = E_i w_j w_k, but for the planes' common factor, or
-// for any positive one.
+// The functions at one fragment, exactly: F = sum G_i f_i with G_i = E_i w_j w_k, without the planes' common factor, or
+// up to any positive one where Factor::any will do.
 class ExactFragment {
 public:
     // 8 products are 16 doubles, times a weight 32; three such times a value are 192.
@@ -66,13 +66,13 @@ public:
 private:
     explicit ExactFragment(const TrianglePlanes& planes) noexcept : planes_(planes) {}
 
-    // Opposite corner i, from j to k: of fewer digits than what k is off a fragment far away.
+    // The side opposite corner i, from j to k. It has fewer digits than the difference of k and a fragment far away.
     TEXGEN_RARE DoubleDouble side(std::size_t i, glm::length_t axis) const noexcept {
         return two_sum(planes_.corner((i + 2) % 3)[axis], -planes_.corner((i + 1) % 3)[axis]);
     }
 
-    // On the line through corners j and k the third one, whose numbers may be long, has no part, and along either axis
-    // G_j : G_k = w_k (k - p) : w_j (p - j). False where p is on none, or a difference is no double.
+    // On the line through corners j and k the third corner has no part in F, and its numbers may be long. Along either
+    // axis G_j : G_k = w_k (k - p) : w_j (p - j) there. False where p is on no such line, or a difference is no double.
     TEXGEN_RARE bool is_on_side(const DoubleDouble (&to_x)[3], const DoubleDouble (&to_y)[3]) noexcept {
         for (std::size_t i = 0; i < 3; ++i) {
             const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
@@ -95,10 +95,10 @@ private:
     Sum weighted_[3];
 };
 
-// For two numerators and q over a tile, where their terms cancel even two doubles: from exact growths, within 2^-104 of
-// each, about the first corner, where but one term is not 0: F(A) = area w_b w_c f_A. Products and sums, and what these
-// are moved by within the tile, take less than 2^-97 of the three. Where that corner is so far away that it says less,
-// the value stays.
+// Makes two numerators and q over a tile anew where their terms cancel even in two doubles: from exact growths, within
+// 2^-104 of each, and from the value at the first corner, where only one term is not 0: F(A) = area w_b w_c f_A.
+// Products, sums and steps within the tile err by less than 2^-97 of the three. The value about the fragment stays
+// where that corner is so far away that it would say less.
 TEXGEN_RARE inline void take_exact_growths(const TrianglePlanes& planes, glm::length_t first, glm::length_t second,
                                            CloseRamps& ramps) noexcept {
     const DoubleDouble x = two_sum(static_cast<double>(ramps.tile.x) + 0.5, -planes.corner(0).x);  // integers

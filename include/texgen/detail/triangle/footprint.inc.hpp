@@ -6,8 +6,8 @@ inline bool is_usable(const TexelsPerUnit& texels) noexcept {
     return texels.s > 0x1p-200 && texels.s < 0x1p200 && texels.t > 0x1p-200 && texels.t < 0x1p200;
 }
 
-// All of a footprint from J and det J, which has digits that J has lost where J is almost singular: determinant(unit)
-// is unit^2 det J, for a power of two that brings J near 1. So no square leaves the range of double.
+// A footprint from J and det J, as det J has digits that J has lost where J is almost singular: determinant(unit) is
+// unit^2 det J, for a power of two that brings J near 1. So no square leaves the range of double.
 Footprint footprint_of(const glm::dvec2& dx, const glm::dvec2& dy, const auto& determinant,
                        const TexelsPerUnit& texels) noexcept {
     const double largest_slope =
@@ -103,7 +103,7 @@ std::optional<FootprintExtremes> extremes_over(const FootprintFunctions& functio
     if (range.largest <= -field.q_error || (range.largest <= field.q_error && are_behind())) return std::nullopt;
     if (!is_usable(texels)) return FootprintExtremes{nan, nan, nan, nan, nan};
 
-    // What the bounds leave for the roundings of the footprints themselves, of level and of area and anisotropy.
+    // Room in the bounds for the roundings of the footprints themselves: of level, and of area and anisotropy.
     constexpr double slack = 0x1p-15;
     const auto level = [&](double square, double outward) {
         if (square == 0.0) return -infinity;

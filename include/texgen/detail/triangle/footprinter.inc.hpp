@@ -28,7 +28,7 @@ public:
         if (may_be_vectors && tile.width <= largest_index && fill_in_vectors(tile, at)) return;
         const int least = may_be_vectors ? 8 : 2;
         if (tile.width <= least && tile.height <= least) return fill_one_by_one(tile);
-        // So that q, if it is 0 somewhere, is so in one of the halves.
+        // Across the side by which q changes more, so that one of the halves is without a zero of q.
         const double change_across_width = tile.width * std::fabs(at.q_ramp.dx);
         const double change = tile.height * std::fabs(at.q_ramp.dy);
         const bool across_width =
@@ -40,7 +40,7 @@ public:
 private:
     static constexpr int largest_index = 1 << 24;  // floats beyond are not every integer
 
-    // Of q alone.
+    // The corners of q alone.
     Corners corners_at(const Tile& tile) noexcept {
         const CloseRamp q = close_q().moved_to(tile.x, tile.y);
         Corners at;

@@ -30,7 +30,7 @@ TEXGEN_RARE inline void darken_beyond_depth(const TriangleFunctions& triangle, c
                                      length, triangle.lit.r_min(), triangle.lit.r_max());
 }
 
-// What the depth takes of a mask that s and t have made; r is there, where it was asked for.
+// Darkens a mask that s and t have made where r is beyond the depth; r is there, where it was asked for.
 template <class CompiledWhereCalled = void>
 TEXGEN_APART void darken_beyond_depth(const TriangleFunctions& triangle, const Tile& tile,
                                       const Texcoords& out) noexcept {
@@ -75,7 +75,7 @@ TEXGEN_APART Work interpolate_by_plan(const TriangleFunctions& triangle, const T
     return plan.work;
 }
 
-// The same without one where that serves.
+// The same, without a plan where none is needed.
 template <class CompiledWhereCalled = void>
 TEXGEN_INLINE Work interpolate_tile(const TriangleSetup& setup, const Tile& tile, const Texcoords& out) noexcept {
     const TriangleFunctions& triangle = Inside::functions(setup);

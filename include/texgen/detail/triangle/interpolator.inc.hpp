@@ -9,7 +9,8 @@ class TileInterpolator {
 public:
     static constexpr int scratch_width = 512;
 
-    // s and t, of which one that only the mask needs has no output. `close` is what is known of them, or nothing yet.
+    // s and t; one that only the mask needs has no output. `close` are their functions in two doubles, empty until a
+    // tile needs them.
     TEXGEN_APART TileInterpolator(const TriangleFunctions& triangle, const Tile& rect, OnDemand<CloseRamps>& close,
                                   const Texcoords& out) noexcept
         : triangle_(triangle),
@@ -32,7 +33,7 @@ public:
           close_(close),
           output_{output} {}
 
-    // As it is known already.
+    // For a mask that is known already.
     void leave_mask() noexcept { lit_ = {}; }
 
     TEXGEN_APART Corners corners_at(const Tile& tile) noexcept {
@@ -55,14 +56,14 @@ public:
         triangle_.tolerance == 0.0 ? fill_exact(tile, at) : fill(tile, at, plan);
     }
 
-    // A tile of one unit, well in front, with doubt.
+    // A tile of at most one unit, well in front, of which doubles leave a fragment in doubt.
     TEXGEN_RARE void interpolate_from_doubt(const Tile& tile) noexcept {
         const Corners at = corners_of(triangle_.planes, *planes_, triangle_.q, tile);
         TileJob job = make_job(tile, at);
         fill_from_doubt(tile, at, job, job.unit_at(0, 0));
     }
 
-    // In parts that the scratch arrays hold.
+    // In strips of a width that the scratch arrays hold.
     void interpolate_in_strips(const Tile& tile, const Plan& plan) noexcept {
         Tile strip = tile;
         for (strip.width = scratch_width; strip.x < tile.x + tile.width; strip.x += scratch_width) {
@@ -81,15 +82,15 @@ private:
         fill(tile, at, plan);
     }
 
-    // Where floats round the largest quotient by more than the tolerance its chunk is not served, and mostly no other
-    // one.
+    // Whether rounding the largest quotient to float alone errs by more than the tolerance: then no chunk that has it
+    // can be certified, and seldom another one.
     TEXGEN_RARE bool are_floats_apart(const Corners& at) const noexcept {
         const Double2 rounded = at.largest_quotient() * unit_roundoff_float;
         return !(larger(rounded[0], rounded[1]) < triangle_.tolerance);
     }
 
     void fill(const Tile& tile, const Corners& at, const Plan& plan) noexcept {
-        // Few chunks do not repay a try.
+        // A tile of few chunks does not repay the attempt.
         if (plan.chunk != 0 && plan.steps == StepRule::undecided && tile.count() <= Corners::few &&
             are_floats_apart(at))
             return fill_exact(tile, at);
@@ -98,13 +99,14 @@ private:
         split(tile, at);
     }
 
-    // They are made when a tile first needs them, for all of the rectangle.
+    // The functions in two doubles, made for the whole rectangle when a tile first needs them.
     TEXGEN_RARE CloseRamps close_ramps(const Tile& tile) noexcept {
         if (!close_) close_.make(ClosePlanes(triangle_.planes, rect_).ramps(coordinate_[0], coordinate_[1]));
         return close_->moved_to(tile);
     }
 
-    // What is known of the functions of a tile at first: what corners say, or two doubles where those are made already.
+    // What a tile in doubt begins with: the functions in two doubles if these are made already, else the planes as they
+    // are.
     TEXGEN_RARE DoubtfulFunctions functions_of(const Tile& tile, const Corners& at) noexcept {
         DoubtfulFunctions result{};
         result.tolerance = triangle_.tolerance;
@@ -114,8 +116,8 @@ private:
         return result;
     }
 
-    // In two doubles, and where their terms cancel, or leave doubt, from exact growths, which cost what one fragment
-    // alone does.
+    // The functions in two doubles; where their terms cancel, or leave doubt, from exact growths, which cost as much as
+    // one exact fragment.
     TEXGEN_RARE void take_close(const Tile& tile, CloseFunctions& functions, bool leave_doubt) noexcept {
         if ((leave_doubt || close_ramps(tile).cancel()) && !are_exact_) {
             take_exact_growths(triangle_.planes, coordinate_[0], coordinate_[1], *close_);
@@ -131,19 +133,21 @@ private:
         functions.have_residues = true;
     }
 
-    // More than a fourth of a unit: what may be ties, or the planes', and no chance.
+    // Whether more than a fourth of a unit is in doubt, which is no chance: those are ties, or the planes are not exact
+    // enough.
     static bool are_many(int fragments, const Tile& tile) noexcept {
         return fragments > (tile.count() < TileJob::unit_size ? tile.count() : TileJob::unit_size) / 4;
     }
 
-    // So few that all of the tile's, if others have as many, do not repay exact growths, which cost what two cost
-    // alone.
+    // Whether so few are in doubt that exact growths, which cost as much as two exact fragments, would not pay even if
+    // each unit of the tile had as many.
     static bool are_few(int fragments, const Tile& tile) noexcept {
         return fragments * tile.count() <= 4 * TileJob::unit_size && fragments <= 2;
     }
 
-    // More of them, if there is more: residues first for ties, which have company, and alone where sums would not
-    // decide them, or fragments are few, which do not repay two doubles.
+    // Adds to what is known of the functions; false where there is no more. Residues come first where many are in
+    // doubt, as of ties. They do without two doubles in tiles of few fragments, where sums in double decide ties
+    // already, and where sums in two doubles would not.
     static constexpr int few_ties = 16;
     TEXGEN_RARE bool sharpen(const Tile& tile, DoubtfulFunctions& functions, int fragments) noexcept {
         const bool have_both = functions.are_close && functions.have_residues;
@@ -163,8 +167,8 @@ private:
         return true;
     }
 
-    // A unit's fragments with what is known of the functions, and with more while that leaves doubt; the rest one by
-    // one. Whether all of 64 fragments were in doubt.
+    // Decides the fragments of a unit that are asked for: with what is known of the functions, with more while any
+    // stays in doubt, and the last ones one by one. Returns whether all of 64 were in doubt at first.
     TEXGEN_APART bool fill_closely(const Tile& tile, const TileJob& job, DoubtfulFunctions& functions,
                                    const TileJob::Unit& unit, std::uint64_t asked = ~std::uint64_t{0}) noexcept {
         std::uint64_t doubtful = kernels_.fill_closely(job, functions, unit, asked);
@@ -179,11 +183,11 @@ private:
         return are_all;
     }
 
-    // Exact sums of one fragment cost less than two doubles and residues, which a tile shares.
+    // Exact sums of a single fragment cost less than two doubles and residues do, which pay where a tile shares them.
     bool is_one() const noexcept { return rect_.count() == 1; }
 
-    // A tile behind is cleared. Of one in doubt what is next to q = 0 is divided closely, if those are few; else it is
-    // halved.
+    // Clears a tile behind. Of another what is next to q = 0 is decided closely, and what is before and behind that is
+    // filled as a tile of its own.
     TEXGEN_RARE void split(const Tile& tile, const Corners& at) noexcept {
         if (at.all_behind()) return clear(tile);
         if (tile.count() <= TileJob::unit_size) return fill_closely(tile);
@@ -198,7 +202,7 @@ private:
         }
     }
 
-    // All, or from a unit on.
+    // In double, from the first unit on, or from a given one.
     TEXGEN_APART void fill_exact(const Tile& tile, const Corners& at, const TileJob::Unit* from = nullptr) noexcept {
         if (!at.may_share_divisions()) return split(tile, at);
         TileJob job = make_job(tile, at);
@@ -220,7 +224,7 @@ private:
 
     TEXGEN_RARE void fill_from_doubt(const Tile& tile, const Corners& at, TileJob& job, TileJob::Unit unit,
                                      std::uint64_t doubtful = ~std::uint64_t{0}) noexcept {
-        // A numerator without a plane is that of its zeros already.
+        // A plane of zeros is that of a numerator which fill_around() has left out.
         for (std::size_t k = 0; k < count_; ++k)
             if (planes_->magnitude.dx[k] + planes_->magnitude.dy[k] != 0.0)
                 if (const Stretch zeros = zeros_of(triangle_.planes, coordinate_[k], tile); zeros.end != 0)
@@ -228,20 +232,20 @@ private:
         if (is_one()) return fill_one(tile.x, tile.y);
         DoubtfulFunctions functions = functions_of(tile, at);
         functions.residues_first = true;
-        // What residues decide of a few fragments they decide sooner than their quotients are seen to be exact.
+        // Few fragments are decided by residues sooner than it is seen whether their quotients are exact.
         if (is_constant(functions.function[CloseFunctions::q].high) && sharpen(tile, functions, TileJob::unit_size) &&
             tile.width + tile.height > 4 && take_exact_quotients(functions, job))
             unit = detail::fill_exact(kernels_, job, unit, TileJob::unit_size, doubtful);
-        // Doubt has company: four times as many units at once after each of which most is in doubt, and some after one
-        // that was all.
+        // Doubt comes in runs. So several units are decided closely before doubles are tried again: four after one that
+        // was in doubt altogether, and four times as many whenever doubles fail for most of a unit again.
         for (int many = 1; !job.is_done(unit);) {
             const bool may_get_closer = !functions.are_close && are_many(std::popcount(doubtful), tile);
             for (int i = 0; i < many && !job.is_done(unit);
                  ++i, unit = job.unit_after(unit), doubtful = ~std::uint64_t{0})
                 if (fill_closely(tile, job, functions, unit, doubtful)) many = many < 4 ? 4 : many;
             if (job.is_done(unit)) return;
-            // What two doubles are rounded to errs by less than the planes: where those leave much doubt, and once they
-            // are known or the planes fail again.
+            // Two doubles, rounded, err by less than the planes. They take their place where planes leave much in
+            // doubt: at once if they are made already, else after the planes have failed twice.
             bool is_closer = may_get_closer && functions.are_close;
             if (!is_closer) {
                 unit = detail::fill_exact(kernels_, job, unit, TileJob::unit_size, doubtful);
@@ -258,7 +262,8 @@ private:
         }
     }
 
-    // What is before a row or column of zeros of numerator k, it, without that numerator, and what is behind it.
+    // Fills what is before a row or column where numerator k is 0, then those zeros, with that numerator left out, and
+    // then what is behind them.
     TEXGEN_RARE void fill_around(const Tile& tile, const Stretch& zeros, std::size_t k) noexcept {
         const auto rest = [&](const Double2& of) {
             return double2_of(k == 0 || count_ == 1 ? 0.0 : of[0], k == 1 || count_ == 1 ? 0.0 : of[1]);
@@ -277,8 +282,7 @@ private:
         planes_ = planes;
     }
 
-    // A small tile, by one job for all that there are: with the planes as they are, and closely only if that leaves
-    // doubt.
+    // A part of the tile, unit by unit. All such parts share one job and what is known of the functions.
     TEXGEN_RARE void fill_closely(const Tile& tile) noexcept {
         if (is_one()) return fill_one(tile.x, tile.y);
         if (tile.count() > TileJob::unit_size) {
@@ -303,7 +307,8 @@ private:
                                 [&](const TileJob::Unit& refused) { fill_refused(tile, job, refused); });
     }
 
-    // In shorter chunks, or by divisions. Below what is refused of a row the same will be.
+    // A unit that was refused, in shorter chunks or by divisions. With it go the fragments below it, which would be
+    // refused as well.
     TEXGEN_RARE void fill_refused(const Tile& tile, TileJob& job, const TileJob::Unit& refused) noexcept {
         Tile rest = part_of(tile, refused);
         const bool touches = refused.x_begin == job.filled.x_end || refused.x_end == job.filled.x_begin;
@@ -343,7 +348,7 @@ private:
         for (const std::span<float>& output : {output_[0], output_[1], lit_}) fill_rows(output, rect_, tile, 0.0f);
     }
 
-    // What every kernel needs. A factor that the numerators and q share is free.
+    // A job with what every kernel needs. Numerators and q may share any factor.
     TEXGEN_APART TileJob make_job(const Tile& tile, const Corners& at, double factor = 1.0) noexcept {
         TileJob job;  // not {}: all zeros would cost what a row does
         job.width = tile.width;

@@ -17,7 +17,7 @@ public:
     TEXGEN_APART HalfPlanes(const TriangleFunctions& triangle, const Corners& at, const Tile& tile) noexcept
         : tile_(tile) {
         const double q = largest_q_of(at);
-        // Under a tolerance what is written may not be what is exact, but for a function that is 0.
+        // Under a tolerance only a function that is 0 is sure to be written as it is.
         const bool is_exact = triangle.tolerance == 0.0;
         add(at.q_ramp, at.q_error + 0x1p-46 * q);
         const auto& [base, dx, dy] = at.numerator_ramp;
@@ -29,10 +29,10 @@ public:
                 continue;
             const auto at_side = [&](const Double2& f, double of_q) { return sign * (f[k] - bound * of_q); };
             Ramp inside{at_side(base, at.q_ramp.base), at_side(dx, at.q_ramp.dx), at_side(dy, at.q_ramp.dy)};
-            // What is on the side is inside, and half a fragment from there nothing is.
+            // Fragments on the side are inside, and none lies within half a fragment of them.
             if (is_exact && bound == 0.0 && zeros_of(triangle.planes, static_cast<glm::length_t>(k), tile).end != 0)
                 inside.base += 0.5 * (std::fabs(inside.dx) + std::fabs(inside.dy));
-            // A tile's values are five of the largest at most, which are rounded thrice.
+            // Values in the tile are five times the largest one at most, and rounded three times.
             add(inside, margin_of_sides(at, triangle.tolerance, q)[k] + std::fabs(bound) * margin_of_bounds(at, q) +
                             0x1p-46 * at.largest_numerator[k]);
         }
@@ -41,7 +41,7 @@ public:
     // False where a function or a bound is next to infinity, and nothing is known.
     bool are_finite() const noexcept { return are_finite_; }
 
-    // What of a row is lit.
+    // The fragments of a row that are lit for certain, and those that may be.
     struct Lit {
         Span certain, possible;
     };
@@ -59,14 +59,15 @@ public:
     }
 
 private:
-    // Where it is the margin, and minus that.
+    // Where a function reaches its margin (element 0) and minus its margin (1): in the first row, and the step from row
+    // to row.
     struct Zero {
         Double2 first, step;
 
         Double2 in_row(int y) const noexcept { return first + step * y; }
     };
 
-    // Whether u = bound everywhere: bounds are floats, and products of two exact.
+    // Whether u = bound everywhere. Bounds and coordinates are floats, so their product is exact.
     static bool is_on_side(const TrianglePlanes& planes, std::size_t k, double bound) noexcept {
         const auto coordinate = static_cast<glm::length_t>(k);
         for (std::size_t i = 0; i < 3; ++i)
@@ -74,7 +75,8 @@ private:
         return true;
     }
 
-    // One that grows by less than a share of its margin along a row may as well grow by that share.
+    // A function that grows along a row by less than a share of its margin is taken for one that grows by that share,
+    // which moves its zero only within the margin.
     TEXGEN_APART void add(const Ramp& value, double margin) noexcept {
         const double least_growth = 0x1p-8 * margin / tile_.width;
         double dx = value.dx;

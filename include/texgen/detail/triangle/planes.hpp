@@ -160,7 +160,7 @@ public:
         return {twice(once.value), twice(once.magnitude)};
     }
 
-    // Of s and t, and of q.
+    // The planes of s and t, and that of q.
     void planes_of_stq(PlaneOf<Double2>& st, Plane& q) const noexcept {
         const PlaneOf<Double4> all = plane_through(four_widened(triangle_.a.strq), four_widened(triangle_.b.strq),
                                                    four_widened(triangle_.c.strq));

@@ -4,8 +4,9 @@
 namespace TEXGEN_DETAIL {
 inline namespace TEXGEN_BUILD {
 
-// Rows that are shorter than vectors are gathered in a buffer. Of many fragments one may well be in doubt, which has all
-// of them divided again; and in long rows vectors that follow one another share a division at less cost.
+// Whether a tile goes by this path. Rows that are shorter than vectors are gathered in a buffer. The more fragments a
+// tile has, the likelier one is in doubt, and then all are divided again; and in long rows vectors that follow one
+// another share a division at less cost.
 inline bool is_small(const Tile& tile, double tolerance) noexcept {
     constexpr int longest_vector = 8;
     const int width = tile.width == 1 ? tile.height : tile.width;  // a column is a row
@@ -42,7 +43,7 @@ struct SmallFunction {
                 gamma(20)) {}
 };
 
-// At the corner where a function is least, and where it is largest.
+// The least and the largest value of a linear function at the corners.
 template <class Number>
 Number least_of(const Number& base, const Number& right, const Number& bottom) noexcept {
     const Number of_row = smaller(base, base + right);
@@ -156,7 +157,7 @@ TEXGEN_APART void interpolate_alone(const TriangleFunctions& triangle, const Til
     TileInterpolator<>(triangle, rect, close, coordinate, output).interpolate(rect, plan);
 }
 
-// The same of a small tile in the place of both.
+// The same for a small tile; the one coordinate takes the place of both.
 template <class CompiledWhereCalled = void>
 TEXGEN_APART void fill_small_alone(const TriangleFunctions& triangle, const Tile& rect, const SmallPlace& place,
                                    const SmallDivisor& q, glm::length_t coordinate, const std::span<float>& output,

@@ -24,7 +24,7 @@ struct TileSurvey {
     OnDemand<CloseRamps> close;  // where the planes cancel
 };
 
-// Short where q varies much, so that the ends of a chunk are not far from its middle. A chunk costs about as much as 32
+// Chunks are short where q varies much, so that their ends are not far from their middle. One costs about as much as 32
 // fragments besides those that it has.
 inline int chunk_length(const Corners& at, int width) noexcept {
     const double q = 0.25 * (at.q[0] + at.q[1] + at.q[2] + at.q[3]);
@@ -39,7 +39,7 @@ inline int chunk_length(const Corners& at, int width) noexcept {
 // A chunk costs as much as some fragments, and the first of them, with what they ask for, as much as some tens.
 inline bool pays_for_chunks(const Tile& tile) noexcept { return tile.width >= 16 && tile.count() > 128; }
 
-// Of a tile that is divided, whatever it shows.
+// The plan of a tile that is divided without being asked about.
 inline Plan plan_without_survey(const Tile& tile, const Corners& at) noexcept {
     return {Work::divide,        pays_for_chunks(tile) ? chunk_length(at, tile.width) : 0,
             StepRule::undecided, {},
@@ -110,7 +110,7 @@ inline void choose_plan(const TriangleFunctions& triangle, const Tile& tile, con
     if (at.is_well_in_front()) choose_steps(plan, at, triangle.tolerance * (1.0 - 0x1p-18));
 }
 
-// A column's is that of the row that it is made, see interpolate.inc.hpp.
+// Surveys a tile; a column as the row of the mirrored triangle that interpolate.inc.hpp makes of it.
 TEXGEN_APART inline TileSurvey survey(const TriangleFunctions& triangle, const Tile& tile) noexcept {
     if (tile.is_column()) return survey(triangle.mirrored(), tile.mirrored());
     TileSurvey found(triangle, tile);

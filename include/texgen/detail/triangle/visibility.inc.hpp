@@ -9,11 +9,11 @@ inline void describe(VisibilityBuffer& buffer, const TriangleBatch& batch, std::
     buffer = {ids.data(), static_cast<std::uint32_t>(batch.size()), rect.x, rect.y, rect.width};
 }
 
-// What is made of the triangles that a visibility buffer has asked for last: neighbours share few.
+// What was made of the triangles that a visibility buffer asked for last, of which neighbours share few.
 template <class Made>
 class Recent {
 public:
-    // Of a triangle, by make() where it is not known.
+    // What was made of a triangle; make() makes it where it is not kept.
     const std::optional<Made>& of(std::uint32_t id, const auto& make) noexcept {
         Known& known = known_[id % batch_block];
         if (known.id != id) {
@@ -38,11 +38,11 @@ inline Tile part_of(const FragmentRect& rect, std::size_t first, std::size_t cou
             static_cast<int>((std::min)(count, width)), static_cast<int>((count - 1) / width) + 1};
 }
 
-// So many fragments of one id in a row pay for a set-up of their own.
+// From this many fragments of one id in a row on a run has a set-up of its own.
 inline constexpr std::size_t long_run = 64;
 
-// Calls run(first, count) for the long runs of one id in a row, and for rows together that are one. Each has a whole
-// probe, wherever that begins.
+// Calls run(first, count) for the long runs of one id within a row, and once for rows that are of one id together. A
+// long run holds a whole probe, wherever it begins.
 void for_each_long_run(std::span<const std::uint32_t> ids, std::size_t width, const auto& run) noexcept {
     constexpr std::size_t probe = long_run / 2;
     const auto are_as_before = [&](std::size_t first, std::size_t count) {
@@ -87,8 +87,8 @@ void for_each_run(std::span<const std::uint32_t> ids, const FragmentRect& rect, 
     }
 }
 
-// Fragments of a visibility buffer from `begin` to `end` by a kernel, and by run() as above the runs that it leaves in
-// doubt.
+// Has a kernel fill the fragments of a visibility buffer from `begin` to `end`, and calls run() as above for the runs
+// that it leaves in doubt.
 void fill_buffer(auto kernel, auto& job, const FragmentRect& rect, std::size_t begin, std::size_t end,
                  const auto& run) noexcept {
     job.count = end;
@@ -120,7 +120,8 @@ void for_each_stretch(std::span<const std::uint32_t> ids, std::size_t width, con
     if (done < ids.size()) of_any(done, ids.size());
 }
 
-// The same of one that may have long runs, which go to set-ups. Apart, so that small ones need no room for these.
+// Interpolates a buffer that may have long runs, which go to set-ups. Apart, so that buffers without them need no room
+// for these.
 template <class CompiledWhereCalled = void>
 TEXGEN_APART void interpolate_runs(const TriangleBatch& batch, FragmentsJob& job, const FragmentRect& rect,
                                    std::span<const std::uint32_t> ids, const Texcoords& out) noexcept {
@@ -168,7 +169,7 @@ public:
     }
 
 private:
-    // The kernel has their reciprocals, times 2^100, in float.
+    // Whether the kernel may have their reciprocals, times 2^100, in float.
     static bool are_ordinary(const TexelsPerUnit& texels) noexcept {
         return texels.s > 0x1p-24 && texels.s < 0x1p24 && texels.t > 0x1p-24 && texels.t < 0x1p24;
     }
@@ -185,7 +186,7 @@ private:
         fill_buffer(chosen<BatchFootprintKernels>().fill, job, rect_, begin, end, run);
     }
 
-    // What is not lit is written only if `always`, or 0.
+    // Fills a run by a set-up: if `always`, also where nothing of it is lit; else that is cleared.
     void fill_run(std::uint32_t id, const Tile& part, std::size_t first, bool always) noexcept {
         Footprints here = subspans(out_, first, static_cast<std::size_t>(part.count()));
         if (id >= batch_.size()) return clear(here);
