@@ -101,6 +101,16 @@ struct Corners {
         return larger(larger(size[0], size[1]), larger(size[2], size[3])) * reciprocal;
     }
 
+    // The least |F| of numerators that do not change their sign, of others nothing above 0.
+    Double2 least_numerator() const noexcept {
+        const auto& f = numerator;
+        return larger(smaller(smaller(f[0], f[1]), smaller(f[2], f[3])),
+                      -larger(larger(f[0], f[1]), larger(f[2], f[3]))) -
+               numerator_error;
+    }
+    // Of a tile in front no |F/Q| is below this.
+    Double2 least_quotient() const noexcept { return least_numerator() / (largest_q + q_error); }
+
     // The error of F/Q in double for a tile well in front: as in certain_quotient(), where it is worst. A division for
     // two q has two more roundings: their product, its reciprocal, that times the other q, and the quotient, before it
     // is moved by its error.
@@ -121,10 +131,7 @@ struct Corners {
     // Of a tile well in front, where no numerator changes its sign, so that the corners have the least |F|: F/Q errs by
     // e_F / |F| + e_Q / Q of itself and six roundings, and an ulp of it is at least 2^-53 of it.
     std::int32_t ulps_of_quotients() const noexcept {
-        const auto& f = numerator;
-        const Double2 least =
-            larger(smaller(smaller(f[0], f[1]), smaller(f[2], f[3])), -larger(larger(f[0], f[1]), larger(f[2], f[3]))) -
-            numerator_error;
+        const Double2 least = least_numerator();
         if (!all_less(double2_of(0x1p-124, 0x1p-124) * largest_q, least)) return 0;
         const double share =
             larger(numerator_error[0] / least[0], numerator_error[1] / least[1]) + q_error * reciprocal;

@@ -76,23 +76,24 @@ public:
 private:
     TEXGEN_RARE void fill(const Tile& tile, int longest) noexcept {
         const Corners at = corners_at(tile);
-        if (are_floats_apart(at)) return fill_exact(tile, at);
+        if (are_floats_apart(at.largest_quotient())) return fill_exact(tile, at);
         Plan plan = plan_without_survey(tile, at);
         if (plan.chunk > longest) plan.chunk = 0;
         fill(tile, at, plan);
     }
 
-    // Whether rounding the largest quotient to float alone errs by more than the tolerance: then no chunk that has it
-    // can be certified, and seldom another one.
-    TEXGEN_RARE bool are_floats_apart(const Corners& at) const noexcept {
-        const Double2 rounded = at.largest_quotient() * unit_roundoff_float;
+    // Whether rounding a quotient of such a size to float alone errs by more than the tolerance: then no chunk that has
+    // it can be certified.
+    TEXGEN_RARE bool are_floats_apart(const Double2& quotient) const noexcept {
+        const Double2 rounded = quotient * unit_roundoff_float;
         return !(larger(rounded[0], rounded[1]) < triangle_.tolerance);
     }
 
     void fill(const Tile& tile, const Corners& at, const Plan& plan) noexcept {
-        // A tile of few chunks does not repay the attempt.
-        if (plan.chunk != 0 && plan.steps == StepRule::undecided && tile.count() <= Corners::few &&
-            are_floats_apart(at))
+        // No chunk is certified of a tile whose least quotient is so large; and few chunks do not repay the attempt if
+        // their largest one is.
+        if (plan.chunk != 0 && plan.steps == StepRule::undecided &&
+            are_floats_apart(tile.count() > Corners::few ? at.least_quotient() : at.largest_quotient()))
             return fill_exact(tile, at);
         if (at.is_well_in_front())
             return plan.chunk != 0 ? fill_polynomial(tile, at, plan) : fill_float_divided(tile, at);
