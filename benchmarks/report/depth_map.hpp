@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include <glm/vec3.hpp>
 #include <texgen/conventions.hpp>
 
 #include "picture.hpp"

@@ -1,7 +1,6 @@
 #include "mesh.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 
 #include <glm/geometric.hpp>

@@ -7,7 +7,6 @@
 #include <optional>
 #include <span>
 
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <texgen/footprint.hpp>
 #include <texgen/interpolate.hpp>

@@ -1,7 +1,6 @@
 // The report: renders the scenes with the library, checks every fragment against the reference, and sets run time and
 // error beside the loops that others write.
 
-#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <cstdio>

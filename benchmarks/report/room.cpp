@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <ctime>
 #include <limits>
-#include <optional>
 #include <utility>
 
 #include <glm/common.hpp>

@@ -1,12 +1,10 @@
 #pragma once
 
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <texgen/conventions.hpp>
 

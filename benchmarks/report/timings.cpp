@@ -1,7 +1,6 @@
 #include "timings.hpp"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <optional>

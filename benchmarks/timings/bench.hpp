@@ -10,7 +10,6 @@
 #include <limits>
 #include <optional>
 #include <string>
-#include <utility>
 
 #include <benchmark/benchmark.h>
 #include <texgen/conventions.hpp>

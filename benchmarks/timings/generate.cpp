@@ -1,6 +1,5 @@
 // Points x, y, z to s, t, r, q, planar or interleaved.
 
-#include <array>
 #include <memory>
 #include <string>
 

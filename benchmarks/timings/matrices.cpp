@@ -1,6 +1,5 @@
 // What a frame makes anew: T_o for each object, or T_e for the camera, and what reaches a vertex of either in float.
 
-#include <cmath>
 #include <memory>
 #include <random>
 #include <vector>

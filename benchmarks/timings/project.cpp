@@ -1,7 +1,5 @@
 // Points x, y, z to s/q, t/q, planar or interleaved to pairs.
 
-#include <algorithm>
-#include <array>
 #include <memory>
 #include <string>
 

@@ -2,7 +2,6 @@
 
 #include <memory>
 #include <random>
-#include <span>
 #include <vector>
 
 #include <texgen/batch.hpp>

@@ -1,6 +1,5 @@
 // A segment at an array of alpha to s, t, by the three options of the C_u note.
 
-#include <cmath>
 #include <memory>
 #include <random>
 #include <string>

@@ -1,6 +1,5 @@
 // Visibility buffers: the fragments of a rectangle, each of the triangle that its id names, to s, t and to footprints.
 
-#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <random>

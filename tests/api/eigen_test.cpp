@@ -6,8 +6,6 @@
 
 #include <Eigen/Geometry>
 #include <array>
-#include <bit>
-#include <cstdint>
 #include <type_traits>
 #include <vector>
 

@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <string>
 
 #include "judges/oracle.hpp"
 #include "support/hex.hpp"

@@ -9,12 +9,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <cstdlib>
 #include <limits>
-#include <optional>
 #include <string>
-#include <utility>
 
 #include "judges/exact.hpp"
 #include "judges/oracle.hpp"

@@ -2,7 +2,6 @@
 // open, no corner of a body contradicts what is said of it, by the exact judge, and a scene has the pairs that asking
 // for each gives.
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

@@ -2,12 +2,10 @@
 // and a point that is no number hides nothing of the others; a set-up that the library made has no fault but what is
 // true of it; a lens and an aim are said to be refused where no projector is made of them.
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <vector>
 
 #include "fuzz/input.hpp"

@@ -1,13 +1,9 @@
 // Footprints over raw bytes: nothing but the outputs is written, derivatives are within their bound by the exact judge,
 // what is behind the projector is 0 or empty, no fragment is outside the extremes, and what is no number is never one.
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
-#include <optional>
-#include <span>
 
 #include "fuzz/input.hpp"
 #include "judges/exact.hpp"

@@ -1,7 +1,6 @@
 // Everything that makes or takes a matrix, over raw bytes: what is empty and what is finite, which bad number stays
 // where, and relations that hold whatever the numbers are.
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

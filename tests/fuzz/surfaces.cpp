@@ -1,7 +1,6 @@
 // What the projection makes of surfaces, over raw bytes: signs are exact, numbers are near to themselves, and what has
 // none is empty.
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

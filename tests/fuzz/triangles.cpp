@@ -1,7 +1,6 @@
 // Triangles, their rectangles and the clip over raw bytes: nothing but the outputs is written, `nothing` means that
 // nothing is lit, fragments that are drawn for it are right by the exact judge, and what is clipped keeps its contract.
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

@@ -10,12 +10,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <optional>
-#include <utility>
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
-#include <glm/vec4.hpp>
 
 #include "judges/oracle.hpp"
 #include "texgen/conventions.hpp"

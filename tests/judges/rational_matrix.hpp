@@ -4,7 +4,6 @@
 
 #include <array>
 #include <optional>
-#include <utility>
 
 #include <glm/mat4x4.hpp>
 

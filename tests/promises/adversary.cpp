@@ -20,7 +20,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
-#include <limits>
 #include <list>
 #include <optional>
 #include <string>
@@ -32,7 +31,6 @@
 #include "judges/rational_matrix.hpp"
 #include "judges/verdict.hpp"
 #include "support/hard_triangles.hpp"
-#include "support/hex.hpp"
 #include "support/outputs.hpp"
 #include "support/race.hpp"
 #include "support/random.hpp"

@@ -8,14 +8,12 @@
 #include <cmath>
 #include <fstream>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "judges/oracle.hpp"
 #include "judges/rational_matrix.hpp"
 #include "judges/rational_traits.hpp"
-#include "support/hex.hpp"
 #include "support/json.hpp"
 #include "support/random.hpp"
 #include "texgen/coverage.hpp"

@@ -3,7 +3,6 @@
 // Points and segments on which one double does not suffice: exact ties, cancelling sums, numbers that are none. What
 // they cost beside ordinary ones, and what becomes of them, are tests of their own.
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
