@@ -26,7 +26,7 @@
 namespace TEXGEN_NAMESPACE {
 
 // Makes the texgen matrix of the world, S P_p V_p.
-// Guarantee: in double, 12 roundings a term at most; no allocation, noexcept.
+// Guarantee: in double, 8 roundings a term at most; no allocation, noexcept.
 // Shape: world points to homogeneous (s, t, r, q) in the units of the region; q > 0 in front of the projector.
 // Bad input: NaN and infinity of the projector stay in the elements that they reach.
 // Source: Everitt, Projective Texture Mapping, (3) with M = I.

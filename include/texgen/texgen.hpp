@@ -1,7 +1,7 @@
 #pragma once
 
 // Floor 9: the umbrella, everything but reference.hpp and eigen.hpp, which need Eigen, and batch.hpp, scene.hpp and
-// diagnose.hpp, which few files need: what the umbrella costs every file to compile stays below 3.5 times GLM's own
+// diagnose.hpp, which few files need: what the umbrella costs every file to compile stays below 4 times GLM's own
 // headers.
 
 #include "detail/language.hpp"

@@ -550,6 +550,27 @@ TEST_CASE("pairs that come at once allocate a few times, and an object that is n
     CHECK(work.pairs_tested == 4);
 }
 
+TEST_CASE("what a scene allocates is at most 225 bytes an object, twice 800 a projector, and twice 165 a lit pair") {
+    const auto bytes_of = [](std::size_t objects, std::size_t projectors, double z) {
+        Engine engine;
+        glm::dmat4 in_place(1.0);
+        in_place[3].z = z;
+        engine.models.assign(objects, ModelMatrix(in_place));
+        engine.bounds.assign(objects, box_of(glm::vec3(0.5f)));
+        give_light_along_z(engine, projectors);
+        const std::size_t before = support::allocated_bytes;
+        Scene scene;
+        scene.update(engine.view(), {});
+        scene.update_eye(texgen::CameraPose(glm::dmat4(1.0)));
+        CHECK(scene.pairs().size() == (z < 0.0 ? objects * projectors : 0));
+        return support::allocated_bytes - before;
+    };
+    constexpr double lit = -10.0, behind = 10.0;
+    CHECK(bytes_of(20000, 1, behind) - bytes_of(10000, 1, behind) <= 225 * std::size_t{10000});
+    CHECK(bytes_of(1, 4096, behind) - bytes_of(1, 1024, behind) <= 2 * 800 * std::size_t{3072});
+    CHECK(bytes_of(1024, 32, lit) - bytes_of(1024, 32, behind) <= 2 * 165 * std::size_t{1024 * 32});
+}
+
 TEST_CASE("objects far away, or twice so far, leave the others to be found as quickly") {
     Random random(1210);
     const auto projector = make_projector(texgen::PerspectiveLens{texgen::degrees(20), 1.0, 0.1, 100.0},

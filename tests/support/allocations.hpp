@@ -9,12 +9,14 @@
 namespace support {
 
 inline std::size_t allocations = 0;
+inline std::size_t allocated_bytes = 0;
 
 }  // namespace support
 
 // Not inlined: else GCC pairs the malloc of one with the delete of another.
 [[gnu::noinline]] void* operator new(std::size_t size) {
     ++support::allocations;
+    support::allocated_bytes += size;
     if (void* memory = std::malloc(size)) return memory;
     std::abort();
 }
