@@ -192,7 +192,7 @@ foreach(header IN LISTS headers)
     foreach(rounding IN LISTS roundings ITEMS "to_floats = ")
         string(REGEX REPLACE "[^a-z_].*" "" rounded "${rounding}")
         if(text MATCHES "to_doubles\\(([a-z_]+[.])*${rounded}[^a-z_][^;]*;")
-            complain("${header}: ${CMAKE_MATCH_0} was rounded a moment ago: to_doubles_as_rounded()")
+            complain("${header}: ${CMAKE_MATCH_0} was rounded a moment ago, which takes detail::widened() lane by lane")
         endif()
     endforeach()
     # What the reference checks must not be the arithmetic that it uses.

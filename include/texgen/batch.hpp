@@ -102,8 +102,8 @@ template <class CompiledWhereCalled = void>
 void interpolate(const TriangleBatch& batch, std::span<const std::uint32_t> ids, FragmentRect rect,
                  Texcoords out) noexcept;
 
-// How much farther from the exact derivatives than error_bound() of its FootprintSetup says, relative to their length,
-// those of a triangle in a visibility buffer may be: what cancels is not known to more digits there.
+// What footprint() by ids may err by besides the error_bound() of the triangle's FootprintSetup, relative to the
+// derivative's length: what cancels is not known to more digits there.
 inline constexpr double batch_footprint_error = 0x1p-34;
 
 // Writes the footprints of a visibility buffer, as textureGrad takes them: of fragment k that of triangle ids[k].

@@ -74,7 +74,8 @@ inline std::size_t clip_to_near(std::span<const ClipVertex> polygon, std::span<C
 
 }  // namespace TEXGEN_COMPILER
 
-// Planes in their order, each (a, b, c, d) of a x + b y + c z + d >= 0: five, or seven of a region with a depth.
+// What clip_planes() returns, in its order, each plane (a, b, c, d) of a x + b y + c z + d >= 0: five, or seven of a
+// region with a depth.
 class ClipPlanes {
 public:
     std::size_t size() const noexcept { return size_; }

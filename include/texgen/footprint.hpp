@@ -95,8 +95,8 @@ public:
     FootprintSetup(const TriangleSetup& triangle, TexelsPerUnit texels) noexcept;
 
     // Computes the footprint of the fragment (x, y), empty behind the projector; the sign of q is decided exactly.
-    // Guarantee: dx and dy within error_bound() without its rounding to float; the rest is that of digits of J which
-    // they have lost where it is almost singular, and has no bound. No allocation, noexcept.
+    // Guarantee: dx and dy within error_bound() without its rounding to float. The rest has no bound: it is computed
+    // from more digits of J, which dx and dy have lost where J is almost singular. No allocation, noexcept.
     std::optional<Footprint> at(int x, int y) const noexcept;
 
     // Bounds the error of what footprint() writes to dsdx and dsdy (x), dtdx and dtdy (y).

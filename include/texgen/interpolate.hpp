@@ -49,7 +49,7 @@ public:
     static std::optional<TriangleSetup> of(const Triangle& triangle, TextureRegion region,
                                            Tolerance tolerance = exact) noexcept;
 
-    // What of() makes in place.
+    // For of() alone, which makes it in place: Key is private.
     TriangleSetup(Key, const Triangle& triangle, const TextureRegion& region, Tolerance tolerance) noexcept
         : functions_(triangle, region, detail::accepted(tolerance)) {}
 

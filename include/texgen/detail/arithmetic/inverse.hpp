@@ -48,7 +48,7 @@ public:
         clear_what_has_no_terms();
         glm::dmat4 lacking = residual();
         beta_ = certificate(lacking);
-        if (!regular()) return;
+        if (!is_regular()) return;
         // A step, X <- X + X (I - B X), takes about 50 bits from what is noise: 900 in all lie between the elements.
         constexpr int most_steps = 20;
         inverse_ += inverse_ * lacking;
@@ -64,7 +64,7 @@ public:
     // Whether norm(I - B X) + 5 u norm(|X| |B|) for the X of the elimination is below 1, which proves that A is
     // regular. For an exactly singular A it is at least 1 for every X: with y B = 0, y (I - B X) = y. False for what is
     // not finite.
-    bool regular() const noexcept { return beta_ < 1.0; }
+    bool is_regular() const noexcept { return beta_ < 1.0; }
 
     // A^-1 = C X R; each element within 2 ulp of the largest of its terms in A^-1 A A^-1 while the condition of B stays
     // below 1e8 and its terms, in X B X, above least_scaled. Half an ulp of its own may be all of that: as B X = 1 has
@@ -228,7 +228,7 @@ private:
 
     // The largest sum of a column of |I - B X|. Infinite where A is not regular.
     double contraction() const noexcept {
-        if (!regular()) return infinity;
+        if (!is_regular()) return infinity;
         const glm::dmat4 terms = glm::dmat4(1.0) + absolute(scaled_) * absolute(inverse_);
         const glm::dmat4 r = absolute(residual()) * (1.0 + gamma(2)) + terms * 0x1p-99 + 0x1p-1000;
         double largest = 0.0;

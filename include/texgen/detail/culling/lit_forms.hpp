@@ -84,8 +84,8 @@ public:
 
     SeparatingForms separating(const SeparatingFormKernels& kernels) const noexcept {
         SeparatingForms result;
-        // Of elements from 2^-600 to 2: of so many times these no product underflows, so that a cofactor is 0 only where it
-        // is exactly that.
+        // Elements are 0 or from 2^-600 to 2. Times 2^200 no product of two underflows, so that a cofactor is 0 only
+        // where it is exactly 0.
         kernels.make(lanes_, matrix_ * 0x1p200, side_.data(), count_, result);
         return result;
     }
@@ -125,8 +125,8 @@ private:
         return least * scale >= 0x1p-600;
     }
 
-    // An infinite side is none, and q takes its place: it is one of the forms all the same. An inner side that no float
-    // is inside of is where -q is not below 0: nowhere in front. A max is the mirrored min.
+    // The place of an infinite side is taken by q >= 0, which is one of the forms all the same; that of an inner side
+    // which no float is inside of by -q >= 0, which holds nowhere in front. A max is the mirrored min.
     bool take_sides(const TextureRegion& region) noexcept {
         for (FormWeights* weights : {&outer_, &inner_}) {
             *weights = {};

@@ -19,7 +19,8 @@
 
 namespace TEXGEN_DETAIL {
 
-// Mirroring, depth and the use of a factor are told apart only where S stands once.
+// Mistakes with S. Mirroring and the other depth range are looked for only where S stands once: neither left out nor
+// doubled.
 inline constexpr std::array scale_bias_mistakes{
     Composition{},
     Composition{.scale_bias = ScaleBiasUse::left_out},

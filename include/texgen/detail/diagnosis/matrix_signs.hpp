@@ -45,8 +45,8 @@ inline bool is_in_float(const glm::dmat4& m) noexcept {
 // What a matrix of its kind may be off by, relative to its elements.
 inline double rounding_of(const glm::dmat4& m) noexcept { return is_in_float(m) ? 0x1p-22 : 0x1p-44; }
 
-// What its rounding is relative to, where no more is known: the magnitudes of the elements that are no round numbers.
-// Of a constant that is known only where no axis of the row is round: else it may have many bits, and be exact.
+// What its rounding is relative to, where no more is known: the magnitudes of the elements that are no round numbers. A
+// row's constant counts only where none of its axes is round: beside a round axis it may have many bits and be exact.
 inline glm::dmat4 rounded_magnitudes(const glm::dmat4& m) noexcept {
     glm::dmat4 result(0.0);
     for (glm::length_t row = 0; row < 4; ++row) {

@@ -159,7 +159,7 @@ inline std::optional<Product> pose_factor(const Factors& factors, PoseUse use) n
     if (use == PoseUse::left_out) return lens_factor(glm::dmat4(1.0));
     if (use == PoseUse::inverted) {
         const CertifiedInverse inverse(*factors.pose);
-        return inverse.regular() ? std::optional(pose_factor(as_in_scenes(inverse.matrix()))) : std::nullopt;
+        return inverse.is_regular() ? std::optional(pose_factor(as_in_scenes(inverse.matrix()))) : std::nullopt;
     }
     const Product once = pose_factor(*factors.pose);
     return use == PoseUse::doubled ? once * once : once;

@@ -35,7 +35,7 @@ inline glm::dmat4 magnitude_before_scale_bias(glm::dmat4 magnitude, const glm::d
 // Whether the projector's pose stands where its view belongs.
 inline bool has_pose_for_view(const glm::dmat4& texgen, const Factors& factors) noexcept {
     const CertifiedInverse inverse(factors.view);
-    if (!inverse.regular()) return false;
+    if (!inverse.is_regular()) return false;
     Factors with_pose = factors;
     with_pose.view = as_in_scenes(inverse.matrix());
     return Multiple(right_composition(with_pose), texgen).within(composed_in_float) > 0.0;
@@ -46,7 +46,7 @@ inline bool has_pose_for_view(const glm::dmat4& texgen, const Factors& factors) 
 inline std::optional<glm::dmat4> lens_within(const glm::dmat4& texgen, const Factors& factors) noexcept {
     const Product pose = pose_product(factors);
     const CertifiedInverse inverse(pose.value);
-    if (!inverse.regular()) return std::nullopt;
+    if (!inverse.is_regular()) return std::nullopt;
     const glm::dmat4 back = inverse.matrix();
     glm::dmat4 p = before_scale_bias(texgen, factors.scale_bias) * back;
     const glm::dmat4 terms =

@@ -29,7 +29,7 @@ inline Product in_the_world(const glm::dmat4& texgen, const glm::dmat4* pose) no
     const Product given = lens_factor(texgen);
     if (pose == nullptr) return given;
     const CertifiedInverse inverse(*pose);
-    return inverse.regular() ? given * lens_factor(inverse.matrix()) : given;
+    return inverse.is_regular() ? given * lens_factor(inverse.matrix()) : given;
 }
 
 // S as it should be, and whether the axis of the lens hits (0, 0), as it does without a bias.
@@ -51,8 +51,9 @@ inline SeenScaleBias seen_scale_bias(const SetupMatrices& setup) noexcept {
     return {{std::fabs(s[0].x), std::fabs(s[1].y)}, {s[3].x, s[3].y}, up_along_t};
 }
 
-// Whether a lens whose axis goes to the picture's corner is the quarter of another, or the whole that has no bias, by
-// r: which makes near round. Empty where r has no bias, or is not known to have one.
+// What makes `near` a round number, by row r, where a lens's axis goes to the picture's corner: that the lens is a
+// quarter of another, by a bias without w, or that it is whole and has no bias. Empty where r has no bias, or none is
+// known.
 struct RoundNear {
     bool of_quarter, of_whole;
 };

@@ -106,7 +106,7 @@ struct SpectrumLanes {
     TEXGEN_INLINE void find_major(const WideFloats& factor, WideFloats (&axis)[2]) const noexcept {
         const WideFloats along = magnitude(half) + root + largest * 0x1p-24f;
         const WideFloats length = largest * inverse_square_root(largest * (along * along + b * b)) * factor;
-        const WideWords swapped = is_negative(half);
+        const WideWords swapped = are_negative(half);
         axis[0] = select(swapped, b, along) * length;
         axis[1] = select(swapped, along, b) * length;
     }

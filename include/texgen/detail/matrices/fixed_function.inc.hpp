@@ -68,7 +68,7 @@ public:
         }
         if (!wants_normal_) return;
         const detail::CertifiedInverse inverse(detail::widened(modelview));
-        inverse_ = glm::dmat3(inverse.regular() ? inverse.matrix() : glm::dmat4(detail::nan));
+        inverse_ = glm::dmat3(inverse.is_regular() ? inverse.matrix() : glm::dmat4(detail::nan));
         const glm::dvec3 third_row(inverse_[0][2], inverse_[1][2], inverse_[2][2]);
         const double size = detail::largest(third_row);
         // A zero row has no scale to take away; only a projective M has one.
@@ -138,7 +138,7 @@ inline bool TexGenUnit::set_mode(Coordinate coordinate, TexGenMode mode) noexcep
 inline bool TexGenUnit::set_eye_plane(Coordinate coordinate, glm::vec4 plane, const glm::mat4& modelview) noexcept {
     CoordinateState* const state = find(coordinate);
     const detail::CertifiedInverse inverse(detail::widened(modelview));
-    if (state == nullptr || !inverse.regular()) return false;
+    if (state == nullptr || !inverse.is_regular()) return false;
     const glm::vec4 stored(inverse.solve_row(detail::widened(plane)));
     if (!detail::is_finite(stored)) return false;
     state->eye_plane = stored;

@@ -49,7 +49,7 @@ inline std::optional<WindowTexgen> window_linear(const Projector& projector, con
                                                  DepthMapping depth) noexcept {
     if (viewport.width == 0 || viewport.height == 0) return std::nullopt;
     const detail::CertifiedInverse view(camera.view.matrix()), projection(camera.projection.matrix());
-    if (!view.regular() || !projection.regular()) return std::nullopt;
+    if (!view.is_regular() || !projection.is_regular()) return std::nullopt;
     // What is far from the origin cancels in V_p V_c^-1, before anything else.
     const glm::dmat4 projector_from_camera = detail::solve_rows(view, projector.view.matrix());
     glm::dmat4 result = detail::solve_rows(
@@ -93,7 +93,7 @@ template <class Space>
 std::optional<EyeTexgen> eye_planes_as_stored(const Transform<Texture, Space>& planes,
                                               const Transform<Eye, Space>& modelview) noexcept {
     const detail::CertifiedInverse inverse(modelview.matrix());
-    if (!inverse.regular()) return std::nullopt;
+    if (!inverse.is_regular()) return std::nullopt;
     const glm::dmat4 stored = detail::solve_rows(inverse, planes.matrix());
     return detail::is_finite(stored) ? std::optional(EyeTexgen(stored)) : std::nullopt;
 }

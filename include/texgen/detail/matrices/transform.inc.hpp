@@ -23,7 +23,7 @@ Transform<To, From> from_row_vectors(std::span<const float, 16> rows) noexcept {
 template <class To, class From>
 std::optional<Transform<From, To>> inverse(const Transform<To, From>& transform) noexcept {
     const detail::CertifiedInverse inverse(transform.matrix());
-    if (!inverse.regular()) return std::nullopt;
+    if (!inverse.is_regular()) return std::nullopt;
     const Transform<From, To> result(inverse.matrix());
     return detail::is_finite(result.matrix()) ? std::optional(result) : std::nullopt;
 }

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include <glm/vec3.hpp>
-#include <glm/vec4.hpp>
 
 #include "../arithmetic/inverse.hpp"
 #include "../arithmetic/rounding.hpp"

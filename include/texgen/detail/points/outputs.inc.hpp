@@ -97,9 +97,9 @@ void darken_part(auto job, const PointOutputs& out, const JobPart& part, const a
     }
 }
 
-// Where the results of a part go, if all have a place of their own. The job is changed in place: copies of what has
-// just been written, in other sizes, wait for it.
-TEXGEN_INLINE bool is_placed(auto& job, const PointOutputs& out, const JobPart& part) noexcept {
+// Has a kernel write the results of a part to their places, if each has one; else false. The job is changed in place: a
+// copy would wait for what has just been written in other sizes.
+TEXGEN_INLINE bool place(auto& job, const PointOutputs& out, const JobPart& part) noexcept {
     if (part.count != part.whole || !out.are_complete(job.numerators)) return false;
     if (job.numerators == 1 && out.lit != nullptr) return false;
     job.count = part.count;
@@ -113,7 +113,7 @@ TEXGEN_INLINE bool is_placed(auto& job, const PointOutputs& out, const JobPart& 
 // Runs a job for a part. What has no place of its own goes through buffers.
 void run_part(auto& job, const PointOutputs& out, const JobPart& part, const auto& run) noexcept {
     if (job.numerators == 1 && out.lit != nullptr) return darken_part(job, out, part, run);
-    if (is_placed(job, out, part)) return run(job);
+    if (place(job, out, part)) return run(job);
     float buffer[3 * copy_size];
     job.interleaved_st = out.st != nullptr;
     job.out[0] = buffer;

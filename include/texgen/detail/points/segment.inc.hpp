@@ -93,8 +93,9 @@ inline double ulps_of_sum(double a, double b) noexcept {
 
 inline namespace TEXGEN_BUILD {
 
-// Whether there are so few about the asymptote, and no subnormal floats; takes how many.
-inline bool is_quick_about_asymptote(const Asymptote& about, const EndQuotients& u, double& ulps) noexcept {
+// Whether quotients about the asymptote are normal floats and within quick_ulps; their ulps are what is returned in
+// `ulps`.
+inline bool bound_about_asymptote(const Asymptote& about, const EndQuotients& u, double& ulps) noexcept {
     const Double2 least = u.least(), error = about.error(u);
     if (!about.is_in_range(u) || !all_less(double2_of(0.0, 0.0), u.at_a * u.at_b) ||
         !all_less(double2_of(0x1p-120, 0x1p-120), least))
@@ -125,8 +126,8 @@ inline double last_subnormal_alpha(const SegmentJob& job) noexcept {
     return last;
 }
 
-// The same of the quotients of two sums. A division that two vectors share rounds four times.
-inline bool is_quick_by_sums(const SegmentJob& job, double& ulps) noexcept {
+// The same for quotients of two sums. A division that two vectors share rounds four times.
+inline bool bound_by_sums(const SegmentJob& job, double& ulps) noexcept {
     ulps = 0.0;
     for (int k = 0; k < job.numerators; ++k) ulps = larger(ulps, ulps_of_sum(job.a[k], job.b[k]));
     ulps += ulps_of_sum(job.q_a, job.q_b) + 4.0;
@@ -144,7 +145,7 @@ TEXGEN_APART inline bool prepare_in_double(SegmentJob& job) noexcept {
     const EndQuotients u(ends);
     const Asymptote asymptote(ends, u);
     double ulps = 0.0;
-    job.is_asymptotic = ends.are_in_front() && is_quick_about_asymptote(asymptote, u, ulps);
+    job.is_asymptotic = ends.are_in_front() && bound_about_asymptote(asymptote, u, ulps);
     job.small_alpha = 0.0f;
     if (job.is_asymptotic) {
         job.pole = asymptote.pole;
@@ -152,7 +153,7 @@ TEXGEN_APART inline bool prepare_in_double(SegmentJob& job) noexcept {
         put(job.slope, asymptote.slope);
     } else {
         job.small_alpha = static_cast<float>(last_subnormal_alpha(job));
-        if (!ends.are_in_front() || !is_quick_by_sums(job, ulps)) return false;
+        if (!ends.are_in_front() || !bound_by_sums(job, ulps)) return false;
         job.pole = job.q_a;
         job.bend = job.q_b - job.q_a;
         put(job.base, ends.a + 0.0);
@@ -217,7 +218,7 @@ inline void prepare_exact(SegmentJob& job) noexcept {
 
 // The nearest floats from value i on, where quotients in double decide nothing: in two doubles, with the rest of
 // sixteen blocks; what that cannot decide value by value.
-inline void interpolate_in_double(const SegmentKernels& kernels, SegmentJob& job, std::size_t i) noexcept {
+inline void interpolate_exactly(const SegmentKernels& kernels, SegmentJob& job, std::size_t i) noexcept {
     constexpr std::size_t part = 16 * exact_block;
     const std::size_t count = job.count;
     prepare_exact(job);
@@ -235,12 +236,12 @@ TEXGEN_APART inline void interpolate_block(const SegmentKernels& kernels, Segmen
                                            std::size_t end) noexcept {
     job.count = end;
     job.is_quick = prepare_in_double(job);
-    interpolate_in_double(kernels, job, first);
+    interpolate_exactly(kernels, job, first);
 }
 
 // The rest of a job, of which the kernel that it is for stopped at value i.
 TEXGEN_APART inline void finish_job(const SegmentKernels& kernels, SegmentJob& job, std::size_t i) noexcept {
-    if (!job.is_in_float) return interpolate_in_double(kernels, job, i);
+    if (!job.is_in_float) return interpolate_exactly(kernels, job, i);
     while (i < job.count) {
         const std::size_t end = job.count - i < float_block ? job.count : i + float_block;
         interpolate_block(kernels, job, i, end);
@@ -282,7 +283,7 @@ struct SegmentGroups {
         const std::size_t whole = alpha.size() / point_quantum * point_quantum;
         job.alpha = alpha.data();
         if (whole != 0) {
-            if (is_placed(job, outputs, {0, whole, whole}))
+            if (place(job, outputs, {0, whole, whole}))
                 run(job);
             else
                 run_part(job, outputs, {0, whole, whole}, run);

@@ -77,7 +77,7 @@ struct TileJob {
         int x_begin, x_end, y_begin, y_end;
     };
 
-    Unit filled = {0, 0, 0, 0};  // in its columns chunks that no rule serves are filled
+    Unit filled = {0, 0, 0, 0};  // the columns of which all chunks without a rule are filled already
 
     static constexpr int unit_size = 64;
     static constexpr int longest_pair = 16;  // the fragments that share a division are no more, in vectors of any size
@@ -168,8 +168,8 @@ struct CloseFunctions {
 
     CloseFunction function[3];      // two numerators, and q
     double tolerance;               // within which whatever is nearest to a double will do
-    bool are_close, have_residues;  // or they are of the planes as they are, without low parts, and without residues
-    bool are_sums_first;            // as they say more than residues do
+    bool are_close, have_residues;  // are_close: in two doubles; else high alone, the planes
+    bool are_sums_first;            // the sums of high and low say more than residues do
 };
 
 // A linear form of points (x, y, z, 1).
@@ -235,11 +235,10 @@ struct SegmentJob : DividedOutput {
     double q_a, q_b;
     double tolerance;
     bool is_in_float, is_quick;  // fill_all_float is inside the tolerance; else whether fill_in_double is worth a try
-    // For both, where all is in front. In double about what it is where q is infinite,
-    //   base + slope / (alpha + pole),
-    // or (base + slope alpha) / (pole + bend alpha); and in float, about the end where q is less,
-    // base + slope i / (1 + bend i), i the alpha from there: the slope of one coordinate is `step`, that of the other a
-    // share of it.
+    // For both, where all is in front. In double about the asymptote, with what quotients tend to as alpha goes to
+    // infinity, base + slope / (alpha + pole); or (base + slope alpha) / (pole + bend alpha). In float, about the end
+    // where q is less, base + slope i / (1 + bend i), i the alpha from there: the slope of one coordinate is `step`,
+    // that of the other a share of it.
     bool is_asymptotic;
     bool about_b;
     double base[2], slope[2], pole, bend;
@@ -301,7 +300,6 @@ struct FootprintJob : FootprintArrays {
     float* row(float* output, int y) const noexcept { return output == nullptr ? nullptr : output + y * pitch; }
 };
 
-// A kernel is called by its tier, see tiers.hpp.
 struct TileKernels {
     // Whether no value is in doubt.
     bool (*fill_small)(const SmallTile&) noexcept;
@@ -341,10 +339,9 @@ struct SegmentKernels {
     std::size_t (*fill_all_float)(const SegmentJob&, std::size_t first) noexcept;
 };
 
-// A mask of what is certainly inside, and what the depth of a region takes from one.
+// light_all() makes the mask of what is certainly inside; darken() makes it 0 where r is not in [min, max].
 struct MaskKernels {
     void (*light_all)(float* lit, std::size_t count) noexcept;
-    // lit becomes 0 where r is not in [min, max].
     void (*darken)(float* lit, const float* r, std::size_t count, float min, float max) noexcept;
 };
 

@@ -88,10 +88,6 @@ TEXGEN_INLINE Vector indices() noexcept {
 TEXGEN_INLINE Doubles to_doubles(const auto& values) noexcept { return converted<Doubles>(values); }
 TEXGEN_INLINE Floats to_floats(const Doubles& values) noexcept { return converted<Floats>(values); }
 TEXGEN_INLINE Words bits(const Floats& values) noexcept { return bits_as<Words>(values); }
-// Of doubles that were rounded to float a moment ago: see widen.hpp.
-TEXGEN_INLINE Doubles to_doubles_as_rounded(const Floats& values) noexcept {
-    return Doubles::of([&](int i) { return widened(values.lane[i]); });
-}
 
 template <class Function, class... Vector>
 TEXGEN_INLINE void for_halves(const Function& f, const Vector&... values) noexcept {
@@ -177,7 +173,7 @@ TEXGEN_INLINE WideWords halved(const WideWords& words) noexcept {
 }
 TEXGEN_INLINE WideFloats magnitude(const WideFloats& a) noexcept { return from_bits(magnitude_bits(a)); }
 TEXGEN_INLINE Doubles folded(const WideFloats& values) noexcept { return to_doubles(values); }
-TEXGEN_INLINE WideWords is_negative(const WideFloats& a) noexcept {
+TEXGEN_INLINE WideWords are_negative(const WideFloats& a) noexcept {
     return WideWords::of([&](int i) { return a.lane[i] < 0.0f ? -1 : 0; });
 }
 TEXGEN_INLINE WideFloats select(const WideWords& mask, const WideFloats& a, const WideFloats& b) noexcept {

@@ -42,8 +42,8 @@ TEXGEN_INLINE Doubles value_at(const Form& form, const PointLanes& point) noexce
     return point.v[0] * form.x + (point.v[1] * form.y + (point.v[2] * form.z + form.w));
 }
 
-// The last bits that are set of numbers that are not negative, of at most 51: of what has one more in front, which 1
-// has, too. Of 0 that of no other number.
+// The last bit that is set of each number, not negative and of at most 51 bits; 2^500 for 0. A bit is put in front
+// first, as a power of two has no other.
 TEXGEN_INLINE Doubles last_bits(const Doubles& size) noexcept {
     const Doubles longer = size + power_of_two_below(size) * 4.0;
     return select(greater(size, 0.0), longer - without_last_bit(longer), Doubles{} + 0x1p500);

@@ -29,7 +29,6 @@ TEXGEN_INLINE Words bits(const Floats& values) noexcept { return __builtin_bit_c
 TEXGEN_INLINE Doubles to_doubles(const Floats& values) noexcept {
     return TEXGEN_NAMED(TEXGEN_DOUBLES_, TEXGEN_LANE_BYTES)(values);
 }
-TEXGEN_INLINE Doubles to_doubles_as_rounded(const Floats& values) noexcept { return to_doubles(values); }
 
 template <int First, class Vector, int... Lane>
 TEXGEN_INLINE auto half(const Vector& values, std::integer_sequence<int, Lane...>) noexcept {
@@ -169,7 +168,7 @@ TEXGEN_INLINE WideFloats to_numbers(const WideWords& words) noexcept {
 }
 TEXGEN_INLINE WideWords halved(const WideWords& words) noexcept { return words >> 1; }
 TEXGEN_INLINE WideFloats magnitude(const WideFloats& a) noexcept { return from_bits(magnitude_bits(a)); }
-TEXGEN_INLINE WideWords is_negative(const WideFloats& a) noexcept { return a < 0.0f; }
+TEXGEN_INLINE WideWords are_negative(const WideFloats& a) noexcept { return a < 0.0f; }
 TEXGEN_INLINE WideFloats select(const WideWords& mask, const WideFloats& a, const WideFloats& b) noexcept {
     return from_bits((mask & signed_bits(a)) | (~mask & signed_bits(b)));
 }

@@ -150,7 +150,7 @@ private:
 };
 
 // A power of two of which three numbers are multiples: finite where they are 0, too.
-TEXGEN_RARE inline double common_unit(double a, double b, double c) noexcept {
+TEXGEN_RARE inline double common_grain(double a, double b, double c) noexcept {
     return smaller(smaller(last_bit(a), smaller(last_bit(b), last_bit(c))), 0x1p500);
 }
 
@@ -164,7 +164,7 @@ TEXGEN_RARE inline std::uint64_t residue_of(double number) noexcept {
 // without. Residues cost less than two doubles, and decide where the planes are exact, or err by less than residues
 // tell apart, but not next to q = 0.
 struct DoubtfulFunctions : CloseFunctions {
-    bool residues_first = false;
+    bool adds_residues_first = false;
 };
 struct DoubtfulJob {
     TileJob job;
@@ -182,7 +182,7 @@ TEXGEN_RARE inline bool are_decided_by_sums(const CloseFunctions& functions, dou
 // Whether residues decide the quotients of a tile well in front, of numerators of the size that their errors let
 // expect. Coefficients that become multiples of their grains are exact: what is left is the error of computing with
 // them, 2^-98 of the values.
-TEXGEN_RARE inline bool are_decided_by_residues(CloseFunctions& functions) noexcept {
+TEXGEN_RARE inline bool let_residues_decide(CloseFunctions& functions) noexcept {
     for (CloseFunction& f : functions.function)
         if (take_multiples(f.high, f.error, f.grain)) f.error *= 0x1p-50;
     const auto& [first, second, q] = functions.function;
@@ -242,9 +242,9 @@ class PlaneResidues {
 public:
     PlaneResidues(const TrianglePlanes& planes, const Tile& tile) noexcept : planes_(planes), tile_(tile) {
         const glm::dvec2 a = planes.corner(0), b = planes.corner(1), c = planes.corner(2);
-        const double unit_x = smaller(0.5, common_unit(a.x, b.x, c.x));
-        const double unit_y = smaller(0.5, common_unit(a.y, b.y, c.y));
-        const double of_weights = common_unit(planes.weight(0), planes.weight(1), planes.weight(2));
+        const double unit_x = smaller(0.5, common_grain(a.x, b.x, c.x));
+        const double unit_y = smaller(0.5, common_grain(a.y, b.y, c.y));
+        const double of_weights = common_grain(planes.weight(0), planes.weight(1), planes.weight(2));
         grain_ = of_weights * (unit_x * unit_y);
         const double per_x = reciprocal_power_of_two(unit_x), per_y = reciprocal_power_of_two(unit_y);
         const double per_weight = reciprocal_power_of_two(of_weights);
@@ -267,7 +267,7 @@ public:
     // Of a part of the tile.
     TEXGEN_RARE void add_to(CloseFunction& function, glm::length_t coordinate, const Tile& part) const noexcept {
         const double unit =
-            common_unit(planes_.value(0, coordinate), planes_.value(1, coordinate), planes_.value(2, coordinate));
+            common_grain(planes_.value(0, coordinate), planes_.value(1, coordinate), planes_.value(2, coordinate));
         const double per_unit = reciprocal_power_of_two(unit);
         RampOf<std::uint64_t> sum{};
         for (std::size_t i = 0; i < 3; ++i) {

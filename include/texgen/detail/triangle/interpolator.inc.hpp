@@ -156,7 +156,7 @@ private:
         bool are_enough = false;
         if (!functions.have_residues && (functions.are_close || are_many(fragments, tile))) {
             add_residues(tile, functions);
-            are_enough = functions.residues_first && !functions.are_close && are_decided_by_residues(functions) &&
+            are_enough = functions.adds_residues_first && !functions.are_close && let_residues_decide(functions) &&
                          (tile.count() < few_ties || are_decided_by_sums(functions, 1.0) ||
                           !are_decided_by_sums(functions, 0x1p-46));
         }
@@ -232,7 +232,7 @@ private:
                     return fill_around(tile, zeros, k);
         if (is_one()) return fill_one(tile.x, tile.y);
         DoubtfulFunctions functions = functions_of(tile, at);
-        functions.residues_first = true;
+        functions.adds_residues_first = true;
         // Few fragments are decided by residues sooner than it is seen whether their quotients are exact.
         if (is_constant(functions.function[CloseFunctions::q].high) && sharpen(tile, functions, TileJob::unit_size) &&
             tile.width + tile.height > 4 && take_exact_quotients(functions, job))
