@@ -1005,9 +1005,11 @@ TEST_CASE("memory is allocated only when there are more triangles than ever") {
     TriangleBatch batch(texgen::whole_texture());
     batch.assign(drawn.triangles);
     const auto* const planes = texgen::detail::Inside::planes(batch);
+    const Triangle* const triangles = &texgen::detail::Inside::triangle(batch, 0);
     for (const std::size_t count : {std::size_t{3}, std::size_t{0}, std::size_t{97}, std::size_t{100}}) {
         batch.assign(std::span(drawn.triangles).first(count));
         CHECK(batch.size() == count);
         CHECK(texgen::detail::Inside::planes(batch) == planes);
+        CHECK((count == 0 || &texgen::detail::Inside::triangle(batch, 0) == triangles));
     }
 }

@@ -319,7 +319,7 @@ TEST_CASE("y down turns the second row over and changes nothing else") {
         for (int row = 0; row < 4; ++row) CHECK(down[column][row] == (row == 1 ? -up[column][row] : up[column][row]));
 }
 
-TEST_CASE("reversed depth keeps 1e-7 of the distance where standard depth cannot tell the distances apart") {
+TEST_CASE("reversed depth knows the distance to 2e-7 of it where standard depth cannot tell the distances apart") {
     // near 1e-3, far 1e6, a point at 1e5: r as a float, and back to a distance.
     const auto recovered = [](bool reversed) {
         const auto projection = perspective(

@@ -27,7 +27,6 @@ namespace {
 namespace gl = support::gl;
 using gl::fragment_tolerance;
 using gl::largest_terms;
-using gl::twice_area;
 using support::Coordinate;
 using support::coordinates;
 using support::hex;
@@ -490,7 +489,7 @@ texgen::Triangle random_triangle(Random& random, double w_decades) {
                                         glm::vec4(0.0f)};
         };
         const texgen::Triangle triangle{vertex(), vertex(), vertex()};
-        if (std::fabs(twice_area(triangle)) > 0.2 * gl::Context::width * gl::Context::height) return triangle;
+        if (std::fabs(support::twice_area(triangle)) > 0.2 * gl::Context::width * gl::Context::height) return triangle;
     }
 }
 

@@ -74,7 +74,7 @@ TEST_CASE("neighbours are counted through zero") {
     CHECK(support::neighbour(-0x1p-149f, 2) == 0x1p-149f);
 }
 
-TEST_CASE("the high-precision judge knows pi, and inverts what it built") {
+TEST_CASE("the high-precision judge knows pi, and its view is a rotation") {
     const support::Real pi = 4 * atan(support::Real(1));
     CHECK(support::error_in_ulps(3.14159265358979323846, pi) < 0.5);
     const support::RealMatrix view = support::look_at({1.0, 2.0, 3.0}, {4.0, -1.0, 0.5}, {0.0, 1.0, 0.0});

@@ -2,6 +2,7 @@
 
 // 4x4 matrices of exact rationals.
 
+#include <algorithm>
 #include <array>
 #include <optional>
 
@@ -59,6 +60,60 @@ inline Rational norm(const RationalMatrix& m) {
         if (sum > largest) largest = sum;
     }
     return largest;
+}
+
+// A matrix whose rows and columns are scaled by powers of two, near 1.
+struct ScaledMatrix {
+    RationalMatrix matrix;
+    std::array<int, 4> row_exponent{}, column_exponent{};
+
+    explicit ScaledMatrix(const RationalMatrix& m) : matrix(m) {
+        for (int pass = 0; pass < 3; ++pass) {
+            for (std::size_t i = 0; i < 4; ++i) {
+                Rational row = 0;
+                for (std::size_t k = 0; k < 4; ++k) row = std::max(row, magnitude(matrix[i][k]));
+                const int exponent = -exponent_of(row);
+                for (std::size_t k = 0; k < 4; ++k) matrix[i][k] *= power_of_two(exponent);
+                row_exponent[i] += exponent;
+            }
+            for (std::size_t k = 0; k < 4; ++k) {
+                Rational column = 0;
+                for (std::size_t i = 0; i < 4; ++i) column = std::max(column, magnitude(matrix[i][k]));
+                const int exponent = -exponent_of(column);
+                for (std::size_t i = 0; i < 4; ++i) matrix[i][k] *= power_of_two(exponent);
+                column_exponent[k] += exponent;
+            }
+        }
+    }
+};
+
+// The condition of a regular matrix whose rows and columns are scaled near 1.
+inline double scaled_condition(const RationalMatrix& m) {
+    const RationalMatrix scaled = ScaledMatrix(m).matrix;
+    return nearest<double>(norm(scaled) * norm(*inverse(scaled)));
+}
+
+// The largest error of an element of a computed inverse, in double ulps of the largest term in the sum that makes it, X =
+// X A X: the terms X_ij A_jk X_kl of element (i, l). Elements are left out whose terms, with rows and columns scaled,
+// are below `least`: nothing is said of them.
+inline double worst_error_of_inverse(const RationalMatrix& a, const RationalMatrix& computed, const Rational& least) {
+    const RationalMatrix exact = *inverse(a);
+    const ScaledMatrix scaled(a);
+    double worst = 0.0;
+    for (std::size_t i = 0; i < 4; ++i) {
+        for (std::size_t l = 0; l < 4; ++l) {
+            Rational largest = 0;
+            for (std::size_t j = 0; j < 4; ++j)
+                for (std::size_t k = 0; k < 4; ++k)
+                    largest = std::max(largest, magnitude(exact[i][j] * a[j][k] * exact[k][l]));
+            const Rational error = magnitude(computed[i][l] - exact[i][l]);
+            if (error == 0) continue;
+            const int scale = scaled.column_exponent[i] + scaled.row_exponent[l];
+            if (largest != 0 && largest < least * power_of_two(scale)) continue;
+            worst = std::max(worst, nearest<double>(error * power_of_two(-ulp_exponent<double>(largest))));
+        }
+    }
+    return worst;
 }
 
 }  // namespace support

@@ -55,6 +55,7 @@ using support::Quotient;
 using support::Random;
 using support::Rational;
 using support::RationalMatrix;
+using support::scaled_condition;
 using texgen::Tolerance;
 
 constexpr double broken = HUGE_VAL;
@@ -548,20 +549,6 @@ Share coverage_share(const Numbers& n) {
     return std::isfinite(nearest) ? share_of_decision(nearest) : says_nothing;
 }
 
-// The condition after rows and columns are scaled near 1.
-double scaled_condition(RationalMatrix m) {
-    for (int pass = 0; pass < 3; ++pass) {
-        for (std::size_t i = 0; i < 4; ++i) {
-            Rational row = 0, column = 0;
-            for (std::size_t k = 0; k < 4; ++k) row = std::max(row, support::magnitude(m[i][k]));
-            for (std::size_t k = 0; k < 4; ++k) m[i][k] *= support::power_of_two(-support::exponent_of(row));
-            for (std::size_t k = 0; k < 4; ++k) column = std::max(column, support::magnitude(m[k][i]));
-            for (std::size_t k = 0; k < 4; ++k) m[k][i] *= support::power_of_two(-support::exponent_of(column));
-        }
-    }
-    return support::nearest<double>(support::norm(m) * support::norm(*support::inverse(m)));
-}
-
 // Each element within 2 double ulp of the largest of its terms in X A X.
 Share inverse_share(const Numbers& n) {
     if (!is_in_range(n, 0x1p-40, 0x1p40)) return says_nothing;
@@ -571,21 +558,8 @@ Share inverse_share(const Numbers& n) {
     if (!exact) return computed ? broken : says_nothing;
     if (!(scaled_condition(exactly(m)) < 1e8)) return says_nothing;
     if (!computed) return broken;
-    const RationalMatrix a = exactly(m), x = exactly(computed->matrix());
-    Share worst = 0.0;
-    for (std::size_t i = 0; i < 4; ++i) {
-        for (std::size_t l = 0; l < 4; ++l) {
-            Rational largest = 0;
-            for (std::size_t j = 0; j < 4; ++j)
-                for (std::size_t k = 0; k < 4; ++k)
-                    largest = std::max(largest, support::magnitude((*exact)[i][j] * a[j][k] * (*exact)[k][l]));
-            const Rational error = support::magnitude(x[i][l] - (*exact)[i][l]);
-            if (error == 0) continue;
-            worst = std::max(worst, 0.5 * support::nearest<double>(
-                                              error * support::power_of_two(-support::ulp_exponent<double>(largest))));
-        }
-    }
-    return worst;
+    return 0.5 * support::worst_error_of_inverse(exactly(m), exactly(computed->matrix()),
+                                                 exactly(texgen::detail::least_scaled));
 }
 Numbers begin_matrix(Random& random) {
     Numbers n(16);

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "support/limits.hpp"
 #include "support/random.hpp"
 #include "support/special_values.hpp"
 #include "support/stopwatch.hpp"
@@ -27,6 +28,8 @@
 
 namespace {
 
+namespace limit = support::limit;
+
 using support::infinity_float;
 using support::nan_float;
 using support::Random;
@@ -37,10 +40,6 @@ using texgen::LitVolume;
 using texgen::Sphere;
 using texgen::World;
 using texgen::WorldTexgen;
-
-constexpr double limit_of_touching_bodies = 10.0;
-constexpr double limit_of_functions = 8.0;
-constexpr double limit_of_frames = 200.0;
 
 constexpr std::size_t count = 1024;
 
@@ -111,10 +110,10 @@ struct Family {
 std::vector<Family> families(Random& random) {
     std::vector<Family> result;
     const auto touching = [&](const std::string& name, const auto& make) {
-        result.push_back({name, limit_of_touching_bodies, many<Box>(make)});
+        result.push_back({name, limit::touching, many<Box>(make)});
     };
     const auto other = [&](const std::string& name, const auto& make) {
-        result.push_back({name, limit_of_functions, many<Box>(make)});
+        result.push_back({name, limit::any, many<Box>(make)});
     };
     touching("touch sides from inside", [&] { return touching_box(random, false); });
     touching("touch sides from outside", [&] { return touching_box(random, true); });
@@ -231,8 +230,7 @@ TEST_CASE("no sphere costs more than 8 ordinary ones") {
         const auto batch = [&](const std::vector<Sphere>& spheres) { return [&] { volume.coverage(spheres, out); }; };
         for (const auto& family : all) {
             INFO(slide.name, ": ", family.first);
-            CHECK(worst_over_ordinary_within(limit_of_functions, batch(ordinary), batch(family.second)) <=
-                  limit_of_functions);
+            CHECK(worst_over_ordinary_within(limit::any, batch(ordinary), batch(family.second)) <= limit::any);
         }
     }
 }
@@ -276,7 +274,7 @@ TEST_CASE("no frame of a scene of 10 000 objects costs more than 200 median ones
     std::sort(seconds.begin(), seconds.end());
     const double median = seconds[frames / 2];
     MESSAGE("median frame " << 1e6 * median << " us, worst " << 1e6 * seconds.back() << " us");
-    CHECK(seconds.back() <= limit_of_frames * median);
+    CHECK(seconds.back() <= limit::frame * median);
 }
 
 TEST_CASE("no triangle's extremes cost more than those of 8 ordinary ones") {
@@ -315,7 +313,7 @@ TEST_CASE("no triangle's extremes cost more than those of 8 ordinary ones") {
         const auto worst_ones = [&] {
             for (std::size_t i = 0; i < ordinary.size(); ++i) sink = setup->extremes()->least_level;
         };
-        CHECK(worst_over_ordinary_within(limit_of_functions, ordinary_ones, worst_ones) <= limit_of_functions);
+        CHECK(worst_over_ordinary_within(limit::any, ordinary_ones, worst_ones) <= limit::any);
     }
 }
 

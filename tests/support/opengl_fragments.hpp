@@ -9,15 +9,10 @@
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 
+#include "support/triangles.hpp"
 #include "texgen/primitives.hpp"
 
 namespace support::gl {
-
-inline double twice_area(const texgen::Triangle& t) {
-    const glm::dvec2 ab = glm::dvec2(t.b.window) - glm::dvec2(t.a.window);
-    const glm::dvec2 ac = glm::dvec2(t.c.window) - glm::dvec2(t.a.window);
-    return ab.x * ac.y - ab.y * ac.x;
-}
 
 // OpenGL interpolates s/w, t/w, r/w and q/w by planes in float, so its errors are measured against the largest of the
 // three vertices: max |f_i / w_i|, times the w of the fragment. The error of u = s/q may be
