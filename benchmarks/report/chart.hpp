@@ -36,7 +36,7 @@ std::string bars_of(const std::vector<Bar>& bars, const std::string& caption);
 std::string with_charts_drawn(const std::string& page, const Staging& folder);
 inline constexpr const char* no_chart = "No chart: gnuplot is missing or failed.";
 
-// By what the series is called: the library's stops of the dial, then what others write.
+// By what the series is called: the library's tolerances, then what others write.
 const char* colour_of(std::string_view series);
 
 }  // namespace report

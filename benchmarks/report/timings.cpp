@@ -191,7 +191,7 @@ std::vector<Verdict> verdicts_of(const std::vector<Timings>& builds, const std::
     return verdicts;
 }
 
-// Where a coarser stop of the dial takes clearly longer than a finer one.
+// Where a coarser tolerance takes clearly longer than a finer one.
 std::vector<std::string> slower_stops(const std::vector<Timings>& builds) {
     constexpr double noise = 1.1;
     std::vector<std::string> lines;

@@ -147,14 +147,14 @@ void add_unchecked(const Scene& scene, const std::string& variant, Run run) {
     register_row(scene.name + separator + variant, [=](benchmark::State& state) { time(state, scene, run); });
 }
 
-// The stops of the dial that have rows.
-struct Stop {
+// The tolerances that have rows.
+struct NamedTolerance {
     const char* name;
     texgen::Tolerance tolerance;
 };
-inline constexpr Stop dial[] = {{"texgen, exact", texgen::exact},
-                                {"texgen, 1/512 texel of 4096", texgen::texels(1.0 / 512, 4096)},
-                                {"texgen, 1/16 texel of 1024", texgen::texels(1.0 / 16, 1024)},
-                                {"texgen, 1 texel of 256", texgen::texels(1, 256)}};
+inline constexpr NamedTolerance tolerances[] = {{"texgen, exact", texgen::exact},
+                                                {"texgen, 1/512 texel of 4096", texgen::texels(1.0 / 512, 4096)},
+                                                {"texgen, 1/16 texel of 1024", texgen::texels(1.0 / 16, 1024)},
+                                                {"texgen, 1 texel of 256", texgen::texels(1, 256)}};
 
 }  // namespace bench

@@ -43,11 +43,11 @@ void add_scene(const std::string& name, double q_ratio, int width, int height) {
     fragments->scene = {"Footprints, " + name, fragments->rects.size(), count};
     fragments->triangle = large_triangle(q_ratio);
     const Scene& scene = fragments->scene;
-    for (const Stop& stop : {dial[0], dial[1]}) {
-        const auto setup = texgen::TriangleSetup::of(fragments->triangle, texgen::whole_texture(), stop.tolerance);
+    for (const NamedTolerance& given : {tolerances[0], tolerances[1]}) {
+        const auto setup = texgen::TriangleSetup::of(fragments->triangle, texgen::whole_texture(), given.tolerance);
         if (!setup) fail("footprints: the triangle was refused");
         const texgen::FootprintSetup footprints(*setup, {4096, 4096});
-        const std::string after = ": " + std::string(stop.name);
+        const std::string after = ": " + std::string(given.name);
         add_unchecked(scene, "s and t" + after, [=](std::size_t i) {
             texgen::interpolate(*setup, fragments->rects[i],
                                 {.s = array(count, 0), .t = array(count, 1), .r = {}, .lit = {}});
@@ -74,7 +74,7 @@ void add_scene(const std::string& name, double q_ratio, int width, int height) {
                 judge(Derivatives(fragments->triangle, rect.x + column, rect.y + row), count, k, errors);
             }
         };
-        add_row(scene, "four derivatives" + after, stop.tolerance.value, differentiate, check);
+        add_row(scene, "four derivatives" + after, given.tolerance.value, differentiate, check);
         const auto filters = [=](bool anisotropy, bool major) {
             return [=](std::size_t i) {
                 texgen::footprint(footprints, fragments->rects[i],

@@ -159,13 +159,13 @@ void add_scene(std::size_t count, Layout layout) {
             work->scene(), name, tolerance, [=](std::size_t i) { run(*work, i); },
             [=](std::size_t i, Errors& errors) { work->check(i, errors); });
     };
-    for (const Stop& stop : dial)
-        add(stop.name, stop.tolerance.value,
-            [tolerance = stop.tolerance](const Project& project, std::size_t i) { ours(project, i, tolerance); });
+    for (const NamedTolerance& given : tolerances)
+        add(given.name, given.tolerance.value,
+            [tolerance = given.tolerance](const Project& project, std::size_t i) { ours(project, i, tolerance); });
     const bool is_planar = layout == Layout::planar;
-    for (const Stop& stop : {dial[0], dial[2]})
-        add(std::string(stop.name) + ", within a box", stop.tolerance.value,
-            [tolerance = stop.tolerance](const Project& project, std::size_t i) {
+    for (const NamedTolerance& given : {tolerances[0], tolerances[2]})
+        add(std::string(given.name) + ", within a box", given.tolerance.value,
+            [tolerance = given.tolerance](const Project& project, std::size_t i) {
                 ours_within(project, i, tolerance);
             });
     if (!is_planar && count == l1_count) {

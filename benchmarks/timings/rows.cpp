@@ -228,10 +228,10 @@ void add_method(const std::shared_ptr<Rows>& rows, const std::string& name, doub
 
 // All triangles at once, timed with the first.
 void add_batch(const std::shared_ptr<Rows>& rows) {
-    for (const Stop& stop : dial) {
+    for (const NamedTolerance& given : tolerances) {
         const std::size_t count = rows->scene.elements;
         const std::size_t all = count * rows->scene.inputs;
-        auto batch = std::make_shared<texgen::TriangleBatch>(texgen::whole_texture(), stop.tolerance);
+        auto batch = std::make_shared<texgen::TriangleBatch>(texgen::whole_texture(), given.tolerance);
         const auto run = [=](std::size_t i) {
             if (i != 0) return;
             batch->assign(rows->triangles);
@@ -246,7 +246,7 @@ void add_batch(const std::shared_ptr<Rows>& rows) {
                 errors.add(output(all, 1)[i * count + k], rows->exact[i][k].t);
             }
         };
-        add_row(rows->scene, std::string(stop.name) + ", in a batch", stop.tolerance.value, run, check);
+        add_row(rows->scene, std::string(given.name) + ", in a batch", given.tolerance.value, run, check);
     }
 }
 
@@ -257,8 +257,8 @@ void add_peer(const std::shared_ptr<Rows>& rows, const std::string& name) {
 
 void add_scene(const Shape& shape) {
     const std::shared_ptr<Rows> rows = make_rows(shape);
-    for (const Stop& stop : dial) {
-        add_method(rows, stop.name, stop.tolerance.value, [tolerance = stop.tolerance](const Triangle& triangle) {
+    for (const NamedTolerance& given : tolerances) {
+        add_method(rows, given.name, given.tolerance.value, [tolerance = given.tolerance](const Triangle& triangle) {
             return Ours{texgen::TriangleSetup::of(triangle, texgen::whole_texture(), tolerance)};
         });
     }
@@ -285,8 +285,8 @@ void add_scene(const Shape& shape) {
 void add_set_up(const Shape& shape) {
     const std::shared_ptr<Rows> rows = make_rows(shape);
     const Scene scene{rows->scene.name, rows->scene.inputs, 1};
-    for (const Stop& stop : dial) {
-        add_unchecked(scene, stop.name, [=, tolerance = stop.tolerance](std::size_t i) {
+    for (const NamedTolerance& given : tolerances) {
+        add_unchecked(scene, given.name, [=, tolerance = given.tolerance](std::size_t i) {
             auto setup = texgen::TriangleSetup::of(rows->triangles[i], texgen::whole_texture(), tolerance);
             benchmark::DoNotOptimize(&setup);
         });

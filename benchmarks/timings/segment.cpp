@@ -179,9 +179,9 @@ void add_scene(std::size_t count) {
             work->scene(), name, tolerance, [=](std::size_t i) { run(*work, i); },
             [=](std::size_t i, Errors& errors) { work->check(i, errors); });
     };
-    for (const Stop& stop : dial)
-        add(stop.name, stop.tolerance.value,
-            [tolerance = stop.tolerance](const Segments& segments, std::size_t i) { ours(segments, i, tolerance); });
+    for (const NamedTolerance& given : tolerances)
+        add(given.name, given.tolerance.value,
+            [tolerance = given.tolerance](const Segments& segments, std::size_t i) { ours(segments, i, tolerance); });
     add("GLM, mix", promises_nothing, glm_mix);
     add("GLM, mix in double", promises_nothing, double_mix);
     add("GLM, mat4 * mix of points: option (1)", promises_nothing, direct_projection);

@@ -100,14 +100,14 @@ void add_buffer(const std::string& name, std::size_t run) {
             errors.add(output(count, 1)[k], static_cast<double>(exact[1]));
         }
     };
-    for (const Stop& stop : dial) {
-        auto batch = std::make_shared<texgen::TriangleBatch>(texgen::whole_texture(), stop.tolerance);
+    for (const NamedTolerance& given : tolerances) {
+        auto batch = std::make_shared<texgen::TriangleBatch>(texgen::whole_texture(), given.tolerance);
         batch->assign(buffer->triangles);
         const auto interpolate = [=](std::size_t) {
             texgen::interpolate(*batch, buffer->ids, rect,
                                 {.s = {output(count, 0), count}, .t = {output(count, 1), count}, .r = {}, .lit = {}});
         };
-        add_row(scene, stop.name, stop.tolerance.value, interpolate, check);
+        add_row(scene, given.name, given.tolerance.value, interpolate, check);
     }
     std::vector<report::GlmPlanes> planes(buffer->triangles.begin(), buffer->triangles.end());
     const auto look_up = [=](std::size_t) {

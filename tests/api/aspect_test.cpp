@@ -69,7 +69,7 @@ TEST_CASE(
             const double aspect = random.power_of_ten(-1.0, 1.0);
             const support::Narrowing narrowing(lens, aspect);
             const auto contained = contain(lens, aspect);
-            const double error = narrowing.contain_error(lens, contained);
+            const double error = narrowing.measured_contain_error(lens, contained);
             if (error > worst_side) worst_side = error, worst_input = hex(aspect);
             REQUIRE((narrowing.is_wider() ? contained.left == lens.left && contained.right == lens.right
                                           : contained.bottom == lens.bottom && contained.top == lens.top));
@@ -82,7 +82,7 @@ TEST_CASE(
                 random.coin() ? texgen::whole_texture() : texgen::atlas_tile({0.25, 0.5}, {0.75, 0.625});
             const TextureRegion crop = cover(lens, aspect, picture);
             const glm::dvec2 extent = picture.max() - picture.min();
-            worst_region = std::max(worst_region, narrowing.cover_error(picture, crop));
+            worst_region = std::max(worst_region, narrowing.measured_cover_error(picture, crop));
             const auto texture_from_eye = scale_bias(texgen::vulkan, crop) * make(lens);
             REQUIRE(is_undistorted(texture_from_eye.matrix(), aspect, extent.x, extent.y));
         };

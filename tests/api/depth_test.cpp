@@ -52,7 +52,7 @@ using texgen::TextureRegion;
 using texgen::Tolerance;
 using texgen::Work;
 
-std::vector<Conventions> all_conventions() {
+std::vector<Conventions> preset_conventions() {
     std::vector<Conventions> result;
     for (const Conventions& api : {texgen::opengl, texgen::vulkan, texgen::direct3d, texgen::metal})
         for (const Conventions& conventions : {api, texgen::left_handed(api)}) result.push_back(conventions);
@@ -116,7 +116,7 @@ TEST_CASE("light reaches from the near plane to the far one: every lens, convent
     Random random(9000);
     int reached = 0, beyond = 0, lit = 0, dark = 0;
     for (const LensCase& lens : lenses) {
-        for (const Conventions& conventions : all_conventions()) {
+        for (const Conventions& conventions : preset_conventions()) {
             for (const DepthMapping mapping : {DepthMapping::unit, DepthMapping::ndc}) {
                 CAPTURE(std::string(lens.name));
                 const glm::dvec3 position = random.uniform(0.0, 3.0) * random.direction(), to = random.direction();

@@ -469,14 +469,6 @@ std::vector<glm::vec4> draw_with_texcoords(const gl::Context& g, const texgen::T
     return draw(g, triangle);
 }
 
-std::string hex(const texgen::Triangle& triangle) {
-    std::string text;
-    for (const texgen::WindowVertex* v : {&triangle.a, &triangle.b, &triangle.c})
-        text += "\n  window (" + hex(v->window.x) + ", " + hex(v->window.y) + ") w " + hex(v->clip_w) + " strq " +
-                hex(v->strq);
-    return text;
-}
-
 // A triangle of at least a tenth of the target, window positions on sixteenths of a pixel.
 texgen::Triangle random_triangle(Random& random, double w_decades) {
     for (;;) {

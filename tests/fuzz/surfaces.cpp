@@ -69,7 +69,7 @@ void quadrilaterals(Input& input) {
         must(support::ulp_error((*strq)[k].w, (*exact)[k]) <= 2.51, "a q is the homography's");
     // Fractions of numbers that differ by 2^800 take long.
     if (const auto whole = texgen::keystone(corners); whole && is_soon_divided && input.coin())
-        must(support::keystone_error(*whole, corners, texgen::whole_texture()) <= texgen::keystone_error,
+        must(support::measured_keystone_error(*whole, corners, texgen::whole_texture()) <= texgen::keystone_error,
              "a matrix is the homography's");
     if (const auto whole = texgen::quadrilateral(corners)) {
         for (std::size_t k = 0; k < 4; ++k) {

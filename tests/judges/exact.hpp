@@ -100,7 +100,7 @@ inline bool is_within(float value, const Quotient& u, double limit) {
     return std::isfinite(value) && magnitude(Dyadic(value) * u.d - u.n) <= Dyadic(limit) * u.d;
 }
 
-// The dial's promise for r: relative to max(1, |r|).
+// What a tolerance promises of r: relative to max(1, |r|).
 inline bool is_within_relatively(float value, const Quotient& u, double limit) {
     if (is_within(value, u, limit)) return true;
     return std::isfinite(value) && magnitude(Dyadic(value) * u.d - u.n) <= Dyadic(limit) * magnitude(u.n);

@@ -859,7 +859,7 @@ Share keystone_share(const Numbers& n) {
     const auto matrix = texgen::keystone(corners);
     if (!support::exact_q(corners)) return matrix ? broken : says_nothing;
     if (!matrix) return says_nothing;
-    return support::keystone_error(*matrix, corners, texgen::whole_texture()) / texgen::keystone_error;
+    return support::measured_keystone_error(*matrix, corners, texgen::whole_texture()) / texgen::keystone_error;
 }
 
 // The worst ulp of a q, where a half is allowed, and the refusal of what is not strictly convex.

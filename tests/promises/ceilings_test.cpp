@@ -455,9 +455,9 @@ WorstAspects of_aspects(std::uint64_t seed) {
         const auto rectangle = support::random_rectangle<texgen::FrustumLens>(random);
         const double aspect = random.power_of_ten(-1.0, 1.0);
         const support::Narrowing narrowing(rectangle, aspect);
-        worst.sides = std::max(worst.sides, narrowing.contain_error(rectangle, contain(rectangle, aspect)));
+        worst.sides = std::max(worst.sides, narrowing.measured_contain_error(rectangle, contain(rectangle, aspect)));
         const texgen::TextureRegion picture = texgen::atlas_tile({0.25, 0.5}, {0.75, 0.625});
-        worst.crop = std::max(worst.crop, narrowing.cover_error(picture, cover(rectangle, aspect, picture)));
+        worst.crop = std::max(worst.crop, narrowing.measured_cover_error(picture, cover(rectangle, aspect, picture)));
     }
     return worst;
 }
@@ -637,8 +637,8 @@ WorstQuadrilaterals of_quadrilaterals(support::Shape shape, std::uint64_t seed) 
     for (int i = 0; i < 500; ++i) {
         const support::Quadrilateral corners = support::corners_of(shape, random);
         if (const auto matrix = texgen::keystone(corners); matrix && i % 4 == 0)
-            worst.matrix =
-                std::max(worst.matrix, 0x1p52 * support::keystone_error(*matrix, corners, texgen::whole_texture()));
+            worst.matrix = std::max(
+                worst.matrix, 0x1p52 * support::measured_keystone_error(*matrix, corners, texgen::whole_texture()));
         const auto strq = texgen::quadrilateral(corners);
         if (!strq) continue;
         const auto exact = support::exact_q(corners).value();

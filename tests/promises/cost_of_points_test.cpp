@@ -23,9 +23,9 @@ using support::Random;
 using texgen::Tolerance;
 
 #ifdef TEXGEN_SCALAR
-const double limit = 16.0;  // plain loops have no vectors to save by
+const double limit_of_any = 16.0;  // plain loops have no vectors to save by
 #else
-const double limit = support::limit::any * support::limit::times_by_vectors();
+const double limit_of_any = support::limit::any * support::limit::times_by_vectors();
 #endif
 
 struct Planes {
@@ -109,8 +109,8 @@ TEST_CASE("the worst points cost eight times ordinary ones at most, ten within a
                 for (const double tolerance : {0.0, 0x1p-21}) {
                     // Within a tolerance the ordinary ones are floats alone: of one coordinate 8.7 was seen where q
                     // cancels, of both 8.1 where s is infinite.
-                    const double most =
-                        (tolerance > 0.0 ? 10.0 * support::limit::times_by_vectors() : limit) * support::limit::noise;
+                    const double most = (tolerance > 0.0 ? 10.0 * support::limit::times_by_vectors() : limit_of_any) *
+                                        support::limit::noise;
                     const double cost =
                         support::worst_over_ordinary_within(most, Projection(ordinary, way, Tolerance{tolerance}),
                                                             Projection(cloud, way, Tolerance{tolerance}));
@@ -256,9 +256,9 @@ TEST_CASE("the worst segments cost eight times ordinary ones at most, at every s
                                         Tolerance{tolerance});
                         };
                     };
-                    const double cost = support::worst_over_ordinary_within(limit, run(ordinary), run(stretch));
-                    CHECK_MESSAGE(cost <= limit, stretch.name, ": ", cost, " times, ", count, " values, tolerance ",
-                                  tolerance, std::string(is_lit_asked ? ", lit" : ""));
+                    const double cost = support::worst_over_ordinary_within(limit_of_any, run(ordinary), run(stretch));
+                    CHECK_MESSAGE(cost <= limit_of_any, stretch.name, ": ", cost, " times, ", count,
+                                  " values, tolerance ", tolerance, std::string(is_lit_asked ? ", lit" : ""));
                 }
             }
         }

@@ -43,7 +43,7 @@ using texgen::WindowVertex;
 // Of masks alone, where ordinary ones are made at once.
 const double masks_by_vectors = support::has_whole_avx512() ? 1.25 : 1.0;
 
-constexpr std::array<Tolerance, 2> dial{texgen::exact, texgen::texels(1.0 / 512.0, 4096.0)};
+constexpr std::array<Tolerance, 2> tolerances{texgen::exact, texgen::texels(1.0 / 512.0, 4096.0)};
 
 // One triangle with its set-up, over its rectangle: s, t and the mask.
 class Workload {
@@ -83,7 +83,7 @@ double least_time(const Shot& shot, Tolerance tolerance) {
 }
 
 void require_cost(const char* name, const Shot& shot, double most) {
-    for (const Tolerance tolerance : dial) {
+    for (const Tolerance tolerance : tolerances) {
         const double ratio = cost(shot, tolerance, most);
         REQUIRE_MESSAGE(ratio <= most, name, ", tolerance ", tolerance.value, ": ", ratio, " times in ", hex(shot));
     }
@@ -113,7 +113,7 @@ TEST_CASE("a triangle that the near plane cuts costs at most 16 times the ordina
     // Three or four in a thousand are dearer than 4 times: so many that chance does not make ten of them.
     constexpr int count = 1000;
     for (const auto& [width, height] : {std::array{8, 8}, std::array{64, 4}}) {
-        for (const Tolerance tolerance : dial) {
+        for (const Tolerance tolerance : tolerances) {
             Random random(71);
             int far_corners = 0;
             int dear = 0;
@@ -179,7 +179,7 @@ TEST_CASE("footprints by ids of triangles that are refused cost what others do")
 TEST_CASE(
     "a tolerance finer than the floats of a tile costs at most 1.6 times what exact does, of few chunks three times") {
     Random random(73);
-    const Tolerance fine = dial[1];
+    const Tolerance fine = tolerances[1];
     for (const auto& [width, height, limit] :
          {std::tuple{64, 4, 3.0}, std::tuple{65, 16, 1.6}, std::tuple{200, 16, 1.6}}) {
         for (int i = 0; i < 60; ++i) {
@@ -205,7 +205,7 @@ TEST_CASE("a triangle whose cut corner comes first costs what it costs with the 
         shots[order] = {support::rotated(cut, order), {169, 428, 256, 16}};
         require_cost("cut", shots[order], limit::any);
     }
-    for (const Tolerance tolerance : dial) {
+    for (const Tolerance tolerance : tolerances) {
         for (int i = 0; i < 9; ++i) {
             const double ratio = support::worst_over_ordinary_within(limit::rotation, Workload(shots[i / 3], tolerance),
                                                                      Workload(shots[i % 3], tolerance));
@@ -250,7 +250,7 @@ TEST_CASE("a tile that q = 0 crosses costs at most 24 times the ordinary one") {
             }
             const Shot shot{triangle, {400, 300, width, height}};
             crossed += support::detail::changes_sign(shot, support::ExactTriangle(triangle), 3);
-            for (const Tolerance tolerance : dial) {
+            for (const Tolerance tolerance : tolerances) {
                 const double ratio = least_time(shot, tolerance) / least_time(ordinary(width, height), tolerance);
                 if (ratio > limit::q_is_zero) require_cost("crossed", shot, limit::q_is_zero);
             }
@@ -271,7 +271,7 @@ Triangle with_edges_at(float x, float y) {
 }  // namespace
 
 TEST_CASE("fragments on an edge along which a coordinate is 0 cost at most 8 times the ordinary ones, 20 in a column") {
-    for (const Tolerance tolerance : dial) {
+    for (const Tolerance tolerance : tolerances) {
         for (const auto& [width, height] :
              {std::pair{1, 1}, {8, 1}, {1, 8}, {8, 8}, {64, 1}, {1, 64}, {64, 4}, {512, 1}}) {
             std::vector<float> s(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)), t(s.size());
@@ -347,7 +347,7 @@ TEST_CASE("where no coordinate is subnormal, subnormal numbers do not double the
                         vertex(810.03656f, 428.25708f, 97.3841324f, 82.3f * s, 24.5f * t, 30.7f),
                         vertex(525.804382f, 361.901428f, 68.5282516f, 38.5f * s, 12.9f * t, 8.97f)};
     };
-    for (const Tolerance tolerance : dial) {
+    for (const Tolerance tolerance : tolerances) {
         for (const auto& [s, t] : {std::array{0.0f, 0.0f}, std::array{0.0f, 1.0f}, std::array{1.0f, 0.0f}}) {
             const Shot shot{cut(s, t), {169, 428, 64, 4}};
             require_same_cost("zeros", support::calls_of(Workload(shot, tolerance)));
@@ -367,7 +367,7 @@ TEST_CASE("where no coordinate is subnormal, subnormal numbers do not double the
 TEST_CASE("a batch takes no longer than its triangles one by one, however large their tiles are") {
     constexpr double most = 1.4;
     const std::vector<Triangle> triangles(8, ordinary(1, 1).triangle);
-    for (const Tolerance tolerance : dial) {
+    for (const Tolerance tolerance : tolerances) {
         texgen::TriangleBatch batch(texgen::whole_texture(), tolerance);
         for (const int size : {3, 8, 9, 12, 17, 24, 32, 40}) {
             const std::vector<FragmentRect> rects(triangles.size(), {300, 100, size, size});
@@ -406,7 +406,7 @@ TEST_CASE(
     "one coordinate takes little more than s and t, and all three with the mask not much more than twice as long") {
     constexpr double most_alone = 2.25, most_of_all = 3.0;
     std::vector<float> s(256), t(256), r(256), lit(256);
-    for (const Tolerance tolerance : dial) {
+    for (const Tolerance tolerance : tolerances) {
         const texgen::TriangleSetup setup =
             support::setup_of(ordinary(1, 1).triangle, texgen::whole_texture(), tolerance);
         for (const auto& [width, height] : {std::pair{1, 1}, {4, 4}, {8, 8}, {16, 16}, {64, 4}}) {
@@ -437,7 +437,7 @@ TEST_CASE("a column takes little more than a row of as many fragments, and a nar
         int width, height, other_width, other_height;
         double most;
     };
-    for (const Tolerance tolerance : dial) {
+    for (const Tolerance tolerance : tolerances) {
         const texgen::TriangleSetup setup =
             support::setup_of(ordinary(1, 1).triangle, texgen::whole_texture(), tolerance);
         for (const Pair& pair : {Pair{1, 8, 8, 1, 1.5},
@@ -466,7 +466,7 @@ TEST_CASE("the footprints of a column take little more than those of a row") {
     constexpr double most = 2.5;
     std::vector<float> values[4];
     for (std::vector<float>& all : values) all.resize(4000);
-    for (const Tolerance tolerance : dial) {
+    for (const Tolerance tolerance : tolerances) {
         const texgen::FootprintSetup setup(
             support::setup_of(ordinary(1, 1).triangle, texgen::whole_texture(), tolerance), {1024.0, 1024.0});
         for (const int size : {64, 4000}) {
@@ -488,7 +488,7 @@ TEST_CASE(
     "a small tile takes little more where a coordinate has one side or none, or sides far away, than in a texture") {
     constexpr double most = 1.5;
     std::vector<float> s(64), t(64), lit(64);
-    for (const Tolerance tolerance : dial) {
+    for (const Tolerance tolerance : tolerances) {
         const Triangle triangle = ordinary(1, 1).triangle;
         const texgen::TriangleSetup both = support::setup_of(triangle, texgen::whole_texture(), tolerance);
         for (const auto& [first, last] : {std::pair{glm::dvec2(0.0), HUGE_VAL},
@@ -521,7 +521,7 @@ TEST_CASE("long runs of a visibility buffer take little more than rows of their 
     const FragmentRect rect{100, 100, 512, 2};
     const std::vector<std::uint32_t> ids(support::count_of(rect), 0);
     std::vector<float> s(ids.size()), t(ids.size()), lit(ids.size());
-    for (const Tolerance tolerance : dial) {
+    for (const Tolerance tolerance : tolerances) {
         texgen::TriangleBatch batch(texgen::whole_texture(), tolerance);
         batch.assign(std::span(&triangle, 1));
         const texgen::TriangleSetup setup = support::setup_of(triangle, texgen::whole_texture(), tolerance);
@@ -596,7 +596,7 @@ TEST_CASE("masks of a batch that are lit at once take less than s and t do, the 
         for (std::size_t j = 0; j < 2; ++j) {
             const int size = 8 << i;
             const double most = most_of[i][j];
-            const Tolerance tolerance = dial[j];
+            const Tolerance tolerance = tolerances[j];
             const Shot shot = ordinary(size, size);
             texgen::TriangleBatch batch(texgen::atlas_tile({-HUGE_VAL, 0.0}, {HUGE_VAL, 1.0}), tolerance);
             batch.assign(std::vector<Triangle>(count, shot.triangle));

@@ -116,11 +116,7 @@ const std::array segment_families{
                   true},
     SegmentFamily{"any floats in front",
                   [](Random& random) -> Segment {
-                      const auto any = [&] {
-                          float value = random.any_float();
-                          while (!std::isfinite(value)) value = random.any_float();
-                          return value;
-                      };
+                      const auto any = [&] { return random.any_finite(); };
                       const auto end = [&] {
                           const float s = any(), t = any(), q = any();
                           return glm::vec4(s, t, 0.0f, q == 0.0f ? 1.0f : std::fabs(q));

@@ -1,4 +1,4 @@
-// The dial over triangles: whatever error is accepted, no value has a larger one.
+// Tolerances of triangles: whatever error is accepted, no value has a larger one.
 
 #include <doctest/doctest.h>
 
@@ -35,12 +35,12 @@ using texgen::Tolerance;
 using texgen::TriangleSetup;
 using texgen::Work;
 
-constexpr std::array dial{texgen::exact,
-                          texgen::texels(1.0 / 512.0, 4096.0),
-                          texgen::texels(1.0 / 16.0, 1024.0),
-                          texgen::texels(1.0, 256.0),
-                          Tolerance{0.1},
-                          Tolerance{10.0}};
+constexpr std::array tolerances{texgen::exact,
+                                texgen::texels(1.0 / 512.0, 4096.0),
+                                texgen::texels(1.0 / 16.0, 1024.0),
+                                texgen::texels(1.0, 256.0),
+                                Tolerance{0.1},
+                                Tolerance{10.0}};
 
 // Of every width: of short rows, at the ends of chunks and vectors, of many chunks; now and then of more rows than a
 // band has.
@@ -145,7 +145,7 @@ double least_tolerance(const Shot& shot, Work work) {
 TEST_CASE("no error is larger than was accepted, in every family at every tolerance") {
     std::uint64_t seed = 2000;
     Tally tally;
-    for (const Tolerance tolerance : dial) {
+    for (const Tolerance tolerance : tolerances) {
         for (const HardFamily& family : support::hard_families) {
             CAPTURE(std::string(family.name));
             Random random(++seed);

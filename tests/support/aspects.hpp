@@ -52,12 +52,12 @@ struct Narrowing {
 
     // Of the lens that contains the picture, and of the picture's crop that covers the lens.
     template <class RectangularLens>
-    double contain_error(const RectangularLens& lens, const RectangularLens& contained) const {
+    double measured_contain_error(const RectangularLens& lens, const RectangularLens& contained) const {
         const double unit = largest_of({lens.left, lens.right, lens.bottom, lens.top});
         return std::max(narrowing_error(lens.left, lens.right, across, contained.left, contained.right, unit),
                         narrowing_error(lens.bottom, lens.top, upwards, contained.bottom, contained.top, unit));
     }
-    double cover_error(const texgen::TextureRegion& picture, const texgen::TextureRegion& crop) const {
+    double measured_cover_error(const texgen::TextureRegion& picture, const texgen::TextureRegion& crop) const {
         const glm::dvec2 low = picture.min(), high = picture.max();
         const double unit = largest_of({low.x, low.y, high.x, high.y});
         return std::max(narrowing_error(low.x, high.x, upwards, crop.min().x, crop.max().x, unit),

@@ -101,9 +101,7 @@ inline Corners corners_of(CornerFamily family, Random& random) {
             break;
         case CornerFamily::any_bits:
             for (glm::vec4& corner : corners)
-                for (int k = 0; k < 4; ++k) do
-                        corner[k] = random.any_float();
-                    while (!std::isfinite(corner[k]));
+                for (int k = 0; k < 4; ++k) corner[k] = random.any_finite();
             break;
     }
     std::swap(corners[0], corners[static_cast<std::size_t>(random.integer(0, 2))]);
@@ -223,8 +221,8 @@ inline texgen::TextureRegion region_of(bool is_whole, Random& random) {
 
 // How far the elements of a keystone are from those of the exact homography, the largest of them: as a share of the
 // magnitudes of their two terms, or of 2^-1000.
-inline double keystone_error(const texgen::WindowTexgen& keystone, const Quadrilateral& corners,
-                             const texgen::TextureRegion& region) {
+inline double measured_keystone_error(const texgen::WindowTexgen& keystone, const Quadrilateral& corners,
+                                      const texgen::TextureRegion& region) {
     const std::array<Rational, 4> q = exact_q(corners).value();
     // What is 0 on the side from corner k on, and q on the opposite one.
     const auto from_side = [&](std::size_t k) {

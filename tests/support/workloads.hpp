@@ -966,22 +966,23 @@ inline Numbers draw_volume(Random& random) {
     return n;
 }
 inline constexpr Hostile hostile_volume{draw_volume, "drawn: an aligned projector or any matrix"};
+inline texgen::TextureRegion read_region(Reader& reader, bool has_depth) {
+    const glm::dvec4 sides = reader.dvec4();
+    const texgen::TextureRegion region = texgen::atlas_tile({sides.x, sides.y}, {sides.z, sides.w});
+    return has_depth ? region.with_depth(sides.x, sides.w) : region;
+}
 template <bool HasDepth>
 Calls volume_calls(const Numbers& n) {
     Reader reader(n);
     const texgen::WorldTexgen texgen(reader.dmat4());
-    const glm::dvec4 sides = reader.dvec4();
-    texgen::TextureRegion region = texgen::atlas_tile({sides.x, sides.y}, {sides.z, sides.w});
-    if (HasDepth) region = region.with_depth(sides.x, sides.w);
+    const texgen::TextureRegion region = read_region(reader, HasDepth);
     return calls_of([texgen, region] { keep(texgen::LitVolume<texgen::World>(texgen, region)); });
 }
 template <bool HasDepth>
 Calls planes_calls(const Numbers& n) {
     Reader reader(n);
     const texgen::WorldTexgen texgen(reader.dmat4());
-    const glm::dvec4 sides = reader.dvec4();
-    texgen::TextureRegion region = texgen::atlas_tile({sides.x, sides.y}, {sides.z, sides.w});
-    if (HasDepth) region = region.with_depth(sides.x, sides.w);
+    const texgen::TextureRegion region = read_region(reader, HasDepth);
     return calls_of([texgen, region] { keep(texgen::clip_planes(texgen, region)); });
 }
 
