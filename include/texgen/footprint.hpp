@@ -108,10 +108,11 @@ public:
     // Guarantee: no fragment of the rectangle that is in front of the projector has a level, an area or an anisotropy
     // outside of these (they hold for exact footprints and for those of `exact`; a tolerance may add its share). Each
     // is reached within 1 % at some point of the rectangle (that is levels within 0.015) where q is well away from 0,
-    // also beside its terms; largest_level, largest_area and largest_anisotropy are infinite where q is not. Empty
-    // where all is behind the projector or the rectangle is empty. A level of the Jacobian 0 is -infinity, and NaN
-    // where the texels are bad. It takes as long as some hundreds of fragments, and never visits them. No allocation,
-    // noexcept.
+    // and neither q nor the derivatives cancel to less than 2^-13 of their terms, as they may far off slivers.
+    // largest_level, largest_area and largest_anisotropy are infinite where q is next to 0, the last one also where J
+    // is so nearly singular that its smaller axis is not known: beyond 2^40, and sooner where terms cancel. Empty where
+    // all is behind the projector or the rectangle is empty. A level of the Jacobian 0 is -infinity, and NaN where the
+    // texels are bad. It takes as long as some hundreds of fragments, and never visits them. No allocation, noexcept.
     std::optional<FootprintExtremes> extremes(FragmentRect rect) const noexcept;
 
     // The same for all fragments inside the triangle.
