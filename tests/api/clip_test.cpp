@@ -7,9 +7,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
+
+#include "api/clip_test/near_planes.hpp"
 #include "judges/oracle.hpp"
 #include "support/polygons.hpp"
 #include "support/random.hpp"
@@ -17,44 +23,22 @@
 
 namespace {
 
+using clip_cases::clipped;
+using clip_cases::distance;
+using clip_cases::is_rounded;
+using clip_cases::near_planes;
+using clip_cases::NearPlane;
 using support::Bits;
 using support::bits;
 using support::exactly;
-using support::hex;
 using support::hex_of;
 using support::infinity_float;
-using support::nan_float;
 using support::Polygon;
 using support::Random;
 using support::Rational;
 using texgen::clip_to_near;
 using texgen::ClipVertex;
 using texgen::DepthRange;
-
-struct NearPlane {
-    DepthRange range;
-    bool reversed;
-};
-constexpr std::array near_planes{NearPlane{DepthRange::negative_one_to_one, false},
-                                 NearPlane{DepthRange::zero_to_one, false}, NearPlane{DepthRange::zero_to_one, true},
-                                 NearPlane{DepthRange::negative_one_to_one, true}};
-
-Rational distance(const glm::vec4& p, NearPlane plane) {
-    if (plane.reversed) return exactly(p.w) - exactly(p.z);
-    return plane.range == DepthRange::zero_to_one ? exactly(p.z) : Rational(exactly(p.z) + exactly(p.w));
-}
-
-// Whether a float is one rounding away from what is within `slack` of the exact value.
-bool is_rounded(float value, const Rational& exact, const Rational& slack) {
-    return support::magnitude(exactly(value) - exact) <=
-           slack + support::power_of_two(support::ulp_exponent<float>(exact) - 1);
-}
-
-Polygon clipped(const Polygon& polygon, NearPlane plane) {
-    Polygon out(polygon.size() + 1);
-    out.resize(clip_to_near(polygon, out, plane.range, plane.reversed));
-    return out;
-}
 
 // A camera with near 0.1 and far 1000: clip coordinates of a point in front of it or behind it, or (rarely) exactly at
 // the eye or on the near plane.
@@ -300,112 +284,6 @@ TEST_CASE("the triangles of a fan stay a fan: clipping the pieces is clipping th
     CHECK(std::find(second.begin(), second.end(), diagonal) != second.end());
 }
 
-TEST_CASE("a vertex at the eye itself does not come out, with a near plane that lets it through") {
-    // z >= 0 everywhere: the near plane of this camera leaves w <= 0 in front of it.
-    const ClipVertex in_front{{0.5f, 0.25f, 1.0f, 2.0f}, {1, 2, 3, 4}}, at_eye{{1.0f, 0.0f, 1.0f, 0.0f}, {5, 6, 7, 8}};
-    const ClipVertex behind{{1.0f, 1.0f, 0.5f, -3.0f}, {0, 0, 0, 1}}, also_in_front{{-1, 0, 1, 1}, {0, 0, 1, 1}};
-    Polygon out(4);
-    for (const ClipVertex& hidden : {at_eye, behind}) {
-        const Polygon polygon{in_front, also_in_front, hidden};
-        const std::size_t count = clip_to_near(polygon, out, DepthRange::zero_to_one);
-        REQUIRE(count == 4);
-        for (const ClipVertex& v : out) {
-            CHECK(v.position.w > 0.0f);
-            CHECK(v.position.z >= 0.0f);
-        }
-        // A millionth of the way is left: the cut is where w is 2^-20 of the vertex in front.
-        CHECK(std::any_of(out.begin(), out.end(), [](const ClipVertex& v) { return v.position.w == 0x1p-19f; }));
-        CHECK(std::any_of(out.begin(), out.end(), [](const ClipVertex& v) { return v.position.w == 0x1p-20f; }));
-    }
-    const Polygon hidden{at_eye, behind, behind};
-    CHECK(clip_to_near(hidden, out, DepthRange::zero_to_one) == 0);
-    // The near plane and the eye cut different corners: that takes one vertex more than the contract's room.
-    const ClipVertex below{{0, 3, -1.0f, 2.0f}, {0, 0, 0, 1}};
-    const Polygon both{in_front, at_eye, below};
-    CHECK(clip_to_near(both, out, DepthRange::zero_to_one) == 0);
-    Polygon roomy(5);
-    const std::size_t count = clip_to_near(both, roomy, DepthRange::zero_to_one);
-    REQUIRE(count == 5);
-    for (const ClipVertex& v : roomy) CHECK((v.position.w > 0.0f && v.position.z >= 0.0f));
-}
-
-TEST_CASE("an oblique near plane keeps its promises over random homogeneous triangles") {
-    Random random(35);
-    for (const NearPlane plane : near_planes) {
-        int cut_twice = 0, kept = 0;
-        for (int i = 0; i < 3000; ++i) {
-            const auto any = [&random] {
-                return ClipVertex{random.vector4(random.power_of_ten(-20.0, 20.0)), random.vector4(1.0)};
-            };
-            const Polygon triangle{any(), any(), any()};
-            Polygon out(5);
-            out.resize(clip_to_near(triangle, out, plane.range, plane.reversed));
-            cut_twice += out.size() == 5;
-            kept += !out.empty();
-            for (const ClipVertex& v : out) {
-                REQUIRE_MESSAGE(v.position.w > 0.0f, hex_of(triangle));
-                REQUIRE_MESSAGE(distance(v.position, plane) >= 0, hex_of(triangle));
-            }
-        }
-        CHECK(cut_twice > 50);
-        CHECK(kept > 1000);
-    }
-}
-
-TEST_CASE("an orthographic camera has w = 1, and its cuts keep it") {
-    Random random(36);
-    for (const NearPlane plane : near_planes) {
-        for (int i = 0; i < 500; ++i) {
-            Polygon triangle;
-            for (int k = 0; k < 3; ++k) triangle.push_back({{random.vector3(3.0), 1.0f}, random.vector4(2.0)});
-            for (const ClipVertex& v : clipped(triangle, plane))
-                REQUIRE_MESSAGE(v.position.w == 1.0f, hex_of(triangle));
-        }
-    }
-}
-
-TEST_CASE("NaN and infinity: a position drops its polygon, a coordinate spoils itself only, nothing crashes") {
-    const ClipVertex a{{0, 0, 0.5f, 1}, {0, 0, 0, 1}}, b{{1, 0, 0.5f, 1}, {1, 0, 0, 1}}, c{{0, 1, -3, 1}, {0, 1, 0, 1}};
-    for (const float bad : {nan_float, infinity_float, -infinity_float}) {
-        for (int k = 0; k < 4; ++k) {
-            for (std::size_t i = 0; i < 3; ++i) {
-                Polygon polygon{a, b, c};
-                polygon[i].position[k] = bad;
-                CHECK(clipped(polygon, near_planes[0]).empty());
-            }
-            Polygon polygon{a, b, c};
-            const Polygon clean = clipped(polygon, near_planes[0]);
-            polygon[2].strq[k] = bad;
-            const Polygon spoiled = clipped(polygon, near_planes[0]);
-            REQUIRE(spoiled.size() == clean.size());
-            for (std::size_t i = 0; i < clean.size(); ++i) {
-                CHECK(spoiled[i].position == clean[i].position);
-                for (int other = 0; other < 4; ++other) {
-                    const bool same = spoiled[i].strq[other] == clean[i].strq[other];
-                    CHECK(same == (other != k || clean[i].position.z > 0.0f));
-                    if (!same) CHECK_FALSE(std::isfinite(spoiled[i].strq[other]));
-                }
-            }
-        }
-    }
-    Random random(37);
-    for (int i = 0; i < 20000; ++i) {
-        Polygon polygon(static_cast<std::size_t>(random.integer(0, 6)));
-        for (ClipVertex& v : polygon) {
-            for (int k = 0; k < 4; ++k) {
-                v.position[k] = random.any_float();
-                v.strq[k] = random.any_float();
-            }
-        }
-        for (const NearPlane plane : near_planes) {
-            for (const ClipVertex& v : clipped(polygon, plane)) {
-                REQUIRE_MESSAGE(v.position.w > 0.0f, hex_of(polygon));
-                REQUIRE_MESSAGE(distance(v.position, plane) >= 0, hex_of(polygon));
-            }
-        }
-    }
-}
-
 TEST_CASE("fewer than three vertices have no area, and a polygon that zigzags through the plane is no polygon") {
     const ClipVertex in{{0, 0, 1, 1}, {0, 0, 0, 1}}, out{{0, 0, -2, 1}, {0, 0, 0, 1}};
     CHECK(clipped({}, near_planes[0]).empty());
@@ -427,49 +305,4 @@ TEST_CASE("a polygon may be clipped where it lies") {
         storage.resize(clip_to_near(all.first(3), all, near_planes[0].range));
         REQUIRE(bits(storage) == bits(apart));
     }
-}
-
-TEST_CASE("the window: corners of NDC are the viewport's corners, clip_w and the coordinates pass through") {
-    const texgen::Viewport viewport{10, 20, 640, 480};
-    const glm::vec4 strq(0.1f, 0.2f, 0.3f, 0.4f);
-    const auto low = texgen::to_window({{-2, -2, 0, 2}, strq}, viewport);
-    const auto high = texgen::to_window({{3, 3, 1, 3}, strq}, viewport);
-    CHECK(low.window == glm::vec2(10.0f, 20.0f));
-    CHECK(high.window == glm::vec2(650.0f, 500.0f));
-    CHECK(low.clip_w == 2.0f);
-    CHECK(low.strq == strq);
-    CHECK(texgen::to_window({{0, 0, 0, 1}, strq}, viewport).window == glm::vec2(330.0f, 260.0f));
-    // A negative height turns the picture over.
-    CHECK(texgen::to_window({{1, 1, 0, 1}, strq}, {0, 480, 640, -480}).window == glm::vec2(640.0f, 0.0f));
-}
-
-TEST_CASE("the window is within its stated error of the exact division") {
-    Random random(39);
-    int cancelling = 0;
-    for (int i = 0; i < 5000; ++i) {
-        const double w = random.power_of_ten(-6.0, 6.0);
-        const texgen::Viewport viewport{random.integer(-5000, 5000), random.integer(-5000, 5000),
-                                        random.integer(1, 16384), random.integer(-16384, -1)};
-        // Every other one next to the window's 0, where the ulp is small beside what is added.
-        const auto clip_of = [&](double any, int first, int size) {
-            return support::to_float(w * (i % 2 == 0 ? any : -(2.0 * first / size + 1.0)));
-        };
-        const ClipVertex v{
-            {clip_of(random.uniform(-100.0, 100.0), viewport.x, viewport.width),
-             clip_of(random.uniform(-1.0, 1.0), viewport.y, viewport.height), 0.0f, support::to_float(w)},
-            {0, 0, 0, 1}};
-        const auto computed = texgen::to_window(v, viewport);
-        const auto check = [&v, &cancelling](float window, float clip, int first, int size) {
-            const Rational half(size, 2);
-            const Rational offset = half * exactly(clip) / exactly(v.position.w);
-            const Rational exact = first + half + offset;
-            cancelling += support::magnitude(exact) < support::magnitude(offset) * support::power_of_two(-22);
-            const Rational slack =
-                exactly(texgen::to_window_error) * (support::magnitude(first + half) + support::magnitude(offset));
-            return is_rounded(window, exact, slack);
-        };
-        REQUIRE_MESSAGE(check(computed.window.x, v.position.x, viewport.x, viewport.width), hex(v.position));
-        REQUIRE_MESSAGE(check(computed.window.y, v.position.y, viewport.y, viewport.height), hex(v.position));
-    }
-    CHECK(cancelling > 3000);
 }

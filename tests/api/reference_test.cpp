@@ -7,10 +7,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "api/reference_test/exact_coordinates.hpp"
 #include "judges/oracle.hpp"
 #include "judges/rational_traits.hpp"
 #include "support/hex.hpp"
@@ -21,6 +24,13 @@
 namespace {
 
 namespace reference = texgen::reference;
+
+using reference_cases::by_the_book;
+using reference_cases::centre;
+using reference_cases::Exact;
+using reference_cases::exact_coordinate;
+using reference_cases::uncertainty;
+using reference_cases::within;
 using support::exactly;
 using support::families;
 using support::Family;
@@ -62,66 +72,6 @@ concept IsDivided = requires(const reference::Vector4<Number>& strq) {
     reference::quotient(strq);
 };
 static_assert(AreDivided<double> && AreDivided<Rational> && !IsDivided<int>, "whose quotients are integers");
-
-Rational centre(int pixel) { return Rational(2 * pixel + 1, 2); }
-
-// lambda_i / w_i with barycentrics that sum to 1, divided wherever the definition divides.
-std::array<Rational, 3> by_the_book(const Triangle& triangle, const Rational& x, const Rational& y) {
-    const std::array vertices{triangle.a, triangle.b, triangle.c};
-    const auto area = [](const std::array<Rational, 6>& p) {
-        return Rational((p[2] - p[0]) * (p[5] - p[1]) - (p[3] - p[1]) * (p[4] - p[0]));
-    };
-    std::array<Rational, 6> corners;
-    for (std::size_t i = 0; i < 3; ++i) {
-        corners[2 * i] = exactly(vertices[i].window.x);
-        corners[2 * i + 1] = exactly(vertices[i].window.y);
-    }
-    std::array<Rational, 3> result;
-    for (std::size_t i = 0; i < 3; ++i) {
-        std::array<Rational, 6> moved = corners;
-        moved[2 * i] = x;
-        moved[2 * i + 1] = y;
-        result[i] = area(moved) / area(corners) / exactly(vertices[i].clip_w);
-    }
-    return result;
-}
-
-// What interpolation_error allows around the exact quotient of a component of strq by q.
-struct Exact {
-    Rational value;     // s/q
-    Rational slack;     // beyond half an ulp
-    Rational q_over_w;  // its sign says in front or behind
-    Rational q_magnitude;
-};
-
-// Below this |q/w| the sign may be wrong.
-Rational uncertainty(const Exact& exact) { return exactly(reference::interpolation_error) * exact.q_magnitude; }
-
-Exact exact_coordinate(const Triangle& triangle, const FragmentRect& pixel, int component) {
-    const std::array<Rational, 3> weight = by_the_book(triangle, centre(pixel.x), centre(pixel.y));
-    const std::array vertices{triangle.a.strq, triangle.b.strq, triangle.c.strq};
-    Rational numerator = 0, numerator_magnitude = 0;
-    Exact exact{0, 0, 0, 0};
-    for (std::size_t i = 0; i < 3; ++i) {
-        const Rational term = weight[i] * exactly(vertices[i][component]);
-        numerator += term;
-        numerator_magnitude += support::magnitude(term);
-        exact.q_over_w += weight[i] * exactly(vertices[i].w);
-        exact.q_magnitude += support::magnitude(weight[i] * exactly(vertices[i].w));
-    }
-    if (support::magnitude(exact.q_over_w) <= uncertainty(exact)) return exact;
-    exact.value = numerator / exact.q_over_w;
-    exact.slack = exactly(reference::interpolation_error) *
-                  (numerator_magnitude + support::magnitude(exact.value) * exact.q_magnitude) /
-                  (support::magnitude(exact.q_over_w) - uncertainty(exact));
-    return exact;
-}
-
-bool within(float computed, const Exact& exact) {
-    if (!std::isfinite(computed)) return computed == support::nearest<float>(exact.value);
-    const Rational half_ulp = support::power_of_two(support::ulp_exponent<float>(exact.value) - 1);
-    return support::magnitude(exactly(computed) - exact.value) <= half_ulp + exact.slack;
-}
 
 Triangle simple_triangle() {
     return {.a = {{0.0f, 0.0f}, 1.0f, {0.0f, 0.0f, 0.0f, 1.0f}},

@@ -10,8 +10,8 @@
 
 #include "judges/exact.hpp"
 #include "judges/verdict.hpp"
-#include "support/hard_triangles.hpp"
 #include "support/outputs.hpp"
+#include "support/shot.hpp"
 #include "texgen/interpolate.hpp"
 
 namespace support {

@@ -1,0 +1,200 @@
+// Batches, ids, columns and outputs: one way to ask takes little more than another.
+
+#include <doctest/doctest.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "judges/fragments.hpp"
+#include "promises/cost_of_triangles_test/ordinary.hpp"
+#include "support/random.hpp"
+#include "support/stopwatch.hpp"
+#include "support/triangles.hpp"
+#include "texgen/batch.hpp"
+#include "texgen/footprint.hpp"
+#include "texgen/interpolate.hpp"
+
+namespace {
+
+using support::everywhere;
+using support::Random;
+using texgen::FragmentRect;
+using texgen::Tolerance;
+using texgen::Triangle;
+using triangle_costs::ordinary;
+using triangle_costs::tolerances;
+
+}  // namespace
+
+TEST_CASE("footprints by ids of triangles that are refused cost what others do") {
+    Random random(75);
+    constexpr int width = 128, height = 16;
+    std::vector<Triangle> triangles, refused;
+    for (int i = 0; i < 500; ++i) {
+        triangles.push_back(support::make_triangle(support::Family::friendly, random));
+        refused.push_back(triangles.back());
+        refused.back().b = refused.back().a;
+    }
+    std::vector<std::uint32_t> ids;
+    for (int i = 0; i < width * height; ++i) ids.push_back(static_cast<std::uint32_t>(random.integer(0, 499)));
+    std::vector<float> dx(ids.size()), dy(ids.size()), level(ids.size());
+    texgen::TriangleBatch of_triangles(everywhere()), of_refused(everywhere());
+    of_triangles.assign(triangles);
+    of_refused.assign(refused);
+    const auto run = [&](const texgen::TriangleBatch& batch) {
+        return [&] {
+            texgen::Footprints out;
+            out.dsdx = dx;
+            out.dsdy = dy;
+            out.level = level;
+            footprint(batch, ids, {300, 300, width, height}, {1024.0, 1024.0}, out);
+        };
+    };
+    const double ratio = support::worst_over_ordinary_within(2.0, run(of_triangles), run(of_refused));
+    CHECK_MESSAGE(ratio <= 2.0, ratio, " times");
+}
+
+TEST_CASE("a batch takes no longer than its triangles one by one, however large their tiles are") {
+    constexpr double most = 1.4;
+    const std::vector<Triangle> triangles(8, ordinary(1, 1).triangle);
+    for (const Tolerance tolerance : tolerances) {
+        texgen::TriangleBatch batch(texgen::whole_texture(), tolerance);
+        for (const int size : {3, 8, 9, 12, 17, 24, 32, 40}) {
+            const std::vector<FragmentRect> rects(triangles.size(), {300, 100, size, size});
+            const std::size_t count = support::count_of(rects[0]), all = count * rects.size();
+            // Which of the two is the faster depends on where the arrays begin: all the places count together.
+            constexpr std::size_t page = 4096 / sizeof(float);
+            std::vector<float> memory(3 * (all + 2 * page));
+            const auto array = [&](std::size_t which, std::size_t place) {
+                return std::span(memory).subspan(which * (all + 2 * page) + (1 + which) * place * (page / 16 + 4), all);
+            };
+            for (const bool is_lit_asked : {false, true}) {
+                const auto outputs = [&](std::size_t place, std::size_t begin, std::size_t values) {
+                    const auto part = [&](std::size_t which) { return array(which, place).subspan(begin, values); };
+                    return texgen::Texcoords{part(0), part(1), {}, is_lit_asked ? part(2) : std::span<float>()};
+                };
+                const auto one_by_one = [&] {
+                    for (std::size_t place = 0; place < 4; ++place)
+                        for (std::size_t i = 0; i < rects.size(); ++i)
+                            interpolate(support::setup_of(triangles[i], texgen::whole_texture(), tolerance), rects[i],
+                                        outputs(place, i * count, count));
+                };
+                const auto together = [&] {
+                    for (std::size_t place = 0; place < 4; ++place) {
+                        batch.assign(triangles);
+                        interpolate(batch, rects, outputs(place, 0, all));
+                    }
+                };
+                const double ratio = support::worst_over_ordinary_within(most, one_by_one, together);
+                CHECK_MESSAGE(ratio <= most, size, " x ", size, ", tolerance ", tolerance.value, ": ", ratio, " times");
+            }
+        }
+    }
+}
+
+TEST_CASE(
+    "one coordinate takes little more than s and t, and all three with the mask not much more than twice as long") {
+    constexpr double most_alone = 2.25, most_of_all = 3.0;
+    std::vector<float> s(256), t(256), r(256), lit(256);
+    for (const Tolerance tolerance : tolerances) {
+        const texgen::TriangleSetup setup =
+            support::setup_of(ordinary(1, 1).triangle, texgen::whole_texture(), tolerance);
+        for (const auto& [width, height] : {std::pair{1, 1}, {4, 4}, {8, 8}, {16, 16}, {64, 4}}) {
+            const FragmentRect rect{300, 100, width, height};
+            const std::size_t count = support::count_of(rect);
+            const auto part = [&](std::vector<float>& all) { return std::span(all).first(count); };
+            const auto over_both = [&](double limit, const texgen::Texcoords& out) {
+                return support::worst_over_ordinary_within(
+                    limit,
+                    [&] {
+                        interpolate(setup, rect, {part(s), part(t)});
+                    },
+                    [&] { interpolate(setup, rect, out); });
+            };
+            const double of_s = over_both(most_alone, {part(s)}), of_r = over_both(most_alone, {{}, {}, part(r)});
+            const double of_all = over_both(most_of_all, {part(s), part(t), part(r), part(lit)});
+            INFO(width, " x ", height, ", tolerance ", tolerance.value);
+            CHECK(of_s <= most_alone);
+            CHECK(of_r <= most_alone);
+            CHECK(of_all <= most_of_all);
+        }
+    }
+}
+
+TEST_CASE("a column takes little more than a row of as many fragments, and a narrow tile than a wide one") {
+    std::vector<float> s(4000), t(4000), lit(4000);
+    struct Pair {
+        int width, height, other_width, other_height;
+        double most;
+    };
+    for (const Tolerance tolerance : tolerances) {
+        const texgen::TriangleSetup setup =
+            support::setup_of(ordinary(1, 1).triangle, texgen::whole_texture(), tolerance);
+        for (const Pair& pair : {Pair{1, 8, 8, 1, 1.5},
+                                 {1, 64, 64, 1, 1.5},
+                                 {1, 200, 200, 1, 1.75},
+                                 {1, 4000, 4000, 1, 1.5},
+                                 {2, 64, 16, 8, 4.0},
+                                 {7, 16, 8, 16, 2.5}}) {
+            const auto call = [&](int width, int height) {
+                return [&, rect = FragmentRect{300, 100, width, height}] {
+                    const auto part = [&](std::vector<float>& all) {
+                        return std::span(all).first(support::count_of(rect));
+                    };
+                    interpolate(setup, rect, {part(s), part(t), {}, part(lit)});
+                };
+            };
+            const double ratio = support::worst_over_ordinary_within(
+                pair.most, call(pair.other_width, pair.other_height), call(pair.width, pair.height));
+            INFO(pair.width, " x ", pair.height, ", tolerance ", tolerance.value);
+            CHECK(ratio <= pair.most);
+        }
+    }
+}
+
+TEST_CASE("the footprints of a column take little more than those of a row") {
+    constexpr double most = 2.5;
+    std::vector<float> values[4];
+    for (std::vector<float>& all : values) all.resize(4000);
+    for (const Tolerance tolerance : tolerances) {
+        const texgen::FootprintSetup setup(
+            support::setup_of(ordinary(1, 1).triangle, texgen::whole_texture(), tolerance), {1024.0, 1024.0});
+        for (const int size : {64, 4000}) {
+            const auto part = [&](std::size_t i) { return std::span(values[i]).first(static_cast<std::size_t>(size)); };
+            texgen::Footprints level;
+            level.level = part(0);
+            for (const texgen::Footprints& out : {texgen::Footprints{part(0), part(1), part(2), part(3)}, level}) {
+                const auto call = [&](FragmentRect rect) { return [&, rect] { footprint(setup, rect, out); }; };
+                const double ratio =
+                    support::worst_over_ordinary_within(most, call({300, 100, size, 1}), call({300, 100, 1, size}));
+                INFO(size, " fragments, tolerance ", tolerance.value);
+                CHECK(ratio <= most);
+            }
+        }
+    }
+}
+
+TEST_CASE("long runs of a visibility buffer take little more than rows of their triangles") {
+    constexpr double most = 2.5;
+    const Triangle triangle = ordinary(1, 1).triangle;
+    const FragmentRect rect{100, 100, 512, 2};
+    const std::vector<std::uint32_t> ids(support::count_of(rect), 0);
+    std::vector<float> s(ids.size()), t(ids.size()), lit(ids.size());
+    for (const Tolerance tolerance : tolerances) {
+        texgen::TriangleBatch batch(texgen::whole_texture(), tolerance);
+        batch.assign(std::span(&triangle, 1));
+        const texgen::TriangleSetup setup = support::setup_of(triangle, texgen::whole_texture(), tolerance);
+        const double ratio = support::worst_over_ordinary_within(
+            most,
+            [&] {
+                interpolate(setup, rect, {s, t, {}, lit});
+            },
+            [&] {
+                interpolate(batch, ids, rect, {s, t, {}, lit});
+            });
+        CHECK_MESSAGE(ratio <= most, "tolerance ", tolerance.value, ": ", ratio, " times");
+    }
+}
