@@ -74,9 +74,9 @@ inline namespace TEXGEN_COMPILER {
 // through a tree over the objects' bounds in the world: a changed projector costs what its light is near to, a changed
 // object at most one test a projector and level (5 for 10 000 objects), fewer where the light is far from all that
 // changed; what is found costs a T_o and a coverage(); and the lit pairs are gone through once, at some nanoseconds
-// each. The tree is sorted anew as objects change, a few objects for each: no update sorts all, but one that changes as
-// many, or allocates memory for more. Memory: 225 bytes an object, 800 a projector, 165 a lit pair, up to twice that
-// where they came one by one.
+// each. The tree is sorted anew as objects change, a few objects for each, and as projectors test more bounds than they
+// need to, at a part of that time: no update sorts all, but one that changes as many, or allocates memory for more.
+// Memory: 225 bytes an object, 800 a projector, 165 a lit pair, up to twice that where they came one by one.
 // Bad input: where T_o, as it is computed, or a box is not finite, the pair is partial and kept, as coverage() has it:
 // where a product of finite matrices overflows, too. An empty box is never lit. Where exponents are so far apart that
 // coverage() might not say (elements beyond 2^+-200, or 2^190 apart), an object meets every projector, a projector

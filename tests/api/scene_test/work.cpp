@@ -137,6 +137,56 @@ TEST_CASE("objects that are gone leave no bounds where nothing stands") {
     CHECK(work.pairs_tested == 0);
 }
 
+TEST_CASE(
+    "objects that moved a few at a time are found as quickly as in a new scene once projectors have asked for them") {
+    Random random(1212);
+    for (const double first_place : {0.0, 1e4}) {
+        Engine engine;
+        for (int i = 0; i < 4000; ++i) {
+            glm::dmat4 m(1.0);
+            m[3] = {random.uniform(-60.0, 60.0), random.uniform(0.0, 4.0), random.uniform(-60.0, 60.0), 1.0};
+            engine.models.push_back(ModelMatrix(m));
+        }
+        engine.bounds.assign(engine.models.size(), box_of(glm::vec3(0.5f)));
+        for (int i = 0; i < 16; ++i) {
+            const glm::dvec3 at(random.uniform(-60.0, 60.0), 6.0, random.uniform(-60.0, 60.0));
+            engine.projectors.push_back(make_projector(texgen::PerspectiveLens{texgen::degrees(50), 1.0, 0.5, 12.0},
+                                                       texgen::Aim{at, at + glm::dvec3(1, -6, 2), {0, 1, 0}},
+                                                       texgen::opengl)
+                                            .value());
+        }
+        engine.regions.assign(engine.projectors.size(), texgen::whole_texture());
+        Indices all(engine.projectors.size());
+        std::iota(all.begin(), all.end(), 0u);
+        Scene fresh;
+        fresh.update(engine.view(), {});
+        const std::size_t tested = fresh.update(engine.view(), {{}, all}).bounds_tested;
+        for (const std::size_t at_once : {std::size_t{1}, std::size_t{50}}) {
+            Engine moving = engine;
+            glm::dmat4 elsewhere(1.0);
+            elsewhere[3].x = first_place;
+            moving.models.assign(engine.models.size(), ModelMatrix(elsewhere));
+            Scene scene;
+            scene.update(moving.view(), {});
+            for (std::size_t i = 0; i < moving.models.size(); i += at_once) {
+                Indices moved(at_once);
+                std::iota(moved.begin(), moved.end(), static_cast<std::uint32_t>(i));
+                for (const std::uint32_t object : moved) moving.models[object] = engine.models[object];
+                scene.update(moving.view(), {moved, {}});
+            }
+            std::size_t in_all = 0, last = 0;
+            for (int frame = 0; frame < 12; ++frame) {
+                last = scene.update(moving.view(), {{}, all}).bounds_tested;
+                in_all += last;
+            }
+            INFO(at_once, " at once: ", last, " bounds in the twelfth frame, ", in_all, " in all, ", tested);
+            CHECK(last <= tested + tested / 4);
+            CHECK(in_all <= 60 * tested);
+            require_same(scene, fresh);
+        }
+    }
+}
+
 TEST_CASE("objects far away, or twice so far, leave the others to be found as quickly") {
     Random random(1210);
     const auto projector = make_projector(texgen::PerspectiveLens{texgen::degrees(20), 1.0, 0.1, 100.0},

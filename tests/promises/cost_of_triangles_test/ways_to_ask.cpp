@@ -177,6 +177,29 @@ TEST_CASE("the footprints of a column take little more than those of a row") {
     }
 }
 
+TEST_CASE("footprints where s and t are constant, as of a palette's colour, take no longer than others") {
+    Shot constant = ordinary(64, 64);
+    for (WindowVertex* corner : support::vertices(constant.triangle)) {
+        corner->strq.x = 0.25f * corner->strq.w;
+        corner->strq.y = 0.75f * corner->strq.w;
+    }
+    std::vector<float> level(64 * 64);
+    for (const Tolerance tolerance : tolerances) {
+        for (const int size : {8, 16, 64}) {
+            const auto call = [&](const Shot& shot) {
+                const texgen::FootprintSetup setup(support::setup_of(shot.triangle, texgen::whole_texture(), tolerance),
+                                                   {1024.0, 1024.0});
+                texgen::Footprints out;
+                out.level = std::span(level).first(static_cast<std::size_t>(size * size));
+                return [=] { footprint(setup, {300, 100, size, size}, out); };
+            };
+            const double ratio = support::worst_over_ordinary_within(1.5, call(ordinary(size, size)), call(constant));
+            CHECK_MESSAGE(ratio <= 1.5, size, " x ", size, ", tolerance ", tolerance.value, ": ", ratio, " times");
+        }
+    }
+    CHECK(level[0] == -HUGE_VALF);
+}
+
 TEST_CASE("long runs of a visibility buffer take little more than rows of their triangles") {
     constexpr double most = 2.5;
     const Triangle triangle = ordinary(1, 1).triangle;

@@ -32,10 +32,7 @@ public:
         // Objects that moved are no longer where the last sorting put them. Sorting costs less than as many moves do,
         // or than growing does.
         moves_ += objects.size();
-        if (grows || (stage_ == Stage::sorted && moves_ > bounds_.size())) {
-            moves_ = 0;
-            sort_all();
-        }
+        if (grows || (stage_ == Stage::sorted && moves_ > bounds_.size())) sort_all();
         sort(grows ? (std::numeric_limits<std::size_t>::max)() : steps_a_move * objects.size());
         for (const std::uint32_t object : objects) mark(object);
         if (height_ > 0) refit(height_ - 1, 0);
@@ -49,6 +46,20 @@ public:
     // where all of it is lit for certain. Returns the number of bounds that were tested.
     std::size_t visit(const WorldForms& forms, bool all, const auto& found) const noexcept {
         return height_ > 0 ? visit(height_ - 1, 0, forms, all, found) : 0;
+    }
+
+    // Takes what `visits` of all objects tested, and goes on with sorting by what that pays for. What moved since the last
+    // sorting began may have each visit test a path of blocks more: where they test twice what they did when objects
+    // were sorted, or most have moved, that is counted, and comes to what a sorting takes before one begins.
+    void sort_for(std::size_t visits, std::size_t tested) noexcept {
+        if (stage_ == Stage::sorted && visits > 0) {
+            const std::size_t size = bounds_.size();
+            if (tests_when_sorted_ == 0 && moves_ <= size / 8) tests_when_sorted_ = tested / visits + 1;
+            const std::size_t fair = moves_ <= size / 2 ? 2 * tests_when_sorted_ * visits : 0;
+            if (tested > fair) wasted_ += (std::min)(tested - fair, visits * moves_ * width * height_);
+            if (wasted_ > steps_of_sorting * size) sort_all();
+        }
+        sort(tested / tests_a_step);
     }
 
 private:
@@ -149,6 +160,8 @@ private:
     // place after place gets its object. Meanwhile the tree is as right as ever, whatever stands where.
     enum class Stage { measure, encode, sort_by_byte, find_crowd, place, sorted };
     static constexpr std::size_t steps_a_move = 12;
+    static constexpr std::size_t tests_a_step = 4;
+    static constexpr std::size_t steps_of_sorting = 8;  // of each object, if there are no crowds
     static constexpr std::size_t code_bytes = 4;
     static constexpr std::size_t crowd_size = 64;
     static constexpr int crowd_passes = 2;
@@ -159,6 +172,7 @@ private:
     }
 
     void sort_all() noexcept {
+        moves_ = wasted_ = tests_when_sorted_ = 0;
         first_ = 0;
         last_ = bounds_.size();
         pass_ = 0;
@@ -303,7 +317,9 @@ private:
     std::vector<std::uint64_t> keys_, sorted_keys_;  // a Morton code, and below it the object: each has one
     std::array<std::vector<Block>, 11> levels_;      // the objects' first; 8^11 is above 2^32
     HeldCount height_;
-    std::size_t moves_ = 0;  // since the last sorting began
+    std::size_t moves_ = 0;              // since the last sorting began
+    std::size_t wasted_ = 0;             // bounds that visits tested for these, since it ended
+    std::size_t tests_when_sorted_ = 0;  // of a visit then; 0 where that is not known
 
     Stage stage_ = Stage::sorted;
     std::size_t next_ = 0;              // of the stage: a key, or a place

@@ -70,15 +70,21 @@ inline SceneWork Scene::update(const SceneView& view, const SceneChanges& change
 
     drop_changed_pairs();
     const std::size_t kept = pairs_.size();
+    std::size_t visits = 0, tested_in_visits = 0;
     for (std::uint32_t p = 0; p < projectors; ++p) {
         const bool is_changed = projectors_.is_changed(p);
-        work.bounds_tested += tree_.visit(prepared_[p].forms, is_changed, [&](std::uint32_t o, bool is_inside) {
+        const std::size_t tested = tree_.visit(prepared_[p].forms, is_changed, [&](std::uint32_t o, bool is_inside) {
             ++work.pairs_tested;
             add_pair(o, p, view.models[o], view.bounds[o], is_inside, work);
         });
+        work.bounds_tested += tested;
+        if (!is_changed) continue;
+        ++visits;
+        tested_in_visits += tested;
     }
     merge_pairs(kept);
     tree_.forget_changes();
+    tree_.sort_for(visits, tested_in_visits);
     objects_.end();
     projectors_.end();
     return work;
