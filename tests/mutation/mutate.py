@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Breaks the library in every way of mutants.py and says which test noticed.
+"""Breaks the library in every way of mutants/ and says which test noticed.
 
     mutate.py --check               every replacement still applies to the sources
     mutate.py --build DIRECTORY     builds and runs what should notice, and prints the table; needs what the tests need

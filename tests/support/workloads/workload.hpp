@@ -1,0 +1,38 @@
+#pragma once
+
+// What a workload is: a function with an ordinary input, and with inputs that are meant to take long. An input is a
+// list of numbers, floats first and doubles after them, so that a search can change their bits and print them.
+
+#include <cstddef>
+#include <string_view>
+#include <vector>
+
+#include "support/random.hpp"
+#include "support/stopwatch.hpp"
+
+namespace support {
+
+using Numbers = std::vector<double>;
+
+// Inputs that are meant to take long, where a search begins.
+struct Hostile {
+    Numbers (*draw)(Random&);
+    const char* words;
+};
+
+struct Workload {
+    const char* function;
+    std::size_t floats;            // as many of an input's numbers
+    Numbers (*ordinary)(Random&);  // what a user's program gives it
+    Hostile hostile;
+    Calls (*calls)(const Numbers&);  // empty where the numbers break a precondition, or there is nothing to do
+    double (*limit)(const Numbers&);
+
+    // Interpolates 64 x 4 fragments of a triangle.
+    bool takes_near_cuts() const {
+        const std::string_view name = function;
+        return name.starts_with("interpolate a triangle") && name.ends_with("64 x 4");
+    }
+};
+
+}  // namespace support
