@@ -168,6 +168,9 @@ void print_scene(const texgen::Projector& projector) {
         print("finding", static_cast<double>(finding.defect));
     for (const Finding& finding : diagnose(projector)) print("finding", static_cast<double>(finding.defect));
     for (const Finding& finding : diagnose(planes(texgen))) print("finding", static_cast<double>(finding.defect));
+    const WorldTexgen transposed(glm::transpose(texture_from_world(projector).matrix()));
+    for (const Finding& finding : diagnose(transposed, {.projector = projector}))
+        print("finding", static_cast<double>(finding.defect));
     std::array<glm::vec3, 5> points{};
     for (const Finding& finding :
          diagnose(ProjectionSetup<Object>{.projector = projector, .texgen = texgen, .points = object_space(points)}))

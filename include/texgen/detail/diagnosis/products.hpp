@@ -132,11 +132,18 @@ inline glm::dmat4 as_in_scenes(glm::dmat4 m) noexcept {
 struct Factors {
     glm::dmat4 scale_bias, projection, view;
     std::optional<glm::dmat4> pose;  // empty: the points are in the world
+
+    // In place of braces, for GCC 12: see DoubtfulJob in triangle/close_planes.hpp.
+    Factors(const glm::dmat4& s, const glm::dmat4& p, const glm::dmat4& v,
+            const std::optional<glm::dmat4>& of_points) noexcept
+        : scale_bias(s), projection(p), view(v), pose(of_points) {}
 };
 
-inline Factors as_in_scenes(const Factors& factors) noexcept {
-    return {as_in_scenes(factors.scale_bias), as_in_scenes(factors.projection), as_in_scenes(factors.view),
-            factors.pose ? std::optional(as_in_scenes(*factors.pose)) : std::nullopt};
+inline Factors as_in_scenes(Factors factors) noexcept {
+    for (glm::dmat4* const matrix : {&factors.scale_bias, &factors.projection, &factors.view})
+        *matrix = as_in_scenes(*matrix);
+    if (factors.pose) factors.pose = as_in_scenes(*factors.pose);
+    return factors;
 }
 
 inline Product scale_bias_factor(const Factors& factors, const Composition& composition) noexcept {

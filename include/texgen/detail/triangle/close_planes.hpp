@@ -169,6 +169,10 @@ struct DoubtfulFunctions : CloseFunctions {
 struct DoubtfulJob {
     TileJob job;
     DoubtfulFunctions functions;
+
+    // In place of braces: of what is larger than 256 bytes and initialised by those GCC 12 clears members, where it
+    // should clear padding, if it is told to initialise all variables (-ftrivial-auto-var-init).
+    DoubtfulJob(const TileJob& tile, const DoubtfulFunctions& known) noexcept : job(tile), functions(known) {}
 };
 
 // Whether sums decide ties, too, if functions err by `share` of what they do now: then F - m Q, where m is a multiple

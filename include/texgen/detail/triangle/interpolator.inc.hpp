@@ -292,7 +292,7 @@ private:
         }
         const int x = static_cast<int>(tile.x - whole_.x);
         const int y = static_cast<int>(tile.y - whole_.y);
-        if (!doubtful_) doubtful_.make(DoubtfulJob{make_job(whole_, *whole_at_), functions_of(whole_, *whole_at_)});
+        if (!doubtful_) doubtful_.make(make_job(whole_, *whole_at_), functions_of(whole_, *whole_at_));
         fill_closely(whole_, doubtful_->job, doubtful_->functions, {x, x + tile.width, y, y + tile.height});
     }
 
