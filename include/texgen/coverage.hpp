@@ -60,6 +60,9 @@ private:
     detail::SeparatingForms separating_;
 };
 
+template <class Space>
+LitVolume(const Transform<Texture, Space>&, const TextureRegion&) -> LitVolume<Space>;
+
 // Says how much of a box or a sphere the slide lights, or of each of many: as a LitVolume that is asked once.
 template <class Space>
 Coverage coverage(const Transform<Texture, Space>& texture_from_space, const TextureRegion& region,

@@ -368,6 +368,15 @@ TEST_CASE("up is parallel to the view to 2^-98 rad, and is not from 2^-97 on") {
         CHECK(orthonormality_error(view->matrix()) <= 0x1p-50);
         CHECK_FALSE(look_at(aim_at(0x1p-98)));
         CHECK_FALSE(look_at(aim_at(0.0)));
+        // Whatever the lengths of both are.
+        for (const double length : {1.0, 1.5, 0x1.ffp0}) {
+            const auto askew = [&](double angle) {
+                return look_at(
+                    {{0.0, 0.0, 0.0}, {sign * length, 0.0, length}, {sign * length, 1.414 * length * angle, length}});
+            };
+            CHECK(askew(0x1p-97));
+            CHECK_FALSE(askew(0x1p-98));
+        }
     }
 }
 

@@ -52,7 +52,7 @@ DIAGNOSIS = [
          "diagnose_product_test"),
         ("no object is stretched", "|| !lens.may_be_stretched();", "|| true;", "diagnose_product_test")),
     *of("detail/diagnosis/refusals.inc.hpp",
-        ("up may be parallel", "    if (looks_somewhere && points_somewhere && !is_sideways(cross(view, up)))\n"
+        ("up may be parallel", "    if (looks_somewhere && points_somewhere && !is_sideways(cross(view, up), view.high, up))\n"
          "        diagnosis.add(Defect::up_parallel_to_view);\n", "", "diagnose_product_test"),
         ("an angle is never in degrees", "= std::fabs(angle) > 2.0 * std::numbers::pi;", "= false;", "diagnose_product_test")),
     *of("detail/diagnosis/composition.hpp",

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -11,6 +12,7 @@
 #include "judges/fragments.hpp"
 #include "promises/cost_of_triangles_test/ordinary.hpp"
 #include "support/random.hpp"
+#include "support/shot.hpp"
 #include "support/stopwatch.hpp"
 #include "support/triangles.hpp"
 #include "texgen/batch.hpp"
@@ -21,9 +23,11 @@ namespace {
 
 using support::everywhere;
 using support::Random;
+using support::Shot;
 using texgen::FragmentRect;
 using texgen::Tolerance;
 using texgen::Triangle;
+using texgen::WindowVertex;
 using triangle_costs::ordinary;
 using triangle_costs::tolerances;
 

@@ -66,7 +66,7 @@ inline void examine(const Aim& aim, Diagnosis& diagnosis) noexcept {
     const bool looks_somewhere = length(view.high) > 0.0, points_somewhere = length(up) > 0.0;
     if (has_both && !looks_somewhere) diagnosis.add(Defect::target_at_position);
     if (has_up && !points_somewhere) diagnosis.add(Defect::up_is_zero);
-    if (looks_somewhere && points_somewhere && !is_sideways(cross(view, up)))
+    if (looks_somewhere && points_somewhere && !is_sideways(cross(view, up), view.high, up))
         diagnosis.add(Defect::up_parallel_to_view);
 }
 

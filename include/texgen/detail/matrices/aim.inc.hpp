@@ -60,8 +60,10 @@ inline glm::dvec3 cross(const Difference& a, const glm::dvec3& b) noexcept {
     return result;
 }
 
-// Of view x up, both near 1: whether it is more than rounding, so that up is not parallel.
-inline bool is_sideways(const glm::dvec3& v) noexcept { return length(v) > 0x1p-98; }
+// Whether view x up, of two vectors near 1, is more than rounding, so that up is not parallel.
+inline bool is_sideways(const glm::dvec3& product, const glm::dvec3& view, const glm::dvec3& up) noexcept {
+    return length(product) > 0x1p-98 * length(view) * length(up);
+}
 
 inline std::optional<Projector> assemble(const std::optional<ProjectorProjection>& projection,
                                          const std::optional<ProjectorView>& view, Conventions conventions) noexcept {
@@ -79,7 +81,7 @@ inline std::optional<ProjectorView> look_at(const Aim& aim, Handedness handednes
     const glm::dvec3& forward = view.high;
     const glm::dvec3 up = detail::scaled_near_one(aim.up);
     const glm::dvec3 sideways = detail::cross(view, up);
-    if (!detail::is_sideways(sideways)) return std::nullopt;
+    if (!detail::is_sideways(sideways, forward, up)) return std::nullopt;
     const glm::dvec3 side_direction = detail::scaled_near_one(sideways);
 
     // A left-handed cross product has the other sign, and a left-handed eye looks down +z: half a turn about up.
