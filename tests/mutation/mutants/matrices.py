@@ -40,6 +40,8 @@ MATRICES = [
         ("y down turns the third row", "matrix[column][1] = -matrix[column][1];",
          "matrix[column][2] = -matrix[column][2];", "lens_test conventions_test")),
     *of("detail/matrices/aim.inc.hpp",
+        ("the length of up is forgotten", "* length(view) * length(up)",
+         "* length(view)", "aim_test"),
         ("up is parallel to the view sooner", "0x1p-98 * length(view)", "0x1p-97 * length(view)", "aim_test"),
         ("side and up are swapped", "glm::dmat3(side, upright, back)", "glm::dmat3(upright, side, back)", "aim_test"),
         ("the translation loses its sign", "-detail::rotated(back, aim.position)",
