@@ -60,6 +60,7 @@ private:
     detail::SeparatingForms separating_;
 };
 
+// Its space is that of the matrix.
 template <class Space>
 LitVolume(const Transform<Texture, Space>&, const TextureRegion&) -> LitVolume<Space>;
 

@@ -18,7 +18,7 @@ set(calls
     "62000 segment.hpp void along interpolate(segment, alpha, whole_texture(), out)"
     "49000 footprint.hpp bool footprints footprint(setup, rect, out)"
     "329000 batch.hpp void batch interpolate(batch, rects, out)"
-    "123000 batch.hpp void buffer footprint(batch, ids, rect, {1024, 1024}, out)")
+    "124000 batch.hpp void buffer footprint(batch, ids, rect, {1024, 1024}, out)")
 
 find_program(size size)
 execute_process(COMMAND ${COMPILER} --version OUTPUT_VARIABLE version)
