@@ -158,7 +158,7 @@ TEST_CASE("no box of a hostile family is outside or inside that is not, and the 
             boxes.push_back(hostile_box(slide, families.back(), random));
         }
         std::vector<Coverage> answers(boxes.size(), Coverage::inside);
-        const LitVolume<texgen::World> volume(transform, slide.region);
+        const LitVolume volume(transform, slide.region);
         volume.coverage(boxes, answers);
         for (std::size_t i = 0; i < boxes.size(); ++i) {
             Counts& of_family = counts[static_cast<std::size_t>(families[i])];
