@@ -65,7 +65,7 @@ void add_points(std::size_t count) {
             for (std::size_t k = 0; k < count; k += scene.step())
                 check_lit(errors, output(count)[k], one.region, str(i, k));
         };
-        add_row(scene, given.name, 0.0, run, check);
+        add_row(scene, one.name, 0.0, run, check);
     }
     const auto cut = static_cast<float>(str(0, 0).z);
     add_unchecked(scene, "GLM, mat4 * vec4 and six comparisons", [=](std::size_t i) {
@@ -109,7 +109,7 @@ void add_fragments(int side) {
         const auto check = [=](std::size_t, Errors& errors) {
             for (std::size_t k = 0; k < count; ++k) check_lit(errors, output(count)[k], one.region, str(k));
         };
-        add_row(scene, given.name, 0.0, run, check);
+        add_row(scene, one.name, 0.0, run, check);
     }
 }
 
