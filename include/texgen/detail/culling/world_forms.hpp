@@ -44,8 +44,8 @@ inline double range_of(const glm::dmat4& m, bool without_r = false) noexcept {
 }
 inline constexpr double object_range = 0x1p240;
 inline constexpr double projector_range = 0x1p190;
-static_assert(object_range * projector_range * 0x1p165 <
-              0x1p600);  // 165: three factors of 53 bits, two sums of four, and 2 to spare
+// 165: three factors of 53 bits, two sums of four, and 2 to spare.
+static_assert(object_range * projector_range * 0x1p165 < 0x1p600);
 
 // a . (x, y, z) + d, known to within error_a size + error_d when it is computed in double in any order, where the size
 // of a point is |x| + |y| + |z|.
