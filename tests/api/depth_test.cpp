@@ -95,8 +95,8 @@ const std::array lenses{
 
 // Distances from the projector along its axis, and whether its light is there.
 std::vector<double> distances(const LensCase& lens) {
-    std::vector<double> result{0.25, 0.499, 0.501, 1.0, 5.0, 19.9, 20.1, 40.0, 1e3, 1e6};
-    if (!(lens.z_far < infinity_double)) result.push_back(1e12);
+    std::vector<double> result{0.25, 0.499, 0.501, 1.0, 5.0, 19.9, 20.1, 40.0, 1e3, 1e6, 1e12};
+    if (lens.z_far < infinity_double) result.pop_back();
     return result;
 }
 bool is_reached(const LensCase& lens, double distance) { return distance > lens.z_near && distance < lens.z_far; }

@@ -80,7 +80,9 @@ struct Code {
         if (m.kind == LensKind::perspective && !m.is_left())
             p = zero_to_one ? glm::perspectiveRH_ZO(fovy, a, n, f) : glm::perspectiveRH_NO(fovy, a, n, f);
         if (m.kind == LensKind::infinite) {
-            p = m.is_left() ? glm::infinitePerspectiveLH(fovy, a, n) : glm::infinitePerspectiveRH(fovy, a, n);
+            // GLM 1.0.1 declares those of a hand and does not define them; this one is right-handed.
+            p = glm::infinitePerspective(fovy, a, n);
+            if (m.is_left()) p[2] = -p[2];
             p[2][2] = p[2][3];
             p[3][2] = zero_to_one ? -n : T(-2) * n;
         }
