@@ -23,9 +23,9 @@ struct SmallPlace {
         : x(from_a.x),
           y(from_a.y),
           reach_x(std::fabs(x) + rect.width),
-          reach_y(std::fabs(y) + rect.height),
+          reach_y(std::fabs(y) + read_alone(rect.height)),
           right(rect.width - 1.0),
-          bottom(rect.height - 1.0) {}
+          bottom(read_alone(rect.height) - 1.0) {}
 };
 
 // A linear function over the tile: at its first fragment, its steps to the last column and row, and a bound on its
