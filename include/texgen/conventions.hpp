@@ -11,8 +11,8 @@
 
 #include "detail/matrices/required.hpp"
 
-// 0.4.28: 10000 major + 100 minor + patch.
-#define TEXGEN_VERSION 428
+// 0.4.29: 10000 major + 100 minor + patch.
+#define TEXGEN_VERSION 429
 
 namespace TEXGEN_NAMESPACE {
 
