@@ -223,7 +223,7 @@ public:
 
     // The window, seen from the first vertex: the centre of a fragment, and the other vertices.
     glm::dvec2 from_a(const Tile& tile) const noexcept {
-        const glm::dvec2 first(static_cast<double>(tile.x), static_cast<double>(read_alone(tile.y)));  // integers
+        const glm::dvec2 first(static_cast<double>(tile.x), static_cast<double>(tile.y));  // integers
         return {(first.x + 0.5) - read_alone(a_.x), (first.y + 0.5) - read_alone(a_.y)};
     }
     const glm::dvec2& to_b() const noexcept { return to_b_; }

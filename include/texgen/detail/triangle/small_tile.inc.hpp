@@ -176,7 +176,7 @@ TEXGEN_APART void fill_small_alone(const TriangleFunctions& triangle, const Tile
 template <class CompiledWhereCalled = void>
 TEXGEN_APART SmallAnswer fill_small(const TriangleFunctions& triangle, const Tile& rect,
                                     const Texcoords& out) noexcept {
-    const SmallPlace place(triangle.planes.from_a(rect), rect);
+    const SmallPlace place(triangle.planes.from_a({rect.x, read_alone(rect.y), rect.width, rect.height}), rect);
     const SmallFunction<Double2> f(triangle.st, place);
     const SmallDivisor q(triangle.q, place);
     const SmallAnswer answer = ask(triangle.lit, triangle.tolerance, f, q);
