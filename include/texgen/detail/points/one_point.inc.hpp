@@ -7,7 +7,8 @@ namespace TEXGEN_DETAIL {
 struct FormPair {
     Double2 x, y, z, w;
 
-    FormPair(const PointForm& a, const PointForm& b) noexcept
+    // Apart, clang++ 19 to 23 would read two numbers of a form at once, and wait for both of their stores.
+    TEXGEN_INLINE FormPair(const PointForm& a, const PointForm& b) noexcept
         : x(double2_of(a.x, b.x)), y(double2_of(a.y, b.y)), z(double2_of(a.z, b.z)), w(double2_of(a.w, b.w)) {}
 
     PointForm form(std::size_t k) const noexcept { return {x[k], y[k], z[k], w[k]}; }
