@@ -65,7 +65,7 @@ TEXGEN_INLINE bool divide_small(const SmallTile& tile) noexcept {
 // Divides a tile of eight columns: a vector holds whole rows, or a part of one. Rows are counted from the middle.
 TEXGEN_INLINE void divide_small_in_float(const SmallTile& tile) noexcept {
     const auto& [f_base, f_dx, f_dy] = tile.numerator;
-    const Ramp& of_q = tile.q;
+    const Ramp of_q{tile.q.base, tile.q.dx, read_alone(tile.q.dy)};
     constexpr int width = 8, columns = wide_lanes < width ? wide_lanes : width;
     const int count = width * tile.height;
     float* const out[2] = {tile.out[0], tile.out[1]};
