@@ -67,7 +67,7 @@ constexpr To bit_cast(const From& from) noexcept {
     return __builtin_bit_cast(To, from);
 }
 
-// A number that was stored alone: GCC would load it with its neighbour at once, and the load wait for both stores.
+// A number that was stored alone: compilers load it with its neighbour at once, and that load waits for both stores.
 template <class Number>
 Number read_alone(const Number& number) noexcept {
     return static_cast<const volatile Number&>(number);
