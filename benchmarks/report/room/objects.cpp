@@ -40,18 +40,18 @@ Room make_objects() {
                     turned, plaster);
     }
     while (room.objects.size() < object_count) {
-        const glm::vec3 half(number(0.08, 0.25), number(0.06, 0.3), number(0.08, 0.25));
-        glm::dmat4 model = glm::translate(in_place, glm::dvec3(number(-14, 14), half.y, number(-14, 14)));
+        const glm::vec3 half{number(0.08, 0.25), number(0.06, 0.3), number(0.08, 0.25)};
+        glm::dmat4 model = glm::translate(in_place, glm::dvec3{number(-14, 14), half.y, number(-14, 14)});
         model = glm::rotate(model, number(0, 6.28), glm::dvec3(0, 1, 0));
         room.crates.push_back(static_cast<std::uint32_t>(room.objects.size()));
-        room.add(box(-half, half), model, glm::vec3(number(0.5, 0.95), number(0.5, 0.95), number(0.5, 0.95)));
+        room.add(box(-half, half), model, glm::vec3{number(0.5, 0.95), number(0.5, 0.95), number(0.5, 0.95)});
     }
     for (std::size_t i = 0; i < projector_count; ++i) {
         const glm::dvec3 position(-13.0 + 26.0 / 7.0 * static_cast<double>(i % 8), 5.5,
                                   -13.0 + 26.0 / 7.0 * static_cast<double>(i / 8));
         room.positions.push_back(position);
         room.projectors.push_back(spot(position, number(0, 6.28), is_across(i)));
-        room.tints.push_back(glm::vec3(number(0.5, 1), number(0.5, 1), number(0.5, 1)));
+        room.tints.push_back(glm::vec3{number(0.5, 1), number(0.5, 1), number(0.5, 1)});
         room.regions_in_reach.push_back(volume_region);
     }
     return room;
