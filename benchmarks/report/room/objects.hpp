@@ -31,7 +31,7 @@ inline constexpr double reach =
 
 inline bool is_across(std::size_t projector) { return projector % 8 == 3; }
 
-// Numbers in [0, 1) that are the same everywhere.
+// Numbers in [0, 1) that are the same everywhere, if several are drawn in braces: compilers differ in the order of arguments.
 class Numbers {
 public:
     double operator()() {
