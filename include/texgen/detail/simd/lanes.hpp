@@ -154,9 +154,12 @@ __extension__ using WideInteger = unsigned __int128;
 using WideInteger = std::uint64_t;
 #endif
 
-// Two doubles at a time, for s and t.
+// Two doubles at a time, for s and t. A call that is inlined returns them in no way that the convention has to have.
 using Double2 [[gnu::vector_size(16)]] = double;
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wpsabi"
 TEXGEN_INLINE Double2 double2_of(double first, double second) noexcept { return Double2{first, second}; }
+#pragma GCC diagnostic pop
 TEXGEN_INLINE Double2 smaller(const Double2& a, const Double2& b) noexcept { return a < b ? a : b; }
 TEXGEN_INLINE Double2 larger(const Double2& a, const Double2& b) noexcept { return a > b ? a : b; }
 using Bits2 [[gnu::vector_size(16)]] = long long;
