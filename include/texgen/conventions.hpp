@@ -11,8 +11,8 @@
 
 #include "detail/matrices/required.hpp"
 
-// 0.4.29: 10000 major + 100 minor + patch.
-#define TEXGEN_VERSION 429
+// 0.4.30: 10000 major + 100 minor + patch.
+#define TEXGEN_VERSION 430
 
 namespace TEXGEN_NAMESPACE {
 

@@ -51,7 +51,7 @@ SIMD = [
         ("the points' float bound is halved", "all_float{5.01 *", "all_float{2.0 *", "bounds_test texcoord_test"),
         ("the bound of points about a point is a third", "about_point{6.01 *", "about_point{2.0 *", "bounds_test texcoord_test")),
     *of("detail/simd/tiers.hpp",
-        ("the points' roundings are forgotten", "/ q + roundings * largest + ", "/ q + ", "within_test",
+        ("the points' roundings are forgotten", "/ q) + roundings * largest + ", "/ q) + ", "within_test",
          {"survives": "2.01 u of a quotient, where the bound has 10 u and more for the forms, which use three or four of them."}),
         ("the roundings of float_divided are halved", "4.01 * unit_roundoff_float;", "2.01 * unit_roundoff_float;",
          "bounds_test tolerance_test"),

@@ -98,7 +98,7 @@ struct PointExtent {
     }
     // At least the sum of a form's terms, but for a rounding each.
     TEXGEN_INLINE WideFloats terms_of(const PointForm& form) const noexcept {
-        const auto factor = [](double coefficient) { return static_cast<float>(std::fabs(coefficient)); };
+        const auto factor = [](double coefficient) { return std::fabs(static_cast<float>(coefficient)); };
         return x * factor(form.x) + (y * factor(form.y) + (z * factor(form.z) + factor(form.w)));
     }
 };

@@ -93,18 +93,22 @@ inline void take_bounds(PointJob& job, const Box& box) noexcept {
     };
     const Range q = range_of(job.q);
     if (!(q.terms < 0x1p1000 && q.least > 0x1p20 * gamma(5) * q.terms)) return;
-    job.is_certified = is_float(job.q);
+    const double reciprocal = 1.0 / q.least;
+    const Range numerator[2] = {range_of(job.numerator[0]), range_of(job.numerator[job.numerators - 1])};
+    const auto is_in_float = [&](const PointForm& form, const Range& s) {
+        const double quotient = larger(-s.least, s.largest) * reciprocal * (1.0 + gamma(3));
+        return is_float(form) &&
+               all_float.error(s.terms, q.terms, size.x + size.y + size.z + 1.0, q.least, quotient) <= job.tolerance;
+    };
+    job.is_certified = job.tolerance > 0.0 && is_float(job.q) && is_in_float(job.numerator[0], numerator[0]) &&
+                       is_in_float(job.numerator[job.numerators - 1], numerator[1]);
+    if (job.is_certified) return;
     double ulps = 0.0;
-    for (int k = 0; k < job.numerators; ++k) {
-        const PointForm& form = job.numerator[k];
-        const Range s = range_of(form);
-        const double quotient = larger(-s.least, s.largest) / q.least * (1.0 + gamma(2));
-        const double of_float = all_float.error(s.terms, q.terms, size.x + size.y + size.z + 1.0, q.least, quotient);
-        job.is_certified = job.is_certified && is_float(form) && of_float <= job.tolerance;
+    for (const Range& s : numerator) {
         // Of itself a quotient errs by e_s / |s| + e_q / q and four roundings, and an ulp of it is at least 2^-53 of
         // it.
         const double least = larger(s.least, -s.largest);  // negative where the sign changes
-        const double share = (s.terms / least + q.terms / q.least) * gamma(5);
+        const double share = (s.terms / least + q.terms * reciprocal) * (gamma(5) * (1.0 + gamma(2)));
         ulps = larger(ulps, least > 0x1p-124 * q.largest ? share * 0x1.01p53 + 4.0 : quick_ulps);
     }
     // Products of two such q are in range, and quotients are no subnormal floats.
@@ -143,7 +147,7 @@ void project_all(const Positions<Space>& positions, PointJob& job, const PointOu
     constexpr std::size_t few = 5;
     const std::size_t beyond = positions.size() % point_quantum;
     const std::size_t count = positions.size() - (beyond <= few ? beyond : 0);
-    project_each(positions, count, job, out);
+    if (count != positions.size()) project_each(positions, count, job, out);
     if (count == 0) return;
     const PointKernels& kernels = chosen<PointKernels>();
     take_bounds(job, positions.bounds());

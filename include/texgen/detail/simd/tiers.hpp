@@ -34,7 +34,7 @@ struct FloatDivision {
         const double q_error = form_error * q_terms + underflow;
         const double q = least_q * (1.0 - roundings) - q_error;
         if (!(q > 0x1p-60 && s_terms < largest_terms_in_float && q_terms < largest_terms_in_float)) return infinity;
-        return 1.001 * (s_error + largest * q_error) / q + roundings * largest + 0x1p-150;
+        return (s_error + largest * q_error) * (1.001 / q) + roundings * largest + 0x1p-150;
     }
 };
 
