@@ -94,17 +94,20 @@ inline void take_bounds(PointJob& job, const Box& box) noexcept {
     const Range q = range_of(job.q);
     if (!(q.terms < 0x1p1000 && q.least > 0x1p20 * gamma(5) * q.terms)) return;
     const double reciprocal = 1.0 / q.least;
-    const Range numerator[2] = {range_of(job.numerator[0]), range_of(job.numerator[job.numerators - 1])};
-    const auto is_in_float = [&](const PointForm& form, const Range& s) {
+    Range numerator[2];
+    job.is_certified = job.tolerance > 0.0 && is_float(job.q);
+    for (int k = 0; k < job.numerators; ++k) {
+        const PointForm& form = job.numerator[k];
+        const Range& s = numerator[k] = range_of(form);
+        if (!job.is_certified) continue;
         const double quotient = larger(-s.least, s.largest) * reciprocal * (1.0 + gamma(3));
-        return is_float(form) &&
-               all_float.error(s.terms, q.terms, size.x + size.y + size.z + 1.0, q.least, quotient) <= job.tolerance;
-    };
-    job.is_certified = job.tolerance > 0.0 && is_float(job.q) && is_in_float(job.numerator[0], numerator[0]) &&
-                       is_in_float(job.numerator[job.numerators - 1], numerator[1]);
+        const double of_float = all_float.error(s.terms, q.terms, size.x + size.y + size.z + 1.0, q.least, quotient);
+        job.is_certified = is_float(form) && of_float <= job.tolerance;
+    }
     if (job.is_certified) return;
     double ulps = 0.0;
-    for (const Range& s : numerator) {
+    for (int k = 0; k < job.numerators; ++k) {
+        const Range& s = numerator[k];
         // Of itself a quotient errs by e_s / |s| + e_q / q and four roundings, and an ulp of it is at least 2^-53 of
         // it.
         const double least = larger(s.least, -s.largest);  // negative where the sign changes
