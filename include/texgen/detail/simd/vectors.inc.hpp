@@ -203,6 +203,15 @@ TEXGEN_INLINE Vector load(const void* from) noexcept {
     __builtin_memcpy(&values, from, sizeof values);
     return values;
 }
+// The same for several uses: GCC loads anew for each, and vectors as long as a cache line cross one each time.
+template <class Vector>
+TEXGEN_INLINE Vector load_once(const void* from) noexcept {
+    struct [[gnu::packed, gnu::may_alias]] Unaligned {
+        Vector values;
+    };
+    if constexpr (sizeof(Vector) < 64) return load<Vector>(from);
+    return static_cast<const volatile Unaligned*>(from)->values;
+}
 TEXGEN_INLINE void store(void* to, const auto& values) noexcept { __builtin_memcpy(to, &values, sizeof values); }
 
 // A mask: all ones where it holds, else zero.
@@ -236,7 +245,7 @@ TEXGEN_INLINE Vector every_third(const Vector& a, const Vector& b, const Vector&
 template <class Vector>
 TEXGEN_INLINE void load_interleaved(const float* from, Vector& x, Vector& y, Vector& z) noexcept {
     constexpr int n = static_cast<int>(sizeof(Vector) / sizeof(float));
-    const auto a = load<Vector>(from), b = load<Vector>(from + n), c = load<Vector>(from + 2 * n);
+    const auto a = load_once<Vector>(from), b = load_once<Vector>(from + n), c = load_once<Vector>(from + 2 * n);
     x = every_third<0>(a, b, c, std::make_integer_sequence<int, n>());
     y = every_third<1>(a, b, c, std::make_integer_sequence<int, n>());
     z = every_third<2>(a, b, c, std::make_integer_sequence<int, n>());
