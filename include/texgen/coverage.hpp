@@ -18,8 +18,7 @@
 #include "primitives.hpp"
 #include "transform.hpp"
 
-namespace TEXGEN_NAMESPACE {
-inline namespace TEXGEN_BUILD {
+namespace TEXGEN_NAMESPACE_BUILD {
 
 // The points that a slide lights, prepared once for many questions, of which the functions below ask one.
 // Guarantee: `outside` and `inside` are never false: they hold for the exact values of the matrix, the region and the
@@ -78,8 +77,7 @@ template <class Space>
 void coverage(const Transform<Texture, Space>& texture_from_space, const TextureRegion& region,
               std::span<const Sphere> spheres, std::span<Coverage> out) noexcept;
 
-}  // namespace TEXGEN_BUILD
-}  // namespace TEXGEN_NAMESPACE
+}  // namespace TEXGEN_NAMESPACE_BUILD
 
 #include "detail/culling/bodies.inc.hpp"
 

@@ -23,8 +23,7 @@
 #include "primitives.hpp"
 #include "texcoord.hpp"
 
-namespace TEXGEN_NAMESPACE {
-inline namespace TEXGEN_BUILD {
+namespace TEXGEN_NAMESPACE_BUILD {
 
 // Writes s/q, t/q and r/q along a segment, C_u = ((1-a) A_u + a B_u) / ((1-a) A_q + a B_q) for u = s, t, r.
 // Guarantee: each within max(tolerance, 1/2 ulp) of the exact value of the given floats (r: the tolerance relative to
@@ -38,9 +37,9 @@ template <class CompiledWhereCalled = void>
 void interpolate(const Segment& segment, std::span<const float> alpha, TextureRegion region, Texcoords out,
                  Tolerance tolerance = exact) noexcept;
 
-}  // namespace TEXGEN_BUILD
+}  // namespace TEXGEN_NAMESPACE_BUILD
 
-inline namespace TEXGEN_COMPILER {
+namespace TEXGEN_NAMESPACE_COMPILER {
 
 // Tells the work that the values of a segment need, for all alpha in [0, 1].
 // Guarantee: never nothing where a value is lit (in the region, and its depth where it has one); else affine where q is
@@ -54,8 +53,7 @@ inline Work work(const Segment& segment, TextureRegion region, Tolerance toleran
 // Bad input: infinite where an s, t or q of an end is not finite.
 inline glm::dvec2 error_bound(const Segment& segment, Tolerance tolerance = exact) noexcept;
 
-}  // namespace TEXGEN_COMPILER
-}  // namespace TEXGEN_NAMESPACE
+}  // namespace TEXGEN_NAMESPACE_COMPILER
 
 #include "detail/points/segment_forms.inc.hpp"
 

@@ -57,6 +57,7 @@ static_assert(glm::defaultp == glm::packed_highp, "GLM was configured otherwise 
 
 // What is not public stands in this one.
 #define TEXGEN_DETAIL TEXGEN_NAMESPACE::detail::inline TEXGEN_COMPILER
+#define TEXGEN_NAMESPACE_COMPILER TEXGEN_NAMESPACE::inline TEXGEN_COMPILER
 
 namespace TEXGEN_DETAIL {
 

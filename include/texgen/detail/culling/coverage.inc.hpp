@@ -50,8 +50,7 @@ Coverage coverage_of(const BoxKernels& kernels, const LitForms& forms, const Box
 }  // namespace TEXGEN_BUILD
 }  // namespace TEXGEN_DETAIL
 
-namespace TEXGEN_NAMESPACE {
-inline namespace TEXGEN_BUILD {
+namespace TEXGEN_NAMESPACE_BUILD {
 
 template <class Space>
 LitVolume<Space>::LitVolume(const Transform<Texture, Space>& texture_from_space, const TextureRegion& region) noexcept
@@ -119,5 +118,4 @@ void coverage(const Transform<Texture, Space>& texture_from_space, const Texture
                              forms.unit(detail::chosen<detail::UnitFormKernels>()), spheres, out);
 }
 
-}  // namespace TEXGEN_BUILD
-}  // namespace TEXGEN_NAMESPACE
+}  // namespace TEXGEN_NAMESPACE_BUILD

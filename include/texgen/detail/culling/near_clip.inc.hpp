@@ -93,8 +93,7 @@ std::size_t cut_convex(std::span<ClipVertex> storage, std::size_t count, const C
 
 }  // namespace TEXGEN_DETAIL
 
-namespace TEXGEN_NAMESPACE {
-inline namespace TEXGEN_COMPILER {
+namespace TEXGEN_NAMESPACE_COMPILER {
 
 inline WindowVertex to_window(const ClipVertex& vertex, Viewport viewport) noexcept {
     TEXGEN_ASSERT(vertex.position.w > 0.0f);
@@ -140,5 +139,4 @@ inline std::size_t clip_to_near(std::span<const ClipVertex> polygon, std::span<C
     return detail::cut_convex(out, count, detail::ClipDistance::from_eye(), cut_before_eye);
 }
 
-}  // namespace TEXGEN_COMPILER
-}  // namespace TEXGEN_NAMESPACE
+}  // namespace TEXGEN_NAMESPACE_COMPILER

@@ -30,8 +30,7 @@ inline bool are_same(const glm::dmat4& a, const glm::dmat4& b) noexcept {
 
 }  // namespace TEXGEN_DETAIL
 
-namespace TEXGEN_NAMESPACE {
-inline namespace TEXGEN_COMPILER {
+namespace TEXGEN_NAMESPACE_COMPILER {
 
 inline Scene::Scene(DepthMapping depth) noexcept : depth_(depth) {}
 
@@ -182,5 +181,4 @@ inline void Scene::merge_pairs(std::size_t kept) noexcept {
     }
 }
 
-}  // namespace TEXGEN_COMPILER
-}  // namespace TEXGEN_NAMESPACE
+}  // namespace TEXGEN_NAMESPACE_COMPILER

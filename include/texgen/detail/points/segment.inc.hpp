@@ -296,8 +296,7 @@ struct SegmentGroups {
 }  // namespace TEXGEN_BUILD
 }  // namespace TEXGEN_DETAIL
 
-namespace TEXGEN_NAMESPACE {
-inline namespace TEXGEN_COMPILER {
+namespace TEXGEN_NAMESPACE_COMPILER {
 
 inline Work work(const Segment& segment, TextureRegion region, Tolerance tolerance) noexcept {
     const glm::dvec4 a = detail::widened(segment.a);
@@ -336,9 +335,9 @@ inline glm::dvec2 error_bound(const Segment& segment, Tolerance tolerance) noexc
     return {bound(0), bound(1)};
 }
 
-}  // namespace TEXGEN_COMPILER
+}  // namespace TEXGEN_NAMESPACE_COMPILER
 
-inline namespace TEXGEN_BUILD {
+namespace TEXGEN_NAMESPACE_BUILD {
 
 template <class CompiledWhereCalled>
 void interpolate(const Segment& segment, std::span<const float> alpha, TextureRegion region, Texcoords out,
@@ -350,5 +349,4 @@ void interpolate(const Segment& segment, std::span<const float> alpha, TextureRe
     detail::for_each_group(out, alpha.size(), lit, detail::SegmentGroups<>{segment, alpha, lit, accepted});
 }
 
-}  // namespace TEXGEN_BUILD
-}  // namespace TEXGEN_NAMESPACE
+}  // namespace TEXGEN_NAMESPACE_BUILD

@@ -1,8 +1,7 @@
 // What a segment is divided as: its ends, the forms about them and about the asymptote, and their errors. Included by
 // segment.hpp.
 
-namespace TEXGEN_DETAIL {
-inline namespace TEXGEN_BUILD {
+namespace TEXGEN_DETAIL_BUILD {
 
 // The ends of two coordinates, or of one in both places.
 struct SegmentEnds {
@@ -103,5 +102,4 @@ struct LesserEnd {
     }
 };
 
-}  // namespace TEXGEN_BUILD
-}  // namespace TEXGEN_DETAIL
+}  // namespace TEXGEN_DETAIL_BUILD

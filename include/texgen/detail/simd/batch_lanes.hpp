@@ -12,10 +12,8 @@
 #undef TEXGEN_KERNELS
 
 #ifdef TEXGEN_SEPARATE_KERNELS
-namespace TEXGEN_DETAIL {
-inline namespace TEXGEN_BUILD {
+namespace TEXGEN_DETAIL_BUILD {
 TEXGEN_EXTERN template const BatchKernels& chosen<BatchKernels>() noexcept;
 TEXGEN_EXTERN template const BatchFootprintKernels& chosen<BatchFootprintKernels>() noexcept;
-}  // namespace TEXGEN_BUILD
-}  // namespace TEXGEN_DETAIL
+}  // namespace TEXGEN_DETAIL_BUILD
 #endif

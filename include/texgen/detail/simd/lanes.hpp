@@ -193,6 +193,9 @@ TEXGEN_INLINE Double2 leading_27_bits(const Double2& a) noexcept {
 
 #endif
 
+#define TEXGEN_DETAIL_BUILD TEXGEN_DETAIL::inline TEXGEN_BUILD
+#define TEXGEN_NAMESPACE_BUILD TEXGEN_NAMESPACE::inline TEXGEN_BUILD
+
 namespace TEXGEN_DETAIL {
 
 // Exactly a + b. As two_sum() of numbers.
@@ -240,8 +243,7 @@ inline Double2 last_two(const Double4& a) noexcept { return a.two[1]; }
 #include "instruction_sets.inc.hpp"
 #undef TEXGEN_KERNELS
 
-namespace TEXGEN_DETAIL {
-inline namespace TEXGEN_BUILD {
+namespace TEXGEN_DETAIL_BUILD {
 
 namespace of_flags = TEXGEN_FLAGS(flags_);
 
@@ -269,8 +271,7 @@ const Table& chosen() noexcept {
 
 struct ThisBuild;  // what members of a class of all builds are compiled for
 
-}  // namespace TEXGEN_BUILD
-}  // namespace TEXGEN_DETAIL
+}  // namespace TEXGEN_DETAIL_BUILD
 
 #ifdef TEXGEN_SEPARATE_KERNELS
 #ifdef TEXGEN_DEFINE_KERNELS
@@ -278,8 +279,7 @@ struct ThisBuild;  // what members of a class of all builds are compiled for
 #else
 #define TEXGEN_EXTERN extern
 #endif
-namespace TEXGEN_DETAIL {
-inline namespace TEXGEN_BUILD {
+namespace TEXGEN_DETAIL_BUILD {
 TEXGEN_EXTERN template const TileKernels& chosen<TileKernels>() noexcept;
 TEXGEN_EXTERN template const PointKernels& chosen<PointKernels>() noexcept;
 TEXGEN_EXTERN template const SegmentKernels& chosen<SegmentKernels>() noexcept;
@@ -292,6 +292,5 @@ TEXGEN_EXTERN template const SeparatingFormKernels& chosen<SeparatingFormKernels
 TEXGEN_EXTERN template const BoxKernels& chosen<BoxKernels>() noexcept;
 TEXGEN_EXTERN template const BoxBatchKernels& chosen<BoxBatchKernels>() noexcept;
 TEXGEN_EXTERN template const SphereKernels& chosen<SphereKernels>() noexcept;
-}  // namespace TEXGEN_BUILD
-}  // namespace TEXGEN_DETAIL
+}  // namespace TEXGEN_DETAIL_BUILD
 #endif

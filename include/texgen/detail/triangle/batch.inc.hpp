@@ -99,8 +99,7 @@ inline void describe(BatchJob& job, const TriangleBatch& batch, const Texcoords&
 }  // namespace TEXGEN_BUILD
 }  // namespace TEXGEN_DETAIL
 
-namespace TEXGEN_NAMESPACE {
-inline namespace TEXGEN_COMPILER {
+namespace TEXGEN_NAMESPACE_COMPILER {
 
 inline void TriangleBatch::take(std::span<const Triangle> triangles) noexcept {
     using detail::batch_block;
@@ -143,9 +142,9 @@ void TriangleBatch::assign_facing(std::span<const Triangle> triangles, TextureOr
     set_up<CompiledWhereCalled>();
 }
 
-}  // namespace TEXGEN_COMPILER
+}  // namespace TEXGEN_NAMESPACE_COMPILER
 
-inline namespace TEXGEN_BUILD {
+namespace TEXGEN_NAMESPACE_BUILD {
 
 template <class CompiledWhereCalled>
 void interpolate(const TriangleBatch& batch, std::span<const FragmentRect> rects, Texcoords out) noexcept {
@@ -174,5 +173,4 @@ void interpolate(const TriangleBatch& batch, std::span<const FragmentRect> rects
     }
 }
 
-}  // namespace TEXGEN_BUILD
-}  // namespace TEXGEN_NAMESPACE
+}  // namespace TEXGEN_NAMESPACE_BUILD

@@ -17,8 +17,7 @@
 #include "close_planes.hpp"
 #include "planes.hpp"
 
-namespace TEXGEN_DETAIL {
-inline namespace TEXGEN_BUILD {
+namespace TEXGEN_DETAIL_BUILD {
 
 // Columns of a tile, or rows.
 struct Stretch {
@@ -287,5 +286,4 @@ inline Coverage r_coverage(const Corners& at, const LitTest& lit, double toleran
     return coverage_by_sides(at, double2_of(min, min), double2_of(max, max), tolerance);
 }
 
-}  // namespace TEXGEN_BUILD
-}  // namespace TEXGEN_DETAIL
+}  // namespace TEXGEN_DETAIL_BUILD

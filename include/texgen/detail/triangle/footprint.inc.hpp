@@ -129,8 +129,7 @@ std::optional<FootprintExtremes> extremes_over(const FootprintFunctions& functio
 
 }  // namespace TEXGEN_DETAIL
 
-namespace TEXGEN_NAMESPACE {
-inline namespace TEXGEN_COMPILER {
+namespace TEXGEN_NAMESPACE_COMPILER {
 
 inline Footprint footprint_of(const glm::dvec2& dx, const glm::dvec2& dy, const TexelsPerUnit& texels) noexcept {
     const auto determinant = [&](double unit) {
@@ -219,5 +218,4 @@ inline double headlights(const Triangle& triangle) noexcept {
     return is_all_in_front ? 1.5 * std::log2(near_q / far_q) : detail::infinity;
 }
 
-}  // namespace TEXGEN_COMPILER
-}  // namespace TEXGEN_NAMESPACE
+}  // namespace TEXGEN_NAMESPACE_COMPILER

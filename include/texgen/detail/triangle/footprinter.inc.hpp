@@ -1,7 +1,6 @@
 // Footprints over a triangle's tiles, and the body of footprint(). Included by footprint.hpp.
 
-namespace TEXGEN_DETAIL {
-inline namespace TEXGEN_BUILD {
+namespace TEXGEN_DETAIL_BUILD {
 
 // The outputs of fragments from `first` on.
 inline void take_arrays(FootprintArrays& to, const Footprints& out, std::size_t first) noexcept {
@@ -197,11 +196,9 @@ inline bool footprint_tile(const FootprintSetup& setup, const Tile& tile, Footpr
     return footprint_tile(functions.mirrored(), texels, tile.mirrored(), out, always);
 }
 
-}  // namespace TEXGEN_BUILD
-}  // namespace TEXGEN_DETAIL
+}  // namespace TEXGEN_DETAIL_BUILD
 
-namespace TEXGEN_NAMESPACE {
-inline namespace TEXGEN_BUILD {
+namespace TEXGEN_NAMESPACE_BUILD {
 
 template <class CompiledWhereCalled>
 bool footprint(const FootprintSetup& setup, FragmentRect rect, Footprints out) noexcept {
@@ -211,5 +208,4 @@ bool footprint(const FootprintSetup& setup, FragmentRect rect, Footprints out) n
     return detail::footprint_tile(setup, detail::tile_of(rect), out);
 }
 
-}  // namespace TEXGEN_BUILD
-}  // namespace TEXGEN_NAMESPACE
+}  // namespace TEXGEN_NAMESPACE_BUILD

@@ -1,8 +1,7 @@
 // The outputs of a triangle, one after another, and the body of interpolate(). Included by interpolate.hpp. A column
 // that one certificate does not serve is a row of the mirrored triangle: vectors are parts of rows.
 
-namespace TEXGEN_DETAIL {
-inline namespace TEXGEN_BUILD {
+namespace TEXGEN_DETAIL_BUILD {
 
 // Takes the light of a tile's fragments whose r, which nobody asked for, is beyond the depth, which cuts it. It is
 // halved until the buffer holds it; of a half where nothing is lit, or all is in the depth, r is not computed.
@@ -90,11 +89,9 @@ TEXGEN_INLINE Work interpolate_tile(const TriangleSetup& setup, const Tile& tile
     return work_of(triangle, answer == SmallAnswer::lit && depth == Coverage::inside);
 }
 
-}  // namespace TEXGEN_BUILD
-}  // namespace TEXGEN_DETAIL
+}  // namespace TEXGEN_DETAIL_BUILD
 
-namespace TEXGEN_NAMESPACE {
-inline namespace TEXGEN_BUILD {
+namespace TEXGEN_NAMESPACE_BUILD {
 
 template <class CompiledWhereCalled>
 TEXGEN_INLINE Work interpolate(const TriangleSetup& setup, FragmentRect rect, Texcoords out) noexcept {
@@ -104,5 +101,4 @@ TEXGEN_INLINE Work interpolate(const TriangleSetup& setup, FragmentRect rect, Te
     return detail::interpolate_tile(setup, detail::tile_of(rect), out);
 }
 
-}  // namespace TEXGEN_BUILD
-}  // namespace TEXGEN_NAMESPACE
+}  // namespace TEXGEN_NAMESPACE_BUILD

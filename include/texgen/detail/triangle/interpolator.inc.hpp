@@ -1,7 +1,6 @@
 // A triangle's tiles from one tier to the next. Included by interpolate.hpp.
 
-namespace TEXGEN_DETAIL {
-inline namespace TEXGEN_BUILD {
+namespace TEXGEN_DETAIL_BUILD {
 
 // Interpolates up to two coordinates, and the mask, of a triangle into the caller's arrays.
 template <class CompiledWhereCalled = void>
@@ -396,5 +395,4 @@ private:
     float scratch_[2][scratch_width];  // coordinates that only the mask needs, a row at a time
 };
 
-}  // namespace TEXGEN_BUILD
-}  // namespace TEXGEN_DETAIL
+}  // namespace TEXGEN_DETAIL_BUILD

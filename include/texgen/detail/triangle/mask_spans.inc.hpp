@@ -2,8 +2,7 @@
 // fragments is one span. Its ends are found by a division for all rows, and no fragment is divided. Included by
 // interpolate.hpp.
 
-namespace TEXGEN_DETAIL {
-inline namespace TEXGEN_BUILD {
+namespace TEXGEN_DETAIL_BUILD {
 
 // Fragments of a row, from `begin` to before `end`.
 struct Span {
@@ -132,5 +131,4 @@ TEXGEN_APART inline Tile light_spans(const TriangleFunctions& triangle, const Ti
     return 4 * part.count() > tile.count() ? tile : part;
 }
 
-}  // namespace TEXGEN_BUILD
-}  // namespace TEXGEN_DETAIL
+}  // namespace TEXGEN_DETAIL_BUILD

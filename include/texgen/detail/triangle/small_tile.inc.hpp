@@ -1,8 +1,7 @@
 // Small tiles that need no more than one certificate from their corners: no plan, no chunks, no job of many fields.
 // Included by interpolate.hpp.
 
-namespace TEXGEN_DETAIL {
-inline namespace TEXGEN_BUILD {
+namespace TEXGEN_DETAIL_BUILD {
 
 // Whether a tile goes by this path. Rows that are shorter than vectors are gathered in a buffer. The more fragments a
 // tile has, the likelier one is in doubt, and then all are divided again; and in long rows vectors that follow one
@@ -217,5 +216,4 @@ inline Work work_of(const TriangleFunctions& triangle, bool is_lit) noexcept {
     return is_constant(triangle.q.value) ? Work::affine : is_lit ? Work::divide : Work::divide_and_test;
 }
 
-}  // namespace TEXGEN_BUILD
-}  // namespace TEXGEN_DETAIL
+}  // namespace TEXGEN_DETAIL_BUILD

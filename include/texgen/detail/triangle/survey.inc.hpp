@@ -1,8 +1,7 @@
 // What is known of a tile before it is divided, what it gets, and the bodies of TriangleSetup. Included by
 // interpolate.hpp.
 
-namespace TEXGEN_DETAIL {
-inline namespace TEXGEN_BUILD {
+namespace TEXGEN_DETAIL_BUILD {
 
 // What a tile gets: the work; under a tolerance the length of its chunks (0: none), and the rule that serves them all
 // with a bound on the error of s and of t, if there is one (chunks.inc.hpp).
@@ -124,11 +123,9 @@ TEXGEN_APART inline TileSurvey survey(const TriangleFunctions& triangle, const T
     }
 }
 
-}  // namespace TEXGEN_BUILD
-}  // namespace TEXGEN_DETAIL
+}  // namespace TEXGEN_DETAIL_BUILD
 
-namespace TEXGEN_NAMESPACE {
-inline namespace TEXGEN_COMPILER {
+namespace TEXGEN_NAMESPACE_COMPILER {
 
 inline std::optional<TriangleSetup> TriangleSetup::of(const Triangle& triangle, TextureRegion region,
                                                       Tolerance tolerance) noexcept {
@@ -156,5 +153,4 @@ inline glm::dvec2 TriangleSetup::error_bound(FragmentRect rect) const noexcept {
     return {bound(0), bound(1)};
 }
 
-}  // namespace TEXGEN_COMPILER
-}  // namespace TEXGEN_NAMESPACE
+}  // namespace TEXGEN_NAMESPACE_COMPILER

@@ -1,7 +1,6 @@
 // A job unit by unit, and chunk by chunk, by the kernels of any instruction set. Included by interpolate.hpp.
 
-namespace TEXGEN_DETAIL {
-inline namespace TEXGEN_BUILD {
+namespace TEXGEN_DETAIL_BUILD {
 
 // Does the units from the given one on up to the first with fragments in doubt, and says which. Where none is, more and
 // more of them are done at once, `most` fragments at most, and one by one after what is in doubt then; or all in pairs,
@@ -63,5 +62,4 @@ void fill_polynomial(const TileKernels& kernels, const TileJob& job, TileJob::Un
     }
 }
 
-}  // namespace TEXGEN_BUILD
-}  // namespace TEXGEN_DETAIL
+}  // namespace TEXGEN_DETAIL_BUILD

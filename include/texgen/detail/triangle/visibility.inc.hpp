@@ -1,8 +1,7 @@
 // A visibility buffer of a batch's triangles: its long runs of one id to set-ups, what is between them to kernels, and
 // their doubt to set-ups again. Included by batch.hpp.
 
-namespace TEXGEN_DETAIL {
-inline namespace TEXGEN_BUILD {
+namespace TEXGEN_DETAIL_BUILD {
 
 inline void describe(VisibilityBuffer& buffer, const TriangleBatch& batch, std::span<const std::uint32_t> ids,
                      const FragmentRect& rect) noexcept {
@@ -206,11 +205,9 @@ private:
     Recent<FootprintSetup> recent_;
 };
 
-}  // namespace TEXGEN_BUILD
-}  // namespace TEXGEN_DETAIL
+}  // namespace TEXGEN_DETAIL_BUILD
 
-namespace TEXGEN_NAMESPACE {
-inline namespace TEXGEN_BUILD {
+namespace TEXGEN_NAMESPACE_BUILD {
 
 template <class CompiledWhereCalled>
 void interpolate(const TriangleBatch& batch, std::span<const std::uint32_t> ids, FragmentRect rect,
@@ -240,5 +237,4 @@ void footprint(const TriangleBatch& batch, std::span<const std::uint32_t> ids, F
     detail::BatchFootprinter<>(batch, ids, rect, texels, out).fill_all();
 }
 
-}  // namespace TEXGEN_BUILD
-}  // namespace TEXGEN_NAMESPACE
+}  // namespace TEXGEN_NAMESPACE_BUILD
