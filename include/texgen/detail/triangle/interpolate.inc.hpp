@@ -60,14 +60,15 @@ TEXGEN_APART Work interpolate_by_plan(const TriangleFunctions& triangle, const T
     if (is_inside && !out.lit.empty()) chosen<MaskKernels>().light_all(out.lit.data(), out.lit.size());
     const bool asks_mask = !is_inside && !out.lit.empty();
     if (!out.s.empty() && !out.t.empty()) {
-        TileInterpolator<> interpolator(triangle, tile, found.close, out);
+        TileInterpolator<> interpolator(triangle, triangle.st, tile, found.close, 0, 1, out);
         if (is_inside) interpolator.leave_mask();
         interpolator.interpolate(tile, found.at, plan);
     } else {
         interpolate_alone(triangle, tile, 0, out.s, &plan);
         interpolate_alone(triangle, tile, 1, out.t, &plan);
         const Tile left = asks_mask ? light_spans(triangle, tile, found.at, out.lit) : Tile{};
-        if (left.count() > 0) TileInterpolator<>(triangle, tile, found.close, out).interpolate_in_strips(left, plan);
+        if (left.count() > 0)
+            TileInterpolator<>(triangle, triangle.st, tile, found.close, 0, 1, out).interpolate_in_strips(left, plan);
     }
     interpolate_alone(triangle, tile, 2, out.r, nullptr);
     if (plan.depth != Coverage::inside) darken_beyond_depth(triangle, tile, out);

@@ -8,29 +8,19 @@ class TileInterpolator {
 public:
     static constexpr int scratch_width = 512;
 
-    // s and t; one that only the mask needs has no output. `close` are their functions in two doubles, empty until a
-    // tile needs them.
-    TEXGEN_APART TileInterpolator(const TriangleFunctions& triangle, const Tile& rect, OnDemand<CloseRamps>& close,
+    // The coordinates of these planes, s and t, of which one that only the mask needs has no output; or one alone, in both
+    // places, that goes to out.s. `close` are their functions in two doubles, empty until a tile needs them.
+    TEXGEN_APART TileInterpolator(const TriangleFunctions& triangle, const PlaneOf<Double2>& planes, const Tile& rect,
+                                  OnDemand<CloseRamps>& close, glm::length_t first, glm::length_t second,
                                   const Texcoords& out) noexcept
         : triangle_(triangle),
           rect_(rect),
-          count_(2),
-          coordinate_{0, 1},
-          planes_(&triangle.st),
+          count_(first == second ? 1 : 2),
+          coordinate_{first, second},
+          planes_(&planes),
           close_(close),
           output_{out.s, out.t},
           lit_(out.lit) {}
-    // One coordinate, 0 to 2 for s, t, r.
-    TEXGEN_APART TileInterpolator(const TriangleFunctions& triangle, const Tile& rect, OnDemand<CloseRamps>& close,
-                                  glm::length_t coordinate, const std::span<float>& output) noexcept
-        : triangle_(triangle),
-          rect_(rect),
-          count_(1),
-          coordinate_{coordinate, coordinate},
-          planes_(&alone_),
-          alone_(triangle.planes.plane_twice(coordinate)),
-          close_(close),
-          output_{output} {}
 
     // For a mask that is known already.
     void leave_mask() noexcept { lit_ = {}; }
@@ -383,7 +373,6 @@ private:
     std::size_t count_;
     glm::length_t coordinate_[2];
     const PlaneOf<Double2>* planes_;
-    PlaneOf<Double2> alone_;
     OnDemand<CloseRamps>& close_;
     Tile whole_;  // what is being interpolated, and its corners
     const Corners* whole_at_;

@@ -153,7 +153,8 @@ TEXGEN_APART void interpolate_alone(const TriangleFunctions& triangle, const Til
     if (output.empty()) return;
     if (rect.is_column()) return interpolate_alone(triangle.mirrored(), rect.mirrored(), coordinate, output, plan);
     OnDemand<CloseRamps> close;
-    TileInterpolator<>(triangle, rect, close, coordinate, output).interpolate(rect, plan);
+    TileInterpolator<>(triangle, triangle.planes.plane_twice(coordinate), rect, close, coordinate, coordinate, {output})
+        .interpolate(rect, plan);
 }
 
 // The same for a small tile; the one coordinate takes the place of both.
@@ -168,7 +169,7 @@ TEXGEN_APART void fill_small_alone(const TriangleFunctions& triangle, const Tile
     if (doubt == SmallDoubt::none) return;
     if (doubt == SmallDoubt::of_all) return interpolate_alone(triangle, rect, coordinate, output, nullptr);
     OnDemand<CloseRamps> close;
-    TileInterpolator<>(triangle, rect, close, coordinate, output).interpolate_from_doubt(rect);
+    TileInterpolator<>(triangle, plane, rect, close, coordinate, coordinate, {output}).interpolate_from_doubt(rect);
 }
 
 // s, t, r and the mask of a small tile, if one certificate serves all of s and t that is asked for.
@@ -200,7 +201,7 @@ TEXGEN_APART SmallAnswer fill_small(const TriangleFunctions& triangle, const Til
         if (doubt == SmallDoubt::of_all) return SmallAnswer::doubt;
         if (doubt == SmallDoubt::of_unit) {
             OnDemand<CloseRamps> close;
-            TileInterpolator<>(triangle, rect, close, both).interpolate_from_doubt(rect);
+            TileInterpolator<>(triangle, triangle.st, rect, close, 0, 1, both).interpolate_from_doubt(rect);
         }
     } else {
         if (needs_mask) return SmallAnswer::doubt;
