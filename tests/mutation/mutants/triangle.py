@@ -144,7 +144,7 @@ TRIANGLE = [
         ("a refused triangle is in front", "result.value[BatchPlanes::q] = -1.0;",
          "result.value[BatchPlanes::q] = 1.0;", "batch_test")),
     *of("detail/triangle/visibility.inc.hpp",
-        ("an id beyond the batch has a footprint", "        if (id >= batch_.size()) return clear(here);\n", "", "batch_test"),
+        ("an id beyond the batch has a footprint", "        if (id >= batch.size()) return clear(here);\n        const auto& setup", "        const auto& setup", "batch_test"),
         ("runs of one id go on in the next row", "(std::min)((row + 1) * width, first + count)",
          "first + count", "batch_test"),
         ("a long run begins where its probe does", "while (begin > row && ids[begin - 1] == id) --begin;", "", "batch_test"),

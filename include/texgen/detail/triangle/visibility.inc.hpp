@@ -145,65 +145,45 @@ inline void describe(BatchFootprintsJob& job, const TriangleBatch& batch, std::s
     job.count = ids.size();
     job.texels[0] = texels.s;
     job.texels[1] = texels.t;
-    job.per_texel[0] = static_cast<float>(1.0 / texels.s);
-    job.per_texel[1] = static_cast<float>(1.0 / texels.t);
+    for (std::size_t k = 0; k < 2; ++k) job.per_texel[k] = static_cast<float>(1.0 / job.texels[k]);
     take_arrays(job, out, 0);
 }
 
 // The footprints of a visibility buffer: of long runs by set-ups, of others in lanes, and by set-ups what these leave.
 template <class CompiledWhereCalled = void>
-class BatchFootprinter {
-public:
-    BatchFootprinter(const TriangleBatch& batch, std::span<const std::uint32_t> ids, const FragmentRect& rect,
-                     const TexelsPerUnit& texels, const Footprints& out) noexcept
-        : batch_(batch), ids_(ids), rect_(rect), texels_(texels), out_(out) {}
-
-    void fill_all() noexcept {
-        for_each_stretch(
-            ids_, static_cast<std::size_t>(rect_.width),
-            [&](std::size_t first, std::size_t length) {
-                fill_run(ids_[first], part_of(rect_, first, length), first, false);
-            },
-            [&](std::size_t begin, std::size_t end) { fill_in_lanes(begin, end); });
-    }
-
-private:
-    // Whether the kernel may have their reciprocals, times 2^100, in float.
-    static bool are_ordinary(const TexelsPerUnit& texels) noexcept {
-        return texels.s > 0x1p-24 && texels.s < 0x1p24 && texels.t > 0x1p-24 && texels.t < 0x1p24;
-    }
-
-    void fill_in_lanes(std::size_t begin, std::size_t end) noexcept {
-        BatchFootprintsJob job{};
-        describe(job, batch_, ids_, rect_, texels_, out_);
-        const auto run = [&](std::uint32_t id, const Tile& part, std::size_t first) {
-            fill_run(id, part, first, true);
-        };
-        if (job.are_filtered() && !are_ordinary(texels_))
-            return for_each_run(
-                ids_, rect_, begin, end - begin, [](std::size_t) { return true; }, run);
-        fill_buffer(chosen<BatchFootprintKernels>().fill, job, rect_, begin, end, run);
-    }
-
+void footprint_ids(const TriangleBatch& batch, std::span<const std::uint32_t> ids, const FragmentRect& rect,
+                   const TexelsPerUnit& texels, const Footprints& out) noexcept {
+    Recent<FootprintSetup> recent;
     // Fills a run by a set-up: if `always`, also where nothing of it is lit; else that is cleared.
-    void fill_run(std::uint32_t id, const Tile& part, std::size_t first, bool always) noexcept {
-        Footprints here = subspans(out_, first, static_cast<std::size_t>(part.count()));
-        if (id >= batch_.size()) return clear(here);
-        const auto& setup = recent_.of(id, [&]() -> std::optional<FootprintSetup> {
-            const auto triangle = set_up(batch_, id);
+    const auto fill_run = [&](std::uint32_t id, const Tile& part, std::size_t first, bool always) {
+        Footprints here = subspans(out, first, static_cast<std::size_t>(part.count()));
+        if (id >= batch.size()) return clear(here);
+        const auto& setup = recent.of(id, [&]() -> std::optional<FootprintSetup> {
+            const auto triangle = set_up(batch, id);
             if (!triangle) return std::nullopt;
-            return FootprintSetup(*triangle, texels_);
+            return FootprintSetup(*triangle, texels);
         });
         if (!setup || (!footprint_tile(*setup, part, here, always) && !always)) clear(here);
-    }
-
-    const TriangleBatch& batch_;
-    std::span<const std::uint32_t> ids_;
-    FragmentRect rect_;
-    TexelsPerUnit texels_;
-    Footprints out_;
-    Recent<FootprintSetup> recent_;
-};
+    };
+    const auto fill_in_doubt = [&](std::uint32_t id, const Tile& part, std::size_t first) {
+        fill_run(id, part, first, true);
+    };
+    // Whether the kernel may have their reciprocals, times 2^100, in float.
+    const bool are_ordinary = texels.s > 0x1p-24 && texels.s < 0x1p24 && texels.t > 0x1p-24 && texels.t < 0x1p24;
+    for_each_stretch(
+        ids, static_cast<std::size_t>(rect.width),
+        [&](std::size_t first, std::size_t length) {
+            fill_run(ids[first], part_of(rect, first, length), first, false);
+        },
+        [&](std::size_t begin, std::size_t end) {
+            BatchFootprintsJob job{};
+            describe(job, batch, ids, rect, texels, out);
+            if (job.are_filtered() && !are_ordinary)
+                return for_each_run(
+                    ids, rect, begin, end - begin, [](std::size_t) { return true; }, fill_in_doubt);
+            fill_buffer(chosen<BatchFootprintKernels>().fill, job, rect, begin, end, fill_in_doubt);
+        });
+}
 
 }  // namespace TEXGEN_DETAIL_BUILD
 
@@ -234,7 +214,7 @@ void footprint(const TriangleBatch& batch, std::span<const std::uint32_t> ids, F
     TEXGEN_ASSERT(ids.size() == count);
     if (ids.size() != count || !detail::take_computed(out, count)) return;
     if (batch.size() == 0) return detail::clear(out);
-    detail::BatchFootprinter<>(batch, ids, rect, texels, out).fill_all();
+    detail::footprint_ids(batch, ids, rect, texels, out);
 }
 
 }  // namespace TEXGEN_NAMESPACE_BUILD
