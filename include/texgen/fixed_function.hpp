@@ -127,7 +127,7 @@ private:
         glm::vec4 object_plane{0.0f};
         glm::vec4 eye_plane{0.0f};
     };
-    class EyeSpace;
+    struct EyeSpace;
 
     CoordinateState* find(Coordinate coordinate) noexcept;        // null for no coordinate
     CoordinateState state(Coordinate coordinate) const noexcept;  // off and zero for no coordinate

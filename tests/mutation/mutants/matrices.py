@@ -95,7 +95,7 @@ MATRICES = [
         ("reflection turns the other way", "scale * scale - n * (2.0", "scale * scale + n * (2.0",
          "fixed_function_test"),
         ("the sphere map is not halved", "0.5 + 0.5 * detail::smaller", "0.5 + detail::smaller", "fixed_function_test"),
-        ("normals by M", "rescale_ = detail::times_power_of_two(1.0 / detail::", "rescale_ = detail::times_power_of_two(1.0 * detail::",
+        ("normals by M", "rescale = detail::times_power_of_two(1.0 / detail::", "rescale = detail::times_power_of_two(1.0 * detail::",
          "fixed_function_test"),
         ("sphere map for r", "mode == TexGenMode::sphere_map ? 2 :", "mode == TexGenMode::sphere_map ? 3 :", "fixed_function_test"),
         ("the eye vector is divided by w", "direction({eye.x, eye.y, eye.z});",

@@ -48,66 +48,57 @@ namespace TEXGEN_NAMESPACE {
 
 // The way from object space to the eye, and what else many vertices share, prepared once for a MODELVIEW, as far as the
 // unit's modes need it.
-class TexGenUnit::EyeSpace {
-public:
+struct TexGenUnit::EyeSpace {
+    bool wants_position = false, wants_normal = false, wants_reflection = false;
+    NormalScaling scaling;
+    glm::dmat4 rows;
+    glm::dvec4 planes[4];
+    glm::dmat3 inverse{1.0};  // the upper 3x3 of M^-1
+    double rescale = 1.0;
+    glm::dmat4 texture_rows;
+    bool has_texture_matrix;
+
     EyeSpace(const glm::mat4& modelview, const TexGenUnit& unit) noexcept
-        : scaling_(unit.normal_scaling_),
-          rows_(detail::widened(glm::transpose(modelview))),
-          texture_rows_(detail::widened(glm::transpose(unit.texture_matrix_))),
-          has_texture_matrix_(unit.texture_matrix_ != glm::mat4(1.0f)) {
+        : scaling(unit.normal_scaling_),
+          rows(detail::widened(glm::transpose(modelview))),
+          texture_rows(detail::widened(glm::transpose(unit.texture_matrix_))),
+          has_texture_matrix(unit.texture_matrix_ != glm::mat4(1.0f)) {
         for (std::size_t i = 0; i < unit.states_.size(); ++i) {
             const CoordinateState& coordinate = unit.states_[i];
             const bool is_of_object = coordinate.mode == TexGenMode::object_linear;
-            planes_[i] = detail::widened(is_of_object ? coordinate.object_plane : coordinate.eye_plane);
+            planes[i] = detail::widened(is_of_object ? coordinate.object_plane : coordinate.eye_plane);
             if (!coordinate.enabled) continue;
             const bool is_reflected =
                 coordinate.mode == TexGenMode::sphere_map || coordinate.mode == TexGenMode::reflection_map;
-            wants_position_ = wants_position_ || coordinate.mode == TexGenMode::eye_linear || is_reflected;
-            wants_normal_ = wants_normal_ || detail::uses_normal(coordinate.mode);
-            wants_reflection_ = wants_reflection_ || is_reflected;
+            wants_position = wants_position || coordinate.mode == TexGenMode::eye_linear || is_reflected;
+            wants_normal = wants_normal || detail::uses_normal(coordinate.mode);
+            wants_reflection = wants_reflection || is_reflected;
         }
-        if (!wants_normal_) return;
-        const detail::CertifiedInverse inverse(detail::widened(modelview));
-        inverse_ = glm::dmat3(inverse.is_regular() ? inverse.matrix() : glm::dmat4(detail::nan));
-        const glm::dvec3 third_row(inverse_[0][2], inverse_[1][2], inverse_[2][2]);
+        if (!wants_normal) return;
+        const detail::CertifiedInverse certified(detail::widened(modelview));
+        inverse = glm::dmat3(certified.is_regular() ? certified.matrix() : glm::dmat4(detail::nan));
+        const glm::dvec3 third_row(inverse[0][2], inverse[1][2], inverse[2][2]);
         const double size = detail::largest(third_row);
         // A zero row has no scale to take away; only a projective M has one.
         if (size > 0.0) {
             const int exponent = detail::exponent_of(size);
             const glm::dvec3 near_one = detail::times_power_of_two(third_row, -exponent);
-            rescale_ = detail::times_power_of_two(1.0 / detail::length(near_one), -exponent);
+            rescale = detail::times_power_of_two(1.0 / detail::length(near_one), -exponent);
         }
     }
 
-    bool wants_position() const noexcept { return wants_position_; }
-    bool wants_normal() const noexcept { return wants_normal_; }
-    bool wants_reflection() const noexcept { return wants_reflection_; }
-    bool has_texture_matrix() const noexcept { return has_texture_matrix_; }
-    const glm::dmat4& texture_rows() const noexcept { return texture_rows_; }
-    const glm::dvec4& plane(std::size_t i) const noexcept { return planes_[i]; }
-
     glm::dvec4 position(const glm::dvec4& position) const noexcept {
-        return {detail::cancelling_dot(rows_[0], position), detail::cancelling_dot(rows_[1], position),
-                detail::cancelling_dot(rows_[2], position), detail::cancelling_dot(rows_[3], position)};
+        return {detail::cancelling_dot(rows[0], position), detail::cancelling_dot(rows[1], position),
+                detail::cancelling_dot(rows[2], position), detail::cancelling_dot(rows[3], position)};
     }
 
     // Under the unit's normal scaling.
     glm::dvec3 normal(const glm::dvec3& row) const noexcept {
-        const glm::dvec3 result(detail::plain_dot(row, inverse_[0]), detail::plain_dot(row, inverse_[1]),
-                                detail::plain_dot(row, inverse_[2]));
-        if (scaling_ == NormalScaling::rescale) return result * rescale_;
-        return scaling_ == NormalScaling::normalize ? detail::direction(result) : result;
+        const glm::dvec3 result(detail::plain_dot(row, inverse[0]), detail::plain_dot(row, inverse[1]),
+                                detail::plain_dot(row, inverse[2]));
+        if (scaling == NormalScaling::rescale) return result * rescale;
+        return scaling == NormalScaling::normalize ? detail::direction(result) : result;
     }
-
-private:
-    bool wants_position_ = false, wants_normal_ = false, wants_reflection_ = false;
-    NormalScaling scaling_;
-    glm::dmat4 rows_;
-    glm::dvec4 planes_[4];
-    glm::dmat3 inverse_{1.0};  // the upper 3x3 of M^-1
-    double rescale_ = 1.0;
-    glm::dmat4 texture_rows_;
-    bool has_texture_matrix_;
 };
 
 inline TexGenUnit::CoordinateState* TexGenUnit::find(Coordinate coordinate) noexcept {
@@ -160,15 +151,15 @@ inline void TexGenUnit::set_normal_scaling(NormalScaling scaling) noexcept {
 TEXGEN_APART inline glm::vec4 TexGenUnit::generate(const FixedFunctionVertex& vertex,
                                                    const EyeSpace& eye_space) const noexcept {
     const glm::dvec4 position = detail::widened(vertex.position);
-    const glm::dvec4 eye = eye_space.wants_position() ? eye_space.position(position) : glm::dvec4(0.0);
+    const glm::dvec4 eye = eye_space.wants_position ? eye_space.position(position) : glm::dvec4(0.0);
 
     // With n k near 1 at most, k a power of two, the reflection is held as r k^2, because a normal under a tiny scale
     // can be too long to square. r + (0, 0, 1) is m/2 long, so its direction halved is what the sphere map adds to 1/2:
     // no square root of a difference, and zero where m is.
     glm::dvec3 normal(0.0), scaled_reflection(0.0), sphere(0.0);
     double per_scale = 1.0;
-    if (eye_space.wants_normal()) normal = eye_space.normal(detail::widened(vertex.normal));
-    if (eye_space.wants_reflection()) {
+    if (eye_space.wants_normal) normal = eye_space.normal(detail::widened(vertex.normal));
+    if (eye_space.wants_reflection) {
         const double scale = detail::smaller(detail::reciprocal_size(normal), 1.0);
         per_scale = 1.0 / scale;
         const glm::dvec3 n = normal * scale;
@@ -182,16 +173,16 @@ TEXGEN_APART inline glm::vec4 TexGenUnit::generate(const FixedFunctionVertex& ve
         if (!states_[k].enabled) continue;
         const auto i = static_cast<glm::length_t>(k);
         const TexGenMode mode = states_[k].mode;
-        generated[i] = mode == TexGenMode::object_linear ? detail::cancelling_dot(eye_space.plane(k), position)
-                       : mode == TexGenMode::eye_linear  ? detail::plain_dot(eye_space.plane(k), eye)
+        generated[i] = mode == TexGenMode::object_linear ? detail::cancelling_dot(eye_space.planes[k], position)
+                       : mode == TexGenMode::eye_linear  ? detail::plain_dot(eye_space.planes[k], eye)
                        : mode == TexGenMode::sphere_map
                            ? 0.5 + 0.5 * detail::smaller(1.0, detail::larger(-1.0, sphere[i]))
                        : mode == TexGenMode::reflection_map ? scaled_reflection[i] * per_scale * per_scale
                                                             : normal[i];
     }
     // The identity is left out, so that a NaN stays in its coordinate.
-    if (!eye_space.has_texture_matrix()) return glm::vec4(generated);
-    const glm::dmat4& rows = eye_space.texture_rows();
+    if (!eye_space.has_texture_matrix) return glm::vec4(generated);
+    const glm::dmat4& rows = eye_space.texture_rows;
     return {detail::plain_dot(rows[0], generated), detail::plain_dot(rows[1], generated),
             detail::plain_dot(rows[2], generated), detail::plain_dot(rows[3], generated)};
 }
