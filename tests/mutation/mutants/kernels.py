@@ -44,7 +44,7 @@ KERNELS = [
         ("where a mask is lit at once other outputs are not divided", "(is_mask_alone && tiles.has", "(tiles.has", "batch_test"),
         ("tiles are never in doubt", "least = nearer(least, quotient[0][k], quotient[1][k], ulps);",
          "", "batch_test near_ties_test"),
-        ("a vector alone shares a division with what is beyond its tile", "step = Doubles{};", "step = step * 1.0;",
+        ("a vector alone shares a division with what is beyond its tile", "of_function = Doubles{};", "of_function = of_function * 1.0;",
          "batch_test near_ties_test"),
         ("the last vector of a row reaches into the next one", "begin + 2 * at_once <= pitch ? at_once : pitch - at_once - begin;",
          "at_once;", "batch_test"),

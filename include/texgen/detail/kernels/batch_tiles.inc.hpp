@@ -38,28 +38,6 @@ TEXGEN_APART bool divide_tile(const BatchPlanes& planes, const BatchTiles& tiles
     return !any(doubtful);
 }
 
-// A column of vectors, from which to which the functions grow by steps.
-template <std::size_t Numerators>
-struct TileColumn {
-    Doubles value[Numerators + 1], step[Numerators + 1];
-
-    TEXGEN_INLINE void divide(const Doubles& reciprocal, Doubles (&quotient)[Numerators]) noexcept {
-        TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k) {
-            quotient[k] = value[k] * reciprocal;
-            value[k] = value[k] + step[k];
-        }
-    }
-    // Two vectors by one division.
-    TEXGEN_INLINE void divide(Doubles (&first)[Numerators], Doubles (&second)[Numerators]) noexcept {
-        const Doubles q = value[Numerators];
-        const Doubles next_q = q + step[Numerators];
-        const SharedDivision division(q, next_q);
-        value[Numerators] = next_q + step[Numerators];
-        divide(division.reciprocal[0], first);
-        divide(division.reciprocal[1], second);
-    }
-};
-
 // The same for a tile whose shape is_whole and whose quotients are normal floats. The last vector of a row may overlap
 // the one before.
 template <std::size_t Numerators, bool HasWholeRows>
@@ -74,19 +52,28 @@ TEXGEN_APART bool divide_whole_tile(const BatchPlanes& planes, const BatchTiles&
     Doubles x = shape.x;
     Distances least = far_from_middles();
     for (std::size_t begin = 0;;) {
-        TileColumn<Numerators> column;
+        // A column of vectors, from which to which the functions grow by steps; two by one division.
+        Doubles value[Numerators + 1], step[Numerators + 1];
         TEXGEN_FOR (std::size_t k = 0; k <= Numerators; ++k) {
-            column.value[k] = f.at(k, x, shape.y);
-            column.step[k] = Doubles{} + f.down[k] * rows;
+            value[k] = f.at(k, x, shape.y);
+            step[k] = Doubles{} + f.down[k] * rows;
         }
         std::size_t to_next = pitch;
         for (std::size_t n = begin; n < end; n += 2 * pitch) {
             if (n + pitch >= end) {  // one alone, twice
                 to_next = 0;
-                TEXGEN_FOR (Doubles& step : column.step) step = Doubles{};
+                TEXGEN_FOR (Doubles& of_function : step) of_function = Doubles{};
             }
+            const Doubles q = value[Numerators], next_q = q + step[Numerators];
+            const SharedDivision division(q, next_q);
+            value[Numerators] = next_q + step[Numerators];
             Doubles quotient[2][Numerators];
-            column.divide(quotient[0], quotient[1]);
+            TEXGEN_FOR (std::size_t j = 0; j < 2; ++j) {
+                TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k) {
+                    quotient[j][k] = value[k] * division.reciprocal[j];
+                    value[k] = value[k] + step[k];
+                }
+            }
             TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k)
                 least = nearer(least, quotient[0][k], quotient[1][k], ulps);
             TEXGEN_FOR (std::size_t j = 0; j < 2; ++j) {
@@ -96,9 +83,9 @@ TEXGEN_APART bool divide_whole_tile(const BatchPlanes& planes, const BatchTiles&
             }
         }
         if (HasWholeRows || begin + at_once == pitch) break;
-        const std::size_t step = begin + 2 * at_once <= pitch ? at_once : pitch - at_once - begin;
-        begin += step;
-        x = x + static_cast<double>(step);
+        const std::size_t to_right = begin + 2 * at_once <= pitch ? at_once : pitch - at_once - begin;
+        begin += to_right;
+        x = x + static_cast<double>(to_right);
     }
     return !any_zero(least);
 }
