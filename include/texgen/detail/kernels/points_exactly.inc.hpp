@@ -51,7 +51,7 @@ TEXGEN_APART std::uint64_t fill_block_again(const PointJob& job, const PointTerm
     std::uint64_t doubtful = 0;
     for (std::size_t i = begin; i < end; i += at_once) {
         const PointLanes at = load_points(job, i);
-        const PointSizes sizes(at);
+        const PointLanes sizes = sizes_of(at);
         const LongWords are_dark = terms.are_dark(at);
         Floats value[2];
         Words in_front{};
@@ -82,7 +82,7 @@ TEXGEN_APART std::uint64_t fill_block_again(const PointJob& job, const PointTerm
             effort.in_vain = is_decided ? 0 : effort.in_vain + 1;
         }
         while (!is_decided) {
-            const PointGrains grains(sizes);
+            const PointLanes grains = grains_of(sizes);
             TwofoldDivisor q(terms.q.at(at, sizes, effort.precisely[2], grains));
             q.in_front &= ~are_dark;
             in_front = narrow(q.in_front);

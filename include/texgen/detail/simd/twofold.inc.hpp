@@ -50,18 +50,12 @@ TEXGEN_INLINE Doubles last_bits(const Doubles& size) noexcept {
 }
 
 // The magnitudes of coordinates, and their last bits.
-struct PointSizes {
-    Doubles size[3];
-
-    TEXGEN_INLINE explicit PointSizes(const PointLanes& at) noexcept
-        : size{magnitude(at.v[0]), magnitude(at.v[1]), magnitude(at.v[2])} {}
-};
-struct PointGrains {
-    Doubles grain[3];
-
-    TEXGEN_INLINE explicit PointGrains(const PointSizes& of) noexcept
-        : grain{last_bits(of.size[0]), last_bits(of.size[1]), last_bits(of.size[2])} {}
-};
+TEXGEN_INLINE PointLanes sizes_of(const PointLanes& at) noexcept {
+    return {{magnitude(at.v[0]), magnitude(at.v[1]), magnitude(at.v[2])}};
+}
+TEXGEN_INLINE PointLanes grains_of(const PointLanes& sizes) noexcept {
+    return {{last_bits(sizes.v[0]), last_bits(sizes.v[1]), last_bits(sizes.v[2])}};
+}
 
 // The value of a form at points. A coefficient is split in two, so that both products with a float are exact.
 struct TwofoldForm {
@@ -92,14 +86,14 @@ struct TwofoldForm {
         }
     }
 
-    TEXGEN_INLINE Doubles error_at(const PointSizes& of) const noexcept {
-        return (of.size[0] * size[0] + (of.size[1] * size[1] + (of.size[2] * size[2] + size_of_w))) * gamma(5);
+    TEXGEN_INLINE Doubles error_at(const PointLanes& of) const noexcept {
+        return (of.v[0] * size[0] + (of.v[1] * size[1] + (of.v[2] * size[2] + size_of_w))) * gamma(5);
     }
 
     // The floats nearest to the sums of a finite form, which are quotients where q is 1. What the leading products
     // leave of theirs, and the others, are six numbers; where all are 0, as of most ties, nothing is lost. A sum that is
     // the middle of two floats but for these is on their side of it. `is_known` loses the lanes in doubt.
-    TEXGEN_INLINE Floats nearest_at(const PointLanes& at, const PointSizes& of, LongWords& is_known) const noexcept {
+    TEXGEN_INLINE Floats nearest_at(const PointLanes& at, const PointLanes& of, LongWords& is_known) const noexcept {
         const RoundedEnds ends(value_at(form, at), error_at(of));
         if (!any(ends.differ())) return ends.below;
         Doubles sum = Doubles{} + form.w, second{}, size_of_second{};
@@ -129,8 +123,8 @@ struct TwofoldForm {
     // magnitudes, what is left of the sum are six terms of less than 2^-50 T together, and precisely what is left of
     // their sum five of less than 2^-101 T. The last are added in one double, but for five roundings: exactly where
     // their grain is at least 2^-102 T, as that of numbers of about one size is, or 2^-152 T.
-    TEXGEN_INLINE PointSum at(const PointLanes& at, const PointSizes& of, bool precisely,
-                              const PointGrains& grains) const noexcept {
+    TEXGEN_INLINE PointSum at(const PointLanes& at, const PointLanes& of, bool precisely,
+                              const PointLanes& grains) const noexcept {
         Doubles sum = Doubles{} + form.w;
         Doubles terms = Doubles{} + size_of_w;
         Doubles second{}, third{};  // what the sum leaves, and what that leaves
@@ -156,8 +150,8 @@ struct TwofoldForm {
             } else {
                 sum = product;
             }
-            terms = terms + of.size[j] * size[j];
-            result.grain = minimum(grains.grain[j] * grain[j], result.grain);
+            terms = terms + of.v[j] * size[j];
+            result.grain = minimum(grains.v[j] * grain[j], result.grain);
         }
         const auto lost_beyond = [&](double range) {
             const Doubles lost = terms * (4.0 / range) + 0x1p-1000;
