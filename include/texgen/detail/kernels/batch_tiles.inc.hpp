@@ -141,25 +141,6 @@ TEXGEN_APART void divide_tile_float(const BatchTiles& tiles, std::size_t i, cons
     }
 }
 
-// False where a value is in doubt.
-template <std::size_t Numerators>
-TEXGEN_INLINE bool divide_tile_by_tier(const BatchPlanes& planes, const BatchTiles& tiles, std::size_t i,
-                                       const ShapeOfTile& shape, const TileOutputs<Numerators>& out) noexcept {
-    if (!tiles.has(BatchTiles::is_float, i)) {
-        if (!tiles.has(BatchTiles::has_middles, i) || !shape.is_whole)
-            return divide_tile<Numerators>(planes, tiles, i, shape, out);
-        return shape.width <= lanes ? divide_whole_tile<Numerators, true>(planes, tiles, i, shape, out)
-                                    : divide_whole_tile<Numerators, false>(planes, tiles, i, shape, out);
-    }
-    if (!tiles.has(BatchTiles::is_polynomial, i))
-        divide_tile_float<Numerators, false, false>(tiles, i, shape, out);
-    else if (shape.has_wide_columns)
-        divide_tile_float<Numerators, true, true>(tiles, i, shape, out);
-    else
-        divide_tile_float<Numerators, false, true>(tiles, i, shape, out);
-    return true;
-}
-
 // A tile's values to its place in the outputs, from `begin` on; by way of scratch where whole vectors might reach
 // beyond what may be written.
 template <std::size_t Numerators>
@@ -169,7 +150,18 @@ TEXGEN_INLINE bool fill_tile(const BatchPlanes& planes, const BatchTiles& tiles,
     TileOutputs<Numerators> here;
     TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k)
         here.out[k] = out.out[k] == nullptr || in_scratch ? scratch.values[k] : out.out[k] + begin;
-    const bool is_certain = divide_tile_by_tier<Numerators>(planes, tiles, i, shape, here);
+    bool is_certain = true;  // false where a value is in doubt
+    if (!tiles.has(BatchTiles::is_float, i))
+        is_certain = !tiles.has(BatchTiles::has_middles, i) || !shape.is_whole
+                         ? divide_tile<Numerators>(planes, tiles, i, shape, here)
+                     : shape.width <= lanes ? divide_whole_tile<Numerators, true>(planes, tiles, i, shape, here)
+                                            : divide_whole_tile<Numerators, false>(planes, tiles, i, shape, here);
+    else if (!tiles.has(BatchTiles::is_polynomial, i))
+        divide_tile_float<Numerators, false, false>(tiles, i, shape, here);
+    else if (shape.has_wide_columns)
+        divide_tile_float<Numerators, true, true>(tiles, i, shape, here);
+    else
+        divide_tile_float<Numerators, false, true>(tiles, i, shape, here);
     if (out.lit != nullptr) {
         float* const lit = in_scratch ? scratch.values[3] : out.lit + begin;
         for (std::size_t n = 0; n < shape.count; n += wide_at_once) {

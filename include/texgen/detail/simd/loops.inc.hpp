@@ -233,21 +233,8 @@ template <class Vector, class Number>
 TEXGEN_INLINE void load_fours(const Number* from, Vector (&values)[4]) noexcept {
     for (int j = 0; j < 4; ++j) values[j] = Vector::of([&](int i) { return from[4 * i + j]; });
 }
-TEXGEN_INLINE void store_interleaved(float* to, const Floats& a, const Floats& b) noexcept {
-    for (int i = 0; i < lanes; ++i) {
-        to[2 * i] = a.lane[i];
-        to[2 * i + 1] = b.lane[i];
-    }
-}
-
-TEXGEN_INLINE void store_interleaved(float* to, const Floats& a, const Floats& b, const Floats& c,
-                                     const Floats& d) noexcept {
-    for (int i = 0; i < lanes; ++i) {
-        to[4 * i] = a.lane[i];
-        to[4 * i + 1] = b.lane[i];
-        to[4 * i + 2] = c.lane[i];
-        to[4 * i + 3] = d.lane[i];
-    }
+TEXGEN_INLINE void store_interleaved(float* to, const auto&... of) noexcept {
+    for (int i = 0; i < lanes; ++i) ((*to++ = of.lane[i]), ...);
 }
 
 template <class Vector>
