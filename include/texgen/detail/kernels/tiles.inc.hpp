@@ -17,26 +17,6 @@ struct TileRow {
     }
 };
 
-// One vector of quotients. Returns a bit for each that is in doubt.
-TEXGEN_INLINE std::uint64_t divide_vector(const TileJob& job, const TileRow& row, const Doubles& index,
-                                          Doubles& reciprocal, Floats (&quotient)[2]) noexcept {
-    if (!job.q_is_constant) reciprocal = 1.0 / row.q_at(job, index);
-    Words doubtful{};
-    TEXGEN_FOR (std::size_t k = 0; k < 2; ++k) {
-        const Doubles value = row.numerator_at(job, k, index) * reciprocal;
-        const RoundedEnds ends(value, job.quotient_error[k]);
-        quotient[k] = ends.below;
-        doubtful |= ends.differ();
-    }
-    return lane_bits(doubtful);
-}
-// The same with numerators and q rounded to float and divided there, without doubt.
-TEXGEN_INLINE void divide_in_float(const TileJob& job, const TileRow& row, const Doubles& index,
-                                   Floats (&quotient)[2]) noexcept {
-    const Floats reciprocal = 1.0f / to_floats(row.q_at(job, index));
-    for (std::size_t k = 0; k < 2; ++k) quotient[k] = to_floats(row.numerator_at(job, k, index)) * reciprocal;
-}
-
 // By up to 63 bits to the left. (std::rotl takes an int or an unsigned one, by the library.)
 TEXGEN_INLINE std::uint64_t rotated(std::uint64_t bits, int count) noexcept {
     return bits << count | bits >> (-count & 63);
@@ -60,10 +40,20 @@ std::uint64_t divide_tile(const TileJob& job, const TileJob::Unit& part) noexcep
         std::int64_t x = x_begin;  // what follows the last vector may be no int
         const std::int64_t last = row.writable - lanes;
         for (; x < x_end; x += lanes, index += static_cast<double>(lanes)) {
-            if (job.is_in_float)
-                divide_in_float(job, tile_row, index, quotient);
-            else
-                doubtful = rotated(doubtful | divide_vector(job, tile_row, index, reciprocal, quotient), 64 - lanes);
+            if (job.is_in_float) {  // without doubt
+                const Floats of_q = 1.0f / to_floats(tile_row.q_at(job, index));
+                for (std::size_t k = 0; k < 2; ++k)
+                    quotient[k] = to_floats(tile_row.numerator_at(job, k, index)) * of_q;
+            } else {
+                if (!job.q_is_constant) reciprocal = 1.0 / tile_row.q_at(job, index);
+                Words in_doubt{};
+                TEXGEN_FOR (std::size_t k = 0; k < 2; ++k) {
+                    const RoundedEnds ends(tile_row.numerator_at(job, k, index) * reciprocal, job.quotient_error[k]);
+                    quotient[k] = ends.below;
+                    in_doubt |= ends.differ();
+                }
+                doubtful = rotated(doubtful | lane_bits(in_doubt), 64 - lanes);
+            }
             if (x > last) break;
             TEXGEN_FOR (std::size_t k = 0; k < 2; ++k) store(row.out[k] + x, quotient[k]);
         }
