@@ -9,7 +9,7 @@ inline Coverage coverage_without_forms(const LitForms& forms, const Box& box) no
         if (std::isnan(box.min[j]) || std::isnan(box.max[j])) return Coverage::partial;
         is_empty = is_empty || box.min[j] > box.max[j];
     }
-    return is_empty || forms.lights_nothing() ? Coverage::outside : Coverage::partial;
+    return is_empty || forms.lights_nothing ? Coverage::outside : Coverage::partial;
 }
 
 // Whether a box holds a point that is a number: of a NaN and beyond all numbers, inf - inf, an extent is a NaN.
@@ -37,11 +37,11 @@ void coverage_of_many(const LitForms& forms, const FloatForms& float_forms, cons
 Coverage coverage_of(const BoxKernels& kernels, const LitForms& forms, const Box& box,
                      const auto& separating) noexcept {
     const float *const min = &box.min.x, *const max = &box.max.x;
-    const int answer = forms.can_say() ? kernels.classify(forms.lanes(), min, max) : body_in_doubt;
+    const int answer = forms.can_say() ? kernels.classify(forms.lanes, min, max) : body_in_doubt;
     if (answer < open_body) return static_cast<Coverage>(answer);
     if (answer != open_body + static_cast<int>(Coverage::partial)) {
         if (!forms.can_say() || !has_points(box)) return coverage_without_forms(forms, box);
-        const int decided = kernels.decide(answer, forms.matrix(), forms.outer(), forms.inner(), min, max);
+        const int decided = kernels.decide(answer, forms.matrix, forms.outer, forms.inner, min, max);
         if (decided != static_cast<int>(Coverage::partial)) return static_cast<Coverage>(decided);
     }
     return kernels.is_separated(separating(), min, max) ? Coverage::outside : Coverage::partial;
@@ -94,7 +94,7 @@ Coverage coverage(const Transform<Texture, Space>& texture_from_space, const Tex
                   const Sphere& sphere) noexcept {
     const detail::LitForms forms(texture_from_space.matrix(), region, detail::chosen<detail::FormKernels>());
     return detail::coverage_of(
-        forms, forms.lanes(), [&](std::size_t k) { return forms.slope(k); },
+        forms, forms.lanes, [&](std::size_t k) { return forms.slope(k); },
         [&] { return forms.unit(detail::chosen<detail::UnitFormKernels>()); }, sphere);
 }
 template <class Space>

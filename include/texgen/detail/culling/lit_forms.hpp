@@ -24,22 +24,26 @@
 
 namespace TEXGEN_DETAIL {
 
-class LitForms {
-public:
+struct LitForms {
     static constexpr std::size_t q = form_of_q;
 
-    LitForms(const glm::dmat4& matrix, const TextureRegion& region, const FormKernels& kernels) noexcept
-        : count_(region.depth() ? max_forms : forms_without_depth) {
-        const bool is_matrix_finite = is_finite(matrix);
-        is_usable_ = is_matrix_finite && take_matrix(matrix) && take_sides(region);
-        lights_nothing_ =
-            is_matrix_finite && (is_empty(region) || (is_usable_ && lanes_.largest_q == 0.0 && lanes_.last_q == 0.0));
-        if (!can_say()) return;
-        kernels.weigh(matrix_, outer_, lanes_);
-    }
+    std::size_t count;                   // of the forms: five, or seven with a depth
+    glm::dmat4 matrix;                   // of rows T_s, T_t, T_r and T_q
+    std::array<double, max_forms> side;  // min.x, max.x, min.y, max.y, and behind q those of r
+    FormWeights outer, inner;
+    FormLanes lanes{};  // the forms, each times a positive number that brings its largest a near to 1
+    bool is_usable;
+    bool lights_nothing;  // every point is dark: the region is empty or q is 0 everywhere
 
-    // Five forms, or seven with a depth.
-    std::size_t count() const noexcept { return count_; }
+    LitForms(const glm::dmat4& given, const TextureRegion& region, const FormKernels& kernels) noexcept
+        : count(region.depth() ? max_forms : forms_without_depth) {
+        const bool is_matrix_finite = is_finite(given);
+        is_usable = is_matrix_finite && take_matrix(given) && take_sides(region);
+        lights_nothing =
+            is_matrix_finite && (is_empty(region) || (is_usable && lanes.largest_q == 0.0 && lanes.last_q == 0.0));
+        if (!can_say()) return;
+        kernels.weigh(matrix, outer, lanes);
+    }
 
     // Whether exact sums with this side of a region, `none` for none, stay in the range of double.
     static bool is_usable_side(double bound, double none) noexcept {
@@ -47,29 +51,20 @@ public:
         return bound == none || size == 0.0 || (size >= 0x1p-200 && size <= 0x1p200);
     }
 
-    // Whether every point is dark: the region is empty or q is 0 everywhere.
-    bool lights_nothing() const noexcept { return lights_nothing_; }
-
     // Whether bodies have to be asked about: not where every point is dark, nor for numbers that are not finite or
     // exponents so far apart that an exact sum could leave the range of double.
-    bool can_say() const noexcept { return is_usable_ && !lights_nothing_; }
-
-    // The forms, each times a positive number that brings its largest a near to 1.
-    const FormLanes& lanes() const noexcept { return lanes_; }
-    const glm::dmat4& matrix() const noexcept { return matrix_; }
-    const FormWeights& outer() const noexcept { return outer_; }
-    const FormWeights& inner() const noexcept { return inner_; }
+    bool can_say() const noexcept { return is_usable && !lights_nothing; }
 
     // In float, for many bodies.
     FloatForms in_float(const FloatFormKernels& kernels) const noexcept {
         FloatForms result;
-        kernels.round(lanes_, count_, result);
+        kernels.round(lanes, count, result);
         return result;
     }
 
     // |a| of a form, or up to 12 u of it more.
     double slope(std::size_t k) const noexcept {
-        const double x = lanes_.a[0][k], y = lanes_.a[1][k], z = lanes_.a[2][k];
+        const double x = lanes.a[0][k], y = lanes.a[1][k], z = lanes.a[2][k];
         return (1.0 + gamma(4)) * std::sqrt(x * x + y * y + z * z);
     }
 
@@ -78,7 +73,7 @@ public:
         UnitForms result;
         double slopes[form_lanes];
         for (std::size_t k = 0; k < form_lanes; ++k) slopes[k] = slope(k);
-        kernels.make(lanes_, slopes, result);
+        kernels.make(lanes, slopes, result);
         return result;
     }
 
@@ -86,30 +81,29 @@ public:
         SeparatingForms result;
         // Elements are 0 or from 2^-600 to 2. Times 2^200 no product of two underflows, so that a cofactor is 0 only
         // where it is exactly 0.
-        kernels.make(lanes_, matrix_ * 0x1p200, side_.data(), count_, result);
+        kernels.make(lanes, matrix * 0x1p200, side.data(), count, result);
         return result;
     }
 
     // In double, for boxes that floats leave in doubt.
     void take_in_double(DoubleForms& result) const noexcept {
-        result.count = count_;
-        for (std::size_t k = 0; k < count_; ++k) {
-            take_at_vertex(k, outer_, true, result.form[k].largest);
-            take_at_vertex(k, inner_, false, result.form[k].least);
+        result.count = count;
+        for (std::size_t k = 0; k < count; ++k) {
+            take_at_vertex(k, outer, true, result.form[k].largest);
+            take_at_vertex(k, inner, false, result.form[k].least);
         }
     }
 
-private:
     // A power of two takes the largest element to 1: nothing changes but the range of the exponents. r is 0 where there
     // is no depth.
-    bool take_matrix(const glm::dmat4& matrix) noexcept {
-        const double of_r = count_ == forms_without_depth ? 0.0 : 1.0;
+    bool take_matrix(const glm::dmat4& given) noexcept {
+        const double of_r = count == forms_without_depth ? 0.0 : 1.0;
         const double is_taken[4] = {1.0, 1.0, of_r, 1.0};
         double largest_of[4] = {};
         double least_of[4] = {infinity, infinity, infinity, infinity};  // but 0
         for (glm::length_t j = 0; j < 4; ++j) {
             for (glm::length_t i = 0; i < 4; ++i) {
-                const double size = std::fabs(matrix[j][i] * is_taken[i]);
+                const double size = std::fabs(given[j][i] * is_taken[i]);
                 largest_of[i] = larger(largest_of[i], size);
                 least_of[i] = smaller(least_of[i], size > 0.0 ? size : infinity);
             }
@@ -119,16 +113,16 @@ private:
         if (largest > 0.0 && !(largest >= 0x1p-1000 && largest < 0x1p1000)) return false;
         const double scale = largest > 0.0 ? reciprocal_power_of_two(largest) : 1.0;
         for (glm::length_t j = 0; j < 4; ++j)
-            for (glm::length_t i = 0; i < 4; ++i) matrix_[j][i] = matrix[j][i] * is_taken[i] * scale;
-        lanes_.largest_q = larger(larger(std::fabs(matrix_[0].w), std::fabs(matrix_[1].w)), std::fabs(matrix_[2].w));
-        lanes_.last_q = std::fabs(matrix_[3].w);
+            for (glm::length_t i = 0; i < 4; ++i) matrix[j][i] = given[j][i] * is_taken[i] * scale;
+        lanes.largest_q = larger(larger(std::fabs(matrix[0].w), std::fabs(matrix[1].w)), std::fabs(matrix[2].w));
+        lanes.last_q = std::fabs(matrix[3].w);
         return least * scale >= 0x1p-600;
     }
 
     // The place of an infinite side is taken by q >= 0, which is one of the forms all the same; that of an inner side
     // which no float is inside of by -q >= 0, which holds nowhere in front. A max is the mirrored min.
     bool take_sides(const TextureRegion& region) noexcept {
-        for (FormWeights* weights : {&outer_, &inner_}) {
+        for (FormWeights* weights : {&outer, &inner}) {
             *weights = {};
             for (double& of_q : weights->of_q) of_q = 1.0;
         }
@@ -136,7 +130,7 @@ private:
             return take_side(k, 1.0, limits.x) && take_side(k + 1, -1.0, -limits.y);
         };
         return take(0, {(region.min)().x, (region.max)().x}) && take(2, {(region.min)().y, (region.max)().y}) &&
-               (count_ == forms_without_depth || take(q + 1, *region.depth()));
+               (count == forms_without_depth || take(q + 1, *region.depth()));
     }
     bool take_side(std::size_t k, double sign, double min) noexcept {
         if (!is_usable_side(min, -infinity)) return false;
@@ -146,10 +140,10 @@ private:
             weights.of[coordinate_of_side(k)][k] = is_finite ? sign : 0.0;
             weights.of_q[k] = is_finite ? -bound : bound < 0.0 ? 1.0 : -1.0;
         };
-        weigh(outer_, rounded.outer);
-        weigh(inner_, rounded.inner);
-        lanes_.narrowing[k] = min == -infinity ? 0.0 : std::fabs(rounded.inner - rounded.outer);
-        side_[k] = sign * rounded.outer;
+        weigh(outer, rounded.outer);
+        weigh(inner, rounded.inner);
+        lanes.narrowing[k] = min == -infinity ? 0.0 : std::fabs(rounded.inner - rounded.outer);
+        side[k] = sign * rounded.outer;
         return true;
     }
 
@@ -166,7 +160,7 @@ private:
             if (factor != 0.0) form.term[form.term_count++] = {factor, row};
         };
         for (std::size_t j = 0; j < 4; ++j) {
-            const glm::dvec4& column = matrix_[static_cast<glm::length_t>(j)];
+            const glm::dvec4& column = matrix[static_cast<glm::length_t>(j)];
             const double half = leading_bits<26>(column.w);
             const double of_row = own * column[static_cast<glm::length_t>(coordinate_of(k))];
             const DoubleDouble most = two_sum(of_row, of_q * half);
@@ -187,14 +181,6 @@ private:
             }
         }
     }
-
-    std::size_t count_;
-    glm::dmat4 matrix_;                   // of rows T_s, T_t, T_r and T_q
-    std::array<double, max_forms> side_;  // min.x, max.x, min.y, max.y, and behind q those of r
-    FormWeights outer_, inner_;
-    FormLanes lanes_{};
-    bool is_usable_;
-    bool lights_nothing_;
 };
 
 }  // namespace TEXGEN_DETAIL

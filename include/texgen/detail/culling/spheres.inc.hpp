@@ -7,7 +7,7 @@ inline Coverage coverage_without_forms(const LitForms& forms, const Sphere& sphe
     const glm::vec3& centre = sphere.centre;
     if (std::isnan(centre.x) || std::isnan(centre.y) || std::isnan(centre.z) || std::isnan(sphere.radius))
         return Coverage::partial;
-    return sphere.radius < 0.0f || forms.lights_nothing() ? Coverage::outside : Coverage::partial;
+    return sphere.radius < 0.0f || forms.lights_nothing ? Coverage::outside : Coverage::partial;
 }
 
 inline namespace TEXGEN_BUILD {
@@ -22,7 +22,7 @@ Coverage coverage_of(const LitForms& forms, const FormLanes& lanes, const auto& 
     if (!forms.can_say() || !(radius >= 0.0) || !is_finite(size + radius)) return coverage_without_forms(forms, sphere);
     const double of_q = (size + 2.0 * radius) * lanes.largest_q + lanes.last_q;
     bool is_inside = true, is_partial = false, is_lit = true;
-    for (std::size_t k = 0; k < forms.count(); ++k) {
+    for (std::size_t k = 0; k < forms.count; ++k) {
         const double value =
             lanes.a[0][k] * centre.x + lanes.a[1][k] * centre.y + lanes.a[2][k] * centre.z + lanes.d[k];
         const double change = slope_of(k) * radius;
@@ -38,7 +38,7 @@ Coverage coverage_of(const LitForms& forms, const FormLanes& lanes, const auto& 
     OpenRow rows[4];
     copy_floats(sphere, rows[0], body_quantum);
     int classes[body_quantum];
-    chosen<SphereKernels>().decide(make_unit(), forms.count(), rows, 1, classes);
+    chosen<SphereKernels>().decide(make_unit(), forms.count, rows, 1, classes);
     return static_cast<Coverage>(classes[0]);
 }
 
@@ -48,7 +48,7 @@ void coverage_of_many(const LitForms& forms, const FloatForms& float_forms, cons
     const SphereKernels& kernels = chosen<SphereKernels>();
     classify_many<4>(forms, float_forms, spheres, out, kernels.classify,
                      [&](const OpenRow* open, std::size_t count, bool, int* classes) {
-                         kernels.decide(unit, forms.count(), open, count, classes);
+                         kernels.decide(unit, forms.count, open, count, classes);
                      });
 }
 
