@@ -384,8 +384,8 @@ TEST_CASE("the sides of a region in floats are the first floats inside it") {
     for (int i = 0; i < 20000; ++i) {
         const double left = random.uniform(0.0, 0.5), right = random.uniform(0.5, 1.0);
         const texgen::detail::LitTest lit(texgen::atlas_tile({left, left}, {right, right}).with_depth(left, right));
-        REQUIRE(static_cast<double>(lit.r_min()) == lit.least(0));
-        REQUIRE(static_cast<double>(lit.r_max()) == lit.greatest(0));
+        REQUIRE(static_cast<double>(lit.r_min) == lit.least(0));
+        REQUIRE(static_cast<double>(lit.r_max) == lit.greatest(0));
         for (std::size_t k = 0; k < 2; ++k) {
             REQUIRE(lit.least(k) >= left);
             REQUIRE(texgen::detail::float_before(support::to_float(lit.least(k))) < left);

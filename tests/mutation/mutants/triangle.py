@@ -226,7 +226,7 @@ TRIANGLE = [
         ("a column of a small tile is a row", "is_column ? ramp.dy : ramp.dx", "ramp.dx", "interpolate_test"),
         ("the mask of a small tile needs no t", "if (out.t.empty()) both.t = {scratch[1], count};", "if (out.t.empty()) both.t = both.s;",
          "interpolate_test"),
-        ("sides of small tiles may be infinite", "if (!lit.is_narrow()) {", "if (false) {", "work_test"),
+        ("sides of small tiles may be infinite", "if (!lit.is_narrow) {", "if (false) {", "work_test"),
         ("an infinite side of a small tile is far beyond its quotients", "(8.0 / divisor.least) + 1.0",
          "(0.3 / divisor.least) + 0x1p-9", "work_test interpolate_test"),
         ("quotients of small tiles in float are small", "larger(largest, -least) * (1.001 / divisor.least)", "larger(largest, -least) * 1e-3", "tolerance_test interpolate_test"),

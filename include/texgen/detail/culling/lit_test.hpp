@@ -38,46 +38,37 @@ constexpr double accepted(Tolerance tolerance) noexcept {
 }
 
 // The closed region in floats: a float is inside the region exactly when it is inside these.
-class LitTest {
-public:
+struct LitTest {
+    float min[2], max[2];
+    // Whether s and t certainly have four sides, which are no further apart than those of the largest textures.
+    bool is_narrow, has_depth;
+    float r_min = 0.0f, r_max = 0.0f;
+
     explicit LitTest(const TextureRegion& region) noexcept
-        : min_{float_at_least((region.min)().x), float_at_least((region.min)().y)},
-          max_{-float_at_least(-(region.max)().x), -float_at_least(-(region.max)().y)},
-          is_narrow_(std::fabs(widened(max_[0]) - widened(min_[0])) + std::fabs(widened(max_[1]) - widened(min_[1])) <
-                     0x1p16),
-          has_depth_(region.depth().has_value()) {
-        if (!has_depth_) return;
-        r_min_ = float_at_least(region.depth()->x);
-        r_max_ = -float_at_least(-region.depth()->y);
+        : min{float_at_least((region.min)().x), float_at_least((region.min)().y)},
+          max{-float_at_least(-(region.max)().x), -float_at_least(-(region.max)().y)},
+          is_narrow(std::fabs(widened(max[0]) - widened(min[0])) + std::fabs(widened(max[1]) - widened(min[1])) <
+                    0x1p16),
+          has_depth(region.depth().has_value()) {
+        if (!has_depth) return;
+        r_min = float_at_least(region.depth()->x);
+        r_max = -float_at_least(-region.depth()->y);
     }
 
     // Of s and t. Where there is a depth, r has to be in [r_min, r_max] as well.
-    float operator()(float s, float t) const noexcept { return is_inside(s, t, min_, max_) ? 1.0f : 0.0f; }
+    float operator()(float s, float t) const noexcept { return is_inside(s, t, min, max) ? 1.0f : 0.0f; }
 
     // The bounds of s (0) and of t (1).
-    double least(std::size_t coordinate) const noexcept { return widened(read_alone(min_[coordinate])); }
-    double greatest(std::size_t coordinate) const noexcept { return widened(read_alone(max_[coordinate])); }
-
-    // Whether s and t certainly have four sides, which are no further apart than those of the largest textures.
-    bool is_narrow() const noexcept { return is_narrow_; }
-    bool has_depth() const noexcept { return has_depth_; }
-    float r_min() const noexcept { return r_min_; }
-    float r_max() const noexcept { return r_max_; }
-    void drop_depth() noexcept { has_depth_ = false; }
+    double least(std::size_t coordinate) const noexcept { return widened(read_alone(min[coordinate])); }
+    double greatest(std::size_t coordinate) const noexcept { return widened(read_alone(max[coordinate])); }
 
     // The sides of s and t as the kernels take them.
-    void copy_to(float (&min)[2], float (&max)[2]) const noexcept {
+    void copy_to(float (&to_min)[2], float (&to_max)[2]) const noexcept {
         for (std::size_t k = 0; k < 2; ++k) {
-            min[k] = min_[k];
-            max[k] = max_[k];
+            to_min[k] = min[k];
+            to_max[k] = max[k];
         }
     }
-
-private:
-    float min_[2];
-    float max_[2];
-    bool is_narrow_, has_depth_;
-    float r_min_ = 0.0f, r_max_ = 0.0f;
 };
 
 }  // namespace TEXGEN_DETAIL

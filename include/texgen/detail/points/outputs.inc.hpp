@@ -60,9 +60,9 @@ void for_each_group(const Texcoords& out, std::size_t count, const LitTest& regi
         const bool is_t = !are_both && s == nullptr;
         group(is_t ? 1 : 0, are_both ? 2 : 1, PointOutputs{{is_t ? t : s, are_both ? t : nullptr}, lit});
     }
-    float* const darkened = region.has_depth() ? lit : nullptr;
+    float* const darkened = region.has_depth ? lit : nullptr;
     if (r != nullptr || darkened != nullptr)
-        group(2, 1, PointOutputs{{r}, darkened, nullptr, region.r_min(), region.r_max()});
+        group(2, 1, PointOutputs{{r}, darkened, nullptr, region.r_min, region.r_max});
 }
 
 // The part of the points or values that one job does: `count`, padded to `whole`, a multiple of point_quantum; the

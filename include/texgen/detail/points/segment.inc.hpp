@@ -68,7 +68,7 @@ inline Corners segment_corners(const glm::dvec4& a, const glm::dvec4& b, glm::le
 }
 
 inline Coverage depth_coverage(const Segment& segment, LitTest lit, double accepted) noexcept {
-    if (!lit.has_depth()) return Coverage::inside;
+    if (!lit.has_depth) return Coverage::inside;
     const glm::dvec4 a = widened(segment.a), b = widened(segment.b);
     if (!is_finite(a.z + a.w) || !is_finite(b.z + b.w)) return Coverage::partial;
     return r_coverage(segment_corners(a, b, 2, 2), lit, accepted);
@@ -345,7 +345,7 @@ void interpolate(const Segment& segment, std::span<const float> alpha, TextureRe
     TEXGEN_ASSERT(detail::are_from_0_to_1(alpha));
     const double accepted = detail::accepted(tolerance);
     detail::LitTest lit(out.lit.empty() ? whole_texture() : region);
-    if (lit.has_depth() && detail::depth_coverage(segment, lit, accepted) == Coverage::inside) lit.drop_depth();
+    if (lit.has_depth && detail::depth_coverage(segment, lit, accepted) == Coverage::inside) lit.has_depth = false;
     detail::for_each_group(out, alpha.size(), lit, detail::SegmentGroups<>{segment, alpha, lit, accepted});
 }
 

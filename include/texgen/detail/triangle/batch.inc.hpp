@@ -85,11 +85,11 @@ inline void describe(BatchJob& job, const TriangleBatch& batch, const Texcoords&
     job.count = count;
     const LitTest& lit = Inside::lit(batch);
     lit.copy_to(job.min, job.max);
-    job.has_depth = lit.has_depth();
-    job.r_min = lit.r_min();
-    job.r_max = lit.r_max();
-    const double min[3] = {lit.least(0), lit.least(1), widened(lit.r_min())};
-    const double max[3] = {lit.greatest(0), lit.greatest(1), widened(lit.r_max())};
+    job.has_depth = lit.has_depth;
+    job.r_min = lit.r_min;
+    job.r_max = lit.r_max;
+    const double min[3] = {lit.least(0), lit.least(1), widened(lit.r_min)};
+    const double max[3] = {lit.greatest(0), lit.greatest(1), widened(lit.r_max)};
     for (std::size_t k = 0; k < 3; ++k) {
         job.least[k] = finite_min(double2_of(min[k], min[k]))[0];
         job.greatest[k] = finite_max(double2_of(max[k], max[k]))[0];

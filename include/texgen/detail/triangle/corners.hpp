@@ -282,7 +282,7 @@ inline Coverage st_coverage(const Corners& at, const LitTest& lit, double tolera
 }
 // Of a depth, where the numerators are r twice.
 inline Coverage r_coverage(const Corners& at, const LitTest& lit, double tolerance) noexcept {
-    const double min = widened(lit.r_min()), max = widened(lit.r_max());
+    const double min = widened(lit.r_min), max = widened(lit.r_max);
     return coverage_by_sides(at, double2_of(min, min), double2_of(max, max), tolerance);
 }
 

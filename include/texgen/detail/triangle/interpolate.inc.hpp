@@ -26,7 +26,7 @@ TEXGEN_RARE inline void darken_beyond_depth(const TriangleFunctions& triangle, c
     float* const first = lit.data() + offset_in(rect, tile.x, tile.y);
     for (std::size_t y = 0; y < rows; ++y)
         chosen<MaskKernels>().darken(first + y * static_cast<std::size_t>(rect.width), buffer.data() + y * length,
-                                     length, triangle.lit.r_min(), triangle.lit.r_max());
+                                     length, triangle.lit.r_min, triangle.lit.r_max);
 }
 
 // Darkens a mask that s and t have made where r is beyond the depth; r is there, where it was asked for.
@@ -38,8 +38,8 @@ TEXGEN_APART void darken_beyond_depth(const TriangleFunctions& triangle, const T
         float buffer[1024];
         darken_beyond_depth(triangle, tile, tile, buffer, out.lit);
     } else {
-        chosen<MaskKernels>().darken(out.lit.data(), out.r.data(), out.lit.size(), triangle.lit.r_min(),
-                                     triangle.lit.r_max());
+        chosen<MaskKernels>().darken(out.lit.data(), out.r.data(), out.lit.size(), triangle.lit.r_min,
+                                     triangle.lit.r_max);
     }
 }
 
@@ -82,7 +82,7 @@ TEXGEN_INLINE Work interpolate_tile(const TriangleSetup& setup, const Tile& tile
     Coverage depth = Coverage::inside;
     SmallAnswer answer = SmallAnswer::doubt;
     if (is_small(tile, triangle.tolerance)) {
-        if (triangle.lit.has_depth()) depth = depth_coverage(triangle, tile);
+        if (triangle.lit.has_depth) depth = depth_coverage(triangle, tile);
         if (depth != Coverage::outside) answer = fill_small(triangle, tile, out);
     }
     if (answer == SmallAnswer::doubt) return interpolate_by_plan(triangle, tile, out);

@@ -79,7 +79,7 @@ inline SmallAnswer ask(const LitTest& lit, double tolerance, const SmallFunction
     const SmallFunction<double>& q = divisor.function;
     Double2 min = double2_of(lit.least(0), lit.least(1));
     Double2 max = double2_of(lit.greatest(0), lit.greatest(1));
-    if (!lit.is_narrow()) {
+    if (!lit.is_narrow) {
         // A side far beyond all quotients may as well stand eight times beyond them, where its margin is no larger than
         // they are. What is lit then is inside by coverage_by_sides(), too, whatever q does in the tile.
         const Double2 largest = magnitude(f.base) + magnitude(f.right) + magnitude(f.bottom);

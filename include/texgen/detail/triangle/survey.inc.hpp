@@ -98,7 +98,7 @@ inline void choose_plan(const TriangleFunctions& triangle, const Tile& tile, con
     plan.sides = sides;
     if (sides == Coverage::outside) return;
     Coverage depth = Coverage::inside;
-    if (triangle.lit.has_depth()) depth = plan.depth = depth_coverage(triangle, tile);
+    if (triangle.lit.has_depth) depth = plan.depth = depth_coverage(triangle, tile);
     if (depth == Coverage::outside) return;
 
     const bool all_inside = sides == Coverage::inside && depth == Coverage::inside;
