@@ -10,9 +10,10 @@
 #include "../simd/loops.inc.hpp"
 #endif
 
+#include "../simd/quotients.inc.hpp"
+
 #include "stores.inc.hpp"
 
-#include "../simd/quotients.inc.hpp"
 #include "../simd/twofold.inc.hpp"
 
 #include "doubt.inc.hpp"

@@ -87,7 +87,6 @@ TEXGEN_INLINE Vector indices() noexcept {
 
 TEXGEN_INLINE Doubles to_doubles(const auto& values) noexcept { return converted<Doubles>(values); }
 TEXGEN_INLINE Floats to_floats(const Doubles& values) noexcept { return converted<Floats>(values); }
-TEXGEN_INLINE Words bits(const Floats& values) noexcept { return bits_as<Words>(values); }
 
 template <class Function, class... Vector>
 TEXGEN_INLINE void for_halves(const Function& f, const Vector&... values) noexcept {
@@ -110,10 +109,6 @@ TEXGEN_INLINE Words at_most(const Vector& a, const Vector& b) noexcept {
 }
 TEXGEN_INLINE LongWords are_nonzero(const Doubles& a) noexcept {
     return LongWords::of([&](int i) { return a.lane[i] != 0.0 ? -1 : 0; });
-}
-template <int Bits>
-TEXGEN_INLINE Doubles leading_bits(const Doubles& a) noexcept {
-    return bits_as<Doubles>(bits_as<Residues>(a) & (~std::uint64_t{0} << (53 - Bits)));
 }
 TEXGEN_INLINE Doubles where(const LongWords& mask, const Doubles& values) noexcept {
     return Doubles::of([&](int i) { return mask.lane[i] != 0 ? values.lane[i] : 0.0; });
@@ -138,11 +133,6 @@ TEXGEN_INLINE Residues to_residues(const Doubles& integers) noexcept {
 TEXGEN_INLINE Doubles signed_numbers(const Residues& a) noexcept {
     return to_doubles(converted<Lanes<std::int64_t>>(a));
 }
-TEXGEN_INLINE Doubles without_last_bit(const Doubles& a) noexcept {
-    const auto all = bits_as<Residues>(a);
-    return bits_as<Doubles>(all & (all - std::uint64_t{1}));
-}
-TEXGEN_INLINE Doubles signs_of(const Residues& a) noexcept { return bits_as<Doubles>(a); }
 TEXGEN_INLINE LongWords are_zero(const Residues& a) noexcept {
     return LongWords::of([&](int i) { return a.lane[i] == 0 ? -1 : 0; });
 }
@@ -157,27 +147,14 @@ TEXGEN_INLINE Words equal(const Words& a, const auto& b) noexcept {
 TEXGEN_INLINE Doubles with_sign_of(const Doubles& size, const Doubles& sign) noexcept {
     return Doubles::of([&](int i) { return std::copysign(size.lane[i], sign.lane[i]); });
 }
-TEXGEN_INLINE Doubles power_of_two_below(const Doubles& a) noexcept {
-    return bits_as<Doubles>(bits_as<Residues>(a) & std::uint64_t{0x7ff0000000000000});
-}
-TEXGEN_INLINE Doubles reciprocals_of_powers(const Doubles& a) noexcept {
-    return bits_as<Doubles>(std::uint64_t{0x7fe0000000000000} - bits_as<Residues>(a));
-}
 
-TEXGEN_INLINE WideWords magnitude_bits(const WideFloats& a) noexcept { return bits_as<WideWords>(a) & 0x7fffffff; }
-TEXGEN_INLINE WideWords signed_bits(const WideFloats& a) noexcept { return bits_as<WideWords>(a); }
-TEXGEN_INLINE WideFloats from_bits(const WideWords& words) noexcept { return bits_as<WideFloats>(words); }
 TEXGEN_INLINE WideFloats to_numbers(const WideWords& words) noexcept { return converted<WideFloats>(words); }
 TEXGEN_INLINE WideWords halved(const WideWords& words) noexcept {
     return WideWords::of([&](int i) { return words.lane[i] >> 1; });
 }
-TEXGEN_INLINE WideFloats magnitude(const WideFloats& a) noexcept { return from_bits(magnitude_bits(a)); }
 TEXGEN_INLINE Doubles folded(const WideFloats& values) noexcept { return to_doubles(values); }
 TEXGEN_INLINE WideWords are_negative(const WideFloats& a) noexcept {
     return WideWords::of([&](int i) { return a.lane[i] < 0.0f ? -1 : 0; });
-}
-TEXGEN_INLINE WideFloats select(const WideWords& mask, const WideFloats& a, const WideFloats& b) noexcept {
-    return from_bits((mask & signed_bits(a)) | (~mask & signed_bits(b)));
 }
 template <class Vector>
 TEXGEN_INLINE Vector minimum(const Vector& a, const Vector& b) noexcept {
@@ -188,7 +165,7 @@ TEXGEN_INLINE Vector maximum(const Vector& a, const Vector& b) noexcept {
     return Vector::of([&](int i) { return a.lane[i] > b.lane[i] ? a.lane[i] : b.lane[i]; });
 }
 TEXGEN_INLINE WideFloats larger_magnitude(const WideFloats& a, const WideFloats& b) noexcept {
-    return maximum(magnitude(a), b);
+    return maximum(bits_as<WideFloats>(bits_as<WideWords>(a) & 0x7fffffff), b);
 }
 template <class Vector>
 TEXGEN_INLINE WideWords less(const Vector& a, const Vector& b) noexcept {

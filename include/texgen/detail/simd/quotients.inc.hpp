@@ -3,6 +3,35 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
+// The bits of numbers; those of |a| are in the order of |a|, and a NaN is beyond infinity, so that a largest magnitude
+// keeps it.
+TEXGEN_INLINE Words bits(const Floats& values) noexcept { return bits_as<Words>(values); }
+TEXGEN_INLINE WideWords signed_bits(const WideFloats& a) noexcept { return bits_as<WideWords>(a); }
+TEXGEN_INLINE WideWords magnitude_bits(const WideFloats& a) noexcept { return signed_bits(a) & 0x7fffffff; }
+TEXGEN_INLINE WideFloats from_bits(const WideWords& words) noexcept { return bits_as<WideFloats>(words); }
+TEXGEN_INLINE WideFloats magnitude(const WideFloats& a) noexcept { return from_bits(magnitude_bits(a)); }
+template <class Mask, class Vector>
+TEXGEN_INLINE Vector select(const Mask& mask, const Vector& a, const Vector& b) noexcept {
+    return bits_as<Vector>((mask & bits_as<Mask>(a)) | (~mask & bits_as<Mask>(b)));
+}
+template <int Bits>
+TEXGEN_INLINE Doubles leading_bits(const Doubles& a) noexcept {
+    return bits_as<Doubles>(bits_as<Residues>(a) & ~std::uint64_t{0} << (53 - Bits));
+}
+// The power of two at or below the magnitude of a normal number; and the reciprocals of powers, where they are normal,
+// 2^1023 for 0.
+TEXGEN_INLINE Doubles power_of_two_below(const Doubles& a) noexcept {
+    return bits_as<Doubles>(bits_as<Residues>(a) & std::uint64_t{0x7ff0000000000000});
+}
+TEXGEN_INLINE Doubles reciprocals_of_powers(const Doubles& a) noexcept {
+    return bits_as<Doubles>(std::uint64_t{0x7fe0000000000000} - bits_as<Residues>(a));
+}
+// A number without its last bit that is set; of a power of two, or 0, it is none. And numbers with the signs of integers.
+TEXGEN_INLINE Doubles without_last_bit(const Doubles& a) noexcept {
+    return bits_as<Doubles>(bits_as<Residues>(a) & (bits_as<Residues>(a) - std::uint64_t{1}));
+}
+TEXGEN_INLINE Doubles signs_of(const Residues& a) noexcept { return bits_as<Doubles>(a); }
+
 // The reciprocals of two vectors by one division, 1/a = b (1/(a b)). Each is rounded three times.
 struct SharedDivision {
     Doubles product, of_both, reciprocal[2];

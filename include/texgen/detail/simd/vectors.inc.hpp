@@ -21,11 +21,14 @@ TEXGEN_INLINE Vector indices() noexcept {
     return result;
 }
 
+template <class To, class From>
+TEXGEN_INLINE To bits_as(const From& from) noexcept {
+    return __builtin_bit_cast(To, from);
+}
 TEXGEN_INLINE Doubles to_doubles(const Words& values) noexcept {
     return TEXGEN_NAMED(TEXGEN_DOUBLES_OF_WORDS_, TEXGEN_LANE_BYTES)(values);
 }
 TEXGEN_INLINE Floats to_floats(const Doubles& values) noexcept { return __builtin_convertvector(values, Floats); }
-TEXGEN_INLINE Words bits(const Floats& values) noexcept { return __builtin_bit_cast(Words, values); }
 TEXGEN_INLINE Doubles to_doubles(const Floats& values) noexcept {
     return TEXGEN_NAMED(TEXGEN_DOUBLES_, TEXGEN_LANE_BYTES)(values);
 }
@@ -63,10 +66,6 @@ using LongWords [[gnu::vector_size(TEXGEN_LANE_BYTES)]] = long long;
 TEXGEN_INLINE LongWords greater(const Doubles& a, const auto& b) noexcept { return a > b; }
 TEXGEN_INLINE LongWords at_most(const Doubles& a, const Doubles& b) noexcept { return a <= b; }
 TEXGEN_INLINE LongWords are_nonzero(const Doubles& a) noexcept { return a != 0.0; }
-template <int Bits>
-TEXGEN_INLINE Doubles leading_bits(const Doubles& a) noexcept {
-    return __builtin_bit_cast(Doubles, __builtin_bit_cast(LongWords, a) & -(1LL << (53 - Bits)));
-}
 TEXGEN_INLINE Doubles where(const LongWords& mask, const Doubles& values) noexcept {
     return __builtin_bit_cast(Doubles, mask & __builtin_bit_cast(LongWords, values));
 }
@@ -110,13 +109,6 @@ TEXGEN_INLINE Doubles signed_numbers(const Residues& a) noexcept {
     return __builtin_convertvector(__builtin_bit_cast(LongWords, a), Doubles);
 #endif
 }
-// A number without its last bit that is set; of a power of two, or 0, it is none.
-TEXGEN_INLINE Doubles without_last_bit(const Doubles& a) noexcept {
-    const auto bits = __builtin_bit_cast(Residues, a);
-    return __builtin_bit_cast(Doubles, bits & (bits - 1));
-}
-// Numbers with the signs of integers.
-TEXGEN_INLINE Doubles signs_of(const Residues& a) noexcept { return __builtin_bit_cast(Doubles, a); }
 TEXGEN_INLINE LongWords are_zero(const Residues& a) noexcept { return a == 0; }
 TEXGEN_INLINE LongWords are_positive(const Residues& a) noexcept { return __builtin_bit_cast(LongWords, a) > 0; }
 
@@ -126,33 +118,16 @@ TEXGEN_INLINE Words narrow(const LongWords& mask) noexcept {
 #elif TEXGEN_LANE_BYTES == 32
     using Half = std::make_integer_sequence<int, lanes>;
     const auto halves = __builtin_bit_cast(WideFloats, mask);
-    return bits(__builtin_shufflevector(half<0>(halves, Half()), half<lanes>(halves, Half()), 0, 2, 4, 6));
+    return bits_as<Words>(__builtin_shufflevector(half<0>(halves, Half()), half<lanes>(halves, Half()), 0, 2, 4, 6));
 #else
     return __builtin_convertvector(mask, Words);
 #endif
 }
 TEXGEN_INLINE Words equal(const Words& a, const auto& b) noexcept { return a == b; }
-TEXGEN_INLINE Floats select(const Words& mask, const Floats& a, const Floats& b) noexcept {
-    return __builtin_bit_cast(Floats, (mask & bits(a)) | (~mask & bits(b)));
-}
 TEXGEN_INLINE Doubles with_sign_of(const Doubles& size, const Doubles& sign) noexcept {
     constexpr auto bit = static_cast<long long>(0x8000000000000000);
     return masked_or(sign, bit, size);
 }
-// The power of two at or below the magnitude of a normal number.
-TEXGEN_INLINE Doubles power_of_two_below(const Doubles& a) noexcept {
-    return __builtin_bit_cast(Doubles, __builtin_bit_cast(LongWords, a) & 0x7ff0000000000000);
-}
-// The reciprocals of powers of two, where they are normal; 2^1023 for 0.
-TEXGEN_INLINE Doubles reciprocals_of_powers(const Doubles& a) noexcept {
-    return __builtin_bit_cast(Doubles, 0x7fe0000000000000 - __builtin_bit_cast(LongWords, a));
-}
-
-// The bits of |a|, in the order of |a|; a NaN is beyond infinity, so that a largest magnitude keeps it.
-TEXGEN_INLINE WideWords magnitude_bits(const WideFloats& a) noexcept {
-    return __builtin_bit_cast(WideWords, a) & 0x7fffffff;
-}
-TEXGEN_INLINE WideWords signed_bits(const WideFloats& a) noexcept { return __builtin_bit_cast(WideWords, a); }
 template <class Vector>
 TEXGEN_INLINE Vector minimum(const Vector& a, const Vector& b) noexcept {
     return a < b ? a : b;
@@ -162,23 +137,18 @@ TEXGEN_INLINE Vector maximum(const Vector& a, const Vector& b) noexcept {
     return a > b ? a : b;
 }
 
-TEXGEN_INLINE WideFloats from_bits(const WideWords& words) noexcept { return __builtin_bit_cast(WideFloats, words); }
 TEXGEN_INLINE WideFloats to_numbers(const WideWords& words) noexcept {
     return __builtin_convertvector(words, WideFloats);
 }
 TEXGEN_INLINE WideWords halved(const WideWords& words) noexcept { return words >> 1; }
-TEXGEN_INLINE WideFloats magnitude(const WideFloats& a) noexcept { return from_bits(magnitude_bits(a)); }
 TEXGEN_INLINE WideWords are_negative(const WideFloats& a) noexcept { return a < 0.0f; }
-TEXGEN_INLINE WideFloats select(const WideWords& mask, const WideFloats& a, const WideFloats& b) noexcept {
-    return from_bits((mask & signed_bits(a)) | (~mask & signed_bits(b)));
-}
 
 // The larger of |a| and b, or b where a is no number.
 TEXGEN_INLINE WideFloats larger_magnitude(const WideFloats& a, const WideFloats& b) noexcept {
 #if TEXGEN_LANE_BYTES == 64
     return __builtin_ia32_rangeps512_mask(a, b, 0xb, a, TEXGEN_SIXTEEN_LANES, 4);
 #else
-    return maximum(magnitude(a), b);
+    return maximum(bits_as<WideFloats>(bits_as<WideWords>(a) & 0x7fffffff), b);
 #endif
 }
 // The larger of lanes i and i + lanes.
