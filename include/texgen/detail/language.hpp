@@ -55,7 +55,7 @@ static_assert(glm::defaultp == glm::packed_highp, "GLM was configured otherwise 
 #define TEXGEN_RARE
 #endif
 
-// What is not public stands in this one.
+// What is not public stands in the first; in the other what is public, and each compiler's own.
 #define TEXGEN_DETAIL TEXGEN_NAMESPACE::detail::inline TEXGEN_COMPILER
 #define TEXGEN_NAMESPACE_COMPILER TEXGEN_NAMESPACE::inline TEXGEN_COMPILER
 

@@ -193,6 +193,7 @@ TEXGEN_INLINE Double2 leading_27_bits(const Double2& a) noexcept {
 
 #endif
 
+// Both for what is each build's own.
 #define TEXGEN_DETAIL_BUILD TEXGEN_DETAIL::inline TEXGEN_BUILD
 #define TEXGEN_NAMESPACE_BUILD TEXGEN_NAMESPACE::inline TEXGEN_BUILD
 
