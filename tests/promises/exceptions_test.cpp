@@ -3,10 +3,14 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 #include <cfenv>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,11 +18,42 @@
 #include "support/stopwatch.hpp"
 #include "support/workloads.hpp"
 #include "texgen/batch.hpp"
+#include "texgen/clip.hpp"
+#include "texgen/coverage.hpp"
 #include "texgen/interpolate.hpp"
+#include "texgen/linear.hpp"
+#include "texgen/projector.hpp"
+#include "texgen/scene.hpp"
+#include "texgen/texcoord.hpp"
 
 namespace {
 
 constexpr int trapped = FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW;
+
+constexpr double unlimited = std::numeric_limits<double>::infinity();
+
+// One of every kind of lens, whose axes stand anyhow.
+std::vector<texgen::Projector> draw_projectors(support::Random& random) {
+    const auto coordinate = [&] { return random.uniform(-5.0, 5.0); };
+    const texgen::Aim aim{
+        {coordinate(), coordinate(), coordinate()}, {coordinate() + 20.0, coordinate(), coordinate()}, {0.0, 1.0, 0.0}};
+    const double z_near = random.uniform(0.1, 1.0), width = random.uniform(1.0, 20.0);
+    const texgen::Angle fovy = texgen::degrees(random.uniform(10.0, 90.0));
+    const std::optional<texgen::Projector> drawn[] = {
+        make_projector(texgen::PerspectiveLens{fovy, 1.5, z_near, 100.0}, aim, texgen::opengl),
+        make_projector(texgen::PerspectiveLens{fovy, 1.0, z_near, unlimited}, aim, texgen::vulkan),
+        make_projector(texgen::PerspectiveLens{fovy, 1.0, z_near, unlimited, true}, aim, texgen::direct3d),
+        make_projector(texgen::OrthographicLens{-width, width, -1.0, 1.0, 0.0, 100.0}, aim, texgen::opengl),
+        make_projector(texgen::OrthographicLens{-3.0, 0.5 * width, -1.0, 1.0, -3.0, 50.0}, aim, texgen::metal)};
+    std::vector<texgen::Projector> projectors;
+    for (const std::optional<texgen::Projector>& projector : drawn) projectors.push_back(projector.value());
+    // Straight along an axis: elements of the matrix are 0.
+    projectors.push_back(make_projector(texgen::OrthographicLens{-width, width, -4.0, 4.0, 0.0, 100.0},
+                                        texgen::Aim{{0.0, 10.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, -1.0}},
+                                        texgen::opengl)
+                             .value());
+    return projectors;
+}
 
 }  // namespace
 
@@ -37,6 +72,80 @@ TEST_CASE("no function raises an exception of floating point but underflow and i
         }
     }
     CHECK(asked > 2000);
+}
+
+TEST_CASE(
+    "nor does one under lenses of all kinds, with depths of all kinds, for bodies, points and what is made of them") {
+    support::Random random(8200);
+    const texgen::ModelMatrix model{glm::dmat4(1.0)};
+    const auto require_none = [](const std::string& of) {
+        CAPTURE(of);
+        REQUIRE(std::fetestexcept(trapped) == 0);
+    };
+    std::size_t lit = 0;
+    for (int round = 0; round < 40; ++round) {
+        const std::vector<texgen::Projector> projectors = draw_projectors(random);
+        std::vector<glm::vec3> points;
+        for (int i = 0; i < 40; ++i)
+            points.emplace_back(random.uniform_float(5.0, 15.0), random.uniform_float(-5.0, 5.0),
+                                random.uniform_float(-5.0, 5.0));
+        std::vector<texgen::Box> boxes;
+        std::vector<texgen::Sphere> spheres;
+        for (const glm::vec3& point : points) {
+            boxes.push_back({point - 0.5f, point + 0.5f});
+            spheres.push_back({point, 0.5f});
+        }
+        boxes.push_back({glm::vec3(1.0f), glm::vec3(-1.0f)});
+        spheres.push_back({glm::vec3(0.0f), 0.0f});
+        for (std::size_t kind = 0; kind < projectors.size(); ++kind) {
+            CAPTURE(kind);
+            for (const texgen::TextureRegion& region : {texgen::whole_texture(), texgen::whole_texture().with_depth(),
+                                                        texgen::whole_texture().with_depth(0.0, unlimited),
+                                                        texgen::whole_texture().with_depth(-unlimited, 1.0)}) {
+                std::feclearexcept(FE_ALL_EXCEPT);
+                const texgen::WorldTexgen matrix = texture_from_world(projectors[kind], region);
+                require_none("texture_from_world");
+                clip_planes(matrix, region);
+                require_none("clip_planes");
+                const texgen::LitVolume volume(matrix, region);
+                require_none("LitVolume");
+                for (const texgen::Box& box : boxes) {
+                    coverage(matrix, region, box);
+                    volume.coverage(box);
+                    require_none("a box");
+                }
+                for (const texgen::Sphere& sphere : spheres) {
+                    coverage(matrix, region, sphere);
+                    volume.coverage(sphere);
+                    require_none("a sphere");
+                }
+                for (const std::size_t count : {std::size_t{2}, std::size_t{9}, boxes.size()}) {
+                    std::vector<texgen::Coverage> out(count);
+                    coverage(matrix, region, std::span<const texgen::Box>(boxes).last(count), out);
+                    require_none("boxes");
+                    lit += static_cast<std::size_t>(std::ranges::count(out, texgen::Coverage::inside));
+                    out.resize(std::min(count, spheres.size()));
+                    coverage(matrix, region, std::span<const texgen::Sphere>(spheres).last(out.size()), out);
+                    require_none("spheres");
+                }
+                std::vector<float> s(points.size()), t(points.size()), r(points.size()), mask(points.size());
+                for (const texgen::Tolerance tolerance : {texgen::exact, texgen::texels(0.5, 1024.0)}) {
+                    const texgen::Positions<texgen::World> positions = texgen::world_space(points);
+                    project(matrix, positions, region, {s, t, r, mask}, tolerance);
+                    require_none("points");
+                    project(matrix, positions.within({{5.0f, -5.0f, -5.0f}, {15.0f, 5.0f, 5.0f}}), region,
+                            {s, t, r, mask}, tolerance);
+                    require_none("points within a box");
+                }
+            }
+        }
+        const std::vector<texgen::ModelMatrix> models(boxes.size(), model);
+        texgen::Scene scene;
+        std::feclearexcept(FE_ALL_EXCEPT);
+        scene.update({models, boxes, projectors}, {});
+        require_none("Scene::update");
+    }
+    CHECK(lit > 1000);
 }
 
 TEST_CASE("nor does one for the holes of a visibility buffer, fragments behind, or a segment of one q") {

@@ -48,7 +48,7 @@ void weigh_forms(const glm::dmat4& matrix, const FormWeights& weights, FormLanes
 template <class CompiledWhereCalled = void>
 void make_unit_forms(const FormLanes& forms, const double* slopes, UnitForms& result) noexcept {
     for (std::size_t i = 0; i < form_lanes; i += at_once) {
-        const Doubles scale = 1.0 / maximum(load<Doubles>(slopes + i), Doubles{} + 0x1p-800);
+        const Doubles scale = 1.0 / maximum(load<Doubles>(slopes + i), Doubles{} + 0x1p-400);
         const auto take = [&](const double* from, double* to) { store(to + i, load<Doubles>(from + i) * scale); };
         for (std::size_t j = 0; j < 3; ++j) take(forms.a[j], result.a[j]);
         take(forms.d, result.d);
@@ -76,7 +76,9 @@ void round_forms(const FormLanes& forms, std::size_t count, FloatForms& result) 
         Doubles& sum = gradient[i / at_once];
         sum = magnitude(load<Doubles>(forms.a[0] + i)) + magnitude(load<Doubles>(forms.a[1] + i)) +
               magnitude(load<Doubles>(forms.a[2] + i));
-        store(distance + i, where(greater(sum, 0.0), magnitude(load<Doubles>(forms.d + i)) / sum));
+        // A form of constant value, whose d is about 1, is not at any distance.
+        store(distance + i,
+              where(greater(sum, 0.0), magnitude(load<Doubles>(forms.d + i)) / maximum(sum, Doubles{} + 0x1p-900)));
     }
     const double extent = larger(larger(distance[0], distance[1]), larger(distance[2], distance[3]));
     const double per_extent = extent > 0.0 ? 1.0 / extent : 0.0;
@@ -88,8 +90,8 @@ void round_forms(const FormLanes& forms, std::size_t count, FloatForms& result) 
         const auto narrowing = load<Doubles>(forms.narrowing + i);
         const Doubles size = maximum(load<Doubles>(is_depth + i) * narrowing * of_narrowing,
                                      maximum(gradient[i / at_once], magnitude(d) * per_extent));
-        const Doubles scale =
-            where(greater(size, 0x1p-900) & ~greater(size, 0x1p900), 0.125 / power_of_two_below(size));
+        const Doubles scale = where(greater(size, 0x1p-900) & ~greater(size, 0x1p900),
+                                    0.125 / maximum(power_of_two_below(size), Doubles{} + 0x1p-900));
         Doubles squared{};
         for (std::size_t j = 0; j < 3; ++j) {
             const Doubles a = load<Doubles>(forms.a[j] + i) * scale;
