@@ -4,8 +4,8 @@
 // per fragment. Segments are in segment.hpp.
 //
 // The tolerance chooses how it is computed: `exact` by a division in double with a certificate, and what that leaves in
-// doubt by exact sums; others by the first polynomial whose bound fits, else by a division in float, if that fits, else
-// as `exact`.
+// doubt by exact sums; others by the first polynomial whose bound fits, or in short rows without one, else by a division
+// in float, if that fits, else as `exact`.
 
 #include "detail/language.hpp"
 

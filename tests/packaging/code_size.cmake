@@ -11,13 +11,13 @@ set(arguments_of_footprints "const FootprintSetup& setup, FragmentRect rect, Foo
 set(arguments_of_batch "const TriangleBatch& batch, std::span<const FragmentRect> rects, Texcoords out")
 set(arguments_of_buffer "const TriangleBatch& batch, std::span<const std::uint32_t> ids, FragmentRect rect, Footprints out")
 set(calls
-    "67000 interpolate.hpp Work interpolate interpolate(setup, rect, out)"
+    "69000 interpolate.hpp Work interpolate interpolate(setup, rect, out)"
     "100000 texcoord.hpp void project project(texgen, positions, whole_texture(), out)"
     "8000 texcoord.hpp auto one project(texgen, world_space(position))"
     "36000 coverage.hpp Coverage coverage coverage(texgen, whole_texture(), box)"
     "62000 segment.hpp void along interpolate(segment, alpha, whole_texture(), out)"
     "49000 footprint.hpp bool footprints footprint(setup, rect, out)"
-    "329000 batch.hpp void batch interpolate(batch, rects, out)"
+    "330000 batch.hpp void batch interpolate(batch, rects, out)"
     "124000 batch.hpp void buffer footprint(batch, ids, rect, {1024, 1024}, out)")
 
 find_program(size size)

@@ -214,10 +214,22 @@ TEST_CASE("a tolerance at which a certificate just holds, or just fails, is kept
     CHECK(quadratic.largest_share > 0.5);
 }
 
-TEST_CASE("a tolerance at which tiles of eight columns are just divided in float is kept") {
+namespace {
+
+// Of what is divided in float as a whole: eight columns, or 16 to 64 in four rows and more.
+texgen::FragmentRect draw_tile_for_float(Random& random) {
+    const int x = random.integer(20, 150), y = random.integer(20, 150);
+    if (random.coin()) return {x, y, 8, 2 * random.integer(1, 16)};
+    const int width = random.integer(16, random.coin() ? 32 : 64);
+    return {x, y, width, random.integer(4, random.coin() ? 4 : 14)};
+}
+
+}  // namespace
+
+TEST_CASE("a tolerance at which small tiles are just divided in float is kept") {
     Random random(2600);
     Tally tally;
-    int alone = 0, together = 0;
+    int alone = 0, together = 0, wide = 0;
     for (int i = 0; i < 600; ++i) {
         texgen::Triangle triangle{};
         for (texgen::WindowVertex* const corner : support::vertices(triangle)) {
@@ -226,7 +238,8 @@ TEST_CASE("a tolerance at which tiles of eight columns are just divided in float
             const float s = random.uniform_float(0.0, 1.0), t = random.uniform_float(0.0, 1.0);
             *corner = {{x, y}, clip_w, glm::vec4(s, t, random.uniform_float(-0.5, 1.0), 1.0f) * q};
         }
-        const Shot shot{triangle, {random.integer(20, 150), random.integer(20, 150), 8, 2 * random.integer(1, 16)}};
+        const Shot shot{triangle, draw_tile_for_float(random)};
+        wide += shot.rect.width > 8;
         const unsigned asked = any_outputs(random);
         const auto values = [&](Tolerance tolerance) {
             Outputs out(count_of(shot.rect), asked);
@@ -253,6 +266,7 @@ TEST_CASE("a tolerance at which tiles of eight columns are just divided in float
     }
     CHECK(alone > 30);
     CHECK(together > 50);
+    CHECK(wide > 200);
     CHECK(tally.largest_share > 0.2);
 }
 

@@ -98,7 +98,7 @@ TRIANGLE = [
         ("what is behind errs", "    if (at.all_behind()) return {0.0, 0.0};\n", "", "work_test"),
         ("two doubles see a slope of a constant q", "is_constant(triangle.q.value)) plan.work",
          "is_constant(at.q_ramp)) plan.work", "work_test"),
-        ("rectangles of 65 fragments are filled in chunks", "tile.count() > 128", "tile.count() > 64", "work_test"),
+        ("rectangles of 65 fragments are filled in chunks", "* height > 128", "* height > 64", "work_test"),
         ("what the depth cuts needs no test",
          "sides == Coverage::inside && depth == Coverage::inside", "sides == Coverage::inside", "work_test"),
         ("what is beyond the depth is divided", "    if (depth == Coverage::outside) return;\n", "", "work_test")),

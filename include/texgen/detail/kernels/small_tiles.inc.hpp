@@ -62,17 +62,18 @@ TEXGEN_INLINE bool divide_small(const SmallTile& tile) noexcept {
     return !any_zero(least);
 }
 
-// Divides a tile of eight columns: a vector holds whole rows, or a part of one. Rows are counted from the middle.
-TEXGEN_INLINE void divide_small_in_float(const SmallTile& tile) noexcept {
+// Divides a tile of eight columns, of which a vector holds whole rows, or a part of one; or of sixteen and more, of which
+// the last vector of a row may begin in the one before. Rows are counted from the middle. A width that is a constant
+// is quicker.
+TEXGEN_INLINE void divide_small_in_float(const SmallTile& tile, int width, int columns) noexcept {
     const auto& [f_base, f_dx, f_dy] = tile.numerator;
     const Ramp of_q{tile.q.base, tile.q.dx, read_alone(tile.q.dy)};
-    constexpr int width = 8, columns = wide_lanes < width ? wide_lanes : width;
-    const int count = width * tile.height;
+    const int count = width * tile.height, rows = wide_lanes / columns;
     float* const out[2] = {tile.out[0], tile.out[1]};
     const WideWords index = indices<WideWords>();
-    const WideFloats row = to_numbers(halved(halved(halved(index))));
+    const WideFloats row = rows == 1 ? WideFloats{} : to_numbers(halved(halved(halved(index))));
     const double middle = 0.5 * (tile.height - 1.0);
-    for (int begin = 0; begin < width; begin += columns) {
+    for (int begin = 0;;) {
         const WideFloats x = to_numbers(index) - row * static_cast<float>(width) + static_cast<float>(begin);
         const auto first_of = [&](const Ramp& ramp) {
             const double base = ramp.base + middle * ramp.dy;
@@ -83,21 +84,26 @@ TEXGEN_INLINE void divide_small_in_float(const SmallTile& tile) noexcept {
         const float q_dy = static_cast<float>(of_q.dy);
         const float dy[2] = {static_cast<float>(f_dy[0]), static_cast<float>(f_dy[1])};
         WideFloats y = row - static_cast<float>(middle);
-        for (int n = begin; n < count; n += wide_lanes / columns * width) {
+        for (int n = begin; n < count; n += rows * width) {
             const WideFloats reciprocal = 1.0f / (y * q_dy + first_q);
             TEXGEN_FOR (std::size_t k = 0; k < 2; ++k) store(out[k] + n, (y * dy[k] + first[k]) * reciprocal);
-            y = y + static_cast<float>(wide_lanes / columns);
+            y = y + static_cast<float>(rows);
         }
+        if (begin + columns >= width) break;
+        begin = begin + 2 * columns <= width ? begin + columns : width - columns;
     }
 }
 
 // Whether no value is in doubt.
 template <class CompiledWhereCalled = void>
 bool fill_small_tile(const SmallTile& tile) noexcept {
-    if (tile.is_in_float)
-        divide_small_in_float(tile);
-    else if (!divide_small(tile))
-        return false;
+    if (!tile.is_in_float) {
+        if (!divide_small(tile)) return false;
+    } else if (tile.width == 8) {
+        divide_small_in_float(tile, 8, wide_lanes < 8 ? wide_lanes : 8);
+    } else {
+        divide_small_in_float(tile, tile.width, wide_lanes);
+    }
     if (tile.lit != nullptr)
         light_apart(tile.min, tile.max, tile.out[0], tile.out[1], tile.lit, tile.width * tile.height);
     return true;

@@ -99,7 +99,7 @@ struct SmallTile {
     TwoRamps numerator;
     Ramp q;
     int width, height;
-    bool is_in_float;  // rounded and divided in float, without doubt; eight columns, an even number of rows
+    bool is_in_float;  // rounded and divided in float, without doubt; of a shape for it
     float* out[2];
     float* lit;            // or null
     float min[2], max[2];  // the region

@@ -3,16 +3,6 @@
 
 namespace TEXGEN_DETAIL_BUILD {
 
-// Whether a tile goes by this path. Rows that are shorter than vectors are gathered in a buffer. The more fragments a
-// tile has, the likelier one is in doubt, and then all are divided again; and in long rows vectors that follow one
-// another share a division at less cost.
-inline bool is_small(const Tile& tile, double tolerance) noexcept {
-    constexpr int longest_vector = 8;
-    const int width = tile.width == 1 ? tile.height : tile.width;  // a column is a row
-    const int most = width < longest_vector ? SmallTile::most_in_short_rows : width <= 64 ? 4096 : 512;
-    return tile.count() <= most && (tolerance == 0.0 || !pays_for_chunks(tile.is_column() ? tile.mirrored() : tile));
-}
-
 // Where a tile begins from the vertex that the planes are about, how far it reaches from there at least, and its last
 // column and row.
 struct SmallPlace {
@@ -115,7 +105,7 @@ inline bool serves(const SmallFunction<Double2>& f, const SmallDivisor& divisor,
     const Double2 least = least_of<Double2>(f.base, f.right, f.bottom);
     const Double2 largest = largest_of<Double2>(f.base, f.right, f.bottom);
     tile.is_in_float = false;
-    if (tolerance != 0.0 && tile.width == 8 && read_alone(tile.height) % 2 == 0) {
+    if (tolerance != 0.0 && has_shape_for_float(tile.width, read_alone(tile.height))) {
         const Double2 greatest = larger(largest, -least) * (1.001 / divisor.least);
         const double allowed = (tolerance - 0x1p-96) * (divisor.least - q.error);
         const Double2 error = f.error + greatest * q.error;
@@ -124,7 +114,9 @@ inline bool serves(const SmallFunction<Double2>& f, const SmallDivisor& divisor,
             all_less(error * 1.01 + rounded * (1.52 * unit_roundoff_float), double2_of(allowed, allowed)) &&
             divisor.least > larger(0x1p-10 * divisor.largest, 0x1p-21) && tolerance < 0x1p40;
     }
-    return tile.is_in_float || all_less(f.error * 0x1.8p41 + 0x1.1p-124 * divisor.largest, larger(least, -largest));
+    if (tile.is_in_float) return true;
+    if (tolerance != 0.0 && pays_for_chunks(tile.width, tile.height)) return false;
+    return all_less(f.error * 0x1.8p41 + 0x1.1p-124 * divisor.largest, larger(least, -largest));
 }
 
 // What of a tile is left: nothing, what has to be divided again, or all, as no one bound serves.

@@ -36,11 +36,31 @@ inline int chunk_length(const Corners& at, int width) noexcept {
 }
 
 // A chunk costs as much as some fragments, and the first of them, with what they ask for, as much as some tens.
-inline bool pays_for_chunks(const Tile& tile) noexcept { return tile.width >= 16 && tile.count() > 128; }
+inline bool pays_for_chunks(int width, int height) noexcept {
+    return width >= 16 && static_cast<std::int64_t>(width) * height > 128;
+}
+
+// Whether a small tile has a shape that is divided in float: what is done in double once a column pays from a few rows
+// on, and takes less time then than chunks, too.
+inline bool has_shape_for_float(int width, int height) noexcept {
+    return width == 8 ? height % 2 == 0 : width >= 16 && width <= 64 && height >= 4;
+}
+
+// Whether a tile goes by the path of small ones. Rows that are shorter than vectors are gathered in a buffer. The more
+// fragments a tile has, the likelier one is in doubt, and then all are divided again; and in long rows vectors that
+// follow one another share a division at less cost.
+inline bool is_small(const Tile& tile, double tolerance) noexcept {
+    constexpr int longest_vector = 8;
+    const bool is_column = tile.is_column();  // a row
+    const int width = is_column ? tile.height : tile.width, height = is_column ? 1 : tile.height;
+    const int most = width < longest_vector ? SmallTile::most_in_short_rows : width <= 64 ? 4096 : 512;
+    return tile.count() <= most &&
+           (tolerance == 0.0 || !pays_for_chunks(width, height) || has_shape_for_float(width, height));
+}
 
 // The plan of a tile that is divided without being asked about.
 inline Plan plan_without_survey(const Tile& tile, const Corners& at) noexcept {
-    return {Work::divide,        pays_for_chunks(tile) ? chunk_length(at, tile.width) : 0,
+    return {Work::divide,        pays_for_chunks(tile.width, tile.height) ? chunk_length(at, tile.width) : 0,
             StepRule::undecided, {},
             Coverage::partial,   Coverage::inside};
 }
@@ -104,9 +124,11 @@ inline void choose_plan(const TriangleFunctions& triangle, const Tile& tile, con
     const bool all_inside = sides == Coverage::inside && depth == Coverage::inside;
     plan.work = all_inside ? Work::divide : Work::divide_and_test;
     if (at.is_well_in_front() && is_constant(triangle.q.value)) plan.work = Work::affine;
-    if (triangle.tolerance == 0.0 || !pays_for_chunks(tile)) return;
+    const Work divided = plan.work;
+    if (triangle.tolerance == 0.0 || !pays_for_chunks(tile.width, tile.height)) return;
     plan.chunk = chunk_length(at, tile.width);
     if (at.is_well_in_front()) choose_steps(plan, at, triangle.tolerance * (1.0 - 0x1p-18));
+    if (is_small(tile, triangle.tolerance)) plan.work = divided;  // unless floats do not serve, which is not asked
 }
 
 // Surveys a tile; a column as the row of the mirrored triangle that interpolate.inc.hpp makes of it.
@@ -141,12 +163,14 @@ inline Work TriangleSetup::work(FragmentRect rect) const noexcept {
 
 inline glm::dvec2 TriangleSetup::error_bound(FragmentRect rect) const noexcept {
     if (rect.width <= 0 || rect.height <= 0) return {0.0, 0.0};
-    const detail::TileSurvey found = detail::survey(functions_, detail::tile_of(rect));
+    const detail::Tile tile = detail::tile_of(rect);
+    const detail::TileSurvey found = detail::survey(functions_, tile);
     const detail::Corners& at = found.at;
     const detail::Plan& plan = found.plan;
     if (at.all_behind()) return {0.0, 0.0};
+    const bool has_rule = plan.steps != detail::StepRule::undecided && !detail::is_small(tile, functions_.tolerance);
     const auto bound = [&](std::size_t k) {
-        if (plan.steps != detail::StepRule::undecided) return plan.error[k];
+        if (has_rule) return plan.error[k];
         if (!at.all_in_front()) return detail::infinity;
         return detail::larger(functions_.tolerance, detail::half_ulp(at.largest_quotient()[k]));
     };
