@@ -216,12 +216,13 @@ TEST_CASE("a tolerance at which a certificate just holds, or just fails, is kept
 
 namespace {
 
-// Of what is divided in float as a whole: eight columns, or 16 to 64 in four rows and more.
+// Of what is divided in float as a whole: eight columns, or 16 to 64 in enough rows.
 texgen::FragmentRect draw_tile_for_float(Random& random) {
     const int x = random.integer(20, 150), y = random.integer(20, 150);
     if (random.coin()) return {x, y, 8, 2 * random.integer(1, 16)};
     const int width = random.integer(16, random.coin() ? 32 : 64);
-    return {x, y, width, random.integer(4, random.coin() ? 4 : 14)};
+    const int least = std::max(4, (width + 7) / 8);
+    return {x, y, width, random.integer(least, random.coin() ? least : 14)};
 }
 
 }  // namespace

@@ -99,6 +99,38 @@ TEST_CASE("a batch takes no longer than its triangles one by one, however large 
     }
 }
 
+TEST_CASE("a tolerance takes no longer than exact, of whatever shape a tile of four rows and more is") {
+    constexpr double most = 1.2;
+    std::vector<float> s(4096), t(4096), r(4096), lit(4096);
+    const Triangle triangle = ordinary(1, 1).triangle;
+    const texgen::TriangleSetup exact = support::setup_of(triangle);
+    const texgen::TriangleSetup within = support::setup_of(triangle, texgen::whole_texture(), tolerances[1]);
+    for (const auto& [width, height] :
+         {std::pair{8, 8}, {8, 7}, {12, 12}, {16, 8}, {17, 8}, {16, 16}, {24, 24}, {64, 4}, {64, 8}, {64, 64}}) {
+        const FragmentRect rect{300, 100, width, height};
+        const auto part = [&](std::vector<float>& all) { return std::span(all).first(support::count_of(rect)); };
+        const double of_s_and_t = support::worst_over_ordinary_within(
+            most,
+            [&] {
+                interpolate(exact, rect, {part(s), part(t)});
+            },
+            [&] {
+                interpolate(within, rect, {part(s), part(t)});
+            });
+        const double of_all = support::worst_over_ordinary_within(
+            most,
+            [&] {
+                interpolate(exact, rect, {part(s), part(t), part(r), part(lit)});
+            },
+            [&] {
+                interpolate(within, rect, {part(s), part(t), part(r), part(lit)});
+            });
+        INFO(width, " x ", height);
+        CHECK(of_s_and_t <= most);
+        CHECK(of_all <= most);
+    }
+}
+
 TEST_CASE(
     "one coordinate takes little more than s and t, and all three with the mask not much more than twice as long") {
     constexpr double most_alone = 2.25, most_of_all = 3.0;
