@@ -14,12 +14,19 @@
 #include <string>
 #include <vector>
 
+#include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vec3.hpp>
+
+#include "api/diagnose_product_test/users_code.hpp"
 #include "support/random.hpp"
 #include "support/stopwatch.hpp"
 #include "support/workloads.hpp"
 #include "texgen/batch.hpp"
 #include "texgen/clip.hpp"
 #include "texgen/coverage.hpp"
+#include "texgen/diagnose.hpp"
+#include "texgen/fixed_function.hpp"
 #include "texgen/interpolate.hpp"
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
@@ -179,4 +186,57 @@ TEST_CASE("nor does one for the holes of a visibility buffer, fragments behind, 
             CHECK(std::fetestexcept(trapped) == 0);
         }
     }
+}
+
+TEST_CASE("nor does a diagnosis of any projector, or of what users' own code makes with it, whatever else is told") {
+    using namespace product_cases;
+    Random random(8101);
+    int asked = 0;
+    for (int i = 0; i < 40000; ++i) {
+        const Mistake mistake = static_cast<Mistake>(random.integer(0, 8));
+        Meant m = random.coin() ? human(mistake, random) : any_meant(mistake, random);
+        if (random.integer(0, 3) == 0) m.aim.position = {0.0, 0.0, 0.0};
+        if (random.integer(0, 3) == 0) m.aim.target = m.aim.position + glm::dvec3(0.0, 0.0, random.coin() ? 5.0 : -5.0);
+        const double end = m.kind == LensKind::infinite ? infinity_double : m.z_far;
+        const bool is_of_camera = random.integer(0, 7) == 0, is_reversed = random.integer(0, 7) == 0;
+        const std::optional<Projector> projector =
+            is_of_camera ? make_projector(texgen::PinholeLens{640.0, 630.0, 320.5, 240.0, 640.0, 480.0, m.z_near, end,
+                                                              texgen::PixelCentre::half},
+                                          m.aim, m.conventions)
+            : is_reversed
+                ? make_projector(texgen::PerspectiveLens{texgen::degrees(m.fovy), m.aspect, m.z_near, end, true}, m.aim,
+                                 m.conventions)
+                : right_projector(m);
+        if (!projector) continue;
+        ++asked;
+        const In in = put_in_space(m, random);
+        const glm::dmat4 texgen = random.coin() && in == In::world
+                                      ? texture_from_world(*projector, m.region, m.depth).matrix()
+                                      : made_somehow(m, mistake, random);
+        const Projector told_of = random.coin() ? *projector : own_projector(m);
+        const auto raises_none = [&](const auto& diagnose_it) {
+            std::feclearexcept(FE_ALL_EXCEPT);
+            const Diagnosis diagnosis = diagnose_it();
+            const int raised = std::fetestexcept(trapped);
+            REQUIRE_MESSAGE(raised == 0, "raised ", raised, is_of_camera, is_reversed, " ", text(m, texgen, diagnosis));
+        };
+        raises_none([&] { return diagnose(told_of); });
+        for (const Told told : {Told::nothing, Told::lens, Told::projector}) {
+            const bool has_conventions = random.coin();
+            raises_none([&] { return diagnosis_of(m, in, told_of, told, has_conventions, texgen); });
+            raises_none([&] { return diagnosis_of(m, in, told_of, told, has_conventions, glm::transpose(texgen)); });
+        }
+        raises_none(
+            [&] { return diagnose(planes(texgen::WorldTexgen(texgen)), texgen::ProjectionSetup<texgen::World>{}); });
+        raises_none([&] {
+            const std::array points{glm::vec3(0.0f), glm::vec3(0.5f, -1.0f, -7.0f), glm::vec3(-1.0f, 2.0f, -90.0f)};
+            const texgen::LensFacts facts{texgen::degrees(m.fovy), m.aspect, m.z_near, end};
+            return diagnose(texgen::ProjectionSetup<texgen::World>{.projector = told_of,
+                                                                   .points = texgen::world_space(points),
+                                                                   .depth = m.depth,
+                                                                   .texels_per_unit = {512.0, 512.0},
+                                                                   .lens = facts});
+        });
+    }
+    CHECK(asked > 30000);
 }

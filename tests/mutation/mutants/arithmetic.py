@@ -63,6 +63,7 @@ ARITHMETIC = [
         ("the sign is that of the smallest", "terms_[count_ - 1] > 0.0 ? 1 : -1", "terms_[0] > 0.0 ? 1 : -1",
          "interpolate_test texcoord_test clip_slide_test")),
     *of("detail/arithmetic/rounding.hpp",
+        ("a ratio to 0 is a division", "return b != 0.0 ? a / b : infinity;", "return a / b;", "exceptions_test"),
         ("gamma has no room", "u = 2.0 * unit_roundoff_double;", "u = unit_roundoff_double;", "bounds_test",
          {"survives": "With the unit roundoff itself gamma(n) is the bound; twice that is room."}),
         ("half an ulp is a quarter", "? unit_roundoff_float * largest", "? 0.5 * unit_roundoff_float * largest",

@@ -42,6 +42,9 @@ constexpr double smaller(double a, double b) noexcept { return a < b ? a : b; }
 constexpr double larger(double a, double b) noexcept { return a > b ? a : b; }
 inline double magnitude(double a) noexcept { return std::fabs(a); }
 
+// a / b, and infinite where b is 0, without the division: programs may trap it.
+constexpr double ratio(double a, double b) noexcept { return b != 0.0 ? a / b : infinity; }
+
 // The larger of two, and a NaN if either is one: for what must never be taken for small.
 constexpr double larger_or_nan(double a, double b) noexcept { return a > b || !(a == a) ? a : b; }
 

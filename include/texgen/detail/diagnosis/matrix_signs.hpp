@@ -155,7 +155,7 @@ inline bool mistakes_depth(const glm::dmat4& p, DepthRange range, Handedness han
     constexpr double rounding = 0x1p-12;
     const double low = low_end(range);
     const double other_low = -1.0 - low;
-    const double at_infinity = p[2].z / p[2].w;
+    const double at_infinity = ratio(p[2].z, p[2].w);
     if (is_perspective(p) && at_infinity > low + rounding && at_infinity < 1.0 - rounding) return true;
     const auto lands_on_other = [&](const std::optional<double>& distance) {
         if (!distance) return false;
@@ -164,7 +164,7 @@ inline bool mistakes_depth(const glm::dmat4& p, DepthRange range, Handedness han
         // Of ends that are next to one another depth is the difference of large numbers.
         const double w = p[2].w * z + p[3].w;
         const double lost = rounding_of(p) * (std::fabs(p[2].z * z) + std::fabs(p[3].z));
-        return std::fabs((p[2].z * z + p[3].z) / w - other_low) < rounding && lost < 0.5 * rounding * std::fabs(w);
+        return std::fabs(ratio(p[2].z * z + p[3].z, w) - other_low) < rounding && lost < 0.5 * rounding * std::fabs(w);
     };
     return lands_on_other(z_near) || lands_on_other(z_far);
 }

@@ -31,10 +31,11 @@ inline double least_error_in_texels(const Examined& examined, const Picture& pic
     const DepthRows rows = depth_rows(texgen);
     const double constant = texgen[3].z - rows.limit * texgen[3].w;  // r = limit q + constant
     const double far_end = rows.limit > 0.5 ? 1.0 : depth == DepthMapping::unit ? 0.0 : -1.0;
-    const double largest_q = rows.is_parallel_light ? texgen[3].w : constant / (far_end - rows.limit);
+    const double largest_q = rows.is_parallel_light ? texgen[3].w : ratio(constant, far_end - rows.limit);
+    if (!rows.are_parallel || !(largest_q > 0.0)) return 0.0;
     const glm::dvec2 texels = picture.texels();
     const double error = larger(examined.lost[3].x * texels.x, examined.lost[3].y * texels.y) / largest_q;
-    return rows.are_parallel && largest_q > 0.0 && is_finite(error) ? error : 0.0;
+    return is_finite(error) ? error : 0.0;
 }
 
 // What the points say. Each question is whether all of them are on one side of a plane, with the bound on the rounding:
@@ -70,10 +71,14 @@ public:
                 u.error + std::fabs(bound) * q.error + gamma(3) * (std::fabs(u.value) + std::fabs(bound * q.value));
             outside_[k] = outside_[k] && planes_[k].at(u.value, q.value) < -error;
         }
+        if (q.value == 0.0) {
+            all_in_front_ = false;
+            return;
+        }
         const glm::dvec3 str = glm::dvec3(strq[0].value, strq[1].value, strq[2].value) / q.value;
         const glm::dvec2 st(str.x, str.y);
         // What floats have thrown behind the projector too.
-        if (has_right_ && q.value != 0.0) compare(v, st);
+        if (has_right_) compare(v, st);
         if (!(q.value > q.error)) {
             all_in_front_ = false;
             return;
@@ -131,9 +136,10 @@ private:
     // With what the set-up composes in double.
     void compare(const glm::dvec3& v, const glm::dvec2& st) noexcept {
         const double q = value_at(right_[3], v).value;
+        if (!(q > 0.0)) return;
         const glm::dvec3 right =
             glm::dvec3(value_at(right_[0], v).value, value_at(right_[1], v).value, value_at(right_[2], v).value) / q;
-        if (!(q > 0.0) || !is_lit(right)) return;
+        if (!is_lit(right)) return;
         for (glm::length_t k = 0; k < 2; ++k) raise(std::fabs(st[k] - right[k]), picture_.texels()[k]);
     }
 

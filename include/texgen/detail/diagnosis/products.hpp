@@ -73,7 +73,7 @@ public:
                 norm += weight * (value * value);
             }
         }
-        multiple_ = along / norm;
+        multiple_ = norm > 0.0 ? along / norm : 0.0;
     }
 
     double within(Closeness closeness) const noexcept {
@@ -197,7 +197,7 @@ inline bool is_of_other_range(const glm::dmat4& texgen, const glm::dmat4& scale_
             const double magnitude =
                 std::fabs(a) * right.magnitude[column][row] + std::fabs(b) * right.magnitude[column][3];
             const double error = std::fabs(texgen[column][row] - multiple * value);
-            if (error > 0.0) result = larger(result, error / (multiple * magnitude));
+            if (error > 0.0) result = larger(result, ratio(error, multiple * magnitude));
         }
         return result;
     };

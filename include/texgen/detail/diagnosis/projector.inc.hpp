@@ -58,7 +58,7 @@ inline void examine_lens(const glm::dmat4& p, bool view_reflects, Conventions co
 
     const glm::dvec2 size = picture.extent() * picture.texels_per_unit;
     const double meant = facts.aspect ? *facts.aspect : picture.is_measured() ? size.x / size.y : 1.0;
-    const double aspect = std::fabs(height / width);
+    const double aspect = std::fabs(ratio(height, width));
     // Texels need not be square: without the aspect that was meant only the very inverse, in floats, is a mark.
     const double rounding = facts.aspect ? 0x1p-12 : 0x1p-22;
     if (std::fabs(meant - 1.0) > 0x1p-10 && std::fabs(aspect * meant - 1.0) <= rounding)

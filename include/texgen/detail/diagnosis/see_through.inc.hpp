@@ -58,6 +58,7 @@ inline std::optional<glm::dmat4> lens_within(const glm::dmat4& texgen, const Fac
     const double unit = was_perspective ? p[2].w / factors.projection[2].w : p[3].w / factors.projection[3].w;
     if (is_zero_row(texgen, 2))
         for (glm::length_t column = 0; column < 4; ++column) p[column][2] = unit * factors.projection[column][2];
+    if (unit == 0.0) return std::nullopt;
     p *= 1.0 / std::fabs(unit);
     return is_finite(p) && is_lens(p) && is_perspective(p) == was_perspective ? std::optional(p) : std::nullopt;
 }
@@ -65,7 +66,7 @@ inline std::optional<glm::dmat4> lens_within(const glm::dmat4& texgen, const Fac
 // The distance at which a lens has that depth; infinite where it has it nowhere in front.
 inline double distance_of(double depth, const glm::dmat4& p, Handedness handedness) noexcept {
     const double per_z = depth * p[2].w - p[2].z;
-    const double distance = ahead_of(p, handedness) * ((p[3].z - depth * p[3].w) / per_z);
+    const double distance = ahead_of(p, handedness) * ratio(p[3].z - depth * p[3].w, per_z);
     return is_finite(distance) && (distance > 0.0 || !is_perspective(p)) ? distance : infinity;
 }
 

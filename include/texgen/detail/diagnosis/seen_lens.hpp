@@ -51,6 +51,7 @@ public:
     SeenLens(const Product& texgen, double rounding) noexcept
         : q_(axis(texgen.value, 3)), rows_(depth_rows(texgen.value)), rounding_(rounding) {
         per_distance_ = glm::length(q_);
+        if (!(per_distance_ > 0.0)) return;  // parallel light
         for (glm::length_t row = 0; row < 2; ++row) {
             const glm::dvec3 axis_of_row = axis(texgen.value, row);
             centre_[row] = glm::dot(axis_of_row, q_) / (per_distance_ * per_distance_);
@@ -63,8 +64,10 @@ public:
 
     // Whether it is a perspective that neither skews nor was skewed.
     bool is_lens() const noexcept {
-        const double cosine = glm::dot(across(0), across(1)) / (glm::length(across(0)) * glm::length(across(1)));
-        return is_finite(cosine) && per_distance_ > 0.0 && rows_.are_parallel &&
+        const double lengths = glm::length(across(0)) * glm::length(across(1));
+        if (!(per_distance_ > 0.0) || !(lengths > 0.0) || !rows_.are_parallel) return false;
+        const double cosine = glm::dot(across(0), across(1)) / lengths;
+        return is_finite(cosine) &&
                std::fabs(cosine) <= 4.0 * rounding_ * (2.0 + 1.0 / focal_length_.x + 1.0 / focal_length_.y);
     }
 
@@ -96,8 +99,9 @@ public:
     // The distance at which r has that value, and r at that distance.
     Estimate distance_of(double r) const noexcept {
         const double difference = r - rows_.limit;
-        const double error = offset_error_ / std::fabs(offset_) + rounding_ * (1.0 + 1.0 / std::fabs(difference));
-        return {offset_ / (difference * per_distance_), error};
+        const double error =
+            ratio(offset_error_, std::fabs(offset_)) + rounding_ * (1.0 + ratio(1.0, std::fabs(difference)));
+        return {ratio(offset_, difference * per_distance_), error};
     }
     Estimate r_at(double distance) const noexcept {
         if (!is_finite(distance)) return {rows_.limit, rounding_};
@@ -131,7 +135,7 @@ private:
     double rounding_, per_distance_;
     std::array<glm::dvec3, 2> across_{};  // rows s and t without their part along q
     glm::dvec2 centre_{0.0}, focal_length_{0.0};
-    double offset_, offset_error_;  // r = limit q + offset
+    double offset_ = 0.0, offset_error_ = 0.0;  // r = limit q + offset
 };
 
 // Whether the angle of that focal length is a whole number of degrees.
