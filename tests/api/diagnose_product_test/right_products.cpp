@@ -7,6 +7,7 @@
 #include <optional>
 
 #include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
 #include <glm/trigonometric.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -130,6 +131,41 @@ TEST_CASE("factors that commute are not taken for a wrong order, where floats fi
         const std::optional<Projector> projector = right_projector(m);
         const glm::dmat4 texgen = made<float>(m, Mistake::none, random);
         require_valid(m, texgen, diagnosis_of(m, In::object, projector, Told::projector, false, texgen));
+    }
+}
+
+TEST_CASE("factors that cancel, as a lamp's view and its camera's pose, leave floats that fit no wrong order better") {
+    Random random(646);
+    for (int i = 0; i < 100000; ++i) {
+        Meant m;
+        m.conventions = any_conventions(random);
+        m.kind = random.coin() ? LensKind::orthographic : LensKind::perspective;
+        m.fovy = 10.0 * random.integer(3, 12);
+        m.z_far = std::pow(10.0, random.integer(1, 3));
+        m.right = m.top = random.integer(1, 50);
+        m.left = m.bottom = -m.right;
+        const auto place = [&] {
+            const double x = random.integer(-10, 10), y = random.integer(-10, 10);
+            return glm::dvec3(x, y, random.integer(-10, 10));
+        };
+        m.aim = {place(), place(), {0.0, 1.0, 0.0}};
+        if (m.aim.target.x == m.aim.position.x && m.aim.target.z == m.aim.position.z) continue;
+        // The view of a light that looks along z from the origin is 1: P V is V P.
+        const bool is_lamp = i % 2 == 0;
+        if (!is_lamp) {
+            m.aim = {{0.0, 0.0, 0.0}, {0.0, 0.0, m.is_left() ? 1.0 : -1.0}, {0.0, 1.0, 0.0}};
+            m.pose = random.rotation();
+            m.pose[3] = glm::dvec4(random.power_of_ten(0.0, 3.0) * random.direction(), 1.0);
+        }
+        const glm::mat4 s = Code<float>::bias(m), p = Code<float>::lens(m), v = Code<float>::view(m);
+        const glm::mat4 pose = is_lamp ? glm::inverse(v) : Code<float>::pose(m);
+        const glm::dmat4 texgen(random.coin() ? s * p * v * pose : s * (p * (v * pose)));
+        m.pose = pose;
+        const bool is_double = is_lamp && random.coin();  // the pose that is told of
+        if (is_double) m.pose = glm::inverse(glm::dmat4(v));
+        require_valid(
+            m, texgen,
+            diagnosis_of(m, is_lamp ? In::eye : In::object, own_projector(m), Told::projector, false, texgen));
     }
 }
 

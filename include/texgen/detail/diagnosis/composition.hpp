@@ -178,16 +178,17 @@ inline std::optional<Composition> composition_of(const glm::dmat4& texgen, const
 }
 
 // The same for any closeness. What was composed in float is near to the right product and to others as well, where they
-// differ by less than its rounding (as depth ranges do far from the origin): the closest decides.
+// differ by less than its rounding (as depth ranges do far from the origin): the closest decides, unless the right one
+// is as near as products of the factors are in their precision. There another may be nearer, where factors commute or
+// cancel.
 inline std::optional<Composition> composition_of(const glm::dmat4& texgen, const Factors& factors, const Product& right,
                                                  bool is_in_float) noexcept {
     const Closeness closest = is_in_float ? rounded_once : composed_in_double;
     const Multiple multiple(right, texgen);
     if (multiple.within(closest) > 0.0) return Composition{};
     if (is_of_other_range(texgen, factors.scale_bias, right)) return Composition{.other_depth = true};
+    if (multiple.within(is_in_float ? composed_of_floats : Closeness{0.0, 0x1p-43}) > 0.0) return Composition{};
     const bool is_near = multiple.within(composed_in_float) > 0.0;
-    // Factors that commute give the same in another order, whose multiple fits as well but for what is rounded.
-    if (is_near && multiple.within({2.0 * closest.of_element, 2.0 * closest.of_magnitude}) > 0.0) return Composition{};
     if (!is_near && is_bias_without_w(texgen, factors)) return Composition{.scale_bias = ScaleBiasUse::without_w};
     return composition_of(as_in_scenes(texgen), as_in_scenes(factors), is_near ? 1 : 2, closest,
                           is_near ? std::optional(Composition{}) : std::nullopt);
