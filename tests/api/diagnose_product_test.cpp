@@ -24,14 +24,18 @@ namespace {
 
 using product_cases::any_meant;
 using product_cases::Code;
+using product_cases::defect_of;
 using product_cases::diagnosis_of;
 using product_cases::human;
 using product_cases::In;
+using product_cases::is_of_range;
+using product_cases::leaves_a_trace;
 using product_cases::LensKind;
 using product_cases::made;
 using product_cases::made_somehow;
 using product_cases::Meant;
 using product_cases::Mistake;
+using product_cases::mistakes;
 using product_cases::own_projector;
 using product_cases::put_in_space;
 using product_cases::right_projector;
@@ -44,52 +48,10 @@ using texgen::Diagnosis;
 using texgen::Object;
 using texgen::Projector;
 
-constexpr Defect defect_of(Mistake mistake) {
-    switch (mistake) {
-        case Mistake::radians:
-            return Defect::angle_unit_mistaken;
-        case Mistake::lens_of_other_range:
-        case Mistake::bias_of_other_range:
-            return Defect::depth_range_mismatch;
-        case Mistake::bias_without_w:
-            return Defect::bias_without_w;
-        case Mistake::no_bias:
-            return Defect::scale_bias_missing;
-        case Mistake::lens_of_other_hand:
-            return Defect::mixed_handedness;
-        case Mistake::inverted_aspect:
-            return Defect::aspect_inverted;
-        default:
-            return Defect::view_not_inverted;
-    }
-}
-
-double distance_of(const Meant& m) {
-    const glm::dvec3& p = m.aim.position;
-    return std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z);
-}
-
-bool is_of_range(Mistake mistake) {
-    return mistake == Mistake::lens_of_other_range || mistake == Mistake::bias_of_other_range;
-}
-
-// Whether floats have kept what the mistake changes: of depths whose far plane is infinitely far that is a distance,
-// near beside far away; of a lens as wide as half the world its angle.
-bool leaves_a_trace(const Meant& m, Mistake mistake, Told told) {
-    if (is_of_range(mistake) && m.kind == LensKind::infinite)
-        return m.z_near > (told == Told::projector ? 1e-5 : 1e-3) * distance_of(m);
-    if (mistake == Mistake::inverted_aspect) return std::fabs(m.aspect - 1.0) > 0.01;
-    return mistake != Mistake::radians || std::fabs(std::tan(0.5 * m.fovy)) < 20.0;
-}
-
 // Without its projector a matrix shows no lens of parallel light, and of frusta no angle.
 bool is_shown(const Meant& m, Mistake mistake) {
     return is_of_range(mistake) ? m.kind != LensKind::orthographic : m.kind <= LensKind::infinite;
 }
-
-constexpr std::array mistakes{
-    Mistake::radians, Mistake::lens_of_other_range, Mistake::bias_of_other_range, Mistake::bias_without_w,
-    Mistake::no_bias, Mistake::pose_for_view,       Mistake::inverted_aspect,     Mistake::lens_of_other_hand};
 
 // Of the rest nothing is seen without the projector: a pose is the view of another, and a lens that looks back a turned
 // one.
@@ -322,7 +284,7 @@ TEST_CASE("a bias without w is named in a tile of an atlas too, where both s and
         for (const int row : {0, 1, 3}) {
             glm::dmat4 other = mistaken;
             for (int column = 0; column < 4; ++column)
-                other[column][row] = row == 3 ? 1.25 * other[column][3] : right[column][row];
+                other[column][row] = row == 3 ? other[column][3] + other[column][0] : right[column][row];
             REQUIRE_MESSAGE(!is_named(other), text(m, other, {}));
         }
     }

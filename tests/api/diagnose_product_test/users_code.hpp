@@ -277,6 +277,48 @@ inline Meant human(Mistake mistake, Random& random) {
 // What the diagnosis is told beside the matrix.
 enum class Told { projector, lens, nothing };
 
+inline constexpr std::array mistakes{
+    Mistake::radians, Mistake::lens_of_other_range, Mistake::bias_of_other_range, Mistake::bias_without_w,
+    Mistake::no_bias, Mistake::pose_for_view,       Mistake::inverted_aspect,     Mistake::lens_of_other_hand};
+
+constexpr Defect defect_of(Mistake mistake) {
+    switch (mistake) {
+        case Mistake::radians:
+            return Defect::angle_unit_mistaken;
+        case Mistake::lens_of_other_range:
+        case Mistake::bias_of_other_range:
+            return Defect::depth_range_mismatch;
+        case Mistake::bias_without_w:
+            return Defect::bias_without_w;
+        case Mistake::no_bias:
+            return Defect::scale_bias_missing;
+        case Mistake::lens_of_other_hand:
+            return Defect::mixed_handedness;
+        case Mistake::inverted_aspect:
+            return Defect::aspect_inverted;
+        default:
+            return Defect::view_not_inverted;
+    }
+}
+
+inline double distance_of(const Meant& m) {
+    const glm::dvec3& p = m.aim.position;
+    return std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z);
+}
+
+inline bool is_of_range(Mistake mistake) {
+    return mistake == Mistake::lens_of_other_range || mistake == Mistake::bias_of_other_range;
+}
+
+// Whether floats have kept what the mistake changes: of depths whose far plane is infinitely far that is a distance,
+// near beside far away; of a lens as wide as half the world its angle.
+inline bool leaves_a_trace(const Meant& m, Mistake mistake, Told told) {
+    if (is_of_range(mistake) && m.kind == LensKind::infinite)
+        return m.z_near > (told == Told::projector ? 1e-5 : 1e-3) * distance_of(m);
+    if (mistake == Mistake::inverted_aspect) return std::fabs(m.aspect - 1.0) > 0.01;
+    return mistake != Mistake::radians || std::fabs(std::tan(0.5 * m.fovy)) < 20.0;
+}
+
 // In the object's space, or in the world's or the eye's, where the pose says so.
 enum class In { object, world, eye };
 

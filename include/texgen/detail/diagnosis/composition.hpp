@@ -189,7 +189,9 @@ inline std::optional<Composition> composition_of(const glm::dmat4& texgen, const
     if (is_of_other_range(texgen, factors.scale_bias, right)) return Composition{.other_depth = true};
     if (multiple.within(is_in_float ? composed_of_floats : Closeness{0.0, 0x1p-43}) > 0.0) return Composition{};
     const bool is_near = multiple.within(composed_in_float) > 0.0;
-    if (!is_near && is_bias_without_w(texgen, factors)) return Composition{.scale_bias = ScaleBiasUse::without_w};
+    for (const bool transposed : {false, true})
+        if (!is_near && is_bias_without_w(transposed ? glm::transpose(texgen) : texgen, factors))
+            return Composition{.transposed = transposed, .scale_bias = ScaleBiasUse::without_w};
     return composition_of(as_in_scenes(texgen), as_in_scenes(factors), is_near ? 1 : 2, closest,
                           is_near ? std::optional(Composition{}) : std::nullopt);
 }

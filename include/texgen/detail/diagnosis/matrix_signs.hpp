@@ -204,6 +204,20 @@ inline DepthRows depth_rows(const glm::dmat4& m) noexcept {
     return {are_parallel, size_q == 0.0, squared > 0.0 ? glm::dot(r, q) / squared : 0.0};
 }
 
+// Whether the transposed matrix has the mark of rows r and q, and the matrix has not. Each row of the matrix, a column
+// of the transposed, has its own size: a large one would hide what the others show.
+inline bool shows_transposed(const glm::dmat4& m) noexcept {
+    if (depth_rows(m).are_parallel) return false;
+    glm::dmat4 rows = glm::transpose(m);
+    for (glm::length_t row = 0; row < 3; ++row) {
+        const glm::dvec4 size = glm::abs(rows[row]);
+        const double largest = larger(larger(size.x, size.y), larger(size.z, size.w));
+        if (largest > 0.0 && largest < infinity)
+            rows[row] = times_powers_of_two(rows[row], glm::ivec4(-exponent_of(largest)));
+    }
+    return depth_rows(rows).are_parallel;
+}
+
 // OpenGL's initial planes: S = (1, 0, 0, 0), T = (0, 1, 0, 0), R and Q zero.
 inline bool is_opengl_default(const glm::dmat4& m) noexcept {
     glm::dmat4 initial(0.0);

@@ -41,6 +41,19 @@ inline bool has_pose_for_view(const glm::dmat4& texgen, const Factors& factors) 
     return Multiple(right_composition(with_pose), texgen).within(composed_in_float) > 0.0;
 }
 
+// Whether one of the factors is transposed in the product.
+inline bool has_transposed_factor(const glm::dmat4& texgen, const Factors& factors) noexcept {
+    for (glm::dmat4 Factors::*const factor : {&Factors::projection, &Factors::view}) {
+        Factors transposed = factors;
+        transposed.*factor = glm::transpose(factors.*factor);
+        if (Multiple(right_composition(transposed), texgen).within(composed_in_float) > 0.0) return true;
+    }
+    if (!factors.pose) return false;
+    Factors transposed = factors;
+    transposed.pose = glm::transpose(*factors.pose);
+    return Multiple(right_composition(transposed), texgen).within(composed_in_float) > 0.0;
+}
+
 // P', the projection that a texgen matrix has in it, of a w as large as that of P; what rounding can have left of a
 // zero is 0. Empty where V X is singular, or so much is left that it is no lens.
 inline std::optional<glm::dmat4> lens_within(const glm::dmat4& texgen, const Factors& factors) noexcept {
@@ -86,6 +99,10 @@ inline bool look_through(const glm::dmat4& texgen, const Factors& factors, const
                          Diagnosis& diagnosis) noexcept {
     if (has_pose_for_view(texgen, factors)) {
         diagnosis.add(Defect::view_not_inverted);
+        return true;
+    }
+    if (has_transposed_factor(texgen, factors)) {
+        diagnosis.add(Defect::transposed);
         return true;
     }
     const glm::dmat4& given = factors.projection;

@@ -130,7 +130,7 @@ inline bool examine_alone(const glm::dmat4& texgen, const SetupMatrices& setup, 
     constexpr double margin = 0x1p-10;
     const DepthRows rows = depth_rows(texgen);
     if (!rows.are_parallel) {
-        const bool is_transposed = depth_rows(glm::transpose(texgen)).are_parallel;
+        const bool is_transposed = shows_transposed(texgen);
         diagnosis.add(is_transposed                                  ? Defect::transposed
                       : has_bias_in_every_column(texgen, setup.pose) ? Defect::bias_without_w
                                                                      : Defect::wrong_order);

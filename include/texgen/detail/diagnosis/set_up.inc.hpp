@@ -68,6 +68,29 @@ inline glm::dmat4 lost_of(const glm::dmat4& texgen, const Product& right) noexce
     return smaller_elements(texgen - multiple * right.value, expected_rounding * texgen);
 }
 
+// Says what else is wrong with a matrix that is no product of its factors: another mistake hides the product, but neither
+// that it is transposed nor what it shows without its pose, which may be what is mistaken. Returns whether it is
+// transposed.
+inline bool examine_no_product(const glm::dmat4& texgen, const Factors& factors, const SetupMatrices& setup,
+                               Diagnosis& diagnosis) noexcept {
+    const glm::dmat4 given = as_in_scenes(texgen);
+    const bool is_transposed = !setup.in_window && shows_transposed(given);
+    if (is_transposed) diagnosis.add(Defect::transposed);
+    const glm::dmat4 upright = is_transposed ? glm::transpose(given) : given;
+    if (look_through(upright, as_in_scenes(factors), setup, diagnosis)) return is_transposed;
+    if (setup.pose != nullptr && !setup.in_window && !is_zero_row(upright, 3)) {
+        SetupMatrices without_pose = setup;
+        without_pose.pose = nullptr;
+        Diagnosis alone;
+        examine_alone(upright, without_pose, alone);
+        // No order of these factors gives it.
+        for (const Finding& finding : alone)
+            if (finding.defect != Defect::wrong_order) diagnosis.add(finding.defect);
+    }
+    diagnosis.add(Defect::not_of_this_set_up);
+    return is_transposed;
+}
+
 inline Examined examine(const SetupMatrices& setup, Diagnosis& diagnosis) noexcept {
     if (!are_numbers(setup)) diagnosis.add(Defect::not_finite);
     if (is_empty(setup.picture.region)) diagnosis.add(Defect::region_never_hit);
@@ -141,8 +164,7 @@ inline Examined examine(const SetupMatrices& setup, Diagnosis& diagnosis) noexce
     } else if (is_dependent) {
         diagnosis.add(Defect::rank_below_three);
     } else if (right) {
-        if (!look_through(as_in_scenes(texgen), as_in_scenes(*factors), setup, diagnosis))
-            diagnosis.add(Defect::not_of_this_set_up);
+        was_transposed = examine_no_product(texgen, *factors, setup, diagnosis);
     } else if (has_q && !setup.in_window) {  // a camera's inverse leaves no mark of a lens
         was_transposed = examine_alone(texgen, setup, diagnosis);
     }

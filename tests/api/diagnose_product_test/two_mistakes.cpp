@@ -1,0 +1,111 @@
+// Products with a second mistake: what is told besides hides nothing that shows without it.
+
+#include <doctest/doctest.h>
+
+#include <optional>
+
+#include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
+
+#include "api/diagnose_product_test/users_code.hpp"
+#include "support/random.hpp"
+#include "texgen/diagnose.hpp"
+#include "texgen/projector.hpp"
+
+namespace {
+
+using product_cases::any_meant;
+using product_cases::Code;
+using product_cases::defect_of;
+using product_cases::diagnosis_of;
+using product_cases::human;
+using product_cases::In;
+using product_cases::leaves_a_trace;
+using product_cases::made_somehow;
+using product_cases::Meant;
+using product_cases::Mistake;
+using product_cases::mistakes;
+using product_cases::own_projector;
+using product_cases::put_in_space;
+using product_cases::right_projector;
+using product_cases::text;
+using product_cases::Told;
+using support::Random;
+using texgen::Defect;
+using texgen::Diagnosis;
+using texgen::Projector;
+
+}  // namespace
+
+TEST_CASE(
+    "a transposed product with another mistake in it is said to be transposed first, and the other is named too") {
+    for (const Mistake mistake : mistakes) {
+        Random random(660);
+        for (int i = 0; i < 300;) {
+            const bool is_human = random.coin();
+            Meant m = is_human ? human(mistake, random) : any_meant(mistake, random);
+            const In in = put_in_space(m, random);
+            const std::optional<Projector> projector = right_projector(m);
+            if (!projector || !leaves_a_trace(m, mistake, Told::lens)) continue;
+            const glm::dmat4 texgen = glm::transpose(made_somehow(m, mistake, random));
+            // Far away rows r and q may be anything, within rounding.
+            if (!diagnosis_of(m, in, std::nullopt, Told::nothing, false, texgen).contains(Defect::transposed)) continue;
+            const Diagnosis diagnosis = diagnosis_of(m, in, random.coin() ? *projector : own_projector(m),
+                                                     Told::projector, random.coin(), texgen);
+            REQUIRE_MESSAGE(!diagnosis.empty(), text(m, texgen, diagnosis));
+            REQUIRE_MESSAGE(diagnosis[0].defect == Defect::transposed, text(m, texgen, diagnosis));
+            if (is_human) REQUIRE_MESSAGE(diagnosis.contains(defect_of(mistake)), text(m, texgen, diagnosis));
+            ++i;
+        }
+    }
+}
+
+TEST_CASE("a product without its view is transposed first as well, whatever else is told") {
+    Random random(661);
+    for (int i = 0; i < 1000; ++i) {
+        Meant m = human(Mistake::none, random);
+        const glm::dmat4 clip = Code<double>::lens(m) * m.pose;
+        const glm::dmat4 texgen = glm::transpose(Code<double>::bias(m) * clip);
+        for (const Told told : {Told::nothing, Told::lens, Told::projector}) {
+            const Diagnosis diagnosis = diagnosis_of(m, In::object, right_projector(m), told, true, texgen);
+            REQUIRE_MESSAGE(!diagnosis.empty(), text(m, texgen, diagnosis));
+            REQUIRE_MESSAGE(diagnosis[0].defect == Defect::transposed, text(m, texgen, diagnosis));
+        }
+    }
+}
+
+TEST_CASE("one transposed factor of a product is named, whatever the hand") {
+    Random random(662);
+    for (int i = 0; i < 3000; ++i) {
+        const Meant m = human(Mistake::none, random);
+        glm::dmat4 p = Code<double>::lens(m), v = Code<double>::view(m), x = m.pose;
+        glm::dmat4& factor = i % 3 == 0 ? p : i % 3 == 1 ? v : x;
+        factor = glm::transpose(factor);
+        const glm::dmat4 clip = p * v * x, texgen = Code<double>::bias(m) * clip;
+        const Diagnosis diagnosis = diagnosis_of(m, In::object, right_projector(m), Told::projector, false, texgen);
+        REQUIRE_MESSAGE(!diagnosis.empty(), text(m, texgen, diagnosis));
+        REQUIRE_MESSAGE(diagnosis[0].defect == Defect::transposed, text(m, texgen, diagnosis));
+    }
+}
+
+TEST_CASE("what shows without the pose is named where the pose is mistaken as well") {
+    for (const Mistake mistake : mistakes) {
+        if (mistake == Mistake::pose_for_view || mistake == Mistake::lens_of_other_hand) continue;
+        Random random(663);
+        for (int i = 0; i < 300;) {
+            Meant m = human(mistake, random);
+            m.pose = random.rotation();  // a scale that is not the same in all directions hides the lens
+            m.pose[3] = glm::dvec4(random.direction(), 1.0);
+            if (!leaves_a_trace(m, mistake, Told::lens)) continue;
+            Meant used = m;
+            used.pose = i % 2 == 0 ? glm::inverse(m.pose) : m.pose * m.pose;
+            const glm::dmat4 texgen = made_somehow(used, mistake, random);
+            const Diagnosis without_pose = diagnose(
+                texgen::ObjectTexgen(texgen), {.projector = right_projector(m), .region = m.region, .depth = m.depth});
+            const Diagnosis diagnosis = diagnosis_of(m, In::object, right_projector(m), Told::projector, false, texgen);
+            REQUIRE_MESSAGE(without_pose.contains(defect_of(mistake)), text(m, texgen, without_pose));
+            REQUIRE_MESSAGE(diagnosis.contains(defect_of(mistake)), text(m, texgen, diagnosis));
+            ++i;
+        }
+    }
+}
