@@ -9,6 +9,7 @@
 
 #include "api/diagnose_product_test/users_code.hpp"
 #include "support/random.hpp"
+#include "support/special_values.hpp"
 #include "texgen/diagnose.hpp"
 #include "texgen/projector.hpp"
 
@@ -107,5 +108,21 @@ TEST_CASE("what shows without the pose is named where the pose is mistaken as we
             REQUIRE_MESSAGE(diagnosis.contains(defect_of(mistake)), text(m, texgen, diagnosis));
             ++i;
         }
+    }
+}
+
+TEST_CASE("a scale-bias that is there twice is named without the pose as well, and no range that it makes of depth") {
+    Random random(664);
+    for (int i = 0; i < 2000; ++i) {
+        Meant m = human(Mistake::none, random);
+        m.pose = random.rotation();
+        m.pose[3] = glm::dvec4(random.direction(), 1.0);
+        const glm::dmat4 s = Code<double>::bias(m), clip = Code<double>::lens(m) * Code<double>::view(m);
+        const glm::dmat4 right = s * (clip * m.pose);
+        const glm::dmat4 texgen = random.coin() ? s * right : glm::dmat4(support::rounded(s * right));
+        const Diagnosis diagnosis = diagnose(texgen::ObjectTexgen(texgen),
+                                             {.projector = right_projector(m), .region = m.region, .depth = m.depth});
+        REQUIRE_MESSAGE(diagnosis.size() == 1, text(m, texgen, diagnosis));
+        REQUIRE_MESSAGE(diagnosis[0].defect == Defect::scale_bias_doubled, text(m, texgen, diagnosis));
     }
 }

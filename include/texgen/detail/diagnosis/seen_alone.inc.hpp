@@ -32,13 +32,16 @@ inline Product in_the_world(const glm::dmat4& texgen, const glm::dmat4* pose) no
     return inverse.is_regular() ? given * lens_factor(inverse.matrix()) : given;
 }
 
-// S as it should be, and whether the axis of the lens hits (0, 0), as it does without a bias.
+// S as it should be, and whether the axis of the lens hits (0, 0), as it does without a bias, or where S S has it.
 struct SeenScaleBias {
-    glm::dvec2 scale, bias;
+    glm::dvec2 scale, bias, bias_of_two;
     double up_along_t;  // 1 where t grows upwards, -1 downwards, 0 where that is not known
 
     bool is_missed_by(const SeenLens& lens) const noexcept {
         return lens.is_centred_on(glm::dvec2(0.0)) && !lens.is_centred_on(bias);
+    }
+    bool is_doubled_by(const SeenLens& lens) const noexcept {
+        return lens.is_centred_on(bias_of_two) && !lens.is_centred_on(bias);
     }
 };
 inline std::optional<Conventions> known_conventions(const SetupMatrices& setup) noexcept {
@@ -48,7 +51,10 @@ inline SeenScaleBias seen_scale_bias(const SetupMatrices& setup) noexcept {
     const std::optional<Conventions> conventions = known_conventions(setup);
     const glm::dmat4 s = texgen::scale_bias(conventions.value_or(opengl), setup.picture.region, setup.depth).matrix();
     const double up_along_t = !conventions ? 0.0 : conventions->origin == TextureOrigin::bottom_left ? 1.0 : -1.0;
-    return {{std::fabs(s[0].x), std::fabs(s[1].y)}, {s[3].x, s[3].y}, up_along_t};
+    return {{std::fabs(s[0].x), std::fabs(s[1].y)},
+            {s[3].x, s[3].y},
+            {s[0].x * s[3].x + s[3].x, s[1].y * s[3].y + s[3].y},
+            up_along_t};
 }
 
 // What makes `near` a round number, by row r, where a lens's axis goes to the picture's corner: that the lens is a
@@ -100,6 +106,10 @@ inline void examine_seen_lens(const SeenLens& lens, const SetupMatrices& setup, 
             diagnosis.add(Defect::bias_without_w);
             return;
         }
+    } else if (facts.fovy && s.is_doubled_by(lens)) {
+        // Row r is then that of another range as well.
+        if (is_meant(in_ndc.y / s.scale.y)) diagnosis.add(Defect::scale_bias_doubled);
+        return;
     } else if (facts.fovy) {
         // A view by half a turn would turn the picture as well as a tangent below 0.
         if (shows_size && !is_meant(in_ndc.y) &&
