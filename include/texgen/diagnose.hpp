@@ -259,7 +259,8 @@ using Setup = ProjectionSetup<Space>;
 // [0, 1], under the bias of [-1, 1], is the one from 10/199.9 to 100 for [-1, 1]: any row z that is not reversed is
 // that of some lens in both ranges. NDC without a bias are a lens beside its axis, of 90 degrees one of round numbers;
 // a pose is the view from another place; and a lens along an axis of an object whose pose is not given may have been
-// stretched with it.
+// stretched with it. A projection whose near plane is oblique, by hand, shows what a wrong order shows until projector
+// and model are given.
 // Bad input: what is not finite is reported, and the rest is examined without it.
 // Source: Everitt, Projective Texture Mapping, (3) and (4), and what is made of them.
 template <class Space>
