@@ -99,8 +99,8 @@ TEST_CASE("a batch takes no longer than its triangles one by one, however large 
     }
 }
 
-TEST_CASE("a tolerance takes no longer than exact, of whatever shape a tile of four rows and more is") {
-    constexpr double most = 1.2;
+TEST_CASE("a tolerance takes little longer than exact at most, of whatever shape a tile of four rows and more is") {
+    constexpr double most = 1.5;
     std::vector<float> s(4096), t(4096), r(4096), lit(4096);
     const Triangle triangle = ordinary(1, 1).triangle;
     const texgen::TriangleSetup exact = support::setup_of(triangle);
