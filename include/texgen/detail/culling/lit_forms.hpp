@@ -27,9 +27,9 @@ namespace TEXGEN_DETAIL {
 struct LitForms {
     static constexpr std::size_t q = form_of_q;
 
-    std::size_t count;                   // of the forms: five, or seven with a depth
-    glm::dmat4 matrix;                   // of rows T_s, T_t, T_r and T_q
-    std::array<double, max_forms> side;  // min.x, max.x, min.y, max.y, and behind q those of r
+    std::size_t count;                     // of the forms: five, or seven with a depth
+    glm::dmat4 matrix{0.0};                // of rows T_s, T_t, T_r and T_q
+    std::array<double, max_forms> side{};  // min.x, max.x, min.y, max.y, and behind q those of r
     FormWeights outer, inner;
     FormLanes lanes{};  // the forms, each times a positive number that brings its largest a near to 1
     bool is_usable;
