@@ -41,9 +41,10 @@ inline bool pays_for_chunks(int width, int height) noexcept {
 }
 
 // Whether a small tile has a shape that is divided in float: what is done in double once a column pays from a few rows
-// on, and takes less time then than chunks, too.
+// on, and takes less time then than chunks, which make up for it in larger tiles.
 inline bool has_shape_for_float(int width, int height) noexcept {
-    return width == 8 ? height % 2 == 0 : width >= 16 && width <= 64 && height >= 4 && width <= 8 * height;
+    if (width == 8) return height % 2 == 0;
+    return width >= 16 && height >= 4 && width <= 8 * height && width * height <= 512;
 }
 
 // Whether a tile goes by the path of small ones. Rows that are shorter than vectors are gathered in a buffer. The more
