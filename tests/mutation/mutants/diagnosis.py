@@ -26,7 +26,7 @@ DIAGNOSIS = [
     *of("detail/diagnosis/products.hpp",
         ("subnormal floats lose nothing", "lost_by_subnormal_floats = 0x1p-147", "lost_by_subnormal_floats = 0.0", "diagnose_product_test"),
         ("subnormal floats weigh as much as others", "magnitude / (magnitude + 0x1p-100)", "1.0", "diagnose_product_test"),
-        ("products of floats are rounded once", "composed_of_floats{0.0, 0x1p-20}", "composed_of_floats{0x1p-23, 0x1p-44}",
+        ("products of floats are rounded once", "products_in_float{0.0, 0x1p-20}", "products_in_float{0x1p-23, 0x1p-44}",
          "diagnose_product_test"),
         ("depth of the other range is rounding", "is_near ? 4.0 * rounding", "is_near ? 0.0", "diagnose_product_test"),
         ("rounding is another range", "if (is_near && to_right <= 8.0 * rounding) return false;", "", "diagnose_product_test"),

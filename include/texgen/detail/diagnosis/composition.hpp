@@ -187,7 +187,7 @@ inline std::optional<Composition> composition_of(const glm::dmat4& texgen, const
     const Multiple multiple(right, texgen);
     if (multiple.within(closest) > 0.0) return Composition{};
     if (is_of_other_range(texgen, factors.scale_bias, right)) return Composition{.other_depth = true};
-    if (multiple.within(is_in_float ? composed_of_floats : Closeness{0.0, 0x1p-43}) > 0.0) return Composition{};
+    if (multiple.within(is_in_float ? products_in_float : products_in_double) > 0.0) return Composition{};
     const bool is_near = multiple.within(composed_in_float) > 0.0;
     for (const bool transposed : {false, true})
         if (!is_near && is_bias_without_w(transposed ? glm::transpose(texgen) : texgen, factors))

@@ -51,9 +51,9 @@ struct Closeness {
 // Composed in double, of the same factors, and rounded once at most.
 inline constexpr Closeness composed_in_double{0.0, 0x1p-44};
 inline constexpr Closeness rounded_once{0x1p-23, 0x1p-44};
-// Three products in float of factors rounded to float err by 16 * 2^-24 at most; a float inverse may be among them as
-// well.
-inline constexpr Closeness composed_of_floats{0.0, 0x1p-20};
+// Of the same factors in any order. Three products in float of factors rounded to float err by 16 * 2^-24 at most.
+inline constexpr Closeness products_in_double{0.0, 0x1p-43}, products_in_float{0.0, 0x1p-20};
+// Where a float inverse may be among the factors as well.
 inline constexpr Closeness composed_in_float{0.0, 0x1p-16};
 
 // k where `given` is k times the product, in the rows (and, of what was read transposed, the columns) in which it is

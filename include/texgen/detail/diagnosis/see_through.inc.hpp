@@ -32,26 +32,32 @@ inline glm::dmat4 magnitude_before_scale_bias(glm::dmat4 magnitude, const glm::d
     return magnitude;
 }
 
+// Whether it is the product of these factors, which may have been composed in float.
+inline bool is_product_of(const Factors& factors, const glm::dmat4& texgen) noexcept {
+    return Multiple(right_composition(factors), texgen).within(composed_in_float) > 0.0;
+}
+
 // Whether the projector's pose stands where its view belongs.
 inline bool has_pose_for_view(const glm::dmat4& texgen, const Factors& factors) noexcept {
     const CertifiedInverse inverse(factors.view);
     if (!inverse.is_regular()) return false;
     Factors with_pose = factors;
     with_pose.view = as_in_scenes(inverse.matrix());
-    return Multiple(right_composition(with_pose), texgen).within(composed_in_float) > 0.0;
+    return is_product_of(with_pose, texgen);
 }
 
 // Whether one of the factors is transposed in the product.
 inline bool has_transposed_factor(const glm::dmat4& texgen, const Factors& factors) noexcept {
-    for (glm::dmat4 Factors::*const factor : {&Factors::projection, &Factors::view}) {
-        Factors transposed = factors;
-        transposed.*factor = glm::transpose(factors.*factor);
-        if (Multiple(right_composition(transposed), texgen).within(composed_in_float) > 0.0) return true;
-    }
-    if (!factors.pose) return false;
-    Factors transposed = factors;
-    transposed.pose = glm::transpose(*factors.pose);
-    return Multiple(right_composition(transposed), texgen).within(composed_in_float) > 0.0;
+    Factors with_transposed = factors;
+    const auto is_product_with = [&](glm::dmat4& factor) {
+        const glm::dmat4 given = factor;
+        factor = glm::transpose(given);
+        const bool is_product = is_product_of(with_transposed, texgen);
+        factor = given;
+        return is_product;
+    };
+    return is_product_with(with_transposed.projection) || is_product_with(with_transposed.view) ||
+           (with_transposed.pose && is_product_with(*with_transposed.pose));
 }
 
 // P', the projection that a texgen matrix has in it, of a w as large as that of P; what rounding can have left of a

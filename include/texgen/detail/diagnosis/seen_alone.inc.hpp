@@ -50,11 +50,9 @@ inline std::optional<Conventions> known_conventions(const SetupMatrices& setup) 
 inline SeenScaleBias seen_scale_bias(const SetupMatrices& setup) noexcept {
     const std::optional<Conventions> conventions = known_conventions(setup);
     const glm::dmat4 s = texgen::scale_bias(conventions.value_or(opengl), setup.picture.region, setup.depth).matrix();
+    const glm::dvec4 bias_of_two = s * s[3];
     const double up_along_t = !conventions ? 0.0 : conventions->origin == TextureOrigin::bottom_left ? 1.0 : -1.0;
-    return {{std::fabs(s[0].x), std::fabs(s[1].y)},
-            {s[3].x, s[3].y},
-            {s[0].x * s[3].x + s[3].x, s[1].y * s[3].y + s[3].y},
-            up_along_t};
+    return {{std::fabs(s[0].x), std::fabs(s[1].y)}, {s[3].x, s[3].y}, {bias_of_two.x, bias_of_two.y}, up_along_t};
 }
 
 // What makes `near` a round number, by row r, where a lens's axis goes to the picture's corner: that the lens is a
