@@ -156,7 +156,7 @@ TEST_CASE(
         for (const Tolerance tolerance : {texgen::exact, texgen::texels(1.0 / 16.0, 1024.0)}) {
             // Spans of few fragments, of which some columns are asked for where a side follows a diagonal; and planes of
             // a side, beside which floats within a tolerance may be.
-            const double of_exact = width == 8 ? 12.0 : width == 64 ? 11.0 : 8.0;
+            const double of_exact = width == 8 ? 12.0 : width == 64 ? 10.0 : 8.0;
             const double most = (tolerance.value > 0.0 ? (width == 8 ? 16.0 : 12.0) : of_exact) * masks_by_vectors;
             const auto call = [&](const Shot& shot) {
                 return [&lit, setup = support::setup_of(shot.triangle, texgen::whole_texture(), tolerance),
