@@ -322,7 +322,7 @@ TEST_CASE(
 TEST_CASE(
     "where q/w varies short rows and few fragments are divided, and others need none where the tolerance is large") {
     Random random(3600);
-    int few = 0, many = 0;
+    int few = 0, many = 0, larger = 0;
     while (many < 300) {
         const Shot shot = support::detail::ordinary(support::Family::friendly, random);
         const TriangleSetup setup = setup_of(shot.triangle, everywhere(), Tolerance{1e6});
@@ -332,12 +332,19 @@ TEST_CASE(
         const Work of_more = setup.work(rect_of(129, 1));  // or q is next to 0, or varies too much for a chunk
         if (of_more != Work::affine && of_more != Work::quadratic) continue;
         ++many;
-        for (const FragmentRect& rect : {rect_of(128, 1), rect_of(16, 8), rect_of(15, 40), rect_of(1, 1)}) {
+        for (const FragmentRect& rect : {rect_of(128, 1), rect_of(16, 8), rect_of(15, 40), rect_of(1, 1),
+                                         rect_of(16, 32), rect_of(32, 4), rect_of(64, 8)}) {
             const Work work = setup.work(rect);
             if (work == Work::nothing) continue;
             ++few;
             REQUIRE_MESSAGE(work >= Work::divide, hex(Shot{shot.triangle, rect}));
         }
+        // One more than those fragments, and than those rows have.
+        for (const FragmentRect& rect : {rect_of(19, 27), rect_of(65, 8), rect_of(43, 3)}) {
+            const Work work = setup.work(rect);
+            larger += work == Work::affine || work == Work::quadratic;
+        }
     }
-    CHECK(few > 1000);
+    CHECK(few > 1800);
+    CHECK(larger > 600);
 }

@@ -8,7 +8,6 @@
 #include <cfenv>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -20,6 +19,7 @@
 
 #include "api/diagnose_product_test/users_code.hpp"
 #include "support/random.hpp"
+#include "support/special_values.hpp"
 #include "support/stopwatch.hpp"
 #include "support/workloads.hpp"
 #include "texgen/batch.hpp"
@@ -35,12 +35,13 @@
 
 namespace {
 
+using support::infinity_double;
+using support::Random;
+
 constexpr int trapped = FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW;
 
-constexpr double unlimited = std::numeric_limits<double>::infinity();
-
 // One of every kind of lens, whose axes stand anyhow.
-std::vector<texgen::Projector> draw_projectors(support::Random& random) {
+std::vector<texgen::Projector> draw_projectors(Random& random) {
     const auto coordinate = [&] { return random.uniform(-5.0, 5.0); };
     const texgen::Aim aim{
         {coordinate(), coordinate(), coordinate()}, {coordinate() + 20.0, coordinate(), coordinate()}, {0.0, 1.0, 0.0}};
@@ -48,8 +49,8 @@ std::vector<texgen::Projector> draw_projectors(support::Random& random) {
     const texgen::Angle fovy = texgen::degrees(random.uniform(10.0, 90.0));
     const std::optional<texgen::Projector> drawn[] = {
         make_projector(texgen::PerspectiveLens{fovy, 1.5, z_near, 100.0}, aim, texgen::opengl),
-        make_projector(texgen::PerspectiveLens{fovy, 1.0, z_near, unlimited}, aim, texgen::vulkan),
-        make_projector(texgen::PerspectiveLens{fovy, 1.0, z_near, unlimited, true}, aim, texgen::direct3d),
+        make_projector(texgen::PerspectiveLens{fovy, 1.0, z_near, infinity_double}, aim, texgen::vulkan),
+        make_projector(texgen::PerspectiveLens{fovy, 1.0, z_near, infinity_double, true}, aim, texgen::direct3d),
         make_projector(texgen::OrthographicLens{-width, width, -1.0, 1.0, 0.0, 100.0}, aim, texgen::opengl),
         make_projector(texgen::OrthographicLens{-3.0, 0.5 * width, -1.0, 1.0, -3.0, 50.0}, aim, texgen::metal)};
     std::vector<texgen::Projector> projectors;
@@ -68,7 +69,7 @@ TEST_CASE("no function raises an exception of floating point but underflow and i
     std::size_t asked = 0;
     for (const support::Workload& workload : support::workloads) {
         CAPTURE(std::string(workload.function));
-        support::Random random(8100);
+        Random random(8100);
         for (int i = 0; i < 20; ++i) {
             const support::Calls calls = workload.calls(workload.ordinary(random));
             if (!calls) continue;
@@ -83,7 +84,7 @@ TEST_CASE("no function raises an exception of floating point but underflow and i
 
 TEST_CASE(
     "nor does one under lenses of all kinds, with depths of all kinds, for bodies, points and what is made of them") {
-    support::Random random(8200);
+    Random random(8200);
     const texgen::ModelMatrix model{glm::dmat4(1.0)};
     const auto require_none = [](const std::string& of) {
         CAPTURE(of);
@@ -107,8 +108,8 @@ TEST_CASE(
         for (std::size_t kind = 0; kind < projectors.size(); ++kind) {
             CAPTURE(kind);
             for (const texgen::TextureRegion& region : {texgen::whole_texture(), texgen::whole_texture().with_depth(),
-                                                        texgen::whole_texture().with_depth(0.0, unlimited),
-                                                        texgen::whole_texture().with_depth(-unlimited, 1.0)}) {
+                                                        texgen::whole_texture().with_depth(0.0, infinity_double),
+                                                        texgen::whole_texture().with_depth(-infinity_double, 1.0)}) {
                 std::feclearexcept(FE_ALL_EXCEPT);
                 const texgen::WorldTexgen matrix = texture_from_world(projectors[kind], region);
                 require_none("texture_from_world");

@@ -222,7 +222,7 @@ texgen::FragmentRect draw_tile_for_float(Random& random) {
     if (random.coin()) return {x, y, 8, 2 * random.integer(1, 16)};
     const int width = random.integer(16, random.coin() ? 32 : 64);
     const int least = std::max(4, (width + 7) / 8);
-    return {x, y, width, random.integer(least, random.coin() ? least : 14)};
+    return {x, y, width, random.integer(least, random.coin() ? least : 512 / width)};
 }
 
 }  // namespace
@@ -255,7 +255,11 @@ TEST_CASE("a tolerance at which small tiles are just divided in float is kept") 
             return false;
         };
         double low = largest_quotient(shot) * 0x1p-30, high = low * 0x1p10;
-        REQUIRE_MESSAGE(!is_in_float(low), hex(low), " for ", hex(shot));
+        if (is_in_float(low)) {
+            // A polynomial, of a coordinate that is so much smaller than another.
+            REQUIRE_MESSAGE(count_of(shot.rect) > 128, hex(low), " for ", hex(shot));
+            continue;
+        }
         if (!is_in_float(high)) continue;
         while (high > low * (1.0 + 0x1p-20)) {
             const double middle = 0.5 * (low + high);

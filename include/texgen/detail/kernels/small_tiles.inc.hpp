@@ -68,7 +68,7 @@ TEXGEN_INLINE bool divide_small(const SmallTile& tile) noexcept {
 TEXGEN_INLINE void divide_small_in_float(const SmallTile& tile, int width, int columns) noexcept {
     const auto& [f_base, f_dx, f_dy] = tile.numerator;
     const Ramp of_q{tile.q.base, tile.q.dx, read_alone(tile.q.dy)};
-    const int count = width * tile.height, rows = wide_lanes / columns;
+    const int count = width * tile.height, rows = wide_lanes / columns, last = width - columns;
     float* const out[2] = {tile.out[0], tile.out[1]};
     const WideWords index = indices<WideWords>();
     const WideFloats row = rows == 1 ? WideFloats{} : to_numbers(halved(halved(halved(index))));
@@ -89,8 +89,8 @@ TEXGEN_INLINE void divide_small_in_float(const SmallTile& tile, int width, int c
             TEXGEN_FOR (std::size_t k = 0; k < 2; ++k) store(out[k] + n, (y * dy[k] + first[k]) * reciprocal);
             y = y + static_cast<float>(rows);
         }
-        if (begin + columns >= width) break;
-        begin = begin + 2 * columns <= width ? begin + columns : width - columns;
+        if (begin == last) break;
+        begin = begin + columns < last ? begin + columns : last;
     }
 }
 

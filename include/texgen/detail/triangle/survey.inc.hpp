@@ -125,11 +125,11 @@ inline void choose_plan(const TriangleFunctions& triangle, const Tile& tile, con
     const bool all_inside = sides == Coverage::inside && depth == Coverage::inside;
     plan.work = all_inside ? Work::divide : Work::divide_and_test;
     if (at.is_well_in_front() && is_constant(triangle.q.value)) plan.work = Work::affine;
-    const Work divided = plan.work;
+    const Work without_chunks = plan.work;
     if (triangle.tolerance == 0.0 || !pays_for_chunks(tile.width, tile.height)) return;
     plan.chunk = chunk_length(at, tile.width);
     if (at.is_well_in_front()) choose_steps(plan, at, triangle.tolerance * (1.0 - 0x1p-18));
-    if (is_small(tile, triangle.tolerance)) plan.work = divided;  // unless floats do not serve, which is not asked
+    if (is_small(tile, triangle.tolerance)) plan.work = without_chunks;  // whether or not floats serve
 }
 
 // Surveys a tile; a column as the row of the mirrored triangle that interpolate.inc.hpp makes of it.
@@ -169,6 +169,7 @@ inline glm::dvec2 TriangleSetup::error_bound(FragmentRect rect) const noexcept {
     const detail::Corners& at = found.at;
     const detail::Plan& plan = found.plan;
     if (at.all_behind()) return {0.0, 0.0};
+    // What floats divide errs by the tolerance at most, whatever a polynomial would.
     const bool has_rule = plan.steps != detail::StepRule::undecided && !detail::is_small(tile, functions_.tolerance);
     const auto bound = [&](std::size_t k) {
         if (has_rule) return plan.error[k];
