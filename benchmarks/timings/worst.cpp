@@ -45,8 +45,8 @@ void add_rows(const Workload& workload, const std::vector<support::RecordedInput
     Random random(11);
     const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(250);
     for (int i = 0; i < 400 && std::chrono::steady_clock::now() < end; ++i) {
-        const Numbers numbers = workload.hostile.draw(random);
-        slowest.offer(numbers, race.glance(numbers), workload.hostile.words);
+        const Numbers numbers = workload.inputs.draw(random);
+        slowest.offer(numbers, race.glance(numbers), workload.inputs.words);
     }
     for (const support::SlowInput& input : slowest.inputs())
         rows.push_back({workload.function, input.words, input.slowness.ordinary, input.slowness.hostile, input.limit});

@@ -71,7 +71,7 @@ TEST_CASE("no function raises an exception of floating point but underflow and i
         CAPTURE(std::string(workload.function));
         Random random(8100);
         for (int i = 0; i < 20; ++i) {
-            const support::Calls calls = workload.calls(workload.ordinary(random));
+            const support::Calls calls = workload.calls(workload.inputs.ordinary(random));
             if (!calls) continue;
             ++asked;
             std::feclearexcept(FE_ALL_EXCEPT);

@@ -27,7 +27,7 @@ class Race {
 public:
     explicit Race(const Workload& workload) : workload_(workload) {
         Random random(2024);
-        for (int i = 0; i < 6; ++i) ordinary_.push_back(workload.calls(workload.ordinary(random)));
+        for (int i = 0; i < 6; ++i) ordinary_.push_back(workload.calls(workload.inputs.ordinary(random)));
         const std::vector<double> times = least_times(ordinary_, 9);
         for (const double time : times) ordinary_time_ += time / static_cast<double>(times.size());
     }
@@ -160,7 +160,7 @@ inline std::vector<RecordedInput> read_inputs(std::istream& lines) {
         const auto workload = std::find_if(workloads.begin(), workloads.end(),
                                            [&](const Workload& w) { return input.function == w.function; });
         Random random(1);
-        if (workload == workloads.end() || workload->hostile.draw(random).size() != input.numbers.size() ||
+        if (workload == workloads.end() || workload->inputs.draw(random).size() != input.numbers.size() ||
             !workload->calls(input.numbers))
             throw std::runtime_error("no recorded input: " + line);
         inputs.push_back(input);

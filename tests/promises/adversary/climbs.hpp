@@ -57,7 +57,7 @@ inline Find search(const Promise& promise, double seconds, std::uint64_t seed) {
 
 // Where a climb begins: the hard families of triangles serve as well.
 inline Numbers begin(const support::Workload& workload, Random& random) {
-    if (workload.hostile.draw != support::detail::draw_triangle || random.coin()) return workload.hostile.draw(random);
+    if (workload.inputs.draw != support::detail::draw_triangle || random.coin()) return workload.inputs.draw(random);
     const auto last = static_cast<int>(support::hard_families.size()) - 1;
     const support::Shot shot = support::hard_families[static_cast<std::size_t>(random.integer(0, last))].make(random);
     return support::detail::numbers(shot.triangle, static_cast<float>(shot.rect.x), static_cast<float>(shot.rect.y));
@@ -95,7 +95,7 @@ inline std::vector<support::SlowInput> search(const support::Workload& workload,
             ratio = of_other;
         }
         for (int idle = 0; idle < 100 && Clock::now() < end; ++idle) {
-            const Numbers next = moved(workload.floats, here, random);
+            const Numbers next = moved(workload.inputs.floats, here, random);
             const double of_next = look(next);
             if (of_next < 0.98 * ratio) continue;
             if (of_next > 1.02 * ratio) idle = 0;

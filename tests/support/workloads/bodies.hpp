@@ -58,8 +58,9 @@ inline Numbers draw_boxes(Random& random) {
     put(n, texgen);
     return n;
 }
-inline constexpr Hostile hostile_boxes{
-    draw_boxes, "drawn: boxes with whole coordinates or of any size, under an aligned projector or any matrix"};
+inline constexpr Inputs box_inputs{
+    24, ordinary_boxes, draw_boxes,
+    "drawn: boxes with whole coordinates or of any size, under an aligned projector or any matrix"};
 inline Numbers ordinary_spheres(Random& random) {
     Numbers n;
     for (std::size_t i = 0; i < body_pattern; ++i) {
@@ -76,8 +77,8 @@ inline Numbers draw_spheres(Random& random) {
     put(n, drawn_texgen(random));
     return n;
 }
-inline constexpr Hostile hostile_spheres{draw_spheres,
-                                         "drawn: spheres of any numbers, under an aligned projector or any matrix"};
+inline constexpr Inputs sphere_inputs{16, ordinary_spheres, draw_spheres,
+                                      "drawn: spheres of any numbers, under an aligned projector or any matrix"};
 
 // Bodies of a world, and a matrix as cameras of such sizes make it, where a sine that is 0 may be 2^-54. (As
 // is_of_a_scene().)
@@ -167,7 +168,7 @@ inline Numbers draw_volume(Random& random) {
     for (const double x : any_numbers<4>(random)) n.push_back(x);
     return n;
 }
-inline constexpr Hostile hostile_volume{draw_volume, "drawn: an aligned projector or any matrix"};
+inline constexpr Inputs volume_inputs{0, ordinary_volume, draw_volume, "drawn: an aligned projector or any matrix"};
 inline texgen::TextureRegion read_region(Reader& reader, bool has_depth) {
     const glm::dvec4 sides = reader.dvec4();
     const texgen::TextureRegion region = texgen::atlas_tile({sides.x, sides.y}, {sides.z, sides.w});

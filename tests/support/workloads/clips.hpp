@@ -26,6 +26,7 @@ inline Numbers ordinary_polygon(Random& random) {
     for (double& x : n) x = static_cast<double>(to_float(x));
     return n;
 }
+inline constexpr Inputs polygon_inputs{24, ordinary_polygon, any_numbers<24>, strq_inputs.words};
 // Of a camera and of slides as they are, as is_of_a_scene() has them.
 template <bool ToNear, texgen::TextureRegion (&Region)() = texgen::whole_texture>
 Calls clip_calls(const Numbers& n) {

@@ -59,7 +59,8 @@ inline Numbers draw_setup(Random& random) {
     if (random.integer(0, 3) == 0) std::rotate(n.begin(), n.begin() + 16 * random.integer(1, 3), n.end());
     return n;
 }
-inline constexpr Hostile hostile_setup{draw_setup, "drawn: a set-up with wrong elements"};
+inline constexpr Inputs setup_inputs{0, valid_setup, draw_setup, "drawn: a set-up with wrong elements"};
+inline constexpr Inputs defect_inputs{0, setup_with_one_defect, draw_setup, setup_inputs.words};
 enum class Diagnosed { projector, setup, valid_setup, texgen, planes };
 template <Diagnosed What>
 Calls diagnose_calls(const Numbers& n) {

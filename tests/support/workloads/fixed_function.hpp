@@ -28,7 +28,7 @@ inline Numbers draw_vertex(Random& random) {
         for (std::size_t i = 16; i < 27; ++i) n[i] = any_float(random);
     return n;
 }
-inline constexpr Hostile hostile_vertex{draw_vertex, "drawn: any numbers"};
+inline constexpr Inputs vertex_inputs{27, ordinary_vertex, draw_vertex, "drawn: any numbers"};
 template <texgen::TexGenMode Mode>
 Calls unit_calls(const Numbers& n) {
     using texgen::Coordinate;

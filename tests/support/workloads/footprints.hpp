@@ -52,6 +52,10 @@ inline Calls all_extremes_calls(const Numbers& n) {
 inline Calls headlights_calls(const Numbers& n) {
     return calls_of([triangle = triangle_of(n)] { keep(texgen::headlights(triangle)); });
 }
+inline Numbers ordinary_derivatives(Random& random) {
+    return numbers(1e-3 * random.direction(), 1e-3 * random.uniform(0.5, 2.0), 1024.0, 768.0);
+}
+inline constexpr Inputs derivative_inputs{0, ordinary_derivatives, any_numbers<6>, strq_inputs.words};
 inline Calls footprint_of_calls(const Numbers& n) {
     return calls_of([dx = glm::dvec2(n[0], n[1]), dy = glm::dvec2(n[2], n[3]),
                      texels = texgen::TexelsPerUnit{n[4], n[5]}] { keep(texgen::footprint_of(dx, dy, texels)); });

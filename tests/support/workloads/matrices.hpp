@@ -39,7 +39,8 @@ inline Numbers draw_matrix(Random& random) {
         for (std::size_t k = 0; k < 4; ++k) n[4 * k + 2] = n[4 * k] + distance * n[4 * k + 2];
     return n;
 }
-inline constexpr Hostile hostile_matrix{draw_matrix, "drawn: almost singular, graded, or any numbers"};
+inline constexpr Inputs matrix_inputs{0, ordinary_matrix, draw_matrix,
+                                      "drawn: almost singular, graded, or any numbers"};
 template <class Ask>
 Calls matrix_calls(const Numbers& n, Ask ask) {
     Reader reader(n);
@@ -62,7 +63,8 @@ inline Numbers ordinary_rigid(Random& random) { return numbers(random.rigid(10.0
 inline Numbers draw_rigid(Random& random) {
     return numbers(random.rigid(random.power_of_ten(-300.0, 300.0)), glm::dmat4(1.0));
 }
-inline constexpr Hostile hostile_rigid{draw_rigid, "drawn: a pose at any distance"};
+inline constexpr Inputs rigid_inputs{0, ordinary_rigid, draw_rigid, "drawn: a pose at any distance"};
+inline constexpr Inputs affine_inputs{0, ordinary_rigid, draw_matrix, matrix_inputs.words};
 inline Calls eye_planes_calls(const Numbers& n) {
     return matrix_calls(n, [](const glm::dmat4& m, const glm::dmat4& planes) {
         keep(eye_planes_as_stored(texgen::WorldTexgen(planes), texgen::ViewMatrix(m)));
@@ -103,7 +105,8 @@ inline Numbers draw_camera(Random& random) {
                          : numbers(ordinary_projector(random).projection.matrix(),
                                    random.rigid(random.power_of_ten(-10.0, 10.0)));
 }
-inline constexpr Hostile hostile_camera{draw_camera, "drawn: a camera at any distance, or almost singular matrices"};
+inline constexpr Inputs camera_inputs{0, ordinary_camera, draw_camera,
+                                      "drawn: a camera at any distance, or almost singular matrices"};
 inline Calls window_linear_calls(const Numbers& n) {
     Random random(5);
     return matrix_calls(n,
@@ -118,6 +121,7 @@ inline Calls depth_bound_calls(const Numbers& n) {
         keep(depth_error_bound(texgen::WindowTexgen(m), glm::vec3(numbers[0]), texgen::DepthBuffer::unorm24));
     });
 }
+inline constexpr Inputs side_inputs{0, ordinary_strq, any_numbers<4>, strq_inputs.words};
 inline Calls to_texture_calls(const Numbers& n) {
     return calls_of([strq = Reader(n).vec4()] { keep(texgen::to_texture(strq, texgen::opengl)); });
 }

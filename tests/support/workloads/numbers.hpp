@@ -75,7 +75,6 @@ Numbers numbers(const Parts&... parts) {
     return n;
 }
 
-inline double always(const Numbers&) { return limit::any; }
 inline double of_touching(const Numbers&) { return limit::touching; }
 
 // Numbers without a meaning
@@ -102,9 +101,6 @@ Numbers any_numbers(Random& random) {
     for (double& x : n) x = any_float(random);
     return n;
 }
-
-template <std::size_t Count>
-inline constexpr Hostile hostile_numbers{any_numbers<Count>, "drawn: any numbers"};
 
 // Numbers of a scene
 
@@ -138,5 +134,6 @@ inline Numbers ordinary_strq(Random& random) {
     const float q = random.uniform_float(1.0, 4.0);
     return numbers(q * random.uniform_float(0.2, 0.8), q * random.uniform_float(0.2, 0.8), 0.5f * q, q);
 }
+inline constexpr Inputs strq_inputs{4, ordinary_strq, any_numbers<4>, "drawn: any numbers"};
 
 }  // namespace support::detail

@@ -58,8 +58,9 @@ inline Numbers draw_points(Random& random) {
     put(n, texgen);
     return n;
 }
-inline constexpr Hostile hostile_points{
-    draw_points, "drawn: points of any size, next to q = 0 or NaN, under an aligned projector or any matrix"};
+inline constexpr Inputs point_inputs{
+    24, ordinary_points, draw_points,
+    "drawn: points of any size, next to q = 0 or NaN, under an aligned projector or any matrix"};
 
 struct PointBatch {
     std::vector<glm::vec3> points;
@@ -163,8 +164,8 @@ inline Numbers draw_segment(Random& random) {
                                   : static_cast<double>(to_float(n[3] / (n[3] - n[7]))));
     return n;
 }
-inline constexpr Hostile hostile_segment{draw_segment,
-                                         "drawn: halves between floats, alphas next to the root of q, or any numbers"};
+inline constexpr Inputs segment_inputs{16, ordinary_segment, draw_segment,
+                                       "drawn: halves between floats, alphas next to the root of q, or any numbers"};
 
 template <std::size_t Count, Asked Asks = Asked{}>
 Calls segment_calls(const Numbers& n) {

@@ -35,7 +35,7 @@ inline Numbers draw_look(Random& random) {
     }
     return n;
 }
-inline constexpr Hostile hostile_look{draw_look, "drawn: up next to the view, or numbers of any size"};
+inline constexpr Inputs look_inputs{0, ordinary_look, draw_look, "drawn: up next to the view, or numbers of any size"};
 inline texgen::Aim aim_of(Reader& reader) {
     const glm::dvec3 position = reader.dvec3(), target = reader.dvec3();
     return {position, target, reader.dvec3()};

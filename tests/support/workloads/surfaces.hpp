@@ -39,7 +39,8 @@ inline Numbers draw_corners(Random& random) {
     if (random.coin()) n[static_cast<std::size_t>(random.integer(0, 11))] *= 1.0 + 0x1p-22;
     return n;
 }
-inline constexpr Hostile hostile_corners{draw_corners, "drawn: triangles edge on or next to it, in mixed units"};
+inline constexpr Inputs corner_inputs{12, ordinary_corners, draw_corners,
+                                      "drawn: triangles edge on or next to it, in mixed units"};
 template <class Ask>
 Calls corner_calls(const Numbers& n, Ask ask) {
     Reader reader(n);
@@ -87,8 +88,8 @@ inline Numbers draw_quadrilateral(Random& random) {
         for (double& x : n) x += 1e3;
     return n;
 }
-inline constexpr Hostile hostile_quadrilateral{draw_quadrilateral,
-                                               "drawn: quadrilaterals next to a triangle or a line"};
+inline constexpr Inputs quadrilateral_inputs{0, ordinary_quadrilateral, draw_quadrilateral,
+                                             "drawn: quadrilaterals next to a triangle or a line"};
 template <bool IsMatrix>
 Calls quadrilateral_calls(const Numbers& n) {
     const std::array<glm::dvec2, 4> corners{glm::dvec2(n[0], n[1]), glm::dvec2(n[2], n[3]), glm::dvec2(n[4], n[5]),

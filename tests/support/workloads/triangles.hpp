@@ -90,8 +90,8 @@ inline Numbers draw_triangle(Random& random) {
         }
     }
 }
-inline constexpr Hostile hostile_triangle{
-    draw_triangle,
+inline constexpr Inputs triangle_inputs{
+    23, ordinary_triangle, draw_triangle,
     "drawn: cut by the near plane, half-way between floats, far away, in mixed units, or of a hard family"};
 
 inline texgen::Triangle triangle_of(const Numbers& n) {

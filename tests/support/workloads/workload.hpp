@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "support/limits.hpp"
 #include "support/random.hpp"
 #include "support/stopwatch.hpp"
 
@@ -14,19 +15,19 @@ namespace support {
 
 using Numbers = std::vector<double>;
 
-// Inputs that are meant to take long, where a search begins.
-struct Hostile {
-    Numbers (*draw)(Random&);
-    const char* words;
+// Inputs of one kind.
+struct Inputs {
+    std::size_t floats;            // as many of an input's numbers
+    Numbers (*ordinary)(Random&);  // what a user's program gives
+    Numbers (*draw)(Random&);      // what is meant to take long, where a search begins
+    const char* words;             // of what is drawn
 };
 
 struct Workload {
     const char* function;
-    std::size_t floats;            // as many of an input's numbers
-    Numbers (*ordinary)(Random&);  // what a user's program gives it
-    Hostile hostile;
+    Inputs inputs;
     Calls (*calls)(const Numbers&);  // empty where the numbers break a precondition, or there is nothing to do
-    double (*limit)(const Numbers&);
+    double (*limit)(const Numbers&) = [](const Numbers&) { return limit::any; };
 
     // Interpolates 64 x 4 fragments of a triangle.
     bool takes_near_cuts() const {
