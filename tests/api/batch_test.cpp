@@ -25,26 +25,10 @@
 #include "texgen/interpolate.hpp"
 #include "texgen/surface.hpp"
 
-namespace {
+namespace batch_cases {
 
-using batch_cases::agree;
-using batch_cases::draw_region;
-using batch_cases::Drawn;
-using batch_cases::Expected;
-using batch_cases::ties_everywhere;
-using support::count_of;
-using support::Outputs;
-using support::Random;
-using support::Shot;
-using texgen::FragmentRect;
 using texgen::no_triangle;
-using texgen::Tolerance;
-using texgen::Triangle;
 using texgen::TriangleBatch;
-using texgen::TriangleSetup;
-using texgen::Work;
-
-}  // namespace
 
 TEST_CASE("with exact, rectangles of a batch have the bits that each has alone, whatever is asked for") {
     Random random(1);
@@ -270,3 +254,5 @@ TEST_CASE("memory is allocated only when there are more triangles than ever") {
         CHECK((count == 0 || &texgen::detail::Inside::triangle(batch, 0) == triangles));
     }
 }
+
+}  // namespace batch_cases

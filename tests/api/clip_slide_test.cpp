@@ -19,29 +19,14 @@
 #include "support/special_values.hpp"
 #include "texgen/clip.hpp"
 
-namespace {
+namespace clip_slide_cases {
 
-using clip_slide_cases::clipped;
-using clip_slide_cases::distance;
-using clip_slide_cases::distance_count;
-using clip_slide_cases::hex_of;
-using clip_slide_cases::Point;
-using clip_slide_cases::point_of;
-using clip_slide_cases::require_inside;
-using clip_slide_cases::slide_polygon;
-using clip_slide_cases::slide_vertex;
-using clip_slide_cases::some_region;
 using support::Bits;
 using support::bits;
 using support::infinity_float;
 using support::nan_float;
-using support::Polygon;
-using support::Random;
-using support::Rational;
-using texgen::clip_to_slide;
-using texgen::ClipVertex;
-using texgen::TextureRegion;
-using texgen::whole_texture;
+
+namespace {
 
 bool is_inside(const Point& p, const TextureRegion& region) {
     for (std::size_t side = 0; side < distance_count(region); ++side)
@@ -194,3 +179,5 @@ TEST_CASE("a polygon may be clipped to the slide where it lies, and in more room
         REQUIRE_MESSAGE(bits(storage) == bits(clipped(polygon, region)), hex_of(polygon, region));
     }
 }
+
+}  // namespace clip_slide_cases

@@ -21,24 +21,16 @@
 #include "support/random.hpp"
 #include "support/special_values.hpp"
 
-namespace {
+namespace clip_cases {
 
-using clip_cases::clipped;
-using clip_cases::distance;
-using clip_cases::is_rounded;
-using clip_cases::near_planes;
-using clip_cases::NearPlane;
 using support::Bits;
 using support::bits;
-using support::exactly;
 using support::hex_of;
 using support::infinity_float;
-using support::Polygon;
 using support::Random;
-using support::Rational;
-using texgen::clip_to_near;
 using texgen::ClipVertex;
-using texgen::DepthRange;
+
+namespace {
 
 // A camera with near 0.1 and far 1000: clip coordinates of a point in front of it or behind it, or (rarely) exactly at
 // the eye or on the near plane.
@@ -306,3 +298,5 @@ TEST_CASE("a polygon may be clipped where it lies") {
         REQUIRE(bits(storage) == bits(apart));
     }
 }
+
+}  // namespace clip_cases

@@ -26,34 +26,15 @@
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
 
-namespace {
+namespace coverage_cases {
 
-using coverage_cases::count_of;
-using coverage_cases::Counts;
-using coverage_cases::has_moderate_exponents;
-using coverage_cases::has_nan;
-using coverage_cases::hex;
-using coverage_cases::hostile_slide;
-using coverage_cases::infinite;
-using coverage_cases::is_a_region;
-using coverage_cases::Judge;
-using coverage_cases::point_on;
-using coverage_cases::Slide;
-using coverage_cases::touch;
-using coverage_cases::what_is_wrong;
-using support::infinity_float;
 using support::nan_float;
-using support::Random;
-using texgen::atlas_tile;
-using texgen::Box;
-using texgen::Coverage;
 using texgen::coverage;
-using texgen::degrees;
 using texgen::LitVolume;
 using texgen::Sphere;
-using texgen::TextureRegion;
-using texgen::whole_texture;
 using texgen::WorldTexgen;
+
+namespace {
 
 enum class Family { ordinary, at_side, at_edge, at_apex, integers, tiny, huge, unbounded, empty, nan, bits };
 constexpr int family_count = 11;
@@ -302,3 +283,5 @@ TEST_CASE("what is no body, no slide or no number gets a safe answer") {
         coverage(transform, whole_texture(), std::span<const Sphere>(), std::span<Coverage>());
     }
 }
+
+}  // namespace coverage_cases

@@ -20,33 +20,9 @@
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
 
-namespace {
+namespace product_cases {
 
-using product_cases::any_meant;
-using product_cases::Code;
-using product_cases::defect_of;
-using product_cases::diagnosis_of;
-using product_cases::human;
-using product_cases::In;
-using product_cases::is_of_range;
-using product_cases::leaves_a_trace;
-using product_cases::LensKind;
-using product_cases::made;
-using product_cases::made_somehow;
-using product_cases::Meant;
-using product_cases::Mistake;
-using product_cases::mistakes;
-using product_cases::own_projector;
-using product_cases::put_in_space;
-using product_cases::right_projector;
-using product_cases::text;
-using product_cases::Told;
-using support::Random;
-using texgen::Defect;
-using texgen::DepthMapping;
-using texgen::Diagnosis;
-using texgen::Object;
-using texgen::Projector;
+namespace {
 
 // Without its projector a matrix shows no lens of parallel light, and of frusta no angle.
 bool is_shown(const Meant& m, Mistake mistake) {
@@ -289,3 +265,5 @@ TEST_CASE("a bias without w is named in a tile of an atlas too, where both s and
         }
     }
 }
+
+}  // namespace product_cases

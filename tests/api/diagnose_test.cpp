@@ -22,39 +22,11 @@
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
 
-namespace {
+namespace diagnose_cases {
 
-using diagnose_cases::composed;
-using diagnose_cases::diagnosis_of;
-using diagnose_cases::dot3;
-using diagnose_cases::Faults;
-using diagnose_cases::In;
-using diagnose_cases::Kind;
-using diagnose_cases::kinds;
-using diagnose_cases::LensKind;
-using diagnose_cases::of_other_range;
-using diagnose_cases::one_hides;
-using diagnose_cases::ordinary;
-using diagnose_cases::Parts;
-using diagnose_cases::projection;
-using diagnose_cases::projector_of;
-using diagnose_cases::random_rig;
-using diagnose_cases::Rig;
-using diagnose_cases::row;
-using diagnose_cases::spoilt;
-using diagnose_cases::Spoilt;
-using diagnose_cases::text;
-using diagnose_cases::Thing;
-using diagnose_cases::xyz;
 using support::allocations;
-using support::Random;
-using texgen::Defect;
-using texgen::DepthMapping;
-using texgen::DepthRange;
-using texgen::Diagnosis;
-using texgen::Object;
-using texgen::ProjectionSetup;
-using texgen::Projector;
+
+namespace {
 
 // A set-up without its projector, or with nothing else.
 Diagnosis diagnosis_alone(Parts parts) {
@@ -234,3 +206,5 @@ static_assert(noexcept(diagnose(std::declval<const ProjectionSetup<Object>&>()))
 static_assert(noexcept(diagnose(std::declval<const texgen::EyeTexgen&>())));
 static_assert(noexcept(texgen::diagnose(std::declval<const std::array<glm::vec4, 4>&>())));
 static_assert(noexcept(std::declval<const texgen::Finding&>().what()));
+
+}  // namespace diagnose_cases

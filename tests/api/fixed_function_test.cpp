@@ -21,27 +21,18 @@
 #include "texgen/projector.hpp"
 #include "texgen/transform.hpp"
 
-namespace {
+namespace fixed_function_cases {
 
-using fixed_function_cases::excess_ulps;
-using fixed_function_cases::identity;
-using fixed_function_cases::LongVector;
-using fixed_function_cases::translation;
-using fixed_function_cases::unit_with;
-using support::Coordinate;
-using support::coordinates;
 using support::hex;
 using support::infinity_float;
 using support::modes;
 using support::nan_float;
-using support::NormalScaling;
-using support::Random;
 using support::rounded;
 using support::scalings;
 using support::slide_projector;
-using support::TexGenMode;
-using support::TexGenUnit;
 using texgen::FixedFunctionVertex;
+
+namespace {
 
 bool same_bits(const glm::vec4& a, const glm::vec4& b) {
     for (int i = 0; i < 4; ++i)
@@ -314,3 +305,5 @@ TEST_CASE("random bits in every argument: no plane that is not finite is stored,
     }
     CHECK(stored > 1000);
 }
+
+}  // namespace fixed_function_cases

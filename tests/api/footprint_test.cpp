@@ -27,39 +27,15 @@
 #include "texgen/batch.hpp"
 #include "texgen/interpolate.hpp"
 
-namespace {
+namespace footprint_cases {
 
-using footprint_cases::anisotropy;
-using footprint_cases::distance;
-using footprint_cases::distance_from_zero;
-using footprint_cases::dsdx;
-using footprint_cases::dsdy;
-using footprint_cases::ExactFootprint;
-using footprint_cases::fill_among_others;
-using footprint_cases::level;
-using footprint_cases::major_s;
-using footprint_cases::major_t;
-using footprint_cases::some_texels;
-using footprint_cases::text;
-using support::count_of;
 using support::everywhere;
-using support::ExactTriangle;
-using support::FootprintOutputs;
-using support::hex;
 using support::infinity_double;
-using support::Random;
-using support::Real;
 using support::same_bits;
 using support::setup_of;
-using support::Shot;
 using texgen::FootprintSetup;
 using texgen::FragmentRect;
-using texgen::TexelsPerUnit;
 using texgen::Tolerance;
-using texgen::Triangle;
-using texgen::WindowVertex;
-
-}  // namespace
 
 TEST_CASE("derivatives are the exact ones within the stated bound, for every hard family") {
     bool is_in_buffer = false;
@@ -304,3 +280,5 @@ TEST_CASE("the footprints of a column are those that it has in a wider rectangle
         }
     }
 }
+
+}  // namespace footprint_cases

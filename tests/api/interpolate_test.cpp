@@ -28,27 +28,15 @@
 #include "support/triangles.hpp"
 #include "texgen/reference.hpp"
 
-namespace {
+namespace row_cases {
 
-using row_cases::require_right;
 using support::count_of;
 using support::everywhere;
-using support::ExactTriangle;
 using support::HardFamily;
-using support::hex;
-using support::Outputs;
-using support::Random;
 using support::same_bits;
-using support::Seen;
-using support::setup_of;
-using support::Shot;
 using support::vertices;
 using texgen::Triangle;
 using texgen::TriangleSetup;
-using texgen::WindowVertex;
-using texgen::Work;
-
-}  // namespace
 
 TEST_CASE("every fragment is the nearest float of the exact rational, in every family") {
     std::uint64_t seed = 100;
@@ -305,3 +293,5 @@ TEST_CASE("the reference in double agrees within the accuracy that it states") {
     CHECK(compared > 20000);
     CHECK(different < compared / 100);
 }
+
+}  // namespace row_cases

@@ -17,28 +17,14 @@
 #include "texgen/projector.hpp"
 #include "texgen/scale_bias.hpp"
 
-namespace {
+namespace judged {
 
-namespace gl = support::gl;
-using judged::Both;
-using judged::condition;
-using judged::Kind;
-using judged::kinds;
-using judged::largest;
-using judged::name;
-using judged::opengl;
-using judged::plane_of;
-using judged::random_modelview;
-using judged::switch_of;
-using support::Coordinate;
 using support::coordinates;
 using support::hex;
 using support::modes;
-using support::Random;
-using support::rounded;
 using support::slide_projector;
-using support::TexGenMode;
-using support::TexGenUnit;
+
+namespace {
 
 // State
 
@@ -153,3 +139,5 @@ TEST_CASE("OpenGL stores Everitt's (4) for the rows of S P_p V_p under V_e, and 
 }
 
 }  // namespace
+
+}  // namespace judged

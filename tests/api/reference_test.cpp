@@ -21,25 +21,15 @@
 #include "support/special_values.hpp"
 #include "support/triangles.hpp"
 
-namespace {
+namespace reference_cases {
 
-namespace reference = texgen::reference;
-
-using reference_cases::by_the_book;
-using reference_cases::centre;
-using reference_cases::Exact;
-using reference_cases::exact_coordinate;
-using reference_cases::uncertainty;
-using reference_cases::within;
-using support::exactly;
 using support::families;
 using support::Family;
 using support::hex;
 using support::nan_float;
 using support::Random;
-using support::Rational;
-using texgen::FragmentRect;
-using texgen::Triangle;
+
+namespace {
 
 struct Outputs {
     explicit Outputs(std::size_t count) : s(count, -7.0f), t(count, -7.0f), r(count, -7.0f), lit(count, -7.0f) {}
@@ -365,3 +355,5 @@ TEST_CASE("the reference takes window coordinates and w of any size that a float
         CHECK_MESSAGE(support::ulp_error(out.s[0], exact.value) <= 0.5 + 0x1p-16, hex(triangle));
     }
 }
+
+}  // namespace reference_cases

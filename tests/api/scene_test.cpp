@@ -17,30 +17,11 @@
 #include "texgen/linear.hpp"
 #include "texgen/scene.hpp"
 
-namespace {
+namespace scene_cases {
 
-using scene_cases::are_alike;
-using scene_cases::Engine;
-using scene_cases::Hostile;
-using scene_cases::Indices;
-using scene_cases::require_all_pairs;
-using scene_cases::require_same;
-using scene_cases::some_box;
-using scene_cases::some_engine;
-using scene_cases::some_model;
-using scene_cases::some_projector;
-using scene_cases::some_region;
-using scene_cases::Tally;
 using support::broken_preconditions;
-using support::nan_float;
-using support::Random;
-using texgen::Coverage;
-using texgen::LitPair;
-using texgen::Scene;
 using texgen::SceneChanges;
 using texgen::SceneWork;
-
-}  // namespace
 
 TEST_CASE("over many frames of moves, arrivals and departures the pairs are those of all pairs asked one by one") {
     Random random(1201);
@@ -248,3 +229,5 @@ TEST_CASE("a scene that was moved from is empty, and sees the next arrays as a n
     }
     CHECK(broken_preconditions == 0);
 }
+
+}  // namespace scene_cases

@@ -20,25 +20,9 @@
 #include "support/random.hpp"
 #include "texgen/interpolate.hpp"
 
-namespace {
+namespace segment_cases {
 
-using segment_cases::any_region;
-using segment_cases::Case;
-using segment_cases::Classes;
-using segment_cases::families;
-using segment_cases::hex;
-using segment_cases::require_right;
-using segment_cases::SegmentFamily;
-using support::everywhere;
-using support::exactly_at;
-using support::Homogeneous;
-using support::Outputs;
-using support::Random;
 using support::same_bits;
-using texgen::Segment;
-using texgen::Tolerance;
-
-}  // namespace
 
 TEST_CASE("every value of a segment is the nearest float of the exact rational, in every family") {
     std::uint64_t seed = 4000;
@@ -288,3 +272,5 @@ TEST_CASE("next to ties of other values subnormal ones are rounded once, however
     }
     CHECK(next_to_middles > 50000);
 }
+
+}  // namespace segment_cases

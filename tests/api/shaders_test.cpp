@@ -16,22 +16,9 @@
 #include "api/shaders_test/textures.hpp"
 #include "support/opengl.hpp"
 
-namespace {
+namespace shaded {
 
-namespace gl = support::gl;
-using shaded::bind_slide;
-using shaded::border;
-using shaded::broken_vertices;
-using shaded::Expected;
-using shaded::Fragment;
-using shaded::gradients;
-using shaded::judge;
-using shaded::Scene;
-using shaded::shaders;
-using shaded::slide;
-using shaded::slide_texel;
-using shaded::surface;
-using shaded::texel;
+namespace {
 
 TEST_CASE("the lines of GLSL in the headers are those of the README") {
     std::size_t lines = 0;
@@ -82,3 +69,5 @@ TEST_CASE("the README's slide with gradients shows the same") {
 }
 
 }  // namespace
+
+}  // namespace shaded

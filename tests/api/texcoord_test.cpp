@@ -25,23 +25,16 @@
 #include "support/random.hpp"
 #include "texgen/texcoord.hpp"
 
-namespace {
+namespace texcoord_cases {
 
 using support::Dyadic;
 using support::everywhere;
 using support::exactly_at;
-using support::hex;
-using support::Homogeneous;
 using support::Outputs;
-using support::Random;
 using support::same_bits;
-using texcoord_cases::any_count;
-using texcoord_cases::Batch;
-using texcoord_cases::describe;
-using texcoord_cases::families;
-using texcoord_cases::PointFamily;
-using texcoord_cases::row;
 using texgen::Tolerance;
+
+namespace {
 
 texgen::TextureRegion any_region(const Batch& batch, Random& random) {
     const Homogeneous at = exactly_at(batch.matrix, batch.points[batch.points.size() / 2]);
@@ -229,3 +222,5 @@ TEST_CASE("generated coordinates are within half a unit and 2^-50 of the sum of 
     CHECK(compared > 50000);
     CHECK(cancelling > 1000);
 }
+
+}  // namespace texcoord_cases

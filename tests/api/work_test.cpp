@@ -24,28 +24,24 @@
 #include "support/triangles.hpp"
 #include "texgen/interpolate.hpp"
 
-namespace {
+namespace work_cases {
 
 using support::count_of;
 using support::everywhere;
-using support::ExactTriangle;
 using support::hex;
-using support::Homogeneous;
 using support::nan_double;
 using support::Outputs;
 using support::Random;
 using support::region_at;
 using support::setup_of;
-using support::Shot;
 using texgen::atlas_tile;
 using texgen::FragmentRect;
-using texgen::TextureRegion;
 using texgen::Tolerance;
 using texgen::TriangleSetup;
 using texgen::WindowVertex;
 using texgen::Work;
-using work_cases::Truth;
-using work_cases::truth_of;
+
+namespace {
 
 // w = 1 and q = 1, and s = r = first + i step at fragment i of every row, t likewise at every row: without an error
 // where first + 1024 step is a float.
@@ -348,3 +344,5 @@ TEST_CASE(
     CHECK(few > 1800);
     CHECK(larger > 600);
 }
+
+}  // namespace work_cases

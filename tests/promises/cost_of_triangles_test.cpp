@@ -25,27 +25,12 @@
 #include "texgen/batch.hpp"
 #include "texgen/interpolate.hpp"
 
-namespace {
+namespace triangle_costs {
 
 namespace limit = support::limit;
-
-using support::everywhere;
-using support::hex;
 using support::Random;
-using support::Shot;
 using texgen::FragmentRect;
-using texgen::Tolerance;
 using texgen::Triangle;
-using texgen::WindowVertex;
-using triangle_costs::cost;
-using triangle_costs::least_time;
-using triangle_costs::ordinary;
-using triangle_costs::require_cost;
-using triangle_costs::tolerances;
-using triangle_costs::vertex;
-using triangle_costs::Workload;
-
-}  // namespace
 
 TEST_CASE("ties whose terms are 110 powers of two apart take at most three times what those of 60 take") {
     // Two corners on ties, and small; the third makes others of what is left of it.
@@ -228,3 +213,5 @@ TEST_CASE("where no coordinate is subnormal, subnormal numbers do not double the
         require_same_cost("weights", support::calls_of([&] { interpolate(batch, rects, {s, t, {}, {}}); }));
     }
 }
+
+}  // namespace triangle_costs

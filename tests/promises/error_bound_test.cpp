@@ -29,21 +29,17 @@
 #include "texgen/segment.hpp"
 #include "texgen/texcoord.hpp"
 
-namespace {
+namespace error_bound_cases {
 
-using error_bound_cases::any_tolerance;
-using error_bound_cases::is_no_bound;
-using error_bound_cases::Tightness;
 using support::hex;
 using support::Homogeneous;
-using support::infinity_double;
 using support::nan_double;
 using support::Outputs;
-using support::Random;
 using texgen::error_bound;
 using texgen::ObjectTexgen;
 using texgen::Segment;
-using texgen::Tolerance;
+
+namespace {
 
 float signed_power(Random& random, double low, double high) {
     return support::to_float((random.coin() ? 1.0 : -1.0) * random.power_of_ten(low, high));
@@ -178,3 +174,5 @@ TEST_CASE("from 2^128 - 2^103 on the nearest float is infinity, and the bound wi
     CHECK(strq.x == HUGE_VALF);
     CHECK(generate_error_bound(beyond, points).x == infinity_double);
 }
+
+}  // namespace error_bound_cases

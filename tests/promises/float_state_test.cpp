@@ -20,23 +20,14 @@
 #include "texgen/interpolate.hpp"
 #include "texgen/texcoord.hpp"
 
-namespace {
+namespace float_state {
 
-using float_state::in_every_state;
-using support::FloatState;
-using support::hex;
-using support::Outputs;
-using support::Random;
 using support::under;
 using texgen::Box;
 using texgen::Coverage;
 using texgen::ObjectTexgen;
-using texgen::Segment;
-using texgen::TextureRegion;
 using texgen::TriangleSetup;
 using texgen::Work;
-
-}  // namespace
 
 TEST_CASE("the states are what they are called") {
     volatile float one = 1.0f, subnormal = 0x1p-140f;
@@ -172,3 +163,5 @@ TEST_CASE("random bits come to an end in every state, and lit is 0 or 1") {
         }
     });
 }
+
+}  // namespace float_state

@@ -23,23 +23,13 @@
 #include "texgen/reference.hpp"
 #include "texgen/texcoord.hpp"
 
-namespace {
+namespace hard_cases {
 
 namespace reference = texgen::reference;
-
-using hard_cases::as_float;
-using hard_cases::as_rational;
-using hard_cases::as_vector;
-using hard_cases::compose_to;
-using hard_cases::eyeplane;
-using hard_cases::lookat;
-using hard_cases::perspective;
-using hard_cases::te_from_poses;
-using support::exactly;
-using support::Json;
-using support::Rational;
 using texgen::Segment;
 using texgen::Triangle;
+
+namespace {
 
 const texgen::TextureRegion vast = texgen::atlas_tile({-1e300, -1e300}, {1e300, 1e300});
 const texgen::TextureRegion boundless = texgen::atlas_tile({-HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, HUGE_VAL});
@@ -248,3 +238,5 @@ TEST_CASE("every hard case is answered by the function that it is about") {
                                               {"perspective", 8}, {"compose_To", 8}, {"affine_dev", 8}};
     CHECK(counts == expected);
 }
+
+}  // namespace hard_cases

@@ -21,22 +21,11 @@
 #include "texgen/batch.hpp"
 #include "texgen/interpolate.hpp"
 
-namespace {
+namespace batch_cases {
 
-using batch_cases::draw;
-using batch_cases::Expected;
-using batch_cases::steep;
-using batch_cases::ties_everywhere;
-using support::count_of;
-using support::Outputs;
-using support::Random;
-using support::Shot;
-using texgen::FragmentRect;
-using texgen::Tolerance;
-using texgen::Triangle;
 using texgen::TriangleBatch;
-using texgen::TriangleSetup;
-using texgen::Work;
+
+namespace {
 
 // A sliver 2^20 long and more at the window's edge, of a q/w that is all but constant, and a rectangle at the ends of
 // int; or s/q is half-way between two floats at every fragment there, being 0 2^24 pixels nearer, of functions of more
@@ -262,3 +251,5 @@ TEST_CASE("few friendly tiles need a set-up of their own") {
         CHECK(doubtful < 40);  // of 800; s or t is 0 in some
     }
 }
+
+}  // namespace batch_cases

@@ -23,23 +23,12 @@
 #include "texgen/footprint.hpp"
 #include "texgen/interpolate.hpp"
 
-namespace {
+namespace batch_cases {
 
-using batch_cases::agree;
-using batch_cases::draw_region;
-using batch_cases::Drawn;
-using batch_cases::Expected;
-using batch_cases::refused;
-using support::count_of;
-using support::Outputs;
-using support::Random;
-using support::Shot;
-using texgen::FragmentRect;
 using texgen::no_triangle;
-using texgen::Triangle;
 using texgen::TriangleBatch;
-using texgen::TriangleSetup;
-using texgen::Work;
+
+namespace {
 
 // The long runs of one id in the rows: where each begins, and how many fragments it has.
 std::vector<std::pair<std::size_t, std::size_t>> long_runs(const std::vector<std::uint32_t>& ids, std::size_t width) {
@@ -230,3 +219,5 @@ TEST_CASE("footprints of a visibility buffer are those of its triangles") {
     CHECK(whole_rows > 5);
     CHECK(dark > 1000);
 }
+
+}  // namespace batch_cases

@@ -19,28 +19,13 @@
 #include "support/random.hpp"
 #include "texgen/clip.hpp"
 
-namespace {
+namespace clip_slide_cases {
 
-using clip_slide_cases::clipped;
-using clip_slide_cases::distance;
-using clip_slide_cases::distance_count;
-using clip_slide_cases::hex_of;
-using clip_slide_cases::Point;
-using clip_slide_cases::point_of;
-using clip_slide_cases::slide_polygon;
-using clip_slide_cases::slide_vertex;
-using clip_slide_cases::some_region;
 using support::Bits;
 using support::bits;
-using support::exactly;
-using support::hex;
 using support::magnitude;
-using support::Polygon;
-using support::Random;
-using support::Rational;
-using texgen::atlas_tile;
-using texgen::ClipVertex;
-using texgen::TextureRegion;
+
+namespace {
 
 // The same clip without a rounding.
 std::vector<Point> clipped_exactly(const Polygon& polygon, const TextureRegion& region) {
@@ -325,3 +310,5 @@ TEST_CASE("a mesh stays closed: the pieces of a fan cover what the whole does") 
     }
     CHECK(cut > 300);
 }
+
+}  // namespace clip_slide_cases

@@ -16,23 +16,11 @@
 #include "support/special_values.hpp"
 #include "texgen/clip.hpp"
 
-namespace {
+namespace clip_slide_cases {
 
-using clip_slide_cases::clipped;
-using clip_slide_cases::hex_of;
-using clip_slide_cases::require_inside;
-using clip_slide_cases::slide_vertex;
 using support::bits;
 using support::infinity_float;
 using support::nan_float;
-using support::Polygon;
-using support::Random;
-using texgen::atlas_tile;
-using texgen::ClipVertex;
-using texgen::TextureRegion;
-using texgen::whole_texture;
-
-}  // namespace
 
 TEST_CASE("at the projector itself there is no coordinate: a polygon that reaches it is cut just before") {
     const auto vertex = [](float s, float t, float q) { return ClipVertex{{s, t, q, 1}, {s, t, 0, q}}; };
@@ -163,3 +151,5 @@ TEST_CASE("NaN and infinity: s, t, q drop the polygon, r and the position spoil 
     }
     CHECK(left > 500);
 }
+
+}  // namespace clip_slide_cases

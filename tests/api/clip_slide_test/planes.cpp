@@ -18,24 +18,12 @@
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
 
-namespace {
+namespace clip_slide_cases {
 
-using clip_slide_cases::distance;
-using clip_slide_cases::distance_count;
-using clip_slide_cases::Point;
-using clip_slide_cases::some_region;
-using support::exactly;
-using support::hex;
 using support::infinity_double;
 using support::infinity_float;
 using support::magnitude;
 using support::nan_float;
-using support::Random;
-using support::Rational;
-using texgen::TextureRegion;
-using texgen::whole_texture;
-
-}  // namespace
 
 TEST_CASE("the clip planes are the exact ones within their bound, and of their sign") {
     Random random(1101);
@@ -124,3 +112,5 @@ TEST_CASE("an infinite side has no plane of its numbers, and an infinite w stays
     matrix[2].w = infinity_double;
     CHECK(clip_planes(texgen::WorldTexgen(matrix), whole_texture())[0] == glm::vec4(0, 0, infinity_float, 1));
 }
+
+}  // namespace clip_slide_cases

@@ -12,22 +12,13 @@
 #include "support/special_values.hpp"
 #include "texgen/clip.hpp"
 
-namespace {
+namespace clip_cases {
 
-using clip_cases::clipped;
-using clip_cases::distance;
-using clip_cases::near_planes;
-using clip_cases::NearPlane;
 using support::hex_of;
 using support::infinity_float;
 using support::nan_float;
-using support::Polygon;
 using support::Random;
-using texgen::clip_to_near;
 using texgen::ClipVertex;
-using texgen::DepthRange;
-
-}  // namespace
 
 TEST_CASE("a vertex at the eye itself does not come out, with a near plane that lets it through") {
     // z >= 0 everywhere: the near plane of this camera leaves w <= 0 in front of it.
@@ -134,3 +125,5 @@ TEST_CASE("NaN and infinity: a position drops its polygon, a coordinate spoils i
         }
     }
 }
+
+}  // namespace clip_cases

@@ -11,16 +11,11 @@
 #include "support/random.hpp"
 #include "texgen/clip.hpp"
 
-namespace {
+namespace clip_cases {
 
-using clip_cases::is_rounded;
-using support::exactly;
 using support::hex;
 using support::Random;
-using support::Rational;
 using texgen::ClipVertex;
-
-}  // namespace
 
 TEST_CASE("the window: corners of NDC are the viewport's corners, clip_w and the coordinates pass through") {
     const texgen::Viewport viewport{10, 20, 640, 480};
@@ -66,3 +61,5 @@ TEST_CASE("the window is within its stated error of the exact division") {
     }
     CHECK(cancelling > 3000);
 }
+
+}  // namespace clip_cases

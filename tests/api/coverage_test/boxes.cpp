@@ -21,26 +21,13 @@
 #include "support/special_values.hpp"
 #include "texgen/coverage.hpp"
 
-namespace {
+namespace coverage_cases {
 
-using coverage_cases::Counts;
-using coverage_cases::hex;
-using coverage_cases::infinite;
-using coverage_cases::Judge;
-using coverage_cases::ordinary_slide;
-using coverage_cases::point_on;
-using coverage_cases::Slide;
-using coverage_cases::what_is_wrong;
-using support::infinity_float;
-using support::Random;
-using texgen::atlas_tile;
-using texgen::Box;
 using texgen::coverage;
-using texgen::Coverage;
 using texgen::LitVolume;
-using texgen::TextureRegion;
-using texgen::whole_texture;
 using texgen::WorldTexgen;
+
+namespace {
 
 // What is left where some sides are none, or lie so far away that they might be.
 TextureRegion without_some_sides(const TextureRegion& region, Random& random) {
@@ -206,3 +193,5 @@ TEST_CASE("where sides are none a box is partial only if no plane leaves it out"
                        << counts.partial << ", inside " << counts.inside);
     CHECK(counts.separated > 500);
 }
+
+}  // namespace coverage_cases

@@ -22,12 +22,13 @@ namespace coverage_cases {
 using support::hex;
 using support::Random;
 using texgen::atlas_tile;
-using texgen::Box;
 using texgen::degrees;
-using texgen::TextureRegion;
 using texgen::whole_texture;
 
 inline std::string hex(const Box& box) { return "box " + hex(box.min) + " to " + hex(box.max); }
+inline std::string hex(const texgen::Sphere& sphere) {
+    return "sphere " + hex(sphere.centre) + ", radius " + hex(sphere.radius);
+}
 
 struct Slide {
     glm::dmat4 matrix;

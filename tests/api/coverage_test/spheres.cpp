@@ -26,33 +26,15 @@
 #include "support/special_values.hpp"
 #include "texgen/coverage.hpp"
 
-namespace {
+namespace coverage_cases {
 
-using coverage_cases::count_of;
-using coverage_cases::Counts;
-using coverage_cases::hex;
-using coverage_cases::hostile_slide;
-using coverage_cases::Inequality;
-using coverage_cases::infinite;
-using coverage_cases::is_a_region;
-using coverage_cases::Judge;
-using coverage_cases::limited;
-using coverage_cases::limits;
-using coverage_cases::ordinary_slide;
-using coverage_cases::point_on;
-using coverage_cases::Slide;
-using support::infinity_float;
-using support::Random;
 using support::Rational;
-using texgen::atlas_tile;
-using texgen::Coverage;
 using texgen::coverage;
 using texgen::LitVolume;
 using texgen::Sphere;
-using texgen::TextureRegion;
 using texgen::WorldTexgen;
 
-std::string hex(const Sphere& sphere) { return "sphere " + hex(sphere.centre) + ", radius " + hex(sphere.radius); }
+namespace {
 
 // How far a point is from what is lit (q >= 0 and the sides), exactly: the nearest point is the projection onto the
 // planes of some of the forms, so it is the nearest of those projections that fulfil all of them.
@@ -347,3 +329,5 @@ TEST_CASE("a batch of spheres answers as the single question where sides of the 
     }
     CHECK(outside > 0);
 }
+
+}  // namespace coverage_cases

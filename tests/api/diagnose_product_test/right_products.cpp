@@ -20,32 +20,7 @@
 #include "texgen/projector.hpp"
 #include "texgen/scale_bias.hpp"
 
-namespace {
-
-using product_cases::any_meant;
-using product_cases::Code;
-using product_cases::diagnosis_of;
-using product_cases::human;
-using product_cases::In;
-using product_cases::LensKind;
-using product_cases::made;
-using product_cases::made_somehow;
-using product_cases::Meant;
-using product_cases::Mistake;
-using product_cases::own_projector;
-using product_cases::put_in_space;
-using product_cases::require_valid;
-using product_cases::right_projector;
-using product_cases::Told;
-using product_cases::valid_setups;
-using support::any_conventions;
-using support::Random;
-using texgen::DepthMapping;
-using texgen::DepthRange;
-using texgen::Object;
-using texgen::Projector;
-
-}  // namespace
+namespace product_cases {
 
 TEST_CASE("the quarters of a lens of 90 degrees are not found fault with, whose sides are as long as near is far") {
     Random random(641);
@@ -240,3 +215,5 @@ TEST_CASE(
         require_valid(m, askew, diagnosis_of(m, in, std::nullopt, Told::nothing, true, askew));
     }
 }
+
+}  // namespace product_cases

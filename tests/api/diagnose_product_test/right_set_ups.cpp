@@ -22,26 +22,7 @@
 #include "texgen/projector.hpp"
 #include "texgen/surface.hpp"
 
-namespace {
-
-using product_cases::any_meant;
-using product_cases::Meant;
-using product_cases::Mistake;
-using product_cases::require_valid;
-using product_cases::right_projector;
-using product_cases::text;
-using product_cases::valid_setups;
-using support::any_conventions;
-using support::hex;
-using support::infinity_double;
-using support::Random;
-using texgen::Conventions;
-using texgen::Defect;
-using texgen::Diagnosis;
-using texgen::Object;
-using texgen::Projector;
-
-}  // namespace
+namespace product_cases {
 
 TEST_CASE("cameras, narrowed lenses, cropped pictures, mirrors and flashlights are not found fault with") {
     Random random(624);
@@ -206,3 +187,5 @@ TEST_CASE("angles in whole radians, and tiny ones, are not taken for degrees") {
     }
     CHECK(lenses > 1500);
 }
+
+}  // namespace product_cases

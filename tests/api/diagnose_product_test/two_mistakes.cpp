@@ -13,30 +13,7 @@
 #include "texgen/diagnose.hpp"
 #include "texgen/projector.hpp"
 
-namespace {
-
-using product_cases::any_meant;
-using product_cases::Code;
-using product_cases::defect_of;
-using product_cases::diagnosis_of;
-using product_cases::human;
-using product_cases::In;
-using product_cases::leaves_a_trace;
-using product_cases::made_somehow;
-using product_cases::Meant;
-using product_cases::Mistake;
-using product_cases::mistakes;
-using product_cases::own_projector;
-using product_cases::put_in_space;
-using product_cases::right_projector;
-using product_cases::text;
-using product_cases::Told;
-using support::Random;
-using texgen::Defect;
-using texgen::Diagnosis;
-using texgen::Projector;
-
-}  // namespace
+namespace product_cases {
 
 TEST_CASE(
     "a transposed product with another mistake in it is said to be transposed first, and the other is named too") {
@@ -126,3 +103,5 @@ TEST_CASE("a scale-bias that is there twice is named without the pose as well, a
         REQUIRE_MESSAGE(diagnosis[0].defect == Defect::scale_bias_doubled, text(m, texgen, diagnosis));
     }
 }
+
+}  // namespace product_cases

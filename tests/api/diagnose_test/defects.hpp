@@ -27,14 +27,7 @@
 
 namespace diagnose_cases {
 
-using support::infinity_double;
 using support::nan_double;
-using support::Random;
-using texgen::Conventions;
-using texgen::Defect;
-using texgen::DepthMapping;
-using texgen::DepthRange;
-using texgen::Projector;
 
 // What can go wrong, the defect that it is to be found as, and the one thing about the set-up that it changes.
 enum class Thing {

@@ -16,34 +16,12 @@
 #include "texgen/diagnose.hpp"
 #include "texgen/projector.hpp"
 
-namespace {
+namespace diagnose_cases {
 
-using diagnose_cases::all_facts;
-using diagnose_cases::composed;
-using diagnose_cases::diagnosis_of;
-using diagnose_cases::In;
-using diagnose_cases::LensKind;
-using diagnose_cases::lit_points;
-using diagnose_cases::ordinary;
-using diagnose_cases::Parts;
-using diagnose_cases::projection;
-using diagnose_cases::projector_of;
-using diagnose_cases::random_rig;
-using diagnose_cases::require_said;
-using diagnose_cases::Rig;
-using diagnose_cases::text;
-using diagnose_cases::transposed;
-using support::any_conventions;
-using support::hex;
-using support::infinity_double;
 using support::nan_double;
-using support::Random;
-using texgen::Defect;
-using texgen::Diagnosis;
-using texgen::ProjectionSetup;
-using texgen::Projector;
 using texgen::Transform;
-using texgen::World;
+
+namespace {
 
 // With a lens of that kind, in the world.
 Rig rig_of(LensKind kind, Random& random) {
@@ -253,3 +231,5 @@ TEST_CASE("a matrix that holds no numbers, or was never written, is said alone, 
         CHECK_MESSAGE(diagnosis_of(parts).contains(Defect::rank_below_three), text(parts));
     }
 }
+
+}  // namespace diagnose_cases

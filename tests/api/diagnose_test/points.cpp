@@ -17,22 +17,7 @@
 #include "texgen/projector.hpp"
 #include "texgen/texcoord.hpp"
 
-namespace {
-
-using diagnose_cases::diagnosis_of;
-using diagnose_cases::In;
-using diagnose_cases::Parts;
-using diagnose_cases::require_said;
-using diagnose_cases::text;
-using texgen::Conventions;
-using texgen::Defect;
-using texgen::Diagnosis;
-using texgen::Object;
-using texgen::ProjectionSetup;
-using texgen::TextureRegion;
-using texgen::World;
-
-}  // namespace
+namespace diagnose_cases {
 
 TEST_CASE("a region without points or below a texel is said without any point") {
     const auto of_region = [](const TextureRegion& region) {
@@ -154,3 +139,5 @@ TEST_CASE("points of one ray are smaller than a texel, unless one is behind, and
         }
     }
 }
+
+}  // namespace diagnose_cases

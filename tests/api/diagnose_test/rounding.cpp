@@ -20,39 +20,9 @@
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
 
-namespace {
+namespace diagnose_cases {
 
-using diagnose_cases::all_facts;
-using diagnose_cases::composed;
-using diagnose_cases::diagnosis_of;
-using diagnose_cases::dot3;
-using diagnose_cases::In;
-using diagnose_cases::LensKind;
-using diagnose_cases::lit_points;
-using diagnose_cases::measured_error;
-using diagnose_cases::ordinary;
-using diagnose_cases::Parts;
-using diagnose_cases::projection;
-using diagnose_cases::projector_of;
-using diagnose_cases::random_lens;
-using diagnose_cases::random_rig;
-using diagnose_cases::Rig;
-using diagnose_cases::Seen;
-using diagnose_cases::seen;
-using diagnose_cases::shows_points;
-using diagnose_cases::text;
-using diagnose_cases::to_float;
-using diagnose_cases::transposed;
-using diagnose_cases::xyz;
-using support::any_conventions;
-using support::hex;
-using support::infinity_double;
-using support::Random;
-using texgen::Defect;
-using texgen::DepthMapping;
-using texgen::Diagnosis;
-using texgen::Projector;
-using texgen::TextureRegion;
+namespace {
 
 // A projector along the axes, or turned about one of them, whose rounding to float leaves rows as they are.
 Rig aligned_rig(Random& random) {
@@ -271,3 +241,5 @@ TEST_CASE("what is behind or beside the slide loses nothing, and what is lit wha
                 CHECK(loss(place, is_known) == loss(9.0 * forward, is_known));
     }
 }
+
+}  // namespace diagnose_cases

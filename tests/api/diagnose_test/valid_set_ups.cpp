@@ -20,35 +20,9 @@
 #include "texgen/diagnose.hpp"
 #include "texgen/projector.hpp"
 
-namespace {
+namespace diagnose_cases {
 
-using diagnose_cases::all_facts;
-using diagnose_cases::composed;
-using diagnose_cases::composed_in_float;
-using diagnose_cases::diagnosis_of;
-using diagnose_cases::dot3;
-using diagnose_cases::extreme;
-using diagnose_cases::In;
-using diagnose_cases::LensKind;
-using diagnose_cases::lit_points;
-using diagnose_cases::ordinary;
-using diagnose_cases::Parts;
-using diagnose_cases::projection;
-using diagnose_cases::projector_of;
-using diagnose_cases::random_rig;
-using diagnose_cases::Rig;
-using diagnose_cases::Seen;
-using diagnose_cases::seen;
-using diagnose_cases::shows_points;
-using diagnose_cases::text;
-using diagnose_cases::to_float;
-using diagnose_cases::xyz;
-using support::any_conventions;
-using support::infinity_double;
-using support::Random;
-using texgen::DepthMapping;
-using texgen::Diagnosis;
-using texgen::Projector;
+namespace {
 
 struct Classes {
     int far = 0, narrow = 0, wide = 0, parallel = 0, reversed = 0, infinite = 0, off_axis = 0, mirrored = 0, tiles = 0,
@@ -235,3 +209,5 @@ TEST_CASE("no valid set-up of round numbers is found fault with, where factors c
     CHECK(far > 1000);
     CHECK(empty_poses > 1000);
 }
+
+}  // namespace diagnose_cases

@@ -17,33 +17,14 @@
 #include "texgen/projector.hpp"
 #include "texgen/transform.hpp"
 
-namespace {
+namespace fixed_function_cases {
 
-using fixed_function_cases::exact_inverse;
-using fixed_function_cases::excess_ulps;
-using fixed_function_cases::identity;
-using fixed_function_cases::LongVector;
-using fixed_function_cases::random_singular;
-using fixed_function_cases::row_times;
-using fixed_function_cases::scale;
-using fixed_function_cases::times;
-using fixed_function_cases::translation;
-using fixed_function_cases::ulps;
-using fixed_function_cases::unit_with;
-using support::Coordinate;
-using support::coordinates;
 using support::hex;
 using support::infinity_float;
 using support::nan_float;
-using support::NormalScaling;
-using support::Random;
 using support::rounded;
 using support::slide_projector;
-using support::TexGenMode;
-using support::TexGenUnit;
 using texgen::FixedFunctionVertex;
-
-}  // namespace
 
 TEST_CASE("an eye plane is multiplied by the inverse of the MODELVIEW that is current when it is specified") {
     TexGenUnit unit;
@@ -230,3 +211,5 @@ TEST_CASE("the rows of S P_p V_p under MODELVIEW = V_e, and of S P_p under V_e V
         }
     }
 }
+
+}  // namespace fixed_function_cases

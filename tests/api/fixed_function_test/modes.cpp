@@ -14,30 +14,15 @@
 #include "support/random.hpp"
 #include "support/special_values.hpp"
 
-namespace {
+namespace fixed_function_cases {
 
-using fixed_function_cases::exact_inverse;
-using fixed_function_cases::excess_ulps;
-using fixed_function_cases::identity;
-using fixed_function_cases::LongMatrix;
-using fixed_function_cases::LongVector;
-using fixed_function_cases::random_singular;
-using fixed_function_cases::scale;
-using fixed_function_cases::times;
-using fixed_function_cases::to_long;
-using fixed_function_cases::translation;
-using fixed_function_cases::ulps;
-using fixed_function_cases::unit_with;
-using support::Coordinate;
 using support::hex;
 using support::infinity_float;
-using support::NormalScaling;
-using support::Random;
 using support::rounded;
 using support::scalings;
-using support::TexGenMode;
-using support::TexGenUnit;
 using texgen::FixedFunctionVertex;
+
+namespace {
 
 struct EyeVectors {
     LongVector eye{}, reflection{}, normal{};
@@ -298,3 +283,5 @@ TEST_CASE("a singular MODELVIEW gives NaN where a normal is needed, and the line
         }
     }
 }
+
+}  // namespace fixed_function_cases

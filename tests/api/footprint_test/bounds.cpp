@@ -22,27 +22,16 @@
 #include "support/triangles.hpp"
 #include "texgen/interpolate.hpp"
 
-namespace {
+namespace footprint_cases {
 
-using footprint_cases::distance;
-using footprint_cases::dsdx;
-using footprint_cases::dsdy;
-using footprint_cases::ExactFootprint;
-using footprint_cases::spread_triangle;
-using support::count_of;
 using support::everywhere;
-using support::ExactTriangle;
-using support::FootprintOutputs;
-using support::hex;
-using support::Random;
 using support::same_bits;
 using support::setup_of;
-using support::Shot;
 using texgen::FootprintSetup;
 using texgen::FragmentRect;
 using texgen::Tolerance;
-using texgen::Triangle;
-using texgen::WindowVertex;
+
+namespace {
 
 // Makes the third corner's q what has q at a pixel be this share of its term.
 void make_q_small(Triangle& triangle, const FragmentRect& pixel, double share) {
@@ -261,3 +250,5 @@ TEST_CASE("triangles that double cannot hold the differences of keep their bound
         CHECK(bounded > 500);
     }
 }
+
+}  // namespace footprint_cases

@@ -20,35 +20,18 @@
 #include "support/triangles.hpp"
 #include "texgen/interpolate.hpp"
 
-namespace {
+namespace footprint_cases {
 
-using footprint_cases::anisotropy;
-using footprint_cases::dsdx;
-using footprint_cases::dsdy;
-using footprint_cases::dtdx;
-using footprint_cases::dtdy;
-using footprint_cases::flat;
-using footprint_cases::level;
-using footprint_cases::some_texels;
-using footprint_cases::spread_triangle;
-using footprint_cases::text;
-using support::count_of;
 using support::everywhere;
-using support::ExactTriangle;
-using support::FootprintOutputs;
-using support::hex;
 using support::infinity_double;
-using support::Random;
 using support::setup_of;
-using support::Shot;
 using texgen::Footprint;
 using texgen::Footprints;
 using texgen::FootprintSetup;
 using texgen::FragmentRect;
-using texgen::TexelsPerUnit;
-using texgen::Triangle;
 using texgen::TriangleSetup;
-using texgen::WindowVertex;
+
+namespace {
 
 bool contains_centre(const Triangle& triangle, int x, int y) {
     const auto corner = support::vertices(triangle);
@@ -295,3 +278,5 @@ TEST_CASE("there are extremes exactly where a fragment is in front, and of a tri
     }
     CHECK(std::min({on_the_plane, behind, in_front}) > 200);
 }
+
+}  // namespace footprint_cases

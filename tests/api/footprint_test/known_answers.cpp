@@ -23,33 +23,14 @@
 #include "texgen/projector.hpp"
 #include "texgen/texcoord.hpp"
 
-namespace {
+namespace footprint_cases {
 
-using footprint_cases::anisotropy;
-using footprint_cases::dsdx;
-using footprint_cases::dsdy;
-using footprint_cases::dtdx;
-using footprint_cases::dtdy;
-using footprint_cases::flat;
-using footprint_cases::level;
-using footprint_cases::major_s;
-using footprint_cases::major_t;
-using footprint_cases::spread_triangle;
-using support::count_of;
-using support::FootprintOutputs;
-using support::hex;
 using support::infinity_double;
 using support::nan_double;
-using support::Random;
 using support::setup_of;
 using texgen::Footprint;
 using texgen::FootprintSetup;
 using texgen::FragmentRect;
-using texgen::TexelsPerUnit;
-using texgen::Triangle;
-using texgen::WindowVertex;
-
-}  // namespace
 
 TEST_CASE("a Jacobian of rank 1 or 0, and texels that are none, get what the header says") {
     const std::array window{glm::vec2(0, 0), glm::vec2(64, 0), glm::vec2(0, 64)};
@@ -235,3 +216,5 @@ TEST_CASE("the score is that of the triangle, in whatever order its corners are"
     }
     CHECK(std::min(finite, infinite) > 300);
 }
+
+}  // namespace footprint_cases

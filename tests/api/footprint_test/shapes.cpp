@@ -24,35 +24,12 @@
 #include "texgen/batch.hpp"
 #include "texgen/interpolate.hpp"
 
-namespace {
+namespace footprint_cases {
 
-using footprint_cases::anisotropy;
-using footprint_cases::distance_from_zero;
-using footprint_cases::ExactFootprint;
-using footprint_cases::fill_among_others;
-using footprint_cases::flat;
-using footprint_cases::level;
-using footprint_cases::major_s;
-using footprint_cases::major_t;
-using footprint_cases::some_texels;
-using footprint_cases::spread_triangle;
-using footprint_cases::text;
-using support::count_of;
-using support::ExactTriangle;
-using support::FootprintOutputs;
-using support::hex;
-using support::Random;
-using support::Real;
 using support::setup_of;
-using support::Shot;
 using texgen::Footprint;
 using texgen::FootprintSetup;
 using texgen::FragmentRect;
-using texgen::TexelsPerUnit;
-using texgen::Triangle;
-using texgen::WindowVertex;
-
-}  // namespace
 
 TEST_CASE("level, anisotropy and major axis are those of the exact Jacobian") {
     bool is_in_buffer = false;
@@ -305,3 +282,5 @@ TEST_CASE("no axis is a NaN or infinite, nor an anisotropy that a float holds, w
         }
     }
 }
+
+}  // namespace footprint_cases

@@ -22,31 +22,20 @@
 #include "support/shot.hpp"
 #include "support/triangles.hpp"
 
-namespace {
+namespace row_cases {
 
-using row_cases::awkward_widths;
-using row_cases::mirrored;
-using row_cases::require_right;
-using row_cases::row_of_ties;
 using support::count_of;
 using support::everywhere;
-using support::ExactTriangle;
 using support::HardFamily;
-using support::hex;
-using support::Outputs;
-using support::Random;
 using support::same_bits;
-using support::Seen;
-using support::setup_of;
-using support::Shot;
 using support::text;
 using support::vertices;
 using texgen::FragmentRect;
 using texgen::Tolerance;
 using texgen::Triangle;
 using texgen::TriangleSetup;
-using texgen::WindowVertex;
-using texgen::Work;
+
+namespace {
 
 // Of a scene, with all of a window of 450 x 320 in front and in the slide: one certificate mostly serves a tile of it.
 Triangle gentle_triangle(Random& random) {
@@ -310,3 +299,5 @@ TEST_CASE("rectangles at the ends of int, with a triangle anywhere, are the near
     }
     CHECK(seen.in_front > 5000);
 }
+
+}  // namespace row_cases

@@ -16,20 +16,13 @@
 #include "support/random.hpp"
 #include "support/shot.hpp"
 
-namespace {
+namespace row_cases {
 
-using row_cases::awkward_widths;
-using row_cases::require_right;
-using row_cases::row_of_ties;
 using support::count_of;
 using support::everywhere;
-using support::ExactTriangle;
-using support::Outputs;
-using support::Random;
-using support::Seen;
-using support::Shot;
 using support::vertices;
-using texgen::WindowVertex;
+
+namespace {
 
 // Such an s at every fragment, or at every third, but the corners' y have up to 50 bits more than their x: what the
 // functions are made of is too long for two doubles.
@@ -217,3 +210,5 @@ TEST_CASE("a tie on a side is a tie wherever the row begins, and whatever the nu
         require_right(shot, everywhere(), out, seen);
     }
 }
+
+}  // namespace row_cases

@@ -17,24 +17,17 @@
 #include "support/random.hpp"
 #include "support/shot.hpp"
 
-namespace {
+namespace row_cases {
 
-using row_cases::require_right;
 using support::count_of;
 using support::everywhere;
-using support::ExactTriangle;
-using support::hex;
-using support::Outputs;
-using support::Random;
 using support::same_bits;
-using support::Seen;
-using support::Shot;
 using texgen::FragmentRect;
 using texgen::Tolerance;
 using texgen::Triangle;
 using texgen::TriangleSetup;
-using texgen::WindowVertex;
-using texgen::Work;
+
+namespace {
 
 FragmentRect small_rect(Random& random) {
     return {random.integer(100, 400), random.integer(100, 400), random.integer(1, 12), random.integer(1, 8)};
@@ -151,3 +144,5 @@ TEST_CASE("where a coordinate is 0 along an edge in a row or a column of fragmen
     CHECK(seen.lit > 5000);
     CHECK(seen.dark > 5000);
 }
+
+}  // namespace row_cases

@@ -16,15 +16,9 @@
 #include "texgen/footprint.hpp"
 #include "texgen/interpolate.hpp"
 
-namespace {
+namespace judged {
 
-namespace gl = support::gl;
-using judged::draw;
-using judged::nothing;
-using judged::opengl;
-using judged::random_triangle;
-using support::hex;
-using support::Random;
+namespace {
 
 constexpr int slide_width = 512, slide_height = 128;
 
@@ -165,3 +159,5 @@ TEST_CASE("OpenGL's textureQueryLod is the level of detail, within what its diff
 }
 
 }  // namespace
+
+}  // namespace judged

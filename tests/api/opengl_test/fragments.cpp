@@ -20,23 +20,13 @@
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
 
-namespace {
+namespace judged {
 
-namespace gl = support::gl;
-using judged::Both;
-using judged::compare;
-using judged::Comparison;
-using judged::draw_with_texcoords;
-using judged::nothing;
-using judged::opengl;
-using judged::random_triangle;
-using support::Coordinate;
 using support::coordinates;
-using support::hex;
-using support::Random;
 using support::slide_projector;
 using support::gl::fragment_tolerance;
-using support::gl::largest_terms;
+
+namespace {
 
 TEST_CASE("fragments in front of the projector are OpenGL's, for w ratios up to 1e4") {
     const gl::Context& g = opengl();
@@ -191,3 +181,5 @@ TEST_CASE("a floor under a slide, drawn with OpenGL's own transforms and eye-lin
 }
 
 }  // namespace
+
+}  // namespace judged

@@ -16,27 +16,14 @@
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
 
-namespace {
+namespace judged {
 
-namespace gl = support::gl;
-using judged::Both;
-using judged::condition;
-using judged::identity;
-using judged::Kind;
-using judged::kinds;
-using judged::opengl;
-using judged::random_modelview;
-using support::Coordinate;
 using support::coordinates;
 using support::hex;
-using support::NormalScaling;
-using support::Random;
-using support::rounded;
 using support::scalings;
 using support::slide_projector;
-using support::TexGenMode;
-using support::TexGenUnit;
-using texgen::FixedFunctionVertex;
+
+namespace {
 
 TEST_CASE(
     "the linear modes are OpenGL's at vertices, per coordinate, off coordinates and the texture matrix included") {
@@ -206,3 +193,5 @@ TEST_CASE("SGI's recipe, the projector in the texture matrix, is OpenGL's") {
 }
 
 }  // namespace
+
+}  // namespace judged

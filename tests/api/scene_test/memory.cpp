@@ -18,21 +18,13 @@
 #include "support/random.hpp"
 #include "texgen/scene.hpp"
 
-namespace {
+namespace scene_cases {
 
-using scene_cases::box_of;
-using scene_cases::Engine;
-using scene_cases::give_light_along_z;
-using scene_cases::Indices;
-using scene_cases::some_engine;
-using scene_cases::some_model;
-using scene_cases::some_projector;
 using support::allocations;
 using support::broken_preconditions;
-using support::Random;
-using texgen::ModelMatrix;
-using texgen::Scene;
 using texgen::SceneWork;
+
+namespace {
 
 Indices up_to(std::size_t count) {
     Indices all;
@@ -164,3 +156,5 @@ TEST_CASE("memory is allocated only in an update in which a count exceeds all fo
     CHECK(grown > 100);
     CHECK(within > 500);
 }
+
+}  // namespace scene_cases

@@ -22,31 +22,9 @@
 #include "texgen/projector.hpp"
 #include "texgen/scene.hpp"
 
-namespace {
+namespace scene_cases {
 
-using scene_cases::box_of;
-using scene_cases::Engine;
-using scene_cases::hex_of;
-using scene_cases::Indices;
-using scene_cases::require_all_pairs;
-using scene_cases::require_same;
-using scene_cases::some_engine;
-using scene_cases::some_model;
-using scene_cases::some_projector;
-using scene_cases::Tally;
-using scene_cases::texgen_of;
-using scene_cases::with_some_depth;
 using support::broken_preconditions;
-using support::Random;
-using texgen::Box;
-using texgen::Coverage;
-using texgen::LitPair;
-using texgen::ModelMatrix;
-using texgen::Projector;
-using texgen::Scene;
-using texgen::TextureRegion;
-
-}  // namespace
 
 TEST_CASE(
     "no lit point of a box is without its pair, by exact arithmetic, where boxes touch the light's sides far away") {
@@ -273,3 +251,5 @@ TEST_CASE("what is before or beyond the depth of a projector is no pair of it, a
         CHECK(within.texgens_computed <= 5);
     }
 }
+
+}  // namespace scene_cases

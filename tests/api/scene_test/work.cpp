@@ -21,29 +21,11 @@
 #include "texgen/projector.hpp"
 #include "texgen/scene.hpp"
 
-namespace {
+namespace scene_cases {
 
-using scene_cases::box_of;
-using scene_cases::Engine;
-using scene_cases::give_light_along_z;
-using scene_cases::have_same_bits;
-using scene_cases::Indices;
-using scene_cases::require_all_pairs;
-using scene_cases::require_same;
-using scene_cases::some_engine;
-using scene_cases::some_model;
-using scene_cases::some_projector;
-using scene_cases::Tally;
 using support::broken_preconditions;
-using support::Random;
 using texgen::Aim;
-using texgen::LitPair;
-using texgen::ModelMatrix;
-using texgen::ObjectTexgen;
-using texgen::Scene;
 using texgen::SceneWork;
-
-}  // namespace
 
 TEST_CASE("only what changed is tested and computed: the other pairs keep their matrix where it is") {
     Random random(1203);
@@ -292,3 +274,5 @@ TEST_CASE("towns far from one another that move, grow and vanish have the pairs 
     CHECK(tally.partial + tally.inside > 1000);
     CHECK(tally.outside > 10000);
 }
+
+}  // namespace scene_cases

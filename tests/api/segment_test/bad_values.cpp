@@ -18,24 +18,11 @@
 #include "support/special_values.hpp"
 #include "texgen/interpolate.hpp"
 
-namespace {
+namespace segment_cases {
 
-using segment_cases::any_alphas;
-using segment_cases::Case;
-using segment_cases::families;
-using segment_cases::hex;
-using support::everywhere;
-using support::exactly_at;
-using support::Homogeneous;
 using support::infinity_float;
 using support::nan_float;
-using support::Outputs;
-using support::Random;
 using support::same_bits;
-using texgen::Segment;
-using texgen::Tolerance;
-
-}  // namespace
 
 TEST_CASE("a NaN in alpha spoils its own value only") {
     Random random(4600);
@@ -119,3 +106,5 @@ TEST_CASE("segments of random bits, not finite ones too, write nothing but their
         for (const float lit : out.lit()) REQUIRE((lit == 0.0f || lit == 1.0f));
     }
 }
+
+}  // namespace segment_cases

@@ -24,9 +24,6 @@
 
 namespace shaded {
 
-namespace gl = support::gl;
-using support::Random;
-
 // A fragment, and by how much OpenGL's coordinates may differ from it.
 struct Fragment {
     int x, y;

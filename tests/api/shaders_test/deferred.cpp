@@ -19,23 +19,9 @@
 #include "texgen/projector.hpp"
 #include "texgen/texcoord.hpp"
 
-namespace {
+namespace shaded {
 
-namespace gl = support::gl;
-using shaded::bind_new_texture;
-using shaded::border;
-using shaded::Change;
-using shaded::changed;
-using shaded::Comparison;
-using shaded::deferred;
-using shaded::height;
-using shaded::nothing;
-using shaded::pixel_count;
-using shaded::projector_at;
-using shaded::shaders;
-using shaded::vertex;
-using shaded::width;
-using support::Random;
+namespace {
 
 // A floor that a camera has drawn into a depth buffer, and a projector that it reaches behind.
 struct DeferredScene {
@@ -168,3 +154,5 @@ TEST_CASE("the README's deferred light shows what the library computes for the f
 }
 
 }  // namespace
+
+}  // namespace shaded

@@ -16,24 +16,9 @@
 #include "texgen/footprint.hpp"
 #include "texgen/interpolate.hpp"
 
-namespace {
+namespace shaded {
 
-namespace gl = support::gl;
-using shaded::bind_new_texture;
-using shaded::border;
-using shaded::Change;
-using shaded::changed;
-using shaded::Comparison;
-using shaded::comparison;
-using shaded::detailed;
-using shaded::Expect;
-using shaded::Expected;
-using shaded::Fragment;
-using shaded::gradients;
-using shaded::Scene;
-using shaded::shaders;
-using shaded::surface;
-using shaded::vertex;
+namespace {
 
 std::optional<texgen::Footprint> footprint_at(const Scene& scene, const Fragment& fragment) {
     return texgen::FootprintSetup(texgen::TriangleSetup::of(scene.triangle, scene.region).value(), {detailed, detailed})
@@ -92,3 +77,5 @@ TEST_CASE("the README's shader samples the level of detail of footprint.hpp") {
 }
 
 }  // namespace
+
+}  // namespace shaded

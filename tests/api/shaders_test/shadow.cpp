@@ -15,23 +15,9 @@
 #include "support/opengl.hpp"
 #include "support/random.hpp"
 
-namespace {
+namespace shaded {
 
-namespace gl = support::gl;
-using shaded::bias;
-using shaded::bind_new_texture;
-using shaded::broken_vertices;
-using shaded::Expect;
-using shaded::Expected;
-using shaded::Fragment;
-using shaded::judge;
-using shaded::Scene;
-using shaded::shadow;
-using shaded::size;
-using shaded::surface;
-using shaded::texel;
-using shaded::texel_count;
-using support::Random;
+namespace {
 
 TEST_CASE("the README's shadow compares r as the library computes it") {
     const gl::Context& g = gl::Context::or_skip();
@@ -74,3 +60,5 @@ TEST_CASE("the README's shadow compares r as the library computes it") {
 }
 
 }  // namespace
+
+}  // namespace shaded

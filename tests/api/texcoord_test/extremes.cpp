@@ -26,28 +26,16 @@
 #include "support/special_values.hpp"
 #include "texgen/texcoord.hpp"
 
-namespace {
+namespace texcoord_cases {
 
 using support::Dyadic;
 using support::everywhere;
 using support::exactly_at;
-using support::hex;
-using support::Homogeneous;
 using support::infinity_float;
 using support::nan_float;
 using support::Outputs;
-using support::Random;
 using support::same_bits;
-using texcoord_cases::any_count;
-using texcoord_cases::Batch;
-using texcoord_cases::describe;
-using texcoord_cases::families;
-using texcoord_cases::PointFamily;
-using texcoord_cases::Points;
-using texgen::ObjectTexgen;
 using texgen::Tolerance;
-
-}  // namespace
 
 TEST_CASE("a quotient that is below all floats is a zero of its sign, in company as alone") {
     Random random(8);
@@ -158,3 +146,5 @@ TEST_CASE("divide is the nearest float in front, and empty behind") {
     }
     CHECK(in_front > 10000);
 }
+
+}  // namespace texcoord_cases

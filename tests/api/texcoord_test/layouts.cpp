@@ -21,26 +21,13 @@
 #include "support/special_values.hpp"
 #include "texgen/texcoord.hpp"
 
-namespace {
+namespace texcoord_cases {
 
 using support::exactly_at;
-using support::hex;
-using support::Homogeneous;
 using support::nan_float;
 using support::Outputs;
-using support::Random;
 using support::same_bits;
-using texcoord_cases::Batch;
-using texcoord_cases::describe;
-using texcoord_cases::families;
-using texcoord_cases::PointFamily;
-using texcoord_cases::slide;
-using texgen::Object;
-using texgen::ObjectTexgen;
-using texgen::Positions;
 using texgen::Tolerance;
-
-}  // namespace
 
 TEST_CASE("pairs are the planar s and t, and 0 behind") {
     Random random(6400);
@@ -174,3 +161,5 @@ TEST_CASE("the four spaces give the same numbers") {
     for (std::size_t k = 0; k < 4; ++k)
         for (std::size_t space = 1; space < 4; ++space) CHECK(same_bits(out[0][k], out[space][k]));
 }
+
+}  // namespace texcoord_cases

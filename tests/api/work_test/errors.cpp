@@ -21,24 +21,20 @@
 #include "texgen/footprint.hpp"
 #include "texgen/interpolate.hpp"
 
-namespace {
+namespace work_cases {
 
 using support::count_of;
 using support::everywhere;
-using support::ExactTriangle;
 using support::hex;
-using support::Homogeneous;
 using support::Outputs;
 using support::Random;
 using support::region_at;
 using support::setup_of;
-using support::Shot;
 using texgen::FragmentRect;
-using texgen::TextureRegion;
 using texgen::TriangleSetup;
 using texgen::Work;
-using work_cases::Truth;
-using work_cases::truth_of;
+
+namespace {
 
 // The largest distance of s (0) or t (1) from the truth over the fragments in front.
 double largest_error(const Shot& shot, const ExactTriangle& exact, const Outputs& out, std::size_t coordinate) {
@@ -152,3 +148,5 @@ TEST_CASE("a rectangle without fragments, or behind the projector, needs nothing
     CHECK(from_behind.error_bound(rect) == glm::dvec2(0.0, 0.0));
     CHECK(texgen::FootprintSetup(from_behind, {256.0, 256.0}).error_bound(rect) == glm::dvec2(0.0, 0.0));
 }
+
+}  // namespace work_cases

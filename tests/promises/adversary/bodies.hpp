@@ -22,10 +22,6 @@
 
 namespace adversary {
 
-using support::Dyadic;
-using support::Homogeneous;
-using support::Quotient;
-
 // Boxes: outside means that no vertex is lit (they are points of it), inside that all are.
 inline Share coverage_share(const Numbers& n) {
     const glm::dmat4 matrix = batch_of(n, 0).matrix;

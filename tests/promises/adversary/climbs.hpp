@@ -20,8 +20,6 @@
 
 namespace adversary {
 
-using support::Random;
-
 struct Find {
     Share share = says_nothing;
     Numbers numbers;

@@ -24,7 +24,6 @@
 namespace adversary {
 
 using support::exactly;
-using support::Random;
 using support::Rational;
 using support::RationalMatrix;
 using support::scaled_condition;

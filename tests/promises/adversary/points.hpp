@@ -24,10 +24,7 @@
 
 namespace adversary {
 
-using support::Dyadic;
-using support::Homogeneous;
 using support::Outputs;
-using support::Random;
 
 // |value - exact| <= 1/2 ulp + 2^-50 sum |T_j v_j|: the share of the second term that the first does not cover.
 inline Share generate_share(const Numbers& n) {

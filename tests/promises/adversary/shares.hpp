@@ -15,7 +15,6 @@ namespace adversary {
 using support::Dyadic;
 using support::Homogeneous;
 using support::Quotient;
-using support::Random;
 
 inline constexpr double broken = HUGE_VAL;
 

@@ -19,9 +19,6 @@
 
 namespace adversary {
 
-using support::Dyadic;
-using support::Random;
-
 inline support::Corners surface_of(const Numbers& n) { return {floats4(n, 0), floats4(n, 4), floats4(n, 8)}; }
 inline Numbers begin_surface(Random& random) {
     const support::Corners corners =

@@ -26,10 +26,7 @@
 
 namespace adversary {
 
-using support::Dyadic;
-using support::Homogeneous;
 using support::Outputs;
-using support::Random;
 
 // Seven numbers a vertex: the window, w, and s, t, r, q.
 inline texgen::Triangle triangle_of(const Numbers& n) {

@@ -23,10 +23,7 @@
 namespace ceilings {
 
 using support::everywhere;
-using support::Homogeneous;
-using support::Outputs;
 using support::Random;
-using texgen::Tolerance;
 
 struct PointFamily {
     const char* name;

@@ -22,10 +22,7 @@
 namespace ceilings {
 
 using support::everywhere;
-using support::Homogeneous;
-using support::Outputs;
 using support::Random;
-using texgen::Tolerance;
 
 inline Worst of_triangles(const support::HardFamily& family, std::uint64_t seed) {
     Random random(seed);

@@ -19,18 +19,12 @@
 #include "texgen/batch.hpp"
 #include "texgen/interpolate.hpp"
 
-namespace {
+namespace triangle_costs {
 
-using support::hex;
-using support::Shot;
 using texgen::FragmentRect;
-using texgen::Tolerance;
 using texgen::Triangle;
-using texgen::WindowVertex;
-using triangle_costs::masks_by_vectors;
-using triangle_costs::ordinary;
-using triangle_costs::tolerances;
-using triangle_costs::vertex;
+
+namespace {
 
 // t is 0 along the upper edge, s along the left one: as of a quadrilateral of a user interface, or of a chart of a
 // lightmap, whose corners are centres of fragments.
@@ -200,3 +194,5 @@ TEST_CASE("masks of a batch that are lit at once take less than s and t do, the 
         }
     }
 }
+
+}  // namespace triangle_costs

@@ -19,19 +19,11 @@
 #include "texgen/footprint.hpp"
 #include "texgen/interpolate.hpp"
 
-namespace {
+namespace triangle_costs {
 
-using support::everywhere;
 using support::Random;
-using support::Shot;
 using texgen::FragmentRect;
-using texgen::Tolerance;
 using texgen::Triangle;
-using texgen::WindowVertex;
-using triangle_costs::ordinary;
-using triangle_costs::tolerances;
-
-}  // namespace
 
 TEST_CASE("footprints by ids of triangles that are refused cost what others do") {
     Random random(75);
@@ -257,3 +249,5 @@ TEST_CASE("long runs of a visibility buffer take little more than rows of their 
         CHECK_MESSAGE(ratio <= most, "tolerance ", tolerance.value, ": ", ratio, " times");
     }
 }
+
+}  // namespace triangle_costs

@@ -23,21 +23,19 @@
 #include "texgen/linear.hpp"
 #include "texgen/transform.hpp"
 
-namespace {
+namespace error_bound_cases {
 
-using error_bound_cases::is_no_bound;
-using error_bound_cases::Tightness;
 using support::exactly;
 using support::hex;
-using support::infinity_double;
 using support::nan_double;
-using support::Random;
 using support::Rational;
 using support::RationalMatrix;
 using texgen::EyeTexgen;
 using texgen::ModelMatrix;
 using texgen::ModelviewMatrix;
 using texgen::ObjectTexgen;
+
+namespace {
 
 glm::dmat4 any_matrix(Random& random) {
     glm::dmat4 m(0.0);
@@ -231,3 +229,5 @@ TEST_CASE("planes under what is singular, and planes that are not finite, have n
         for (int k = 0; k < 4; ++k) CHECK(is_no_bound(under[k]));
     }
 }
+
+}  // namespace error_bound_cases

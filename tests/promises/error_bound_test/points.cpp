@@ -25,20 +25,16 @@
 #include "support/special_values.hpp"
 #include "texgen/texcoord.hpp"
 
-namespace {
+namespace error_bound_cases {
 
-using error_bound_cases::any_tolerance;
-using error_bound_cases::is_no_bound;
-using error_bound_cases::Tightness;
 using support::Dyadic;
 using support::hex;
 using support::Homogeneous;
-using support::infinity_double;
 using support::nan_double;
 using support::Outputs;
-using support::Random;
 using texgen::ObjectTexgen;
-using texgen::Tolerance;
+
+namespace {
 
 struct PointFamily {
     const char* name;
@@ -267,3 +263,5 @@ TEST_CASE("a product below 2^-900 leaves project_error_bound infinite, and one t
         }
     }
 }
+
+}  // namespace error_bound_cases

@@ -21,21 +21,12 @@
 #include "texgen/scene.hpp"
 #include "texgen/texcoord.hpp"
 
-namespace {
+namespace float_state {
 
-using float_state::as_read;
-using float_state::in_every_state;
-using support::FloatState;
-using support::hex;
-using support::Outputs;
-using support::Random;
 using support::under;
 using texgen::Box;
 using texgen::Coverage;
 using texgen::ObjectTexgen;
-using texgen::TextureRegion;
-
-}  // namespace
 
 TEST_CASE("what is cut next to the eye or q = 0 is in front") {
     const std::array<texgen::ClipVertex, 3> by_eye{{{{0.0f, 0.0f, 1.0f, 0x1p-110f}, {0.0f, 0.0f, 0.0f, 1.0f}},
@@ -214,3 +205,5 @@ TEST_CASE("what a clip to the slide leaves is inside but for slide_clip_error, a
         CHECK(whole > 0);
     });
 }
+
+}  // namespace float_state

@@ -14,17 +14,11 @@
 #include "support/random.hpp"
 #include "texgen/projector.hpp"
 
-namespace {
+namespace float_state {
 
-using float_state::in_every_state;
 using support::exactly;
-using support::FloatState;
-using support::hex;
-using support::Random;
 using support::Rational;
 using support::under;
-
-}  // namespace
 
 TEST_CASE("what is singular stays singular, and what is regular is inverted within its bound") {
     in_every_state([](const FloatState& state, Random& random) {
@@ -88,3 +82,5 @@ TEST_CASE("lenses and aims are refused as in the default state, and have its bit
         CHECK(refused > 50);
     });
 }
+
+}  // namespace float_state

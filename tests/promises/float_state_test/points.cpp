@@ -19,29 +19,10 @@
 #include "texgen/segment.hpp"
 #include "texgen/texcoord.hpp"
 
-namespace {
+namespace float_state {
 
-using float_state::any_region;
-using float_state::any_tolerance;
-using float_state::as_read;
-using float_state::check_seen;
-using float_state::in_every_state;
-using float_state::Seen;
-using float_state::ulp_of;
-using float_state::what_is_wrong;
-using support::FloatState;
-using support::hex;
-using support::Homogeneous;
-using support::Outputs;
-using support::Quotient;
-using support::Random;
 using support::under;
 using texgen::ObjectTexgen;
-using texgen::Segment;
-using texgen::TextureRegion;
-using texgen::Tolerance;
-
-}  // namespace
 
 TEST_CASE("segments: the sign of q is exact, and errors are within half an ulp or the tolerance") {
     in_every_state([](const FloatState& state, Random& random) {
@@ -171,3 +152,5 @@ TEST_CASE("bounds that are told to callers hold") {
         }
     });
 }
+
+}  // namespace float_state

@@ -23,29 +23,12 @@
 #include "texgen/footprint.hpp"
 #include "texgen/interpolate.hpp"
 
-namespace {
+namespace float_state {
 
-using float_state::any_region;
-using float_state::any_tolerance;
-using float_state::as_read;
-using float_state::check_seen;
-using float_state::in_every_state;
-using float_state::Seen;
-using float_state::what_is_wrong;
-using support::FloatState;
-using support::hex;
-using support::Homogeneous;
-using support::Outputs;
-using support::Quotient;
-using support::Random;
 using support::Shot;
 using support::under;
-using texgen::TextureRegion;
-using texgen::Tolerance;
 using texgen::TriangleSetup;
 using texgen::Work;
-
-}  // namespace
 
 TEST_CASE("fragments of triangles: the sign of q is exact, and errors are within half an ulp or the tolerance") {
     in_every_state([](const FloatState& state, Random& random) {
@@ -152,3 +135,5 @@ TEST_CASE("footprints are those of the default state where they are not subnorma
         CHECK(compared > 1000);
     });
 }
+
+}  // namespace float_state

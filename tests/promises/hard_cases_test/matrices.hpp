@@ -25,8 +25,6 @@
 namespace hard_cases {
 
 using support::exactly;
-using support::Json;
-using support::Rational;
 
 inline void eyeplane(const Json& json) {
     const texgen::ModelviewMatrix modelview(from_rows(json["in"]["M_rowmajor"]));
