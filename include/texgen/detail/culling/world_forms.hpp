@@ -48,11 +48,10 @@ inline constexpr double projector_range = 0x1p190;
 static_assert(object_range * projector_range * 0x1p165 < 0x1p600);
 
 // a . (x, y, z) + d, known to within error_a size + error_d when it is computed in double in any order, where the size
-// of a point is |x| + |y| + |z|.
+// of a point is |x| + |y| + |z|. One that is not set excludes nothing.
 struct LinearForm {
-    std::array<double, 3> a;
-    double d;
-    double error_a, error_d;
+    std::array<double, 3> a{};
+    double d = 0.0, error_a = 1.0, error_d = 1.0;
 };
 
 // Where M v is for the points v of an object's box. All numbers are finite.
@@ -162,7 +161,6 @@ private:
             sizes[j] = magnitude[j][plane.coordinate] + std::fabs(of_q) * magnitude[j][3];
             sum += sizes[j];
         }
-        form = nothing;
         if (!(sum > 0x1p-400 && sum < 0x1p400)) return;
         const double scale = reciprocal_power_of_two(sum);
         for (std::size_t j = 0; j < 3; ++j) form.a[j] = scale * coefficients[j];
@@ -173,9 +171,7 @@ private:
         form.error_d = gamma(64) * scale * sizes[3] + 0x1p-100 + of_width * magnitude[3][3];
     }
 
-    // Forms that are not set exclude nothing.
-    static constexpr LinearForm nothing{{}, 0.0, 1.0, 1.0};
-    std::array<LinearForm, SlidePlanes::max_size> forms_{};
+    std::array<LinearForm, SlidePlanes::max_size> forms_;
     std::size_t count_ = 0;
 };
 
