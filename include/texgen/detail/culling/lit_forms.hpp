@@ -45,10 +45,10 @@ struct LitForms {
         kernels.weigh(matrix, outer, lanes);
     }
 
-    // Whether exact sums with this side of a region, `none` for none, stay in the range of double.
-    static bool is_usable_side(double bound, double none) noexcept {
-        const double size = std::fabs(bound);
-        return bound == none || size == 0.0 || (size >= 0x1p-200 && size <= 0x1p200);
+    // Whether exact sums with this min of a region, or with a max times -1, stay in the range of double.
+    static bool is_usable_side(double min) noexcept {
+        const double size = std::fabs(min);
+        return min == -infinity || size == 0.0 || (size >= 0x1p-200 && size <= 0x1p200);
     }
 
     // Whether bodies have to be asked about: not where every point is dark, nor for numbers that are not finite or
@@ -133,7 +133,7 @@ struct LitForms {
                (count == forms_without_depth || take(q + 1, *region.depth()));
     }
     bool take_side(std::size_t k, double sign, double min) noexcept {
-        if (!is_usable_side(min, -infinity)) return false;
+        if (!is_usable_side(min)) return false;
         const RoundedSide rounded = RoundedSide::of_min(min);
         const auto weigh = [sign, k](FormWeights& weights, double bound) {
             const bool is_finite = std::fabs(bound) < infinity;

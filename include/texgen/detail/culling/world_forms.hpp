@@ -111,7 +111,7 @@ public:
         if (!(range_of(texture_from_eye, without_r) * range_of(view) <= projector_range)) return;
         const SlidePlanes planes(region);
         for (const SlidePlane& plane : planes)
-            if (!LitForms::is_usable_side(plane.bound, plane.none())) return;
+            if (!LitForms::is_usable_side(plane.sign * plane.bound)) return;
         const glm::dmat4 magnitude = absolute(texture_from_eye) * absolute(view);
         // q comes last: few bounds are behind a projector and beyond none of its sides.
         while (count_ < planes.size()) {
