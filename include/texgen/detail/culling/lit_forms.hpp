@@ -137,7 +137,7 @@ struct LitForms {
         const RoundedSide rounded = RoundedSide::of_min(min);
         const auto weigh = [sign, k](FormWeights& weights, double bound) {
             const bool is_finite = std::fabs(bound) < infinity;
-            weights.of[coordinate_of_side(k)][k] = is_finite ? sign : 0.0;
+            weights.of[coordinate_of(k)][k] = is_finite ? sign : 0.0;
             weights.of_q[k] = is_finite ? -bound : bound < 0.0 ? 1.0 : -1.0;
         };
         weigh(outer, rounded.outer);
@@ -147,14 +147,14 @@ struct LitForms {
         return true;
     }
 
-    static constexpr std::size_t coordinate_of(std::size_t k) noexcept { return k == q ? 3 : coordinate_of_side(k); }
-    static constexpr std::size_t coordinate_of_side(std::size_t k) noexcept { return k < 2 ? 0 : k < q ? 1 : 2; }
+    // That of a side; q's form has a weight of 0 for it.
+    static constexpr std::size_t coordinate_of(std::size_t k) noexcept { return k < 2 ? 0 : k < q ? 1 : 2; }
 
     // A coefficient is the sum of three numbers. What is cancelled in the first sum leaves nothing, so that all.high is
     // nearly all of it: that has its sign, is 0 only if it is 0, and the terms have no more in magnitude but for 2^-49
     // of it.
     void take_at_vertex(std::size_t k, const FormWeights& weights, bool is_largest, FormAtVertex& form) const noexcept {
-        const double own = k == q ? 0.0 : weights.of[coordinate_of_side(k)][k], of_q = weights.of_q[k];
+        const double own = weights.of[coordinate_of(k)][k], of_q = weights.of_q[k];
         form.term_count = 0;
         const auto add = [&form](double factor, std::size_t row) {
             if (factor != 0.0) form.term[form.term_count++] = {factor, row};
