@@ -18,16 +18,6 @@
 
 namespace TEXGEN_DETAIL {
 
-// Rounds the coefficients of a ramp to multiples of the grain, which they are, if their errors leave one candidate
-// each.
-TEXGEN_RARE inline bool take_multiples(Ramp& ramp, double error, double grain) noexcept {
-    if (!(4.0 * error < grain)) return false;
-    const double rounder = 0x1.8p52 * grain;  // they are below 2^46 grains, as the error has 20 u of them
-    for (double* const coefficient : {&ramp.base, &ramp.dx, &ramp.dy})
-        *coefficient = (*coefficient + rounder) - rounder;
-    return true;
-}
-
 // base + i dx + j dy: these three terms. Within `error` of the exact value at every fragment of the tile that it was
 // made for.
 struct CloseRamp {
@@ -184,11 +174,16 @@ TEXGEN_RARE inline bool are_decided_by_sums(const CloseFunctions& functions, dou
 }
 
 // Whether residues decide the quotients of a tile well in front, of numerators of the size that their errors let
-// expect. Coefficients that become multiples of their grains are exact: what is left is the error of computing with
-// them, 2^-98 of the values.
+// expect. Coefficients are multiples of their grains, and exact where their errors leave one candidate each: what is
+// left is the error of computing with them, 2^-98 of the values.
 TEXGEN_RARE inline bool let_residues_decide(CloseFunctions& functions) noexcept {
-    for (CloseFunction& f : functions.function)
-        if (take_multiples(f.high, f.error, f.grain)) f.error *= 0x1p-50;
+    for (CloseFunction& f : functions.function) {
+        if (!(4.0 * f.error < f.grain)) continue;
+        const double rounder = 0x1.8p52 * f.grain;  // they are below 2^46 grains, as the error has 20 u of them
+        for (double* const coefficient : {&f.high.base, &f.high.dx, &f.high.dy})
+            *coefficient = (*coefficient + rounder) - rounder;
+        f.error *= 0x1p-50;
+    }
     const auto& [first, second, q] = functions.function;
     return q.error < 0x1p33 * q.grain && first.error < 0x1p58 * first.grain && second.error < 0x1p58 * second.grain;
 }
