@@ -64,8 +64,9 @@ private:
             return true;
         }
         const double largest = larger(numerator[0] * texels_.s, numerator[1] * texels_.t);
-        const bool filters =
-            !out_.level.empty() || !out_.anisotropy.empty() || !out_.major_s.empty() || !out_.major_t.empty();
+        FootprintJob job{};
+        take_arrays(job, out_, offset_in(rect_, tile.x, tile.y));
+        const bool filters = job.are_filtered();
         if (!(larger(numerator[0], numerator[1]) < 0x1p500) || !(at.largest_q < 0x1p200) || !(at.least_q > 0x1p-200))
             return false;
         if (filters && (!is_usable(texels_) || !(largest > 0x1p-500))) return false;
@@ -76,13 +77,11 @@ private:
         const auto scaled = [](const Slope::Terms& terms, double factor) {
             return Slope::Terms{terms.dx * factor, terms.dy * factor, terms.twist * factor};
         };
-        FootprintJob job{};
         job.width = tile.width;
         job.height = tile.height;
         job.q = {at.q_ramp.base * q_scale, at.q_ramp.dx * q_scale, at.q_ramp.dy * q_scale};
         job.derivatives_in_float = float_fits(tile, at, numerator);
         job.pitch = rect_.width;
-        take_arrays(job, out_, offset_in(rect_, tile.x, tile.y));
         for (std::size_t k = 0; k < 2; ++k) {
             const Slope::Terms first = functions_.at_first(k, tile);
             job.slope[k] = scaled(first, q_scale_squared);
