@@ -32,8 +32,7 @@ using texgen::TextureRegion;
 using texgen::whole_texture;
 
 inline std::string hex_of(const Polygon& polygon, const TextureRegion& region) {
-    return "region " + hex(region.min()) + " to " + hex(region.max()) +
-           (region.depth() ? " depth " + hex(*region.depth()) : "") + ": " + support::hex_of(polygon);
+    return hex(region) + ": " + support::hex_of(polygon);
 }
 
 inline Polygon clipped(const Polygon& polygon, const TextureRegion& region) {

@@ -36,10 +36,7 @@ struct Slide {
     std::optional<glm::vec3> touched = {};  // a point on a side, or on an edge, to within an ulp of double or two
 };
 
-inline std::string hex(const Slide& slide) {
-    return "matrix " + hex(slide.matrix) + ", region " + hex(slide.region.min()) + " to " + hex(slide.region.max()) +
-           (slide.region.depth() ? ", depth " + hex(*slide.region.depth()) : "");
-}
+inline std::string hex(const Slide& slide) { return "matrix " + hex(slide.matrix) + ", " + hex(slide.region); }
 
 // In one of two slides a depth: the whole one, a part, or to one side.
 inline TextureRegion with_some_depth(const TextureRegion& region, texgen::Conventions conventions,

@@ -142,8 +142,8 @@ inline std::string text(const Parts& parts) {
     }
     if (parts.pose) result += " pose " + hex(*parts.pose);
     if (parts.texgen) result += " texgen " + hex(*parts.texgen);
-    result += " region " + hex(parts.region.min()) + " " + hex(parts.region.max()) + " texels " +
-              hex(parts.texels_per_unit) + " depth " + std::to_string(static_cast<int>(parts.depth));
+    result += " " + hex(parts.region) + " texels " + hex(parts.texels_per_unit) + " depth " +
+              std::to_string(static_cast<int>(parts.depth));
     if (parts.has_points)
         for (const glm::vec3& point : parts.points) result += " " + hex(point);
     return result;

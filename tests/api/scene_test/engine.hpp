@@ -204,9 +204,7 @@ inline bool are_alike(const glm::dmat4& a, const glm::dmat4& b) {
 inline std::string hex_of(const Engine& engine, std::size_t object, std::size_t projector) {
     return hex(engine.models[object].matrix()) + " box " + hex(engine.bounds[object].min) + " to " +
            hex(engine.bounds[object].max) + " projection " + hex(engine.projectors[projector].projection.matrix()) +
-           " view " + hex(engine.projectors[projector].view.matrix()) + " region " +
-           hex(engine.regions[projector].min()) + " to " + hex(engine.regions[projector].max()) +
-           (engine.regions[projector].depth() ? " depth " + hex(*engine.regions[projector].depth()) : "");
+           " view " + hex(engine.projectors[projector].view.matrix()) + " " + hex(engine.regions[projector]);
 }
 
 struct Tally {
