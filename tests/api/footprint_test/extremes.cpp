@@ -34,14 +34,13 @@ using texgen::TriangleSetup;
 namespace {
 
 bool contains_centre(const Triangle& triangle, int x, int y) {
-    const auto corner = support::vertices(triangle);
     const double side = support::twice_area(triangle);
     for (std::size_t i = 0; i < 3; ++i) {
         Triangle part = triangle;
         support::vertices(part)[i]->window = glm::vec2(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
         if (support::twice_area(part) * side < 0.0) return false;
     }
-    return corner[0] != nullptr;
+    return true;
 }
 
 }  // namespace
