@@ -2,9 +2,7 @@
 
 // A triangle with a rectangle of fragments, where one stands about it, and how both are printed.
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -40,10 +38,6 @@ inline std::array<const texgen::WindowVertex*, 3> vertices(const texgen::Triangl
 }
 
 namespace detail {
-
-inline int pixel_of(double window) {
-    return static_cast<int>(std::clamp(std::floor(window), -2147483648.0, 2147483647.0));
-}
 
 // A rectangle about a pixel, of every width that a vector's tail can have, and now and then a long row or a block.
 inline texgen::FragmentRect rect_about(int x, int y, Random& random) {

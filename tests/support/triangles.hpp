@@ -94,6 +94,8 @@ inline texgen::Triangle make_triangle(Family family, Random& random) {
     }
 }
 
+inline int pixel_of(double window) { return static_cast<int>(std::clamp(std::floor(window), -0x1p31, 0x1p31 - 1.0)); }
+
 // The pixel of a random point of the triangle, near its border more often than not.
 inline texgen::FragmentRect pixel_near(const texgen::Triangle& t, Random& random) {
     std::array<double, 3> weight{random.uniform(0.0, 1.0), random.uniform(0.0, 1.0), random.uniform(0.0, 1.0)};
@@ -102,8 +104,7 @@ inline texgen::FragmentRect pixel_near(const texgen::Triangle& t, Random& random
     const glm::dvec2 point =
         (weight[0] * glm::dvec2(t.a.window) + weight[1] * glm::dvec2(t.b.window) + weight[2] * glm::dvec2(t.c.window)) /
         sum;
-    const auto pixel = [](double of) { return static_cast<int>(std::clamp(std::floor(of), -0x1p31, 0x1p31 - 1.0)); };
-    return {pixel(point.x), pixel(point.y), 1, 1};
+    return {pixel_of(point.x), pixel_of(point.y), 1, 1};
 }
 
 }  // namespace support
