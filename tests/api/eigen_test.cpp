@@ -57,15 +57,8 @@ struct Cloud : Eigen::Matrix3Xf {
     using Eigen::Matrix3Xf::Matrix3Xf;
 };
 
-glm::dmat4 random_matrix(Random& random) {
-    glm::dmat4 m(0.0);
-    for (int column = 0; column < 4; ++column)
-        for (int row = 0; row < 4; ++row) m[column][row] = random.uniform(-10.0, 10.0);
-    return m;
-}
-
 // q takes either sign.
-texgen::WorldTexgen random_texgen(Random& random) { return texgen::WorldTexgen(random_matrix(random)); }
+texgen::WorldTexgen random_texgen(Random& random) { return texgen::WorldTexgen(random.matrix(10.0)); }
 
 std::vector<glm::vec3> random_points(Random& random, std::size_t count) {
     std::vector<glm::vec3> points(count);
@@ -105,7 +98,7 @@ constexpr std::size_t counts[] = {0, 1, 2, 15, 16, 17, 64, 300};
 TEST_CASE("a transform comes from Eigen with every element, and knows its spaces") {
     Random random(61);
     for (int i = 0; i < 200; ++i) {
-        const glm::dmat4 m = random_matrix(random);
+        const glm::dmat4 m = random.matrix(10.0);
         Eigen::Matrix4d eigen;
         for (int column = 0; column < 4; ++column)
             for (int row = 0; row < 4; ++row) eigen(row, column) = m[column][row];
@@ -146,7 +139,7 @@ TEST_CASE("poses come from every mode of Eigen's transforms, the compact one too
 TEST_CASE("a transform goes to Eigen exactly in double and rounded once in float") {
     Random random(62);
     for (int i = 0; i < 200; ++i) {
-        const texgen::ModelMatrix model(random_matrix(random));
+        const texgen::ModelMatrix model(random.matrix(10.0));
         REQUIRE(texgen::from_eigen<texgen::ModelMatrix>(to_eigen(model)).matrix() == model.matrix());
         REQUIRE(texgen::to_eigen<Eigen::Projective3d>(model).matrix() == to_eigen(model));
         const auto rounded = texgen::to_eigen<Eigen::Matrix4f>(model);

@@ -279,9 +279,7 @@ TEST_CASE("stored planes are p M^-1 within 0.54 float ulp of their largest compo
     double worst = 0.0;
     std::string worst_input;
     for (int i = 0; i < 600; ++i) {
-        glm::dmat4 m(0.0);
-        for (int column = 0; column < 4; ++column)
-            for (int row = 0; row < 4; ++row) m[column][row] = random.uniform(-1.0, 1.0);
+        glm::dmat4 m = random.matrix();
         const int kind = i % 3;
         if (kind == 0) {  // near to singular
             const double distance = random.power_of_ten(-7.0, -2.0);

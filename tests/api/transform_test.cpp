@@ -9,7 +9,6 @@
 #include <cstddef>
 #include <type_traits>
 
-#include "api/transform_test/random_matrix.hpp"
 #include "judges/oracle.hpp"
 #include "judges/rational_matrix.hpp"
 #include "support/hex.hpp"
@@ -24,7 +23,6 @@ using support::Random;
 using support::Rational;
 using support::RationalMatrix;
 using texgen::ModelMatrix;
-using transform_cases::random_matrix;
 
 }  // namespace
 
@@ -43,7 +41,7 @@ TEST_CASE("composition goes from right to left, and knows its spaces") {
 
 TEST_CASE("a transform holds doubles unchanged and rounds each element once") {
     Random random(42);
-    const glm::dmat4 m = random_matrix(random, 1e6);
+    const glm::dmat4 m = random.matrix(1e6);
     CHECK(ModelMatrix(m).matrix() == m);
     for (int column = 0; column < 4; ++column)
         for (int row = 0; row < 4; ++row)
@@ -90,7 +88,7 @@ TEST_CASE("M v of what is made from_row_vectors is Direct3D's mul(v, M), exactly
             for (int column = 0; column < 4; ++column)
                 as_glm[column][row] = rows.m[static_cast<std::size_t>(4 * row + column)];
         REQUIRE(texgen::from_row_vectors<texgen::Eye, texgen::World>(as_glm).matrix() == view.matrix());
-        const glm::dmat4 in_double = random_matrix(random, 1e6);
+        const glm::dmat4 in_double = random.matrix(1e6);
         const auto from_double = texgen::from_row_vectors<texgen::Eye, texgen::World>(in_double);
         REQUIRE(from_double.matrix() == glm::transpose(in_double));
 

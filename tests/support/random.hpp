@@ -77,6 +77,14 @@ public:
     }
     glm::vec4 vector4(double size) { return {vector3(size), uniform_float(-size, size)}; }
 
+    // Each element by itself.
+    glm::dmat4 matrix(double size = 1.0) {
+        glm::dmat4 result;
+        for (int column = 0; column < 4; ++column)
+            for (int row = 0; row < 4; ++row) result[column][row] = uniform(-size, size);
+        return result;
+    }
+
     // A rotation about a random axis.
     glm::dmat4 rotation() {
         const glm::dvec3 a = direction();

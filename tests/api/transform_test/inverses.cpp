@@ -10,7 +10,6 @@
 #include <string>
 #include <utility>
 
-#include "api/transform_test/random_matrix.hpp"
 #include "judges/rational_matrix.hpp"
 #include "support/hex.hpp"
 #include "support/random.hpp"
@@ -24,7 +23,6 @@ using support::nan_double;
 using support::Random;
 using support::scaled_condition;
 using texgen::ModelMatrix;
-using transform_cases::random_matrix;
 
 glm::dmat4 scale(double x, double y, double z) {
     glm::dmat4 m(1.0);
@@ -107,7 +105,7 @@ TEST_CASE("exactly singular matrices are refused, 2000 of 2000") {
 TEST_CASE("a matrix one unit of one element from an exactly singular one is singular to working precision") {
     Random random(71);
     for (int i = 0; i < 2000; ++i) {
-        glm::dmat4 m = as_floats(random_matrix(random));
+        glm::dmat4 m = as_floats(random.matrix());
         const int to = random.integer(0, 3), from = (to + 1) % 4, other = (to + 2) % 4;
         for (int k = 0; k < 4; ++k) {
             // In double the sum of two floats of these sizes is exact.
@@ -215,7 +213,7 @@ TEST_CASE("conditioned matrices are inverted within 2 ulp of the largest term, f
     std::string worst_input;
     for (int i = 0; i < 300; ++i) {
         // Two rows that differ by 10^-k.
-        glm::dmat4 m = as_floats(random_matrix(random));
+        glm::dmat4 m = as_floats(random.matrix());
         const double distance = random.power_of_ten(-8.0, -2.0);
         for (int k = 0; k < 4; ++k) m[k][2] = m[k][0] + distance * m[k][2];
         if (i % 2 == 0) m = as_floats(m);
@@ -260,7 +258,7 @@ TEST_CASE("graded matrices are inverted within 2 ulp of the largest term, whatev
 TEST_CASE("an affine matrix has an affine inverse: the last row is exactly (0, 0, 0, 1)") {
     Random random(48);
     for (int i = 0; i < 500; ++i) {
-        glm::dmat4 m = random_matrix(random, random.power_of_ten(-10.0, 10.0));
+        glm::dmat4 m = random.matrix(random.power_of_ten(-10.0, 10.0));
         for (int column = 0; column < 4; ++column) m[column][3] = column == 3 ? 1.0 : 0.0;
         const auto answer = inverse(ModelMatrix(m));
         REQUIRE_MESSAGE(answer, hex(m));
@@ -287,7 +285,7 @@ TEST_CASE("where an inverse is refused its error bound is infinite, and nowhere 
     const texgen::Transform<texgen::Object, texgen::World> given(glm::dmat4(1.0));
     int refused = 0, answered = 0;
     for (int i = 0; i < 2000; ++i) {
-        glm::dmat4 m = random_matrix(random, 1.0);
+        glm::dmat4 m = random.matrix();
         for (int column = 0; column < 4; ++column) m[column] *= std::ldexp(1.0, random.integer(-1025, -960));
         if (random.integer(0, 3) == 0) m[3] = m[0];
         const ModelMatrix transform(m);

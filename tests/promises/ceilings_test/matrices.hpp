@@ -39,9 +39,7 @@ inline WorstMatrices of_matrices(MatrixFamily family, std::uint64_t seed) {
     Random random(seed);
     WorstMatrices worst;
     for (int i = 0; i < 60; ++i) {
-        glm::dmat4 m(0.0);
-        for (int column = 0; column < 4; ++column)
-            for (int row = 0; row < 4; ++row) m[column][row] = random.uniform(-1.0, 1.0);
+        glm::dmat4 m = random.matrix();
         const double distance = random.power_of_ten(-6.0, -2.0);
         if (family == MatrixFamily::near_to_singular)
             for (int k = 0; k < 4; ++k) m[k][2] = m[k][0] + distance * m[k][2];

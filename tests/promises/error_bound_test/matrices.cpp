@@ -37,25 +37,18 @@ using texgen::ObjectTexgen;
 
 namespace {
 
-glm::dmat4 any_matrix(Random& random) {
-    glm::dmat4 m(0.0);
-    for (int column = 0; column < 4; ++column)
-        for (int row = 0; row < 4; ++row) m[column][row] = random.uniform(-1.0, 1.0);
-    return m;
-}
-
 struct MatrixFamily {
     const char* name;
     glm::dmat4 (*make)(Random&);
 };
 
 const std::array matrix_families{
-    MatrixFamily{"friendly", [](Random& random) { return any_matrix(random); }},
+    MatrixFamily{"friendly", [](Random& random) { return random.matrix(); }},
     MatrixFamily{"affine, far from the origin",
                  [](Random& random) { return random.rigid(random.power_of_ten(0.0, 9.0)); }},
     MatrixFamily{"rows and columns from 1e-20 to 1e20",
                  [](Random& random) {
-                     glm::dmat4 m = any_matrix(random);
+                     glm::dmat4 m = random.matrix();
                      for (int i = 0; i < 4; ++i) {
                          m[i] *= random.power_of_ten(-20.0, 20.0);
                          const double factor = random.power_of_ten(-20.0, 20.0);
@@ -65,12 +58,12 @@ const std::array matrix_families{
                  }},
     MatrixFamily{"of a condition to 1e7",
                  [](Random& random) {
-                     glm::dmat4 m = any_matrix(random);
+                     glm::dmat4 m = random.matrix();
                      m[1] = m[0] + random.power_of_ten(-7.0, -3.0) * m[1];
                      return m;
                  }},
     MatrixFamily{"next to singular", [](Random& random) {
-                     glm::dmat4 m = any_matrix(random);
+                     glm::dmat4 m = random.matrix();
                      m[1] = m[0] + random.power_of_ten(-16.0, -9.0) * m[1];
                      return m;
                  }}};
@@ -173,7 +166,7 @@ TEST_CASE("the error bounds of stored eye planes are never below the error, in d
         Tightness tightness, of_unit;
         for (int i = 0; i < 300; ++i) {
             const ModelviewMatrix modelview(glm::dmat4(support::rounded(family.make(random))));
-            const ObjectTexgen planes(glm::dmat4(support::rounded(any_matrix(random))));
+            const ObjectTexgen planes(glm::dmat4(support::rounded(random.matrix())));
             const auto stored = eye_planes_as_stored(planes, modelview);
             if (!stored) continue;
             const std::optional<RationalMatrix> inverse = support::inverse(exactly(modelview.matrix()));

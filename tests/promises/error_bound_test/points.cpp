@@ -45,9 +45,7 @@ struct PointFamily {
 const std::array point_families{
     PointFamily{"friendly",
                 [](Random& random) {
-                    glm::dmat4 m(0.0);
-                    for (int column = 0; column < 4; ++column)
-                        for (int row = 0; row < 4; ++row) m[column][row] = random.uniform(-1.0, 1.0);
+                    glm::dmat4 m = random.matrix();
                     m[3][3] = random.uniform(4.0, 8.0);
                     return m;
                 },

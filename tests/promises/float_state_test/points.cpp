@@ -62,9 +62,7 @@ TEST_CASE("points: the sign of q is exact where its terms cancel, and errors are
         Seen seen;
         double of_generate = 0.0;
         for (int i = 0; i < 1500; ++i) {
-            glm::dmat4 matrix(0.0);
-            for (int column = 0; column < 4; ++column)
-                for (int row = 0; row < 4; ++row) matrix[column][row] = random.uniform(-1.0, 1.0);
+            glm::dmat4 matrix = random.matrix();
             const int kind = random.integer(0, 6);
             if (kind == 0 || kind == 6) matrix[3][3] = 4.0;
             if (kind == 1)  // q cancels, to its last bits or to 0: next to points with x = y and z = 0
