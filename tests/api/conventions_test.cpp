@@ -49,13 +49,6 @@ std::vector<Conventions> all_conventions() {
     return result;
 }
 
-std::string name(Conventions c) {
-    return std::string(c.depth == DepthRange::zero_to_one ? "depth 0..1" : "depth -1..1") +
-           (c.ndc_y == NdcY::up ? ", y up" : ", y down") +
-           (c.origin == TextureOrigin::top_left ? ", origin top left" : ", origin bottom left") +
-           (c.handedness == Handedness::left ? ", left-handed" : ", right-handed");
-}
-
 // A lens of any kind as the rectangle of its near plane, and whether rays spread from the eye or run parallel.
 struct LensCase {
     std::string name;
@@ -161,7 +154,7 @@ TEST_CASE("corners, centre, near and far land where they should, for every lens,
                         for (int y = -1; y <= 1; ++y) {
                             for (int x = -1; x <= 1; ++x) {
                                 CAPTURE(lens.name);
-                                CAPTURE(name(conventions));
+                                CAPTURE(support::text(conventions));
                                 CAPTURE(region.name);
                                 CAPTURE(x);
                                 CAPTURE(y);
@@ -193,7 +186,7 @@ TEST_CASE("the NDC of a projector follows its depth range and its y direction") 
     for (const LensCase& lens : all_lenses()) {
         for (const Conventions conventions : all_conventions()) {
             CAPTURE(lens.name);
-            CAPTURE(name(conventions));
+            CAPTURE(support::text(conventions));
             const auto projection = lens.make(lens, conventions);
             const glm::dvec4 top_right = projection->matrix() * eye_point(lens, conventions, 1.0, 1.0, lens.z_near);
             CHECK(top_right.x / top_right.w == doctest::Approx(1.0).epsilon(1e-14));

@@ -1,6 +1,6 @@
 #pragma once
 
-// Failing inputs in hexadecimal, so that they can be run again bit for bit.
+// Failing inputs, numbers in hexadecimal, so that they can be run again bit for bit.
 
 #include <cstdio>
 #include <string>
@@ -38,6 +38,13 @@ std::string hex(const glm::mat<C, R, T, Q>& m) {
 inline std::string hex(const texgen::TextureRegion& region) {
     const std::string sides = "region " + hex(region.min()) + " to " + hex(region.max());
     return region.depth() ? sides + ", depth " + hex(*region.depth()) : sides;
+}
+
+inline std::string text(const texgen::Conventions& c) {
+    return std::string(c.depth == texgen::DepthRange::zero_to_one ? "depth 0..1" : "depth -1..1") +
+           (c.ndc_y == texgen::NdcY::up ? ", y up" : ", y down") +
+           (c.origin == texgen::TextureOrigin::top_left ? ", origin top left" : ", origin bottom left") +
+           (c.handedness == texgen::Handedness::left ? ", left-handed" : ", right-handed");
 }
 
 }  // namespace support

@@ -243,14 +243,10 @@ inline Projector own_projector(const Meant& m) {
 inline std::string text(const Meant& m, const glm::dmat4& texgen, const Diagnosis& diagnosis) {
     std::string result = "found:";
     for (const texgen::Finding& finding : diagnosis) result += " [" + std::string(finding.what()) + "]";
-    const Conventions& c = m.conventions;
     return result + " of lens " + std::to_string(static_cast<int>(m.kind)) + " fovy " + hex(m.fovy) + " aspect " +
            hex(m.aspect) + " near " + hex(m.z_near) + " far " + hex(m.z_far) + " position " + hex(m.aim.position) +
-           " conventions " + std::to_string(static_cast<int>(c.depth.operator DepthRange())) +
-           std::to_string(static_cast<int>(c.ndc_y.operator NdcY())) +
-           std::to_string(static_cast<int>(c.origin.operator TextureOrigin())) +
-           std::to_string(static_cast<int>(c.handedness.operator Handedness())) + " mapping " +
-           std::to_string(static_cast<int>(m.depth)) + " pose " + hex(m.pose) + " texgen " + hex(texgen);
+           " of " + support::text(m.conventions) + " mapping " + std::to_string(static_cast<int>(m.depth)) + " pose " +
+           hex(m.pose) + " texgen " + hex(texgen);
 }
 
 // Numbers that people write, near the origin.

@@ -39,11 +39,9 @@ using texgen::Diagnosis;
 using texgen::Eye;
 using texgen::Handedness;
 using texgen::LensFacts;
-using texgen::NdcY;
 using texgen::Object;
 using texgen::ProjectionSetup;
 using texgen::Projector;
-using texgen::TextureOrigin;
 using texgen::TextureRegion;
 using texgen::World;
 
@@ -131,15 +129,9 @@ inline std::string text(const Diagnosis& diagnosis) {
 
 inline std::string text(const Parts& parts) {
     std::string result = "in space " + std::to_string(static_cast<int>(parts.in));
-    if (parts.projector) {
-        const Conventions& c = parts.projector->conventions;
+    if (parts.projector)
         result += " projection " + hex(parts.projector->projection.matrix()) + " view " +
-                  hex(parts.projector->view.matrix()) + " conventions " +
-                  std::to_string(static_cast<int>(c.depth.operator DepthRange())) +
-                  std::to_string(static_cast<int>(c.ndc_y.operator NdcY())) +
-                  std::to_string(static_cast<int>(c.origin.operator TextureOrigin())) +
-                  std::to_string(static_cast<int>(c.handedness.operator Handedness()));
-    }
+                  hex(parts.projector->view.matrix()) + " of " + support::text(parts.projector->conventions);
     if (parts.pose) result += " pose " + hex(*parts.pose);
     if (parts.texgen) result += " texgen " + hex(*parts.texgen);
     result += " " + hex(parts.region) + " texels " + hex(parts.texels_per_unit) + " depth " +
