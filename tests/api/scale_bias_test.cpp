@@ -12,9 +12,11 @@
 #include "judges/oracle.hpp"
 #include "support/hex.hpp"
 #include "support/random.hpp"
+#include "support/windows.hpp"
 
 namespace {
 
+using support::any_conventions;
 using support::exactly;
 using support::hex;
 using support::Random;
@@ -25,12 +27,6 @@ using texgen::DepthRange;
 using texgen::NdcY;
 using texgen::TextureOrigin;
 using texgen::TextureRegion;
-
-Conventions random_conventions(Random& random) {
-    return {random.coin() ? DepthRange::negative_one_to_one : DepthRange::zero_to_one,
-            random.coin() ? NdcY::up : NdcY::down, random.coin() ? TextureOrigin::bottom_left : TextureOrigin::top_left,
-            random.coin() ? texgen::Handedness::right : texgen::Handedness::left};
-}
 
 TextureRegion random_region(Random& random) {
     switch (random.integer(0, 2)) {
@@ -73,7 +69,7 @@ TEST_CASE("the remap without a matrix is within its stated error of the definiti
     Random random(61);
     int edges = 0, cancelling = 0;
     for (int i = 0; i < 10000; ++i) {
-        const Conventions conventions = random_conventions(random);
+        const Conventions conventions = any_conventions(random);
         const TextureRegion region = random_region(random);
         const DepthMapping mapping = random.coin() ? DepthMapping::unit : DepthMapping::ndc;
         glm::vec4 clip = random_clip(random);
@@ -113,7 +109,7 @@ TEST_CASE("the remap without a matrix is within its stated error of the definiti
 TEST_CASE("the remap without a matrix equals S times the clip coordinate") {
     Random random(62);
     for (int i = 0; i < 5000; ++i) {
-        const Conventions conventions = random_conventions(random);
+        const Conventions conventions = any_conventions(random);
         const TextureRegion region = random_region(random);
         const DepthMapping mapping = random.coin() ? DepthMapping::unit : DepthMapping::ndc;
         const glm::vec4 clip = random_clip(random);
