@@ -105,21 +105,16 @@ glm::dmat4 to_double(const RealMatrix& m) {
 
 // Whether |computed - product| <= roundings u |a| |b| ... element by element.
 bool is_product(const glm::dmat4& computed, const std::vector<glm::dmat4>& factors, int roundings) {
-    RationalMatrix product = exactly(factors[0]), magnitudes = product;
-    for (auto& row : magnitudes)
-        for (Rational& element : row) element = support::magnitude(element);
+    RationalMatrix product = exactly(factors[0]), terms = support::magnitudes(product);
     for (std::size_t i = 1; i < factors.size(); ++i) {
-        RationalMatrix factor = exactly(factors[i]);
+        const RationalMatrix factor = exactly(factors[i]);
         product = support::operator*(product, factor);
-        for (auto& row : factor)
-            for (Rational& element : row) element = support::magnitude(element);
-        magnitudes = support::operator*(magnitudes, factor);
+        terms = support::operator*(terms, support::magnitudes(factor));
     }
     const RationalMatrix sum = exactly(computed);
     for (std::size_t i = 0; i < 4; ++i)
         for (std::size_t j = 0; j < 4; ++j)
-            if (support::magnitude(sum[i][j] - product[i][j]) >
-                exactly(texgen::detail::gamma(roundings)) * magnitudes[i][j])
+            if (support::magnitude(sum[i][j] - product[i][j]) > exactly(texgen::detail::gamma(roundings)) * terms[i][j])
                 return false;
     return true;
 }

@@ -22,6 +22,12 @@ inline RationalMatrix exactly(const glm::dmat4& m) {
     return result;
 }
 
+inline RationalMatrix magnitudes(RationalMatrix m) {
+    for (auto& row : m)
+        for (Rational& element : row) element = magnitude(element);
+    return m;
+}
+
 inline RationalMatrix operator*(const RationalMatrix& a, const RationalMatrix& b) {
     RationalMatrix result;
     for (std::size_t i = 0; i < 4; ++i)

@@ -84,12 +84,6 @@ inline glm::dmat4 window_from_ndc(const texgen::Viewport& viewport, texgen::Conv
     return w;
 }
 
-inline RationalMatrix magnitudes(RationalMatrix m) {
-    for (auto& row : m)
-        for (Rational& element : row) element = magnitude(element);
-    return m;
-}
-
 using RationalVector = std::array<Rational, 4>;
 
 inline RationalVector at(const RationalMatrix& m, const glm::dvec3& v) {
