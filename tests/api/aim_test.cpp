@@ -25,6 +25,7 @@ using support::hex;
 using support::Random;
 using support::Rational;
 using support::Real;
+using support::Worst;
 using texgen::Aim;
 using texgen::look_at;
 
@@ -72,8 +73,8 @@ constexpr double one_ulp = 0x1p-52;  // of a number just above 1: the elements o
 
 TEST_CASE("look_at is within 4 ulp of the definition, orthonormal, and its translation rounds once") {
     Random random(81);
-    double rotation = 0.0, orthonormality = 0.0, translation = 0.0;
-    std::string worst_input;
+    double orthonormality = 0.0, translation = 0.0;
+    Worst rotation;
     for (int i = 0; i < 2000; ++i) {
         const double distance = random.power_of_ten(-3.0, 8.0);
         Aim aim{};
@@ -83,24 +84,21 @@ TEST_CASE("look_at is within 4 ulp of the definition, orthonormal, and its trans
         const auto view = look_at(aim);
         REQUIRE_MESSAGE(view, describe(aim));
         const double error = rotation_error(view->matrix(), aim);
-        if (error > rotation) {
-            rotation = error;
-            worst_input = describe(aim);
-        }
+        rotation.take(error, [&] { return describe(aim); });
         orthonormality = std::max(orthonormality, orthonormality_error(view->matrix()));
         translation = std::max(translation, translation_error(view->matrix(), aim.position));
     }
-    CHECK_MESSAGE(rotation <= 4.0 * one_ulp, worst_input);
+    CHECK_MESSAGE(rotation.error <= 4.0 * one_ulp, rotation.input);
     CHECK(orthonormality <= 4.0 * one_ulp);
     CHECK(translation <= 1.0);
-    MESSAGE((rotation / one_ulp), ", ", (orthonormality / one_ulp), ", ", translation, " ulp at most");
+    MESSAGE((rotation.error / one_ulp), ", ", (orthonormality / one_ulp), ", ", translation, " ulp at most");
 }
 
 TEST_CASE("up may be nearly parallel to the view: 1e-1 to 1e-7 rad lose nothing, and 1e-20 rad neither") {
     Random random(82);
     for (const double angle : {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-9, 1e-12, 1e-15, 1e-20, 1e-25}) {
-        double rotation = 0.0, orthonormality = 0.0;
-        std::string worst_input;
+        double orthonormality = 0.0;
+        Worst rotation;
         for (int i = 0; i < 200; ++i) {
             Aim aim{};
             aim.position = random.coin() ? glm::dvec3(0.0) : random.power_of_ten(0.0, 6.0) * random.direction();
@@ -118,14 +116,11 @@ TEST_CASE("up may be nearly parallel to the view: 1e-1 to 1e-7 rad lose nothing,
             const auto view = look_at(aim);
             REQUIRE_MESSAGE(view, describe(aim));
             const double error = rotation_error(view->matrix(), aim);
-            if (error > rotation) {
-                rotation = error;
-                worst_input = describe(aim);
-            }
+            rotation.take(error, [&] { return describe(aim); });
             orthonormality = std::max(orthonormality, orthonormality_error(view->matrix()));
         }
         CAPTURE(angle);
-        CHECK_MESSAGE(rotation <= 4.0 * one_ulp, worst_input);
+        CHECK_MESSAGE(rotation.error <= 4.0 * one_ulp, rotation.input);
         CHECK(orthonormality <= 4.0 * one_ulp);
     }
 }
@@ -148,8 +143,8 @@ TEST_CASE("far from the origin the direction is that of the exact difference of 
 
 TEST_CASE("up next to a difference that no doubles hold turns nothing, down to 2^-95 rad") {
     Random random(84);
-    double rotation = 0.0, orthonormality = 0.0;
-    std::string worst_input;
+    double orthonormality = 0.0;
+    Worst rotation;
     for (int i = 0; i < 1000; ++i) {
         // target - position is (a + b) direction and a little more; its components are rounded apart. Up is the
         // direction and a little more, so that the products of 2^-54 cancel but for what is next to 2^-96.
@@ -162,13 +157,10 @@ TEST_CASE("up next to a difference that no doubles hold turns nothing, down to 2
         const auto view = look_at(aim);
         REQUIRE_MESSAGE(view, describe(aim));
         const double error = rotation_error(view->matrix(), aim);
-        if (error > rotation) {
-            rotation = error;
-            worst_input = describe(aim);
-        }
+        rotation.take(error, [&] { return describe(aim); });
         orthonormality = std::max(orthonormality, orthonormality_error(view->matrix()));
     }
-    CHECK_MESSAGE(rotation <= 4.0 * one_ulp, worst_input);
+    CHECK_MESSAGE(rotation.error <= 4.0 * one_ulp, rotation.input);
     CHECK(orthonormality <= 4.0 * one_ulp);
 }
 
@@ -296,8 +288,7 @@ TEST_CASE("the position goes to the origin, the target onto the negative z axis,
 
 TEST_CASE("a mirrored view is V R, within 1 ulp or 2^-96 of its terms: at any distance, for planes of any length") {
     Random random(88);
-    double worst = 0.0;
-    std::string worst_input;
+    Worst worst;
     for (int i = 0; i < 3000; ++i) {
         const glm::dvec3 position = random.power_of_ten(-3.0, 8.0) * random.direction();
         const auto view = look_at({position, position + random.direction(), random.direction()});
@@ -311,10 +302,10 @@ TEST_CASE("a mirrored view is V R, within 1 ulp or 2^-96 of its terms: at any di
         const auto mirrored = texgen::mirrored(*view, plane);
         REQUIRE(mirrored);
         const double error = support::mirror_error(*view, plane, mirrored->matrix());
-        if (error > worst) worst = error, worst_input = hex(position) + " " + hex(normal) + " " + hex(plane.w);
+        worst.take(error, [&] { return hex(position) + " " + hex(normal) + " " + hex(plane.w); });
     }
-    CHECK_MESSAGE(worst <= 1.0, worst_input);
-    MESSAGE(worst, " ulp at most");
+    CHECK_MESSAGE(worst.error <= 1.0, worst.input);
+    MESSAGE(worst.error, " ulp at most");
 }
 
 TEST_CASE("a mirrored view sees points as the view sees their mirror images, and points of the mirror where they are") {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "judges/oracle.hpp"
 #include "support/aspects.hpp"
@@ -62,15 +61,15 @@ TEST_CASE(
 TEST_CASE(
     "a rectangle contains the picture's own about its middle, and a picture is cropped about its own to cover it") {
     Random random(332);
-    double worst_side = 0.0, worst_region = 0.0;
-    std::string worst_input;
+    double worst_region = 0.0;
+    support::Worst worst_side;
     for (int i = 0; i < 3000; ++i) {
         const auto check = [&](const auto& lens, const auto& make) {
             const double aspect = random.power_of_ten(-1.0, 1.0);
             const support::Narrowing narrowing(lens, aspect);
             const auto contained = contain(lens, aspect);
             const double error = narrowing.measured_contain_error(lens, contained);
-            if (error > worst_side) worst_side = error, worst_input = hex(aspect);
+            worst_side.take(error, [&] { return hex(aspect); });
             REQUIRE((narrowing.is_wider() ? contained.left == lens.left && contained.right == lens.right
                                           : contained.bottom == lens.bottom && contained.top == lens.top));
             REQUIRE(contained.z_near == lens.z_near);
@@ -91,9 +90,9 @@ TEST_CASE(
         check(support::random_rectangle<OrthographicLens>(random),
               [](const OrthographicLens& lens) { return orthographic(lens, texgen::vulkan).value(); });
     }
-    CHECK_MESSAGE(0x1p-53 * worst_side <= texgen::contain_error, worst_input);
+    CHECK_MESSAGE(0x1p-53 * worst_side.error <= texgen::contain_error, worst_side.input);
     CHECK(0x1p-53 * worst_region <= texgen::cover_error);
-    MESSAGE(worst_side, " and ", worst_region, " times 2^-53 of the largest side at most");
+    MESSAGE(worst_side.error, " and ", worst_region, " times 2^-53 of the largest side at most");
 }
 
 TEST_CASE("a 4:3 picture in a 16:9 light has bars at its sides, or loses its top and bottom") {

@@ -27,6 +27,7 @@ using support::nan_double;
 using support::Random;
 using support::Rational;
 using support::Real;
+using support::Worst;
 using texgen::PinholeLens;
 using texgen::PixelCentre;
 using texgen::Projector;
@@ -73,8 +74,7 @@ glm::dvec3 back_into_the_world(const glm::dmat3& rotation, const glm::dvec3& cam
 
 TEST_CASE("the texture coordinate is the pixel K [R|t] over the size, within 2 ulp of the size, for 100000 cameras") {
     Random random(311);
-    double worst = 0.0;
-    std::string worst_input;
+    Worst worst;
     int projected = 0;
     for (int i = 0; i < 100000; ++i) {
         const PinholeLens lens = random_lens(random);
@@ -105,20 +105,16 @@ TEST_CASE("the texture coordinate is the pixel K [R|t] over the size, within 2 u
         const double error = std::max(static_cast<double>(abs(Real(st.x) * Real(lens.width) - exact[0])),
                                       static_cast<double>(abs(t * Real(lens.height) - exact[1]))) /
                              ulp;
-        if (!(error <= worst)) {
-            worst = error;
-            worst_input = describe(lens);
-        }
+        worst.take(error, [&] { return describe(lens); });
     }
     CHECK(projected > 95000);
-    CHECK_MESSAGE(worst <= 2.0, worst_input);
-    MESSAGE(worst, " ulp of the size at most, of ", projected, ": ", worst_input);
+    CHECK_MESSAGE(worst.error <= 2.0, worst.input);
+    MESSAGE(worst.error, " ulp of the size at most, of ", projected, ": ", worst.input);
 }
 
 TEST_CASE("the elements of a pinhole's matrix are within 4 double ulp of exact rationals") {
     Random random(312);
-    double worst = 0.0;
-    std::string worst_input;
+    Worst worst;
     for (int i = 0; i < 5000; ++i) {
         PinholeLens lens = random_lens(random);
         // Centres a few bits from where the term cancels to 0.
@@ -140,10 +136,7 @@ TEST_CASE("the elements of a pinhole's matrix are within 4 double ulp of exact r
             1 - 2 * (exactly(lens.cx) + edge) / width, up * (2 * (exactly(lens.cy) + edge) / height - 1)};
         for (std::size_t k = 0; k < exact.size(); ++k) {
             const double error = support::ulp_error(computed[k], exact[k]);
-            if (error > worst) {
-                worst = error;
-                worst_input = describe(lens);
-            }
+            worst.take(error, [&] { return describe(lens); });
         }
         REQUIRE(m[2][3] == -1.0);
         for (const double zero : {m[0][1], m[0][2], m[0][3], m[1][2], m[1][3], m[3][0], m[3][1], m[3][3]})
@@ -154,8 +147,8 @@ TEST_CASE("the elements of a pinhole's matrix are within 4 double ulp of exact r
         REQUIRE(m[2][2] == other->matrix()[2][2]);
         REQUIRE(m[3][2] == other->matrix()[3][2]);
     }
-    CHECK_MESSAGE(worst <= 4.0, worst_input);
-    MESSAGE(worst, " ulp at most: ", worst_input);
+    CHECK_MESSAGE(worst.error <= 4.0, worst.input);
+    MESSAGE(worst.error, " ulp at most: ", worst.input);
 }
 
 TEST_CASE("a pinhole in the middle of the picture is a perspective, and its corner pixels are at the corners") {

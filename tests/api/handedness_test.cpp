@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <span>
-#include <string>
 
 #include "judges/real.hpp"
 #include "support/hex.hpp"
@@ -145,8 +144,7 @@ TEST_CASE(
     "look_at in a left-handed world is LookAtLH, and in a right-handed one LookAtRH, within 4 ulp of a rotation's 1") {
     Random random(322);
     for (const Handedness handedness : {Handedness::right, Handedness::left}) {
-        double worst = 0.0;
-        std::string worst_input;
+        support::Worst worst;
         for (int i = 0; i < 2000; ++i) {
             const Aim aim = random_aim(random);
             const auto view = look_at(aim, handedness);
@@ -161,13 +159,12 @@ TEST_CASE(
                     // it.
                     size = column < 3 ? 1.0 : glm::length(aim.position);
                     const double ulps = error / (size * 0x1p-52);
-                    if (ulps > worst)
-                        worst = ulps, worst_input = hex(aim.position) + " " + hex(aim.target) + " " + hex(aim.up);
+                    worst.take(ulps, [&] { return hex(aim.position) + " " + hex(aim.target) + " " + hex(aim.up); });
                 }
             }
         }
-        CHECK_MESSAGE(worst <= 4.0, worst_input);
-        MESSAGE(worst, " ulp at most");
+        CHECK_MESSAGE(worst.error <= 4.0, worst.input);
+        MESSAGE(worst.error, " ulp at most");
     }
 }
 

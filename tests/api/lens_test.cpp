@@ -21,6 +21,7 @@ using support::hex;
 using support::infinity_double;
 using support::Random;
 using support::Real;
+using support::Worst;
 using texgen::Conventions;
 using texgen::DepthRange;
 using texgen::NdcY;
@@ -56,8 +57,7 @@ std::string describe(const PerspectiveLens& lens) {
 
 TEST_CASE("a perspective's elements are within 4 double ulp from 0.1 to 179.99 degrees, whatever near and far") {
     Random random(71);
-    double worst = 0.0;
-    std::string worst_input;
+    Worst worst;
     int narrow = 0, wide = 0, infinite = 0, close_planes = 0, far_planes = 0;
     for (int i = 0; i < 3000; ++i) {
         // Half of the sweep is at its ends, by the logarithm of the distance to 0 or to 180 degrees.
@@ -98,10 +98,7 @@ TEST_CASE("a perspective's elements are within 4 double ulp from 0.1 to 179.99 d
         for (std::size_t k = 0; k < 4; ++k) {
             const double error = exact[k] == 0 ? (computed[k] == 0.0 ? 0.0 : infinity_double)
                                                : support::error_in_ulps(computed[k], exact[k]);
-            if (error > worst) {
-                worst = error;
-                worst_input = describe(lens);
-            }
+            worst.take(error, [&] { return describe(lens); });
         }
         REQUIRE(m[2][3] == -1.0);
         for (int column = 0; column < 4; ++column)
@@ -116,8 +113,8 @@ TEST_CASE("a perspective's elements are within 4 double ulp from 0.1 to 179.99 d
     CHECK(infinite > 500);
     CHECK(close_planes > 400);
     CHECK(far_planes > 500);
-    CHECK_MESSAGE(worst <= bound_in_ulps, worst_input);
-    MESSAGE(worst, " ulp at most: ", worst_input);
+    CHECK_MESSAGE(worst.error <= bound_in_ulps, worst.input);
+    MESSAGE(worst.error, " ulp at most: ", worst.input);
 }
 
 TEST_CASE("an angle given in degrees makes a lens that is right to the last bit of a float") {
@@ -225,8 +222,7 @@ TEST_CASE("a lens of any finite numbers has its matrix, each element within 4 ul
         return std::ldexp(random.uniform(0.5, 1.0), random.integer(-1073, 1024)) * (random.coin() ? 1.0 : -1.0);
     };
     const Real largest = std::numeric_limits<double>::max(), smallest = 0x1p-1074;
-    double worst = 0.0;
-    std::string worst_input;
+    Worst worst;
     int accepted = 0, refused = 0;
     for (int i = 0; i < 80000; ++i) {
         const double left = number(1.0), right = number(left), bottom = number(left), top = number(bottom);
@@ -302,13 +298,13 @@ TEST_CASE("a lens of any finite numbers has its matrix, each element within 4 ul
         if (!is_double) continue;
         for (std::size_t k = 0; k < 6; ++k) {
             const double error = support::error_in_ulps(projection->matrix()[place[k].x][place[k].y], exact[k]);
-            if (error > worst) worst = error, worst_input = input;
+            worst.take(error, [&] { return input; });
         }
     }
     CHECK(accepted > 5000);
     CHECK(refused > 5000);
-    CHECK_MESSAGE(worst <= bound_in_ulps, worst_input);
-    MESSAGE(worst, " ulp at most: ", worst_input);
+    CHECK_MESSAGE(worst.error <= bound_in_ulps, worst.input);
+    MESSAGE(worst.error, " ulp at most: ", worst.input);
 }
 
 TEST_CASE("y down turns the second row over and changes nothing else") {

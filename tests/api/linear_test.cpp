@@ -29,6 +29,7 @@ using support::Rational;
 using support::RationalMatrix;
 using support::Real;
 using support::RealMatrix;
+using support::Worst;
 using texgen::Aim;
 using texgen::CameraPose;
 using texgen::EyeTexgen;
@@ -215,9 +216,9 @@ TEST_CASE("far poses: T_o, T_e and the stored planes, rounded to float, stay und
     Random random(94);
     for (int exponent = 0; exponent <= 7; ++exponent) {
         const double distance = std::pow(10.0, exponent);
-        double object = 0.0, eye = 0.0, stored = 0.0;
+        double eye = 0.0, stored = 0.0;
         int lit = 0;
-        std::string worst_input;
+        Worst object;
         for (int i = 0; i < 40; ++i) {
             const Scene scene = random_scene(random, distance);
             const RealMatrix world = exact_texture_from_world(scene);
@@ -240,18 +241,17 @@ TEST_CASE("far poses: T_o, T_e and the stored planes, rounded to float, stay und
                 const auto stored_error = texel_error(planes, exact_eye, seen);
                 if (!object_error || !eye_error || !stored_error) continue;
                 ++lit;
-                if (*object_error > object) worst_input = hex(scene.model) + " point " + hex(point);
-                object = std::max(object, *object_error);
+                object.take(*object_error, [&] { return hex(scene.model) + " point " + hex(point); });
                 eye = std::max(eye, *eye_error);
                 stored = std::max(stored, *stored_error);
             }
         }
         CAPTURE(distance);
         CHECK(lit > 50);
-        CHECK_MESSAGE(object < 0.002, worst_input);
+        CHECK_MESSAGE(object.error < 0.002, object.input);
         CHECK(eye < 0.002);
         CHECK(stored < 0.002);
-        MESSAGE("at ", distance, ": T_o ", object, ", T_e ", eye, ", stored ", stored, " texel at most, ", lit,
+        MESSAGE("at ", distance, ": T_o ", object.error, ", T_e ", eye, ", stored ", stored, " texel at most, ", lit,
                 " points");
     }
 }
@@ -271,8 +271,7 @@ TEST_CASE("composed at 1e7 from the origin, the matrices in double are those of 
 TEST_CASE("stored planes are p M^-1 within 0.54 float ulp of their largest component, to a condition of 1e8") {
     Random random(96);
     int conditioned = 0;
-    double worst = 0.0;
-    std::string worst_input;
+    Worst worst;
     for (int i = 0; i < 600; ++i) {
         glm::dmat4 m = random.matrix();
         const int kind = i % 3;
@@ -302,17 +301,14 @@ TEST_CASE("stored planes are p M^-1 within 0.54 float ulp of their largest compo
                 const double error =
                     support::nearest<double>(support::magnitude(exactly(element) - exact[row][column]) *
                                              support::power_of_two(-support::ulp_exponent<float>(largest)));
-                if (error > worst) {
-                    worst = error;
-                    worst_input = hex(m) + " plane " + std::to_string(row);
-                }
+                worst.take(error, [&] { return hex(m) + " plane " + std::to_string(row); });
             }
         }
         conditioned += kind == 0;
     }
     CHECK(conditioned > 150);
-    CHECK_MESSAGE(worst <= 0.54, worst_input);
-    MESSAGE(worst, " ulp at most");
+    CHECK_MESSAGE(worst.error <= 0.54, worst.input);
+    MESSAGE(worst.error, " ulp at most");
 }
 
 TEST_CASE("an example of the specification: T(10, 20, 30) with p = (1, 2, 3, 4) stores (1, 2, 3, -136)") {

@@ -131,8 +131,7 @@ TEST_CASE("in double the reference is within its stated error of the rationals, 
     Random random(13);
     for (std::size_t f = 0; f < families.size(); ++f) {
         int in_front = 0, behind = 0;
-        double worst = 0.0;
-        std::string worst_input;
+        support::Worst worst;
         for (int i = 0; i < 1500; ++i) {
             const Triangle triangle = make_triangle(families[f], random);
             const FragmentRect pixel = pixel_near(triangle, random);
@@ -156,10 +155,7 @@ TEST_CASE("in double the reference is within its stated error of the rationals, 
                 REQUIRE_MESSAGE(within(value, exact), input);
                 const bool cancels = exact.slack > support::magnitude(exact.value) * exactly(0x1p-40);
                 const double error = cancels ? 0.0 : support::ulp_error(value, exact.value);
-                if (error > worst) {
-                    worst = error;
-                    worst_input = input;
-                }
+                worst.take(error, [&] { return input; });
             }
             const bool lit = out.s[0] >= 0.0f && out.s[0] <= 1.0f && out.t[0] >= 0.0f && out.t[0] <= 1.0f;
             if (exact_coordinate(triangle, pixel, 0).q_over_w > 0)
@@ -169,8 +165,8 @@ TEST_CASE("in double the reference is within its stated error of the rationals, 
         CHECK(in_front > 1000);
         if (families[f] == Family::crossing) CHECK(behind > 1000);
         // Where nothing cancels by more than 2^10 it is the nearest float but for near-ties.
-        CHECK_MESSAGE(worst <= 0.5 + 0x1p-16, worst_input);
-        MESSAGE(std::string(support::family_names[f]), ": ", worst, " ulp at most");
+        CHECK_MESSAGE(worst.error <= 0.5 + 0x1p-16, worst.input);
+        MESSAGE(std::string(support::family_names[f]), ": ", worst.error, " ulp at most");
     }
 }
 

@@ -40,6 +40,7 @@ using support::infinity_float;
 using support::nan_float;
 using support::Random;
 using support::relative_error;
+using support::Worst;
 using texgen::facing;
 using texgen::Facing;
 using texgen::receiver_plane;
@@ -132,8 +133,7 @@ TEST_CASE("a number that is not finite is seen edge on, has no area and no plane
 
 TEST_CASE("slide_area is within 2^-50 of itself, and there where all q are positive") {
     Random random(404);
-    double worst = 0.0;
-    std::string worst_input;
+    Worst worst;
     for (const CornerFamily family : corner_families) {
         int count = 0;
         for (int i = 0; i < 5000; ++i) {
@@ -147,13 +147,12 @@ TEST_CASE("slide_area is within 2^-50 of itself, and there where all q are posit
             if (!area) continue;
             ++count;
             const double error = relative_error(*area, exact_slide_area(corners));
-            if (error > worst) worst_input = hex(corners);
-            worst = std::max(worst, error);
+            worst.take(error, [&] { return hex(corners); });
         }
         CHECK(count > 1000);
     }
-    CHECK_MESSAGE(worst <= texgen::slide_area_error, worst_input);
-    MESSAGE((worst * 0x1p52), " times 2^-52 at most: ", worst_input);
+    CHECK_MESSAGE(worst.error <= texgen::slide_area_error, worst.input);
+    MESSAGE((worst.error * 0x1p52), " times 2^-52 at most: ", worst.input);
 }
 
 TEST_CASE("the texels of a rectangle texture under a square of the scene") {
@@ -169,8 +168,7 @@ TEST_CASE("the texels of a rectangle texture under a square of the scene") {
 
 TEST_CASE("receiver_plane has the depth of all corners' plane, each number within 2^-49 of itself") {
     Random random(405);
-    double worst = 0.0;
-    std::string worst_input;
+    Worst worst;
     for (const CornerFamily family : corner_families) {
         int refused = 0;
         for (int i = 0; i < 5000; ++i) {
@@ -183,14 +181,13 @@ TEST_CASE("receiver_plane has the depth of all corners' plane, each number withi
             const auto exact = exact_receiver_plane(corners);
             for (int k = 0; k < 3; ++k) {
                 const double error = relative_error((*plane)[k], exact[static_cast<std::size_t>(k)]);
-                if (error > worst) worst_input = hex(corners);
-                worst = std::max(worst, error);
+                worst.take(error, [&] { return hex(corners); });
             }
         }
         CHECK((refused > 500) == (family == CornerFamily::edge_on || family == CornerFamily::graded));
     }
-    CHECK_MESSAGE(worst <= texgen::receiver_plane_error, worst_input);
-    MESSAGE((worst * 0x1p52), " times 2^-52 at most: ", worst_input);
+    CHECK_MESSAGE(worst.error <= texgen::receiver_plane_error, worst.input);
+    MESSAGE((worst.error * 0x1p52), " times 2^-52 at most: ", worst.input);
 }
 
 TEST_CASE("within a texel the receiver's depth differs by no more than the plane's slopes allow") {

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <string>
 #include <vector>
 
 #include "judges/exact.hpp"
@@ -45,8 +44,7 @@ using texgen::Viewport;
 TEST_CASE(
     "window_linear is within 2^-47 (m_s + |s| m_q) / |q| of S P_p V_p (W P_c V_c)^-1, up to 1e7 from the origin") {
     Random random(421);
-    double worst = 0.0;
-    std::string worst_input;
+    support::Worst worst;
     for (const double distance : {0.0, 1.0, 1e3, 1e5, 1e7}) {
         for (int i = 0; i < 40; ++i) {
             const WindowScene scene = random_window_scene(random, distance);
@@ -56,13 +54,12 @@ TEST_CASE(
             for (int k = 0; k < 10; ++k) {
                 const glm::dvec3 fragment = random_fragment(random, scene.viewport);
                 const double share = exact.share_of_terms(*texgen, fragment);
-                if (share > worst) worst_input = hex(fragment) + " " + hex(scene.camera.view.matrix());
-                worst = std::max(worst, share);
+                worst.take(share, [&] { return hex(fragment) + " " + hex(scene.camera.view.matrix()); });
             }
         }
     }
-    CHECK_MESSAGE(worst <= texgen::window_linear_error, worst_input);
-    MESSAGE((worst * 0x1p53), " times 2^-53 at most");
+    CHECK_MESSAGE(worst.error <= texgen::window_linear_error, worst.input);
+    MESSAGE((worst.error * 0x1p53), " times 2^-53 at most");
 }
 
 TEST_CASE("what the camera sees gets by its fragment the coordinate that it has in the world, with the sign of q") {

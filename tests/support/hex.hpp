@@ -2,6 +2,7 @@
 
 // Failing inputs, numbers in hexadecimal, so that they can be run again bit for bit.
 
+#include <cmath>
 #include <cstdio>
 #include <string>
 
@@ -46,5 +47,18 @@ inline std::string text(const texgen::Conventions& c) {
            (c.origin == texgen::TextureOrigin::top_left ? ", origin top left" : ", origin bottom left") +
            (c.handedness == texgen::Handedness::left ? ", left-handed" : ", right-handed");
 }
+
+// The largest of many errors, which a NaN is as well, and the input that has it.
+struct Worst {
+    double error = 0.0;
+    std::string input;
+
+    template <class Describe>
+    void take(double other, const Describe& describe) {
+        if (other <= error) return;
+        error = std::isnan(other) ? HUGE_VAL : other;
+        input = describe();
+    }
+};
 
 }  // namespace support

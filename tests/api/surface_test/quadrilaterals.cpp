@@ -28,6 +28,7 @@ using support::Random;
 using support::Rational;
 using support::Shape;
 using support::shapes;
+using support::Worst;
 using texgen::keystone;
 using texgen::quadrilateral;
 
@@ -43,8 +44,7 @@ glm::dvec2 corner_of(const texgen::TextureRegion& region, std::size_t i) {
 
 TEST_CASE("a quadrilateral is refused exactly where it is not strictly convex, and its q are the homography's") {
     Random random(407);
-    double worst = 0.0;
-    std::string worst_input;
+    Worst worst;
     for (const Shape shape : shapes) {
         int count[2] = {};
         for (int i = 0; i < 3000; ++i) {
@@ -61,8 +61,7 @@ TEST_CASE("a quadrilateral is refused exactly where it is not strictly convex, a
             for (std::size_t k = 0; k < 4; ++k) {
                 const glm::vec4& corner = (*strq)[k];
                 const double error = support::ulp_error(corner.w, (*exact)[k]);
-                if (error > worst) worst_input = hex(corners);
-                worst = std::max(worst, error);
+                worst.take(error, [&] { return hex(corners); });
                 REQUIRE(corner.x == (k == 1 || k == 2 ? corner.w : 0.0f));
                 REQUIRE(corner.y == (k >= 2 ? corner.w : 0.0f));
                 REQUIRE(corner.z == 0.0f);
@@ -71,7 +70,7 @@ TEST_CASE("a quadrilateral is refused exactly where it is not strictly convex, a
         CAPTURE(static_cast<int>(shape));
         CHECK(std::min(count[0], count[1]) > 200);
     }
-    CHECK_MESSAGE(worst < 0.51, worst_input);
+    CHECK_MESSAGE(worst.error < 0.51, worst.input);
 }
 
 TEST_CASE(
@@ -178,8 +177,7 @@ TEST_CASE("between its corners a quadrilateral has the exact homography's coordi
 
 TEST_CASE("keystone is the exact homography, element by element within 2^-48 of its terms") {
     Random random(410);
-    double worst = 0.0;
-    std::string worst_input;
+    Worst worst;
     for (const Shape shape : shapes) {
         for (int i = 0; i < 500; ++i) {
             const Quadrilateral corners = corners_of(shape, random);
@@ -187,12 +185,11 @@ TEST_CASE("keystone is the exact homography, element by element within 2^-48 of 
             const auto matrix = keystone(corners, region);
             if (!matrix) continue;
             const double error = support::measured_keystone_error(*matrix, corners, region);
-            if (error > worst) worst_input = hex(corners);
-            worst = std::max(worst, error);
+            worst.take(error, [&] { return hex(corners); });
         }
     }
-    CHECK_MESSAGE(worst <= texgen::keystone_error, worst_input);
-    MESSAGE((worst * 0x1p52), " times 2^-52 at most: ", worst_input);
+    CHECK_MESSAGE(worst.error <= texgen::keystone_error, worst.input);
+    MESSAGE((worst.error * 0x1p52), " times 2^-52 at most: ", worst.input);
     // One area is 2^1100 times another.
     const Quadrilateral graded{{{-0x1p400, 0.0}, {0.0, 0.0}, {0.0, 0x1p-400}, {-0x1p100, 0x1p400}}};
     CHECK(support::measured_keystone_error(keystone(graded).value(), graded, texgen::whole_texture()) <=

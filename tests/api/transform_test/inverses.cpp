@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
 #include <utility>
 
 #include "judges/rational_matrix.hpp"
@@ -209,8 +208,8 @@ TEST_CASE("each axis may have its own scale, and columns may stand in any order"
 
 TEST_CASE("conditioned matrices are inverted within 2 ulp of the largest term, from 1e2 to 1e8") {
     Random random(47);
-    double worst = 0.0, hardest = 0.0;
-    std::string worst_input;
+    double hardest = 0.0;
+    support::Worst worst;
     for (int i = 0; i < 300; ++i) {
         // Two rows that differ by 10^-k.
         glm::dmat4 m = as_floats(random.matrix());
@@ -224,14 +223,11 @@ TEST_CASE("conditioned matrices are inverted within 2 ulp of the largest term, f
         hardest = std::max(hardest, condition);
         if (condition > 1e8) continue;
         const double error = worst_error(m, answer->matrix());
-        if (error > worst) {
-            worst = error;
-            worst_input = hex(m);
-        }
+        worst.take(error, [&] { return hex(m); });
     }
     CHECK(hardest > 1e8);
-    CHECK_MESSAGE(worst <= 2.0, worst_input);
-    MESSAGE(worst, " ulp of the largest term at most");
+    CHECK_MESSAGE(worst.error <= 2.0, worst.input);
+    MESSAGE(worst.error, " ulp of the largest term at most");
 }
 
 TEST_CASE("graded matrices are inverted within 2 ulp of the largest term, whatever lies between their elements") {
