@@ -59,17 +59,14 @@ Shot far_sliver(Random& random) {
 }
 
 // How many tiles of a batch the vectors leave to a set-up of their own.
-int left_by_vectors(const std::vector<Triangle>& triangles, const std::vector<FragmentRect>& rects,
-                    Tolerance tolerance) {
+int left_by_vectors(const Drawn& drawn, Tolerance tolerance) {
     TriangleBatch batch(support::everywhere(), tolerance);
-    batch.assign(triangles);
-    std::size_t fragments = 0;
-    for (const FragmentRect& rect : rects) fragments += count_of(rect);
-    Outputs out(fragments);
+    batch.assign(drawn.triangles);
+    Outputs out(drawn.fragments);
     texgen::detail::TilesJob job{};
-    texgen::detail::describe(job, batch, out.spans(), fragments);
-    job.tiles = reinterpret_cast<const int(*)[4]>(rects.data());
-    job.tile_count = rects.size();
+    texgen::detail::describe(job, batch, out.spans(), drawn.fragments);
+    job.tiles = reinterpret_cast<const int(*)[4]>(drawn.rects.data());
+    job.tile_count = drawn.rects.size();
     return std::popcount(texgen::detail::chosen<texgen::detail::BatchKernels>().divide_tiles(job, 0, 0).values);
 }
 
@@ -169,14 +166,8 @@ TEST_CASE(
 TEST_CASE("no tile of ties needs a set-up of its own") {
     Random random(10);
     for (int round = 0; round < 100; ++round) {
-        std::vector<Triangle> triangles;
-        std::vector<FragmentRect> rects;
-        for (int i = 0; i < 8; ++i) {
-            const Shot shot = ties_everywhere(random, 0.0f);
-            triangles.push_back(shot.triangle);
-            rects.push_back(shot.rect);
-        }
-        CHECK(left_by_vectors(triangles, rects, texgen::exact) == 0);
+        const Drawn drawn(8, [&] { return ties_everywhere(random, 0.0f); });
+        CHECK(left_by_vectors(drawn, texgen::exact) == 0);
     }
 }
 
@@ -185,18 +176,14 @@ TEST_CASE(
     Random random(15);
     int hard = 0, lit = 0, ties = 0;
     for (int round = 0; round < 150; ++round) {
-        std::vector<Triangle> triangles;
-        std::vector<FragmentRect> rects;
-        for (int i = 0; i < 8; ++i) {
-            const Shot shot = far_sliver(random);
-            triangles.push_back(shot.triangle);
-            rects.push_back(shot.rect);
-            hard += std::fabs(support::twice_area(shot.triangle)) < 0x1p-60 * 0x1p31 * 1e6 ? 1 : 0;
-        }
-        CHECK(left_by_vectors(triangles, rects, texgen::exact) == 0);
+        const Drawn drawn(8, [&] { return far_sliver(random); });
+        const std::vector<Triangle>& triangles = drawn.triangles;
+        const std::vector<FragmentRect>& rects = drawn.rects;
+        for (const Triangle& t : triangles) hard += std::fabs(support::twice_area(t)) < 0x1p-60 * 0x1p31 * 1e6;
+        CHECK(left_by_vectors(drawn, texgen::exact) == 0);
         TriangleBatch batch(support::everywhere());
         batch.assign(triangles);
-        Outputs of_tiles(8 * 64), of_ids(64);
+        Outputs of_tiles(drawn.fragments), of_ids(64);
         interpolate(batch, rects, of_tiles.spans());
         std::uint32_t ids[64];
         const int run = random.integer(1, 9);
@@ -239,14 +226,12 @@ TEST_CASE("few friendly tiles need a set-up of their own") {
         Random random(4);
         int doubtful = 0;
         for (int round = 0; round < 100; ++round) {
-            std::vector<Triangle> triangles;
-            std::vector<FragmentRect> rects;
-            for (int i = 0; i < 8; ++i) {
-                triangles.push_back(support::make_triangle(support::Family::friendly, random));
-                const FragmentRect pixel = support::pixel_near(triangles.back(), random);
-                rects.push_back({pixel.x, pixel.y, 8, 8});
-            }
-            doubtful += left_by_vectors(triangles, rects, tolerance);
+            const Drawn drawn(8, [&]() -> Shot {
+                const Triangle triangle = support::make_triangle(support::Family::friendly, random);
+                const FragmentRect pixel = support::pixel_near(triangle, random);
+                return {triangle, {pixel.x, pixel.y, 8, 8}};
+            });
+            doubtful += left_by_vectors(drawn, tolerance);
         }
         CHECK(doubtful < 40);  // of 800; s or t is 0 in some
     }

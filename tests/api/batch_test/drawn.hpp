@@ -212,9 +212,10 @@ struct Drawn {
     std::vector<FragmentRect> rects;
     std::size_t fragments = 0;
 
-    Drawn(Random& random, int count) {
+    Drawn(Random& random, int count) : Drawn(count, [&] { return draw(random); }) {}
+    Drawn(int count, const auto& make) {
         for (int i = 0; i < count; ++i) {
-            const Shot shot = draw(random);
+            const Shot shot = make();
             triangles.push_back(shot.triangle);
             rects.push_back(shot.rect);
             fragments += count_of(shot.rect);
