@@ -103,8 +103,7 @@ TEST_CASE("with a tolerance, rectangles and visibility buffers are within it, an
                     }
                     continue;
                 }
-                const std::int64_t x = shot.x(static_cast<std::int64_t>(n) % rect.width);
-                const std::int64_t y = shot.y(static_cast<std::int64_t>(n) / rect.width);
+                const auto [x, y] = shot.fragment(n);
                 if (!exact->has_positive_w(x, y)) continue;
                 ++judged;
                 const auto at = exact->at(x, y);

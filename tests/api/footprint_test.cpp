@@ -67,8 +67,7 @@ TEST_CASE("derivatives are the exact ones within the stated bound, for every har
             if (!written) REQUIRE(out.is_untouched());
             const std::size_t step = count_of(shot.rect) / 6 + 1;
             for (std::size_t k = static_cast<std::size_t>(random.integer(0, 2)); k < count_of(shot.rect); k += step) {
-                const std::int64_t x = shot.x(static_cast<std::int64_t>(k) % shot.rect.width);
-                const std::int64_t y = shot.y(static_cast<std::int64_t>(k) / shot.rect.width);
+                const auto [x, y] = shot.fragment(k);
                 if (!exact.has_positive_w(x, y) || (is_in_buffer && ids[k] != 0)) continue;
                 const std::string context = std::string(family.name) + " " + text(texels) + ", fragment " +
                                             std::to_string(x) + " " + std::to_string(y) + " of " + hex(shot);

@@ -257,8 +257,7 @@ TEST_CASE("the reference in double agrees within the accuracy that it states") {
             Triangle absolute = shot.triangle;
             const ExactTriangle exact(shot.triangle);
             for (std::size_t j = 0; j < fast.size(); ++j) {
-                const std::int64_t x = shot.rect.x + static_cast<std::int64_t>(j) % shot.rect.width;
-                const std::int64_t y = shot.rect.y + static_cast<std::int64_t>(j) / shot.rect.width;
+                const auto [x, y] = shot.fragment(j);
                 if (!exact.has_positive_w(x, y)) continue;
                 const std::array corners{absolute.a, absolute.b, absolute.c};
                 double size[4] = {};

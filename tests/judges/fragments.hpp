@@ -47,8 +47,7 @@ struct Seen {
 inline std::string what_is_wrong(const Shot& shot, const ExactTriangle& exact, const texgen::TextureRegion& region,
                                  texgen::Tolerance tolerance, texgen::Work work, const Outputs& out, std::size_t i,
                                  Seen& seen) {
-    const std::int64_t x = shot.rect.x + static_cast<std::int64_t>(i) % shot.rect.width;
-    const std::int64_t y = shot.rect.y + static_cast<std::int64_t>(i) / shot.rect.width;
+    const auto [x, y] = shot.fragment(i);
     if (!exact.has_positive_w(x, y)) return {};
     const Homogeneous at = exact.at(x, y);
     ++(at.q.sign() > 0 ? seen.in_front : at.q.sign() < 0 ? seen.behind : seen.on_plane);

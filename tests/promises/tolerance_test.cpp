@@ -91,8 +91,7 @@ void require_right(const Shot& shot, const texgen::TextureRegion& region, Tolera
     for (std::size_t i = 0; i < out.size(); i += std::min(step, std::max<std::size_t>(1, out.size() - 1 - i))) {
         const std::string wrong = what_is_wrong(shot, exact, region, tolerance, work, out, i, tally.seen);
         REQUIRE_MESSAGE(wrong.empty(), wrong, " with ", context());
-        const std::int64_t x = shot.rect.x + static_cast<std::int64_t>(i) % shot.rect.width;
-        const std::int64_t y = shot.rect.y + static_cast<std::int64_t>(i) / shot.rect.width;
+        const auto [x, y] = shot.fragment(i);
         if (work == Work::nothing || !exact.has_positive_w(x, y)) continue;
         const support::Homogeneous at = exact.at(x, y);
         if (at.q.sign() <= 0) continue;

@@ -22,6 +22,15 @@ struct Shot {
     // The fragment at a column and a row of the rectangle, which may reach beyond the range of int.
     std::int64_t x(std::int64_t column) const { return rect.x + column; }
     std::int64_t y(std::int64_t row) const { return rect.y + row; }
+
+    // The i-th fragment, as outputs have them.
+    struct Fragment {
+        std::int64_t x, y;
+    };
+    Fragment fragment(std::size_t i) const {
+        const auto at = static_cast<std::int64_t>(i);
+        return {rect.x + at % rect.width, rect.y + at / rect.width};
+    }
 };
 
 inline std::string text(const texgen::FragmentRect& rect) {

@@ -79,9 +79,7 @@ TEST_CASE("with exact, a visibility buffer has the bits that each fragment has a
         interpolate(batch, ids, rect, out.spans());
         CHECK(out.pads_are_intact());
         for (std::size_t i = 0; i < ids.size(); ++i) {
-            const Shot shot{{}, rect};
-            const std::int64_t x = shot.x(static_cast<std::int64_t>(i) % rect.width);
-            const std::int64_t y = shot.y(static_cast<std::int64_t>(i) / rect.width);
+            const auto [x, y] = Shot{{}, rect}.fragment(i);
             // A pixel that no rectangle begins at is the last of one that ends there.
             const auto before = [](std::int64_t at) {
                 return static_cast<int>(std::max<std::int64_t>(at - 0x7fffffff, 0));

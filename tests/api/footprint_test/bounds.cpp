@@ -66,8 +66,7 @@ TEST_CASE("a tolerance is kept in units a pixel, and some of it is used") {
             footprint(strict, shot.rect, of_exact.spans());
             const glm::dvec2 bound = setup.error_bound(shot.rect);
             for (std::size_t k = 0; k < count_of(shot.rect); k += 1 + count_of(shot.rect) / 4) {
-                const std::int64_t x = shot.x(static_cast<std::int64_t>(k) % shot.rect.width);
-                const std::int64_t y = shot.y(static_cast<std::int64_t>(k) / shot.rect.width);
+                const auto [x, y] = shot.fragment(k);
                 if (!exact.has_positive_w(x, y) || exact.at(x, y).q.sign() <= 0) continue;
                 const ExactFootprint truth(exact, x, y);
                 for (std::size_t c = 0; c < 2; ++c) {
@@ -107,8 +106,7 @@ TEST_CASE("a tolerance of a few units of the derivatives is kept, where floats j
         ++(differs ? in_float : in_double);
         const glm::dvec2 bound = setup.error_bound(shot.rect);
         for (std::size_t k = 0; k < count_of(shot.rect); k += 5) {
-            const std::int64_t x = shot.x(static_cast<std::int64_t>(k) % shot.rect.width);
-            const std::int64_t y = shot.y(static_cast<std::int64_t>(k) / shot.rect.width);
+            const auto [x, y] = shot.fragment(k);
             if (!exact.has_positive_w(x, y) || exact.at(x, y).q.sign() <= 0) continue;
             const ExactFootprint truth(exact, x, y);
             for (std::size_t c = 0; c < 2; ++c) {

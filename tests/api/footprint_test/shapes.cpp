@@ -63,8 +63,7 @@ TEST_CASE("level, anisotropy and major axis are those of the exact Jacobian") {
         else if (!footprint(setup, shot.rect, out.spans()))
             continue;
         for (std::size_t k = 0; k < count_of(shot.rect); k += 1 + count_of(shot.rect) / 5) {
-            const std::int64_t x = shot.x(static_cast<std::int64_t>(k) % shot.rect.width);
-            const std::int64_t y = shot.y(static_cast<std::int64_t>(k) / shot.rect.width);
+            const auto [x, y] = shot.fragment(k);
             if (is_in_buffer && ids[k] != 0) continue;
             if (!exact.has_positive_w(x, y) || exact.at(x, y).q.sign() <= 0) continue;
             if (distance_from_zero(triangle, static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5) < 1e-3)

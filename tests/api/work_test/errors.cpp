@@ -40,8 +40,7 @@ namespace {
 double largest_error(const Shot& shot, const ExactTriangle& exact, const Outputs& out, std::size_t coordinate) {
     double largest = 0.0;
     for (std::size_t i = 0; i < out.size(); ++i) {
-        const std::int64_t x = shot.x(static_cast<int>(i) % shot.rect.width);
-        const std::int64_t y = shot.y(static_cast<int>(i) / shot.rect.width);
+        const auto [x, y] = shot.fragment(i);
         if (!exact.has_positive_w(x, y)) continue;
         const Homogeneous at = exact.at(x, y);
         if (at.q.sign() > 0)

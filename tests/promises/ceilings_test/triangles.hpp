@@ -38,8 +38,7 @@ inline Worst of_triangles(const support::HardFamily& family, std::uint64_t seed)
         const glm::dvec2 bound = loose.error_bound(shot.rect);
         const support::ExactTriangle judge(shot.triangle);
         for (std::size_t f = 0; f < exact.size(); ++f) {
-            const std::int64_t x = shot.x(static_cast<std::int64_t>(f) % shot.rect.width);
-            const std::int64_t y = shot.y(static_cast<std::int64_t>(f) / shot.rect.width);
+            const auto [x, y] = shot.fragment(f);
             if (!judge.has_positive_w(x, y)) continue;
             const Homogeneous at = judge.at(x, y);
             take(worst, at, exact, within, tolerance, f);
@@ -72,8 +71,7 @@ inline double of_footprints(const support::HardFamily& family, std::uint64_t see
         const glm::dvec2 bound = setup.error_bound(shot.rect);
         const support::ExactTriangle judge(shot.triangle);
         for (std::size_t f = 0; f < out.size() && written; f += 7) {
-            const std::int64_t x = shot.x(static_cast<std::int64_t>(f) % shot.rect.width);
-            const std::int64_t y = shot.y(static_cast<std::int64_t>(f) / shot.rect.width);
+            const auto [x, y] = shot.fragment(f);
             const Homogeneous at = judge.at(x, y);
             if (!judge.has_positive_w(x, y) || at.q.sign() <= 0) continue;
             for (std::size_t k = 0; k < 4; ++k) {

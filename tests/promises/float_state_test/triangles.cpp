@@ -51,8 +51,7 @@ TEST_CASE("fragments of triangles: the sign of q is exact, and errors are within
                 if (!setup) continue;
                 const support::ExactTriangle exact(shot.triangle);
                 for (std::size_t k = 0; k < out.size(); ++k) {
-                    const std::int64_t x = shot.x(static_cast<std::int64_t>(k) % shot.rect.width);
-                    const std::int64_t y = shot.y(static_cast<std::int64_t>(k) / shot.rect.width);
+                    const auto [x, y] = shot.fragment(k);
                     if (!exact.has_positive_w(x, y)) continue;
                     const Homogeneous at = exact.at(x, y);
                     std::string wrong;
