@@ -75,8 +75,7 @@ private:
     }
 
     // A function that grows along a row by less than a share of its margin is taken for one that grows by that share,
-    // which moves its zero only within the margin.
-    // One that is above its margin in the whole tile bounds nothing.
+    // which moves its zero only within the margin. One that is above its margin in the whole tile bounds nothing.
     TEXGEN_APART void add(const Ramp& value, double margin) noexcept {
         const double least = value.base + smaller(value.dx * tile_.width, 0.0) + smaller(value.dy * tile_.height, 0.0);
         if (least > margin && least < infinity) return;
