@@ -15,7 +15,6 @@
 
 namespace {
 
-using support::hex;
 using support::infinity_double;
 using support::nan_double;
 using support::Random;
@@ -69,7 +68,7 @@ TEST_CASE(
             const support::Narrowing narrowing(lens, aspect);
             const auto contained = contain(lens, aspect);
             const double error = narrowing.measured_contain_error(lens, contained);
-            worst_side.take(error, [&] { return hex(aspect); });
+            worst_side.take(error, [&] { return support::hex(aspect); });
             REQUIRE((narrowing.is_wider() ? contained.left == lens.left && contained.right == lens.right
                                           : contained.bottom == lens.bottom && contained.top == lens.top));
             REQUIRE(contained.z_near == lens.z_near);

@@ -22,11 +22,9 @@
 
 namespace {
 
-using support::count_of;
 using support::FootprintOutputs;
 using support::Random;
 using support::Real;
-using support::Shot;
 using texgen::FragmentRect;
 using texgen::Triangle;
 using texgen::TriangleBatch;
@@ -158,10 +156,10 @@ TEST_CASE("few fragments of a visibility buffer are left to set-ups of their foo
     for (const support::HardFamily& family : support::hard_families) {
         int left = 0, all = 0;
         for (int round = 0; round < 40; ++round) {
-            const Shot shot = family.make(random);
+            const support::Shot shot = family.make(random);
             const FragmentRect rect{shot.rect.x, shot.rect.y, std::min(shot.rect.width, 60),
                                     std::min(shot.rect.height, 8)};
-            std::vector<std::uint32_t> ids(count_of(rect));
+            std::vector<std::uint32_t> ids(support::count_of(rect));
             for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = static_cast<std::uint32_t>(i / 3 % 2);
             const Triangle& t = shot.triangle;
             left += left_by_lanes({t, {t.b, t.c, t.a}}, ids, rect);

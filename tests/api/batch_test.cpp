@@ -27,7 +27,6 @@
 
 namespace batch_cases {
 
-using texgen::no_triangle;
 using texgen::TriangleBatch;
 
 TEST_CASE("with exact, rectangles of a batch have the bits that each has alone, whatever is asked for") {
@@ -213,7 +212,7 @@ TEST_CASE("a batch that was moved from has no triangles, and takes new ones; a c
     std::vector<Triangle> triangles(20);
     for (Triangle& triangle : triangles) triangle = support::make_triangle(support::Family::friendly, random);
     const auto values_of = [](const TriangleBatch& batch) {
-        const std::vector<std::uint32_t> ids{0, 3, 3, 7, no_triangle, 19};
+        const std::vector<std::uint32_t> ids{0, 3, 3, 7, texgen::no_triangle, 19};
         std::vector<float> s(ids.size(), -7.0f);
         texgen::interpolate(batch, ids, {100, 100, 6, 1}, {.s = s});
         return s;

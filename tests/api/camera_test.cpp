@@ -30,7 +30,6 @@ using support::Real;
 using support::Worst;
 using texgen::PinholeLens;
 using texgen::PixelCentre;
-using texgen::Projector;
 
 PinholeLens random_lens(Random& random) {
     const double width = random.integer(320, 8192), height = random.integer(240, 8192);
@@ -91,7 +90,7 @@ TEST_CASE("the texture coordinate is the pixel K [R|t] over the size, within 2 u
         const auto projection = pinhole(lens, conventions);
         const auto view = texgen::view_from_opencv(rotation, translation);
         REQUIRE_MESSAGE((projection && view), describe(lens));
-        const auto texgen = texture_from_world(Projector{*projection, *view, conventions});
+        const auto texgen = texture_from_world(texgen::Projector{*projection, *view, conventions});
         glm::vec2 st;
         project(texgen, texgen::world_space(std::span(&point, 1)), std::span(&st, 1));
 

@@ -21,10 +21,7 @@
 
 namespace clip_slide_cases {
 
-using support::Bits;
 using support::bits;
-using support::infinity_float;
-using support::nan_float;
 
 namespace {
 
@@ -50,8 +47,8 @@ TEST_CASE("a polygon inside the slide keeps every bit and its order, also where 
             polygon.push_back(v);
         }
         polygon[0].position.x = -0.0f;
-        polygon[1].position.y = infinity_float;
-        if (!region.depth()) polygon[2].strq.z = nan_float;
+        polygon[1].position.y = support::infinity_float;
+        if (!region.depth()) polygon[2].strq.z = support::nan_float;
         REQUIRE_MESSAGE(bits(clipped(polygon, region)) == bits(polygon), hex_of(polygon, region));
     }
     CHECK(touching > 100);
@@ -136,7 +133,7 @@ TEST_CASE("what comes out is inside within the stated error, and what was inside
         REQUIRE_MESSAGE(out.size() <= polygon.size() + (region.depth() ? 7 : 5), hex_of(polygon, region));
         if (polygon.size() == 3) ++counts[out.size()];
         require_inside(out, polygon, region);
-        const std::vector<Bits> left = bits(out);
+        const std::vector<support::Bits> left = bits(out);
         for (const ClipVertex& v : polygon) {
             behind += v.strq.w < 0.0f;
             at_projector += v.strq.x == 0.0f && v.strq.y == 0.0f && v.strq.w == 0.0f;

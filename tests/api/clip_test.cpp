@@ -26,7 +26,6 @@ namespace clip_cases {
 using support::Bits;
 using support::bits;
 using support::hex_of;
-using support::infinity_float;
 using support::Random;
 using texgen::ClipVertex;
 
@@ -72,7 +71,7 @@ TEST_CASE("a polygon in front of the near plane keeps every bit, and its order")
                 if (distance(v.position, plane) >= 0 && v.position.w > 0.0f) polygon.push_back(v);
             }
             polygon[0].strq.x = -0.0f;
-            polygon[1].strq.y = infinity_float;
+            polygon[1].strq.y = support::infinity_float;
             REQUIRE_MESSAGE(bits(clipped(polygon, plane)) == bits(polygon), hex_of(polygon));
         }
         // In the plane itself nothing is behind.

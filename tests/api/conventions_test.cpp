@@ -25,7 +25,6 @@ namespace {
 using support::hex;
 using support::infinity_double;
 using support::nan_double;
-using texgen::Aim;
 using texgen::Conventions;
 using texgen::DepthMapping;
 using texgen::DepthRange;
@@ -34,8 +33,6 @@ using texgen::Handedness;
 using texgen::NdcY;
 using texgen::OrthographicLens;
 using texgen::PerspectiveLens;
-using texgen::Projector;
-using texgen::ProjectorProjection;
 using texgen::TextureOrigin;
 using texgen::TextureRegion;
 
@@ -54,7 +51,7 @@ struct LensCase {
     std::string name;
     double left, right, bottom, top, z_near, z_far;
     bool spreads, reversed;
-    std::optional<ProjectorProjection> (*make)(const LensCase&, Conventions);
+    std::optional<texgen::ProjectorProjection> (*make)(const LensCase&, Conventions);
 };
 
 std::vector<LensCase> all_lenses() {
@@ -296,9 +293,9 @@ TEST_CASE("a lens that is no lens gives nothing") {
 
 TEST_CASE("a projector is empty where its lens or its aim is, and P_p V_p otherwise") {
     const PerspectiveLens lens{.fovy = texgen::degrees(30.0), .aspect = 1.0, .z_near = 0.2, .z_far = 1000.0};
-    const Aim aim{{2, 5, 5}, {-2, -4, 0}, {0, 1, 0}}, nowhere{{2, 5, 5}, {2, 5, 5}, {0, 1, 0}};
+    const texgen::Aim aim{{2, 5, 5}, {-2, -4, 0}, {0, 1, 0}}, nowhere{{2, 5, 5}, {2, 5, 5}, {0, 1, 0}};
     const PerspectiveLens no_lens{.fovy = texgen::degrees(0.0), .aspect = 1.0, .z_near = 0.2, .z_far = 1000.0};
-    const std::optional<Projector> projector = make_projector(lens, aim, texgen::vulkan);
+    const std::optional<texgen::Projector> projector = make_projector(lens, aim, texgen::vulkan);
     REQUIRE(projector);
     CHECK(projector->conventions == texgen::vulkan);
     CHECK(projector->matrix().matrix() == perspective(lens, texgen::vulkan)->matrix() * look_at(aim)->matrix());

@@ -30,7 +30,6 @@ namespace coverage_cases {
 
 using support::nan_float;
 using texgen::coverage;
-using texgen::LitVolume;
 using texgen::Sphere;
 using texgen::WorldTexgen;
 
@@ -139,7 +138,7 @@ TEST_CASE("no box of a hostile family is outside or inside that is not, and the 
             boxes.push_back(hostile_box(slide, families.back(), random));
         }
         std::vector<Coverage> answers(boxes.size(), Coverage::inside);
-        const LitVolume volume(transform, slide.region);
+        const texgen::LitVolume volume(transform, slide.region);
         volume.coverage(boxes, answers);
         for (std::size_t i = 0; i < boxes.size(); ++i) {
             Counts& of_family = counts[static_cast<std::size_t>(families[i])];

@@ -28,8 +28,6 @@ using support::infinity_float;
 using support::modes;
 using support::nan_float;
 using support::rounded;
-using support::scalings;
-using support::slide_projector;
 using texgen::FixedFunctionVertex;
 
 namespace {
@@ -184,7 +182,7 @@ TEST_CASE("the texture matrix multiplies generated and given coordinates alike")
 
 TEST_CASE("SGI's recipe, projector in the texture matrix and identity eye planes, equals ours with r left in NDC") {
     Random random(12);
-    const texgen::Projector projector = slide_projector();
+    const texgen::Projector projector = support::slide_projector();
     glm::dmat4 half(1.0);
     half[0][0] = half[1][1] = half[3][0] = half[3][1] = 0.5;
     const glm::mat4 texture_matrix = rounded(half * projector.projection.matrix() * projector.view.matrix());
@@ -256,7 +254,7 @@ TEST_CASE("a NaN or an infinity spoils the coordinates that are made from it, an
 TEST_CASE("a batch has the bits of its vertices one by one, and a bad vertex spoils itself only") {
     Random random(13);
     for (const TexGenMode mode : modes) {
-        for (const NormalScaling scaling : scalings) {
+        for (const NormalScaling scaling : support::scalings) {
             const TexGenUnit unit = unit_with(mode, scaling);
             const glm::mat4 modelview = rounded(random.rigid(10.0));
             std::vector<FixedFunctionVertex> vertices;

@@ -29,8 +29,6 @@
 
 namespace footprint_cases {
 
-using support::everywhere;
-using support::infinity_double;
 using support::same_bits;
 using support::setup_of;
 using texgen::FootprintSetup;
@@ -186,7 +184,7 @@ TEST_CASE("where the derivatives of a row nearly vanish at one fragment, it is a
     const TexelsPerUnit texels{256.0, 128.0};
     const ExactTriangle exact(triangle);
     for (const Tolerance tolerance : {texgen::exact, Tolerance{1e-3}}) {
-        const FootprintSetup setup(setup_of(triangle, everywhere(), tolerance), texels);
+        const FootprintSetup setup(setup_of(triangle, support::everywhere(), tolerance), texels);
         FootprintOutputs out(shot.rect);
         REQUIRE(footprint(setup, shot.rect, out.spans()));
         for (std::size_t k = 0; k < 100; ++k) {
@@ -196,7 +194,7 @@ TEST_CASE("where the derivatives of a row nearly vanish at one fragment, it is a
             REQUIRE(std::fabs(out.at(level, k) - std::log2(static_cast<double>(shape.rho))) <= 0x1p-16 * 2.0);
             const double length = std::hypot(out.at(major_s, k) * texels.s, out.at(major_t, k) * texels.t);
             REQUIRE(std::fabs(length / static_cast<double>(shape.largest) - 1.0) <= 0x1p-16);
-            REQUIRE(out.at(anisotropy, k) == infinity_double);
+            REQUIRE(out.at(anisotropy, k) == support::infinity_double);
         }
     }
 }

@@ -26,12 +26,11 @@ using texgen::Conventions;
 using texgen::DepthRange;
 using texgen::NdcY;
 using texgen::PerspectiveLens;
-using texgen::TextureOrigin;
 
 constexpr double bound_in_ulps = 4.0;  // as perspective() states it
 
 Conventions with(DepthRange depth, NdcY y = NdcY::up) {
-    return {depth, y, TextureOrigin::bottom_left, texgen::Handedness::right};
+    return {depth, y, texgen::TextureOrigin::bottom_left, texgen::Handedness::right};
 }
 
 struct Depth {

@@ -21,8 +21,6 @@ namespace judged {
 
 using support::coordinates;
 using support::hex;
-using support::modes;
-using support::slide_projector;
 
 namespace {
 
@@ -50,7 +48,7 @@ TEST_CASE("a mode is refused exactly where OpenGL says INVALID_ENUM, and neither
     const gl::Context& g = opengl();
     int refused = 0;
     for (const Coordinate coordinate : coordinates) {
-        for (const TexGenMode mode : modes) {
+        for (const TexGenMode mode : support::modes) {
             for (const TexGenMode before : {TexGenMode::object_linear, TexGenMode::eye_linear}) {
                 g.reset();
                 TexGenUnit unit;
@@ -114,7 +112,7 @@ TEST_CASE("a translation and a power of two are stored by both to the bit") {
 TEST_CASE("OpenGL stores Everitt's (4) for the rows of S P_p V_p under V_e, and for those of S P_p under V_e V_p^-1") {
     const gl::Context& g = opengl();
     Random random(102);
-    const texgen::Projector projector = slide_projector();
+    const texgen::Projector projector = support::slide_projector();
     const auto world_planes = texgen::planes(texgen::texture_from_world(projector));
     const auto lens_planes = texgen::planes(texgen::scale_bias(texgen::opengl) * projector.projection);
     for (int i = 0; i < 500; ++i) {

@@ -25,7 +25,6 @@ namespace {
 
 using support::broken_preconditions;
 using texgen::Coverage;
-using texgen::exact;
 using texgen::whole_texture;
 
 // An array of which one element is missing or too many, between others that nobody may touch.
@@ -132,7 +131,7 @@ TEST_CASE("outputs of another length than the rectangle are asserted, and stay a
     constexpr float untouched = -7.0f;
     for (const texgen::FragmentRect rect : {texgen::FragmentRect{3, 4, 8, 8}, texgen::FragmentRect{3, 4, 40, 30}}) {
         const auto count = static_cast<std::size_t>(rect.width) * static_cast<std::size_t>(rect.height);
-        for (const texgen::Tolerance tolerance : {exact, texgen::Tolerance{1e-3}}) {
+        for (const texgen::Tolerance tolerance : {texgen::exact, texgen::Tolerance{1e-3}}) {
             const auto triangle = texgen::TriangleSetup::of(some_triangle(), whole_texture(), tolerance);
             REQUIRE(triangle.has_value());
             const texgen::FootprintSetup footprint(*triangle, {256, 256});

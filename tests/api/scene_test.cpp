@@ -20,7 +20,6 @@
 namespace scene_cases {
 
 using support::broken_preconditions;
-using texgen::SceneChanges;
 using texgen::SceneWork;
 
 TEST_CASE("over many frames of moves, arrivals and departures the pairs are those of all pairs asked one by one") {
@@ -34,7 +33,7 @@ TEST_CASE("over many frames of moves, arrivals and departures the pairs are thos
                                     static_cast<std::size_t>(random.integer(0, 12)), size, &hostile);
         Scene scene;
         for (int frame = 0; frame < 25; ++frame) {
-            SceneChanges changes;
+            texgen::SceneChanges changes;
             Indices objects, projectors;
             const auto some_of = [&](std::size_t count, Indices& out) {
                 for (int n = random.integer(0, 3) == 0 ? 0 : random.integer(0, 9); n > 0 && count > 0; --n)

@@ -30,14 +30,10 @@ using support::corner_families;
 using support::CornerFamily;
 using support::Corners;
 using support::corners_of;
-using support::Dyadic;
 using support::exact_determinant;
-using support::exact_receiver_plane;
-using support::exact_slide_area;
 using support::facing_of_sign;
 using support::hex;
 using support::infinity_float;
-using support::nan_float;
 using support::Random;
 using support::relative_error;
 using support::Worst;
@@ -107,7 +103,7 @@ TEST_CASE(
 
 TEST_CASE("a number that is not finite is seen edge on, has no area and no plane; r is looked at by the plane alone") {
     Random random(403);
-    for (const float bad : {nan_float, infinity_float, -infinity_float}) {
+    for (const float bad : {support::nan_float, infinity_float, -infinity_float}) {
         for (int k = 0; k < 12; ++k) {
             Corners corners = corners_of(CornerFamily::ordinary, random);
             corners[static_cast<std::size_t>(k / 4)][k % 4] = bad;
@@ -146,7 +142,7 @@ TEST_CASE("slide_area is within 2^-50 of itself, and there where all q are posit
             REQUIRE(area.has_value() == in_front);
             if (!area) continue;
             ++count;
-            const double error = relative_error(*area, exact_slide_area(corners));
+            const double error = relative_error(*area, support::exact_slide_area(corners));
             worst.take(error, [&] { return hex(corners); });
         }
         CHECK(count > 1000);
@@ -174,11 +170,11 @@ TEST_CASE("receiver_plane has the depth of all corners' plane, each number withi
         for (int i = 0; i < 5000; ++i) {
             const Corners corners = corners_of(family, random);
             const auto plane = receiver_plane(corners[0], corners[1], corners[2]);
-            const Dyadic divisor = exact_determinant(corners);
+            const support::Dyadic divisor = exact_determinant(corners);
             REQUIRE_MESSAGE(plane.has_value() == (divisor.sign() != 0), hex(corners));
             refused += !plane;
             if (!plane) continue;
-            const auto exact = exact_receiver_plane(corners);
+            const auto exact = support::exact_receiver_plane(corners);
             for (int k = 0; k < 3; ++k) {
                 const double error = relative_error((*plane)[k], exact[static_cast<std::size_t>(k)]);
                 worst.take(error, [&] { return hex(corners); });

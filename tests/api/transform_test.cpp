@@ -18,10 +18,8 @@
 namespace {
 
 using support::exactly;
-using support::nan_double;
 using support::Random;
 using support::Rational;
-using support::RationalMatrix;
 using texgen::ModelMatrix;
 
 }  // namespace
@@ -77,7 +75,7 @@ TEST_CASE("M v of what is made from_row_vectors is Direct3D's mul(v, M), exactly
 
         std::array<Rational, 4> v, product;
         for (Rational& component : v) component = exactly(random.uniform(-10.0, 10.0));
-        const RationalMatrix matrix = exactly(view.matrix());
+        const support::RationalMatrix matrix = exactly(view.matrix());
         for (std::size_t row = 0; row < 4; ++row)
             for (std::size_t column = 0; column < 4; ++column) product[row] += matrix[row][column] * v[column];
         REQUIRE(product == direct3d_math::mul(v, rows));
@@ -136,7 +134,7 @@ TEST_CASE("what is not rigid is some way from it: a shear, a scale, a mirror's l
             glm::dmat4 m(1.0);
             m[column][row] += 0.5;  // on the diagonal a scale, beside it a shear
             CHECK(texgen::detail::distance_from_rigid(m) >= 0.5);
-            m[column][row] = nan_double;
+            m[column][row] = support::nan_double;
             CHECK(!(texgen::detail::distance_from_rigid(m) <= 1e-3));
         }
     }

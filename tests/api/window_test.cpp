@@ -24,17 +24,13 @@
 namespace {
 
 using support::at;
-using support::exactly;
 using support::hex;
 using support::operator*;
 using support::Random;
 using support::random_fragment;
 using support::random_window_scene;
-using support::RationalMatrix;
 using support::RationalVector;
-using support::window_from_ndc;
 using support::WindowScene;
-using texgen::Conventions;
 using texgen::DepthBuffer;
 using texgen::Projector;
 using texgen::Viewport;
@@ -70,7 +66,7 @@ TEST_CASE("what the camera sees gets by its fragment the coordinate that it has 
         const glm::dvec3 point = scene.camera_aim.target + 9.0 * random.direction();
         const glm::dvec4 clip = scene.camera.matrix().matrix() * glm::dvec4(point, 1.0);
         if (!(clip.w > 0.01)) continue;
-        const glm::dvec4 window = window_from_ndc(scene.viewport, scene.camera.conventions) * (clip / clip.w);
+        const glm::dvec4 window = support::window_from_ndc(scene.viewport, scene.camera.conventions) * (clip / clip.w);
         const auto texgen = window_linear(scene.projector, scene.camera, scene.viewport, scene.region, scene.depth);
         REQUIRE(texgen);
         const glm::dvec4 by_window = clip.w * (texgen->matrix() * window);
@@ -92,7 +88,7 @@ TEST_CASE("rows from the top down: Direct3D and Metal by a viewport of negative 
     // The point (-4, 3, 0) is in the first eighth from the left, and from the top in the second.
     const glm::dvec3 row_from_top(80.0, 160.0, 0.0), row_from_bottom(80.0, 640.0, 0.0);
     struct Case {
-        Conventions conventions;
+        texgen::Conventions conventions;
         Viewport viewport;
         glm::dvec3 fragment;
     };
@@ -159,7 +155,7 @@ TEST_CASE("depth_error_bound holds for every depth that is stored as the fragmen
         const double z = fragment.z, half_ulp = 0.5 * (static_cast<double>(support::neighbour(fragment.z, 1)) - z);
         const double step = buffer == DepthBuffer::unorm16 ? 1.0 / 65535.0 : 1.0 / 16777215.0;
         const double rounding = half_ulp + (buffer == DepthBuffer::float32 ? 0.0 : 0.6 * step);
-        const RationalMatrix matrix = exactly(texgen.matrix());
+        const support::RationalMatrix matrix = support::exactly(texgen.matrix());
         const RationalVector here = at(matrix, fragment);
         for (int c = 0; c < 2; ++c) {
             double worst = 0.0;

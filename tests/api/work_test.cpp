@@ -32,13 +32,11 @@ using support::hex;
 using support::nan_double;
 using support::Outputs;
 using support::Random;
-using support::region_at;
 using support::setup_of;
 using texgen::atlas_tile;
 using texgen::FragmentRect;
 using texgen::Tolerance;
 using texgen::TriangleSetup;
-using texgen::WindowVertex;
 using texgen::Work;
 
 namespace {
@@ -48,7 +46,7 @@ namespace {
 Shot ramp(glm::vec2 first, glm::vec2 step, int width, int height) {
     const auto vertex = [&](float column, float row) {
         const float s = first.x + column * step.x;
-        return WindowVertex{{column + 0.5f, row + 0.5f}, 1.0f, {s, first.y + row * step.y, s, 1.0f}};
+        return texgen::WindowVertex{{column + 0.5f, row + 0.5f}, 1.0f, {s, first.y + row * step.y, s, 1.0f}};
     };
     return {{vertex(0.0f, 0.0f), vertex(1024.0f, 0.0f), vertex(0.0f, 1024.0f)}, {0, 0, width, height}};
 }
@@ -85,7 +83,7 @@ TEST_CASE("nothing is done only where nothing is lit, and no test is left out wh
             const Shot shot = family.make(random);
             const ExactTriangle exact(shot.triangle);
             const TextureRegion region =
-                random.coin() ? region_at(shot, exact, random) : region_around(shot, exact, random);
+                random.coin() ? support::region_at(shot, exact, random) : region_around(shot, exact, random);
             const Tolerance tolerance{random.integer(0, 2) != 0 ? 0.0 : random.power_of_ten(-8.0, 0.0)};
             const TriangleSetup setup = setup_of(shot.triangle, region, tolerance);
             const Work work = setup.work(shot.rect);

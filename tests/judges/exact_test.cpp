@@ -13,7 +13,6 @@
 #include "texgen/reference.hpp"
 
 using support::Dyadic;
-using support::Quotient;
 using support::Random;
 using support::Rational;
 
@@ -41,7 +40,7 @@ TEST_CASE("the nearest float is the rational judge's, and its neighbours are not
         if (kind == 0) d = random.uniform(1.0, 2.0);
         if (kind == 1) n = support::detail::middle(random.any_float(), true);  // a tie
         if (!std::isfinite(n)) continue;
-        const Quotient u{n, d};
+        const support::Quotient u{n, d};
         const float nearest = support::nearest<float>(u.rational());
         ties += std::fabs(n) < 0x1p128 && support::is_tie(u);
         subnormal += std::fpclassify(nearest) == FP_SUBNORMAL;

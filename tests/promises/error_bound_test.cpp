@@ -32,9 +32,6 @@
 namespace error_bound_cases {
 
 using support::hex;
-using support::Homogeneous;
-using support::nan_double;
-using support::Outputs;
 using texgen::error_bound;
 using texgen::ObjectTexgen;
 using texgen::Segment;
@@ -117,13 +114,13 @@ TEST_CASE("a segment's error_bound is never below the error, and is tight in eve
             for (float& a : alpha) a = random.uniform_float(0.0, 1.0);
             alpha.front() = 0.0f;
             alpha.back() = 1.0f;
-            Outputs out(alpha.size());
+            support::Outputs out(alpha.size());
             interpolate(segment, alpha, support::everywhere(), out.spans(), tolerance);
             for (std::size_t k = 0; k < 2; ++k) {
                 const double b = bound[static_cast<int>(k)];
                 double largest = 0.0;
                 for (std::size_t n = 0; n < alpha.size(); ++n) {
-                    const Homogeneous at = support::exactly_at(segment, alpha[n]);
+                    const support::Homogeneous at = support::exactly_at(segment, alpha[n]);
                     if (at.q.sign() > 0) largest = std::max(largest, support::distance(out[k][n], at.over_q(k)));
                 }
                 REQUIRE_MESSAGE(largest <= b * (1.0 + 1e-12), hex(segment.a), hex(segment.b), hex(tolerance.value));
@@ -154,7 +151,7 @@ TEST_CASE("a segment that is behind has no error, and one with a NaN or an infin
             }
         }
     }
-    CHECK(error_bound(good, {nan_double}) == error_bound(good));
+    CHECK(error_bound(good, {support::nan_double}) == error_bound(good));
 }
 
 TEST_CASE("from 2^128 - 2^103 on the nearest float is infinity, and the bound with it") {

@@ -23,7 +23,6 @@
 namespace float_state {
 
 using support::under;
-using texgen::Box;
 using texgen::Coverage;
 using texgen::ObjectTexgen;
 using texgen::TriangleSetup;
@@ -115,7 +114,7 @@ TEST_CASE("a 0 that was subnormal is on the side of the region, and neither work
                 work = interpolate(*setup, {1, 1, 16, 1}, out.spans());
                 work_of_segment = texgen::work(segment, region);
                 interpolate(segment, alpha, region, of_segment.spans());
-                answer = coverage(ObjectTexgen(matrix), region, Box{glm::vec3(0.0f), glm::vec3(1.0f)});
+                answer = coverage(ObjectTexgen(matrix), region, texgen::Box{glm::vec3(0.0f), glm::vec3(1.0f)});
                 project(ObjectTexgen(matrix), texgen::object_space(points), region, of_points.spans());
             });
             const float lit = of_segment.lit()[0];

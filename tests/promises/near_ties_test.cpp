@@ -23,11 +23,10 @@
 namespace {
 
 using support::everywhere;
-using support::Homogeneous;
 using support::Outputs;
 
 struct Answer {
-    Homogeneous exact;
+    support::Homogeneous exact;
     Outputs out;
 };
 

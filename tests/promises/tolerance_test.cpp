@@ -27,12 +27,10 @@ using support::hex;
 using support::Outputs;
 using support::Random;
 using support::same_bits;
-using support::Seen;
 using support::setup_of;
 using support::Shot;
 using texgen::FragmentRect;
 using texgen::Tolerance;
-using texgen::TriangleSetup;
 using texgen::Work;
 
 constexpr std::array tolerances{texgen::exact,
@@ -62,7 +60,7 @@ FragmentRect resized(FragmentRect rect, Random& random) {
 }
 
 struct Tally {
-    Seen seen;
+    support::Seen seen;
     int affine = 0, quadratic = 0, divide = 0;
     double largest_share = 0.0;  // of the tolerance, by an error beyond the rounding
 };
@@ -70,7 +68,7 @@ struct Tally {
 // Some fragments of the rectangle, among them the first and the last; each value, and the bound on its error.
 void require_right(const Shot& shot, const texgen::TextureRegion& region, Tolerance tolerance, unsigned asked,
                    Random& random, Tally& tally) {
-    const TriangleSetup setup = setup_of(shot.triangle, region, tolerance);
+    const texgen::TriangleSetup setup = setup_of(shot.triangle, region, tolerance);
     const ExactTriangle exact(shot.triangle);
     Outputs out(count_of(shot.rect), asked, static_cast<std::size_t>(random.integer(0, 15)));
     const Work work = interpolate(setup, shot.rect, out.spans());

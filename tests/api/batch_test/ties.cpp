@@ -31,8 +31,6 @@ using support::Shot;
 using texgen::FragmentRect;
 using texgen::Triangle;
 using texgen::TriangleBatch;
-using texgen::TriangleSetup;
-using texgen::Work;
 
 }  // namespace
 
@@ -128,10 +126,10 @@ TEST_CASE("tiles next to the slowest that were found have the bits of a setup") 
         };
         const Triangle triangle{vertex(&n[0]), vertex(&n[7]), vertex(&n[14])};
         const FragmentRect rect{pixel(n[21]), pixel(n[22]), random.coin() ? 8 : 5, 8};
-        const auto setup = TriangleSetup::of(triangle, support::everywhere(), texgen::exact);
+        const auto setup = texgen::TriangleSetup::of(triangle, support::everywhere(), texgen::exact);
         if (!setup) continue;
         Outputs expected(count_of(rect), 11u);
-        if (interpolate(*setup, rect, expected.spans()) == Work::nothing) continue;
+        if (interpolate(*setup, rect, expected.spans()) == texgen::Work::nothing) continue;
         TriangleBatch batch(support::everywhere());
         batch.assign({&triangle, 1});
         Outputs out(count_of(rect), 11u);

@@ -25,7 +25,6 @@
 
 namespace batch_cases {
 
-using texgen::no_triangle;
 using texgen::TriangleBatch;
 
 namespace {
@@ -188,7 +187,7 @@ TEST_CASE("footprints of a visibility buffer are those of its triangles") {
             for (std::size_t k = 0; k < 8; ++k)
                 is_dark = is_dark && (!out.asked(k) || support::same_bits(out[k][i], 0.0f));
             const int x = rect.x + static_cast<int>(i) % rect.width, y = rect.y + static_cast<int>(i) / rect.width;
-            const auto triangle = ids[i] != no_triangle
+            const auto triangle = ids[i] != texgen::no_triangle
                                       ? TriangleSetup::of(drawn.triangles[ids[i]], texgen::whole_texture())
                                       : std::nullopt;
             std::optional<texgen::Footprint> exact;

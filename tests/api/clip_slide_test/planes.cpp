@@ -22,8 +22,6 @@ namespace clip_slide_cases {
 
 using support::infinity_double;
 using support::infinity_float;
-using support::magnitude;
-using support::nan_float;
 
 TEST_CASE("the clip planes are the exact ones within their bound, and of their sign") {
     Random random(1101);
@@ -48,7 +46,7 @@ TEST_CASE("the clip planes are the exact ones within their bound, and of their s
             REQUIRE(planes.size() == distance_count(region));
             for (std::size_t side = 0; side < planes.size(); ++side) {
                 const Rational exact = distance(side, of_column, region);
-                const Rational off = magnitude(exactly(planes[side][column]) - exact);
+                const Rational off = support::magnitude(exactly(planes[side][column]) - exact);
                 const Rational bound = (Rational(1, 2) + support::power_of_two(-29)) *
                                        support::power_of_two(support::ulp_exponent<float>(exact));
                 REQUIRE_MESSAGE(off <= bound, hex(matrix[column]), " ", hex(region.min()), " ", hex(region.max()));
@@ -93,7 +91,7 @@ TEST_CASE("a point is inside all clip planes where the projector lights it") {
 }
 
 TEST_CASE("what is not finite in the matrix is not finite in the planes that it reaches") {
-    for (const float bad : {nan_float, infinity_float}) {
+    for (const float bad : {support::nan_float, infinity_float}) {
         glm::dmat4 matrix(1.0);
         matrix[2].x = static_cast<double>(bad);
         const auto planes = clip_planes(texgen::WorldTexgen(matrix), whole_texture());

@@ -16,7 +16,6 @@ namespace clip_cases {
 
 using support::hex_of;
 using support::infinity_float;
-using support::nan_float;
 using support::Random;
 using texgen::ClipVertex;
 
@@ -86,7 +85,7 @@ TEST_CASE("an orthographic camera has w = 1, and its cuts keep it") {
 
 TEST_CASE("NaN and infinity: a position drops its polygon, a coordinate spoils itself only, nothing crashes") {
     const ClipVertex a{{0, 0, 0.5f, 1}, {0, 0, 0, 1}}, b{{1, 0, 0.5f, 1}, {1, 0, 0, 1}}, c{{0, 1, -3, 1}, {0, 1, 0, 1}};
-    for (const float bad : {nan_float, infinity_float, -infinity_float}) {
+    for (const float bad : {support::nan_float, infinity_float, -infinity_float}) {
         for (int k = 0; k < 4; ++k) {
             for (std::size_t i = 0; i < 3; ++i) {
                 Polygon polygon{a, b, c};

@@ -14,8 +14,6 @@
 namespace clip_cases {
 
 using support::hex;
-using support::Random;
-using texgen::ClipVertex;
 
 TEST_CASE("the window: corners of NDC are the viewport's corners, clip_w and the coordinates pass through") {
     const texgen::Viewport viewport{10, 20, 640, 480};
@@ -32,7 +30,7 @@ TEST_CASE("the window: corners of NDC are the viewport's corners, clip_w and the
 }
 
 TEST_CASE("the window is within its stated error of the exact division") {
-    Random random(39);
+    support::Random random(39);
     int cancelling = 0;
     for (int i = 0; i < 5000; ++i) {
         const double w = random.power_of_ten(-6.0, 6.0);
@@ -42,7 +40,7 @@ TEST_CASE("the window is within its stated error of the exact division") {
         const auto clip_of = [&](double any, int first, int size) {
             return support::to_float(w * (i % 2 == 0 ? any : -(2.0 * first / size + 1.0)));
         };
-        const ClipVertex v{
+        const texgen::ClipVertex v{
             {clip_of(random.uniform(-100.0, 100.0), viewport.x, viewport.width),
              clip_of(random.uniform(-1.0, 1.0), viewport.y, viewport.height), 0.0f, support::to_float(w)},
             {0, 0, 0, 1}};

@@ -25,7 +25,6 @@ using texgen::atlas_tile;
 using texgen::Box;
 using texgen::coverage;
 using texgen::Coverage;
-using texgen::Sphere;
 using texgen::TextureRegion;
 using texgen::whole_texture;
 using texgen::WorldTexgen;
@@ -44,7 +43,7 @@ TEST_CASE("what rounds onto a side of the region is not outside, and what rounds
         project(transform, texgen::world_space(std::span(&point, 1)), region,
                 {.s = {}, .t = {}, .r = {}, .lit = {&lit, 1}});
         const Coverage answer = coverage(transform, region, Box{point, point});
-        const Coverage of_sphere = coverage(transform, region, Sphere{point, 0.0f});
+        const Coverage of_sphere = coverage(transform, region, texgen::Sphere{point, 0.0f});
         CHECK((of_sphere == answer || of_sphere == Coverage::partial));
         if (answer != Coverage::partial) CHECK(lit == (answer == Coverage::inside ? 1.0f : 0.0f));
         return answer;

@@ -17,7 +17,6 @@
 
 namespace {
 
-using support::any_conventions;
 using support::infinity_double;
 using support::nan_double;
 using support::Random;
@@ -161,7 +160,7 @@ TEST_CASE("a lens and an aim are said to be refused where no projector is made o
     std::array<int, 2> counts{};
     for (int i = 0; i < 100000; ++i) {
         const Aim aim{any_vector(random), any_vector(random), any_vector(random)};
-        const Conventions conventions = any_conventions(random);
+        const Conventions conventions = support::any_conventions(random);
         const auto number = [&](double usual) { return random.integer(0, 3) == 0 ? any_number(random) : usual; };
         const PerspectiveLens p{random.coin() ? texgen::degrees(number(60.0)) : texgen::radians(number(1.0)),
                                 number(1.5), number(0.1), number(10.0), random.coin()};

@@ -19,7 +19,6 @@
 namespace diagnose_cases {
 
 using support::nan_double;
-using texgen::Transform;
 
 namespace {
 
@@ -201,7 +200,7 @@ TEST_CASE("a matrix that holds no numbers, or was never written, is said alone, 
         const glm::dmat4 p = projection(rig.lens, rig.conventions);
         Parts parts = parts_of(rig, p, rig.view);
         if (rig.in != In::world) {
-            const Transform<World, texgen::Window> of_window(transposed(rig.pose));
+            const texgen::Transform<World, texgen::Window> of_window(transposed(rig.pose));
             CHECK(diagnose(ProjectionSetup<texgen::Window>{.world_from_space = of_window}).empty());
             parts.pose = of_window.matrix();
             require_said(parts, {Defect::transposed});

@@ -21,9 +21,7 @@ namespace fixed_function_cases {
 
 using support::hex;
 using support::infinity_float;
-using support::nan_float;
 using support::rounded;
-using support::slide_projector;
 using texgen::FixedFunctionVertex;
 
 TEST_CASE("an eye plane is multiplied by the inverse of the MODELVIEW that is current when it is specified") {
@@ -168,7 +166,7 @@ TEST_CASE("regular matrices of small integers are all accepted") {
 TEST_CASE("a MODELVIEW, a plane or a result that is not finite is refused and the plane stays as it was") {
     TexGenUnit unit;
     REQUIRE(unit.set_eye_plane(Coordinate::q, {1, 2, 3, 4}, identity));
-    for (const float bad : {nan_float, infinity_float, -infinity_float}) {
+    for (const float bad : {support::nan_float, infinity_float, -infinity_float}) {
         for (int element = 0; element < 16; ++element) {
             glm::mat4 m = identity;
             m[element / 4][element % 4] = bad;
@@ -186,7 +184,7 @@ TEST_CASE("a MODELVIEW, a plane or a result that is not finite is refused and th
 
 TEST_CASE("the rows of S P_p V_p under MODELVIEW = V_e, and of S P_p under V_e V_p^-1, are stored as Everitt's (4)") {
     Random random(6);
-    const texgen::Projector projector = slide_projector();
+    const texgen::Projector projector = support::slide_projector();
     for (int i = 0; i < 200; ++i) {
         const texgen::CameraPose pose(random.rigid(20.0));
         const glm::mat4 view = texgen::inverse_rigid(pose).rounded();

@@ -22,10 +22,8 @@
 
 namespace footprint_cases {
 
-using support::everywhere;
 using support::infinity_double;
 using support::setup_of;
-using texgen::Footprint;
 using texgen::Footprints;
 using texgen::FootprintSetup;
 using texgen::FragmentRect;
@@ -129,7 +127,7 @@ TEST_CASE("no fragment of ten million is outside the extremes, and they are reac
             double corner_least = infinity_double, corner_largest = 0.0, corner_level = infinity_double;
             for (const int x : {rect.x, rect.x + rect.width - 1}) {
                 for (const int y : {rect.y, rect.y + rect.height - 1}) {
-                    const Footprint at = setup.at(x, y).value();
+                    const texgen::Footprint at = setup.at(x, y).value();
                     const double area = at.singular_values.x * at.singular_values.y;
                     corner_level = std::min(corner_level, at.level);
                     corner_least = std::min(corner_least, area);
@@ -253,7 +251,7 @@ TEST_CASE("there are extremes exactly where a fragment is in front, and of a tri
             *vertex = {
                 {whole(-16, 16) * 0.5f, whole(-16, 16) * 0.5f}, w, {whole(-4, 4), whole(-4, 4), 0, whole(-2, 1)}};
         }
-        const auto of = TriangleSetup::of(triangle, everywhere());
+        const auto of = TriangleSetup::of(triangle, support::everywhere());
         if (!of) continue;
         const FootprintSetup setup(*of, some_texels(random));
         const ExactTriangle exact(triangle);

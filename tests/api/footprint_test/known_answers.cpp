@@ -30,11 +30,10 @@ using support::nan_double;
 using support::setup_of;
 using texgen::Footprint;
 using texgen::FootprintSetup;
-using texgen::FragmentRect;
 
 TEST_CASE("a Jacobian of rank 1 or 0, and texels that are none, get what the header says") {
     const std::array window{glm::vec2(0, 0), glm::vec2(64, 0), glm::vec2(0, 64)};
-    const FragmentRect rect{3, 4, 21, 5};
+    const texgen::FragmentRect rect{3, 4, 21, 5};
     const Triangle constant =
         flat(window, {glm::vec3(0.25f, 0.5f, 2), glm::vec3(0.25f, 0.5f, 1), glm::vec3(0.25f, 0.5f, 4)});
     const Triangle line = flat(window, {glm::vec3(0, 0, 2), glm::vec3(1, 1, 1), glm::vec3(0.25f, 0.25f, 4)});

@@ -31,7 +31,6 @@ using support::same_bits;
 using support::text;
 using support::vertices;
 using texgen::FragmentRect;
-using texgen::Tolerance;
 using texgen::Triangle;
 using texgen::TriangleSetup;
 
@@ -135,7 +134,7 @@ TEST_CASE("a column is as right as a row, of any height, within any region and t
             const ExactTriangle exact(shot.triangle);
             const texgen::TextureRegion region =
                 random.coin() ? support::region_at(shot, exact, random) : texgen::whole_texture().with_depth();
-            const Tolerance tolerance = random.coin() ? texgen::exact : texgen::texels(1.0 / 512.0, 4096.0);
+            const texgen::Tolerance tolerance = random.coin() ? texgen::exact : texgen::texels(1.0 / 512.0, 4096.0);
             Outputs out(count_of(shot.rect), asked[static_cast<std::size_t>(random.integer(0, 5))]);
             const TriangleSetup setup = setup_of(shot.triangle, region, tolerance);
             const Work work = interpolate(setup, shot.rect, out.spans());

@@ -23,7 +23,6 @@ using support::count_of;
 using support::everywhere;
 using support::same_bits;
 using texgen::FragmentRect;
-using texgen::Tolerance;
 using texgen::Triangle;
 using texgen::TriangleSetup;
 
@@ -122,7 +121,7 @@ TEST_CASE("where a coordinate is 0 along an edge in a row or a column of fragmen
         const auto side = [&](double other) { return random.coin() ? 0.0 : other; };
         texgen::TextureRegion region = texgen::atlas_tile({side(-HUGE_VAL), side(-1.0)}, {side(HUGE_VAL), side(1.0)});
         if (random.integer(0, 2) == 0) region = region.with_depth(side(-HUGE_VAL), side(1.0));
-        const Tolerance tolerance{random.integer(0, 2) != 0 ? 0.0 : random.power_of_ten(-9.0, -1.0)};
+        const texgen::Tolerance tolerance{random.integer(0, 2) != 0 ? 0.0 : random.power_of_ten(-9.0, -1.0)};
         const auto setup = TriangleSetup::of(shot.triangle, region, tolerance);
         if (!setup) continue;
         const ExactTriangle exact(shot.triangle);

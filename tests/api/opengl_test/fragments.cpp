@@ -22,7 +22,6 @@
 
 namespace judged {
 
-using support::coordinates;
 using support::slide_projector;
 using support::gl::fragment_tolerance;
 
@@ -150,7 +149,7 @@ TEST_CASE("a floor under a slide, drawn with OpenGL's own transforms and eye-lin
 
         Both both(g);
         both.load_projection(lens);
-        for (const Coordinate coordinate : coordinates) {
+        for (const Coordinate coordinate : support::coordinates) {
             both.enable(coordinate);
             both.set_eye_plane(coordinate, world_planes[static_cast<std::size_t>(coordinate)], view);
         }

@@ -20,8 +20,6 @@ namespace judged {
 
 using support::coordinates;
 using support::hex;
-using support::scalings;
-using support::slide_projector;
 
 namespace {
 
@@ -92,7 +90,7 @@ TEST_CASE("sphere, reflection and normal map are OpenGL's at vertices, under its
     Random random(104);
     double worst_normal = 0.0, worst_reflection = 0.0, worst_sphere = 0.0;
     for (const Kind kind : kinds) {
-        for (const NormalScaling scaling : scalings) {
+        for (const NormalScaling scaling : support::scalings) {
             for (int round = 0; round < 8; ++round) {
                 Both both(g);
                 both.set_normal_scaling(scaling);
@@ -160,7 +158,7 @@ TEST_CASE("sphere, reflection and normal map are OpenGL's at vertices, under its
 TEST_CASE("SGI's recipe, the projector in the texture matrix, is OpenGL's") {
     const gl::Context& g = opengl();
     Random random(105);
-    const texgen::Projector projector = slide_projector();
+    const texgen::Projector projector = support::slide_projector();
     glm::dmat4 half(1.0);
     half[0][0] = half[1][1] = half[3][0] = half[3][1] = 0.5;
     const glm::mat4 texture_matrix = rounded(half * projector.projection.matrix() * projector.view.matrix());

@@ -22,7 +22,6 @@ namespace scene_cases {
 
 using support::allocations;
 using support::broken_preconditions;
-using texgen::SceneWork;
 
 namespace {
 
@@ -48,7 +47,7 @@ TEST_CASE("pairs that come at once allocate a few times, and an object that is n
     CHECK(scene.pairs().size() == 20000);
     const Indices often(20000, 7);
     const std::size_t named = allocations;
-    const SceneWork work = scene.update(engine.view(), {often, {}});
+    const texgen::SceneWork work = scene.update(engine.view(), {often, {}});
     CHECK(allocations == named);
     CHECK(work.pairs_tested == 4);
 }

@@ -22,7 +22,6 @@ namespace segment_cases {
 
 using support::infinity_float;
 using support::nan_float;
-using support::same_bits;
 
 TEST_CASE("a NaN in alpha spoils its own value only") {
     Random random(4600);
@@ -58,7 +57,7 @@ TEST_CASE("an alpha that is NaN is behind, alone and in any company") {
             alpha[bad] = std::numeric_limits<float>::quiet_NaN();
             Outputs out(count);
             interpolate(segment, alpha, everywhere(), out.spans());
-            for (std::size_t k = 0; k < 4; ++k) REQUIRE(same_bits(out[k][bad], 0.0f));
+            for (std::size_t k = 0; k < 4; ++k) REQUIRE(support::same_bits(out[k][bad], 0.0f));
         }
     }
 }

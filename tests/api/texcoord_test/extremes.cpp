@@ -29,12 +29,9 @@
 namespace texcoord_cases {
 
 using support::Dyadic;
-using support::everywhere;
-using support::exactly_at;
 using support::infinity_float;
 using support::nan_float;
 using support::Outputs;
-using support::same_bits;
 using texgen::Tolerance;
 
 TEST_CASE("a quotient that is below all floats is a zero of its sign, in company as alone") {
@@ -53,15 +50,15 @@ TEST_CASE("a quotient that is below all floats is a zero of its sign, in company
                 point[k] = is_middle ? support::to_float(middle) : random.uniform_float(-2.0, 2.0);
             }
         Outputs out(points.size(), 3u);
-        project(ObjectTexgen(matrix), texgen::object_space(points), everywhere(), out.spans());
+        project(ObjectTexgen(matrix), texgen::object_space(points), support::everywhere(), out.spans());
         for (std::size_t i = 0; i < points.size(); ++i) {
             const auto alone = project(ObjectTexgen(matrix), texgen::object_space(points[i]));
             REQUIRE(alone);
             for (std::size_t k = 0; k < 2; ++k) {
                 const float of_alone = (*alone)[static_cast<glm::length_t>(k)];
                 negative += out[k][i] == 0.0f && std::signbit(out[k][i]) ? 1 : 0;
-                CHECK_MESSAGE(same_bits(out[k][i], of_alone), hex(points[i]), " by ", hex(matrix), ": ", hex(out[k][i]),
-                              ", alone ", hex(of_alone));
+                CHECK_MESSAGE(support::same_bits(out[k][i], of_alone), hex(points[i]), " by ", hex(matrix), ": ",
+                              hex(out[k][i]), ", alone ", hex(of_alone));
             }
         }
     }
@@ -95,7 +92,7 @@ TEST_CASE("a NaN or an infinity in a position spoils its own point only") {
                                 REQUIRE_MESSAGE(out[k][j] == 0.0f, describe(batch, j));
                         continue;
                     }
-                    const Homogeneous at = exactly_at(batch.matrix, batch.points[j]);
+                    const Homogeneous at = support::exactly_at(batch.matrix, batch.points[j]);
                     const std::string wrong = what_is_wrong(at, texgen::whole_texture(), tolerance, out, j);
                     REQUIRE_MESSAGE(wrong.empty(), wrong, " for ", describe(batch, j), ", tolerance ",
                                     hex(tolerance.value));

@@ -23,11 +23,8 @@
 
 namespace texcoord_cases {
 
-using support::exactly_at;
-using support::nan_float;
 using support::Outputs;
 using support::same_bits;
-using texgen::Tolerance;
 
 TEST_CASE("pairs are the planar s and t, and 0 behind") {
     Random random(6400);
@@ -44,12 +41,12 @@ TEST_CASE("pairs are the planar s and t, and 0 behind") {
                 REQUIRE_MESSAGE(same_bits(pairs[i + 1].x, planar.s()[i]), describe(batch, i));
                 REQUIRE_MESSAGE(same_bits(pairs[i + 1].y, planar.t()[i]), describe(batch, i));
             }
-            const Tolerance tolerance{random.power_of_ten(-7.0, 1.0)};
+            const texgen::Tolerance tolerance{random.power_of_ten(-7.0, 1.0)};
             project(batch.texgen(), batch.positions(), std::span(pairs).subspan(1, count), tolerance);
             REQUIRE(pairs.front() == glm::vec2(-7.0f));
             REQUIRE(pairs.back() == glm::vec2(-7.0f));
             for (std::size_t i = 0; i < count; ++i) {
-                const Homogeneous at = exactly_at(batch.matrix, batch.points[i]);
+                const Homogeneous at = support::exactly_at(batch.matrix, batch.points[i]);
                 for (int k = 0; k < 2; ++k) {
                     const float value = pairs[i + 1][k];
                     const auto coordinate = static_cast<std::size_t>(k);
@@ -115,7 +112,7 @@ TEST_CASE("a point's bits do not depend on how the positions are laid out, nor o
         for (const std::size_t shift : {0u, 1u, 7u}) {
             std::array<std::vector<float>, 3> planar;
             for (std::size_t k = 0; k < 3; ++k) {
-                planar[k].assign(count + shift + k, nan_float);
+                planar[k].assign(count + shift + k, support::nan_float);
                 for (std::size_t i = 0; i < count; ++i) planar[k][shift + k + i] = batch.points[i][static_cast<int>(k)];
             }
             const auto part = [&](std::size_t k) { return std::span<const float>(planar[k]).subspan(shift + k); };

@@ -18,7 +18,6 @@ namespace {
 
 using support::exactly;
 using support::hex;
-using support::nan_double;
 using support::Random;
 using support::scaled_condition;
 using texgen::ModelMatrix;
@@ -265,7 +264,7 @@ TEST_CASE("an affine matrix has an affine inverse: the last row is exactly (0, 0
 TEST_CASE("NaN, infinity and an inverse beyond the range are refused") {
     Random random(49);
     for (const double bad :
-         {nan_double, std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()})
+         {support::nan_double, std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()})
         for (int column = 0; column < 4; ++column)
             for (int row = 0; row < 4; ++row) {
                 glm::dmat4 m = random.rigid(10.0);

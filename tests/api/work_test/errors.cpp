@@ -28,7 +28,6 @@ using support::everywhere;
 using support::hex;
 using support::Outputs;
 using support::Random;
-using support::region_at;
 using support::setup_of;
 using texgen::FragmentRect;
 using texgen::TriangleSetup;
@@ -70,7 +69,7 @@ TEST_CASE("error_bound in the exact tier is never below the error, is infinite w
         for (int i = 0; i < 120; ++i) {
             const Shot shot = family.make(random);
             const ExactTriangle exact(shot.triangle);
-            const TextureRegion region = random.coin() ? everywhere() : region_at(shot, exact, random);
+            const TextureRegion region = random.coin() ? everywhere() : support::region_at(shot, exact, random);
             const TriangleSetup setup = setup_of(shot.triangle, region);
             const glm::dvec2 bound = setup.error_bound(shot.rect);
             REQUIRE(bound.x >= 0.0);

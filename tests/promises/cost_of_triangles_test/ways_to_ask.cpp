@@ -21,12 +21,11 @@
 
 namespace triangle_costs {
 
-using support::Random;
 using texgen::FragmentRect;
 using texgen::Triangle;
 
 TEST_CASE("footprints by ids of triangles that are refused cost what others do") {
-    Random random(75);
+    support::Random random(75);
     constexpr int width = 128, height = 16;
     std::vector<Triangle> triangles, refused;
     for (int i = 0; i < 500; ++i) {

@@ -28,7 +28,6 @@ namespace error_bound_cases {
 using support::exactly;
 using support::hex;
 using support::nan_double;
-using support::Rational;
 using support::RationalMatrix;
 using texgen::EyeTexgen;
 using texgen::ModelMatrix;
@@ -79,7 +78,7 @@ void check(const glm::dmat4& bound, const glm::dmat4& computed, const RationalMa
                 REQUIRE_MESSAGE(is_no_bound(bound[column][row]), context);
                 continue;
             }
-            const Rational error =
+            const support::Rational error =
                 support::magnitude(exactly(computed[column][row]) -
                                    exact[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)]);
             const double b = bound[column][row];

@@ -30,7 +30,6 @@ namespace error_bound_cases {
 using support::Dyadic;
 using support::hex;
 using support::Homogeneous;
-using support::nan_double;
 using support::Outputs;
 using texgen::ObjectTexgen;
 
@@ -212,7 +211,7 @@ TEST_CASE("points without an error have no bound above 0, and a NaN or an infini
     const ObjectTexgen texgen(glm::dmat4(1.0));
     CHECK(project_error_bound(texgen, texgen::object_space(std::span<const glm::vec3>())) == glm::dvec2(0.0));
     CHECK(generate_error_bound(texgen, texgen::object_space(std::span<const glm::vec3>())) == glm::dvec4(0.0));
-    for (const double bad : {nan_double, infinity_double, -infinity_double}) {
+    for (const double bad : {support::nan_double, infinity_double, -infinity_double}) {
         for (int k = 0; k < 3; ++k) {
             std::array<glm::vec3, 3> points{{{0.1f, 0.2f, 0.3f}, {0.4f, 0.5f, 0.6f}, {0.7f, 0.8f, 0.9f}}};
             points[1][k] = static_cast<float>(bad);

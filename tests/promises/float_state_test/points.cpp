@@ -22,7 +22,6 @@
 namespace float_state {
 
 using support::under;
-using texgen::ObjectTexgen;
 
 TEST_CASE("segments: the sign of q is exact, and errors are within half an ulp or the tolerance") {
     in_every_state([](const FloatState& state, Random& random) {
@@ -90,7 +89,7 @@ TEST_CASE("points: the sign of q is exact where its terms cancel, and errors are
                     for (int k = 0; k < 3; ++k) point[k] = 0x1p-126f * random.uniform_float(1.0, 1.9);
                 if (random.integer(0, 19) == 0) point[random.integer(0, 2)] = 0x1p-140f;
             }
-            const ObjectTexgen texgen(matrix);
+            const texgen::ObjectTexgen texgen(matrix);
             auto positions = texgen::object_space(points);
             if (random.coin()) positions = positions.within({glm::vec3(-1.0f), glm::vec3(1.0f)});
             const Tolerance tolerance = any_tolerance(random);

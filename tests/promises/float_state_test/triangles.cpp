@@ -25,7 +25,6 @@
 
 namespace float_state {
 
-using support::Shot;
 using support::under;
 using texgen::TriangleSetup;
 using texgen::Work;
@@ -36,7 +35,7 @@ TEST_CASE("fragments of triangles: the sign of q is exact, and errors are within
         for (const support::HardFamily& family : support::hard_families) {
             CAPTURE(std::string(family.name));
             for (int i = 0; i < 40; ++i) {
-                Shot shot = family.make(random);
+                support::Shot shot = family.make(random);
                 const Tolerance tolerance = any_tolerance(random);
                 const TextureRegion region = any_region(random);
                 std::optional<TriangleSetup> setup;
