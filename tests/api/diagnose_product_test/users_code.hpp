@@ -40,12 +40,10 @@ using texgen::Defect;
 using texgen::DepthMapping;
 using texgen::DepthRange;
 using texgen::Diagnosis;
-using texgen::Handedness;
 using texgen::NdcY;
 using texgen::Object;
 using texgen::Projector;
 using texgen::TextureOrigin;
-using texgen::TextureRegion;
 
 enum class LensKind { perspective, infinite, frustum, orthographic };
 
@@ -57,10 +55,10 @@ struct Meant {
     double left = -1.0, right = 1.0, bottom = -1.0, top = 1.0;
     texgen::Aim aim{{0.0, 0.0, 0.0}, {0.0, 0.0, -1.0}, {0.0, 1.0, 0.0}};
     glm::dmat4 pose{1.0};  // the model, or the camera's pose
-    TextureRegion region = texgen::whole_texture();
+    texgen::TextureRegion region = texgen::whole_texture();
     DepthMapping depth = DepthMapping::unit;
 
-    bool is_left() const { return conventions.handedness == Handedness::left; }
+    bool is_left() const { return conventions.handedness == texgen::Handedness::left; }
     bool is_zero_to_one() const { return conventions.depth == DepthRange::zero_to_one; }
 };
 

@@ -27,8 +27,6 @@
 
 namespace diagnose_cases {
 
-using support::nan_double;
-
 // What can go wrong, the defect that it is to be found as, and the one thing about the set-up that it changes.
 enum class Thing {
     numbers,
@@ -267,7 +265,7 @@ inline std::optional<glm::dmat4> spoilt_texgen(const Rig& rig, const Projector& 
     if (faults.has(Thing::transposition) && transpose_last) texgen = transposed(texgen);
     for (int i = 0; i < 4 && faults.has("t written as s"); ++i) texgen[i][1] = texgen[i][0];
     if (faults.has("a NaN"))
-        texgen[random.integer(0, 3)][random.integer(0, 3)] = random.coin() ? nan_double : infinity_double;
+        texgen[random.integer(0, 3)][random.integer(0, 3)] = random.coin() ? support::nan_double : infinity_double;
     if (faults.has("never written")) {
         texgen = glm::dmat4(0.0);
         if (random.coin()) texgen[0][0] = texgen[1][1] = 1.0;

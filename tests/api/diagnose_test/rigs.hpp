@@ -36,8 +36,6 @@ using texgen::Defect;
 using texgen::DepthMapping;
 using texgen::DepthRange;
 using texgen::Diagnosis;
-using texgen::Eye;
-using texgen::Handedness;
 using texgen::LensFacts;
 using texgen::Object;
 using texgen::ProjectionSetup;
@@ -117,7 +115,7 @@ ProjectionSetup<Space> setup_of(const Parts& parts) {
 inline Diagnosis diagnosis_of(const Parts& parts) {
     if (parts.in == In::object) return diagnose(setup_of<Object>(parts));
     if (parts.in == In::world) return diagnose(setup_of<World>(parts));
-    return diagnose(setup_of<Eye>(parts));
+    return diagnose(setup_of<texgen::Eye>(parts));
 }
 
 inline std::string text(const Diagnosis& diagnosis) {
@@ -169,7 +167,7 @@ inline double depth_in(const Rig& rig, Random& random) {
 
 // The point that the slide's (x, y) in [-1, 1] falls on at that depth, relative to the projector, in the world.
 inline glm::dvec3 in_the_light(const Rig& rig, const glm::dmat4& p, double x, double y, double depth) {
-    const double z = rig.conventions.handedness == Handedness::left ? depth : -depth;
+    const double z = rig.conventions.handedness == texgen::Handedness::left ? depth : -depth;
     const double w = p[2][3] * z + p[3][3];
     const glm::dvec3 eye{(x * w - p[2][0] * z - p[3][0]) / p[0][0], (y * w - p[2][1] * z - p[3][1]) / p[1][1], z};
     const glm::dmat4 axes = transposed(rig.view);

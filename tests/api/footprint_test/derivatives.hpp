@@ -32,7 +32,6 @@ using support::Dyadic;
 using support::ExactTriangle;
 using support::FootprintOutputs;
 using support::hex;
-using support::Homogeneous;
 using support::Random;
 using support::Real;
 using support::Shot;
@@ -51,7 +50,7 @@ struct ExactFootprint {
 
     // S, T and Q are affine, so differences of neighbours are their slopes exactly.
     ExactFootprint(const ExactTriangle& exact, std::int64_t x, std::int64_t y) {
-        const Homogeneous here = exact.at(x, y), right = exact.at(x + 1, y), up = exact.at(x, y + 1);
+        const support::Homogeneous here = exact.at(x, y), right = exact.at(x + 1, y), up = exact.at(x, y + 1);
         const Real q_squared = real(here.q) * real(here.q);
         const auto slope = [&](const Dyadic& f, const Dyadic& next, const Dyadic& next_q) {
             return Real(real((next - f) * here.q - f * (next_q - here.q)) / q_squared);

@@ -31,7 +31,6 @@ using support::everywhere;
 using support::exactly_at;
 using support::hex;
 using support::Homogeneous;
-using support::is_tie;
 using support::Outputs;
 using support::Random;
 using texgen::Segment;
@@ -193,7 +192,7 @@ inline const std::array families{
                           segment.b[k] = support::neighbour(segment.a[k], 2 * random.integer(-50, 50) + 1);
                       return {segment, std::vector<float>(count, 0.5f)};
                   },
-                  [](const Case& c) { return is_tie(exactly_at(c.segment, 0.5f).over_q(0)); }, 0.9},
+                  [](const Case& c) { return support::is_tie(exactly_at(c.segment, 0.5f).over_q(0)); }, 0.9},
     SegmentFamily{"units from 1e-30 to 1e30",
                   [](Random& random, std::size_t count) -> Case {
                       const auto unit = [&] { return static_cast<float>(random.power_of_ten(-30.0, 30.0)); };

@@ -20,7 +20,6 @@ namespace shaded {
 
 namespace gl = support::gl;
 using support::Random;
-using support::rounded;
 
 inline constexpr float nothing = -1e30f;
 inline constexpr int width = gl::Context::width, height = gl::Context::height;
@@ -60,7 +59,7 @@ inline Scene random_scene(Random& random, bool reaches_behind) {
     const texgen::ModelMatrix model(random.rigid(5.0));
     const texgen::TextureRegion region =
         random.coin() ? texgen::whole_texture() : texgen::atlas_tile({0.25, 0.125}, {0.75, 0.875});
-    Scene scene{rounded(camera->matrix().matrix() * model.matrix()),
+    Scene scene{support::rounded(camera->matrix().matrix() * model.matrix()),
                 texgen::object_linear(*projector, model, region),
                 region,
                 {},
