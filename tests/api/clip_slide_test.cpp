@@ -21,8 +21,6 @@
 
 namespace clip_slide_cases {
 
-using support::bits;
-
 namespace {
 
 bool is_inside(const Point& p, const TextureRegion& region) {

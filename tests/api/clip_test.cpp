@@ -25,9 +25,7 @@ namespace clip_cases {
 
 using support::Bits;
 using support::bits;
-using support::hex_of;
 using support::Random;
-using texgen::ClipVertex;
 
 namespace {
 

@@ -30,8 +30,6 @@ namespace coverage_cases {
 
 using support::nan_float;
 using texgen::coverage;
-using texgen::Sphere;
-using texgen::WorldTexgen;
 
 namespace {
 

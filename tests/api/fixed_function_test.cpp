@@ -27,8 +27,6 @@ using support::hex;
 using support::infinity_float;
 using support::modes;
 using support::nan_float;
-using support::rounded;
-using texgen::FixedFunctionVertex;
 
 namespace {
 

@@ -29,12 +29,6 @@
 
 namespace footprint_cases {
 
-using support::same_bits;
-using support::setup_of;
-using texgen::FootprintSetup;
-using texgen::FragmentRect;
-using texgen::Tolerance;
-
 TEST_CASE("derivatives are the exact ones within the stated bound, for every hard family") {
     bool is_in_buffer = false;
     SUBCASE("by a set-up") {}

@@ -30,13 +30,7 @@
 
 namespace row_cases {
 
-using support::count_of;
-using support::everywhere;
 using support::HardFamily;
-using support::same_bits;
-using support::vertices;
-using texgen::Triangle;
-using texgen::TriangleSetup;
 
 TEST_CASE("every fragment is the nearest float of the exact rational, in every family") {
     std::uint64_t seed = 100;

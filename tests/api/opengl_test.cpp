@@ -19,7 +19,6 @@
 
 namespace judged {
 
-using support::coordinates;
 using support::hex;
 
 namespace {

@@ -19,9 +19,6 @@
 
 namespace scene_cases {
 
-using support::broken_preconditions;
-using texgen::SceneWork;
-
 TEST_CASE("over many frames of moves, arrivals and departures the pairs are those of all pairs asked one by one") {
     Random random(1201);
     Hostile hostile;

@@ -27,12 +27,10 @@
 
 namespace texcoord_cases {
 
-using support::Dyadic;
 using support::everywhere;
 using support::exactly_at;
 using support::Outputs;
 using support::same_bits;
-using texgen::Tolerance;
 
 namespace {
 

@@ -28,16 +28,11 @@ namespace work_cases {
 
 using support::count_of;
 using support::everywhere;
-using support::hex;
 using support::nan_double;
-using support::Outputs;
-using support::Random;
 using support::setup_of;
 using texgen::atlas_tile;
-using texgen::FragmentRect;
 using texgen::Tolerance;
 using texgen::TriangleSetup;
-using texgen::Work;
 
 namespace {
 

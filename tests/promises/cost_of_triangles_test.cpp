@@ -29,8 +29,6 @@ namespace triangle_costs {
 
 namespace limit = support::limit;
 using support::Random;
-using texgen::FragmentRect;
-using texgen::Triangle;
 
 TEST_CASE("ties whose terms are 110 powers of two apart take at most three times what those of 60 take") {
     // Two corners on ties, and small; the third makes others of what is left of it.

@@ -22,12 +22,6 @@
 
 namespace float_state {
 
-using support::under;
-using texgen::Coverage;
-using texgen::ObjectTexgen;
-using texgen::TriangleSetup;
-using texgen::Work;
-
 TEST_CASE("the states are what they are called") {
     volatile float one = 1.0f, subnormal = 0x1p-140f;
     for (const FloatState& state : support::float_states) {

@@ -22,7 +22,6 @@
 namespace clip_slide_cases {
 
 using support::Bits;
-using support::bits;
 using support::magnitude;
 
 namespace {

@@ -18,7 +18,6 @@
 
 namespace clip_slide_cases {
 
-using support::bits;
 using support::infinity_float;
 using support::nan_float;
 

@@ -20,6 +20,7 @@
 
 namespace clip_slide_cases {
 
+using support::bits;
 using support::exactly;
 using support::hex;
 using support::Polygon;

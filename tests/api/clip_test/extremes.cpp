@@ -14,10 +14,8 @@
 
 namespace clip_cases {
 
-using support::hex_of;
 using support::infinity_float;
 using support::Random;
-using texgen::ClipVertex;
 
 TEST_CASE("a vertex at the eye itself does not come out, with a near plane that lets it through") {
     // z >= 0 everywhere: the near plane of this camera leaves w <= 0 in front of it.

@@ -13,9 +13,11 @@
 namespace clip_cases {
 
 using support::exactly;
+using support::hex_of;
 using support::Polygon;
 using support::Rational;
 using texgen::clip_to_near;
+using texgen::ClipVertex;
 using texgen::DepthRange;
 
 struct NearPlane {

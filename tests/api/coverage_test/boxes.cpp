@@ -25,7 +25,6 @@ namespace coverage_cases {
 
 using texgen::coverage;
 using texgen::LitVolume;
-using texgen::WorldTexgen;
 
 namespace {
 

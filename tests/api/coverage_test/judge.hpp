@@ -26,6 +26,7 @@ using support::Dyadic;
 using support::infinity_float;
 using texgen::Box;
 using texgen::Coverage;
+using texgen::Sphere;
 using texgen::TextureRegion;
 
 inline constexpr double infinite = std::numeric_limits<double>::infinity();

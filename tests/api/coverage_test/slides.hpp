@@ -24,6 +24,7 @@ using support::Random;
 using texgen::atlas_tile;
 using texgen::degrees;
 using texgen::whole_texture;
+using texgen::WorldTexgen;
 
 inline std::string hex(const Box& box) { return "box " + hex(box.min) + " to " + hex(box.max); }
 inline std::string hex(const texgen::Sphere& sphere) {

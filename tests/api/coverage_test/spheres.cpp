@@ -31,8 +31,6 @@ namespace coverage_cases {
 using support::Rational;
 using texgen::coverage;
 using texgen::LitVolume;
-using texgen::Sphere;
-using texgen::WorldTexgen;
 
 namespace {
 

@@ -21,8 +21,6 @@ namespace fixed_function_cases {
 
 using support::hex;
 using support::infinity_float;
-using support::rounded;
-using texgen::FixedFunctionVertex;
 
 TEST_CASE("an eye plane is multiplied by the inverse of the MODELVIEW that is current when it is specified") {
     TexGenUnit unit;

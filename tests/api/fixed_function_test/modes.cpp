@@ -18,9 +18,7 @@ namespace fixed_function_cases {
 
 using support::hex;
 using support::infinity_float;
-using support::rounded;
 using support::scalings;
-using texgen::FixedFunctionVertex;
 
 namespace {
 

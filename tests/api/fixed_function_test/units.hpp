@@ -14,8 +14,10 @@ using support::Coordinate;
 using support::coordinates;
 using support::NormalScaling;
 using support::Random;
+using support::rounded;
 using support::TexGenMode;
 using support::TexGenUnit;
+using texgen::FixedFunctionVertex;
 
 inline const glm::mat4 identity(1.0f);
 

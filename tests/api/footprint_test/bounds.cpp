@@ -25,11 +25,6 @@
 namespace footprint_cases {
 
 using support::everywhere;
-using support::same_bits;
-using support::setup_of;
-using texgen::FootprintSetup;
-using texgen::FragmentRect;
-using texgen::Tolerance;
 
 namespace {
 

@@ -34,8 +34,14 @@ using support::FootprintOutputs;
 using support::hex;
 using support::Random;
 using support::Real;
+using support::same_bits;
+using support::setup_of;
 using support::Shot;
+using texgen::Footprint;
+using texgen::FootprintSetup;
+using texgen::FragmentRect;
 using texgen::TexelsPerUnit;
+using texgen::Tolerance;
 using texgen::Triangle;
 using texgen::WindowVertex;
 

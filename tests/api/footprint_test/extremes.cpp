@@ -23,10 +23,7 @@
 namespace footprint_cases {
 
 using support::infinity_double;
-using support::setup_of;
 using texgen::Footprints;
-using texgen::FootprintSetup;
-using texgen::FragmentRect;
 using texgen::TriangleSetup;
 
 namespace {

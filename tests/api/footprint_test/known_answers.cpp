@@ -27,9 +27,6 @@ namespace footprint_cases {
 
 using support::infinity_double;
 using support::nan_double;
-using support::setup_of;
-using texgen::Footprint;
-using texgen::FootprintSetup;
 
 TEST_CASE("a Jacobian of rank 1 or 0, and texels that are none, get what the header says") {
     const std::array window{glm::vec2(0, 0), glm::vec2(64, 0), glm::vec2(0, 64)};

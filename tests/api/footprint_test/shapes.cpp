@@ -26,11 +26,6 @@
 
 namespace footprint_cases {
 
-using support::setup_of;
-using texgen::Footprint;
-using texgen::FootprintSetup;
-using texgen::FragmentRect;
-
 TEST_CASE("level, anisotropy and major axis are those of the exact Jacobian") {
     bool is_in_buffer = false;
     SUBCASE("by a set-up") {}

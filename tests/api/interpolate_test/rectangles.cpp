@@ -24,15 +24,8 @@
 
 namespace row_cases {
 
-using support::count_of;
-using support::everywhere;
 using support::HardFamily;
-using support::same_bits;
 using support::text;
-using support::vertices;
-using texgen::FragmentRect;
-using texgen::Triangle;
-using texgen::TriangleSetup;
 
 namespace {
 

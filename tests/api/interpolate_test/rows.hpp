@@ -18,13 +18,20 @@
 
 namespace row_cases {
 
+using support::count_of;
+using support::everywhere;
 using support::ExactTriangle;
 using support::hex;
 using support::Outputs;
 using support::Random;
+using support::same_bits;
 using support::Seen;
 using support::setup_of;
 using support::Shot;
+using support::vertices;
+using texgen::FragmentRect;
+using texgen::Triangle;
+using texgen::TriangleSetup;
 using texgen::WindowVertex;
 using texgen::Work;
 

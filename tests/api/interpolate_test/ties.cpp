@@ -18,10 +18,6 @@
 
 namespace row_cases {
 
-using support::count_of;
-using support::everywhere;
-using support::vertices;
-
 namespace {
 
 // Such an s at every fragment, or at every third, but the corners' y have up to 50 bits more than their x: what the

@@ -19,13 +19,6 @@
 
 namespace row_cases {
 
-using support::count_of;
-using support::everywhere;
-using support::same_bits;
-using texgen::FragmentRect;
-using texgen::Triangle;
-using texgen::TriangleSetup;
-
 namespace {
 
 FragmentRect small_rect(Random& random) {

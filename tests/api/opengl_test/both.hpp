@@ -19,6 +19,7 @@ namespace judged {
 
 namespace gl = support::gl;
 using support::Coordinate;
+using support::coordinates;
 using support::NormalScaling;
 using support::Random;
 using support::rounded;

@@ -18,7 +18,6 @@
 
 namespace judged {
 
-using support::coordinates;
 using support::hex;
 
 namespace {

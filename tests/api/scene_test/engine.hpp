@@ -28,6 +28,7 @@
 
 namespace scene_cases {
 
+using support::broken_preconditions;
 using support::hex;
 using support::infinity_float;
 using support::nan_float;
@@ -39,6 +40,7 @@ using texgen::ModelMatrix;
 using texgen::ObjectTexgen;
 using texgen::Projector;
 using texgen::Scene;
+using texgen::SceneWork;
 using texgen::TextureRegion;
 
 using Indices = std::vector<std::uint32_t>;

@@ -21,7 +21,6 @@
 namespace scene_cases {
 
 using support::allocations;
-using support::broken_preconditions;
 
 namespace {
 

@@ -24,8 +24,6 @@
 
 namespace scene_cases {
 
-using support::broken_preconditions;
-
 TEST_CASE(
     "no lit point of a box is without its pair, by exact arithmetic, where boxes touch the light's sides far away") {
     Random random(1202);

@@ -23,9 +23,7 @@
 
 namespace scene_cases {
 
-using support::broken_preconditions;
 using texgen::Aim;
-using texgen::SceneWork;
 
 TEST_CASE("only what changed is tested and computed: the other pairs keep their matrix where it is") {
     Random random(1203);

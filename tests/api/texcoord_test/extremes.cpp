@@ -28,11 +28,9 @@
 
 namespace texcoord_cases {
 
-using support::Dyadic;
 using support::infinity_float;
 using support::nan_float;
 using support::Outputs;
-using texgen::Tolerance;
 
 TEST_CASE("a quotient that is below all floats is a zero of its sign, in company as alone") {
     Random random(8);

@@ -21,12 +21,14 @@
 
 namespace texcoord_cases {
 
+using support::Dyadic;
 using support::hex;
 using support::Homogeneous;
 using support::Random;
 using texgen::Object;
 using texgen::ObjectTexgen;
 using texgen::Positions;
+using texgen::Tolerance;
 
 using Points = std::vector<glm::vec3>;
 

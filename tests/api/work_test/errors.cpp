@@ -25,13 +25,8 @@ namespace work_cases {
 
 using support::count_of;
 using support::everywhere;
-using support::hex;
-using support::Outputs;
-using support::Random;
 using support::setup_of;
-using texgen::FragmentRect;
 using texgen::TriangleSetup;
-using texgen::Work;
 
 namespace {
 

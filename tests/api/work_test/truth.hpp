@@ -11,9 +11,14 @@
 namespace work_cases {
 
 using support::ExactTriangle;
+using support::hex;
 using support::Homogeneous;
+using support::Outputs;
+using support::Random;
 using support::Shot;
+using texgen::FragmentRect;
 using texgen::TextureRegion;
+using texgen::Work;
 
 // What the nearest floats say of every fragment of the rectangle for which something is promised.
 struct Truth {

@@ -21,7 +21,9 @@ namespace triangle_costs {
 using support::everywhere;
 using support::hex;
 using support::Shot;
+using texgen::FragmentRect;
 using texgen::Tolerance;
+using texgen::Triangle;
 using texgen::WindowVertex;
 
 // Of masks alone, where ordinary ones are made at once.

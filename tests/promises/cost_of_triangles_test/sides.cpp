@@ -21,9 +21,6 @@
 
 namespace triangle_costs {
 
-using texgen::FragmentRect;
-using texgen::Triangle;
-
 namespace {
 
 // t is 0 along the upper edge, s along the left one: as of a quadrilateral of a user interface, or of a chart of a

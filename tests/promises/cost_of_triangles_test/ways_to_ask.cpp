@@ -21,9 +21,6 @@
 
 namespace triangle_costs {
 
-using texgen::FragmentRect;
-using texgen::Triangle;
-
 TEST_CASE("footprints by ids of triangles that are refused cost what others do") {
     support::Random random(75);
     constexpr int width = 128, height = 16;

@@ -23,10 +23,7 @@
 
 namespace float_state {
 
-using support::under;
 using texgen::Box;
-using texgen::Coverage;
-using texgen::ObjectTexgen;
 
 TEST_CASE("what is cut next to the eye or q = 0 is in front") {
     const std::array<texgen::ClipVertex, 3> by_eye{{{{0.0f, 0.0f, 1.0f, 0x1p-110f}, {0.0f, 0.0f, 0.0f, 1.0f}},

@@ -27,9 +27,14 @@ using support::Homogeneous;
 using support::Outputs;
 using support::Quotient;
 using support::Random;
+using support::under;
+using texgen::Coverage;
+using texgen::ObjectTexgen;
 using texgen::Segment;
 using texgen::TextureRegion;
 using texgen::Tolerance;
+using texgen::TriangleSetup;
+using texgen::Work;
 
 // What the state makes of a float that is read.
 inline float as_read(float value, const FloatState& state) {

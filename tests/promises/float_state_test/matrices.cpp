@@ -18,7 +18,6 @@ namespace float_state {
 
 using support::exactly;
 using support::Rational;
-using support::under;
 
 TEST_CASE("what is singular stays singular, and what is regular is inverted within its bound") {
     in_every_state([](const FloatState& state, Random& random) {

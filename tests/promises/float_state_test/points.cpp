@@ -21,8 +21,6 @@
 
 namespace float_state {
 
-using support::under;
-
 TEST_CASE("segments: the sign of q is exact, and errors are within half an ulp or the tolerance") {
     in_every_state([](const FloatState& state, Random& random) {
         Seen seen;

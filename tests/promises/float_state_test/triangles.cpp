@@ -25,10 +25,6 @@
 
 namespace float_state {
 
-using support::under;
-using texgen::TriangleSetup;
-using texgen::Work;
-
 TEST_CASE("fragments of triangles: the sign of q is exact, and errors are within half an ulp or the tolerance") {
     in_every_state([](const FloatState& state, Random& random) {
         Seen seen;
