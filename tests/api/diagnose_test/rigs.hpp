@@ -54,6 +54,7 @@ struct Lens {
 
     bool is_symmetric() const { return kind < LensKind::frustum; }
     bool is_reversed() const { return kind == LensKind::reversed || kind == LensKind::reversed_infinite; }
+    bool is_infinite() const { return kind == LensKind::infinite || kind == LensKind::reversed_infinite; }
 };
 
 inline glm::dmat4 projection(const Lens& lens, Conventions conventions) {
@@ -152,6 +153,17 @@ inline glm::dvec3 xyz(const glm::dvec4& v) { return {v.x, v.y, v.z}; }
 
 inline double dot3(const glm::dvec3& a, const glm::dvec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
+// A direction along an axis, and one that is not along another.
+inline glm::dvec3 any_axis(Random& random) {
+    glm::dvec3 result(0.0);
+    result[random.integer(0, 2)] = random.coin() ? 1.0 : -1.0;
+    return result;
+}
+inline glm::dvec3 any_axis_but(const glm::dvec3& other, Random& random) {
+    for (;;)
+        if (const glm::dvec3 axis = any_axis(random); std::fabs(dot3(axis, other)) <= 0.5) return axis;
+}
+
 // R^-1 (v - t) for a rotation times a scale and a translation.
 inline glm::dvec3 back_through(const glm::dmat4& pose, const glm::dvec3& v) {
     const glm::dvec3 from = v - xyz(pose[3]);
@@ -201,7 +213,7 @@ inline Lens random_lens(const Range& range, Random& random) {
     lens.aspect = random.coin() ? random.uniform(1.2, 3.0) : 1.0 / random.uniform(1.2, 3.0);
     lens.z_near = random.power_of_ten(-2.0, 1.0);
     lens.z_far = lens.z_near * random.power_of_ten(0.7, range.far_decades);
-    if (lens.kind == LensKind::infinite || lens.kind == LensKind::reversed_infinite) lens.z_far = infinity_double;
+    if (lens.is_infinite()) lens.z_far = infinity_double;
     const double height = random.uniform(0.3, 2.0) * lens.z_near;
     const double width = height * lens.aspect;
     lens.left = random.uniform(-1.5, 0.5) * width;

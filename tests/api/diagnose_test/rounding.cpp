@@ -26,16 +26,11 @@ namespace {
 
 // A projector along the axes, or turned about one of them, whose rounding to float leaves rows as they are.
 Rig aligned_rig(Random& random) {
-    const auto axis = [&] {
-        glm::dvec3 result(0.0);
-        result[random.integer(0, 2)] = random.coin() ? 1.0 : -1.0;
-        return result;
-    };
     Rig rig;
     rig.conventions = any_conventions(random);
     rig.lens = random_lens(ordinary, random);
     rig.lens.kind = random.integer(0, 2) == 0 ? static_cast<LensKind>(random.integer(0, 4)) : LensKind::orthographic;
-    if (rig.lens.kind == LensKind::infinite || rig.lens.kind == LensKind::reversed_infinite)
+    if (rig.lens.is_infinite())
         rig.lens.z_far = infinity_double;
     else if (!(rig.lens.z_far < infinity_double))
         rig.lens.z_far = 1000.0 * rig.lens.z_near;
@@ -50,12 +45,10 @@ Rig aligned_rig(Random& random) {
     const double unit = std::ldexp(1.0, random.integer(-3, 4)), most = random.power_of_ten(0.0, 6.0) / unit;
     for (int i = 0; i < 3; ++i)
         if (random.integer(0, 3) != 0) rig.aim.position[i] = unit * std::round(random.uniform(-most, most));
-    rig.aim.up = axis();
-    glm::dvec3 direction = axis();
-    while (std::fabs(dot3(direction, rig.aim.up)) > 0.5) direction = axis();
+    rig.aim.up = any_axis(random);
+    glm::dvec3 direction = any_axis_but(rig.aim.up, random);
     if (random.integer(0, 3) == 0) {
-        glm::dvec3 aside = axis();
-        while (std::fabs(dot3(aside, direction)) > 0.5) aside = axis();
+        const glm::dvec3 aside = any_axis_but(direction, random);
         direction += random.uniform(-2.0, 2.0) * aside;
     }
     rig.aim.target = rig.aim.position + direction;
