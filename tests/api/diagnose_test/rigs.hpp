@@ -308,6 +308,10 @@ inline Projector projector_of(const Rig& rig, const glm::dmat4& p, const glm::dm
     return {texgen::ProjectorProjection(p), texgen::ProjectorView(v), rig.conventions};
 }
 
+inline Parts parts_of(const Rig& rig, const glm::dmat4& p, const glm::dmat4& v) {
+    return {.projector = projector_of(rig, p, v), .in = rig.in, .region = rig.region, .depth = rig.depth};
+}
+
 inline LensFacts all_facts(const Rig& rig) {
     LensFacts facts{.z_near = rig.lens.z_near, .z_far = rig.lens.z_far, .mirrored = rig.mirrored};
     if (rig.lens.is_symmetric()) {

@@ -179,11 +179,8 @@ TEST_CASE("no valid set-up of round numbers is found fault with, where factors c
         rig.depth = random.coin() ? DepthMapping::unit : DepthMapping::ndc;
         far += most > 1000;
         empty_poses += rig.in != In::world && rig.pose == glm::dmat4(1.0);
-        Parts parts{.projector = projector_of(rig, projection(rig.lens, rig.conventions), rig.view),
-                    .in = rig.in,
-                    .region = rig.region,
-                    .depth = rig.depth,
-                    .lens = all_facts(rig)};
+        Parts parts = parts_of(rig, projection(rig.lens, rig.conventions), rig.view);
+        parts.lens = all_facts(rig);
         if (rig.in != In::world) parts.pose = rig.pose;
         if (random.coin()) parts.texgen = composed(rig, *parts.projector);
         if (most < 10 && rig.in != In::world && random.coin()) {
