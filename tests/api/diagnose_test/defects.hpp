@@ -100,7 +100,7 @@ inline bool is_composition(Thing thing) {
 }
 
 // Why one of two hides the other; null where both can be seen.
-const char* one_hides(Thing a, Thing b) {
+inline const char* one_hides(Thing a, Thing b) {
     if (a == b) return "they are two states of one thing";
     if (a == Thing::numbers) {
         if (is_composition(b) || b == Thing::q || b == Thing::age || b == Thing::points || b == Thing::precision)
