@@ -39,9 +39,8 @@ using texgen::Work;
 inline std::vector<int> awkward_widths() {
     std::vector<int> widths;
     for (int width = 1; width <= 71; ++width) widths.push_back(width);
-    for (const int middle : {128, 131, 192, 257, 320, 512, 516}) {
+    for (const int middle : {128, 131, 192, 257, 320, 512, 516})
         for (int width = middle - 3; width <= middle + 3; ++width) widths.push_back(width);
-    }
     return widths;
 }
 

@@ -24,24 +24,22 @@ inline void narrow(double& low, double& high, double fraction) noexcept {
 template <class RectangularLens>
 RectangularLens contain_rectangle(RectangularLens lens, double aspect) noexcept {
     const double of_lens = aspect_of(lens);
-    if (!is_aspect(aspect) || !is_aspect(of_lens)) {
+    if (!is_aspect(aspect) || !is_aspect(of_lens))
         lens.left = lens.right = nan;
-    } else if (aspect < of_lens) {
+    else if (aspect < of_lens)
         narrow(lens.left, lens.right, aspect / of_lens);
-    } else {
+    else
         narrow(lens.bottom, lens.top, of_lens / aspect);
-    }
     return lens;
 }
 
 inline TextureRegion cover_aspect(double of_lens, double aspect, const TextureRegion& picture) noexcept {
     glm::dvec2 low = (picture.min)(), high = (picture.max)();
     if (!is_aspect(aspect) || !is_aspect(of_lens)) return atlas_tile({nan, nan}, {nan, nan});
-    if (aspect > of_lens) {
+    if (aspect > of_lens)
         narrow(low.x, high.x, of_lens / aspect);
-    } else {
+    else
         narrow(low.y, high.y, aspect / of_lens);
-    }
     const TextureRegion part = atlas_tile(low, high);
     const std::optional<glm::dvec2> depth = picture.depth();
     return depth ? part.with_depth(depth->x, depth->y) : part;

@@ -46,9 +46,8 @@ inline DepthRow perspective_depth(double z_near, double z_far, bool reversed, De
 // What a lens is for a right-handed eye and y up, for the conventions; empty where doubles cannot hold it.
 inline std::optional<ProjectorProjection> checked_projection(glm::dmat4 matrix, Conventions conventions) noexcept {
     if (conventions.handedness == Handedness::left) matrix[2] = -matrix[2];
-    if (conventions.ndc_y == NdcY::down) {
+    if (conventions.ndc_y == NdcY::down)
         for (glm::length_t column = 0; column < 4; ++column) matrix[column][1] = -matrix[column][1];
-    }
     const bool usable = is_finite(matrix) && matrix[0][0] != 0.0 && matrix[1][1] != 0.0;
     return usable ? std::optional(ProjectorProjection(matrix)) : std::nullopt;
 }
