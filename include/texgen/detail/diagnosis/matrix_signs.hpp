@@ -3,9 +3,7 @@
 // What a matrix shows by itself: the marks of lenses, poses and texgen matrices that no valid one lacks, and those that
 // none carries.
 
-#include <array>
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -71,12 +69,10 @@ struct Minor {
     bool stands_out;
 };
 
-inline Minor minor_of(const glm::dmat4& m, const std::array<glm::length_t, 3>& rows,
-                      const std::array<glm::length_t, 3>& columns) noexcept {
+inline Minor minor_of(const glm::dmat4& m, const glm::length_t (&rows)[3], const glm::length_t (&columns)[3]) noexcept {
     glm::dmat3 scaled;
     for (glm::length_t i = 0; i < 3; ++i)
-        for (glm::length_t j = 0; j < 3; ++j)
-            scaled[i][j] = m[columns[static_cast<std::size_t>(j)]][rows[static_cast<std::size_t>(i)]];
+        for (glm::length_t j = 0; j < 3; ++j) scaled[i][j] = m[columns[j]][rows[i]];
     for (const bool is_row : {true, false}) {
         for (glm::length_t i = 0; i < 3; ++i) {
             const auto element = [&](glm::length_t j) -> double& { return is_row ? scaled[i][j] : scaled[j][i]; };
@@ -96,11 +92,11 @@ inline Minor minor_of(const glm::dmat4& m, const std::array<glm::length_t, 3>& r
     return {value, std::fabs(value) > rounding_of(m) * change + 0x1p-48 * terms};
 }
 
-inline constexpr std::array<glm::length_t, 3> axes{0, 1, 2};
+inline constexpr glm::length_t axes[3] = {0, 1, 2};
 
 // Whether three rows have rank 3. Valid ones do by their axes, or by two axes and the constants where light is
 // parallel; translations enter neither.
-inline bool are_independent(const glm::dmat4& m, const std::array<glm::length_t, 3>& rows) noexcept {
+inline bool are_independent(const glm::dmat4& m, const glm::length_t (&rows)[3]) noexcept {
     return minor_of(m, rows, axes).stands_out || minor_of(m, rows, {0, 1, 3}).stands_out ||
            minor_of(m, rows, {0, 2, 3}).stands_out || minor_of(m, rows, {1, 2, 3}).stands_out;
 }

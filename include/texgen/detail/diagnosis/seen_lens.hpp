@@ -55,8 +55,8 @@ public:
         for (glm::length_t row = 0; row < 2; ++row) {
             const glm::dvec3 axis_of_row = axis(texgen.value, row);
             centre_[row] = glm::dot(axis_of_row, q_) / (per_distance_ * per_distance_);
-            across_[static_cast<std::size_t>(row)] = axis_of_row - centre_[row] * q_;
-            focal_length_[row] = glm::length(across(row)) / per_distance_;
+            across_[row] = axis_of_row - centre_[row] * q_;
+            focal_length_[row] = glm::length(across_[row]) / per_distance_;
         }
         offset_ = texgen.value[3].z - rows_.limit * texgen.value[3].w;
         offset_error_ = rounding * (texgen.magnitude[3].z + std::fabs(rows_.limit) * texgen.magnitude[3].w);
@@ -64,9 +64,9 @@ public:
 
     // Whether it is a perspective that neither skews nor was skewed.
     bool is_lens() const noexcept {
-        const double lengths = glm::length(across(0)) * glm::length(across(1));
+        const double lengths = glm::length(across_[0]) * glm::length(across_[1]);
         if (!(per_distance_ > 0.0) || !(lengths > 0.0) || !rows_.are_parallel) return false;
-        const double cosine = glm::dot(across(0), across(1)) / lengths;
+        const double cosine = glm::dot(across_[0], across_[1]) / lengths;
         return is_finite(cosine) &&
                std::fabs(cosine) <= 4.0 * rounding_ * (2.0 + 1.0 / focal_length_.x + 1.0 / focal_length_.y);
     }
@@ -78,7 +78,7 @@ public:
             const glm::dvec3 share = glm::abs(v) / glm::length(v);
             return larger(smaller(share.x, share.y), smaller(larger(share.x, share.y), share.z)) <= accepted;
         };
-        return is_along_axis(across(0)) || is_along_axis(across(1)) || is_along_axis(q_);
+        return is_along_axis(across_[0]) || is_along_axis(across_[1]) || is_along_axis(q_);
     }
 
     // Whether the lens's axis goes to that s and t.
@@ -112,8 +112,8 @@ public:
     // Whether the picture stands on its head: its side is level, over y or over z, and t grows downwards. Not where it
     // is level over both and t grows upwards along one, which may be the world's up.
     bool hangs_down(double up_along_t) const noexcept {
-        const glm::dvec3 side = across(0) / glm::length(across(0)),
-                         up = up_along_t / glm::length(across(1)) * across(1);
+        const glm::dvec3 side = across_[0] / glm::length(across_[0]),
+                         up = up_along_t / glm::length(across_[1]) * across_[1];
         const double accepted = 8.0 * rounding_ * (1.0 + 1.0 / focal_length_.x);
         double lowest = 0.0, highest = 0.0;
         for (glm::length_t axis = 1; axis < 3; ++axis) {
@@ -128,12 +128,11 @@ private:
     static glm::dvec3 axis(const glm::dmat4& m, glm::length_t row) noexcept {
         return {m[0][row], m[1][row], m[2][row]};
     }
-    const glm::dvec3& across(glm::length_t row) const noexcept { return across_[static_cast<std::size_t>(row)]; }
 
     glm::dvec3 q_;
     DepthRows rows_;
     double rounding_, per_distance_;
-    std::array<glm::dvec3, 2> across_{};  // rows s and t without their part along q
+    glm::dvec3 across_[2] = {};  // rows s and t without their part along q
     glm::dvec2 centre_{0.0}, focal_length_{0.0};
     double offset_ = 0.0, offset_error_ = 0.0;  // r = limit q + offset
 };
