@@ -16,6 +16,7 @@
 #include "support/hex.hpp"
 #include "support/mirrors.hpp"
 #include "support/random.hpp"
+#include "support/special_values.hpp"
 #include "texgen/projector.hpp"
 
 namespace {
@@ -329,8 +330,7 @@ TEST_CASE("a mirror that is no plane, or beyond the range, mirrors nothing") {
     CHECK(texgen::mirrored(view, {0.0, 5e-324, 0.0, 0.0}));
     CHECK_FALSE(texgen::mirrored(view, {0.0, 0.0, 0.0, 1.0}));
     CHECK_FALSE(texgen::mirrored(view, {0.0, 1e-300, 0.0, 1e300}));
-    for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
-                             -std::numeric_limits<double>::infinity()}) {
+    for (const double bad : {support::nan_double, support::infinity_double, -support::infinity_double}) {
         for (int k = 0; k < 4; ++k) {
             glm::dvec4 plane(0.5, 1.0, 0.25, 2.0);
             plane[k] = bad;
@@ -374,8 +374,7 @@ TEST_CASE("an aim without a direction gives nothing") {
     // 2^-98 rad is the least angle that counts.
     CHECK_FALSE(look_at({{0, 0, 0}, {0, 0, -1}, {0x1p-99, 0, -1}}));
     CHECK(look_at({{0, 0, 0}, {0, 0, -1}, {0x1p-97, 0, -1}}));
-    for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
-                             -std::numeric_limits<double>::infinity()}) {
+    for (const double bad : {support::nan_double, support::infinity_double, -support::infinity_double}) {
         for (int k = 0; k < 3; ++k) {
             Aim aim{position, target, up};
             aim.position[k] = bad;

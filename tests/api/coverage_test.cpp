@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <span>
 #include <string>
 #include <utility>
@@ -28,6 +27,7 @@
 
 namespace coverage_cases {
 
+using support::nan_double;
 using support::nan_float;
 using texgen::coverage;
 
@@ -212,10 +212,9 @@ TEST_CASE("what is no body, no slide or no number gets a safe answer") {
         CHECK(of({{0, 0, -10}, 0.0f}) == Coverage::inside);
     }
     SUBCASE("regions without a point are outside, and none is made of a NaN in the box") {
-        const double nan = std::numeric_limits<double>::quiet_NaN();
         for (const TextureRegion& region :
-             {atlas_tile({0.6, 0.0}, {0.4, 1.0}), atlas_tile({0.0, nan}, {1.0, 1.0}),
-              atlas_tile({0.0, 0.0}, {1.0, nan}), atlas_tile({infinite, 0.0}, {-infinite, 1.0})}) {
+             {atlas_tile({0.6, 0.0}, {0.4, 1.0}), atlas_tile({0.0, nan_double}, {1.0, 1.0}),
+              atlas_tile({0.0, 0.0}, {1.0, nan_double}), atlas_tile({infinite, 0.0}, {-infinite, 1.0})}) {
             CHECK(coverage(transform, region, inside) == Coverage::outside);
             CHECK(coverage(transform, region, ball) == Coverage::outside);
             CHECK(coverage(transform, region, Box{inside.min, glm::vec3(nan_float)}) == Coverage::partial);
@@ -227,7 +226,7 @@ TEST_CASE("what is no body, no slide or no number gets a safe answer") {
     }
     SUBCASE("a matrix with a NaN or an infinity anywhere makes everything partial, but what is empty") {
         for (int element = 0; element < 16; ++element) {
-            for (const double bad : {std::numeric_limits<double>::quiet_NaN(), infinite, -infinite}) {
+            for (const double bad : {nan_double, infinite, -infinite}) {
                 glm::dmat4 matrix = transform.matrix();
                 matrix[element / 4][element % 4] = bad;
                 CHECK(coverage(WorldTexgen(matrix), whole_texture(), inside) == Coverage::partial);

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -310,7 +309,7 @@ TEST_CASE("an r that is no number is in no depth, and without one does not matte
     matrix[3] = {0.5, 0.5, nan_double, 1.0};
     const std::vector<glm::vec3> points(20, glm::vec3(0.25f));
     const std::vector<float> alpha(20, 0.25f);
-    const glm::vec4 end(0.5f, 0.5f, std::numeric_limits<float>::infinity(), 1.0f);
+    const glm::vec4 end(0.5f, 0.5f, support::infinity_float, 1.0f);
     const TextureRegion volume = texgen::whole_texture().with_depth(-infinity_double, infinity_double);
     for (const bool has_depth : {false, true}) {
         const TextureRegion region = has_depth ? volume : texgen::whole_texture();

@@ -25,6 +25,7 @@
 #include "support/outputs.hpp"
 #include "support/random.hpp"
 #include "support/shot.hpp"
+#include "support/special_values.hpp"
 #include "support/triangles.hpp"
 #include "texgen/reference.hpp"
 
@@ -110,8 +111,7 @@ TEST_CASE("the order of the vertices and the winding do not change a bit") {
 
 TEST_CASE("no setup comes of a number that is not finite, of a w that is not positive, or of no area") {
     Random random(700);
-    constexpr float infinity = std::numeric_limits<float>::infinity();
-    const float bad_numbers[] = {infinity, -infinity, std::numeric_limits<float>::quiet_NaN(),
+    const float bad_numbers[] = {support::infinity_float, -support::infinity_float, support::nan_float,
                                  std::bit_cast<float>(0xff812345u), std::bit_cast<float>(0x7f800001u)};
     for (int i = 0; i < 50; ++i) {
         const Triangle good = make_triangle(support::families[static_cast<std::size_t>(i) % 8], random);

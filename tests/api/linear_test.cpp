@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -328,7 +327,7 @@ TEST_CASE("a singular MODELVIEW, and anything that is not finite, stores nothing
     flat[1][1] = 0.0;
     CHECK_FALSE(eye_planes_as_stored(planes, texgen::ViewMatrix(flat)));
     CHECK_FALSE(eye_planes_as_stored(planes, texgen::ViewMatrix(glm::dmat4(0.0))));
-    for (const double bad : {support::nan_double, std::numeric_limits<double>::infinity()}) {
+    for (const double bad : {support::nan_double, support::infinity_double}) {
         glm::dmat4 m(1.0);
         m[2][1] = bad;
         CHECK_FALSE(eye_planes_as_stored(planes, texgen::ViewMatrix(m)));

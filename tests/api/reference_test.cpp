@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -314,7 +313,7 @@ TEST_CASE("behind the projector, and where q is 0, everything is 0") {
 }
 
 TEST_CASE("a NaN or an infinity in one coordinate stays there, and in q makes the triangle dark") {
-    for (const float bad : {nan_float, std::numeric_limits<float>::infinity()}) {
+    for (const float bad : {nan_float, support::infinity_float}) {
         Outputs clean(9), spoiled(9);
         Triangle triangle = simple_triangle();
         reference::interpolate(triangle, texgen::whole_texture(), {1, 1, 3, 3}, clean.spans());
@@ -326,8 +325,7 @@ TEST_CASE("a NaN or an infinity in one coordinate stays there, and in q makes th
         for (const float s : spoiled.s) CHECK_FALSE(std::isfinite(s));
     }
     // All coordinates would be 0 of an infinite q.
-    constexpr float infinity = std::numeric_limits<float>::infinity();
-    for (const float bad : {nan_float, infinity, -infinity}) {
+    for (const float bad : {nan_float, support::infinity_float, -support::infinity_float}) {
         Outputs out(9);
         Triangle triangle = simple_triangle();
         triangle.c.strq.w = bad;

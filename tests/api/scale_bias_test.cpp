@@ -7,11 +7,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "judges/oracle.hpp"
 #include "support/hex.hpp"
 #include "support/random.hpp"
+#include "support/special_values.hpp"
 #include "support/windows.hpp"
 
 namespace {
@@ -139,12 +139,11 @@ TEST_CASE("x and y in [-w, w] become [0, w] for the whole texture") {
 }
 
 TEST_CASE("a bad value spoils its own component, and w all of them") {
-    const float nan_float = std::numeric_limits<float>::quiet_NaN();
-    const glm::vec4 spoiled = texgen::to_texture({nan_float, 1, 1, 2}, texgen::opengl);
+    const glm::vec4 spoiled = texgen::to_texture({support::nan_float, 1, 1, 2}, texgen::opengl);
     CHECK_FALSE(spoiled.x == spoiled.x);
     CHECK(spoiled.y == 1.5f);
     CHECK(spoiled.z == 1.5f);
     CHECK(spoiled.w == 2.0f);
-    const glm::vec4 all = texgen::to_texture({1, 1, 1, nan_float}, texgen::opengl);
+    const glm::vec4 all = texgen::to_texture({1, 1, 1, support::nan_float}, texgen::opengl);
     for (int k = 0; k < 4; ++k) CHECK_FALSE(all[k] == all[k]);
 }

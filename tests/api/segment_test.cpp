@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,6 +17,7 @@
 #include "support/hex.hpp"
 #include "support/outputs.hpp"
 #include "support/random.hpp"
+#include "support/special_values.hpp"
 #include "texgen/interpolate.hpp"
 
 namespace segment_cases {
@@ -78,7 +78,7 @@ TEST_CASE("no error on a segment is larger than was accepted, in every family at
     Classes classes;
     for (const Tolerance tolerance :
          {texgen::texels(1.0 / 512.0, 4096.0), texgen::texels(1.0 / 16.0, 1024.0), texgen::texels(1.0, 256.0),
-          Tolerance{0.1}, Tolerance{10.0}, Tolerance{1e300}, Tolerance{std::numeric_limits<double>::infinity()}}) {
+          Tolerance{0.1}, Tolerance{10.0}, Tolerance{1e300}, Tolerance{support::infinity_double}}) {
         for (const SegmentFamily& family : families) {
             CAPTURE(std::string(family.name));
             Random random(++seed);
@@ -122,7 +122,7 @@ TEST_CASE("a tolerance that is not positive means exact") {
         const Case c = families[0].make(random, 40);
         Outputs expected(40);
         interpolate(c.segment, c.alphas, texgen::whole_texture(), expected.spans());
-        for (const double value : {-1.0, -0.0, std::numeric_limits<double>::quiet_NaN(), -HUGE_VAL}) {
+        for (const double value : {-1.0, -0.0, support::nan_double, -HUGE_VAL}) {
             Outputs out(40);
             interpolate(c.segment, c.alphas, texgen::whole_texture(), out.spans(), Tolerance{value});
             for (std::size_t k = 0; k < 4; ++k) REQUIRE_MESSAGE(same_bits(out[k], expected[k]), hex(c.segment));
@@ -191,8 +191,7 @@ TEST_CASE("a segment needs nothing only where nothing is lit, and no test only w
     for (const texgen::Work work :
          {texgen::Work::nothing, texgen::Work::affine, texgen::Work::divide, texgen::Work::divide_and_test})
         CHECK(counts[static_cast<int>(work)] > 50);
-    const float nan = std::numeric_limits<float>::quiet_NaN();
-    CHECK(texgen::work({{0.5f, 0.5f, 0.0f, nan}, {0.5f, 0.5f, 0.0f, 1.0f}}, texgen::whole_texture()) ==
+    CHECK(texgen::work({{0.5f, 0.5f, 0.0f, support::nan_float}, {0.5f, 0.5f, 0.0f, 1.0f}}, texgen::whole_texture()) ==
           texgen::Work::divide_and_test);
     CHECK(texgen::work({{0.5f, 0.5f, 0.0f, -1.0f}, {0.5f, 0.5f, 0.0f, 0.0f}}, texgen::whole_texture()) ==
           texgen::Work::nothing);

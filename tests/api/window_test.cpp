@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <vector>
 
 #include "judges/exact.hpp"
@@ -16,6 +15,7 @@
 #include "judges/real.hpp"
 #include "support/hex.hpp"
 #include "support/random.hpp"
+#include "support/special_values.hpp"
 #include "support/windows.hpp"
 #include "texgen/clip.hpp"
 #include "texgen/linear.hpp"
@@ -267,7 +267,7 @@ TEST_CASE("a camera without an inverse, a viewport without an area and what is n
     camera = scene.camera;
     camera.projection = texgen::ProjectorProjection(flat);
     CHECK_FALSE(texgen_of(camera, {0, 0, 1, 1}));
-    for (const double bad : {std::numeric_limits<double>::quiet_NaN(), HUGE_VAL}) {
+    for (const double bad : {support::nan_double, HUGE_VAL}) {
         glm::dmat4 m = scene.camera.view.matrix();
         m[3][1] = bad;
         camera = scene.camera;

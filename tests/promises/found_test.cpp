@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -55,7 +54,7 @@ TEST_CASE("behind the projector a coordinate whose numbers are NaN is 0, whateve
     }
     glm::dmat4 matrix(1.0);
     matrix[3] = {0.0, 0.0, 0.0, -1.0};
-    matrix[0][0] = std::numeric_limits<double>::quiet_NaN();
+    matrix[0][0] = support::nan_double;
     const std::vector<glm::vec3> points(20, glm::vec3(1.0f));
     Outputs out(points.size());
     project(texgen::ObjectTexgen(matrix), texgen::object_space(points), texgen::whole_texture(), out.spans());

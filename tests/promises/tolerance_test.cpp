@@ -8,13 +8,13 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <string>
 
 #include "judges/fragments.hpp"
 #include "support/hard_triangles.hpp"
 #include "support/outputs.hpp"
 #include "support/random.hpp"
+#include "support/special_values.hpp"
 #include "texgen/interpolate.hpp"
 
 namespace {
@@ -309,7 +309,7 @@ TEST_CASE("a tolerance that is not positive means exact; an infinite one is a to
             shot.rect = resized(shot.rect, random);
             Outputs expected(count_of(shot.rect));
             interpolate(setup_of(shot.triangle), shot.rect, expected.spans());
-            for (const double value : {-1.0, -0.0, std::numeric_limits<double>::quiet_NaN(), -HUGE_VAL}) {
+            for (const double value : {-1.0, -0.0, support::nan_double, -HUGE_VAL}) {
                 Outputs out(count_of(shot.rect));
                 interpolate(setup_of(shot.triangle, everywhere(), {value}), shot.rect, out.spans());
                 for (std::size_t k = 0; k < 4; ++k) REQUIRE_MESSAGE(same_bits(out[k], expected[k]), hex(shot));

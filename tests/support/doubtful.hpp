@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -15,6 +14,7 @@
 
 #include "judges/oracle.hpp"
 #include "support/random.hpp"
+#include "support/special_values.hpp"
 #include "texgen/primitives.hpp"
 
 namespace support {
@@ -149,24 +149,22 @@ inline std::vector<Cloud> doubtful_clouds(std::size_t count, Random& random) {
             if (i % every == every / 2) cloud.points[i] = with;
         clouds.push_back(cloud);
     };
-    const float nan = std::numeric_limits<float>::quiet_NaN();
-    const float infinity = std::numeric_limits<float>::infinity();
     const std::vector<glm::vec3> ties = clouds[1].points;
-    spoil("every second one NaN", ordinary.points, ordinary.matrix, 2, glm::vec3(nan));
-    spoil("every 64th one NaN", ordinary.points, ordinary.matrix, 64, {0.0f, nan, 0.0f});
-    spoil("all infinite", ordinary.points, ordinary.matrix, 1, glm::vec3(0.0f, 0.0f, infinity));
-    spoil("every second one infinite", ordinary.points, ordinary.matrix, 2, {-infinity, infinity, 0.0f});
-    spoil("every 64th one infinite, the rest ties", ties, orthographic, 64, {infinity, 0.0f, 0.0f});
+    spoil("every second one NaN", ordinary.points, ordinary.matrix, 2, glm::vec3(nan_float));
+    spoil("every 64th one NaN", ordinary.points, ordinary.matrix, 64, {0.0f, nan_float, 0.0f});
+    spoil("all infinite", ordinary.points, ordinary.matrix, 1, glm::vec3(0.0f, 0.0f, infinity_float));
+    spoil("every second one infinite", ordinary.points, ordinary.matrix, 2, {-infinity_float, infinity_float, 0.0f});
+    spoil("every 64th one infinite, the rest ties", ties, orthographic, 64, {infinity_float, 0.0f, 0.0f});
     spoil("every 64th one far away", ordinary.points, ordinary.matrix, 64, {1e30f, 0.0f, 0.0f});
     spoil("every second one far away", ordinary.points, ordinary.matrix, 2, {1e30f, -1e30f, 1.0f});
     spoil("every 64th one on q = 0", ordinary.points,
           matrix_of_rows({1.2, 0.1, -0.5, 0.3}, {-0.1, 1.3, -0.5, 0.2}, {0.0, 0.0, -1.0, -0.2}, {0.0, 0.0, -1.0, 0.0}),
           64, {1.0f, 2.0f, 0.0f});
 
-    for (const float bad : {nan, infinity}) {
+    for (const float bad : {nan_float, infinity_float}) {
         for (const int row : {0, 3}) {
             Cloud cloud = clouds[1];
-            cloud.name = std::string(row == 0 ? "s" : "q") + (bad == infinity ? " is infinite" : " is NaN");
+            cloud.name = std::string(row == 0 ? "s" : "q") + (bad == infinity_float ? " is infinite" : " is NaN");
             cloud.matrix[row == 0 ? 0 : 3][row] = static_cast<double>(bad);
             clouds.push_back(cloud);
             cloud.name += ", next to q = 0";
@@ -192,8 +190,6 @@ inline Stretch ordinary_stretch(std::size_t count, Random& random) {
 }
 
 inline std::vector<Stretch> doubtful_stretches(std::size_t count, Random& random) {
-    const float nan = std::numeric_limits<float>::quiet_NaN();
-    const float infinity = std::numeric_limits<float>::infinity();
     const Stretch ordinary = ordinary_stretch(count, random);
     std::vector<Stretch> stretches;
     const auto add = [&](const char* name, const glm::vec4& a, const glm::vec4& b, auto alpha) {
@@ -238,17 +234,17 @@ inline std::vector<Stretch> doubtful_stretches(std::size_t count, Random& random
     add("a and b huge", {3e38f, -2e38f, 1e38f, 1e38f}, {-3e38f, 3e38f, 2e38f, 3e38f}, any);
     add("a and b subnormal", {3e-40f, -2e-41f, 1e-42f, 1e-40f}, {-3e-40f, 3e-40f, 2e-40f, 3e-40f}, any);
     add("subnormal values", {3e-40f, -2e-41f, 1e-42f, 1.0f}, {-3e-40f, 3e-40f, 2e-40f, 3.0f}, any);
-    add("every alpha NaN", ordinary.segment.a, ordinary.segment.b, [&] { return nan; });
+    add("every alpha NaN", ordinary.segment.a, ordinary.segment.b, [&] { return nan_float; });
     add("every second alpha NaN", ordinary.segment.a, ordinary.segment.b,
-        [&, i = 0]() mutable { return i++ % 2 == 0 ? nan : any(); });
+        [&, i = 0]() mutable { return i++ % 2 == 0 ? nan_float : any(); });
     add("every 64th alpha NaN", ordinary.segment.a, ordinary.segment.b,
-        [&, i = 0]() mutable { return i++ % 64 == 9 ? nan : any(); });
-    add("s is NaN, next to the root of q", {nan, 2.0f, 3.0f, 0.7f}, {-3.0f, 1.0f, 2.0f, -1.3f},
+        [&, i = 0]() mutable { return i++ % 64 == 9 ? nan_float : any(); });
+    add("s is NaN, next to the root of q", {nan_float, 2.0f, 3.0f, 0.7f}, {-3.0f, 1.0f, 2.0f, -1.3f},
         [&] { return neighbour(0.35f, random.integer(-9, 9)); });
-    add("s is infinite, and q crosses 0", {infinity, 2.0f, 3.0f, 0.5f}, {-3.0f, 1.0f, 2.0f, -0.5f},
+    add("s is infinite, and q crosses 0", {infinity_float, 2.0f, 3.0f, 0.5f}, {-3.0f, 1.0f, 2.0f, -0.5f},
         [] { return 0.5f; });
-    add("q is NaN", {1.0f, 2.0f, 3.0f, nan}, {-3.0f, 1.0f, 2.0f, -1.3f}, any);
-    add("q is infinite", {1.0f, 2.0f, 3.0f, infinity}, {-3.0f, 1.0f, 2.0f, 1.3f}, any);
+    add("q is NaN", {1.0f, 2.0f, 3.0f, nan_float}, {-3.0f, 1.0f, 2.0f, -1.3f}, any);
+    add("q is infinite", {1.0f, 2.0f, 3.0f, infinity_float}, {-3.0f, 1.0f, 2.0f, 1.3f}, any);
     return stretches;
 }
 

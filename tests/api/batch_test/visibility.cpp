@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -18,6 +17,7 @@
 #include "support/outputs.hpp"
 #include "support/random.hpp"
 #include "support/shot.hpp"
+#include "support/special_values.hpp"
 #include "support/triangles.hpp"
 #include "texgen/batch.hpp"
 #include "texgen/footprint.hpp"
@@ -134,7 +134,7 @@ TEST_CASE("ids beyond the batch are no triangle, in runs and one by one, and ref
     const std::vector<Triangle> friendly(3, support::make_triangle(support::Family::friendly, random));
     const FragmentRect rect{100, 100, 64, 3};
     for (int k = 0; k < 4; ++k) {
-        for (const float bad : {std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()}) {
+        for (const float bad : {support::infinity_float, support::nan_float}) {
             std::vector<Triangle> triangles = friendly;
             triangles[1].c.strq[k] = bad;
             TriangleBatch batch(texgen::whole_texture());

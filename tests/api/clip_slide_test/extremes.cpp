@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
@@ -18,7 +17,9 @@
 
 namespace clip_slide_cases {
 
+using support::infinity_double;
 using support::infinity_float;
+using support::nan_double;
 using support::nan_float;
 
 TEST_CASE("at the projector itself there is no coordinate: a polygon that reaches it is cut just before") {
@@ -61,15 +62,14 @@ TEST_CASE("at the projector itself there is no coordinate: a polygon that reache
 }
 
 TEST_CASE("a region without a point leaves nothing; sides at infinity cut nothing") {
-    const double nan = std::numeric_limits<double>::quiet_NaN();
     Random random(1110);
     int left = 0;
     for (int i = 0; i < 2000; ++i) {
         const Polygon polygon{slide_vertex(random, whole_texture()), slide_vertex(random, whole_texture()),
                               slide_vertex(random, whole_texture())};
         CHECK(clipped(polygon, atlas_tile({1, 0}, {0, 1})).empty());
-        CHECK(clipped(polygon, atlas_tile({0, 0}, {1, nan})).empty());
-        CHECK(clipped(polygon, atlas_tile({nan, 0}, {1, 1})).empty());
+        CHECK(clipped(polygon, atlas_tile({0, 0}, {1, nan_double})).empty());
+        CHECK(clipped(polygon, atlas_tile({nan_double, 0}, {1, 1})).empty());
         const TextureRegion strip = atlas_tile({0.0, -HUGE_VAL}, {1.0, HUGE_VAL});
         const Polygon out = clipped(polygon, strip);
         left += !out.empty();
@@ -85,12 +85,12 @@ TEST_CASE("a region without a point leaves nothing; sides at infinity cut nothin
 TEST_CASE("a depth without a point leaves nothing, one to infinity cuts nothing, and r must be a number then") {
     const auto vertex = [](float s, float t, float r) { return ClipVertex{{s, t, r, 1}, {s, t, r, 1}}; };
     const Polygon polygon{vertex(0.25f, 0.25f, -2.0f), vertex(0.75f, 0.25f, 0.5f), vertex(0.5f, 0.75f, 3.0f)};
-    const double infinite = HUGE_VAL, nan = std::numeric_limits<double>::quiet_NaN();
-    for (const TextureRegion& region : {whole_texture().with_depth(1.0, 0.0), whole_texture().with_depth(nan, 1.0),
-                                        whole_texture().with_depth(0.0, nan), whole_texture().with_depth(4.0, 5.0)})
+    for (const TextureRegion& region :
+         {whole_texture().with_depth(1.0, 0.0), whole_texture().with_depth(nan_double, 1.0),
+          whole_texture().with_depth(0.0, nan_double), whole_texture().with_depth(4.0, 5.0)})
         CHECK(clipped(polygon, region).empty());
-    CHECK(bits(clipped(polygon, whole_texture().with_depth(-infinite, infinite))) == bits(polygon));
-    CHECK(clipped(polygon, whole_texture().with_depth(0.0, infinite)).size() == 4);
+    CHECK(bits(clipped(polygon, whole_texture().with_depth(-infinity_double, infinity_double))) == bits(polygon));
+    CHECK(clipped(polygon, whole_texture().with_depth(0.0, infinity_double)).size() == 4);
     CHECK(clipped(polygon, whole_texture().with_depth()).size() == 5);
     for (const float bad : {nan_float, infinity_float}) {
         Polygon spoilt = polygon;
@@ -101,7 +101,7 @@ TEST_CASE("a depth without a point leaves nothing, one to infinity cuts nothing,
     // In the place of an infinite limit stands q, so that all planes hold where a point is lit.
     glm::dmat4 matrix(1.0);
     matrix[2] = {0.25, 0.5, 2.0, 1.0};
-    const auto planes = clip_planes(texgen::WorldTexgen(matrix), whole_texture().with_depth(0.5, infinite));
+    const auto planes = clip_planes(texgen::WorldTexgen(matrix), whole_texture().with_depth(0.5, infinity_double));
     REQUIRE(planes.size() == 7);
     CHECK(planes[5] == glm::vec4(0.0f, 0.0f, 1.5f, -0.5f));
     CHECK(planes[6] == planes[0]);

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -308,8 +307,7 @@ TEST_CASE("a batch of spheres answers as the single question where sides of the 
         {0x1.4f991f25cfcc8p-19, 0x1.8af80740606cap-84, -0x1.00fe11fbbb954p94, 0x1.d5946c49badp70},
         {0x1.59aa370764aacp-13, -0x1.23db22a41ac28p-43, -0x1.a10589b706878p-66, 0x1.bbde6447d5fa8p42},
         {0x1.a3fdc30796fp-89, -0x1.413a26abfa0eap-8, 0x1.ae96da0e57f2p10, -0x1.4504a77b7fb68p49}};
-    constexpr double endless = std::numeric_limits<double>::infinity();
-    const TextureRegion region = atlas_tile({-endless, 0.0}, {1.0, endless}).with_depth(-0.144, endless);
+    const TextureRegion region = atlas_tile({-infinite, 0.0}, {1.0, infinite}).with_depth(-0.144, infinite);
     const LitVolume<texgen::World> volume(WorldTexgen(matrix), region);
     std::vector<Sphere> spheres{{{-0x1.9ea102p-37f, -0x1.a5823ep-35f, -0x1.0fa61p-35f}, 0x1.cp0f}};
     Random random(1177);

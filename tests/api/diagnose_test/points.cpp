@@ -3,7 +3,6 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -13,6 +12,7 @@
 #include <glm/vec3.hpp>
 
 #include "api/diagnose_test/rigs.hpp"
+#include "support/special_values.hpp"
 #include "texgen/diagnose.hpp"
 #include "texgen/projector.hpp"
 #include "texgen/texcoord.hpp"
@@ -96,9 +96,8 @@ TEST_CASE("points before and beyond the depth of the region are said, and one wi
     const auto of_region = [](const TextureRegion& region) {
         return diagnose(ProjectionSetup<Object>{.region = region});
     };
-    const double nan = std::numeric_limits<double>::quiet_NaN();
     CHECK(of_region(texgen::whole_texture().with_depth(0.5, 0.25)).contains(Defect::region_never_hit));
-    CHECK(of_region(texgen::whole_texture().with_depth(nan, 1.0)).contains(Defect::not_finite));
+    CHECK(of_region(texgen::whole_texture().with_depth(support::nan_double, 1.0)).contains(Defect::not_finite));
     CHECK(of_region(texgen::whole_texture().with_depth(0.0, HUGE_VAL)).empty());
 }
 

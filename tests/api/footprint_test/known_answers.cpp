@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <span>
 #include <utility>
 
@@ -168,7 +167,7 @@ TEST_CASE(
     bad.c.clip_w = 3.0f;
     CHECK(texgen::headlights(bad) == infinity_double);
     const Triangle good = bad;
-    for (const float no_number : {std::numeric_limits<float>::quiet_NaN(), HUGE_VALF}) {
+    for (const float no_number : {support::nan_float, HUGE_VALF}) {
         for (std::size_t i = 0; i < 3; ++i) {
             bad = good;
             support::vertices(bad)[i]->strq.w = no_number;

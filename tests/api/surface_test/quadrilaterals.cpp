@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <string>
 
 #include <glm/vec2.hpp>
@@ -14,6 +13,7 @@
 #include "judges/oracle.hpp"
 #include "support/hex.hpp"
 #include "support/random.hpp"
+#include "support/special_values.hpp"
 #include "support/surfaces.hpp"
 #include "texgen/surface.hpp"
 
@@ -199,7 +199,7 @@ TEST_CASE("keystone is the exact homography, element by element within 2^-48 of 
 TEST_CASE(
     "corners that are not finite, or of no size that products hold, are refused; a region's NaN stays where it is") {
     const Quadrilateral square{{{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}};
-    for (const double bad : {std::numeric_limits<double>::quiet_NaN(), HUGE_VAL, -HUGE_VAL, 0x1p401, 0x1p-401}) {
+    for (const double bad : {support::nan_double, HUGE_VAL, -HUGE_VAL, 0x1p401, 0x1p-401}) {
         for (int k = 0; k < 8; ++k) {
             Quadrilateral corners = square;
             corners[static_cast<std::size_t>(k / 2)][k % 2] = bad;
@@ -207,7 +207,7 @@ TEST_CASE(
             CHECK_FALSE(keystone(corners));
         }
     }
-    const auto region = texgen::atlas_tile({0.0, std::numeric_limits<double>::quiet_NaN()}, {1.0, 1.0});
+    const auto region = texgen::atlas_tile({0.0, support::nan_double}, {1.0, 1.0});
     CHECK_FALSE(keystone(square, region));
     const auto strq = quadrilateral(square, region);
     REQUIRE(strq);

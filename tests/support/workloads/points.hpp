@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -16,6 +15,7 @@
 #include <glm/vec4.hpp>
 
 #include "support/random.hpp"
+#include "support/special_values.hpp"
 #include "support/stopwatch.hpp"
 #include "support/workloads/numbers.hpp"
 #include "support/workloads/outputs.hpp"
@@ -47,7 +47,7 @@ inline Numbers draw_points(Random& random) {
     for (std::size_t i = 0; i < pattern; ++i) {
         glm::vec3 point = random.coin() ? random.vector3(2.0) : glm::vec3(0.0f);
         if (random.coin()) point = random.vector3(4.0);
-        if (random.integer(0, 31) == 0) point.y = std::numeric_limits<float>::quiet_NaN();
+        if (random.integer(0, 31) == 0) point.y = nan_float;
         if (random.integer(0, 3) == 0)
             for (int k = 0; k < 3; ++k) point[k] = to_float(any_float(random));
         // On q = 0, but for the rounding.
