@@ -26,7 +26,8 @@
 namespace TEXGEN_NAMESPACE {
 
 // A symmetric lens by its angle. z_near and z_far are distances in front of the eye, in the units of the world; z_far
-// may be infinite. reversed_depth maps near to 1 and far to the other end of the range, so that r = 1 at near.
+// may be infinite. reversed_depth, of any lens, maps near to 1 and far to the other end of the range, so that r = 1 at
+// near.
 struct PerspectiveLens {
     Angle fovy;  // the full vertical angle, between 0 and 180 degrees, both excluded
     double aspect;
@@ -35,15 +36,17 @@ struct PerspectiveLens {
 };
 
 // A lens by the rectangle that it sees of the near plane. left > right or bottom > top mirrors the picture, as in
-// OpenGL.
+// OpenGL. z_far is finite: 1e30 times z_near serves for an infinite one.
 struct FrustumLens {
     double left, right, bottom, top, z_near, z_far;
+    bool reversed_depth = false;
 };
 
 // A lens of parallel rays. z_near and z_far may have any sign; left > right or bottom > top mirrors the picture, as in
 // OpenGL.
 struct OrthographicLens {
     double left, right, bottom, top, z_near, z_far;
+    bool reversed_depth = false;
 };
 
 // Where the coordinates of pixels are whole: in the centres of pixels, as OpenCV counts them, so that the picture
@@ -56,6 +59,7 @@ struct PinholeLens {
     double fx, fy, cx, cy, width, height, z_near, z_far;
     detail::Required<PixelCentre> centre;
     double skew = 0.0;
+    bool reversed_depth = false;
 };
 
 // Where a projector stands, what it looks at, and what is above, in the world.

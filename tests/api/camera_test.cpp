@@ -42,7 +42,8 @@ PinholeLens random_lens(Random& random) {
             .z_near = random.power_of_ten(-3.0, 0.0),
             .z_far = random.coin() ? infinity_double : random.power_of_ten(0.1, 6.0),
             .centre = random.coin() ? PixelCentre::integer : PixelCentre::half,
-            .skew = random.coin() ? 0.0 : width * random.uniform(-0.1, 0.1)};
+            .skew = random.coin() ? 0.0 : width * random.uniform(-0.1, 0.1),
+            .reversed_depth = random.coin()};
 }
 
 std::string describe(const PinholeLens& lens) {
@@ -141,8 +142,12 @@ TEST_CASE("the elements of a pinhole's matrix are within 4 double ulp of exact r
         for (const double zero : {m[0][1], m[0][2], m[0][3], m[1][2], m[1][3], m[3][0], m[3][1], m[3][3]})
             REQUIRE(zero == 0.0);
         // Depth is that of the other lenses.
-        const auto other = perspective(
-            {.fovy = texgen::degrees(60), .aspect = 1.0, .z_near = lens.z_near, .z_far = lens.z_far}, conventions);
+        const auto other = perspective({.fovy = texgen::degrees(60),
+                                        .aspect = 1.0,
+                                        .z_near = lens.z_near,
+                                        .z_far = lens.z_far,
+                                        .reversed_depth = lens.reversed_depth},
+                                       conventions);
         REQUIRE(m[2][2] == other->matrix()[2][2]);
         REQUIRE(m[3][2] == other->matrix()[3][2]);
     }

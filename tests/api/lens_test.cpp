@@ -47,6 +47,14 @@ Depth exact_depth(double z_near, double z_far, bool reversed, DepthRange range) 
     return {(at_near * near - at_far * far) / (far - near), (at_near - at_far) * near * far / (far - near)};
 }
 
+// The same of parallel rays, where the NDC is clip z.
+Depth exact_parallel_depth(double z_near, double z_far, bool reversed, DepthRange range) {
+    const Real low = range == DepthRange::zero_to_one ? 0 : -1, high = 1;
+    const Real at_near = reversed ? high : low, at_far = reversed ? low : high;
+    const Real near(z_near), far(z_far);
+    return {(at_near - at_far) / (far - near), (at_near * far - at_far * near) / (far - near)};
+}
+
 std::string describe(const PerspectiveLens& lens) {
     return "fovy " + hex(lens.fovy.in_radians()) + " aspect " + hex(lens.aspect) + " near " + hex(lens.z_near) +
            " far " + hex(lens.z_far) + (lens.reversed_depth ? " reversed" : "");
@@ -145,16 +153,22 @@ TEST_CASE("an off-axis frustum is within 4 double ulp, and its corners fall on t
                                        .bottom = bottom,
                                        .top = bottom + random.power_of_ten(-3.0, 1.0),
                                        .z_near = random.power_of_ten(-3.0, 3.0),
-                                       .z_far = 1e4};
-        const auto projection = frustum(lens, with(DepthRange::zero_to_one));
+                                       .z_far = random.coin() ? 1e4 : 1e33,
+                                       .reversed_depth = random.coin()};
+        const DepthRange range = random.coin() ? DepthRange::zero_to_one : DepthRange::negative_one_to_one;
+        const auto projection = frustum(lens, with(range));
         REQUIRE(projection);
         const glm::dmat4& m = projection->matrix();
+        const Depth depth = exact_depth(lens.z_near, lens.z_far, lens.reversed_depth, range);
         const Real width = Real(lens.right) - Real(lens.left), height = Real(lens.top) - Real(lens.bottom);
-        const std::array<Real, 4> exact{2 * Real(lens.z_near) / width, 2 * Real(lens.z_near) / height,
+        const std::array<Real, 6> exact{2 * Real(lens.z_near) / width,
+                                        2 * Real(lens.z_near) / height,
                                         (Real(lens.right) + Real(lens.left)) / width,
-                                        (Real(lens.top) + Real(lens.bottom)) / height};
-        const std::array<double, 4> computed{m[0][0], m[1][1], m[2][0], m[2][1]};
-        for (std::size_t k = 0; k < 4; ++k) worst = std::max(worst, support::error_in_ulps(computed[k], exact[k]));
+                                        (Real(lens.top) + Real(lens.bottom)) / height,
+                                        depth.scale,
+                                        depth.offset};
+        const std::array<double, 6> computed{m[0][0], m[1][1], m[2][0], m[2][1], m[2][2], m[3][2]};
+        for (std::size_t k = 0; k < 6; ++k) worst = std::max(worst, support::error_in_ulps(computed[k], exact[k]));
         for (const bool right : {false, true}) {
             for (const bool top : {false, true}) {
                 const glm::dvec4 clip =
@@ -180,21 +194,20 @@ TEST_CASE("an orthographic lens is within 4 double ulp") {
                                             .bottom = bottom,
                                             .top = bottom - random.power_of_ten(-3.0, 4.0),
                                             .z_near = z_near,
-                                            .z_far = z_near + random.power_of_ten(-3.0, 4.0)};
-        const bool unit = random.coin();
-        const auto projection =
-            orthographic(lens, with(unit ? DepthRange::zero_to_one : DepthRange::negative_one_to_one));
+                                            .z_far = z_near + random.power_of_ten(-3.0, 4.0),
+                                            .reversed_depth = random.coin()};
+        const DepthRange range = random.coin() ? DepthRange::zero_to_one : DepthRange::negative_one_to_one;
+        const auto projection = orthographic(lens, with(range));
         REQUIRE(projection);
         const glm::dmat4& m = projection->matrix();
         const Real width = Real(lens.right) - Real(lens.left), height = Real(lens.top) - Real(lens.bottom);
-        const Real depth = Real(lens.z_far) - Real(lens.z_near);
-        const std::array<Real, 6> exact{
-            2 / width,
-            2 / height,
-            (unit ? -1 : -2) / depth,
-            -(Real(lens.right) + Real(lens.left)) / width,
-            -(Real(lens.top) + Real(lens.bottom)) / height,
-            -(unit ? Real(lens.z_near) : Real(Real(lens.z_far) + Real(lens.z_near))) / depth};
+        const Depth depth = exact_parallel_depth(lens.z_near, lens.z_far, lens.reversed_depth, range);
+        const std::array<Real, 6> exact{2 / width,
+                                        2 / height,
+                                        depth.scale,
+                                        -(Real(lens.right) + Real(lens.left)) / width,
+                                        -(Real(lens.top) + Real(lens.bottom)) / height,
+                                        depth.offset};
         const std::array<double, 6> computed{m[0][0], m[1][1], m[2][2], m[3][0], m[3][1], m[3][2]};
         for (std::size_t k = 0; k < 6; ++k) worst = std::max(worst, support::error_in_ulps(computed[k], exact[k]));
         REQUIRE(m[3][3] == 1.0);
@@ -226,43 +239,44 @@ TEST_CASE("a lens of any finite numbers has its matrix, each element within 4 ul
     for (int i = 0; i < 80000; ++i) {
         const double left = number(1.0), right = number(left), bottom = number(left), top = number(bottom);
         double z_near = number(right), z_far = number(z_near);
-        const bool unit = random.coin(), reversed = random.coin();
-        const Conventions conventions = with(unit ? DepthRange::zero_to_one : DepthRange::negative_one_to_one);
+        const DepthRange range = random.coin() ? DepthRange::zero_to_one : DepthRange::negative_one_to_one;
+        const Conventions conventions = with(range);
+        const bool reversed = random.coin();
         const int kind = i % 4;
         if (kind != 1) z_near = std::fabs(z_near), z_far = std::fabs(z_far);
         if (!(z_near < z_far && z_far < infinity_double) || left == right || bottom == top) continue;
         if (kind != 1 && !(z_near > 0.0)) continue;
-        const Real n(z_near), f(z_far), width = Real(right) - Real(left), height = Real(top) - Real(bottom);
+        const Real n(z_near), width = Real(right) - Real(left), height = Real(top) - Real(bottom);
+        const Depth depth = kind == 1 ? exact_parallel_depth(z_near, z_far, reversed, range)
+                                      : exact_depth(z_near, z_far, reversed, range);
         const Real sum_x = (Real(right) + Real(left)) / width, sum_y = (Real(top) + Real(bottom)) / height;
         std::optional<texgen::ProjectorProjection> projection;
         std::array<Real, 6> exact;
         std::array<glm::ivec2, 6> place;  // column, row
-        std::string input =
-            hex(left) + " " + hex(right) + " " + hex(bottom) + " " + hex(top) + " " + hex(z_near) + " " + hex(z_far);
+        std::string input = hex(left) + " " + hex(right) + " " + hex(bottom) + " " + hex(top) + " " + hex(z_near) +
+                            " " + hex(z_far) + (reversed ? " reversed" : "");
         if (kind == 0) {
-            projection = frustum({left, right, bottom, top, z_near, z_far}, conventions);
-            const Depth depth = exact_depth(z_near, z_far, false, conventions.depth);
+            projection = frustum({left, right, bottom, top, z_near, z_far, reversed}, conventions);
             exact = {2 * n / width, 2 * n / height, sum_x, sum_y, depth.scale, depth.offset};
             place = {glm::ivec2(0, 0), {1, 1}, {2, 0}, {2, 1}, {2, 2}, {3, 2}};
         } else if (kind == 1) {
-            projection = orthographic({left, right, bottom, top, z_near, z_far}, conventions);
-            exact = {2 / width, 2 / height, -sum_x, -sum_y, (unit ? -1 : -2) / (f - n), -(unit ? n : n + f) / (f - n)};
+            projection = orthographic({left, right, bottom, top, z_near, z_far, reversed}, conventions);
+            exact = {2 / width, 2 / height, -sum_x, -sum_y, depth.scale, depth.offset};
             place = {glm::ivec2(0, 0), {1, 1}, {3, 0}, {3, 1}, {2, 2}, {3, 2}};
         } else if (kind == 2) {
             const bool at_half = random.coin();
-            const texgen::PinholeLens lens{
-                .fx = std::fabs(left),
-                .fy = std::fabs(bottom),
-                .cx = right,
-                .cy = top,
-                .width = std::fabs(number(left)),
-                .height = std::fabs(number(top)),
-                .z_near = z_near,
-                .z_far = z_far,
-                .centre = at_half ? texgen::PixelCentre::half : texgen::PixelCentre::integer};
+            const texgen::PinholeLens lens{.fx = std::fabs(left),
+                                           .fy = std::fabs(bottom),
+                                           .cx = right,
+                                           .cy = top,
+                                           .width = std::fabs(number(left)),
+                                           .height = std::fabs(number(top)),
+                                           .z_near = z_near,
+                                           .z_far = z_far,
+                                           .centre = at_half ? texgen::PixelCentre::half : texgen::PixelCentre::integer,
+                                           .reversed_depth = reversed};
             input += " " + hex(lens.width) + " " + hex(lens.height) + (at_half ? " half" : "");
             projection = pinhole(lens, conventions);
-            const Depth depth = exact_depth(z_near, z_far, false, conventions.depth);
             const Real edge = at_half ? 0 : 1, pixels_x(lens.width), pixels_y(lens.height);
             exact = {2 * Real(lens.fx) / pixels_x,
                      2 * Real(lens.fy) / pixels_y,
@@ -277,7 +291,6 @@ TEST_CASE("a lens of any finite numbers has its matrix, each element within 4 ul
             if (random.integer(0, 3) == 0) fovy = std::ldexp(random.uniform(1.0, 4.0), -1024);  // no double is its half
             input = hex(fovy) + " " + hex(aspect) + " " + hex(z_near) + " " + hex(z_far);
             projection = perspective({texgen::radians(fovy), aspect, z_near, z_far, reversed}, conventions);
-            const Depth depth = exact_depth(z_near, z_far, reversed, conventions.depth);
             const Real focal_length = 1 / tan(Real(fovy) / 2);
             exact = {focal_length / Real(aspect), focal_length, Real(0), Real(0), depth.scale, depth.offset};
             place = {glm::ivec2(0, 0), {1, 1}, {2, 0}, {2, 1}, {2, 2}, {3, 2}};

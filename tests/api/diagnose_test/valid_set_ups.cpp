@@ -37,7 +37,7 @@ void count(const Rig& rig, Classes& classes) {
     classes.narrow += rig.lens.is_symmetric() && rig.lens.fovy < 2.0;
     classes.wide += rig.lens.is_symmetric() && rig.lens.fovy > 178.0;
     classes.parallel += rig.lens.kind == LensKind::orthographic;
-    classes.reversed += rig.lens.is_reversed();
+    classes.reversed += rig.lens.is_reversed;
     classes.infinite += rig.lens.z_far == infinity_double;
     classes.off_axis += rig.lens.kind == LensKind::frustum;
     classes.mirrored += rig.mirrored;
@@ -154,7 +154,7 @@ TEST_CASE("no valid set-up of round numbers is found fault with, where factors c
     for (int i = 0; i < 50000; ++i) {
         Rig rig;
         rig.conventions = any_conventions(random);
-        rig.lens = {static_cast<LensKind>(random.integer(0, 5)),
+        rig.lens = {static_cast<LensKind>(random.integer(0, 3)),
                     random.coin() ? 90.0 : 60.0,
                     random.coin() ? 1.0 : 2.0,
                     1.0,
@@ -162,8 +162,9 @@ TEST_CASE("no valid set-up of round numbers is found fault with, where factors c
                     -1.0,
                     1.0,
                     random.coin() ? -1.0 : 0.0,
-                    1.0};
-        if (rig.lens.is_infinite()) rig.lens.z_far = infinity_double;
+                    1.0,
+                    random.coin()};
+        if (rig.lens.kind == LensKind::infinite) rig.lens.z_far = infinity_double;
         const int most = random.integer(0, 2) == 0 ? 10000000 : random.integer(0, 3);
         rig.aim.position = {whole(most), whole(most), whole(most)};
         rig.aim.up = any_axis(random);

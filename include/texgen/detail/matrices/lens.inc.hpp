@@ -25,22 +25,34 @@ private:
     double unit_, sum_, difference_;
 };
 
-// Row z of a perspective matrix: clip z = scale * z_eye + offset, clip w = -z_eye.
+// Row z of a lens: clip z = scale * z_eye + offset. Clip w is -z_eye, or 1 of parallel rays.
 struct DepthRow {
     double scale, offset;
 };
 
-inline DepthRow perspective_depth(double z_near, double z_far, bool reversed, DepthRange range) noexcept {
-    const bool infinite = !is_finite(z_far);
-    const LensExtent depth(z_near, z_far);
-    const double far_ratio = infinite ? 1.0 : depth.end_over_length(z_far);    // far / (far - near)
-    const double near_ratio = infinite ? 0.0 : depth.end_over_length(z_near);  // near / (far - near)
+DepthRow perspective_depth(const auto& lens, DepthRange range) noexcept {
+    const bool infinite = !is_finite(lens.z_far);
+    const LensExtent depth(lens.z_near, lens.z_far);
+    const double far_ratio = infinite ? 1.0 : depth.end_over_length(lens.z_far);    // far / (far - near)
+    const double near_ratio = infinite ? 0.0 : depth.end_over_length(lens.z_near);  // near / (far - near)
     if (range == DepthRange::negative_one_to_one) {
         const double scale = infinite ? 1.0 : depth.sum_over_length();
-        const double offset = z_near * (2.0 * far_ratio);
-        return reversed ? DepthRow{scale, offset} : DepthRow{-scale, -offset};
+        const double offset = lens.z_near * (2.0 * far_ratio);
+        return lens.reversed_depth ? DepthRow{scale, offset} : DepthRow{-scale, -offset};
     }
-    return reversed ? DepthRow{near_ratio, z_near * far_ratio} : DepthRow{-far_ratio, -z_near * far_ratio};
+    return lens.reversed_depth ? DepthRow{near_ratio, lens.z_near * far_ratio}
+                               : DepthRow{-far_ratio, -lens.z_near * far_ratio};
+}
+
+inline DepthRow orthographic_depth(const OrthographicLens& lens, DepthRange range) noexcept {
+    const LensExtent depth(lens.z_near, lens.z_far);
+    if (range == DepthRange::negative_one_to_one) {
+        const double scale = depth.twice_over_length(1.0), offset = depth.sum_over_length();
+        return lens.reversed_depth ? DepthRow{scale, offset} : DepthRow{-scale, -offset};
+    }
+    const double scale = depth.twice_over_length(0.5);
+    return lens.reversed_depth ? DepthRow{scale, depth.end_over_length(lens.z_far)}
+                               : DepthRow{-scale, -depth.end_over_length(lens.z_near)};
 }
 
 // What a lens is for a right-handed eye and y up, for the conventions; empty where doubles cannot hold it.
@@ -89,9 +101,8 @@ inline std::optional<ProjectorProjection> perspective(const PerspectiveLens& len
     // cos / sin and not 1 / tan: two correctly rounded functions and one division, at any angle whose half is exact.
     const double focal_length =
         half_angle < 0x1p-30 ? 2.0 / lens.fovy.in_radians() : std::cos(half_angle) / std::sin(half_angle);
-    return detail::checked_perspective(
-        {focal_length / lens.aspect, focal_length}, 0.0, glm::dvec2(0.0),
-        detail::perspective_depth(lens.z_near, lens.z_far, lens.reversed_depth, conventions.depth), conventions);
+    return detail::checked_perspective({focal_length / lens.aspect, focal_length}, 0.0, glm::dvec2(0.0),
+                                       detail::perspective_depth(lens, conventions.depth), conventions);
 }
 
 inline std::optional<ProjectorProjection> frustum(const FrustumLens& lens, Conventions conventions) noexcept {
@@ -100,8 +111,7 @@ inline std::optional<ProjectorProjection> frustum(const FrustumLens& lens, Conve
     const detail::LensExtent height(lens.bottom, lens.top);
     return detail::checked_perspective({width.twice_over_length(lens.z_near), height.twice_over_length(lens.z_near)},
                                        0.0, {width.sum_over_length(), height.sum_over_length()},
-                                       detail::perspective_depth(lens.z_near, lens.z_far, false, conventions.depth),
-                                       conventions);
+                                       detail::perspective_depth(lens, conventions.depth), conventions);
 }
 
 inline std::optional<ProjectorProjection> orthographic(const OrthographicLens& lens, Conventions conventions) noexcept {
@@ -109,15 +119,14 @@ inline std::optional<ProjectorProjection> orthographic(const OrthographicLens& l
         return std::nullopt;
     const detail::LensExtent width(lens.left, lens.right);
     const detail::LensExtent height(lens.bottom, lens.top);
-    const detail::LensExtent depth(lens.z_near, lens.z_far);
-    const bool zero_to_one = conventions.depth == DepthRange::zero_to_one;
+    const detail::DepthRow depth = detail::orthographic_depth(lens, conventions.depth);
     glm::dmat4 matrix(0.0);
     matrix[0][0] = width.twice_over_length(1.0);
     matrix[1][1] = height.twice_over_length(1.0);
-    matrix[2][2] = -depth.twice_over_length(zero_to_one ? 0.5 : 1.0);
+    matrix[2][2] = depth.scale;
     matrix[3][0] = -width.sum_over_length();
     matrix[3][1] = -height.sum_over_length();
-    matrix[3][2] = -(zero_to_one ? depth.end_over_length(lens.z_near) : depth.sum_over_length());
+    matrix[3][2] = depth.offset;
     matrix[3][3] = 1.0;
     return detail::checked_projection(matrix, conventions);
 }
@@ -129,11 +138,11 @@ inline std::optional<ProjectorProjection> pinhole(const PinholeLens& lens, Conve
     if (!(lens.z_near > 0.0 && lens.z_near < lens.z_far)) return std::nullopt;
     const detail::LensExtent width(0.0, lens.width);
     const detail::LensExtent height(0.0, lens.height);
-    return detail::checked_perspective(
-        {width.twice_over_length(lens.fx), height.twice_over_length(lens.fy)}, -width.twice_over_length(lens.skew),
-        {detail::off_axis_term(lens.cx, lens.width, lens.centre),
-         -detail::off_axis_term(lens.cy, lens.height, lens.centre)},
-        detail::perspective_depth(lens.z_near, lens.z_far, false, conventions.depth), conventions);
+    return detail::checked_perspective({width.twice_over_length(lens.fx), height.twice_over_length(lens.fy)},
+                                       -width.twice_over_length(lens.skew),
+                                       {detail::off_axis_term(lens.cx, lens.width, lens.centre),
+                                        -detail::off_axis_term(lens.cy, lens.height, lens.centre)},
+                                       detail::perspective_depth(lens, conventions.depth), conventions);
 }
 
 }  // namespace TEXGEN_NAMESPACE
