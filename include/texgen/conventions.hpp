@@ -11,8 +11,8 @@
 
 #include "detail/matrices/required.hpp"
 
-// 0.4.30: 10000 major + 100 minor + patch.
-#define TEXGEN_VERSION 430
+// 0.4.31: 10000 major + 100 minor + patch.
+#define TEXGEN_VERSION 431
 
 namespace TEXGEN_NAMESPACE {
 
