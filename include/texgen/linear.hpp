@@ -86,6 +86,8 @@ inline constexpr double window_linear_error = 0x1p-47;
 // down it is as it is.
 // Bad input: empty where inverse() refuses V_c or P_c, but for what overflows, the viewport's width or height is 0, or
 // a number is not finite. The camera's conventions are its own.
+// Cost: 2 to 3 us. Of a camera with many projectors, eye_linear() of each times one inverse of Transform<Window,
+// Eye>(W P_c), made once, takes 40 ns; it errs little more, but nothing bounds that.
 // Source: Everitt, Projective Texture Mapping, (4), with the window in the place of the eye.
 inline std::optional<WindowTexgen> window_linear(const Projector& projector, const Projector& camera,
                                                  const Viewport& viewport, TextureRegion region = whole_texture(),

@@ -31,7 +31,8 @@
 namespace TEXGEN_NAMESPACE {
 
 // Divided coordinates, planar. An empty span is not computed. lit is 1 where the slide falls and 0 elsewhere: in the
-// sides of its region and, where it has one, in its depth.
+// sides of its region and, where it has one, in its depth. Name them, {.s = s, .t = t, .lit = lit}: a third one without
+// a name is r.
 struct Texcoords {
     std::span<float> s = {}, t = {}, r = {}, lit = {};
 };
@@ -41,8 +42,9 @@ struct HomogeneousTexcoords {
     std::span<float> s = {}, t = {}, r = {}, q = {};
 };
 
-// A view of points with w = 1 in a known space: three arrays of floats that share a stride. It owns nothing, and reads
-// floats at any alignment. Made by object_space(), world_space(), eye_space() and window_space().
+// A view of points with w = 1 in a known space: three arrays of floats that share a stride. It owns nothing, so that of
+// a temporary array it is for the same expression alone, and reads floats at any alignment. Made by object_space(),
+// world_space(), eye_space() and window_space().
 template <class Space>
 class Positions {
 public:
@@ -65,7 +67,7 @@ public:
     // mesh: project() then bounds its errors once instead of block by block. Values are right by the same promises;
     // `exact` has the same bits. Without assertions a point that is not in the box, as a NaN, gets what nothing bounds,
     // and spoils no other. A box with min > max or a NaN is ignored.
-    Positions within(const Box& box) const noexcept;
+    [[nodiscard]] Positions within(const Box& box) const noexcept;
 
     // The box that within() was given; min > max without one.
     const Box& bounds() const noexcept { return bounds_; }
