@@ -44,7 +44,7 @@ inline constexpr Conventions vulkan{DepthRange::zero_to_one, NdcY::down, Texture
 
 // Makes the conventions of the same API in a left-handed world, as Unity's, Unreal's and that of XMMatrixLookAtLH:
 // left_handed(direct3d).
-constexpr Conventions left_handed(Conventions api) noexcept {
+[[nodiscard]] constexpr Conventions left_handed(Conventions api) noexcept {
     return {api.depth, api.ndc_y, api.origin, Handedness::left};
 }
 

@@ -134,9 +134,9 @@ inline constexpr double contain_error = 0x1p-50;
 // noexcept.
 // Bad input: a lens that perspective(), frustum() or orthographic() refuses, where an aspect, the picture's or the
 // lens's, is not positive and finite, or the lens is one of those.
-inline PerspectiveLens contain(const PerspectiveLens& lens, double aspect) noexcept;
-inline FrustumLens contain(const FrustumLens& lens, double aspect) noexcept;
-inline OrthographicLens contain(const OrthographicLens& lens, double aspect) noexcept;
+[[nodiscard]] inline PerspectiveLens contain(const PerspectiveLens& lens, double aspect) noexcept;
+[[nodiscard]] inline FrustumLens contain(const FrustumLens& lens, double aspect) noexcept;
+[[nodiscard]] inline OrthographicLens contain(const OrthographicLens& lens, double aspect) noexcept;
 
 // How far a side by cover() may be from the exact one: relative to the largest of the picture's region.
 inline constexpr double cover_error = 0x1p-51;
@@ -145,11 +145,12 @@ inline constexpr double cover_error = 0x1p-51;
 // Guarantee: within cover_error; a picture of the lens's aspect stays as it is, and the picture's depth is kept. No
 // allocation, noexcept.
 // Bad input: a region without points where an aspect, the picture's or the lens's, is not positive and finite.
-inline TextureRegion cover(const PerspectiveLens& lens, double aspect,
-                           TextureRegion picture = whole_texture()) noexcept;
-inline TextureRegion cover(const FrustumLens& lens, double aspect, TextureRegion picture = whole_texture()) noexcept;
-inline TextureRegion cover(const OrthographicLens& lens, double aspect,
-                           TextureRegion picture = whole_texture()) noexcept;
+[[nodiscard]] inline TextureRegion cover(const PerspectiveLens& lens, double aspect,
+                                         TextureRegion picture = whole_texture()) noexcept;
+[[nodiscard]] inline TextureRegion cover(const FrustumLens& lens, double aspect,
+                                         TextureRegion picture = whole_texture()) noexcept;
+[[nodiscard]] inline TextureRegion cover(const OrthographicLens& lens, double aspect,
+                                         TextureRegion picture = whole_texture()) noexcept;
 
 // Makes the view V_p of a projector that stands at the position and looks at the target.
 // Guarantee: each element of the rotation within 4 double ulp of 1 (2^-50) of the definition's, its rows orthonormal

@@ -4,8 +4,9 @@
 namespace TEXGEN_DETAIL {
 
 inline bool is_computed(const std::span<float>& output, std::size_t count) noexcept {
-    TEXGEN_ASSERT(output.empty() || output.size() == count);
-    return !output.empty() && output.size() == count;
+    const bool is_empty_or_has_one_float_each = output.empty() || output.size() == count;
+    TEXGEN_ASSERT(is_empty_or_has_one_float_each);
+    return !output.empty() && is_empty_or_has_one_float_each;
 }
 
 // The array of an output that is computed, or null. The span comes by reference, here and everywhere: where a function
