@@ -49,14 +49,14 @@ TEST_CASE("ties whose terms are 110 powers of two apart take at most three times
 TEST_CASE("a triangle that the near plane cuts costs at most 16 times the ordinary one, and 4 times in 99 of 100") {
     // Three or four in a thousand are dearer than 4 times: so many that chance does not make ten of them.
     constexpr int count = 1000;
-    for (const auto& [width, height] : {std::array{8, 8}, std::array{64, 4}}) {
+    for (const glm::ivec2 size : {glm::ivec2{8, 8}, {64, 4}}) {
         for (const Tolerance tolerance : tolerances) {
             Random random(71);
             int far_corners = 0;
             int dear = 0;
-            const double of_ordinary = least_time(ordinary(width, height), tolerance);
+            const double of_ordinary = least_time(ordinary(size.x, size.y), tolerance);
             for (int i = 0; i < count; ++i) {
-                const auto [triangle, rect] = support::near_cut(random, width, height);
+                const auto [triangle, rect] = support::near_cut(random, size.x, size.y);
                 std::array<double, 3> seconds{};
                 for (int order = 0; order < 3; ++order) {
                     const Shot shot{support::rotated(triangle, order), rect};
@@ -65,21 +65,22 @@ TEST_CASE("a triangle that the near plane cuts costs at most 16 times the ordina
                     of_order = least_time(shot, tolerance);
                     if (of_order > limit::near_plane * of_ordinary)
                         of_order = cost(shot, tolerance, limit::near_plane) * of_ordinary;
-                    INFO(width, " x ", height, ", tolerance ", tolerance.value, " in ", hex(shot));
+                    INFO(size.x, " x ", size.y, ", tolerance ", tolerance.value, " in ", hex(shot));
                     REQUIRE(of_order <= limit::near_plane * of_ordinary);
                 }
-                const auto [least, largest] = std::minmax_element(seconds.begin(), seconds.end());
+                const auto extremes = std::minmax_element(seconds.begin(), seconds.end());
                 const auto shot_of = [&, t = triangle, r = rect](const double* order) {
                     return Shot{support::rotated(t, static_cast<int>(order - seconds.data())), r};
                 };
                 constexpr double most = limit::near_plane_99_of_100;
-                dear += *largest > most * of_ordinary && cost(shot_of(largest), tolerance, most) > most;
-                if (*largest <= limit::rotation * *least) continue;
-                const double ratio = support::worst_over_ordinary_within(
-                    limit::rotation, Workload(shot_of(least), tolerance), Workload(shot_of(largest), tolerance));
-                REQUIRE_MESSAGE(ratio <= limit::rotation, hex(shot_of(largest)));
+                dear += *extremes.second > most * of_ordinary && cost(shot_of(extremes.second), tolerance, most) > most;
+                if (*extremes.second <= limit::rotation * *extremes.first) continue;
+                const double ratio =
+                    support::worst_over_ordinary_within(limit::rotation, Workload(shot_of(extremes.first), tolerance),
+                                                        Workload(shot_of(extremes.second), tolerance));
+                REQUIRE_MESSAGE(ratio <= limit::rotation, hex(shot_of(extremes.second)));
             }
-            CHECK_MESSAGE(dear <= count / 100, width, " x ", height, ", tolerance ", tolerance.value);
+            CHECK_MESSAGE(dear <= count / 100, size.x, " x ", size.y, ", tolerance ", tolerance.value);
             CHECK(far_corners > count / 5);
         }
     }

@@ -81,14 +81,14 @@ int check_in_region(const std::vector<double>& n, const Answer& nearest, const s
     const glm::dvec2 value(nearest.out[0][0], nearest.out[1][0]);
     if (!(value.x > 0.0 && value.y > 0.0)) return 0;
     int tiles = 0;
-    for (const auto& [width, height] : {std::pair{1, 1}, {5, 3}, {8, 8}, {16, 4}, {64, 1}, {64, 4}})
+    for (const glm::ivec2 size : {glm::ivec2{1, 1}, {5, 3}, {8, 8}, {16, 4}, {64, 1}, {64, 4}})
         for (const unsigned asked : {1u, 2u, 3u, 11u}) {
             const texgen::TextureRegion region = texgen::atlas_tile({0.0, 0.0}, 1e3 * value);
-            const Answer answer = of_triangle(n, {20, 20, width, height}, region, asked);
+            const Answer answer = of_triangle(n, {20, 20, size.x, size.y}, region, asked);
             ++tiles;
             for (std::size_t k = 0; k < 2; ++k)
                 if (answer.out.asked(k))
-                    CHECK_MESSAGE(is_nearest(answer.out[k][0], answer.exact.over_q(k)), line, " ", width, " ", asked);
+                    CHECK_MESSAGE(is_nearest(answer.out[k][0], answer.exact.over_q(k)), line, " ", size.x, " ", asked);
         }
     return tiles;
 }

@@ -34,9 +34,8 @@ Triangle with_edges_at(float x, float y) {
 
 TEST_CASE("fragments on an edge along which a coordinate is 0 cost at most 8 times the ordinary ones, 20 in a column") {
     for (const Tolerance tolerance : tolerances) {
-        for (const auto& [width, height] :
-             {std::pair{1, 1}, {8, 1}, {1, 8}, {8, 8}, {64, 1}, {1, 64}, {64, 4}, {512, 1}}) {
-            std::vector<float> s(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)), t(s.size());
+        for (const glm::ivec2 size : {glm::ivec2{1, 1}, {8, 1}, {1, 8}, {8, 8}, {64, 1}, {1, 64}, {64, 4}, {512, 1}}) {
+            std::vector<float> s(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y)), t(s.size());
             const auto call = [&](const Triangle& triangle, FragmentRect rect, bool is_mask) {
                 return [&, rect, is_mask, setup = support::setup_of(triangle, texgen::whole_texture(), tolerance)] {
                     if (is_mask)
@@ -46,23 +45,23 @@ TEST_CASE("fragments on an edge along which a coordinate is 0 cost at most 8 tim
                 };
             };
             for (const bool is_mask : {false, true}) {
-                if (is_mask && height > 8) continue;  // each row has a span
-                const double most = is_mask ? 16.0 * masks_by_vectors : width == 1 && height > 1 ? 20.0 : 8.0;
+                if (is_mask && size.y > 8) continue;  // each row has a span
+                const double most = is_mask ? 16.0 * masks_by_vectors : size.x == 1 && size.y > 1 ? 20.0 : 8.0;
                 const auto ratio = [&](float x, float y, FragmentRect rect) {
                     return support::worst_over_ordinary_within(most, call(with_edges_at(90.3f, 190.3f), rect, is_mask),
                                                                call(with_edges_at(x, y), rect, is_mask));
                 };
-                INFO(width, " x ", height, ", tolerance ", tolerance.value, std::string(is_mask ? ", mask" : ""));
-                CHECK(ratio(90.3f, 200.5f, {140, 200, width, height}) <= most);
-                CHECK(ratio(100.5f, 190.3f, {100, 240, width, height}) <= most);
+                INFO(size.x, " x ", size.y, ", tolerance ", tolerance.value, std::string(is_mask ? ", mask" : ""));
+                CHECK(ratio(90.3f, 200.5f, {140, 200, size.x, size.y}) <= most);
+                CHECK(ratio(100.5f, 190.3f, {100, 240, size.x, size.y}) <= most);
             }
         }
     }
 }
 
 TEST_CASE("tiles of a batch on such edges cost at most 8 times the ordinary ones, and their masks alone 32 times") {
-    for (const auto& [width, height] : {std::pair{8, 8}, {64, 1}, {1, 64}, {64, 4}, {16, 16}}) {
-        const std::vector<FragmentRect> rects(8, {100, 200, width, height});
+    for (const glm::ivec2 size : {glm::ivec2{8, 8}, {64, 1}, {1, 64}, {64, 4}, {16, 16}}) {
+        const std::vector<FragmentRect> rects(8, {100, 200, size.x, size.y});
         std::vector<float> s(8 * support::count_of(rects[0])), t(s.size());
         for (const bool is_mask : {false, true}) {
             const auto call = [&](float x, float y) {
@@ -75,7 +74,7 @@ TEST_CASE("tiles of a batch on such edges cost at most 8 times the ordinary ones
             const double most = is_mask ? 32.0 * masks_by_vectors : 8.0;
             for (const auto& [x, y] : {std::pair{90.3f, 200.5f}, {100.5f, 190.3f}, {100.5f, 200.5f}}) {
                 const double ratio = support::worst_over_ordinary_within(most, call(90.3f, 190.3f), call(x, y));
-                CHECK_MESSAGE(ratio <= most, width, " x ", height, std::string(is_mask ? ", mask: " : ": "), ratio,
+                CHECK_MESSAGE(ratio <= most, size.x, " x ", size.y, std::string(is_mask ? ", mask: " : ": "), ratio,
                               " times");
             }
         }
@@ -89,12 +88,12 @@ TEST_CASE(
     for (const Tolerance tolerance : tolerances) {
         const Triangle triangle = ordinary(1, 1).triangle;
         const texgen::TriangleSetup both = support::setup_of(triangle, texgen::whole_texture(), tolerance);
-        for (const auto& [first, last] : {std::pair{glm::dvec2(0.0), HUGE_VAL},
-                                          {glm::dvec2(-HUGE_VAL), HUGE_VAL},
-                                          {glm::dvec2(-HUGE_VAL, 0.0), HUGE_VAL},
-                                          {glm::dvec2(0.0), 1e30}}) {
+        for (const glm::dvec3 ends : {glm::dvec3{0.0, 0.0, HUGE_VAL},
+                                      {-HUGE_VAL, -HUGE_VAL, HUGE_VAL},
+                                      {-HUGE_VAL, 0.0, HUGE_VAL},
+                                      {0.0, 0.0, 1e30}}) {
             const texgen::TriangleSetup open =
-                support::setup_of(triangle, texgen::atlas_tile(first, glm::dvec2(last)), tolerance);
+                support::setup_of(triangle, texgen::atlas_tile(glm::dvec2(ends), glm::dvec2(ends.z)), tolerance);
             for (const int width : {1, 8}) {
                 const FragmentRect rect{300, 100, width, width};
                 const auto part = [&](std::vector<float>& all) {
@@ -105,8 +104,8 @@ TEST_CASE(
                 REQUIRE(open.work(rect) == texgen::Work::divide);
                 const double ratio = support::worst_over_ordinary_within(
                     most, [&] { interpolate(both, rect, out); }, [&] { interpolate(open, rect, out); });
-                INFO(width, " x ", width, ", tolerance ", tolerance.value, ", from ", first.x, ", ", first.y, " to ",
-                     last);
+                INFO(width, " x ", width, ", tolerance ", tolerance.value, ", from ", ends.x, ", ", ends.y, " to ",
+                     ends.z);
                 CHECK(ratio <= most);
             }
         }
@@ -121,34 +120,33 @@ TEST_CASE(
         for (WindowVertex* corner : support::vertices(shot.triangle)) change(*corner);
         return shot;
     };
-    for (const auto& [width, height] :
-         {std::array{8, 8}, std::array{64, 4}, std::array{256, 16}, std::array{1024, 4}}) {
-        const glm::vec2 middle(300.0f + 0.5f * static_cast<float>(width), 100.0f + 0.5f * static_cast<float>(height));
+    for (const glm::ivec2 size : {glm::ivec2{8, 8}, {64, 4}, {256, 16}, {1024, 4}}) {
+        const glm::vec2 middle(300.0f + 0.5f * static_cast<float>(size.x), 100.0f + 0.5f * static_cast<float>(size.y));
         const auto along = [&](const WindowVertex& corner, glm::vec2 slope) {
             return glm::dot(corner.window - middle, slope) / 1000.0f * corner.clip_w;
         };
         const Shot shots[] = {
-            shot_with(width, height,
+            shot_with(size.x, size.y,
                       [&](WindowVertex& c) {
                           c.strq.x = along(c, {1.0f, 0.3f});
                       }),
-            shot_with(width, height,
+            shot_with(size.x, size.y,
                       [&](WindowVertex& c) {
                           c.strq.y = along(c, {-0.2f, 0.8f});
                       }),
-            shot_with(width, height,
+            shot_with(size.x, size.y,
                       [&](WindowVertex& c) {
                           c.strq.y = c.strq.w + along(c, {0.7f, -0.7f});
                       }),
-            shot_with(width, height, [&](WindowVertex& c) { c.strq.x = 0.0f; }),
-            shot_with(width, height, [&](WindowVertex& c) { c.strq.x = c.strq.y = c.strq.w; }),
+            shot_with(size.x, size.y, [&](WindowVertex& c) { c.strq.x = 0.0f; }),
+            shot_with(size.x, size.y, [&](WindowVertex& c) { c.strq.x = c.strq.y = c.strq.w; }),
         };
-        std::vector<float> lit(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+        std::vector<float> lit(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y));
         for (const Tolerance tolerance : {texgen::exact, texgen::texels(1.0 / 16.0, 1024.0)}) {
             // Spans of few fragments, of which some columns are asked for where a side follows a diagonal; and planes of
             // a side, beside which floats within a tolerance may be.
-            const double of_exact = width == 8 ? 12.0 : width == 64 ? 10.0 : 8.0;
-            const double most = (tolerance.value > 0.0 ? (width == 8 ? 16.0 : 12.0) : of_exact) * masks_by_vectors;
+            const double of_exact = size.x == 8 ? 12.0 : size.x == 64 ? 10.0 : 8.0;
+            const double most = (tolerance.value > 0.0 ? (size.x == 8 ? 16.0 : 12.0) : of_exact) * masks_by_vectors;
             const auto call = [&](const Shot& shot) {
                 return [&lit, setup = support::setup_of(shot.triangle, texgen::whole_texture(), tolerance),
                         rect = shot.rect] {
@@ -157,8 +155,8 @@ TEST_CASE(
             };
             for (const Shot& shot : shots) {
                 const double ratio =
-                    support::worst_over_ordinary_within(most, call(ordinary(width, height)), call(shot));
-                REQUIRE_MESSAGE(ratio <= most, width, " x ", height, ", tolerance ", tolerance.value, ": ", ratio,
+                    support::worst_over_ordinary_within(most, call(ordinary(size.x, size.y)), call(shot));
+                REQUIRE_MESSAGE(ratio <= most, size.x, " x ", size.y, ", tolerance ", tolerance.value, ": ", ratio,
                                 " times in ", hex(shot));
             }
         }

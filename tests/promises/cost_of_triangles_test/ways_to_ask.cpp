@@ -93,9 +93,9 @@ TEST_CASE("a tolerance takes little longer than exact at most, of whatever shape
     const Triangle triangle = ordinary(1, 1).triangle;
     const texgen::TriangleSetup exact = support::setup_of(triangle);
     const texgen::TriangleSetup within = support::setup_of(triangle, texgen::whole_texture(), tolerances[1]);
-    for (const auto& [width, height] :
-         {std::pair{8, 8}, {8, 7}, {12, 12}, {16, 8}, {17, 8}, {16, 16}, {24, 24}, {64, 4}, {64, 8}, {64, 64}}) {
-        const FragmentRect rect{300, 100, width, height};
+    for (const glm::ivec2 size :
+         {glm::ivec2{8, 8}, {8, 7}, {12, 12}, {16, 8}, {17, 8}, {16, 16}, {24, 24}, {64, 4}, {64, 8}, {64, 64}}) {
+        const FragmentRect rect{300, 100, size.x, size.y};
         const auto part = [&](std::vector<float>& all) { return std::span(all).first(support::count_of(rect)); };
         const double of_s_and_t = support::worst_over_ordinary_within(
             most,
@@ -113,7 +113,7 @@ TEST_CASE("a tolerance takes little longer than exact at most, of whatever shape
             [&] {
                 interpolate(within, rect, {part(s), part(t), part(r), part(lit)});
             });
-        INFO(width, " x ", height);
+        INFO(size.x, " x ", size.y);
         CHECK(of_s_and_t <= most);
         CHECK(of_all <= most);
     }
@@ -126,8 +126,8 @@ TEST_CASE(
     for (const Tolerance tolerance : tolerances) {
         const texgen::TriangleSetup setup =
             support::setup_of(ordinary(1, 1).triangle, texgen::whole_texture(), tolerance);
-        for (const auto& [width, height] : {std::pair{1, 1}, {4, 4}, {8, 8}, {16, 16}, {64, 4}}) {
-            const FragmentRect rect{300, 100, width, height};
+        for (const glm::ivec2 size : {glm::ivec2{1, 1}, {4, 4}, {8, 8}, {16, 16}, {64, 4}}) {
+            const FragmentRect rect{300, 100, size.x, size.y};
             const std::size_t count = support::count_of(rect);
             const auto part = [&](std::vector<float>& all) { return std::span(all).first(count); };
             const auto over_both = [&](double limit, const texgen::Texcoords& out) {
@@ -140,7 +140,7 @@ TEST_CASE(
             };
             const double of_s = over_both(most_alone, {part(s)}), of_r = over_both(most_alone, {{}, {}, part(r)});
             const double of_all = over_both(most_of_all, {part(s), part(t), part(r), part(lit)});
-            INFO(width, " x ", height, ", tolerance ", tolerance.value);
+            INFO(size.x, " x ", size.y, ", tolerance ", tolerance.value);
             CHECK(of_s <= most_alone);
             CHECK(of_r <= most_alone);
             CHECK(of_all <= most_of_all);
