@@ -148,10 +148,16 @@ TEST_CASE(
             }
         }
         const std::vector<texgen::ModelMatrix> models(boxes.size(), model);
-        texgen::Scene scene;
-        std::feclearexcept(FE_ALL_EXCEPT);
-        scene.update({models, boxes, projectors}, {});
-        require_none("Scene::update");
+        const double no_limit = infinity_double;
+        for (const texgen::TextureRegion& region :
+             {texgen::whole_texture(), texgen::whole_texture().with_depth(),
+              texgen::whole_texture().with_depth(0.0, no_limit), texgen::whole_texture().with_depth(-no_limit, 1.0)}) {
+            const std::vector<texgen::TextureRegion> regions(projectors.size(), region);
+            texgen::Scene scene;
+            std::feclearexcept(FE_ALL_EXCEPT);
+            scene.update({models, boxes, projectors, regions}, {});
+            require_none("Scene::update");
+        }
     }
     CHECK(lit > 1000);
 }

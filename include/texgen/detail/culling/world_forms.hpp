@@ -147,9 +147,10 @@ public:
 
 private:
     // sign (row - bound q), times a power of two: the sum of the magnitudes becomes about 1. The given side is between
-    // the outer and the inner one, and may be off by that.
+    // the outer and the inner one, and may be off by that. A side that is infinite excludes nothing.
     static void set(LinearForm& form, const glm::dmat4& matrix, const glm::dmat4& magnitude,
                     const SlidePlane& plane) noexcept {
+        if (!is_finite(plane.bound)) return;
         const RoundedSide side = RoundedSide::of_min(plane.sign * plane.bound);
         const double width = plane.coordinate == 3 ? 0.0 : std::fabs(side.inner - side.outer);
         const double of_q = -plane.sign * plane.bound;
