@@ -83,8 +83,8 @@ inline namespace TEXGEN_BUILD {
 // the same bound of the exact value. Everything is written: where nothing of a rectangle is lit, lit is 0, and s, t, r
 // are 0 or their plane's; where a triangle is refused all outputs are 0. No allocation, noexcept.
 // Shapes: as many rectangles as triangles, and outputs of all their fragments together, or empty ones (all asserted;
-// else nothing is written). Fragments outside a triangle get the values of its plane; where the interpolated
-// 1/w is not positive nothing is promised.
+// else nothing is written, of a wrong count, or not the output of a wrong length). Fragments outside a triangle get the
+// values of its plane; where the interpolated 1/w is not positive nothing is promised.
 // Cost: with its set-up a tile of 8 x 8 takes about half of what a TriangleSetup does; beyond 1024 fragments it is left
 // to one, as is what is in doubt: that takes as long as some tiles of a friendly triangle.
 // Bad input: an empty rectangle has no values.

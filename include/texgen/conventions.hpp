@@ -142,7 +142,7 @@ inline constexpr Tolerance exact{0.0};  // the nearest float
 
 // Makes the tolerance of a fraction of a texel of a texture of that size, for a region of one unit. (The unit of a
 // rectangle texture is the texel: Tolerance{fraction}.) Exact where the size is not positive, or so small that the
-// quotient overflows.
+// quotient is 1e300 and more.
 constexpr Tolerance texels(double fraction, double texture_size) noexcept {
     return texture_size > 0.0 && fraction < texture_size * 1e300 ? Tolerance{fraction / texture_size} : exact;
 }

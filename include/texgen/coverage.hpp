@@ -35,8 +35,8 @@ namespace TEXGEN_NAMESPACE_BUILD {
 // Shape: bodies of Space, in order; both spans have one size (asserted; else nothing is written).
 // Bad input, the first that applies: a NaN anywhere in a body: partial. A box with min > max in some axis, a sphere
 // with a negative radius: outside. A matrix that is not finite: partial. An empty region (see TextureRegion): outside.
-// Exponents so far apart that exact sums leave the range of double (elements below 2^-600 of the matrix's largest, which
-// itself is from 2^-1000 to 2^1000, row r left out where there is no depth; sides of the region beyond 2^+-200):
+// Exponents so far apart that exact sums leave the range of double (elements below 2^-600 of the matrix's largest, which,
+// if it is not 0, is from 2^-1000 to 2^1000, row r left out where there is no depth; sides of the region beyond 2^+-200):
 // partial. A q that is 0 everywhere: outside. An infinite side of the region, or limit of its depth, is none.
 // Source: the separating axis theorem; Gottschalk, Lin, Manocha, OBBTree, SIGGRAPH 1996.
 template <class Space>

@@ -43,7 +43,7 @@ struct FixedFunctionVertex {
 class TexGenUnit {
 public:
     // How a normal n M^-1 is treated in eye space: left alone, scaled by 1/|third row of M^-1| (GL_RESCALE_NORMAL: unit
-    // again where M scales uniformly), or divided by its length (GL_NORMALIZE).
+    // again where M scales uniformly; left alone where that row is 0), or divided by its length (GL_NORMALIZE).
     enum class NormalScaling { none, rescale, normalize };
 
     // Turns the generation of a coordinate on or off.

@@ -42,8 +42,8 @@ constexpr TexelsPerUnit texels_per_unit(const TextureRegion& region, double widt
 //   dx, dy            d(s, t)/dx and d(s, t)/dy a pixel, in units of s and t: dPdx and dPdy of textureGrad
 //   level             lambda_base = log2(rho) of OpenGL, rho = max(|dx|, |dy|) in texels; -infinity where both are 0
 //   singular_values   of J in texels, the larger first: the half axes of the ellipse that a pixel's circle becomes
-//   anisotropy        their ratio, at least 1; infinite where J has rank 1, and maybe where it is beyond 2^900; 1
-//                     where J is 0
+//   anisotropy        their ratio, at least 1; infinite where J has rank 1 (but for elements, in texels, 2^900 apart),
+//                     and maybe where it is beyond 2^900; 1 where J is 0
 //   major             the longer half axis, in units of s and t; (1, 0) times its length where they are equal
 // `level` is neither biased nor clamped, as textureQueryLod's second result.
 // Source: OpenGL 4.6 compatibility specification, 8.14.1, Scale Factor and Level of Detail; for the ellipse, Heckbert,

@@ -133,7 +133,8 @@ inline constexpr double contain_error = 0x1p-50;
 // contain_error; two opposite sides keep their places, and a lens of that aspect stays as it is. No allocation,
 // noexcept.
 // Bad input: a lens that perspective(), frustum() or orthographic() refuses, where an aspect, the picture's or the
-// lens's, is not positive and finite, or the lens is one of those.
+// lens's, is not positive and finite, or the lens is one of those for more than a scale that is 0 in double. Where
+// doubles hold no sides so near to each other that they have the aspect, they are the same.
 [[nodiscard]] inline PerspectiveLens contain(const PerspectiveLens& lens, double aspect) noexcept;
 [[nodiscard]] inline FrustumLens contain(const FrustumLens& lens, double aspect) noexcept;
 [[nodiscard]] inline OrthographicLens contain(const OrthographicLens& lens, double aspect) noexcept;

@@ -72,8 +72,8 @@ inline std::optional<glm::dvec3> receiver_plane(glm::vec4 a, glm::vec4 b, glm::v
 // Shape: the corners that get (min, min), (max, min), (max, max), (min, max) of the region, in either winding, in any
 // unit.
 // Bad input: empty for corners that are not strictly convex in that order, or a NaN; for a coordinate other than 0
-// whose magnitude is not from 2^-400 to 2^400; and where a q, or an s or t that is not 0, would be below 2^-126. A NaN
-// of the region stays in its coordinate.
+// whose magnitude is not from 2^-400 to 2^400; and where a q, or an s or t whose side is not 0 as a float, would be
+// below 2^-126. A NaN of the region stays in its coordinate.
 // Source: Everitt, Projective Texture Mapping, figure 2; Heckbert, Fundamentals of Texture Mapping and Image Warping
 // (1989), 2.2.3.
 inline std::optional<std::array<glm::vec4, 4>> quadrilateral(const std::array<glm::dvec2, 4>& corners,

@@ -66,7 +66,7 @@ public:
     // The same points, with the caller's word that all of them lie in a box (asserted), as an engine has one of each
     // mesh: project() then bounds its errors once instead of block by block. Values are right by the same promises;
     // `exact` has the same bits. Without assertions a point that is not in the box, as a NaN, gets what nothing bounds,
-    // and spoils no other. A box with min > max or a NaN is ignored.
+    // and spoils no other. A box with min > max or a NaN is none, in the place of a former one.
     [[nodiscard]] Positions within(const Box& box) const noexcept;
 
     // The box that within() was given; min > max without one.

@@ -97,7 +97,8 @@ std::optional<Transform<From, To>> inverse(const Transform<To, From>& transform)
 // Guarantee: next to the error itself while the condition, of rows and columns scaled, stays below 1e7 and these are
 // within 2^40 of one another in size; never below it. No allocation, noexcept; it costs about what inverse() does.
 // Shape: elements as in inverse.matrix().
-// Bad input: infinite where inverse() refuses the transform; a NaN or an infinity of the inverse stays in its row.
+// Bad input: infinite where inverse() refuses the transform; a NaN or an infinity of the inverse stays in its row, as
+// does one that their products make.
 // Source: the residual bounds the error of any inverse: Higham, Accuracy and Stability of Numerical Algorithms, 14.
 template <class To, class From>
 glm::dmat4 inverse_error_bound(const Transform<To, From>& transform, const Transform<From, To>& inverse) noexcept;
@@ -106,7 +107,9 @@ glm::dmat4 inverse_error_bound(const Transform<To, From>& transform, const Trans
 // scale.
 // Guarantee: exact transposition of the rotation; the translation -R^T t within 1 double ulp of its exact value for
 // that rotation, while its terms do not cancel below 2^-50 of the largest. No allocation, noexcept.
-// Precondition, asserted to 1e-3: the transform is rigid (an orthonormal rotation and a translation).
+// Precondition, asserted to 1e-3: the transform is rigid (an orthonormal rotation and a translation). The last row is
+// not read.
+// Bad input: a NaN or an infinity is not asserted, and stays in what is made of it.
 template <class To, class From>
 Transform<From, To> inverse_rigid(const Transform<To, From>& transform) noexcept;
 
