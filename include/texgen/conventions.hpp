@@ -55,8 +55,10 @@ enum class DepthMapping { unit, ndc };
 // The closed rectangle of texture coordinates that the slide covers, and how deep its light reaches where with_depth()
 // says so: else to infinity. min() is the corner that TextureOrigin addresses.
 // A region with min() > max() in a component or in its depth, or with a NaN, contains no point, so nothing is lit in
-// it. Its functions are constexpr where GLM's are: not under GLM_FORCE_INTRINSICS. min and max stand in parentheses
-// because <windows.h> makes macros of them; where it is included, a call is (region.min)().
+// it. An infinite side is no limit to what is lit: of a region of such sides alone s and t are written for all that is
+// in front, as textures that repeat need them; but a slide has no place there. Its functions are constexpr where GLM's
+// are: not under GLM_FORCE_INTRINSICS. min and max stand in parentheses because <windows.h> makes macros of them; where
+// it is included, a call is (region.min)().
 class TextureRegion {
 public:
     constexpr const glm::dvec2&(min)() const noexcept { return min_; }
