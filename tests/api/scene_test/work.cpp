@@ -61,7 +61,7 @@ TEST_CASE("only what changed is tested and computed: the other pairs keep their 
         REQUIRE(work.pairs_tested <= 24 + 400);
         if (projectors.empty()) {
             REQUIRE(work.pairs_tested <= 24);
-            REQUIRE(work.bounds_tested <= 24 * 4);  // one a level
+            REQUIRE(work.bounds_tested <= 24);
         }
     }
     CHECK(broken_preconditions == 0);
@@ -95,6 +95,43 @@ TEST_CASE("work grows with what is lit, not with what stands in the dark") {
     CHECK(works[1].pairs_tested == 100);
     CHECK(works[1].bounds_tested < works[0].bounds_tested + 200);
     CHECK(works[1].bounds_tested < 600);
+}
+
+TEST_CASE("a few objects that move among many small lights cost each of them some tests of eight bounds at once") {
+    Random random(1213);
+    Engine engine;
+    const auto place = [&] { return glm::dvec3(random.uniform(-100.0, 100.0), 0.0, random.uniform(-100.0, 100.0)); };
+    for (int i = 0; i < 5000; ++i) {
+        glm::dmat4 m(1.0);
+        m[3] = glm::dvec4(place(), 1.0);
+        engine.models.push_back(ModelMatrix(m));
+    }
+    engine.bounds.assign(5000, box_of(glm::vec3(1.0f)));
+    for (int i = 0; i < 150; ++i) {
+        const glm::dvec3 at = place();
+        const Aim down{at + glm::dvec3(0, 2, 0), at, {0, 0, 1}};
+        engine.projectors.push_back(
+            make_projector(texgen::OrthographicLens{-2, 2, -2, 2, 0, 4}, down, texgen::opengl).value());
+    }
+    engine.regions.assign(150, texgen::whole_texture().with_depth());
+    Scene scene;
+    scene.update(engine.view(), {});
+    for (const std::size_t count : {1u, 8u, 10u, 100u, 1000u}) {
+        Indices moved(count);
+        for (std::size_t i = 0; i < count; ++i) {
+            moved[i] = static_cast<std::uint32_t>(5 * i);
+            glm::dmat4 m = engine.models[moved[i]].matrix();
+            m[3].x += random.uniform(-0.3, 0.3);
+            engine.models[moved[i]] = ModelMatrix(m);
+        }
+        const SceneWork work = scene.update(engine.view(), {moved, {}});
+        CAPTURE(count);
+        CHECK(work.bounds_tested <= 150 * (count <= 8 ? 1 : count <= 10 ? 3 : count <= 100 ? 8 : 16));
+        CHECK(work.pairs_tested < count * 150 / 200 + 3);
+        Scene fresh;
+        fresh.update(engine.view(), {});
+        require_same(scene, fresh);
+    }
 }
 
 TEST_CASE("objects that are gone leave no bounds where nothing stands") {

@@ -24,7 +24,7 @@ public:
     const WorldBounds& operator[](std::size_t object) const noexcept { return bounds_[object]; }
 
     // Takes the bounds of the objects that changed, from bounds_of(object); all objects are below `count` or have none.
-    // They are the changed ones until forget_changes().
+    // They are the changed ones until the next call.
     void change(std::span<const std::uint32_t> objects, std::size_t count, const auto& bounds_of) noexcept {
         const bool grows = count > bounds_.size();
         if (grows) grow(count);
@@ -35,98 +35,117 @@ public:
         if (grows || (stage_ == Stage::sorted && moves_ > bounds_.size())) sort_all();
         sort(grows ? (std::numeric_limits<std::size_t>::max)() : steps_a_move * objects.size());
         for (const std::uint32_t object : objects) mark(object);
-        if (height_ > 0) refit(height_ - 1, 0);
-    }
-
-    void forget_changes() noexcept {
-        if (height_ > 0) forget(height_ - 1, 0);
+        refit();
+        changed_.make(have_most_changed() ? 0 : changed_objects_.size(),
+                      [&](std::size_t i) { return bounds_[changed_objects_[i]]; });
     }
 
     // Calls found(object, inside) for what the forms do not leave out, of all objects or of the changed ones: `inside`
-    // where all of it is lit for certain. Returns the number of bounds that were tested.
+    // where all of it is lit for certain. Where most have changed, all are asked about in either case. Returns the number
+    // of blocks that were tested.
     std::size_t visit(const WorldForms& forms, bool all, const auto& found) const noexcept {
-        return height_ > 0 ? visit(height_ - 1, 0, forms, all, found) : 0;
+        const bool visits_all = all || have_most_changed();
+        const Levels& levels = visits_all ? all_ : changed_;
+        const std::vector<std::uint32_t>& objects = visits_all ? object_at_ : changed_objects_;
+        if (levels.height == 0) return 0;
+        return levels.visit(levels.height - 1, 0, forms, [&](std::size_t place) {
+            const Coverage coverage = forms.coverage(bounds_[objects[place]]);
+            if (coverage != Coverage::outside) found(objects[place], coverage == Coverage::inside);
+        });
     }
 
     // Takes what `visits` of all objects tested, and goes on with sorting by what that pays for. What moved since the last
     // sorting began may have each visit test a path of blocks more: where they test twice what they did when objects
-    // were sorted, or most have moved, that is counted, and comes to what a sorting takes before one begins.
+    // were sorted, or most have moved, that is counted, and comes to what a sorting takes before one begins: a test takes
+    // longer than the eight steps of an object.
     void sort_for(std::size_t visits, std::size_t tested) noexcept {
         if (stage_ == Stage::sorted && visits > 0) {
             const std::size_t size = bounds_.size();
             if (tests_when_sorted_ == 0 && moves_ <= size / 8) tests_when_sorted_ = tested / visits + 1;
             const std::size_t fair = moves_ <= size / 2 ? 2 * tests_when_sorted_ * visits : 0;
-            if (tested > fair) wasted_ += (std::min)(tested - fair, visits * moves_ * width * height_);
-            if (wasted_ > steps_of_sorting * size) sort_all();
+            if (tested > fair) wasted_ += (std::min)(tested - fair, visits * moves_ * all_.height);
+            if (wasted_ > size) sort_all();
         }
-        sort(tested / tests_a_step);
+        sort(steps_a_test * tested);
     }
 
 private:
-    static constexpr std::size_t width = 8;
+    static constexpr std::size_t width = BoundsRow::width;
+
+    static void for_each(std::uint32_t bits, const auto& action) noexcept {
+        for (; bits != 0; bits &= bits - 1) action(static_cast<std::size_t>(std::countr_zero(bits)));
+    }
 
     // Neighbours in a level, which share a place in the level above.
     struct Block {
-        std::array<WorldBounds, width> bounds;
+        BoundsRow bounds;
         std::uint32_t changed = 0;  // a bit for each
+    };
 
-        Block() noexcept { bounds.fill(WorldBounds::none()); }
+    // Blocks over blocks.
+    struct Levels {
+        std::array<std::vector<Block>, 11> blocks;  // the lowest first; 8^11 is above 2^32
+        HeldCount height;
 
-        WorldBounds all() const noexcept {
-            WorldBounds sum = WorldBounds::none();
-            for (const WorldBounds& one : bounds) {
-                if (one.size < 0.0) continue;
-                for (std::size_t j = 0; j < 3; ++j) {
-                    sum.min[j] = sum.size < 0.0 ? one.min[j] : smaller(sum.min[j], one.min[j]);
-                    sum.max[j] = sum.size < 0.0 ? one.max[j] : larger(sum.max[j], one.max[j]);
-                }
-                sum.size = larger(sum.size, one.size);
+        void resize(std::size_t places) noexcept {
+            std::size_t level = 0;
+            for (std::size_t count = places; count > (level > 0 ? 1 : 0); ++level) {
+                count = (count + width - 1) / width;
+                blocks[level].resize(count);
             }
-            return sum;
+            height = level;
         }
 
-        static void for_each(std::uint32_t bits, const auto& action) noexcept {
-            for (; bits != 0; bits &= bits - 1) action(static_cast<std::size_t>(std::countr_zero(bits)));
+        void make(std::size_t places, const auto& bounds_of) noexcept {
+            for (std::vector<Block>& level : blocks) level.clear();
+            resize(places);
+            for (std::size_t place = 0; place < places; ++place) put(place, bounds_of(place));
+            for (std::size_t level = 1; level < height; ++level)
+                for (std::size_t place = 0; place < blocks[level - 1].size(); ++place) fit(level, place);
+        }
+
+        void put(std::size_t place, const WorldBounds& bounds) noexcept {
+            blocks[0][place / width].bounds.put(place % width, bounds);
+        }
+        void fit(std::size_t level, std::size_t place) noexcept {
+            blocks[level][place / width].bounds.put(place % width, blocks[level - 1][place].bounds);
+        }
+
+        std::size_t visit(std::size_t level, std::size_t index, const WorldForms& forms,
+                          const auto& found) const noexcept {
+            std::size_t tested = 1;
+            for_each(forms.may_light(blocks[level][index].bounds), [&](std::size_t i) {
+                const std::size_t place = index * width + i;
+                if (level > 0)
+                    tested += visit(level - 1, place, forms, found);
+                else
+                    found(place);
+            });
+            return tested;
         }
     };
 
+    bool have_most_changed() const noexcept { return changed_objects_.size() > bounds_.size() / 2; }
+
     void mark(std::uint32_t object) noexcept {
         std::size_t place = place_[object];
-        levels_[0][place / width].bounds[place % width] = bounds_[object];
-        for (std::size_t level = 0; level < height_; ++level, place /= width)
-            levels_[level][place / width].changed |= 1u << place % width;
+        all_.put(place, bounds_[object]);
+        for (std::size_t level = 0; level < all_.height; ++level, place /= width)
+            all_.blocks[level][place / width].changed |= 1u << place % width;
     }
 
+    // Fits the blocks over what is marked; that becomes the changed objects.
+    void refit() noexcept {
+        changed_objects_.clear();
+        if (all_.height > 0) refit(all_.height - 1, 0);
+    }
     void refit(std::size_t level, std::size_t index) noexcept {
-        if (level == 0) return;
-        Block& block = levels_[level][index];
-        Block::for_each(block.changed, [&](std::size_t i) {
-            refit(level - 1, index * width + i);
-            block.bounds[i] = levels_[level - 1][index * width + i].all();
-        });
-    }
-
-    void forget(std::size_t level, std::size_t index) noexcept {
-        Block& block = levels_[level][index];
-        if (level > 0) Block::for_each(block.changed, [&](std::size_t i) { forget(level - 1, index * width + i); });
-        block.changed = 0;
-    }
-
-    std::size_t visit(std::size_t level, std::size_t index, const WorldForms& forms, bool all,
-                      const auto& found) const noexcept {
-        const Block& block = levels_[level][index];
-        std::size_t tested = 0;
-        Block::for_each(all ? (1u << width) - 1 : block.changed, [&](std::size_t i) {
-            ++tested;
+        for_each(std::exchange(all_.blocks[level][index].changed, 0), [&](std::size_t i) {
             const std::size_t place = index * width + i;
-            const Coverage coverage = forms.coverage(block.bounds[i]);
-            if (coverage == Coverage::outside) return;
-            if (level > 0)
-                tested += visit(level - 1, place, forms, all, found);
-            else
-                found(object_at_[place], coverage == Coverage::inside);
+            if (level == 0) return changed_objects_.push_back(object_at_[place]);
+            refit(level - 1, place);
+            all_.fit(level, place);
         });
-        return tested;
     }
 
     // New objects stand behind the others, until they are sorted in. Room for half as much again, so that objects which
@@ -141,16 +160,11 @@ private:
         place_.resize(size);
         for (std::size_t i = before; i < size; ++i) object_at_[i] = place_[i] = static_cast<std::uint32_t>(i);
         for (std::size_t i = 0; i < size; ++i) keys_[i] = i;
-        std::size_t blocks = size;
-        std::size_t height = 0;
-        do {
-            blocks = (blocks + width - 1) / width;
-            levels_[height++].resize(blocks);
-        } while (blocks > 1);
-        height_ = height;
+        changed_objects_.reserve(size);
+        changed_.resize(size / 2);
+        all_.resize(size);
         for (std::size_t object = 0; object < before; object += width) mark(object_at_[object]);
-        refit(height_ - 1, 0);
-        forget_changes();
+        refit();
     }
 
     // Neighbours in the world become neighbours in the tree, by the Morton code of their middle. That is done in
@@ -160,8 +174,7 @@ private:
     // place after place gets its object. Meanwhile the tree is as right as ever, whatever stands where.
     enum class Stage { measure, encode, sort_by_byte, find_crowd, place, sorted };
     static constexpr std::size_t steps_a_move = 12;
-    static constexpr std::size_t tests_a_step = 4;
-    static constexpr std::size_t steps_of_sorting = 8;  // of each object, if there are no crowds
+    static constexpr std::size_t steps_a_test = 2;
     static constexpr std::size_t code_bytes = 4;
     static constexpr std::size_t crowd_size = 64;
     static constexpr int crowd_passes = 2;
@@ -301,8 +314,7 @@ private:
             mark(object);
             mark(other);
         }
-        refit(height_ - 1, 0);
-        forget_changes();
+        refit();
     }
 
     static std::uint64_t every_third_bit(std::uint32_t ten_bits) noexcept {
@@ -315,11 +327,12 @@ private:
     std::vector<std::uint32_t> place_;               // of each object
     std::vector<std::uint32_t> object_at_;           // of each place
     std::vector<std::uint64_t> keys_, sorted_keys_;  // a Morton code, and below it the object: each has one
-    std::array<std::vector<Block>, 11> levels_;      // the objects' first; 8^11 is above 2^32
-    HeldCount height_;
-    std::size_t moves_ = 0;              // since the last sorting began
-    std::size_t wasted_ = 0;             // bounds that visits tested for these, since it ended
-    std::size_t tests_when_sorted_ = 0;  // of a visit then; 0 where that is not known
+    Levels all_;                                     // over the places
+    std::vector<std::uint32_t> changed_objects_;     // in the order of their places
+    Levels changed_;                                 // over these, where they are not most of all
+    std::size_t moves_ = 0;                          // since the last sorting began
+    std::size_t wasted_ = 0;                         // tests that these cost visits, since it ended
+    std::size_t tests_when_sorted_ = 0;              // of a visit then; 0 where that is not known
 
     Stage stage_ = Stage::sorted;
     std::size_t next_ = 0;              // of the stage: a key, or a place

@@ -73,6 +73,7 @@ inline SceneWork Scene::update(const SceneView& view, const SceneChanges& change
     for (std::uint32_t p = 0; p < projectors; ++p) {
         const bool is_changed = projectors_.is_changed(p);
         const std::size_t tested = tree_.visit(prepared_[p].forms, is_changed, [&](std::uint32_t o, bool is_inside) {
+            if (!is_changed && !objects_.is_changed(o)) return;
             ++work.pairs_tested;
             add_pair(o, p, view.models[o], view.bounds[o], is_inside, work);
         });
@@ -82,7 +83,6 @@ inline SceneWork Scene::update(const SceneView& view, const SceneChanges& change
         tested_in_visits += tested;
     }
     merge_pairs(kept);
-    tree_.forget_changes();
     tree_.sort_for(visits, tested_in_visits);
     objects_.end();
     projectors_.end();

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
@@ -60,19 +61,51 @@ struct WorldBounds {
     double size;  // >= |M| |v| in each component, which the rounding of any product with M goes by; < 0: no point
 
     static constexpr double unbounded_size = 0x1p500;
-    static constexpr WorldBounds none() noexcept { return {{}, {}, -1.0}; }
+    static constexpr WorldBounds none() noexcept {
+        return {{0x1p100, 0x1p100, 0x1p100}, {-0x1p100, -0x1p100, -0x1p100}, -0x1p120};
+    }
     static constexpr WorldBounds unbounded() noexcept { return {{}, {}, unbounded_size}; }
 
     friend bool operator==(const WorldBounds&, const WorldBounds&) = default;
 };
 
+// Eight of them side by side in float, each number rounded once: min, and max and size times -1, so that all bounds of a
+// row have the least of its numbers, and none add nothing to them. What is beyond 2^100 has a size whose error is above
+// all values of forms there; that of none is as far below.
+struct BoundsRow {
+    static constexpr std::size_t width = 8;
+    static constexpr std::size_t of_size = 6;
+
+    Float4 numbers[7][2];
+
+    BoundsRow() noexcept {
+        for (std::size_t i = 0; i < width; ++i) put(i, WorldBounds::none());
+    }
+
+    void put(std::size_t i, const WorldBounds& bounds) noexcept {
+        const bool is_near = bounds.size < 0x1p100;
+        for (std::size_t j = 0; j < 3; ++j) {
+            numbers[j][i / 4][i % 4] = is_near ? static_cast<float>(bounds.min[j]) : 0.0f;
+            numbers[3 + j][i / 4][i % 4] = is_near ? static_cast<float>(-bounds.max[j]) : 0.0f;
+        }
+        numbers[of_size][i / 4][i % 4] = is_near ? static_cast<float>(-bounds.size) : -0x1p120f;
+    }
+    void put(std::size_t i, const BoundsRow& row) noexcept {
+        for (std::size_t k = 0; k <= of_size; ++k) {
+            const Float4 of_four = smaller(row.numbers[k][0], row.numbers[k][1]);
+            float least = of_four[0];
+            for (std::size_t lane = 1; lane < 4; ++lane) least = of_four[lane] < least ? of_four[lane] : least;
+            numbers[k][i / 4][i % 4] = least;
+        }
+    }
+};
+
 // Unbounded where a number is not finite, M is not affine or its exponents are far apart. Four terms a component, each
 // rounded at most five times.
 inline WorldBounds world_bounds(const glm::dmat4& m, const Box& box) noexcept {
-    WorldBounds result = WorldBounds::none();
+    WorldBounds result{};
     const glm::dvec3 low = widened(box.min);
     const glm::dvec3 high = widened(box.max);
-    result.size = 0.0;
     for (glm::length_t i = 0; i < 3; ++i) {
         double least = m[3][i];
         double largest = m[3][i];
@@ -115,9 +148,32 @@ public:
         const glm::dmat4 magnitude = absolute(texture_from_eye) * absolute(view);
         // q comes last: few bounds are behind a projector and beyond none of its sides.
         while (count_ < planes.size()) {
-            set(forms_[count_], matrix, magnitude, planes[(count_ + 1) % planes.size()]);
-            ++count_;
+            LinearForm& form = forms_[count_];
+            set(form, matrix, magnitude, planes[(count_ + 1) % planes.size()]);
+            // In float neither q is asked nor a side that needs a larger error.
+            const bool is_q = ++count_ == planes.size();
+            if (!is_q && form.error_a < 0x1p-21 && form.error_d < 0x1p-21)
+                sides_[side_count_++] = {static_cast<float>(form.a[0]), static_cast<float>(form.a[1]),
+                                         static_cast<float>(form.a[2]), static_cast<float>(form.d)};
         }
+    }
+
+    // A bit for each of a row that may be lit: no side is negative where it is largest. In float a coefficient, a
+    // coordinate, a product and two sums are rounded, of less than 2 size + 2 together, and the size: less than 12 u
+    // (size + 1). The rest of the 64 u is more than the slack.
+    std::uint32_t may_light(const BoundsRow& row) const noexcept {
+        Float4 least[2] = {Float4{} + 0x1p101f, Float4{} + 0x1p101f};
+        for (std::size_t k = 0; k < side_count_; ++k) {
+            const auto& side = sides_[k];
+            const auto vertex = [&](std::size_t j) { return row.numbers[side[j] > 0.0f ? 3 + j : j]; };
+            const Float4 *const x = vertex(0), *const y = vertex(1), *const z = vertex(2);
+            const float a = -std::fabs(side[0]), b = -std::fabs(side[1]), c = -std::fabs(side[2]);
+            TEXGEN_FOR (std::size_t h = 0; h < 2; ++h)
+                least[h] = smaller(x[h] * a + y[h] * b + (z[h] * c + side[3]), least[h]);
+        }
+        for (std::size_t h = 0; h < 2; ++h)
+            least[h] = least[h] + (row.numbers[BoundsRow::of_size][h] + -1.0f) * -0x1p-18f;
+        return ~(negative_lanes(least[0]) | negative_lanes(least[1]) << 4) & 0xff;
     }
 
     // outside and inside for certain. A form over bounds is its value in the middle, give or take that of half the
@@ -173,6 +229,8 @@ private:
     }
 
     std::array<LinearForm, SlidePlanes::max_size> forms_;
+    std::array<std::array<float, 4>, SlidePlanes::max_size - 1> sides_;  // in float
+    std::size_t side_count_ = 0;
     std::size_t count_ = 0;
 };
 

@@ -75,6 +75,23 @@ inline Double2 larger(const Double2& a, const Double2& b) noexcept {
 inline bool any_less(const Double2& a, const Double2& b) noexcept { return a[0] < b[0] || a[1] < b[1]; }
 inline bool all_less(const Double2& a, const Double2& b) noexcept { return a[0] < b[0] && a[1] < b[1]; }
 
+// Four floats at a time.
+struct alignas(16) Float4 {
+    float lane[4];
+
+    float operator[](std::size_t i) const noexcept { return lane[i]; }
+    float& operator[](std::size_t i) noexcept { return lane[i]; }
+    Float4 operator+(const Float4& b) const noexcept {
+        return {{lane[0] + b[0], lane[1] + b[1], lane[2] + b[2], lane[3] + b[3]}};
+    }
+    Float4 operator+(float b) const noexcept { return *this + Float4{{b, b, b, b}}; }
+    Float4 operator*(float b) const noexcept { return {{lane[0] * b, lane[1] * b, lane[2] * b, lane[3] * b}}; }
+};
+inline Float4 smaller(Float4 a, const Float4& b) noexcept {
+    for (std::size_t i = 0; i < 4; ++i) a[i] = a[i] < b[i] ? a[i] : b[i];
+    return a;
+}
+
 }  // namespace TEXGEN_DETAIL
 
 #else
@@ -171,6 +188,8 @@ TEXGEN_INLINE int bits_of(const Bits2& mask) noexcept {
     return static_cast<int>((mask[0] & 1) | (mask[1] & 2));
 #endif
 }
+using Float4 [[gnu::vector_size(16)]] = float;
+TEXGEN_INLINE Float4 smaller(const Float4& a, const Float4& b) noexcept { return a < b ? a : b; }
 TEXGEN_INLINE bool any_less(const Double2& a, const Double2& b) noexcept { return bits_of(a < b) != 0; }
 TEXGEN_INLINE bool all_less(const Double2& a, const Double2& b) noexcept { return bits_of(a < b) == 3; }
 TEXGEN_INLINE Double2 magnitude(const Double2& a) noexcept {
@@ -205,6 +224,17 @@ inline Double2 two_sum(const Double2& a, const Double2& b, Double2& error) noexc
     const Double2 b_part = sum - a;
     error = (a - (sum - b_part)) + (b - b_part);
     return sum;
+}
+
+// Bit i: lane i of it is negative.
+inline std::uint32_t negative_lanes(const Float4& a) noexcept {
+#if defined(TEXGEN_HAS_VECTORS) && defined(__SSE2__)
+    return static_cast<std::uint32_t>(__builtin_ia32_movmskps(a));
+#else
+    std::uint32_t result = 0;
+    for (std::uint32_t i = 0; i < 4; ++i) result |= static_cast<std::uint32_t>(a[i] < 0.0f) << i;
+    return result;
+#endif
 }
 
 // Four doubles at a time, for s, t, r and q: as one vector only where the flags have such, as no other functions may
