@@ -73,8 +73,8 @@ struct WindowTriangle {
     Vertex<Scalar> a, b, c;
     Scalar side;  // 1, or -1 for a triangle that is seen from behind
 
-    explicit WindowTriangle(const Triangle& triangle) : a(triangle.a), b(triangle.b), c(triangle.c), side(0.0f) {
-        const Scalar area = edge(a, b, c.x, c.y), zero(0.0f);
+    explicit WindowTriangle(const Triangle& triangle) : a(triangle.a), b(triangle.b), c(triangle.c) {
+        const Scalar area = edge(a, b, c.x, c.y), zero(Scalar(0.0f));
         side = Scalar(area > zero ? 1.0f : area < zero ? -1.0f : 0.0f);
         TEXGEN_ASSERT(side != zero && a.w > zero && b.w > zero && c.w > zero);
     }
