@@ -20,37 +20,32 @@
 
 #ifdef TEXGEN_DISPATCHES
 
+// GCC's targets add up, until all options are popped below.
+#define TEXGEN_ISA avx2
+#define TEXGEN_LANE_BYTES 32
+#ifdef __clang__
+#pragma clang attribute push(__attribute__((target("avx2,fma"))), apply_to = function)
+#else
+#pragma GCC target("avx2,fma")
+#endif
+#include TEXGEN_KERNELS
+#ifdef __clang__
+#pragma clang attribute pop
+#endif
+#undef TEXGEN_ISA
+#undef TEXGEN_LANE_BYTES
+
 #define TEXGEN_ISA avx512
 #define TEXGEN_LANE_BYTES 64
 #ifdef __clang__
 #pragma clang attribute push(__attribute__((target("avx512f,avx512vl,avx512dq,avx512bw,avx2,fma"))), \
                              apply_to = function)
 #else
-#pragma GCC push_options
-#pragma GCC target("avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,prefer-vector-width=512")
+#pragma GCC target("avx512f,avx512vl,avx512dq,avx512bw,prefer-vector-width=512")
 #endif
 #include TEXGEN_KERNELS
 #ifdef __clang__
 #pragma clang attribute pop
-#else
-#pragma GCC pop_options
-#endif
-#undef TEXGEN_ISA
-#undef TEXGEN_LANE_BYTES
-
-#define TEXGEN_ISA avx2
-#define TEXGEN_LANE_BYTES 32
-#ifdef __clang__
-#pragma clang attribute push(__attribute__((target("avx2,fma"))), apply_to = function)
-#else
-#pragma GCC push_options
-#pragma GCC target("avx2,fma")
-#endif
-#include TEXGEN_KERNELS
-#ifdef __clang__
-#pragma clang attribute pop
-#else
-#pragma GCC pop_options
 #endif
 #undef TEXGEN_ISA
 #undef TEXGEN_LANE_BYTES
