@@ -360,7 +360,8 @@ TEXGEN_APART Undecided divide_all_fragments(const FragmentsJob& job, std::size_t
             } else {
                 const BatchPlanes* of_lane[lanes];
                 TEXGEN_FOR (std::size_t i = 0; i < at_once; ++i) of_lane[i] = planes_of(ids.value[i]);
-                fragments.divide(BatchLanes(of_lane, Numerators == 3), centres.x, centres.y, job.tolerance);
+                const BatchLanes functions([&](std::size_t j) { return of_lane[j]->value; }, Numerators == 3);
+                fragments.divide(functions, centres.x, centres.y, job.tolerance);
             }
             const FragmentOutputs& to = ids.is_whole ? out : in_scratch;
             to.put(ids.is_whole ? n : 0, fragments.quotient, fragments.front);

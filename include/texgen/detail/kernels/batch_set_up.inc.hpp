@@ -138,14 +138,8 @@ unsigned set_up_batch(const float* triangles, BatchPlanes* planes) noexcept {
 struct BatchLanes {
     Doubles value[BatchPlanes::count]{};
 
-    // The functions of triangles that follow one another.
-    TEXGEN_INLINE BatchLanes(const BatchPlanes* planes, bool with_r) noexcept {
-        load_columns(value, with_r ? BatchPlanes::count : BatchPlanes::r,
-                     [&](std::size_t j) { return planes[j].value; });
-    }
-    TEXGEN_INLINE BatchLanes(const BatchPlanes* const (&planes)[lanes], bool with_r) noexcept {
-        load_columns(value, with_r ? BatchPlanes::count : BatchPlanes::r,
-                     [&](std::size_t j) { return planes[j]->value; });
+    TEXGEN_INLINE BatchLanes(const auto& of_lane, bool with_r) noexcept {
+        load_columns(value, with_r ? BatchPlanes::count : BatchPlanes::r, of_lane);
     }
 
     TEXGEN_INLINE const Doubles& operator[](std::size_t k) const noexcept { return value[k]; }

@@ -92,7 +92,7 @@ struct Beyond {
 template <std::size_t Numerators>
 TEXGEN_INLINE LongWords prepare_in_float(const BatchJob& job, const BatchPlanes* of_tiles, const int (*block)[4],
                                          std::size_t first, BatchTiles& tiles) noexcept {
-    const BatchLanes planes(of_tiles, Numerators == 3);
+    const BatchLanes planes([&](std::size_t j) { return of_tiles[j].value; }, Numerators == 3);
     const TileLanes tile(block, planes);
     // Steps along a single column or row say nothing, and might be infinite.
     const LongWords has_columns = greater(tile.right, 0.0);
@@ -151,7 +151,7 @@ TEXGEN_INLINE LongWords prepare_in_float(const BatchJob& job, const BatchPlanes*
 template <std::size_t Numerators>
 TEXGEN_APART void prepare(const BatchJob& job, const BatchPlanes* of_tiles, const int (*block)[4], std::size_t first,
                           BatchTiles& tiles) noexcept {
-    const BatchLanes planes(of_tiles, Numerators == 3);
+    const BatchLanes planes([&](std::size_t j) { return of_tiles[j].value; }, Numerators == 3);
     const TileLanes tile(block, planes);
     const Doubles* const value = planes.value;
     const TileFunction q(&value[BatchPlanes::q], tile);
