@@ -231,20 +231,16 @@ inline void interpolate_exactly(const SegmentKernels& kernels, SegmentJob& job, 
     }
 }
 
-// A block of a job in float, of which an alpha is no number.
-TEXGEN_APART inline void interpolate_block(const SegmentKernels& kernels, SegmentJob job, std::size_t first,
-                                           std::size_t end) noexcept {
-    job.count = end;
-    job.is_quick = prepare_in_double(job);
-    interpolate_exactly(kernels, job, first);
-}
-
-// The rest of a job, of which the kernel that it is for stopped at value i.
+// The rest of a job, of which the kernel that it is for stopped at value i: in float at a block with an alpha that is no
+// number.
 TEXGEN_APART inline void finish_job(const SegmentKernels& kernels, SegmentJob& job, std::size_t i) noexcept {
     if (!job.is_in_float) return interpolate_exactly(kernels, job, i);
     while (i < job.count) {
         const std::size_t end = job.count - i < float_block ? job.count : i + float_block;
-        interpolate_block(kernels, job, i, end);
+        SegmentJob block = job;
+        block.count = end;
+        block.is_quick = prepare_in_double(block);
+        interpolate_exactly(kernels, block, i);
         i = end == job.count ? end : kernels.fill_all_float(job, end);
     }
 }
