@@ -191,8 +191,6 @@ TEXGEN_INLINE void prepare_job(SegmentJob& job, const Segment& segment, int firs
     job.q_a = ends.q_a;
     job.q_b = ends.q_b;
     job.tolerance = tolerance;
-    job.about_b = false;
-    job.bend = 0.0;
     job.is_in_float = prepare_in_float(job, ends, tolerance);
     job.is_quick = !job.is_in_float && prepare_in_double(job);
 }
