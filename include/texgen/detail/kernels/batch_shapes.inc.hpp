@@ -21,8 +21,6 @@ struct ShapeOfTile {
     WideFloats wide_x{}, wide_y{};
     float wide_rows = 1.0f;
 
-    TEXGEN_INLINE ShapeOfTile() noexcept = default;
-
     TEXGEN_INLINE bool is_of(int tile_width, int tile_height) const noexcept {
         return given_[0] == tile_width && given_[1] == tile_height;
     }
