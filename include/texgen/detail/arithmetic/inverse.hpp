@@ -108,14 +108,6 @@ private:
         return add_product(add_product(half, -row.z, column.z), -row.w, column.w).high;
     }
 
-    // The same and a bound on its error: one rounding, four sums within 2^-102 of the terms, and products that
-    // underflow.
-    static Bounded bounded_residual_of(const glm::dvec4& row, const glm::dvec4& column, double start) noexcept {
-        const double value = residual_of(row, column, start);
-        const double magnitude = std::fabs(start) + glm::dot(absolute(row), absolute(column));
-        return {value, gamma(2) * std::fabs(value) + 0x1p-99 * magnitude + 0x1p-1000};
-    }
-
     // False where a row or a column is 0, or an element becomes smaller than least_scaled.
     bool equilibrate() noexcept {
         bool is_exact = true;
@@ -247,9 +239,12 @@ private:
         const glm::dmat4 x = glm::transpose(inverse_);  // rows
         glm::dvec4 d(0.0), error(0.0);
         for (glm::length_t k = 0; k < 4; ++k) {
-            const Bounded rho = bounded_residual_of(scaled_solution, scaled_[k], target[k]);
-            d += rho.value * x[k];
-            error += (rho.error + gamma(5) * std::fabs(rho.value)) * absolute(x[k]);
+            const double rho = residual_of(scaled_solution, scaled_[k], target[k]);
+            // One rounding, four sums within 2^-102 of the terms, and products that underflow.
+            const double terms = std::fabs(target[k]) + glm::dot(absolute(scaled_solution), absolute(scaled_[k]));
+            const double rho_error = gamma(2) * std::fabs(rho) + 0x1p-99 * terms + 0x1p-1000;
+            d += rho * x[k];
+            error += (rho_error + gamma(5) * std::fabs(rho)) * absolute(x[k]);
         }
         const glm::dvec4 bound = absolute(d) + error;
         double largest = 0.0;
