@@ -69,7 +69,7 @@ struct CloseMiddle {
         const LongWords fits = greater(Doubles{} + 0x1p62, f_times) & greater(Doubles{} + 0x1p900, magnitude(q_times));
         const Residues residue =
             of_f * to_residues(where(fits, f_times)) - of_q * to_residues_of_any(where(fits, q_times));
-        value = nearest(signs_of(residue), are_zero(residue));
+        value = nearest(bits_as<Doubles>(residue), are_zero(residue));
         return fits & greater(finer * 0x1p62, bound);
     }
 };

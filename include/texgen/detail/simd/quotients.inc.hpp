@@ -5,7 +5,6 @@ namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
 // The bits of numbers; those of |a| are in the order of |a|, and a NaN is beyond infinity, so that a largest magnitude
 // keeps it.
-TEXGEN_INLINE Words bits(const Floats& values) noexcept { return bits_as<Words>(values); }
 TEXGEN_INLINE WideWords signed_bits(const WideFloats& a) noexcept { return bits_as<WideWords>(a); }
 TEXGEN_INLINE WideWords magnitude_bits(const WideFloats& a) noexcept { return signed_bits(a) & 0x7fffffff; }
 TEXGEN_INLINE WideFloats from_bits(const WideWords& words) noexcept { return bits_as<WideFloats>(words); }
@@ -26,11 +25,10 @@ TEXGEN_INLINE Doubles power_of_two_below(const Doubles& a) noexcept {
 TEXGEN_INLINE Doubles reciprocals_of_powers(const Doubles& a) noexcept {
     return bits_as<Doubles>(std::uint64_t{0x7fe0000000000000} - bits_as<Residues>(a));
 }
-// A number without its last bit that is set; of a power of two, or 0, it is none. And numbers with the signs of integers.
+// A number without its last bit that is set; of a power of two, or 0, it is none.
 TEXGEN_INLINE Doubles without_last_bit(const Doubles& a) noexcept {
     return bits_as<Doubles>(bits_as<Residues>(a) & (bits_as<Residues>(a) - std::uint64_t{1}));
 }
-TEXGEN_INLINE Doubles signs_of(const Residues& a) noexcept { return bits_as<Doubles>(a); }
 
 // The reciprocals of two vectors by one division, 1/a = b (1/(a b)). Each is rounded three times.
 struct SharedDivision {
@@ -47,7 +45,7 @@ struct RoundedEnds {
     TEXGEN_INLINE RoundedEnds(const Doubles& value, const auto& error) noexcept
         : below(to_floats(value - error)), above(to_floats(value + error)) {}
 
-    TEXGEN_INLINE Words differ() const noexcept { return bits(below) ^ bits(above); }
+    TEXGEN_INLINE Words differ() const noexcept { return bits_as<Words>(below) ^ bits_as<Words>(above); }
 };
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA
