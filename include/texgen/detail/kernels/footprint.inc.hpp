@@ -4,13 +4,7 @@ namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
 TEXGEN_INLINE const WideFloats& to_floats(const WideFloats& values) noexcept { return values; }
 
-// Where a vector of `count` fragments of a row begins, as many as the lanes if the row has them: the last one overlaps
-// the one before.
-TEXGEN_INLINE int start_of_vector(int x, int count, int width) noexcept {
-    return x + count <= width ? x : width - count;
-}
-
-// (dx + y twist, dy - x twist) / Q^2 of s and of t.
+// (dx + y twist, dy - x twist) / Q^2 of s and of t. A last vector of a row, here and below, overlaps the one before.
 template <class Vector, class Scalar>
 TEXGEN_INLINE void differentiate_rows(const FootprintJob& job) noexcept {
     using Result = std::remove_cvref_t<decltype(to_floats(Vector()))>;
@@ -34,7 +28,7 @@ TEXGEN_INLINE void differentiate_rows(const FootprintJob& job) noexcept {
         float* const dsdy = job.row(job.dy[0], y);
         float* const dtdy = job.row(job.dy[1], y);
         for (int begin = 0; begin < job.width; begin += count) {
-            const int x = start_of_vector(begin, count, job.width);
+            const int x = begin + count <= job.width ? begin : job.width - count;
             const Vector index = lane + static_cast<Scalar>(x);
             const Vector reciprocal = Scalar(1) / (index * q_dx + q);
             const Vector squared = reciprocal * reciprocal;
@@ -130,7 +124,7 @@ TEXGEN_INLINE int filter_rows(const FootprintJob& job, int first) noexcept {
         float* const major_t = job.row(job.major[1], y);
         WideWords too_small{};
         for (int begin = 0; begin < job.width; begin += count) {
-            const int x = start_of_vector(begin, count, job.width);
+            const int x = begin + count <= job.width ? begin : job.width - count;
             const WideFloats index = lane + static_cast<float>(x);
             const WideFloats q = linear<InFloat>(index, q_base, job.q.dx);
             const WideFloats s_dy = linear<InFloat>(index, job.texels[0].dy, -job.texels[0].twist);
