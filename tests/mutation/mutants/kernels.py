@@ -183,7 +183,7 @@ KERNELS = [
          "tolerance_test"),
         ("a chunk's roundings", "u * middle_roundings + reach * step_roundings", "u * 0.0",
          "tolerance_test"),
-        ("the middle of a chunk is its beginning", "const Doubles at_x = begin + half;", "const Doubles at_x = begin;",
+        ("the middle of a chunk is its beginning", "const Doubles at_x = begin + half,", "const Doubles at_x = begin,",
          "tolerance_test interpolate_test"),
         ("the factors are not squared", "mean * (square * square)", "mean * square", "tolerance_test"),
         ("a chunk takes the row of its neighbour", "truncated((number + 0.5) * rows_per_chunk)",

@@ -25,8 +25,7 @@ struct EdgeLanes {
     // is_lost says that some lack a part.
     TEXGEN_INLINE void set(const DifferenceLanes& to_x, const DifferenceLanes& to_y, const DifferenceLanes& from_x,
                            const DifferenceLanes& from_y, bool is_short, bool is_lost) noexcept {
-        const Doubles left = to_x.high * from_y.high;
-        const Doubles right = to_y.high * from_x.high;
+        const Doubles left = to_x.high * from_y.high, right = to_y.high * from_x.high;
         size = magnitude(left) + magnitude(right);
         high = two_sum(left, right * -1.0, low);
         if (is_short) return;
@@ -120,8 +119,7 @@ struct CloseTerms {
         inexact = edge_inexact;
         Doubles rest{};
         TEXGEN_FOR (std::size_t i = 0; i < 3; ++i) {
-            const Doubles w_j = given.number((i + 1) % 3, 2);
-            const Doubles w_k = given.number((i + 2) % 3, 2);
+            const Doubles w_j = given.number((i + 1) % 3, 2), w_k = given.number((i + 2) % 3, 2);
             inexact = inexact + magnitude(edge[i].low);
             edge[i].multiply(with_sign_of(w_j, given.area));
             inexact = inexact + magnitude(edge[i].low);
@@ -209,8 +207,7 @@ struct CloseSteps : CloseTerms {
     TEXGEN_APART CloseSteps(const VertexLanes& given, std::size_t axis) noexcept {
         EdgeLanes edge[3];
         TEXGEN_FOR (std::size_t i = 0; i < 3; ++i) {
-            const std::size_t j = (i + (axis == 0 ? 1 : 2)) % 3;
-            const std::size_t k = (i + (axis == 0 ? 2 : 1)) % 3;
+            const std::size_t j = (i + (axis == 0 ? 1 : 2)) % 3, k = (i + (axis == 0 ? 2 : 1)) % 3;
             edge[i].high = two_sum(given.number(j, 1 - axis), given.number(k, 1 - axis) * -1.0, edge[i].low);
             edge[i].size = magnitude(edge[i].high);
         }

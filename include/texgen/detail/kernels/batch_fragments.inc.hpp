@@ -19,8 +19,7 @@ struct FragmentLanes {
     Words doubtful;
 
     TEXGEN_INLINE void divide(const auto& functions, const Doubles& x, const Doubles& y, double tolerance) noexcept {
-        const Doubles p_x = x - functions[BatchPlanes::origin];
-        const Doubles p_y = y - functions[BatchPlanes::origin + 1];
+        const Doubles p_x = x - functions[BatchPlanes::origin], p_y = y - functions[BatchPlanes::origin + 1];
         const Doubles stretch = magnitude(p_x) * functions[BatchPlanes::per_reach] +
                                 (magnitude(p_y) * functions[BatchPlanes::per_reach + 1] + 1.001);
         const Doubles q =

@@ -28,8 +28,7 @@ struct TileLanes {
     TEXGEN_INLINE TileLanes(const int (*tile)[4], const BatchLanes& planes) noexcept {
         Words given[4];
         load_fours(*tile, given);
-        const Doubles width = to_doubles(given[2]);
-        const Doubles height = to_doubles(given[3]);
+        const Doubles width = to_doubles(given[2]), height = to_doubles(given[3]);
         x = to_doubles(given[0]) + 0.5 - planes[BatchPlanes::origin];
         y = to_doubles(given[1]) + 0.5 - planes[BatchPlanes::origin + 1];
         right = width - 1.0;
@@ -95,18 +94,14 @@ TEXGEN_INLINE LongWords prepare_in_float(const BatchJob& job, const BatchPlanes*
     const BatchLanes planes([&](std::size_t j) { return of_tiles[j].value; }, Numerators == 3);
     const TileLanes tile(block, planes);
     // Steps along a single column or row say nothing, and might be infinite.
-    const LongWords has_columns = greater(tile.right, 0.0);
-    const LongWords has_rows = greater(tile.bottom, 0.0);
-    const Doubles half_x = tile.right * 0.5;
-    const Doubles half_y = tile.bottom * 0.5;
-    const Doubles middle_x = tile.x + half_x;
-    const Doubles middle_y = tile.y + half_y;
+    const LongWords has_columns = greater(tile.right, 0.0), has_rows = greater(tile.bottom, 0.0);
+    const Doubles half_x = tile.right * 0.5, half_y = tile.bottom * 0.5;
+    const Doubles middle_x = tile.x + half_x, middle_y = tile.y + half_y;
     const Doubles* const q = &planes.value[BatchPlanes::q];
     const Doubles middle_q = q[0] + (q[1] * middle_x + q[2] * middle_y);
     const Doubles q_error = q[3] * tile.stretch;
     const Doubles per_q = 1.0 / middle_q;
-    const Doubles bend_x = where(has_columns, q[1] * per_q);
-    const Doubles bend_y = where(has_rows, q[2] * per_q);
+    const Doubles bend_x = where(has_columns, q[1] * per_q), bend_y = where(has_rows, q[2] * per_q);
     store(&tiles.bend_x[first], to_floats(bend_x));
     store(&tiles.bend_y[first], to_floats(bend_y));
     const Doubles extent = magnitude(bend_x) * half_x + magnitude(bend_y) * half_y;
@@ -119,8 +114,7 @@ TEXGEN_INLINE LongWords prepare_in_float(const BatchJob& job, const BatchPlanes*
     const Doubles tolerance = Doubles{} + job.tolerance * (1.0 - 0x1p-18);
     LongWords is_float = greater(middle_q, q_error * 0x1p26) & at_most(extent, Doubles{} + 0.75);
     LongWords is_polynomial = at_most(extent, Doubles{} + 0.25);
-    LongWords is_inside = is_float;
-    LongWords is_lit = is_float;
+    LongWords is_inside = is_float, is_lit = is_float;
     TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k) {
         const Doubles* const f = &planes.value[BatchPlanes::of_numerator[k]];
         const Doubles u = (f[0] + (f[1] * middle_x + f[2] * middle_y)) * per_q;

@@ -134,8 +134,7 @@ TEXGEN_APART void divide_tile_float(const BatchTiles& tiles, std::size_t i, cons
         const float half_x = 0.5f * static_cast<float>(shape.width - 1);
         const auto half_y = static_cast<float>(0.5 * shape.last_row);
         for (std::size_t n = 0; n < end; n += wide_at_once, walk.advance()) {
-            const WideFloats y = walk.y - half_y;
-            const WideFloats x = walk.x - half_x;
+            const WideFloats y = walk.y - half_y, x = walk.x - half_x;
             put(n, y * bend_y + x * bend_x, [&](std::size_t k) { return y * dy[k] + x * dx[k]; });
         }
     }
@@ -223,8 +222,7 @@ TEXGEN_INLINE Undecided divide_all_tiles(const TilesJob& job, std::size_t first,
         std::uint64_t doubtful = 0, in_doubt = 0;
         const std::size_t begin_of_block = done;
         for (std::size_t i = 0; i < count; ++i) {
-            const int width = job.tiles[first + i][2];
-            const int height = job.tiles[first + i][3];
+            const int width = job.tiles[first + i][2], height = job.tiles[first + i][3];
             if (width <= 0 || height <= 0) continue;
             if (!shape.is_of(width, height)) shape.take(width, height);
             const std::size_t begin = done;

@@ -9,9 +9,7 @@ namespace TEXGEN_DETAIL::TEXGEN_ISA {
 // and the sum of the two: 7 u.
 TEXGEN_INLINE WideWords classes(const FloatForms& forms, const WideFloats (&twice_middle)[3], const auto& change,
                                 const WideFloats& size, const WideWords& is_proper) noexcept {
-    WideFloats largest = WideFloats{} + 0x1p126f;
-    WideFloats least = largest;
-    WideFloats middle = largest;
+    WideFloats largest = WideFloats{} + 0x1p126f, least = largest, middle = largest;
     const auto take = [&](std::size_t k) {
         const WideFloats value =
             twice_middle[0] * forms.a[0][k] +
@@ -25,8 +23,7 @@ TEXGEN_INLINE WideWords classes(const FloatForms& forms, const WideFloats (&twic
     for (std::size_t k = forms_without_depth; k < forms.count; ++k) take(k);
     const WideFloats zero{};
     const WideFloats error = size * forms.error_per_size + forms.error;
-    const WideWords outside = less(largest + error, zero) & is_proper;
-    const WideWords inside = less(error - least, zero) & is_proper;
+    const WideWords outside = less(largest + error, zero) & is_proper, inside = less(error - least, zero) & is_proper;
     const WideWords partial = less(error - largest, zero) & less(least + error, zero) & is_proper;
     const WideWords reached = partial & less(error - middle, zero);
     return body_in_doubt - (outside & 7) - (inside & 5) - (partial & 2) - (reached & 4);

@@ -35,8 +35,7 @@ TEXGEN_INLINE Doubles in_all_lanes(StepRule rule) noexcept { return Doubles{} + 
 // The coefficients of `count` chunks from the given one of row y on.
 template <class CompiledWhereCalled = void>
 void weigh_chunks(const TileJob& job, ChunkGroup& group, int chunks_of_row, int y, int chunk, int count) noexcept {
-    const double width = job.width;
-    const double length = job.chunk;
+    const double width = job.width, length = job.chunk;
     const double per_row = chunks_of_row;
     const double rows_per_chunk = 1.0 / per_row;
     for (int i = 0; i < count; i += lanes) {
@@ -45,8 +44,7 @@ void weigh_chunks(const TileJob& job, ChunkGroup& group, int chunks_of_row, int 
         const Doubles row = truncated((number + 0.5) * rows_per_chunk);
         const Doubles begin = (number - row * per_row) * length;
         const Doubles half = (minimum(begin + length, Doubles{} + width) - begin) * 0.5 - 0.5;
-        const Doubles at_x = begin + half;
-        const Doubles at_y = row + static_cast<double>(y);
+        const Doubles at_x = begin + half, at_y = row + static_cast<double>(y);
         const auto value = [&](double base, double dx, double dy) { return at_x * dx + (at_y * dy + base); };
         const Doubles q = value(job.q.base, job.q.dx, job.q.dy);
         const Doubles reciprocal = 1.0 / q;

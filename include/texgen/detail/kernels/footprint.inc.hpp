@@ -68,8 +68,7 @@ TEXGEN_INLINE WideFloats half_log2_of_quotient(const WideFloats& a, const WideFl
         return from_bits((signed_bits(value) & (WideWords{} + 0x7fffff)) | (WideWords{} + 0x3f800000));
     };
     const auto exponent = [](const WideFloats& value) { return signed_bits(value) & (WideWords{} + 0x7f800000); };
-    const WideFloats m = mantissa(a);
-    const WideFloats n = mantissa(b);
+    const WideFloats m = mantissa(a), n = mantissa(b);
     const WideFloats s = (m - n) * (1.0f / (m + n));
     const WideFloats x = s * s;
     const WideFloats series = ((x * 0.252369056f + 0.284511161f) * x + 0.481025008f) * x + 1.44269398f;

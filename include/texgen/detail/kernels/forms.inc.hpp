@@ -111,8 +111,7 @@ void round_forms(const FormLanes& forms, std::size_t count, FloatForms& result) 
         for (int i = 1; i < lanes; ++i) largest = larger_or_nan(largest, values[i]);
         return largest;
     };
-    const double bound_d = largest_of(largest_d);
-    const double most_narrowed = largest_of(largest_narrowing);
+    const double bound_d = largest_of(largest_d), most_narrowed = largest_of(largest_narrowing);
     const double error_a = 8.1 * unit_roundoff_float * largest_of(largest_a) + 1.1 * most_narrowed * forms.largest_q;
     const double error_d = 8.1 * unit_roundoff_float * (bound_d < 0x1p100 ? bound_d : infinity) +  // nothing is certain
                            1.1 * most_narrowed * forms.last_q;
@@ -129,8 +128,7 @@ int classify_box(const FormLanes& forms, const float* box_min, const float* box_
     double sum[3], extent[3], size[3];
     bool is_proper = true;
     for (std::size_t j = 0; j < 3; ++j) {
-        const double min = widened(box_min[j]);
-        const double max = widened(box_max[j]);
+        const double min = widened(box_min[j]), max = widened(box_max[j]);
         sum[j] = min + max;
         extent[j] = max - min;
         size[j] = std::fabs(sum[j]) + extent[j];

@@ -260,8 +260,7 @@ std::size_t fill_segment_all_float_of(const SegmentJob& job, std::size_t first, 
     WideFloats sum{};
     const auto fill_both = [&](std::size_t i, std::size_t next) {
         const WideFloats alpha = load_alpha(i), next_alpha = load_alpha(next);
-        const WideFloats q = alpha * bend + 1.0f;
-        const WideFloats next_q = next_alpha * bend + 1.0f;
+        const WideFloats q = alpha * bend + 1.0f, next_q = next_alpha * bend + 1.0f;
         const WideFloats product = q * next_q;
         sum = sum + product;
         const WideFloats of_both = slope / product;

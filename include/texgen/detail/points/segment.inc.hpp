@@ -13,8 +13,7 @@ inline Expansion<5> exactly_mixed(double a, double b, double alpha) noexcept {
 
 // 1 - alpha, the products and the sum are rounded once each.
 inline Bounded mixed(double a, double b, double alpha) noexcept {
-    const double from_a = (1.0 - alpha) * a;
-    const double from_b = alpha * b;
+    const double from_a = (1.0 - alpha) * a, from_b = alpha * b;
     return {from_a + from_b, gamma(4) * (std::fabs(from_a) + std::fabs(from_b))};
 }
 
@@ -109,8 +108,7 @@ inline bool bound_about_asymptote(const Asymptote& about, const EndQuotients& u,
 // it is 0 or more than 2^-49 of lesser^2 / larger: alpha is then no less than a half of their ratio, or the sum more
 // than half of a, and it is a multiple of alpha's last bit, 2^-24 of it at least, times that of the lesser.
 inline double last_subnormal_alpha(double a, double b, double least_normal) noexcept {
-    const double lesser = smaller(std::fabs(a), std::fabs(b));
-    const double larger_one = larger(std::fabs(a), std::fabs(b));
+    const double lesser = smaller(std::fabs(a), std::fabs(b)), larger_one = larger(std::fabs(a), std::fabs(b));
     if (!(larger_one > 0.0)) return 0.0;
     if (a == 0.0) return smaller(2.5 * least_normal / larger_one, 2.0);
     const double least = a * b > 0.0     ? lesser

@@ -30,8 +30,7 @@ struct FloatDivision {
     // |a - b s/q| / q^ = |a - b s^/q^| / q. Infinite where a float could leave its range.
     constexpr double error(double s_terms, double q_terms, double size, double least_q, double largest) const noexcept {
         const double underflow = 0x1p-124 * size;
-        const double s_error = form_error * s_terms + underflow;
-        const double q_error = form_error * q_terms + underflow;
+        const double s_error = form_error * s_terms + underflow, q_error = form_error * q_terms + underflow;
         const double q = least_q * (1.0 - roundings) - q_error;
         if (!(q > 0x1p-60 && s_terms < largest_terms_in_float && q_terms < largest_terms_in_float)) return infinity;
         return (s_error + largest * q_error) * (1.001 / q) + roundings * largest + 0x1p-150;
