@@ -128,14 +128,8 @@ TEXGEN_INLINE Doubles with_sign_of(const Doubles& size, const Doubles& sign) noe
     constexpr auto bit = static_cast<long long>(0x8000000000000000);
     return masked_or(sign, bit, size);
 }
-template <class Vector>
-TEXGEN_INLINE Vector minimum(const Vector& a, const Vector& b) noexcept {
-    return a < b ? a : b;
-}
-template <class Vector>
-TEXGEN_INLINE Vector maximum(const Vector& a, const Vector& b) noexcept {
-    return a > b ? a : b;
-}
+TEXGEN_INLINE auto minimum(const auto& a, const auto& b) noexcept { return a < b ? a : b; }
+TEXGEN_INLINE auto maximum(const auto& a, const auto& b) noexcept { return a > b ? a : b; }
 
 TEXGEN_INLINE WideFloats to_numbers(const WideWords& words) noexcept {
     return __builtin_convertvector(words, WideFloats);
@@ -157,10 +151,7 @@ TEXGEN_INLINE Doubles folded(const WideFloats& values) noexcept {
     return to_doubles(maximum(half<0>(values, Half()), half<lanes>(values, Half())));
 }
 
-template <class Vector>
-TEXGEN_INLINE auto less(const Vector& a, const Vector& b) noexcept {
-    return a < b;
-}
+TEXGEN_INLINE auto less(const auto& a, const auto& b) noexcept { return a < b; }
 TEXGEN_INLINE WideWords at_most(const WideFloats& a, const WideFloats& b) noexcept { return a <= b; }
 
 TEXGEN_INLINE Doubles magnitude(const Doubles& a) noexcept {
