@@ -16,8 +16,7 @@ namespace TEXGEN_DETAIL {
 // Geometric Predicates.
 
 // Adds a number to those from `first` on (Grow-Expansion). What it leaves of the first of these is no larger than the
-// number, so that the next one of an order that does not overlap leaves it as it is: `first` steps over it
-// (Expansion-Sum).
+// number, so that the next one of an order that does not overlap leaves it: `first` steps over it (Expansion-Sum).
 inline std::size_t grow(double* terms, std::size_t count, double term, std::size_t& first) noexcept {
     if (term == 0.0) return count;
     const std::size_t begin = first;

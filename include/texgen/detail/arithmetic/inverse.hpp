@@ -41,8 +41,7 @@ class CertifiedInverse {
 public:
     // The matrix is first scaled by powers of two, B = R A C, so that rows and columns are near 1: this is exact and
     // makes every later decision independent of uniform and of diagonal scale. X ~ B^-1 is one elimination and steps of
-    // refinement with a doubled residual: two, and more where elements are far apart, until each is as good as its
-    // terms.
+    // refinement with a doubled residual: two, or more until each element is as good as its terms.
     explicit CertifiedInverse(const glm::dmat4& matrix) noexcept : scaled_(matrix) {
         if (!is_finite(matrix) || !equilibrate() || !eliminate()) return;
         clear_what_has_no_terms();

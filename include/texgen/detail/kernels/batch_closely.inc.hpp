@@ -280,8 +280,7 @@ struct ResidueLanes {
         }
     }
 
-    // By how much the edge functions grow along a row and down a column, without the factors one_x and one_y, which
-    // they all share.
+    // By how much the edge functions grow along a row and down a column, without the factors one_x and one_y of all.
     TEXGEN_INLINE void steps(Residues (&dx)[3], Residues (&dy)[3]) const noexcept {
         TEXGEN_FOR (std::size_t i = 0; i < 3; ++i) {
             const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
@@ -346,8 +345,7 @@ struct NearLanes {
 };
 
 // A value with its residue's help. Where the grain is coarse enough, only one integer that has the residue is, times
-// the grain, within `reach` of the leading part. The difference of the two is the rest, of which 2^-50 is lost, or
-// nothing.
+// the grain, within `reach` of the leading part. Their difference is the rest, of which 2^-50 is lost, or nothing.
 TEXGEN_INLINE CloseValues sharpened(const CloseValues& f, const Residues& residue, const Doubles& grain) noexcept {
     const Doubles reach = magnitude(f.high) * 0x1p-48 + f.error;
     const LongWords is_one = greater(grain * 0x1p60, reach);

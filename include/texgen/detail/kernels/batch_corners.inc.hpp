@@ -85,8 +85,7 @@ private:
     Residues dx_[3], dy_[3];
 };
 
-// What is known of s, t, q, and r where it is needed, at fragments of a triangle each. A grain of 0 says that there is
-// no residue.
+// What is known of s, t, q, and r where it is needed, at fragments of a triangle each. A grain of 0: no residue.
 struct CloseFragmentsAt {
     const bool needs_r;
     bool are_sums_first;

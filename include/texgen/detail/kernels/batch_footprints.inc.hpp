@@ -95,8 +95,7 @@ private:
 };
 
 // The determinant of the corners' (s, t, q), as FloatDeterminant has it in two doubles: det J is that times q and the
-// square of the factor before the derivatives. It is 0 where what it may err by is less than a half of the grain of its
-// terms.
+// square of the factor before the derivatives. It is 0 where it and its error are less than half a grain of its terms.
 struct DeterminantLanes {
     Doubles value;
     LongWords is_known;

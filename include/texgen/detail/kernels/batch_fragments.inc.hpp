@@ -10,8 +10,7 @@ struct OneTriangle {
 
 TEXGEN_INLINE bool all(const LongWords& mask) noexcept { return lane_bits(mask) == (std::uint64_t{1} << lanes) - 1; }
 
-// A vector of fragments at (x, y): the quotients where they are in front, and the lanes whose side or value is in
-// doubt.
+// A vector of fragments at (x, y): the quotients where they are in front, and the lanes in doubt of side or value.
 template <std::size_t Numerators>
 struct FragmentLanes {
     Floats quotient[Numerators];
@@ -224,8 +223,7 @@ private:
         count_ = 0;
     }
 
-    // Decides a vector by the shared functions. Returns the lanes that stay in doubt, as do all functions that put a
-    // vector.
+    // Decides a vector by the shared functions. Returns the lanes that stay in doubt, as do all that put vectors.
     TEXGEN_APART std::uint64_t put_together(const Known& known) const noexcept {
         const Doubles x = known.vector.x - learned_.left, y = known.vector.y - learned_.top;
         const BatchFunction* const functions = learned_.functions.of;

@@ -6,8 +6,7 @@ TEXGEN_INLINE Doubles load_lanes(const double* from) noexcept { return load<Doub
 TEXGEN_INLINE Doubles load_lanes(const float* from) noexcept { return to_doubles(load<Floats>(from)); }
 TEXGEN_INLINE Residues load_lanes(const std::uint64_t* from) noexcept { return load<Residues>(from); }
 
-// The first `count` numbers, in whole vectors, that stand at from(j) for lane j. The last first: with q a division
-// begins.
+// The first `count` numbers, in whole vectors, that lane j has at from(j). The last first: with q a division begins.
 template <class Vector, std::size_t Size, class From>
 TEXGEN_INLINE void load_columns(Vector (&columns)[Size], std::size_t count, const From& from) noexcept {
     TEXGEN_FOR (std::size_t end = Size; end > 0; end -= at_once) {
@@ -32,8 +31,7 @@ TEXGEN_INLINE void store_columns(const Vector (&columns)[Size], const To& to) no
 }
 
 // What the vertices of a triangle are off its first float, the one of the largest w first, as TrianglePlanes has them.
-// Numbers that are positive are in the order of their bits; others are refused in any order. No branch: it would be
-// random.
+// Positive numbers are in the order of their bits; others are refused in any order. No branch: it would be random.
 TEXGEN_INLINE const std::size_t* about_farthest(const float* triangle) noexcept {
     static constexpr std::size_t of_turned[5] = {0, BatchVertex::size, 2 * BatchVertex::size, 0, BatchVertex::size};
     const auto w = [&](std::size_t i) { return bit_cast<int>(triangle[i * BatchVertex::size + 2]); };

@@ -86,8 +86,7 @@ struct Beyond {
 // In float a tile is what a chunk is (chunks.inc.hpp), in two directions. With r = 2^-24 the numerator of a step D
 // carries 3 r D, x of the denominator 3 r X, X being its largest, so that the step has 3 r X / (1 - X) D of it; the
 // polynomial adds 3 r D (a division 2 r D), the product r D, and the value r D + 2 r |u|.
-// Prepares tiles in float. One whose middle is in the region is not dark: returns the tiles of which no more need be
-// known.
+// Prepares tiles in float. One whose middle is in the region is not dark: returns those of which no more need be known.
 template <std::size_t Numerators>
 TEXGEN_INLINE LongWords prepare_in_float(const BatchJob& job, const BatchPlanes* of_tiles, const int (*block)[4],
                                          std::size_t first, BatchTiles& tiles) noexcept {

@@ -13,8 +13,7 @@ struct TileOutputs {
     }
 };
 
-// Quotients in double, rounded with a certificate. False where a value is in doubt. Apart, so that its loop has all
-// registers.
+// Quotients in double, rounded with a certificate. False where a value is in doubt. Apart: its loop has all registers.
 template <std::size_t Numerators>
 TEXGEN_APART bool divide_tile(const BatchPlanes& planes, const BatchTiles& tiles, std::size_t i,
                               const ShapeOfTile& shape, const TileOutputs<Numerators>& original) noexcept {

@@ -7,15 +7,13 @@ namespace TEXGEN_DETAIL::TEXGEN_ISA {
 struct CloseValues {
     Doubles high, low, error;
 
-    // Where its residue times the grain, of all lanes or of each, is all of it; of 0 any grain is, and of nothing else
-    // 0.
+    // Where its residue times the grain, of all lanes or of each, is all of it; a grain of 0 is of 0 alone.
     TEXGEN_INLINE LongWords are_residues(const auto& grain) const noexcept {
         return at_most(magnitude(high + low) + error, Doubles{} + grain * 0x1p62);
     }
 };
 
-// Of integers below 2^115, or of at most 50 digits and zeros behind them; but not of 2^170, which the sums here take for
-// another.
+// Of integers below 2^115, or of at most 50 digits and zeros behind them, below 2^170, which the sums take for another.
 TEXGEN_INLINE Residues to_residues_of_any(const Doubles& integers) noexcept {
     const Doubles rest = integers - ((integers * 0x1p-64 + 0x1.8p52) - 0x1.8p52) * 0x1p64;
     return to_residues(rest - where(~greater(Doubles{} + 0x1p63, rest), Doubles{} + 0x1p64));

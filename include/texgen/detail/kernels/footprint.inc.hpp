@@ -75,8 +75,7 @@ TEXGEN_INLINE WideFloats half_log2_of_quotient(const WideFloats& a, const WideFl
     return series * s + to_numbers(exponent(a) - exponent(b)) * 0x1p-24f;
 }
 
-// 1 / sqrt(x) within 2^-22 of itself, for normal numbers, and finite for 0: Newton's iteration from a guess within 3.5
-// %.
+// 1 / sqrt(x) within 2^-22 of itself, of normal numbers; finite of 0: Newton's iteration from a guess within 3.5 %.
 TEXGEN_INLINE WideFloats inverse_square_root(const WideFloats& x) noexcept {
     WideFloats y = from_bits((WideWords{} + 0x5f3759df) - halved(signed_bits(x)));
     for (int i = 0; i < 3; ++i) y = y * (1.5f - (x * 0.5f * y) * y);

@@ -1,5 +1,4 @@
-// The inner loops of points: what they are loaded from and stored to, and blocks of them in double. Included by
-// kernels.inc.hpp.
+// The inner loops of points: how they are loaded and stored, and blocks of them in double. Included by kernels.inc.hpp.
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
@@ -37,8 +36,7 @@ TEXGEN_INLINE LongWords is_within(double tolerance, const Doubles& size, const D
     return greater(limit_within(tolerance), size * 2.0) & at_most(error * 4.0, Doubles{} + tolerance);
 }
 
-// Lanes that cannot be vouched for: of whose float it is not certain, see RoundedEnds, or on which side of the
-// projector the point is.
+// Lanes that cannot be vouched for: of whose float it is not certain, see RoundedEnds, or on which side the point is.
 struct Doubt {
     Words rounding{};
     LongWords side{};
@@ -180,8 +178,7 @@ TEXGEN_INLINE bool fill_bounded_block(const PointJob& job, std::size_t begin, st
 
 // A block of points, with errors that hold for all of it, all in front if not Signed. Returns a bit for each wide vector
 // of which a value is in doubt (it is written all the same).
-// All divisions are begun before the first result is asked for: instructions that wait for one keep others from being
-// begun.
+// All divisions are begun before the first result is asked for: what waits for one keeps others from being begun.
 template <bool Signed, std::size_t Numerators>
 TEXGEN_INLINE std::uint64_t fill_points_block(const PointJob& job, std::size_t begin, std::size_t end,
                                               LongWords& behind) noexcept {

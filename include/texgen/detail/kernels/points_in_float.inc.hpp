@@ -53,8 +53,7 @@ struct FloatErrors {
     TEXGEN_INLINE WideFloats least(const WideFloats& q) const noexcept {
         return q * (1.0f - (roundings + 0x1p-20f)) - of_form[0];
     }
-    // Whether numerator k is within the tolerance for quotients of this size and 1 / q of this reciprocal at most. A
-    // NaN is not.
+    // Whether numerator k is within the tolerance for quotients of this size and this 1 / q at most. A NaN is not.
     TEXGEN_INLINE WideWords are_within(std::size_t k, const WideFloats& size,
                                        const WideFloats& reciprocal) const noexcept {
         const WideFloats error = (of_form[k] + size * of_form[0]) * (reciprocal * 1.0015f) + size * roundings;

@@ -66,8 +66,7 @@ TEXGEN_INLINE void add_edges(SeparatingForms& planes, const FormLanes& forms, st
 }
 
 // The planes through a vertex, where three forms meet, and across an axis: as f, g and h have no other point in common,
-// the products across g x h, h x f and f x g are their weights, where they have one sign. Rounded weights serve as
-// well.
+// the products across g x h, h x f and f x g are their weights, where they have one sign. Rounded ones serve, too.
 template <class CompiledWhereCalled = void>
 TEXGEN_INLINE void add_vertices(SeparatingForms& planes, const FormLanes& forms) noexcept {
     FormColumns f, g, h;
@@ -125,8 +124,7 @@ TEXGEN_INLINE void add_axes(SeparatingForms& planes, const glm::dmat4& matrix, c
                    (magnitude(cofactor[0]) * s + magnitude(cofactor[1]) * t + magnitude(cofactor[2]) * q) * gamma(13) +
                    0x1p-1000;
         };
-        // The least and the largest of each cofactor times s, t or 1, which lie between two sides each, with their
-        // errors.
+        // The least and the largest of each cofactor times s, t or 1, between its two sides, with their errors.
         Doubles least = Doubles{} - 0x1p-999, largest = Doubles{} + 0x1p-999;
         for (std::size_t k = 0; k < 3; ++k) {
             const bool has_side = ends[k][0] > -infinity || ends[k][1] < infinity;

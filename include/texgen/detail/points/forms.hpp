@@ -1,7 +1,6 @@
 #pragma once
 
-// A row of a texgen matrix as a linear form of points with w = 1, and its value at one point: with a bound, exactly,
-// and accurately.
+// A row of a texgen matrix as a linear form of points with w = 1: its value with a bound, exactly, and accurately.
 
 #include <cmath>
 #include <type_traits>

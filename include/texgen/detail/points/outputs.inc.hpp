@@ -36,8 +36,7 @@ bool take_computed(auto& out, std::size_t count) noexcept {
     return any;
 }
 
-// Where one or two coordinates of all points go. A coordinate that only the mask needs has no array; `st` takes two in
-// turn.
+// Where one or two coordinates of all points go. What only the mask needs has no array; `st` takes two in turn.
 struct PointOutputs {
     float* coordinate[2] = {};
     float* lit = nullptr;  // with one coordinate, r: what is lit so far, and stays so between r_min and r_max

@@ -92,8 +92,7 @@ inline double ulps_of_sum(double a, double b) noexcept {
 
 inline namespace TEXGEN_BUILD {
 
-// Whether quotients about the asymptote are normal floats and within quick_ulps; their ulps are what is returned in
-// `ulps`.
+// Whether quotients about the asymptote are normal floats and within quick_ulps; `ulps` is theirs.
 inline bool bound_about_asymptote(const Asymptote& about, const EndQuotients& u, double& ulps) noexcept {
     const Double2 least = u.least(), error = about.error(u);
     if (!about.is_in_range(u) || !all_less(double2_of(0.0, 0.0), u.at_a * u.at_b) ||
@@ -227,8 +226,7 @@ inline void interpolate_exactly(const SegmentKernels& kernels, SegmentJob& job, 
     }
 }
 
-// The rest of a job, of which the kernel that it is for stopped at value i: in float at a block with an alpha that is no
-// number.
+// The rest of a job, of which its kernel stopped at value i: in float at a block with an alpha that is no number.
 TEXGEN_APART inline void finish_job(const SegmentKernels& kernels, SegmentJob& job, std::size_t i) noexcept {
     if (!job.is_in_float) return interpolate_exactly(kernels, job, i);
     while (i < job.count) {

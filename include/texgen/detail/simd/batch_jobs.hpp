@@ -52,8 +52,7 @@ inline constexpr double batch_plane_error = 1.0001 * gamma(20);
 inline constexpr std::size_t largest_batch_tile = 1024;
 inline constexpr std::size_t largest_in_scratch = 512;
 
-// An output is null, or an array of `count` floats; r is computed where it has one, and where the mask is to have a
-// depth.
+// An output is null, or an array of `count` floats; r is computed where it has one, and for the depth of a mask.
 struct BatchJob {
     const BatchPlanes* planes;
     const float* vertices;

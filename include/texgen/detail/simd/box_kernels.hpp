@@ -43,8 +43,7 @@ struct UnitForms : FormLanes {};
 
 // The same in float, twice the value each, a lane a form, with one bound for all: over a body each errs by less than
 // error_per_size * size + error, where the size of a box is the sum of |min + max| and max - min of its coordinates,
-// that of a sphere twice the sum of |x|, |y|, |z| and four times its radius. The lanes behind the last form are those
-// of q.
+// that of a sphere twice the sum of |x|, |y|, |z| and four times its radius. Lanes behind the last form are q's.
 struct FloatForms {
     float a[3][form_lanes], magnitude_of_a[3][form_lanes];
     float twice_d[form_lanes];
@@ -126,8 +125,7 @@ struct SeparatingFormKernels {
 
 // One box.
 struct BoxKernels {
-    // What doubles are certain of. Empty boxes are in doubt, as are those of which a coordinate in use is no finite
-    // number.
+    // What doubles are certain of. Empty boxes are in doubt, and those whose coordinates in use are not finite.
     int (*classify)(const FormLanes& forms, const float* min, const float* max) noexcept;
     // What the forms say of a box that has points, exactly; classify() has said what needs no question.
     int (*decide)(int answer, const glm::dmat4& matrix, const FormWeights& outer, const FormWeights& inner,

@@ -41,8 +41,7 @@ using Plane = PlaneOf<double>;
 
 inline constexpr int longest_chunk = 256;
 
-// The column or row of a rectangle, of `size` from `first` on, whose fragments have this coordinate in the window; -1 if
-// none has.
+// The column or row of a rectangle, of `size` from `first` on, whose fragments have this coordinate; -1 if none.
 inline int index_at(double coordinate, std::int64_t first, int size) noexcept {
     const double index = (coordinate - 0.5) - static_cast<double>(first);  // integers
     return index >= 0.0 && index < size && static_cast<int>(index) == index ? static_cast<int>(index) : -1;
@@ -307,8 +306,7 @@ struct TileKernels {
     // row); or, for a job that knows its ulps, unit by unit up to the first with doubt, which is returned.
     std::uint64_t (*divide)(const TileJob&, const TileJob::Unit& part) noexcept;
     TileJob::Unit (*divide_in_pairs)(const TileJob&, const TileJob::Unit& first) noexcept;
-    // Makes a group of `count` chunks from one of row y on; and fills some of it that have one rule, from x of a row
-    // on.
+    // Makes a group of `count` chunks from one of row y on; and fills some of one rule, from x of a row on.
     void (*weigh_chunks)(const TileJob&, ChunkGroup&, int chunks_of_row, int y, int chunk, int count) noexcept;
     void (*fill_chunks)(const TileJob&, const RowOutputs&, ChunkGroup&, int first, int end, int x) noexcept;
     // Decides what is asked of a unit on either side of the projector, bits as above. Returns those that stay in doubt.

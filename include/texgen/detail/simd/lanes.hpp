@@ -1,7 +1,6 @@
 #pragma once
 
-// Which vectors the inner loops run on. The only file with #if on instruction sets, with instruction_sets.inc.hpp
-// beside it.
+// Which vectors the inner loops run on. The only file with #if on instruction sets but instruction_sets.inc.hpp.
 //
 // With GCC 12 or Clang the kernels are written on the vectors of the language, and compiled once for the instruction
 // set of the flags and, on x86-64, once more for AVX2 and for AVX-512; the machine decides which runs. A table of

@@ -3,8 +3,7 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// The bits of numbers; those of |a| are in the order of |a|, and a NaN is beyond infinity, so that a largest magnitude
-// keeps it.
+// The bits of numbers; those of |a| are in the order of |a|, a NaN beyond infinity: a largest magnitude keeps it.
 TEXGEN_INLINE WideWords signed_bits(const WideFloats& a) noexcept { return bits_as<WideWords>(a); }
 TEXGEN_INLINE WideWords magnitude_bits(const WideFloats& a) noexcept { return signed_bits(a) & 0x7fffffff; }
 TEXGEN_INLINE WideFloats from_bits(const WideWords& words) noexcept { return bits_as<WideFloats>(words); }

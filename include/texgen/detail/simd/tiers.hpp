@@ -41,8 +41,8 @@ struct FloatDivision {
 // rounded; the reciprocal and the product, 2 u.
 inline constexpr FloatDivision all_float{5.01 * unit_roundoff_float, 2.01 * unit_roundoff_float};
 inline constexpr FloatDivision about_point{6.01 * unit_roundoff_float, 2.01 * unit_roundoff_float};
-// Points in front are certified about the origin where q is between these, or is taken for the larger; others are divided
-// about a point.
+// Points in front are certified about the origin where q is between these, or is taken for the larger; others are
+// divided about a point.
 inline constexpr double least_q_in_front = 0x1p-59, largest_q_in_front = 0x1p100;
 // Numerator and q that are rounded to float, the reciprocal and the product.
 inline constexpr double float_divided_roundings = 4.01 * unit_roundoff_float;

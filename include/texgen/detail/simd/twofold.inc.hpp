@@ -218,8 +218,7 @@ struct TwofoldDivisor : PointSum {
     }
 };
 
-// The same of numerators with these errors. False where a lane is in doubt. 2^-49 covers what q lacks, and the
-// roundings here.
+// The same of numerators with these errors. False where a lane is in doubt. 2^-49 covers what q lacks, and roundings.
 TEXGEN_INLINE bool divide_nearly(const Doubles& s, const Doubles& s_error, const TwofoldDivisor& q,
                                  Floats& value) noexcept {
     const Doubles quotient = where(q.in_front, s * q.reciprocal);

@@ -266,8 +266,7 @@ TEXGEN_INLINE void store_interleaved(float* to, const Vector& a, const Vector& b
     store_interleaved(to + 2 * n, zipped<n / 2>(a, c, Lanes()), zipped<n / 2>(b, d, Lanes()));
 }
 
-// Lane i of vector k becomes lane k of vector i: in blocks of 16 bytes, then block by block, since what crosses them is
-// dear.
+// Lane i of vector k becomes lane k of vector i: in blocks of 16 bytes, then block by block: crossing them is dear.
 template <int First, int Block, class Vector, int... Lane>
 TEXGEN_INLINE Vector zipped_in_blocks(const Vector& a, const Vector& b, std::integer_sequence<int, Lane...>) noexcept {
     return __builtin_shufflevector(a, b,
