@@ -133,9 +133,9 @@ private:
 constexpr Angle radians(double value) noexcept { return Angle(value); }
 constexpr Angle degrees(double value) noexcept { return radians(value * (std::numbers::pi / 180.0)); }
 
-// The largest |error| that the caller accepts in s and in t, in the units of the region; in r the same
-// relative to max(1, |r|). The rounding of the nearest float is always allowed: |error| <= max(value, 1/2 ulp).
-// A value that is not positive (zero, negative, NaN) means exact.
+// The largest |error| that the caller accepts in s and in t, in the units of the region; in r the same relative to
+// max(1, |r|). The rounding of the nearest float is always allowed: |error| <= max(value, 1/2 ulp). A value that is not
+// positive (zero, negative, NaN) means exact.
 struct Tolerance {
     double value;
 };

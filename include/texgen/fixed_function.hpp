@@ -108,10 +108,10 @@ public:
     //     sphere_map      m = 2 sqrt(rx^2 + ry^2 + (rz + 1)^2), s = rx / m + 1/2, t = ry / m + 1/2
     // n uses the upper 3x3 of M^-1. For a MODELVIEW with a projective last row OpenGL leaves a choice; this is Mesa's.
     // Bad input: m = 0, the singularity of the sphere map, gives (1/2, 1/2) where no rounding comes before it, and else
-    // any direction of 1/2 about that. A vertex at the eye has no direction: u =
-    // 0. A zero normal stays zero under normalize. Where M is singular or not finite, OpenGL leaves normals undefined:
-    // sphere_map, reflection_map and normal_map give NaN, and the other modes are not touched by it. A NaN or an
-    // infinity spoils the coordinates that are made from it (a texture matrix other than the identity mixes them).
+    // any direction of 1/2 about that. A vertex at the eye has no direction: u = 0. A zero normal stays zero under
+    // normalize. Where M is singular or not finite, OpenGL leaves normals undefined: sphere_map, reflection_map and
+    // normal_map give NaN, and the other modes are not touched by it. A NaN or an infinity spoils the coordinates that
+    // are made from it (a texture matrix other than the identity mixes them).
     // Source: OpenGL 2.1 specification, 2.11.3, Normal Transformation, and 2.11.4, Generating Texture Coordinates.
     glm::vec4 generate(const FixedFunctionVertex& vertex, const glm::mat4& modelview) const noexcept;
 

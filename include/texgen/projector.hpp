@@ -129,9 +129,8 @@ inline constexpr double contain_error = 0x1p-50;
 
 // Narrows a lens to a picture of another aspect, width over height, so that all of the picture is in the light of the
 // lens as it was, about its middle: what remains of the light would be bars.
-// Guarantee: the fovy within 4 double ulp where it is above 2^-900, the sides of a rectangle within
-// contain_error; two opposite sides keep their places, and a lens of that aspect stays as it is. No allocation,
-// noexcept.
+// Guarantee: the fovy within 4 double ulp where it is above 2^-900, the sides of a rectangle within contain_error; two
+// opposite sides keep their places, and a lens of that aspect stays as it is. No allocation, noexcept.
 // Bad input: a lens that perspective(), frustum() or orthographic() refuses, where an aspect, the picture's or the
 // lens's, is not positive and finite, or the lens is one of those for more than a scale that is 0 in double. Where
 // doubles hold no sides so near to each other that they have the aspect, they are the same.

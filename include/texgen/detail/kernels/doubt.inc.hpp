@@ -107,8 +107,8 @@ struct CloseQuotient {
 };
 
 // A vector of fragments, again. `at` knows its functions there, q as the last, and whether its two doubles say more
-// than residues do and so are asked first. Where no lane is next to a middle, as of zeros, they
-// may be skipped, for which a tile's kernel has no room.
+// than residues do and so are asked first. Where no lane is next to a middle, as of zeros, they may be skipped, for
+// which a tile's kernel has no room.
 template <std::size_t Numerators, bool SkipsMiddles = true>
 struct CloseFragments {
     Floats quotient[Numerators];
