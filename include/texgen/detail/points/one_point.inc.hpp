@@ -55,17 +55,6 @@ inline CloseSums closely_at(const FormPair& forms, const glm::dvec3& v) noexcept
     return {sum, left};
 }
 
-// Both by exact sums where their bounds leave it open: whether q is positive (what is no number is not), and the float
-// nearest to a numerator over it.
-inline bool is_in_front_exactly(const PointForm& q_form, const glm::dvec3& v) noexcept {
-    return certain_sign(value_at(q_form, v), [&] { return exactly_at(q_form, v); }) > 0;
-}
-inline float divide_exactly(const PointForm& form, const PointForm& q_form, const glm::dvec3& v) noexcept {
-    return certain_quotient(
-        value_at(form, v), value_at(q_form, v), [&] { return exactly_at(form, v); },
-        [&] { return exactly_at(q_form, v); });
-}
-
 // A number as an integer of so many digits, if that is all of it, times a power of two.
 struct Digits {
     std::int64_t integer;
@@ -127,10 +116,10 @@ inline bool divide_closely(const FormPair& numerators, const PointForm& q_form, 
     constexpr double enough = 0x1p-51;
     const CloseSums q = closely_at({q_form, q_form}, v);
     const bool is_q_close = q.is_within(enough, 0);
-    if (!(is_q_close ? q.high[0] > 0.0 : is_in_front_exactly(q_form, v))) return false;
+    const auto exact_q = [&] { return exactly_at(q_form, v); };
+    if (!(is_q_close ? q.high[0] > 0.0 : certain_sign(value_at(q_form, v), exact_q) > 0)) return false;
     const CloseSums s = closely_at(numerators, v);
-    bool is_decided[2];
-    bool is_tied[2];
+    bool is_decided[2], is_tied[2];
     float other[2];
     double middle[2];
     const Double2 quotient = s.high / q.high[0] + 0.0;  // no -0
@@ -156,8 +145,12 @@ inline bool divide_closely(const FormPair& numerators, const PointForm& q_form, 
             if (rest.high[k] >= 0.0) value[k] = rest.high[k] > 0.0 ? other[k] : static_cast<float>(middle[k]);
         }
     }
-    for (std::size_t k = 0; k < 2; ++k)
-        if (!is_decided[k]) value[k] = divide_exactly(numerators.form(k), q_form, v);
+    for (std::size_t k = 0; k < 2; ++k) {
+        if (is_decided[k]) continue;
+        const PointForm form = numerators.form(k);
+        value[k] = certain_quotient(
+            value_at(form, v), value_at(q_form, v), [&] { return exactly_at(form, v); }, exact_q);
+    }
     return true;
 }
 
