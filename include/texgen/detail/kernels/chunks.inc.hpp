@@ -81,30 +81,6 @@ void weigh_chunks(const TileJob& job, ChunkGroup& group, int chunks_of_row, int 
     }
 }
 
-// A chunk of no less than a vector, from both ends: what begins before the middle ends behind it. The indices are
-// loaded, as that is what arithmetic leaves idle.
-TEXGEN_INLINE void fill_vectors(StepRule rule, const WideFloats& bend, const WideFloats (&middle)[2],
-                                const WideFloats (&slope)[2], const float* index, float* s, float* t,
-                                int count) noexcept {
-    std::ptrdiff_t last = count - wide_lanes;
-    for (std::ptrdiff_t x = 0; 2 * x < count; x += wide_lanes, last -= wide_lanes) {
-        const auto i = load<WideFloats>(index + x);
-        const WideFloats bent = i * bend, square = bent * bent;
-        WideFloats mean;
-        if (rule == StepRule::divide) {
-            mean = i / (1.0f - square);
-        } else {
-            mean = i + i * square;
-            if (rule == StepRule::degree8) mean = mean + mean * (square * square);
-        }
-        const WideFloats step = mean - mean * bent, step_back = reversed(mean + mean * bent);
-        store(s + x, step * slope[0] + middle[0]);
-        store(t + x, step * slope[1] + middle[1]);
-        store(s + last, middle[0] - step_back * slope[0]);
-        store(t + last, middle[1] - step_back * slope[1]);
-    }
-}
-
 // The group's chunks from `first` to `end`, of one rule, which begin at x of the row, and their mask. Those of less
 // than a vector, ends of rows, are written beside it.
 template <class CompiledWhereCalled = void>
@@ -125,7 +101,24 @@ void fill_chunks(const TileJob& job, const RowOutputs& row, ChunkGroup& group, i
         const WideFloats slope[2] = {group.slope[0][i] - WideFloats{}, group.slope[1][i] - WideFloats{}};
         float* const s = is_short ? buffer[0] + wide_lanes : row.out[0] + begin;
         float* const t = is_short ? buffer[1] + wide_lanes : row.out[1] + begin;
-        fill_vectors(rule, bend, middle, slope, group.index, s, t, length);
+        // From both ends: what begins before the middle ends behind it. Indices are loaded: arithmetic leaves that idle.
+        std::ptrdiff_t last = length - wide_lanes;
+        for (std::ptrdiff_t at = 0; 2 * at < length; at += wide_lanes, last -= wide_lanes) {
+            const auto from_middle = load<WideFloats>(group.index + at);
+            const WideFloats bent = from_middle * bend, square = bent * bent;
+            WideFloats mean;
+            if (rule == StepRule::divide) {
+                mean = from_middle / (1.0f - square);
+            } else {
+                mean = from_middle + from_middle * square;
+                if (rule == StepRule::degree8) mean = mean + mean * (square * square);
+            }
+            const WideFloats step = mean - mean * bent, step_back = reversed(mean + mean * bent);
+            store(s + at, step * slope[0] + middle[0]);
+            store(t + at, step * slope[1] + middle[1]);
+            store(s + last, middle[0] - step_back * slope[0]);
+            store(t + last, middle[1] - step_back * slope[1]);
+        }
         if (!is_short) continue;
         for (std::size_t k = 0; k < 2; ++k)
             std::memcpy(row.out[k] + begin, buffer[k] + wide_lanes, static_cast<std::size_t>(length) * sizeof(float));
