@@ -102,8 +102,6 @@ struct CloseQuotient {
             is_open &=
                 ~at_most(error * 2.001 + (size * (1.0001 * unit_roundoff_float) + 0x1p-149), Doubles{} + tolerance);
     }
-    // Of normal floats that err by so little there is but one middle in reach.
-    TEXGEN_INLINE LongWords is_rough() const noexcept { return ~greater(size * 0x1p-27, error); }
 };
 
 // A vector of fragments, again. `at` knows its functions there, q as the last, and whether its two doubles say more
@@ -130,7 +128,8 @@ struct CloseFragments {
             const LongWords is_open = close.is_open & q.front;
             if (!is_more_known) doubtful |= is_open;
             if (!is_more_known || !any(is_open)) continue;
-            const LongWords is_rough = is_open & close.is_rough();
+            // Of normal floats that err by less there is but one middle in reach.
+            const LongWords is_rough = is_open & ~greater(close.size * 0x1p-27, close.error);
             const auto grain = at.grain(k);
             LongWords left = is_open;
             const auto take = [&](LongWords decided, const Floats& nearest) {
