@@ -33,11 +33,6 @@ struct PointTerms {
             are_quotients &= numerator[k].is_finite;
         }
     }
-    // The points that are behind whatever their q is, as they are no numbers.
-    TEXGEN_INLINE LongWords are_dark(const PointLanes& at) const noexcept {
-        const Doubles zero = (at.v[0] + at.v[1] + at.v[2]) * (q.is_finite ? 0.0 : nan);
-        return ~at_most(zero, zero);
-    }
 };
 
 // Decides points anew: as sums where q is 1; in double with the error of each lane, unless four vectors in a row needed
@@ -52,7 +47,9 @@ TEXGEN_APART std::uint64_t fill_block_again(const PointJob& job, const PointTerm
     for (std::size_t i = begin; i < end; i += at_once) {
         const PointLanes at = load_points(job, i);
         const PointLanes sizes = sizes_of(at);
-        const LongWords are_dark = terms.are_dark(at);
+        // Behind whatever their q is, as they are no numbers.
+        const Doubles zero = (at.v[0] + at.v[1] + at.v[2]) * (terms.q.is_finite ? 0.0 : nan);
+        const LongWords are_dark = ~at_most(zero, zero);
         Floats value[2];
         Words in_front{};
         std::uint64_t unknown = 0;

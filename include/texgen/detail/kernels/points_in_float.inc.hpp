@@ -49,10 +49,6 @@ struct FloatErrors {
             of_form[k] = terms * form_error + underflow;
         }
     }
-    // The least that q is, where that is as computed.
-    TEXGEN_INLINE WideFloats least(const WideFloats& q) const noexcept {
-        return q * (1.0f - (roundings + 0x1p-20f)) - of_form[0];
-    }
     // Whether numerator k is within the tolerance for quotients of this size and this 1 / q at most. A NaN is not.
     TEXGEN_INLINE WideWords are_within(std::size_t k, const WideFloats& size,
                                        const WideFloats& reciprocal) const noexcept {
@@ -83,7 +79,8 @@ TEXGEN_INLINE bool fill_in_front(const PointJob& job, const PointForm (&of)[1 + 
         store_points(job, i, Numerators, value, ~WideWords{});
     }
     const FloatErrors errors(all_float, of, extent, job.tolerance);
-    const WideFloats q = errors.least(from_bits(least_q));
+    // The least that q is, where that is as computed.
+    const WideFloats q = from_bits(least_q) * (1.0f - (errors.roundings + 0x1p-20f)) - errors.of_form[0];
     WideWords are_within = errors.are_in_range & less(WideFloats{} + static_cast<float>(least_q_in_front), q);
     for (std::size_t k = 0; k < Numerators; ++k)
         are_within &= errors.are_within(1 + k, from_bits(largest[k]), 1.0f / q);
