@@ -46,7 +46,7 @@ TEXGEN_APART std::uint64_t fill_block_again(const PointJob& job, const PointTerm
     std::uint64_t doubtful = 0;
     for (std::size_t i = begin; i < end; i += at_once) {
         const PointLanes at = load_points(job, i);
-        const PointLanes sizes = sizes_of(at);
+        const PointLanes sizes{{magnitude(at.v[0]), magnitude(at.v[1]), magnitude(at.v[2])}};
         // Behind whatever their q is, as they are no numbers.
         const Doubles zero = (at.v[0] + at.v[1] + at.v[2]) * (terms.q.is_finite ? 0.0 : nan);
         const LongWords are_dark = ~at_most(zero, zero);
@@ -79,7 +79,7 @@ TEXGEN_APART std::uint64_t fill_block_again(const PointJob& job, const PointTerm
             effort.in_vain = is_decided ? 0 : effort.in_vain + 1;
         }
         while (!is_decided) {
-            const PointLanes grains = grains_of(sizes);
+            const PointLanes grains{{last_bits(sizes.v[0]), last_bits(sizes.v[1]), last_bits(sizes.v[2])}};
             TwofoldDivisor q(terms.q.at(at, sizes, effort.precisely[2], grains));
             q.in_front &= ~are_dark;
             in_front = narrow(q.in_front);

@@ -49,14 +49,6 @@ TEXGEN_INLINE Doubles last_bits(const Doubles& size) noexcept {
     return select(greater(size, 0.0), longer - without_last_bit(longer), Doubles{} + 0x1p500);
 }
 
-// The magnitudes of coordinates, and their last bits.
-TEXGEN_INLINE PointLanes sizes_of(const PointLanes& at) noexcept {
-    return {{magnitude(at.v[0]), magnitude(at.v[1]), magnitude(at.v[2])}};
-}
-TEXGEN_INLINE PointLanes grains_of(const PointLanes& sizes) noexcept {
-    return {{last_bits(sizes.v[0]), last_bits(sizes.v[1]), last_bits(sizes.v[2])}};
-}
-
 // The value of a form at points. A coefficient is split in two, so that both products with a float are exact.
 struct TwofoldForm {
     PointForm form;
