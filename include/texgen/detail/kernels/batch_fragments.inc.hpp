@@ -373,7 +373,7 @@ TEXGEN_APART Undecided divide_all_fragments(const FragmentsJob& job, std::size_t
     return {job.count, 0};
 }
 
-template <class = void>
+template <class CompiledWhereCalled = void>
 Undecided divide_batch_fragments(const FragmentsJob& original, std::size_t first) noexcept {
     const FragmentsJob job = original;
     Learned learned;

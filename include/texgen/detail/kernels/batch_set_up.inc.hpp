@@ -109,7 +109,7 @@ TEXGEN_INLINE LongWords set_up_lanes(const float* triangles, BatchPlanes* planes
     return ~is_known;
 }
 
-template <class = void>
+template <class CompiledWhereCalled = void>
 unsigned set_up_batch(const float* triangles, BatchPlanes* planes) noexcept {
     unsigned unknown = 0;
     for (std::size_t i = 0; i < batch_block; i += at_once)

@@ -244,7 +244,7 @@ TEXGEN_INLINE Undecided divide_all_tiles(const TilesJob& job, std::size_t first,
     return {job.tile_count, 0};
 }
 
-template <class = void>
+template <class CompiledWhereCalled = void>
 Undecided divide_batch_tiles(const TilesJob& original, std::size_t first, std::size_t done) noexcept {
     const TilesJob job = original;
     return job.needs_r() ? divide_all_tiles<3>(job, first, done) : divide_all_tiles<2>(job, first, done);
