@@ -337,7 +337,7 @@ TEXGEN_APART inline std::uint64_t decide_fragments(const FragmentsJob& job, cons
 // What is learned is large: the caller has it, so that this function's frame stays small.
 template <std::size_t Numerators>
 TEXGEN_APART Undecided divide_all_fragments(const FragmentsJob& job, std::size_t first, Learned& learned) noexcept {
-    const FragmentOutputs out(job);
+    const FragmentOutputs out{job};
     ScratchOutputs<at_once> scratch;
     const FragmentOutputs in_scratch = scratch.in_place_of(out);
     FragmentCentres centres(job, first);

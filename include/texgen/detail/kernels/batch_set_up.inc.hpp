@@ -167,23 +167,7 @@ private:
 };
 
 // Where the values of fragments go: in whole vectors, of which those that follow overwrite what is too much.
-struct FragmentOutputs {
-    float* out[3];
-    float* lit;
-    float min[2], max[2];
-    bool has_depth;
-    float r_min, r_max;
-
-    // Member by member: as one object it would stay in memory.
-    TEXGEN_INLINE explicit FragmentOutputs(const BatchJob& job) noexcept
-        : out{job.out[0], job.out[1], job.out[2]},
-          lit(job.lit),
-          min{job.min[0], job.min[1]},
-          max{job.max[0], job.max[1]},
-          has_depth(job.has_depth),
-          r_min(job.r_min),
-          r_max(job.r_max) {}
-
+struct FragmentOutputs : BatchOutputs {
     template <std::size_t Numerators>
     TEXGEN_INLINE void put(std::size_t n, const Floats (&value)[Numerators], const LongWords& in_front) const noexcept {
         TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k)

@@ -190,7 +190,7 @@ TEXGEN_APART inline void fill_all(const FragmentOutputs& out, std::size_t begin,
 
 template <std::size_t Numerators>
 TEXGEN_INLINE Undecided divide_all_tiles(const TilesJob& job, std::size_t first, std::size_t done) noexcept {
-    const FragmentOutputs out(job);
+    const FragmentOutputs out{job};
     TileScratch scratch;
     BatchTiles tiles;
     ShapeOfTile shape;

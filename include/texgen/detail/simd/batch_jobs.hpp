@@ -52,17 +52,21 @@ inline constexpr double batch_plane_error = 1.0001 * gamma(20);
 inline constexpr std::size_t largest_batch_tile = 1024;
 inline constexpr std::size_t largest_in_scratch = 512;
 
-// An output is null, or an array of `count` floats; r is computed where it has one, and for the depth of a mask.
-struct BatchJob {
-    const BatchPlanes* planes;
-    const float* vertices;
-    double tolerance;
+// Where the values of fragments go: an output is null, or an array of `count` floats.
+struct BatchOutputs {
     float* out[3];
     float* lit;
-    std::size_t count;
     float min[2], max[2];  // the region
     bool has_depth;
     float r_min, r_max;
+};
+
+// r is computed where it has an output, and for the depth of a mask.
+struct BatchJob : BatchOutputs {
+    const BatchPlanes* planes;
+    const float* vertices;
+    double tolerance;
+    std::size_t count;
     double least[3], greatest[3];  // those of s, t and r as finite numbers
 
     bool needs_r() const noexcept { return out[2] != nullptr || (has_depth && lit != nullptr); }
