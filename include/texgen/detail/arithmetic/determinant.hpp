@@ -1,6 +1,6 @@
 #pragma once
 
-// Determinants whose terms may cancel to the last bit: in one double or two where a bound decides, else as exact sums.
+// Determinants whose terms may cancel to the last bit: in double, or in two, where a bound decides; else as exact sums.
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
