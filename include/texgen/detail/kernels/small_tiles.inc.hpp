@@ -4,22 +4,28 @@ namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
 // Two rows share a division of doubles, of an odd number of them the last two, and a short single row is both; integers
 // are asked whether a value is in doubt. A long one is cut into rows as wide as a vector, of which the last may begin
-// in the one before. What a vector writes beyond its row is written again by those that follow.
+// in the one before; and of two columns vectors of eight hold four rows each, if they come out even: y counts those. What
+// a vector writes beyond its row is written again by those that follow.
 TEXGEN_INLINE bool divide_small(const SmallTile& tile) noexcept {
     const auto& [f_base, f_dx, f_dy] = tile.numerator;
     const Ramp& of_q = tile.q;
     int width = tile.width, stride = width;
     const int count = width * tile.height;
-    double height = tile.height, q_dy = of_q.dy, dy[2] = {f_dy[0], f_dy[1]};
+    double q_dy = of_q.dy, dy[2] = {f_dy[0], f_dy[1]};
     if (tile.height == 1) {
         const bool is_short = width < 2 * lanes;
         stride = is_short ? 0 : lanes;
         q_dy = stride * of_q.dx;
         for (std::size_t k = 0; k < 2; ++k) dy[k] = stride * f_dx[k];
-        if (!is_short) {
-            width = lanes;
-            height = count * (1.0 / lanes);
-        }
+        if (!is_short) width = lanes;
+    }
+    Doubles column = indices<Doubles>(), first_y{};
+    if (lanes > 4 && width == 2 && count % (2 * lanes) == 0) {
+        first_y = (column * 0.125 - 0.0625 + 0x1.8p50) - 0x1.8p50;  // to fourths: 0, 0, 1/4, 1/4, ...
+        column = column - first_y * 8.0;
+        q_dy *= 4.0;
+        for (double& of_row : dy) of_row *= 4.0;
+        width = stride = lanes;
     }
     // Shorter rows than vectors have no room for the last of them.
     float buffer[2][SmallTile::most_in_short_rows + lanes];
@@ -27,11 +33,11 @@ TEXGEN_INLINE bool divide_small(const SmallTile& tile) noexcept {
     float* const out[2] = {has_room ? tile.out[0] : buffer[0], has_room ? tile.out[1] : buffer[1]};
     Distances least = far_from_middles();
     for (int begin = 0;;) {
-        const Doubles x = indices<Doubles>() + static_cast<double>(begin);
+        const Doubles x = column + static_cast<double>(begin);
         const Doubles first_q = x * of_q.dx + of_q.base;
         const Doubles first[2] = {x * f_dx[0] + f_base[0], x * f_dx[1] + f_base[1]};
         const int last = begin + count - width - stride;
-        Doubles y{};
+        Doubles y = first_y;
         for (int n = begin;;) {
             const Doubles q = y * q_dy + first_q, second_q = q + q_dy;
             const SharedDivision division(q, second_q);
@@ -50,7 +56,7 @@ TEXGEN_INLINE bool divide_small(const SmallTile& tile) noexcept {
             y = y + 2.0;
             if (n > last) {
                 n = last;
-                y = Doubles{} + (height - 2.0);
+                y = Doubles{} + static_cast<double>(n - begin) / width;
             }
         }
         if (begin + lanes >= width) break;
