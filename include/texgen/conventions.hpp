@@ -11,8 +11,8 @@
 
 #include "detail/matrices/required.hpp"
 
-// 0.4.31: 10000 major + 100 minor + patch.
-#define TEXGEN_VERSION 431
+// 0.4.32: 10000 major + 100 minor + patch.
+#define TEXGEN_VERSION 432
 
 namespace TEXGEN_NAMESPACE {
 

@@ -23,12 +23,16 @@ struct TileSurvey {
     OnDemand<CloseRamps> close;  // where the planes cancel
 };
 
-// Chunks are short where q varies much, so that their ends are not far from their middle. One costs about as much as 32
-// fragments besides those that it has.
-inline int chunk_length(const Corners& at, int width) noexcept {
+// Chunks are short where q varies much, so that their ends are not far from their middle, and in tiles that caches do not
+// hold: both halves of a chunk are written at once, which memory takes without delay only where they are neighbours. One
+// costs about as much as 32 fragments besides those that it has.
+inline int chunk_length(const Corners& at, const Tile& tile) noexcept {
+    constexpr int shortest = 64;
+    constexpr std::int64_t most_in_caches = std::int64_t{1} << 20;
+    const int width = tile.width;
     const double q = 0.25 * (at.q[0] + at.q[1] + at.q[2] + at.q[3]);
-    int longest = longest_chunk;
-    while (longest > 64 && std::fabs(at.q_ramp.dx) * longest > 0.5 * q) longest /= 2;
+    int longest = tile.count() > most_in_caches ? shortest : longest_chunk;
+    while (longest > shortest && std::fabs(at.q_ramp.dx) * longest > 0.5 * q) longest /= 2;
     if (width <= longest) return width;
     const int chunks = (width - 1) / longest + 1;
     constexpr int lanes = 16;
@@ -61,7 +65,7 @@ inline bool is_small(const Tile& tile, double tolerance) noexcept {
 
 // The plan of a tile that is divided without being asked about.
 inline Plan plan_without_survey(const Tile& tile, const Corners& at) noexcept {
-    return {Work::divide,        pays_for_chunks(tile.width, tile.height) ? chunk_length(at, tile.width) : 0,
+    return {Work::divide,        pays_for_chunks(tile.width, tile.height) ? chunk_length(at, tile) : 0,
             StepRule::undecided, {},
             Coverage::partial,   Coverage::inside};
 }
@@ -127,7 +131,7 @@ inline void choose_plan(const TriangleFunctions& triangle, const Tile& tile, con
     if (at.is_well_in_front() && is_constant(triangle.q.value)) plan.work = Work::affine;
     const Work without_chunks = plan.work;
     if (triangle.tolerance == 0.0 || !pays_for_chunks(tile.width, tile.height)) return;
-    plan.chunk = chunk_length(at, tile.width);
+    plan.chunk = chunk_length(at, tile);
     if (at.is_well_in_front()) choose_steps(plan, at, triangle.tolerance * (1.0 - 0x1p-18));
     if (is_small(tile, triangle.tolerance)) plan.work = without_chunks;  // whether or not floats serve
 }
