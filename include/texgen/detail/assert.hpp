@@ -1,6 +1,6 @@
 #pragma once
 
-// The one macro for broken preconditions. A project that has its own defines TEXGEN_ASSERT before the first include.
+// The macro that checks preconditions. A project may define a TEXGEN_ASSERT of its own before the first include.
 #ifndef TEXGEN_ASSERT
 #include <cassert>
 #define TEXGEN_ASSERT(condition) assert(condition)

@@ -1,6 +1,6 @@
 #pragma once
 
-// Which objects of Eigen cross its border, and the points that their floats are.
+// Which objects of Eigen the functions of eigen.hpp take, and which points their floats are.
 
 #include <concepts>
 #include <cstddef>
@@ -20,7 +20,7 @@ namespace TEXGEN_DETAIL {
 template <class T>
 concept FloatOrDouble = std::same_as<T, float> || std::same_as<T, double>;
 
-// Concepts ask which of these take an object. Not closures, as nvcc's front end finds that none of them takes any.
+// Concepts ask whether one of these can be called with an object. Not closures: nvcc's front end finds none callable.
 template <class Derived>
 void take_dense(const Eigen::DenseBase<Derived>&);
 template <class Derived>
@@ -49,24 +49,24 @@ template <class T>
 concept EigenMatrix4 =
     EigenDense<T> && FloatOrDouble<typename T::Scalar> && T::RowsAtCompileTime == 4 && T::ColsAtCompileTime == 4;
 
-// A class derived from a matrix owns them as well.
+// Whether a type owns its elements, as a matrix does, and a class derived from one.
 template <class T>
 inline constexpr bool owns_elements = requires(const std::remove_cvref_t<T>& t) {
     take_owner(t);
 };
 
-// What is seen as MatrixBase or ArrayBase.
+// The type of an object that a caller may see as its base only, MatrixBase or ArrayBase.
 template <class T>
 using EigenDerived = std::remove_cvref_t<decltype(std::declval<T&>().derived())>;
 
-// Floats in memory that outlive the call: a view of them, or an lvalue that owns them. T as of a forwarding reference.
+// Floats in memory that outlives the call: a view, or an lvalue that owns them. T is deduced as a forwarding reference.
 template <class T>
 concept EigenFloats = EigenDense<std::remove_cvref_t<T>> && requires(const EigenDerived<T>& t) {
     { t.data() } -> std::convertible_to<const float*>;
 } && bool(EigenDerived<T>::Flags& Eigen::DirectAccessBit) &&
     (std::is_lvalue_reference_v<T> || !owns_elements<EigenDerived<T>>);
 
-// Points are columns of three rows, or rows of three columns; nine numbers do not say which.
+// Points are the columns of three rows, or the rows of three columns. A 3x3 could be either, and is refused.
 template <class T>
 concept EigenPoints = EigenFloats<T> &&
                       (EigenDerived<T>::RowsAtCompileTime == 3) != (EigenDerived<T>::ColsAtCompileTime == 3);
@@ -78,13 +78,14 @@ template <class... Floats>
 concept EigenPositions = (sizeof...(Floats) == 1 && (EigenPoints<Floats> && ...)) ||
                          (sizeof...(Floats) == 3 && (EigenCoordinates<Floats> && ...));
 
-// Floats that follow one another, in the order of row-major fragments.
+// Floats without gaps in memory; a matrix of them is row-major, as fragments are.
 template <class T>
 concept EigenSpan = EigenFloats<T> &&
     ((bool(EigenDerived<T>::IsVectorAtCompileTime) && EigenDerived<T>::InnerStrideAtCompileTime == 1) ||
      (bool(EigenDerived<T>::IsRowMajor) && owns_elements<EigenDerived<T>>));
 
-// Temporaries that own coordinates: ranges of floats, of which std::span would be a view.
+// Three coordinates of which one is a temporary that owns its floats. They are ranges of floats, so that without this
+// concept they would convert to std::span, and the view would dangle.
 template <class... Floats>
 concept EigenTemporaries = sizeof...(Floats) == 3 && (EigenDense<std::remove_cvref_t<Floats>> && ...) &&
                            ((!std::is_lvalue_reference_v<Floats> && owns_elements<Floats>) || ...);

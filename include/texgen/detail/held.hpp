@@ -1,6 +1,6 @@
 #pragma once
 
-// What the objects that keep memory keep it by.
+// What classes that keep memory need for it: a count that moves with it, and an allocator for aligned types.
 
 #include <cstddef>
 #include <new>
@@ -10,7 +10,7 @@
 
 namespace TEXGEN_DETAIL {
 
-// A count of what the vectors beside it hold: as theirs, it is 0 once that has moved to another object.
+// The count of what the vectors beside it hold. It is 0 once its object has been moved from, as they are empty then.
 class HeldCount {
 public:
     HeldCount() noexcept = default;
@@ -30,8 +30,8 @@ private:
     std::size_t count_ = 0;
 };
 
-// Memory for what is aligned beyond the ordinary. clang++ 14 with the library of g++ 12 forgets that in C++23 where it
-// is std::allocator's.
+// An allocator for types that are aligned beyond the ordinary. It is not std::allocator, for which clang++ 14 with the
+// library of g++ 12 forgets the alignment in C++23.
 template <class Value>
 struct AlignedAllocator {
     using value_type = Value;

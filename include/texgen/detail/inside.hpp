@@ -1,6 +1,6 @@
 #pragma once
 
-// What the library reads of its own classes, and nobody else.
+// Access to private members of the public classes, for the library alone.
 
 #include <cstddef>
 

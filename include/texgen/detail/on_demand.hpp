@@ -1,7 +1,7 @@
 #pragma once
 
-// A value that is made where it is first needed, if ever. std::optional would serve, but each type of it takes every
-// user four times as long to compile: it is for results.
+// A value that is made where it is first needed, if ever. std::optional would serve, but each of its types takes every
+// user four times as long to compile: it is kept for results.
 
 #include <new>
 
@@ -9,7 +9,7 @@
 
 namespace TEXGEN_DETAIL {
 
-// Of a type that needs no destructor; what is not made yet is not initialized.
+// For types that need no destructor. The value is not initialized before it is made.
 template <class Value>
 class OnDemand {
 public:

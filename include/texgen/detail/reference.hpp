@@ -1,7 +1,7 @@
 #pragma once
 
-// What the definitions are made of: floats as given, mixtures, and the barycentrics of the window. It shares nothing
-// with the fast path.
+// What the definitions of reference.hpp are made of: floats as given, mixtures, and the barycentrics of the window. It
+// shares nothing with the fast path.
 
 #include <cmath>
 
@@ -16,12 +16,12 @@ namespace TEXGEN_NAMESPACE::reference {
 inline namespace TEXGEN_COMPILER {
 namespace detail {
 
-// What holds floats: an integer would drop their fractions without a word.
+// A type that can hold floats. An integer type is refused, as it would drop their fractions without a word.
 template <class Scalar>
 concept HoldsFloats = !Eigen::NumTraits<Scalar>::IsInteger;
 
-// The float that was given: a volatile, since g++ 12 takes (double)(float)x of neighbours for x where it inlines a
-// caller that rounds.
+// Converts the very float that was given. It is read as a volatile because g++ 12 takes (double)(float)x of neighbours
+// for x where it inlines a caller that rounds x to float.
 template <class Scalar>
 Scalar exactly(float value) {
     const volatile float given = value;
@@ -44,7 +44,8 @@ Scalar cross(const Scalar& ax, const Scalar& ay, const Scalar& bx, const Scalar&
     return ax * by - ay * bx;
 }
 
-// In double the two products of a sliver cancel; the fused form keeps 1.5 ulp of the difference. Source: Kahan.
+// The two products cancel in double where a triangle is a sliver; the fused form keeps 1.5 ulp of the difference.
+// Source: Kahan.
 inline double cross(double ax, double ay, double bx, double by) noexcept {
     const double product = ay * bx;
     return std::fma(ax, by, -product) + std::fma(-ay, bx, product);
@@ -79,8 +80,8 @@ struct WindowTriangle {
         TEXGEN_ASSERT(side != zero && a.w > zero && b.w > zero && c.w > zero);
     }
 
-    // lambda_i / w_i, all three times one positive number (twice the area and the product of the w), which cancels in
-    // every quotient: so nothing is divided by the area.
+    // lambda_i / w_i for each corner, all times the same positive number: twice the area times the three w. It cancels
+    // in every quotient, so nothing is divided by the area.
     Eigen::Matrix<Scalar, 3, 1> weights(const Scalar& x, const Scalar& y) const {
         return {Scalar(side * edge(b, c, x, y) * (b.w * c.w)), Scalar(side * edge(c, a, x, y) * (c.w * a.w)),
                 Scalar(side * edge(a, b, x, y) * (a.w * b.w))};

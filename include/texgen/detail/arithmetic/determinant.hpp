@@ -1,6 +1,7 @@
 #pragma once
 
-// Determinants whose terms may cancel to the last bit: in double, or in two, where a bound decides; else as exact sums.
+// Determinants whose terms may cancel to the last bit. They are computed in double, or in two, where a bound decides,
+// and else as exact sums.
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -11,13 +12,14 @@
 
 namespace TEXGEN_DETAIL {
 
-// A number within 2^-51 of itself, with its sign and its zeros, of which `close` is within `error`.
+// Returns a number x to a relative error of 2^-51, so that its sign and its zeros are exact. `close` is within `error`
+// of x; where that is not enough exact() is asked.
 double settled(const DoubleDouble& close, double error, const auto& exact) noexcept {
     return error <= 0x1p-54 * magnitude(close.high) ? close.high : exact().estimate();
 }
 
-// The determinant of three rows of floats. A product of two is exact in double, and nothing leaves the range.
-// What is not finite has the sign 0 and the value NaN.
+// The determinant of three rows of floats. The product of two floats is exact in double, and that of three stays in its
+// range. A determinant that is not finite has the sign 0 and the value NaN.
 class FloatDeterminant {
 public:
     FloatDeterminant(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) noexcept : row_{a, b, c} {}
@@ -28,7 +30,7 @@ public:
         return size < 0x1p1000 ? exactly().sign() : 0;
     }
 
-    // Within 2^-51 of itself: three products within 2^-103 of their terms, and two sums.
+    // To a relative error of 2^-51: each of three products is within 2^-103 of its terms, and so is each of two sums.
     double value() const noexcept {
         const double size = this->size();
         if (!(size < 0x1p1000)) return nan;
@@ -37,7 +39,7 @@ public:
                        [&] { return exactly(); });
     }
 
-    // In double, within gamma(4) of the sum of its terms' magnitudes, which is the size.
+    // The determinant in double, within gamma(4) size. The size is the sum of the magnitudes of its terms.
     struct Nearly {
         double value, size;
     };
@@ -71,7 +73,7 @@ private:
     glm::dvec3 row_[3];
 };
 
-// Twice the signed area of a triangle, positive where a, b, c run counter-clockwise, within 2^-51 of itself.
+// Twice the signed area of a triangle, positive where a, b, c run counter-clockwise, to a relative error of 2^-51.
 // Precondition: each coordinate is 0, or its magnitude is from 2^-400 to 2^400.
 inline double twice_area(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) noexcept {
     const auto product_of = [](double x, double x_from, double y, double y_from) {

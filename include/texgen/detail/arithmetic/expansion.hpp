@@ -11,12 +11,12 @@
 
 namespace TEXGEN_DETAIL {
 
-// What follows is one function for all capacities, of exact values as doubles that do not overlap, smallest first; each
-// returns how many there are then. Source: Shewchuk, Adaptive Precision Floating-Point Arithmetic and Fast Robust
-// Geometric Predicates.
+// The two functions below serve expansions of every capacity. An expansion is an exact value as an array of doubles
+// that do not overlap, smallest first; each function returns its new count. Source: Shewchuk, Adaptive Precision
+// Floating-Point Arithmetic and Fast Robust Geometric Predicates.
 
-// Adds a number to those from `first` on (Grow-Expansion). What it leaves of the first of these is no larger than the
-// number, so that the next one of an order that does not overlap leaves it: `first` steps over it (Expansion-Sum).
+// Adds a number to the terms from `first` on (Grow-Expansion). The new first of these is no larger than the number, so
+// that another number that is larger and does not overlap it leaves that term: `first` steps over it (Expansion-Sum).
 inline std::size_t grow(double* terms, std::size_t count, double term, std::size_t& first) noexcept {
     if (term == 0.0) return count;
     const std::size_t begin = first;
@@ -33,7 +33,7 @@ inline std::size_t grow(double* terms, std::size_t count, double term, std::size
     return kept;
 }
 
-// Adds a multiple of another (Scale-Expansion).
+// Adds `factor` times another expansion (Scale-Expansion).
 TEXGEN_APART inline std::size_t grow_by_multiple(double* terms, std::size_t count, const double* other,
                                                  std::size_t other_count, double factor) noexcept {
     std::size_t first = 0;
@@ -49,7 +49,7 @@ TEXGEN_APART inline std::size_t grow_by_multiple(double* terms, std::size_t coun
 }
 
 // The exact value of a sum, kept as at most Capacity doubles that do not overlap, smallest first.
-// Exact while no product leaves 2^-960 .. 2^1000, which products of five floats cannot.
+// Exact while no product leaves 2^-960 .. 2^1000; no product of five floats does.
 template <std::size_t Capacity>
 class Expansion {
 public:
@@ -85,7 +85,7 @@ public:
         return sum;
     }
 
-    // Within 2^-104 of it.
+    // The value in two doubles, to a relative error of 2^-104.
     DoubleDouble leading() const noexcept {
         DoubleDouble result{};
         for (std::size_t i = count_; i-- > 0;) {
@@ -99,7 +99,7 @@ public:
     int sign() const noexcept { return count_ == 0 ? 0 : terms_[count_ - 1] > 0.0 ? 1 : -1; }
 
 private:
-    std::array<double, Capacity> terms_;  // not initialized: that would cost what a sum does
+    std::array<double, Capacity> terms_;  // not initialized: to clear them takes as long as a sum
     std::size_t count_ = 0;
 };
 

@@ -25,7 +25,7 @@ inline glm::dvec4 times_powers_of_two(const glm::dvec4& v, const glm::ivec4& exp
             times_power_of_two(v.z, exponent.z), times_power_of_two(v.w, exponent.w)};
 }
 
-// The magnitudes of the elements. (Without glm::abs(), which calls a function of each.)
+// The magnitudes of the elements. glm::abs() is not used, as it calls a function for each.
 inline glm::dvec4 absolute(const glm::dvec4& v) noexcept {
     return {std::fabs(v.x), std::fabs(v.y), std::fabs(v.z), std::fabs(v.w)};
 }
@@ -33,22 +33,23 @@ inline glm::dmat4 absolute(const glm::dmat4& m) noexcept {
     return {absolute(m[0]), absolute(m[1]), absolute(m[2]), absolute(m[3])};
 }
 
-// An element other than 0 that scaling makes smaller could be rounded there, and B would be another matrix: one of rank
-// 3 could look regular.
+// The least magnitude, but 0, to which scaling may bring an element. Below it the element could be rounded, and B would
+// be another matrix: one of rank 3 could look regular.
 inline constexpr double least_scaled = 0x1p-900;
 
 class CertifiedInverse {
 public:
     // The matrix is first scaled by powers of two, B = R A C, so that rows and columns are near 1: this is exact and
-    // makes every later decision independent of uniform and of diagonal scale. X ~ B^-1 is one elimination and steps of
-    // refinement with a doubled residual: two, or more until each element is as good as its terms.
+    // makes every later decision independent of uniform and of diagonal scale. X ~ B^-1 comes from one elimination and
+    // two steps of refinement with a doubled residual, or more, until each element is as good as its terms.
     explicit CertifiedInverse(const glm::dmat4& matrix) noexcept : scaled_(matrix) {
         if (!is_finite(matrix) || !equilibrate() || !eliminate()) return;
         clear_what_has_no_terms();
         glm::dmat4 lacking = residual();
         beta_ = certificate(lacking);
         if (!is_regular()) return;
-        // A step, X <- X + X (I - B X), takes about 50 bits from what is noise: 900 in all lie between the elements.
+        // A step, X <- X + X (I - B X), takes about 50 bits from the error, and elements lie within 900 bits of one
+        // another.
         constexpr int most_steps = 20;
         inverse_ += inverse_ * lacking;
         for (int step = 2; step <= most_steps; ++step) {
@@ -61,13 +62,13 @@ public:
     }
 
     // Whether norm(I - B X) + 5 u norm(|X| |B|) for the X of the elimination is below 1, which proves that A is
-    // regular. For an exactly singular A it is at least 1 for every X: with y B = 0, y (I - B X) = y. False for what is
+    // regular. For an exactly singular A it is at least 1 for every X: with y B = 0, y (I - B X) = y. False where A is
     // not finite.
     bool is_regular() const noexcept { return beta_ < 1.0; }
 
     // A^-1 = C X R; each element within 2 ulp of the largest of its terms in A^-1 A A^-1 while the condition of B stays
-    // below 1e8 and its terms, in X B X, above least_scaled. Half an ulp of its own may be all of that: as B X = 1 has
-    // four terms, one of X B X is at least a quarter of it.
+    // below 1e8 and its terms, in X B X, above least_scaled. That may be as little as half an ulp of the element: (B
+    // X)_jj = 1 has four terms, so one of X B X is at least a quarter of the element.
     glm::dmat4 matrix() const noexcept {
         glm::dmat4 result;
         for (glm::length_t j = 0; j < 4; ++j)
@@ -89,7 +90,8 @@ public:
     }
 
     // A bound on |solution - rows A^-1|, element by element, for any solution: solve_row()'s, or matrix() for the rows
-    // of the identity, or one from elsewhere. A NaN or an infinity stays one; infinite where A is not regular.
+    // of the identity, or one from elsewhere. A NaN or an infinity of the solution stays one in the bound; infinite
+    // where A is not regular.
     glm::dmat4 error_of(const glm::dmat4& solution, const glm::dmat4& rows) const noexcept {
         const double r = contraction();
         const glm::dmat4 solved = glm::transpose(solution), given = glm::transpose(rows);
@@ -101,7 +103,7 @@ public:
     }
 
 private:
-    // start - row . column.
+    // start - row . column, computed in two doubles.
     static double residual_of(const glm::dvec4& row, const glm::dvec4& column, double start) noexcept {
         const DoubleDouble half = add_product(add_product({start, 0.0}, -row.x, column.x), -row.y, column.y);
         return add_product(add_product(half, -row.z, column.z), -row.w, column.w).high;
@@ -152,11 +154,12 @@ private:
         return true;
     }
 
-    // An element of B^-1 is a cofactor over the determinant. Where a factor of each of the cofactor's products is 0 so
-    // is the element; what elimination has left there would never be small beside terms that are 0. One has a product
-    // where each of its three rows, each two and all have as many columns with factors (Hall's marriage theorem).
+    // Sets to 0 what is exactly 0 in B^-1. An element of B^-1 is a cofactor over the determinant, and 0 where each
+    // product in the cofactor has a factor 0. What elimination leaves there is never small beside terms that are 0. A
+    // cofactor has a product without a 0 where each one, two and three of its rows have nonzero elements in as many
+    // columns (Hall's marriage theorem).
     void clear_what_has_no_terms() noexcept {
-        unsigned rows[4] = {};  // a bit for each column
+        unsigned rows[4] = {};  // a bit for each column where it is not 0
         for (glm::length_t i = 0; i < 4; ++i)
             for (glm::length_t j = 0; j < 4; ++j) rows[j] |= scaled_[i][j] != 0.0 ? 1u << i : 0u;
         const auto without_last = [](unsigned bits) { return bits & (bits - 1); };
@@ -195,8 +198,8 @@ private:
 
     // Whether each element is within 2 ulp of the largest of its terms in X B X. With R = I - B X, X lacks X R + X R^2
     // + ... Where no element of R is above 2^-10, the sum of all powers of |R| is at most 1.1 (|R| + |R|^2 + |R|^3),
-    // element by element: a path of more than 3 steps between 4 places goes in a circle. The error of R itself, 2^-100
-    // of the terms of I and B X, adds as little to X as that.
+    // element by element: a path of more than 3 steps between 4 indices contains a circle. R itself errs by 2^-100 of
+    // the terms of I and B X, which changes X by about 2^-100 of its terms.
     bool is_as_good_as_its_terms(const glm::dmat4& residual) const noexcept {
         const glm::dmat4 r = absolute(residual);
         const glm::dmat4 powers = r + r * (r + r * r);
@@ -209,7 +212,7 @@ private:
             for (glm::length_t k = 0; k < 4; ++k) largest = (glm::max)(largest, of_product[k] * x[k]);
             for (glm::length_t j = 0; j < 4; ++j) {
                 if (!(r[j][i] <= 0x1p-10)) return false;
-                // Nothing is promised of what may leave the range.
+                // Nothing is promised where terms may leave the range.
                 if (largest[j] < least_scaled) continue;
                 if (!(error[j][i] < times_power_of_two(1.999, exponent_of(largest[j]) - 52))) return false;
             }
@@ -217,7 +220,7 @@ private:
         return true;
     }
 
-    // The largest sum of a column of |I - B X|. Infinite where A is not regular.
+    // A bound on the largest sum of a column of |I - B X|. Infinite where A is not regular.
     double contraction() const noexcept {
         if (!is_regular()) return infinity;
         const glm::dmat4 terms = glm::dmat4(1.0) + absolute(scaled_) * absolute(inverse_);
@@ -239,7 +242,7 @@ private:
         glm::dvec4 d(0.0), error(0.0);
         for (glm::length_t k = 0; k < 4; ++k) {
             const double rho = residual_of(scaled_solution, scaled_[k], target[k]);
-            // One rounding, four sums within 2^-102 of the terms, and products that underflow.
+            // rho has one rounding, four sums within 2^-102 of the terms, and products that may underflow.
             const double terms = std::fabs(target[k]) + glm::dot(absolute(scaled_solution), absolute(scaled_[k]));
             const double rho_error = gamma(2) * std::fabs(rho) + 0x1p-99 * terms + 0x1p-1000;
             d += rho * x[k];

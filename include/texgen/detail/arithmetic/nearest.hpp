@@ -16,7 +16,7 @@
 
 namespace TEXGEN_DETAIL {
 
-// Whether every real number within `error` of `value` rounds to one float; then that float is the nearest of them all.
+// Whether all real numbers within `error` of `value` round to the same float, which is then the nearest float to each.
 // Source: Ziv, Fast evaluation of elementary mathematical functions with correctly rounded last bit, ACM TOMS 17
 // (1991).
 inline bool rounds_alone(double value, double error) noexcept {
@@ -25,7 +25,7 @@ inline bool rounds_alone(double value, double error) noexcept {
     return low == high;
 }
 
-// The middle of two neighbouring floats. Beyond the largest float stands 2^128.
+// The middle of two neighbouring floats. An infinity stands for 2^128, which would follow the largest float.
 inline double middle_of(float low, float high) noexcept {
     const auto unbounded = [](float value) {
         return std::fabs(value) < std::numeric_limits<float>::infinity() ? widened(value)
@@ -34,8 +34,8 @@ inline double middle_of(float low, float high) noexcept {
     return 0.5 * unbounded(low) + 0.5 * unbounded(high);
 }
 
-// The float nearest to a number, ties to even; infinity beyond the range. The number is within error <= 2^-26 |value|
-// of a value, and sign_beyond(m) is the sign of what it is more than m, the middle of two floats.
+// The float nearest to a number x, ties to even; infinity beyond the range. `value` is within error <= 2^-26 |value| of
+// x, and sign_beyond(m) is the sign of x - m for m, the middle of two floats.
 float nearest_to(double value, double error, const auto& sign_beyond) noexcept {
     if (!(std::fabs(value) < 0x1p129)) return static_cast<float>(value);
     const auto low = static_cast<float>(value - error);
@@ -46,7 +46,7 @@ float nearest_to(double value, double error, const auto& sign_beyond) noexcept {
     return sign < 0 ? low : sign > 0 ? high : static_cast<float>(middle);
 }
 
-// The float nearest to numerator / denominator. denominator > 0.
+// The float nearest to numerator / denominator. Precondition: denominator > 0.
 template <std::size_t N, std::size_t D>
 float nearest_quotient(const Expansion<N>& numerator, const Expansion<D>& denominator) noexcept {
     if (numerator.sign() == 0) return 0.0f;
@@ -58,8 +58,8 @@ float nearest_quotient(const Expansion<N>& numerator, const Expansion<D>& denomi
     });
 }
 
-// The sign (-1, 0 or 1) of the number that `bounded` stands for, from exact() where the bound leaves it open.
-// Returns -1 for what is not finite, which counts as behind.
+// The sign (-1, 0 or 1) of the number that `bounded` stands for, from exact() where the bound leaves it open. It is -1
+// where the number is not finite, which counts as behind.
 int certain_sign(const Bounded& bounded, const auto& exact) noexcept {
     if (bounded.value > bounded.error) return 1;
     if (!(std::fabs(bounded.value) <= bounded.error && bounded.error < 0x1p1000)) return -1;
@@ -77,7 +77,7 @@ float certain_quotient(const Bounded& s, const Bounded& q, const auto& exact_s, 
     return nearest_quotient(exact_s(), exact_q());
 }
 
-// The float before a number other than -infinity, in a few instructions and without arithmetic.
+// The next float below `value`, which is not -infinity: in a few instructions and without arithmetic.
 inline float float_before(float value) noexcept {
     const auto bits = bit_cast<std::uint32_t>(value);
     constexpr std::uint32_t sign = 0x80000000u;

@@ -16,7 +16,7 @@
 
 #include "../language.hpp"
 
-// A compiler that may reorder sums takes two_sum() for a and 0, and a reciprocal for a division: no bound would hold.
+// A compiler that may reorder sums takes two_sum()'s error for 0, or a reciprocal for a division: no bound would hold.
 #if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || \
     (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) || defined(_M_FP_FAST)
 #error \
@@ -42,7 +42,7 @@ constexpr double smaller(double a, double b) noexcept { return a < b ? a : b; }
 constexpr double larger(double a, double b) noexcept { return a > b ? a : b; }
 inline double magnitude(double a) noexcept { return std::fabs(a); }
 
-// a / b, and infinite where b is 0, without the division: programs may trap it.
+// a / b; infinity where b is 0, without a division, as programs may trap that.
 constexpr double ratio(double a, double b) noexcept { return b != 0.0 ? a / b : infinity; }
 
 // The larger of two, and a NaN if either is one: for what must never be taken for small.
@@ -64,7 +64,7 @@ inline double reciprocal_power_of_two(double value) noexcept {
     return bit_cast<double>(0x7fe0000000000000 - (bit_cast<std::uint64_t>(value) & 0x7ff0000000000000));
 }
 
-// std::ilogb() and std::scalbn() are calls; bits will do, but for an exponent at the ends of the range.
+// Exponents by their bits, as std::ilogb() and std::scalbn() are calls; only the ends of the range need those.
 inline int exponent_of(double value) noexcept {
     const auto biased = static_cast<int>(bit_cast<std::uint64_t>(value) >> 52 & 0x7ff);
     return biased != 0 && biased != 0x7ff ? biased - 1023 : std::ilogb(value);
@@ -74,7 +74,7 @@ inline double times_power_of_two(double value, int exponent) noexcept {
     return value * bit_cast<double>(static_cast<std::uint64_t>(exponent + 1023) << 52);
 }
 
-// The last bit of a number that is set; infinity for 0.
+// The value of the lowest bit of a number that is set; infinity for 0.
 inline double last_bit(double value) noexcept {
     const auto bits = bit_cast<std::uint64_t>(value);
     if (bits << 1 == 0) return infinity;
@@ -83,22 +83,24 @@ inline double last_bit(double value) noexcept {
     return bit_cast<double>(bits & 0x7ff0000000000000) * (0x1p-52 * from_last);
 }
 
-// A product of 26 leading bits, or of the 27 that follow them, with a float is exact; so is one of 29 bits.
+// The first `Bits` bits. Times a float, 26 of them are exact, and so are the 27 bits that follow those; 29 bits are,
+// too.
 template <int Bits>
 double leading_bits(double value) noexcept {
     return bit_cast<double>(bit_cast<std::uint64_t>(value) & ~std::uint64_t{0} << (53 - Bits));
 }
 
 // The relative error of n roundings in sequence is at most gamma(n) = n u / (1 - n u). Here u is twice the unit
-// roundoff: a factor of 2 is room. Source: Higham, Accuracy and Stability of Numerical Algorithms, lemma 3.1.
+// roundoff, which leaves a factor of 2 to spare. Source: Higham, Accuracy and Stability of Numerical Algorithms, lemma
+// 3.1.
 constexpr double gamma(int n) noexcept {
     constexpr double u = 2.0 * unit_roundoff_double;
     return n * u / (1.0 - n * u);
 }
 
-// The most ulps for which numbers in double are worth being rounded to float: more are in doubt too often.
+// The most ulps by which numbers in double may err to be worth rounding to float: with more, too many are in doubt.
 inline constexpr double quick_ulps = 0x1p13;
-// More ulps than so many, as 1 less than a power of two.
+// A number of ulps that is larger than the given one, and 1 less than a power of two.
 inline std::int32_t mask_of_ulps(double ulps) noexcept {
     return (1 << std::bit_width(static_cast<unsigned>(ulps) + 1)) - 1;
 }
@@ -108,7 +110,8 @@ struct Bounded {
     double value, error;
 };
 
-// Half an ulp of the largest value: the error of a nearest float. From 2^128 - 2^103 on that is infinity.
+// The error of a nearest float up to `largest`: half an ulp of that. From 2^128 - 2^103 on the float is infinite, as is
+// this.
 inline double half_ulp(double largest) noexcept {
     return largest < 0x1.ffffffp127 ? unit_roundoff_float * largest + 0x1p-150 : infinity;
 }
@@ -131,8 +134,8 @@ inline DoubleDouble quick_two_sum(double a, double b) noexcept {
     return {sum, b - (sum - a)};
 }
 
-// a b, rounded; by a fused instruction where there is one. What is only multiplied GCC may copy at -O3, and fuse with a
-// sum in one copy alone: then the sum has the exact product, and what it lost is taken from the rounded one.
+// a b, rounded. It is a fused instruction where there is one, because GCC at -O3 may copy a plain product, and fuse one
+// copy with a sum: that sum would have the exact product, and its error would be taken from the rounded one.
 inline double rounded_product(double a, double b) noexcept {
 #ifdef __FP_FAST_FMA
     return std::fma(a, b, -0.0);

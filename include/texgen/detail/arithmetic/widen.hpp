@@ -1,10 +1,10 @@
 #pragma once
 
-// From float to double, and of the float that was given. g++ 12 from -O2 on takes (double)(float)x of two or four
-// neighbours for x itself: where a caller rounds to float and a function that widens is inlined behind it, the rounding
-// is lost, and the results are not those of the floats. The volatile keeps it; by reference, so that a float that is in
-// memory is read there, and not stored once more. For set-ups and single points; loops over arrays load their floats
-// from memory, and need none of this.
+// Widens the very float that was given to double. g++ 12 from -O2 on takes (double)(float)x of two or four neighbours
+// for x itself: where a caller rounds to float and a function that widens is inlined behind it, the rounding is lost,
+// and the results are not those of the floats. Reading it as a volatile keeps the rounding; the reference lets a float
+// in memory be read there, without being stored once more. For set-ups and single points; loops over arrays load their
+// floats from memory, and need none of this.
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
