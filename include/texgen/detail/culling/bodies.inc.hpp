@@ -1,11 +1,11 @@
-// Many bodies against the forms of a slide: in floats, and what those leave open together.
+// Many bodies against the forms of a slide: in floats first, and those that floats leave open in groups.
 
 namespace TEXGEN_DETAIL {
 
-// Kernels know no Coverage but its numbers.
+// Kernels know only the numbers of Coverage.
 static_assert(Coverage{0} == Coverage::outside && Coverage{1} == Coverage::partial && Coverage{2} == Coverage::inside);
 
-// The floats of a body, this far apart.
+// Copies the floats of a body to places that are `distance` floats apart.
 inline void copy_floats(const Box& box, float* to, std::size_t distance) noexcept {
     TEXGEN_FOR (std::size_t j = 0; j < 3; ++j) {
         to[j * distance] = box.min[static_cast<glm::length_t>(j)];
@@ -17,9 +17,9 @@ inline void copy_floats(const Sphere& sphere, float* to, std::size_t distance) n
     to[3 * distance] = sphere.radius;
 }
 
-// Classifies bodies of `Floats` floats each by a kernel, and has `decide` say what that leaves open, which is gathered
-// until it fills vectors. Floats of bodies that do not follow one another, as where the user aligns GLM's vectors, are
-// copied.
+// Classifies bodies of `Floats` floats each by a kernel. Bodies that it leaves open are gathered until they fill
+// vectors, and `decide` classifies them. Where bodies have gaps between them, as where the user aligns GLM's vectors,
+// their floats are copied.
 template <std::size_t Floats, class Body, class Decide>
 void classify_many(const LitForms& forms, const FloatForms& float_forms, std::span<const Body> bodies,
                    std::span<Coverage> out, Classify classify, const Decide& decide) noexcept {
@@ -52,7 +52,7 @@ void classify_many(const LitForms& forms, const FloatForms& float_forms, std::sp
         }
     };
     for (std::size_t begin = 0; begin < bodies.size();) {
-        // Whole quanta where they are, the rest from a copy.
+        // Whole quanta are read where they are, the rest from a copy.
         const std::size_t left = bodies.size() - begin;
         const std::size_t count = left >= chunk          ? chunk
                                   : left >= body_quantum ? left / body_quantum * body_quantum
@@ -64,7 +64,7 @@ void classify_many(const LitForms& forms, const FloatForms& float_forms, std::sp
             for (std::size_t i = 0; i < count; ++i) copy_floats(bodies[begin + i], copies[i], 1);
             classify(float_forms, copies[0], (count + body_quantum - 1) / body_quantum * body_quantum, classes);
         }
-        // Without a branch for each.
+        // Each body is written behind the open ones, and counted if it is open: there is no branch for each.
         for (std::size_t i = 0; i < count; ++i) {
             out[begin + i] = static_cast<Coverage>(classes[i] & 3);
             open[open_count] = begin + i;

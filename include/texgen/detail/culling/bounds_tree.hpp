@@ -23,13 +23,13 @@ class BoundsTree {
 public:
     const WorldBounds& operator[](std::size_t object) const noexcept { return bounds_[object]; }
 
-    // Takes the bounds of the objects that changed, from bounds_of(object); all objects are below `count` or have none.
-    // They are the changed ones until the next call.
+    // Takes the bounds of the objects that changed from bounds_of(object); objects from `count` on have none. These are
+    // the changed ones until the next call.
     void change(std::span<const std::uint32_t> objects, std::size_t count, const auto& bounds_of) noexcept {
         const bool grows = count > bounds_.size();
         if (grows) grow(count);
         for (const std::uint32_t object : objects) bounds_[object] = bounds_of(object);
-        // Objects that moved are no longer where the last sorting put them. Sorting costs less than as many moves do,
+        // The last sorting says nothing of objects that moved since. To sort all anew costs less than as many moves do,
         // or than growing does.
         moves_ += objects.size();
         if (grows || (stage_ == Stage::sorted && moves_ > bounds_.size())) sort_all();
@@ -40,9 +40,9 @@ public:
                       [&](std::size_t i) { return bounds_[changed_objects_[i]]; });
     }
 
-    // Calls found(object, inside) for what the forms do not leave out, of all objects or of the changed ones: `inside`
-    // where all of it is lit for certain. Where most have changed, all are asked about in either case. Returns the number
-    // of blocks that were tested.
+    // Calls found(object, inside) for each object that the forms do not leave out, of all or of the changed ones;
+    // `inside` says that all of it is lit for certain. Where most have changed, all are asked about in either case.
+    // Returns the number of blocks that were tested.
     std::size_t visit(const WorldForms& forms, bool all, const auto& found) const noexcept {
         const bool visits_all = all || have_most_changed();
         const Levels& levels = visits_all ? all_ : changed_;
@@ -54,10 +54,10 @@ public:
         });
     }
 
-    // Takes what `visits` of all objects tested, and goes on with sorting by what that pays for. What moved since the last
-    // sorting began may have each visit test a path of blocks more: where they test twice what they did when objects
-    // were sorted, or most have moved, that is counted, and comes to what a sorting takes before one begins: a test takes
-    // longer than the eight steps of an object.
+    // Takes how many blocks `visits` of all objects tested. Each pays for two steps of sorting, and they say when to
+    // sort anew. An object that moved since the last sorting began may cost each visit a path of blocks. Up to that,
+    // tests are wasted that are beyond twice those of a sorted tree, or all where most objects moved. A sorting begins
+    // when as many are wasted as there are objects: it takes eight steps for each, less time than a test takes.
     void sort_for(std::size_t visits, std::size_t tested) noexcept {
         if (stage_ == Stage::sorted && visits > 0) {
             const std::size_t size = bounds_.size();
@@ -82,7 +82,7 @@ private:
         std::uint32_t changed = 0;  // a bit for each
     };
 
-    // Blocks over blocks.
+    // Each level has a block for every eight places of the one below.
     struct Levels {
         std::array<std::vector<Block>, 11> blocks;  // the lowest first; 8^11 is above 2^32
         HeldCount height;
@@ -134,7 +134,7 @@ private:
             all_.blocks[level][place / width].changed |= 1u << place % width;
     }
 
-    // Fits the blocks over what is marked; that becomes the changed objects.
+    // Fits the blocks over the places that are marked; the objects there become the changed ones.
     void refit() noexcept {
         changed_objects_.clear();
         if (all_.height > 0) refit(all_.height - 1, 0);
@@ -148,8 +148,8 @@ private:
         });
     }
 
-    // New objects stand behind the others, until they are sorted in. Room for half as much again, so that objects which
-    // come one by one do not move all memory each time. A sorting that is interrupted begins with all.
+    // New objects stand behind the others until they are sorted in. There is room for half as many more, so that
+    // objects that come one by one do not move all memory each time. A sorting that this interrupts starts again.
     void grow(std::size_t count) noexcept {
         const std::size_t before = bounds_.size();
         const std::size_t size = count + count / 2;
@@ -167,11 +167,12 @@ private:
         refit();
     }
 
-    // Neighbours in the world become neighbours in the tree, by the Morton code of their middle. That is done in
-    // slices, of some steps for each object that moves, and so about once for as many moves as there are objects: the
-    // extent of the world, the codes, a radix sort by their bytes. Then crowds, runs of objects with one code, as most
-    // are where one is far away, are sorted in the same way by the extents of their own, twice if need be; and at last
-    // place after place gets its object. Meanwhile the tree is as right as ever, whatever stands where.
+    // Neighbours in the world become neighbours in the tree, by the Morton codes of their middles. A sorting runs in
+    // slices of a few steps for each object that moves, so that about as many moves as there are objects pay for one.
+    // It measures the extent of the world, encodes, and sorts by one byte of the codes after another (radix sort).
+    // Where one object is far away most others have the same code: such crowds, runs of objects with one code, are
+    // sorted by their own extents, twice if need be. At last each place gets its object. Meanwhile the tree stays
+    // right, whatever stands where.
     enum class Stage { measure, encode, sort_by_byte, find_crowd, place, sorted };
     static constexpr std::size_t steps_a_move = 12;
     static constexpr std::size_t steps_a_test = 2;
@@ -198,7 +199,7 @@ private:
             const std::size_t end = next_ + (std::min)(last - next_, steps);
             steps -= end - next_;
             if (stage_ == Stage::find_crowd && find_crowd(end)) {
-                steps += end - last_;  // that were not looked at
+                steps += end - last_;  // those that were not looked at
                 continue;
             }
             if (stage_ == Stage::measure) measure(end);
@@ -212,7 +213,7 @@ private:
 
     void begin_next_stage() noexcept {
         if (stage_ == Stage::measure) {
-            // What has no extent is as near as it can be.
+            // A crowd without an extent needs no sorting.
             bool is_extended = false;
             for (std::size_t j = 0; j < 3; ++j) is_extended = is_extended || low_[j] < high_[j];
             if (pass_ == 0 || is_extended) return begin(Stage::encode, first_);
@@ -235,7 +236,7 @@ private:
         begin(Stage::find_crowd, first_);
     }
 
-    // A crowd that ends before `end` becomes what is sorted.
+    // Whether a crowd ends before `end`; if so its keys become those that are sorted.
     bool find_crowd(std::size_t end) noexcept {
         for (std::size_t i = next_; i < end; ++i) {
             const bool is_last = i + 1 == bounds_.size();
@@ -272,7 +273,7 @@ private:
         }
     }
 
-    // What moved beyond the extent since stands at its end; what is nowhere comes last.
+    // Objects that moved beyond the measured extent get the codes of its ends; those that are nowhere come last.
     void encode(std::size_t end) noexcept {
         if (next_ == first_) first_place_ = {};
         for (std::size_t i = next_; i < end; ++i) {
@@ -296,7 +297,7 @@ private:
     static std::uint32_t object_of(std::uint64_t key) noexcept { return static_cast<std::uint32_t>(key); }
     static std::size_t byte_of(std::uint64_t key, std::size_t byte) noexcept { return key >> (32 + 8 * byte) & 0xff; }
 
-    // There and back, so that the last of an even number of bytes leaves keys_ sorted.
+    // The keys go there and back, so that after an even number of bytes they are sorted in keys_.
     void sort_by_byte(std::size_t end) noexcept {
         static_assert(code_bytes % 2 == 0);
         const auto& from = byte_ % 2 == 0 ? keys_ : sorted_keys_;
@@ -326,12 +327,12 @@ private:
     std::vector<WorldBounds> bounds_;                // of each object
     std::vector<std::uint32_t> place_;               // of each object
     std::vector<std::uint32_t> object_at_;           // of each place
-    std::vector<std::uint64_t> keys_, sorted_keys_;  // a Morton code, and below it the object: each has one
+    std::vector<std::uint64_t> keys_, sorted_keys_;  // a Morton code, and in its low half an object
     Levels all_;                                     // over the places
     std::vector<std::uint32_t> changed_objects_;     // in the order of their places
     Levels changed_;                                 // over these, where they are not most of all
     std::size_t moves_ = 0;                          // since the last sorting began
-    std::size_t wasted_ = 0;                         // tests that these cost visits, since it ended
+    std::size_t wasted_ = 0;                         // tests that these moves cost, since it ended
     std::size_t tests_when_sorted_ = 0;              // of a visit then; 0 where that is not known
 
     Stage stage_ = Stage::sorted;

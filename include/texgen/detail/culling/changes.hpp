@@ -20,12 +20,12 @@ public:
         if (count > is_changed_.size()) is_changed_.resize(count, 0);
         changed_.reserve(is_changed_.capacity());
         const std::size_t before = count_;
-        // New ones first, and in order: they are appended.
+        // New indices come first, and in order, as callers append them.
         for (std::size_t i = (std::min)(count, before); i < (std::max)(count, before); ++i)
             add(static_cast<std::uint32_t>(i));
         for (const std::uint32_t i : named) {
             TEXGEN_ASSERT(i < count || i < before);
-            if (i < count) add(i);  // what is gone is among those above
+            if (i < count) add(i);  // one that is gone was added above
         }
         count_ = count;
     }

@@ -1,8 +1,8 @@
-// Boxes against the forms of a slide: in floats, in double, and at last exactly; and what is asked of a volume.
+// Boxes against the forms of a slide: in floats, in double, and at last exactly; and the bodies of coverage.hpp.
 
 namespace TEXGEN_DETAIL {
 
-// The coverage of a box about which no form is asked.
+// The coverage of a box where the forms cannot be asked.
 inline Coverage coverage_without_forms(const LitForms& forms, const Box& box) noexcept {
     bool is_empty = false;
     for (glm::length_t j = 0; j < 3; ++j) {
@@ -12,7 +12,7 @@ inline Coverage coverage_without_forms(const LitForms& forms, const Box& box) no
     return is_empty || forms.lights_nothing ? Coverage::outside : Coverage::partial;
 }
 
-// Whether a box holds a point that is a number: of a NaN and beyond all numbers, inf - inf, an extent is a NaN.
+// Whether a box holds a point that is a number. An extent is a NaN where a side is, or both are the same infinity.
 inline bool has_points(const Box& box) noexcept {
     bool result = true;
     for (glm::length_t j = 0; j < 3; ++j) result = result && widened(box.max[j]) - widened(box.min[j]) >= 0.0;
@@ -21,7 +21,7 @@ inline bool has_points(const Box& box) noexcept {
 
 inline namespace TEXGEN_BUILD {
 
-// Boxes; separating() is asked as below.
+// Classifies many boxes; separating() as below.
 void coverage_of_many(const LitForms& forms, const FloatForms& float_forms, const auto& separating,
                       std::span<const Box> boxes, const std::span<Coverage>& out) noexcept {
     const BoxBatchKernels& kernels = chosen<BoxBatchKernels>();
@@ -33,7 +33,7 @@ void coverage_of_many(const LitForms& forms, const FloatForms& float_forms, cons
                      });
 }
 
-// One box; separating() is asked where a further plane may make it outside.
+// Classifies a box. separating() gives further planes, which are asked whether a box that seems partial is outside.
 Coverage coverage_of(const BoxKernels& kernels, const LitForms& forms, const Box& box,
                      const auto& separating) noexcept {
     const float *const min = &box.min.x, *const max = &box.max.x;

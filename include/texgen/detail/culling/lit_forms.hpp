@@ -5,9 +5,9 @@
 //   T_s v - min.x T_q v >= 0,  max.x T_q v - T_s v >= 0,  the same for t,  and  T_q v > 0,
 //
 // which are the four sides of a pyramid (of a prism, where T_q is constant) and the plane of its apex; and T_r
-// likewise, where the region has a depth: the near and the far plane. What is asked of these forms is asked of their
-// exact values, with the matrix as it is given. The sides are those beyond which nothing is lit, its rounding to float
-// included; where all is lit, the inner sides say (see RoundedSide).
+// likewise, where the region has a depth: the near and the far plane. All answers are about the exact values of these
+// forms, with the matrix as it is given. The sides are the outer ones of RoundedSide, beyond which nothing is lit even
+// once it is rounded to float; whether all is lit its inner ones say.
 
 #include <array>
 #include <cmath>
@@ -45,30 +45,30 @@ struct LitForms {
         kernels.weigh(matrix, outer, lanes);
     }
 
-    // Whether exact sums with this min of a region, or with a max times -1, stay in the range of double.
+    // Whether exact sums stay in the range of double with this min of a region, or with this max times -1.
     static bool is_usable_side(double min) noexcept {
         const double size = std::fabs(min);
         return min == -infinity || size == 0.0 || (size >= 0x1p-200 && size <= 0x1p200);
     }
 
-    // Whether bodies have to be asked about: not where every point is dark, nor for numbers that are not finite or
-    // exponents so far apart that an exact sum could leave the range of double.
+    // Whether the forms decide. They do not where every point is dark, where numbers are not finite, or where exponents
+    // are so far apart that an exact sum could leave the range of double.
     bool can_say() const noexcept { return is_usable && !lights_nothing; }
 
-    // In float, for many bodies.
+    // The forms in float, for many bodies.
     FloatForms in_float(const FloatFormKernels& kernels) const noexcept {
         FloatForms result;
         kernels.round(lanes, count, result);
         return result;
     }
 
-    // |a| of a form, or up to 12 u of it more.
+    // The length |a| of a form, or up to 12 u of it more.
     double slope(std::size_t k) const noexcept {
         const double x = lanes.a[0][k], y = lanes.a[1][k], z = lanes.a[2][k];
         return (1.0 + gamma(4)) * std::sqrt(x * x + y * y + z * z);
     }
 
-    // For spheres.
+    // The forms with |a| near 1, for spheres.
     UnitForms unit(const UnitFormKernels& kernels) const noexcept {
         UnitForms result;
         double slopes[form_lanes];
@@ -85,7 +85,7 @@ struct LitForms {
         return result;
     }
 
-    // In double, for boxes that floats leave in doubt.
+    // The forms in double, for boxes that floats leave in doubt.
     void take_in_double(DoubleForms& result) const noexcept {
         result.count = count;
         for (std::size_t k = 0; k < count; ++k) {
@@ -94,13 +94,13 @@ struct LitForms {
         }
     }
 
-    // A power of two takes the largest element to 1: nothing changes but the range of the exponents. r is 0 where there
-    // is no depth.
+    // Takes the matrix times a power of two that brings its largest element near 1: only exponents change. r is 0 where
+    // there is no depth. False where exponents are too far apart.
     bool take_matrix(const glm::dmat4& given) noexcept {
         const double of_r = count == forms_without_depth ? 0.0 : 1.0;
         const double is_taken[4] = {1.0, 1.0, of_r, 1.0};
         double largest_of[4] = {};
-        double least_of[4] = {infinity, infinity, infinity, infinity};  // but 0
+        double least_of[4] = {infinity, infinity, infinity, infinity};  // of those that are not 0
         for (glm::length_t j = 0; j < 4; ++j) {
             for (glm::length_t i = 0; i < 4; ++i) {
                 const double size = std::fabs(given[j][i] * is_taken[i]);
@@ -119,8 +119,8 @@ struct LitForms {
         return least * scale >= 0x1p-600;
     }
 
-    // The place of an infinite side is taken by q >= 0, which is one of the forms all the same; that of an inner side
-    // which no float is inside of by -q >= 0, which holds nowhere in front. A max is the mirrored min.
+    // Where a side is infinite, q >= 0 stands in its place, which is one of the forms anyway. Where no float is inside
+    // an inner side, -q >= 0 does, which holds nowhere in front. A max is taken as a min with all signs changed.
     bool take_sides(const TextureRegion& region) noexcept {
         for (FormWeights* weights : {&outer, &inner}) {
             *weights = {};
@@ -147,12 +147,12 @@ struct LitForms {
         return true;
     }
 
-    // That of a side; q's form has a weight of 0 for it.
+    // The coordinate of a side's form; for q's it does not matter, as its weight is 0.
     static constexpr std::size_t coordinate_of(std::size_t k) noexcept { return k < 2 ? 0 : k < q ? 1 : 2; }
 
-    // A coefficient is the sum of three numbers. What is cancelled in the first sum leaves nothing, so that all.high is
-    // nearly all of it: that has its sign, is 0 only if it is 0, and the terms have no more in magnitude but for 2^-49
-    // of it.
+    // Takes a form at the vertex of a box where it is largest, or least. A coefficient is the sum of three numbers.
+    // Where the first two cancel their sum is exact, so that all.high is nearly the whole coefficient: it has its sign,
+    // is 0 only if that is 0, and the parts have no more in magnitude but for 2^-49 of it.
     void take_at_vertex(std::size_t k, const FormWeights& weights, bool is_largest, FormAtVertex& form) const noexcept {
         const double own = weights.of[coordinate_of(k)][k], of_q = weights.of_q[k];
         form.term_count = 0;

@@ -17,10 +17,10 @@ inline bool is_inside(float s, float t, const float (&min)[2], const float (&max
     return s >= min[0] && s <= max[0] && t >= min[1] && t <= max[1];
 }
 
-// What rounding makes of a side of a region. A number beyond `outer` is not inside the side, nor is the float that it
-// is rounded to; one not beyond `inner` is, and so is its float: they are the last float outside and the first one
-// inside, as rounding keeps the order and keeps floats. Next to 0 both leave room for subnormal floats that count as 0.
-// An infinite side stays where it is; one beyond all floats has no `outer`.
+// What rounding makes of a side of a region. A number beyond `outer` is outside the side, and so is the float that it
+// is rounded to; one not beyond `inner` is inside, and so is its float. They are the last float outside and the first
+// one inside, because rounding keeps the order and leaves floats as they are. Next to 0 both leave room for subnormal
+// floats that count as 0. An infinite side stays where it is; a min below all floats has an infinite `outer`.
 struct RoundedSide {
     double outer, inner;
 
@@ -40,7 +40,7 @@ constexpr double accepted(Tolerance tolerance) noexcept {
 // The closed region in floats: a float is inside the region exactly when it is inside these.
 struct LitTest {
     float min[2], max[2];
-    // Whether s and t certainly have four sides, which are no further apart than those of the largest textures.
+    // Whether the four sides of s and t are finite, and no further apart than those of the largest textures.
     bool is_narrow, has_depth;
     float r_min = 0.0f, r_max = 0.0f;
 
@@ -55,7 +55,7 @@ struct LitTest {
         r_max = -float_at_least(-region.depth()->y);
     }
 
-    // Of s and t. Where there is a depth, r has to be in [r_min, r_max] as well.
+    // Whether s and t are lit, as 1 or 0. Where there is a depth, r has to be in [r_min, r_max] as well.
     float operator()(float s, float t) const noexcept { return is_inside(s, t, min, max) ? 1.0f : 0.0f; }
 
     // The bounds of s (0) and of t (1).

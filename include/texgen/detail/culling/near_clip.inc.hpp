@@ -2,32 +2,32 @@
 
 namespace TEXGEN_DETAIL {
 
-// The signed distance of a homogeneous point from a clipping plane, in no unit; inside is >= 0, and the sign is exact.
+// The signed distance of a homogeneous point from a clipping plane, in any unit; inside is >= 0, and the sign is exact.
 struct ClipDistance {
     double z, w, offset;
 
-    // In front of the near plane z = -w, z = 0 or (reversed) z = w.
+    // From the near plane z = -w, z = 0 or (reversed) z = w.
     static ClipDistance from_near(DepthRange range, bool reversed_depth) noexcept {
         if (reversed_depth) return {-1.0, 1.0, 0.0};
         return {1.0, range == DepthRange::negative_one_to_one ? 1.0 : 0.0, 0.0};
     }
-    // In front of the eye, w > 0: the smallest float is the first. (As a double: where subnormal floats count as 0 it
-    // would be 0.)
+    // In front of the eye w > 0, so that w is at least the smallest float. (That is a double: where subnormal floats
+    // count as 0 the float would be 0.)
     static ClipDistance from_eye() noexcept { return {0.0, 1.0, 0x1p-149}; }
 
     double operator()(const ClipVertex& vertex) const noexcept {
         return z * widened(vertex.position.z) + w * widened(vertex.position.w) - offset;
     }
 
-    // The w at which an edge crosses a near plane: of two products of floats, which are exact, so that where it is
-    // small beside that of the ends it has all its digits.
+    // The w at which an edge crosses a near plane. It is computed from two products of floats, which are exact, so that
+    // it has all its digits where it is small beside the w of both ends.
     float crossing_w(const ClipVertex& inside, const ClipVertex& outside) const noexcept {
         const double z_inside = widened(inside.position.z), w_inside = widened(inside.position.w);
         const double z_outside = widened(outside.position.z), w_outside = widened(outside.position.w);
         const double crossing = z * (z_inside * w_outside - z_outside * w_inside);
         return static_cast<float>(crossing / ((*this)(inside) - (*this)(outside)));
     }
-    // The z of a near plane where w is given: set, and not computed, it cannot be rounded to the other side.
+    // The z of a near plane for this w. As it is set, and not computed, it cannot be rounded to the other side.
     float depth_on_plane(float given_w) const noexcept { return static_cast<float>(0.0 - z * w) * given_w; }
 };
 
@@ -46,8 +46,8 @@ inline ClipVertex between(double weight_a, const ClipVertex& a, double weight_b,
     return result;
 }
 
-// The w, or q, at which an edge is cut that leads behind: a small part of that of its end in front, and above 0, also
-// where subnormal numbers are.
+// The w, or q, at which an edge that leads behind is cut: a small part of that of its end in front, and above 0 also
+// where subnormal numbers count as 0.
 inline float just_in_front(float inside) noexcept {
     constexpr float least = 0x1p-126f;
     const float part = 0x1p-20f * inside;
@@ -55,7 +55,7 @@ inline float just_in_front(float inside) noexcept {
 }
 
 // Cuts the convex polygon in storage[0, count) and returns the new count. cut(inside, outside) makes the new vertex of
-// an edge: given its ends by their sides, and not by the order of the walk, it makes the same one for both neighbours.
+// an edge. As it gets the ends by their sides, not in the order of the walk, it makes the same one for both neighbours.
 std::size_t cut_convex(std::span<ClipVertex> storage, std::size_t count, const ClipDistance& distance,
                        const auto& cut) noexcept {
     std::size_t inside = 0;
@@ -70,7 +70,7 @@ std::size_t cut_convex(std::span<ClipVertex> storage, std::size_t count, const C
         }
     }
     if (inside == count) return count;
-    // Otherwise nothing is inside, or the polygon is not convex, or there is no room.
+    // Here nothing is inside, or the polygon is not convex, or there is no room.
     if (entries != 1 || inside + 2 > storage.size()) return 0;
     // A rotation; <algorithm> would take every user longer to compile than all of this header.
     const auto reverse = [storage](std::size_t begin, std::size_t end) {
@@ -129,8 +129,8 @@ inline std::size_t clip_to_near(std::span<const ClipVertex> polygon, std::span<C
     };
     const std::size_t count = detail::cut_convex(out, polygon.size(), near_plane, cut_at_near);
 
-    // The terms of w are at most 2^20 of it, so that double errs by 2^-33 of it and the nearest float is the w aimed
-    // at; for the same reason z stays in front of the near plane, as that of both ends is.
+    // The terms of w are at most 2^20 times w, so that double errs by 2^-33 of it and the nearest float is the w aimed
+    // at. For the same reason z stays in front of the near plane, as both ends are.
     const auto cut_before_eye = [](const ClipVertex& inside, const ClipVertex& outside) {
         const double w = detail::widened(detail::just_in_front(inside.position.w));
         return detail::between(w - detail::widened(outside.position.w), inside, detail::widened(inside.position.w) - w,

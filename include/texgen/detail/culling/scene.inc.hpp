@@ -2,7 +2,7 @@
 
 namespace TEXGEN_DETAIL {
 
-// Elements come in order, and have no default.
+// Sets element i, or appends it. Elements come in order; they have no default for resize().
 template <class Element>
 void put(std::vector<Element>& elements, std::size_t i, const Element& element) noexcept {
     if (i < elements.size())
@@ -19,7 +19,7 @@ inline bool have_same_bits(const glm::dmat4& a, const glm::dmat4& b) noexcept {
     return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
-// Whether products of the same matrices may be these: of two NaNs a compiler may take either.
+// Whether both may be products of the same matrices. NaNs count as equal, as a compiler may take either of two.
 inline bool are_same(const glm::dmat4& a, const glm::dmat4& b) noexcept {
     for (glm::length_t i = 0; i < 16; ++i) {
         const double of_a = a[i / 4][i % 4], of_b = b[i / 4][i % 4];
@@ -34,7 +34,7 @@ namespace TEXGEN_NAMESPACE_COMPILER {
 
 inline Scene::Scene(DepthMapping depth) noexcept : depth_(depth) {}
 
-// In one copy, which rounds alike wherever it is called.
+// Not inlined, so that one copy rounds alike wherever it is called.
 TEXGEN_APART inline Scene::Prepared::Prepared(const Projector& projector, const TextureRegion& slide,
                                               DepthMapping depth) noexcept
     : texture_from_eye(detail::texture_from_projector_eye(projector, slide, depth)),
@@ -138,7 +138,7 @@ inline void Scene::drop_changed_pairs() noexcept {
     detail::truncate(pairs_, kept);
 }
 
-// Room for all that a pair may need until there are more of them.
+// Makes room for all that a pair may need, and allocates only when there are more pairs than ever.
 inline void Scene::reserve_a_pair() noexcept {
     if (pairs_.size() < pairs_.capacity()) return;
     const std::size_t count = std::max<std::size_t>(16, 2 * pairs_.size());

@@ -9,18 +9,18 @@ public:
         : coordinate_(plane.coordinate),
           sign_(plane.sign * unit_of(plane.bound)),
           per_q_(-sign_ * std::copysign(smaller(std::fabs(plane.bound), 0x1p1000), plane.bound)) {
-        const bool has_29_digits = leading_bits<29>(per_q_) == per_q_;  // times a float: a double
+        const bool has_29_digits = leading_bits<29>(per_q_) == per_q_;  // then its product with a float is exact
         product_error_ = has_29_digits ? 0.0 : gamma(1);
     }
 
-    // The product's rounding and the sum's.
+    // The error is the rounding of the product and of the sum.
     Bounded operator()(const ClipVertex& vertex) const noexcept {
         const double product = of_q(vertex);
         const double value = own(vertex) + product;
         return {value, gamma(1) * std::fabs(value) + product_error_ * std::fabs(product)};
     }
 
-    // The distance in two doubles, within `error`: that is 0 unless the digits are too far apart.
+    // The distance in two doubles, within `error`: 0 unless the digits are too far apart.
     struct Close {
         DoubleDouble value;
         double error;
@@ -39,8 +39,8 @@ public:
         return sum;
     }
 
-    // A rounded sum has its sign, and what is below the product's error has no rounding: there that of the product
-    // decides.
+    // The sign of the exact distance. A rounded sum has the sign of its terms' sum. Where that is below the error of
+    // the product the sum is exact, by cancellation, and only what the product lost is missing.
     int sign(const ClipVertex& vertex) const noexcept {
         const double product = of_q(vertex);
         double value = own(vertex) + product;
@@ -53,8 +53,8 @@ private:
     double own(const ClipVertex& vertex) const noexcept { return sign_ * widened(vertex.strq[coordinate_]); }
     double of_q(const ClipVertex& vertex) const noexcept { return per_q_ * widened(vertex.strq.w); }
 
-    // So that no product with floats, which have |u/q| in [2^-277, 2^277] or 0, leaves the range of double. (A side
-    // beyond 2^1000, as an infinite one, moves no vertex by what a float shows.)
+    // A unit in which no product with floats, whose |u/q| is in [2^-277, 2^277] or 0, leaves the range of double.
+    // (Sides beyond 2^1000, and infinite ones, are taken as 2^1000: no float shows the difference.)
     static double unit_of(double side) noexcept {
         const double size = std::fabs(side);
         if (size > 0x1p300) return 0x1p-600;
@@ -67,8 +67,8 @@ private:
 };
 
 // Where the edge from a vertex inside to one outside crosses the side: (d_i outside - d_o inside) / (d_i - d_o) with
-// d_i > 0 > d_o, each component the float nearest to it, where double does not tell which: from the sign of
-// d_i (outside - m) - d_o (inside - m) for the middle m of two floats, in two doubles or exactly.
+// d_i > 0 > d_o. It finds the nearest float to a component of which double leaves that open, by the sign of d_i
+// (outside - m) - d_o (inside - m) for the middle m of two floats: in two doubles, or exactly.
 class CloseCrossing {
 public:
     CloseCrossing(const SlideDistance& side, const ClipVertex& inside, const ClipVertex& outside) noexcept
@@ -78,7 +78,7 @@ public:
           of_inside_(side.closely(inside)),
           of_outside_(side.closely(outside)) {}
 
-    // The component of the new vertex that is i inside and o outside, where its quotient may err by `error`.
+    // The float nearest to a component of the new vertex: i inside and o outside. `quotient` errs by `error` at most.
     float nearest(double i, double o, double quotient, double error) const noexcept {
         if (!(error <= 0x1p-26 * std::fabs(quotient))) {
             const Bounded sum = beyond(0.0, i, o);
@@ -96,7 +96,8 @@ public:
     }
 
 private:
-    // Products and their difference are within 2^-103 of their terms, and exact where each factor is one double.
+    // d_i (o - middle) - d_o (i - middle). Products and their difference are within 2^-103 of their terms, and exact
+    // where each factor is one double.
     Bounded beyond(double middle, double i, double o) const noexcept {
         const DoubleDouble to_i = two_sum(i, -middle);
         const DoubleDouble to_o = two_sum(o, -middle);
@@ -121,8 +122,9 @@ private:
     SlideDistance::Close of_inside_, of_outside_;
 };
 
-// The vertex where the edge crosses the side. With weights v^ = v + e, |e| <= E, the numerator errs by E_o |inside| +
-// E_i |outside| and by three roundings, the quotient by that and E_i + E_o of it, over the difference, and by its own.
+// The vertex where the edge crosses the side. Where d_i and d_o err by E_i and E_o, the numerator errs by E_o |inside|
+// + E_i |outside| and three roundings, the quotient by that and by E_i + E_o of itself, both over the difference, and
+// by its own.
 inline ClipVertex cut_at(const SlideDistance& side, const ClipVertex& inside, const ClipVertex& outside) noexcept {
     const Bounded of_inside = side(inside);
     const Bounded of_outside = side(outside);
@@ -155,8 +157,8 @@ inline ClipVertex cut_at(const SlideDistance& side, const ClipVertex& inside, co
 }
 
 // Cuts the polygon in storage[0, count) edge by edge and returns the new count; 0 where nothing is inside but corners
-// on the side, or where storage has no room. sign() is that of the distance of a vertex; cut() as for cut_convex. It is
-// read from the end of the storage on, so that what is written at its begin grows into the room that is free.
+// on the side, or where storage has no room. sign() is that of the distance of a vertex; cut() as for cut_convex. The
+// polygon is read from the end of the storage, so that what is written at its begin grows into free room.
 std::size_t cut_edges(std::span<ClipVertex> storage, std::size_t count, const auto& sign, const auto& cut) noexcept {
     std::size_t inside = 0;
     while (inside < count && sign(storage[inside]) >= 0) ++inside;
@@ -166,7 +168,7 @@ std::size_t cut_edges(std::span<ClipVertex> storage, std::size_t count, const au
     const ClipVertex first_vertex = storage[first];
     ClipVertex to = first_vertex;
     int to_sign = sign(to);
-    bool touches = true;  // and no more
+    bool touches = true;  // no vertex is strictly inside
     std::size_t written = 0;
     for (std::size_t i = first; i < storage.size(); ++i) {
         const ClipVertex from = to;
@@ -175,7 +177,7 @@ std::size_t cut_edges(std::span<ClipVertex> storage, std::size_t count, const au
         to_sign = sign(to);
         touches = touches && from_sign <= 0;
         const bool crosses = (from_sign > 0 && to_sign < 0) || (from_sign < 0 && to_sign > 0);
-        // Vertices up to i are read.
+        // Vertices up to i have been read, and their room is free.
         if (written + (from_sign >= 0) + crosses > i + 1) return 0;
         if (from_sign >= 0) storage[written++] = from;
         if (crosses) storage[written++] = from_sign > 0 ? cut(from, to) : cut(to, from);
@@ -215,7 +217,7 @@ inline std::size_t clip_to_slide(std::span<const ClipVertex> polygon, TextureReg
         out[i] = polygon[i];
     }
 
-    // A vertex beyond a limit of depth stays so, whatever the cuts at the sides round r to.
+    // Polygons beyond a limit of depth are dropped first: a cut at a side could round their r to within it.
     std::size_t count = polygon.size();
     for (std::size_t k = planes.without_depth; k < planes.size(); ++k) {
         const detail::SlideDistance limit(planes[k]);
@@ -228,7 +230,7 @@ inline std::size_t clip_to_slide(std::span<const ClipVertex> polygon, TextureReg
         if (is_beyond && !is_within) return 0;
     }
 
-    // q >= 0 comes first, so that what satisfies a side is a cone. Then q = 0 is left only where s = t = 0.
+    // q >= 0 comes first: it and the sides leave a cone, in which q = 0 only where s = t = 0.
     for (const detail::SlidePlane& plane : planes) {
         const detail::SlideDistance side(plane);
         count = detail::cut_edges(

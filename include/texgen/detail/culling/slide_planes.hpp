@@ -15,12 +15,12 @@
 
 namespace TEXGEN_DETAIL {
 
-// sign (u - bound q) >= 0 for a coordinate u of (s, t, r, q); of q itself it is q >= 0.
+// sign (u - bound q) >= 0 for a coordinate u of (s, t, r, q); for q itself it is q >= 0.
 struct SlidePlane {
     glm::length_t coordinate;
     double sign, bound;
 
-    // The bound at which the side is none: every point is inside. At its negative none is.
+    // The infinite bound for which all points are inside; for its negative none is.
     double none() const noexcept { return -sign * infinity; }
 
     double at(double u, double q) const noexcept {
@@ -29,7 +29,7 @@ struct SlidePlane {
     }
 };
 
-// Whether no (s, t, r) is in a region; so is one with a NaN.
+// Whether no (s, t, r) is in a region; none is where a side is a NaN.
 inline bool is_empty(const TextureRegion& region) noexcept {
     const std::optional<glm::dvec2> depth = region.depth();
     return !((region.min)().x <= (region.max)().x && (region.min)().y <= (region.max)().y) ||

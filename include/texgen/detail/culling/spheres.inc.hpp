@@ -2,7 +2,7 @@
 
 namespace TEXGEN_DETAIL {
 
-// The coverage of a sphere about which no form is asked.
+// The coverage of a sphere where the forms cannot be asked.
 inline Coverage coverage_without_forms(const LitForms& forms, const Sphere& sphere) noexcept {
     const glm::vec3& centre = sphere.centre;
     if (std::isnan(centre.x) || std::isnan(centre.y) || std::isnan(centre.z) || std::isnan(sphere.radius))
@@ -12,8 +12,9 @@ inline Coverage coverage_without_forms(const LitForms& forms, const Sphere& sphe
 
 inline namespace TEXGEN_BUILD {
 
-// One sphere. What is clear of all bounds by twice as much the kernel says as well, where roundings differ by less than
-// one; where the centre is in front of all forms, no edge is asked. slope_of() says how long the lanes' |a| are.
+// Classifies a sphere. What is clear of all bounds by twice the error the kernel says as well, as their roundings
+// differ by less than one. No edge is asked where the centre is in front of all forms. slope_of(k) is form k's |a| in
+// `lanes`.
 Coverage coverage_of(const LitForms& forms, const FormLanes& lanes, const auto& slope_of, const auto& make_unit,
                      const Sphere& sphere) noexcept {
     const glm::dvec3 centre = widened(sphere.centre);

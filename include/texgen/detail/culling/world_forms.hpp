@@ -22,12 +22,12 @@
 
 namespace TEXGEN_DETAIL {
 
-// How many times the smallest element that is not 0 the largest is; infinite where an element is beyond 2^+-200, so
-// that a product of three matrices neither overflows nor underflows. Without a depth r is in no form, and may be small.
+// The largest element over the smallest that is not 0; infinite where an element is beyond 2^+-200, so that a product
+// of three matrices neither overflows nor underflows. Without a depth r is in no form, and may be small.
 //
-// Each element of such a product, rounded, is a multiple of the product of the factors' last bits. So where the
-// quotients of M, and of S P and V together, are no larger than these, no element of T_o that is not 0 is below 2^-600
-// of the largest, and coverage() of it is decided.
+// Each element of such a product, rounded, is a multiple of the product of the factors' last bits. So where this is at
+// most object_range for M, and at most projector_range for S P times that for V, no element of T_o that is not 0 is
+// below 2^-600 of the largest, and coverage() of it is decided.
 inline double range_of(const glm::dmat4& m, bool without_r = false) noexcept {
     double smallest = 0x1p200;
     double largest = 0x1p-200;
@@ -45,7 +45,7 @@ inline double range_of(const glm::dmat4& m, bool without_r = false) noexcept {
 }
 inline constexpr double object_range = 0x1p240;
 inline constexpr double projector_range = 0x1p190;
-// 165: three factors of 53 bits, two sums of four, and 2 to spare.
+// 165 bits: three factors of 53 bits, two sums of four, and 2 to spare.
 static_assert(object_range * projector_range * 0x1p165 < 0x1p600);
 
 // a . (x, y, z) + d, known to within error_a size + error_d when it is computed in double in any order, where the size
@@ -69,9 +69,9 @@ struct WorldBounds {
     friend bool operator==(const WorldBounds&, const WorldBounds&) = default;
 };
 
-// Eight of them side by side in float, each number rounded once: min, and max and size times -1, so that all bounds of a
-// row have the least of its numbers, and none add nothing to them. What is beyond 2^100 has a size whose error is above
-// all values of forms there; that of none is as far below.
+// Eight bounds side by side in float, each number rounded once: min, -max and -size, so that the bounds of a row are
+// the least of its numbers, and those of none() change nothing there. Bounds beyond 2^100 get a size of 2^120, whose
+// error is above all values of the forms, so that they are never left out; none() has -2^120, and always is.
 struct BoundsRow {
     static constexpr std::size_t width = 8;
     static constexpr std::size_t of_size = 6;
@@ -100,8 +100,8 @@ struct BoundsRow {
     }
 };
 
-// Unbounded where a number is not finite, M is not affine or its exponents are far apart. Four terms a component, each
-// rounded at most five times.
+// Unbounded where a number is not finite, M is not affine or its exponents are far apart. Each component has four
+// terms, each rounded at most five times.
 inline WorldBounds world_bounds(const glm::dmat4& m, const Box& box) noexcept {
     WorldBounds result{};
     const glm::dvec3 low = widened(box.min);
@@ -128,16 +128,16 @@ inline WorldBounds world_bounds(const glm::dmat4& m, const Box& box) noexcept {
     return low.x > high.x || low.y > high.y || low.z > high.z ? WorldBounds::none() : result;
 }
 
-// The forms of a slide in the world (q, and the sides as u - min q and max q - u), with room for what any T_o that is
-// composed in double may differ by. With T = S P V, computed in double, each element of T, of T_o = (S P)(V M) and of a
+// The forms of a slide in the world (q, and the sides as u - min q and max q - u), with slack for the rounding of any
+// T_o that is composed in double. With T = S P V, computed in double, each element of T, of T_o = (S P)(V M) and of a
 // form errs by at most gamma(16) of the same product of magnitudes, and so does the form's value at M v: in all by less
 // than slack = gamma(64) (|S P| |V|)_form (size, size, size, 1). What rounding makes of a side (see RoundedSide) moves
 // the form by at most its width times |T_q| |v|, which is part of the slack. Where a form is below -slack over the
-// bounds, so is that of T_o over the box, and where all are above slack, so are those.
+// bounds, that of T_o is negative over the box, and where all are above slack, all of T_o are positive.
 class WorldForms {
 public:
-    // texture_from_eye is S P. Where coverage() may not be able to say, the forms say nothing; nor does that of an
-    // infinite side.
+    // texture_from_eye is S P. Where coverage() may not decide there are no forms, and all is partial. The form of an
+    // infinite side leaves nothing out either.
     WorldForms(const glm::dmat4& texture_from_eye, const glm::dmat4& view, const TextureRegion& region) noexcept {
         const glm::dmat4 matrix = texture_from_eye * view;
         const bool without_r = !region.depth();
@@ -150,7 +150,7 @@ public:
         while (count_ < planes.size()) {
             LinearForm& form = forms_[count_];
             set(form, matrix, magnitude, planes[(count_ + 1) % planes.size()]);
-            // In float neither q is asked nor a side that needs a larger error.
+            // may_light() does not ask q, nor a side that needs a larger error than it has.
             const bool is_q = ++count_ == planes.size();
             if (!is_q && form.error_a < 0x1p-21 && form.error_d < 0x1p-21)
                 sides_[side_count_++] = {static_cast<float>(form.a[0]), static_cast<float>(form.a[1]),
@@ -158,9 +158,9 @@ public:
         }
     }
 
-    // A bit for each of a row that may be lit: no side is negative where it is largest. In float a coefficient, a
-    // coordinate, a product and two sums are rounded, of less than 2 size + 2 together, and the size: less than 12 u
-    // (size + 1). The rest of the 64 u is more than the slack.
+    // A bit for each of a row that may be lit: no side is negative at the vertex where it is largest. In float a
+    // coefficient, a coordinate, a product and two sums are rounded, of less than 2 size + 2 together, and the size:
+    // less than 12 u (size + 1). Of the 64 u that it allows the rest is more than the slack.
     std::uint32_t may_light(const BoundsRow& row) const noexcept {
         Float4 least[2] = {Float4{} + 0x1p101f, Float4{} + 0x1p101f};
         for (std::size_t k = 0; k < side_count_; ++k) {
@@ -176,8 +176,8 @@ public:
         return ~(negative_lanes(least[0]) | negative_lanes(least[1]) << 4) & 0xff;
     }
 
-    // outside and inside for certain. A form over bounds is its value in the middle, give or take that of half the
-    // extents; the rounding of those is part of the slack.
+    // outside and inside are certain. A form over bounds is its value in the middle, give or take its change over half
+    // the extents; their rounding is part of the slack.
     Coverage coverage(const WorldBounds& bounds) const noexcept {
         if (bounds.size < 0.0) return Coverage::outside;
         double middle[3];
@@ -187,7 +187,7 @@ public:
             half[j] = 0.5 * (bounds.max[j] - bounds.min[j]);
         }
         bool is_inside = count_ > 0;
-        // Unrolled, as each form's branch is foreseen by itself.
+        // Unrolled, so that the branch of each form is predicted by itself.
         TEXGEN_FOR (std::size_t k = 0; k < SlidePlanes::max_size; ++k) {
             if (k == count_) break;
             const LinearForm& form = forms_[k];
@@ -202,8 +202,8 @@ public:
     }
 
 private:
-    // sign (row - bound q), times a power of two: the sum of the magnitudes becomes about 1. The given side is between
-    // the outer and the inner one, and may be off by that. A side that is infinite excludes nothing.
+    // The form sign (row - bound q), times a power of two that brings the sum of the magnitudes near 1. The given side
+    // is between the outer and the inner one, and may be off by their distance. An infinite one sets no form.
     static void set(LinearForm& form, const glm::dmat4& matrix, const glm::dmat4& magnitude,
                     const SlidePlane& plane) noexcept {
         if (!is_finite(plane.bound)) return;
