@@ -38,7 +38,7 @@ constexpr int mistakes(const Composition& c) noexcept {
            (c.scale_bias != ScaleBiasUse::right) + c.s_mirrored + c.t_mirrored + c.other_depth;
 }
 
-// S (0), P (1), V (2) and X (3) from left to right.
+// The order of the factors from left to right: 0 is S, 1 is P, 2 is V and 3 is X.
 using FactorOrder = std::array<std::size_t, 4>;
 inline constexpr FactorOrder right_order{0, 1, 2, 3};
 
@@ -48,12 +48,12 @@ inline constexpr std::array<FactorOrder, 23> wrong_orders{
      {0, 2, 3, 1}, {0, 3, 2, 1}, {1, 0, 3, 2}, {1, 3, 0, 2}, {1, 3, 2, 0}, {2, 0, 1, 3}, {2, 0, 3, 1}, {2, 1, 0, 3},
      {2, 1, 3, 0}, {2, 3, 0, 1}, {2, 3, 1, 0}, {3, 0, 2, 1}, {3, 1, 0, 2}, {3, 1, 2, 0}, {3, 2, 0, 1}}};
 
-// A row of what stands on the left of a product, and two columns of what stands on the right.
+// A row of the left part of a product, and two columns of the right part.
 using ProductRow = ProductOf<glm::dvec4>;
 using ProductColumns = ProductOf<glm::dmat2x4>;
 
-// What a matrix makes of two directions, seen along a row: few numbers, which tell products apart that are far from it.
-// A row or column that says nothing is not in them, and the others weigh about the same.
+// A first look at a matrix, which tells it from products that are far from it: a row times it times two columns makes
+// two numbers. Rows and columns of it that say nothing have no part in them; the others weigh about the same.
 class Glance {
 public:
     Glance(const glm::dmat4& given, bool was_transposed) noexcept
@@ -74,8 +74,8 @@ public:
     const ProductRow& row() const noexcept { return row_; }
     const ProductColumns& columns() const noexcept { return columns_; }
 
-    // Whether a multiple of the product may be what was given, composed in whatever way: two numbers g that are k times
-    // p, each within its share of the magnitudes m, differ in g0 p1 - g1 p0 by no more than g0 m1 + g1 m0.
+    // Whether a multiple of the product may be the given matrix, composed in whatever way. Where two given numbers g
+    // are k times p, but for each p's share of its magnitude m, g0 p1 and g1 p0 differ by g0 m1 + g1 m0 at most.
     bool may_give(const ProductRow& left, const ProductColumns& right) const noexcept {
         constexpr double share = 1.01 * composed_in_float.of_magnitude;
         const auto [value, magnitude] = left * right;
@@ -90,7 +90,7 @@ private:
     glm::dvec2 given_{0.0};
 };
 
-// S, P, V and X as a mistake has them.
+// The factors S, P, V and X as a mistake uses them.
 using FactorsInUse = std::array<const Product*, 4>;
 
 inline Product product_of(const FactorsInUse& factors, const FactorOrder& order) noexcept {
@@ -117,7 +117,7 @@ bool any_wrong_order(const FactorsInUse& factors, const Glance& glance, const au
 }
 
 // The composition with the fewest mistakes, `most` or fewer, that gives the matrix as closely as `closest`; else
-// `in_float`, or if that is empty the first that gives the matrix as closely as float.
+// `in_float`, or if that is empty the first that gives the matrix as closely as products in float do.
 inline std::optional<Composition> composition_of(const glm::dmat4& texgen, const Factors& factors, int most,
                                                  Closeness closest, std::optional<Composition> in_float) noexcept {
     const std::array<glm::dmat4, 2> given{texgen, glm::transpose(texgen)};
@@ -125,7 +125,7 @@ inline std::optional<Composition> composition_of(const glm::dmat4& texgen, const
     const Product projection = lens_factor(factors.projection);
     const Product view = pose_factor(factors.view);
     const bool is_near = in_float.has_value();
-    // Each is made where it is used first.
+    // Each of these is made where it is first used.
     std::array<std::optional<Product>, scale_bias_mistakes.size()> scale_biases;
     std::array<std::optional<Product>, 4> poses;
     for (int allowed = 0; allowed <= most; ++allowed) {
@@ -137,10 +137,10 @@ inline std::optional<Composition> composition_of(const glm::dmat4& texgen, const
                 return projection * (view * (*poses[use] * glance.columns()));
             };
             const std::array<ProductColumns, 2> lens{columns(glances[0]), columns(glances[1])};
-            // Far from the origin a wrong order may be as near in float as the factors in theirs: that is the likelier.
+            // Far from the origin a wrong order may come as near in float as the right one: that is likelier.
             for (const bool in_order : {true, false}) {
                 for (std::size_t i = 0; i < scale_bias_mistakes.size(); ++i) {
-                    // Next to the right product rounding moves depth to the other range: is_of_other_range() knows.
+                    // Next to the right product rounding may look like the other range: is_of_other_range() decides.
                     if (is_near && scale_bias_mistakes[i].other_depth) continue;
                     for (const bool transposed : {false, true}) {
                         Composition composition = scale_bias_mistakes[i];
@@ -177,10 +177,10 @@ inline std::optional<Composition> composition_of(const glm::dmat4& texgen, const
     return in_float;
 }
 
-// The same for any closeness. What was composed in float is near to the right product and to others as well, where they
-// differ by less than its rounding (as depth ranges do far from the origin): the closest decides, unless the right one
-// is as near as products of the factors are in their precision. There another may be nearer, where factors commute or
-// cancel.
+// The same, with the closeness that the matrix asks for. One that was composed in float is near to the right product
+// and to others as well, where these differ by less than its rounding (as depth ranges do far from the origin). The
+// closest decides, unless the right one is as near as products of the factors are in their precision: there another may
+// be nearer by chance, where factors commute or cancel.
 inline std::optional<Composition> composition_of(const glm::dmat4& texgen, const Factors& factors, const Product& right,
                                                  bool is_in_float) noexcept {
     const Closeness closest = is_in_float ? rounded_once : composed_in_double;

@@ -27,7 +27,8 @@ inline bool is_zero_row(const glm::dmat4& m, glm::length_t row) noexcept {
 // Whether a number has more bits than the round numbers of a scene that is aligned with the axes.
 inline bool has_many_bits(double value) noexcept { return (bit_cast<std::uint64_t>(value) & 0x1fffffffff) != 0; }
 
-// Whether the matrix was rounded to float on its way: every element is a float, and one of the axes is no round number.
+// Whether the matrix was rounded to float on its way: all elements are floats, and one but for the last column is no
+// round number.
 inline bool is_in_float(const glm::dmat4& m) noexcept {
     bool is_rounded = false;
     for (glm::length_t column = 0; column < 4; ++column) {
@@ -40,11 +41,11 @@ inline bool is_in_float(const glm::dmat4& m) noexcept {
     return is_rounded;
 }
 
-// What a matrix of its kind may be off by, relative to its elements.
+// The rounding of a matrix in float, or else in double, relative to its elements.
 inline double rounding_of(const glm::dmat4& m) noexcept { return is_in_float(m) ? 0x1p-22 : 0x1p-44; }
 
-// What its rounding is relative to, where no more is known: the magnitudes of the elements that are no round numbers. A
-// row's constant counts only where none of its axes is round: beside a round axis it may have many bits and be exact.
+// What rounding is relative to, where no more is known: the magnitudes of elements that are no round numbers. A row's
+// constant counts only where none of its axes is round: beside a round axis it may have many bits and be exact.
 inline glm::dmat4 rounded_magnitudes(const glm::dmat4& m) noexcept {
     glm::dmat4 result(0.0);
     for (glm::length_t row = 0; row < 4; ++row) {
@@ -63,9 +64,9 @@ inline glm::dmat4 rounded_magnitudes(const glm::dmat4& m) noexcept {
 
 // A determinant of three rows and three columns, and whether it stands out of the rounding of the elements and of its
 // own: with its cofactors C, an error e_ij of the elements changes it by sum e_ij C_ij at first order. That does not
-// depend on the scale of any row or column, so these are scaled by powers of two, as far as products are in range.
+// depend on the scale of any row or column, so these are scaled by powers of two, to keep products in range.
 struct Minor {
-    double value;  // of what was scaled
+    double value;  // of the scaled rows and columns
     bool stands_out;
 };
 
@@ -94,8 +95,8 @@ inline Minor minor_of(const glm::dmat4& m, const glm::length_t (&rows)[3], const
 
 inline constexpr glm::length_t axes[3] = {0, 1, 2};
 
-// Whether three rows have rank 3. Valid ones do by their axes, or by two axes and the constants where light is
-// parallel; translations enter neither.
+// Whether three rows have rank 3. Those of valid matrices have it in their axes, or in two axes and the constants where
+// light is parallel; translations enter neither.
 inline bool are_independent(const glm::dmat4& m, const glm::length_t (&rows)[3]) noexcept {
     return minor_of(m, rows, axes).stands_out || minor_of(m, rows, {0, 1, 3}).stands_out ||
            minor_of(m, rows, {0, 2, 3}).stands_out || minor_of(m, rows, {1, 2, 3}).stands_out;
@@ -136,10 +137,10 @@ inline bool looks_away(const glm::dmat4& p, Handedness handedness) noexcept {
     return is_perspective(p) && (p[2].w > 0.0) != (handedness == Handedness::left);
 }
 
-// NDC's depth of the near plane, or reversed of the far one; at the other it is 1.
+// The NDC depth of the near plane, or where depth is reversed of the far one; the other plane has 1.
 constexpr double low_end(DepthRange range) noexcept { return range == DepthRange::negative_one_to_one ? -1.0 : 0.0; }
 
-// 1 where a lens looks along z, else -1. Parallel light does not say it: its eye does.
+// 1 where a lens looks along +z, else -1. Parallel light does not show it: there the handedness decides.
 inline double ahead_of(const glm::dmat4& p, Handedness handedness) noexcept {
     return (is_perspective(p) ? p[2].w > 0.0 : handedness == Handedness::left) ? 1.0 : -1.0;
 }
@@ -157,7 +158,7 @@ inline bool mistakes_depth(const glm::dmat4& p, DepthRange range, Handedness han
         if (!distance) return false;
         const double z = ahead_of(p, handedness) * *distance;
         if (!is_finite(z)) return std::fabs(at_infinity - other_low) < rounding;
-        // Of ends that are next to one another depth is the difference of large numbers.
+        // Where near and far are next to one another depth is a difference of large numbers.
         const double w = p[2].w * z + p[3].w;
         const double lost = rounding_of(p) * (std::fabs(p[2].z * z) + std::fabs(p[3].z));
         return std::fabs(ratio(p[2].z * z + p[3].z, w) - other_low) < rounding && lost < 0.5 * rounding * std::fabs(w);
@@ -166,7 +167,7 @@ inline bool mistakes_depth(const glm::dmat4& p, DepthRange range, Handedness han
 }
 
 // Whether the focal length is that of an angle whose number was taken for one of the other unit, and not that of fovy.
-// Degrees taken for radians are many turns, so that the rounding of their number is one of the angle.
+// Degrees taken for radians make many turns, so that they are compared as angles, by the sine of half their difference.
 inline bool mistakes_unit(double focal_length, const Angle& fovy) noexcept {
     const auto is_of = [&](double angle) {
         const double expected = std::cos(0.5 * angle) / std::sin(0.5 * angle);
@@ -180,7 +181,7 @@ inline bool mistakes_unit(double focal_length, const Angle& fovy) noexcept {
 
 // Row r against row q. Every lens has (0, 0, e, f) in row z and (0, 0, w, h) in row w, so that r = limit q + constant,
 // the scale-bias included, and an affine pose on the right keeps it: the directions of the two rows are parallel. A
-// transposed matrix or a wrong order loses it. (An oblique near plane has it not: that needs its projector.)
+// transposed matrix or a wrong order loses it. (An oblique near plane loses it, too: that needs its projector.)
 struct DepthRows {
     bool are_parallel;
     bool is_parallel_light;  // q is constant
@@ -191,7 +192,7 @@ inline DepthRows depth_rows(const glm::dmat4& m) noexcept {
     const glm::dvec3 r{m[0].z, m[1].z, m[2].z};
     const glm::dvec3 q{m[0].w, m[1].w, m[2].w};
     const auto largest = [](glm::dvec3 v) { return larger(std::fabs(v.x), larger(std::fabs(v.y), std::fabs(v.z))); };
-    // Where the limit is 0 by cancellation, r is what q's rounding has left.
+    // Where the limit is 0 by cancellation, row r is only what the rounding of q has left.
     const double rounding = is_in_float(m) ? 0x1p-20 : 0x1p-44;
     const double size_r = largest(r);
     const double size_q = largest(q);
@@ -221,9 +222,9 @@ inline bool is_opengl_default(const glm::dmat4& m) noexcept {
     return m == initial;
 }
 
-// Whether the picture is mirrored in the world: to the right, up and forwards, as s, t and q say it, have no positive
-// determinant in a left-handed one, or have one in a right-handed one. Parallel light does not say which way is
-// forwards.
+// Whether the picture is mirrored in the world. The directions to the right, up and forwards, as s, t and q say them,
+// have a positive determinant in a left-handed world and a negative one in a right-handed one, unless they are
+// mirrored. Parallel light does not say which way is forwards.
 inline bool is_mirrored(const glm::dmat4& texgen, const glm::dmat4& world_from_space,
                         Conventions conventions) noexcept {
     const Minor picture = minor_of(texgen, {0, 1, 3}, axes);

@@ -11,21 +11,20 @@ struct Picture {
     bool is_measured() const noexcept { return texels_per_unit.x > 0.0 && texels_per_unit.y > 0.0; }
     glm::dvec2 extent() const noexcept { return (region.max)() - (region.min)(); }
 
-    // Of a picture of 4096 texels where the texture's size is not known.
+    // Texels per unit; where the texture's size is not known, of a picture of 4096 texels.
     glm::dvec2 texels() const noexcept { return is_measured() ? texels_per_unit : 4096.0 / extent(); }
 };
 
-// Everything but the points, and the matrix that these are to be seen with: the texgen matrix that is given, or the one
-// that the set-up composes.
+// What the examination of the matrices leaves for the points: the matrix to see them with, which is the given texgen
+// matrix or the one that the set-up composes.
 struct Examined {
     std::optional<glm::dmat4> texgen, right;  // right: what the set-up composes, where texgen is that but for rounding
-    // What floats lose of the texgen matrix, element by element: half the bound on their rounding, where they are
-    // rounded.
+    // What floats lose of the texgen matrix, element by element: half the bound on the rounding, where one is rounded.
     glm::dmat4 lost{0.0};
 };
 
-// What is lost of s and t at every point that is lit: that of the rows' constants, where q is largest, on the far
-// plane. 0 where that is infinitely far, or row r does not say.
+// The error of s and t in texels that every lit point has at least: that of the rows' constants where q is largest, on
+// the far plane. 0 where that plane is infinitely far, or row r does not show it.
 inline double least_error_in_texels(const Examined& examined, const Picture& picture, DepthMapping depth) noexcept {
     const glm::dmat4& texgen = *examined.texgen;
     const DepthRows rows = depth_rows(texgen);
@@ -77,7 +76,7 @@ public:
         }
         const glm::dvec3 str = glm::dvec3(strq[0].value, strq[1].value, strq[2].value) / q.value;
         const glm::dvec2 st(str.x, str.y);
-        // What floats have thrown behind the projector too.
+        // Points that floats have thrown behind the projector are compared, too.
         if (has_right_) compare(v, st);
         if (!(q.value > q.error)) {
             all_in_front_ = false;
@@ -133,7 +132,7 @@ private:
 
     void raise(double error, double texels) noexcept { error_in_texels_ = larger(error * texels, error_in_texels_); }
 
-    // With what the set-up composes in double.
+    // Measures how far s and t are from those of the matrix that the set-up composes in double.
     void compare(const glm::dvec3& v, const glm::dvec2& st) noexcept {
         const double q = value_at(right_[3], v).value;
         if (!(q > 0.0)) return;

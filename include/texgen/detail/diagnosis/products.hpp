@@ -40,7 +40,7 @@ inline Product pose_factor(const glm::dmat4& m) noexcept {
     return result;
 }
 
-// What floats below 2^-126 lose besides, in three products.
+// What three products lose in addition where floats are below 2^-126.
 inline constexpr double lost_by_subnormal_floats = 0x1p-147;
 
 // What a matrix may differ from a product by: a share of the element, and of the magnitudes of its terms.
@@ -53,11 +53,11 @@ inline constexpr Closeness composed_in_double{0.0, 0x1p-44};
 inline constexpr Closeness rounded_once{0x1p-23, 0x1p-44};
 // Of the same factors in any order. Three products in float of factors rounded to float err by 16 * 2^-24 at most.
 inline constexpr Closeness products_in_double{0.0, 0x1p-43}, products_in_float{0.0, 0x1p-20};
-// Where a float inverse may be among the factors as well.
+// Where a float inverse is among the factors, too.
 inline constexpr Closeness composed_in_float{0.0, 0x1p-16};
 
-// k where `given` is k times the product, in the rows (and, of what was read transposed, the columns) in which it is
-// not zero: planes that were never written say nothing. 0 where it is not.
+// The k by which the product is nearest to `given`, in rows that are not zero there (if it was read transposed in such
+// columns, too): planes that were never written say nothing. within() gives k where they are that near, else 0.
 class Multiple {
 public:
     Multiple(const Product& product, const glm::dmat4& given, bool was_transposed = false) noexcept
@@ -118,8 +118,7 @@ struct Composition {
     double multiple = 1.0;
 };
 
-// Numbers that no scene has would cost time (subnormal ones) or products their range: small ones are 0, large ones
-// none.
+// Numbers that no scene has cost time (subnormal ones) or make products overflow: small ones become 0, large ones NaN.
 inline glm::dmat4 as_in_scenes(glm::dmat4 m) noexcept {
     for (glm::length_t column = 0; column < 4; ++column) {
         for (glm::length_t row = 0; row < 4; ++row) {
@@ -184,14 +183,15 @@ inline Product right_composition(const Factors& factors) noexcept {
 }
 
 // Whether rows s, t and q are right, and row r = a z + b w is that of a lens or a scale-bias for the other range. Where
-// the right one is within the rounding of a product in float, the rounding of the other rows says how large it is: row
-// r must be well beyond it, and the other range's within it.
+// row r is as near to the right one as a product in float may be, the other rows show how large the rounding is: row r
+// must be farther from the right one than that, and as near to one of the other range.
 inline bool is_of_other_range(const glm::dmat4& texgen, const glm::dmat4& scale_bias, const Product& right) noexcept {
     glm::dmat4 other_rows = texgen;
     for (glm::length_t column = 0; column < 4; ++column) other_rows[column][2] = 0.0;
     const double multiple = Multiple(right, other_rows).within(composed_in_float);
     if (!(multiple > 0.0)) return false;
-    // How far row `row` of the matrix is from a times that of the right product and b times its row q.
+    // How far row `row` of the matrix is from a times the right product's plus b times its row q; relative to
+    // magnitudes.
     const auto distance = [&](glm::length_t row, double a, double b) {
         double result = 0.0;
         for (glm::length_t column = 0; column < 4; ++column) {
@@ -222,7 +222,7 @@ inline bool is_of_other_range(const glm::dmat4& texgen, const glm::dmat4& scale_
 // Whether the matrix is clip * scale + bias, the bias not times w: of x and y, and of z and w or not. Scale and bias
 // are those of S or 1/2, in either direction of t; the sum of a glm::mat4 and a number has the bias in every column.
 inline bool is_bias_without_w(const glm::dmat4& texgen, const Factors& factors) noexcept {
-    // Of parallel light w is 1.
+    // Parallel light has w = 1, and needs no other bias.
     if (!is_perspective(factors.projection)) return false;
     const Product clip = lens_factor(factors.projection) * pose_product(factors);
     const auto is_row = [&](glm::length_t row, double scale, const glm::dvec4& bias) {

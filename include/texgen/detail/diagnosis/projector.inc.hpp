@@ -10,7 +10,7 @@ inline bool examine_usable(const glm::dmat4& m, Diagnosis& diagnosis) noexcept {
     return has_numbers && is_written;
 }
 
-// Of a lens of which nothing is known its round numbers may speak.
+// Where nothing is known of a lens, round numbers may show its mistakes.
 inline void examine_numbers(const glm::dmat4& p, bool is_upright, Conventions conventions, const LensFacts& facts,
                             Diagnosis& diagnosis) noexcept {
     const SeenLens seen(lens_factor(p), rounding_of(p));
@@ -29,7 +29,7 @@ inline void examine_lens(const glm::dmat4& p, bool view_reflects, Conventions co
                          const Picture& picture, Diagnosis& diagnosis) noexcept {
     const bool is_away = looks_away(p, conventions.handedness);
     const double x = p[0].x, y = conventions.ndc_y == NdcY::up ? p[1].y : -p[1].y;
-    // Where both axes of the picture are turned round as well the matrix has the other sign.
+    // Where both axes of the picture are turned round as well, the whole matrix has the other sign.
     const double unit = !is_perspective(p) ? p[3].w : std::fabs(p[2].w) * (is_away && x < 0.0 && y < 0.0 ? -1.0 : 1.0);
     const double width = x / unit, height = y / unit;
     if (unit < 0.0)
@@ -42,7 +42,7 @@ inline void examine_lens(const glm::dmat4& p, bool view_reflects, Conventions co
         diagnosis.add(Defect::angle_unit_mistaken);
 
     if (!facts.mirrored) {
-        // A tangent beyond 90 degrees turns both axes round: no lens does it, and an angle in the wrong unit does.
+        // A tangent below 0 turns both axes round: no lens has one, but an angle in the wrong unit may.
         if (view_reflects) {
             if (width * height > 0.0) diagnosis.add(Defect::mirrored);
         } else if (width < 0.0 && height < 0.0) {
@@ -72,7 +72,7 @@ inline void examine(const Projector& projector, const LensFacts& facts, const Pi
     const bool has_projection = examine_usable(p, diagnosis);
     const bool has_view = examine_usable(v, diagnosis);
 
-    // A view is affine, and one that is not is no view; a rotation is no lens.
+    // The view is a lens and the projection is rigid: a view is affine, and a rotation is no lens.
     if (has_projection && has_view && is_lens(v) && distance_from_rigid(p) < 1e-3 &&
         (is_perspective(v) || !is_lens(p))) {
         diagnosis.add(Defect::view_projection_swapped);

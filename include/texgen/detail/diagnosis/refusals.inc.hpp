@@ -7,7 +7,7 @@ inline void require_finite(std::initializer_list<double> numbers, Diagnosis& dia
         if (!is_finite(number)) diagnosis.add(Defect::not_finite);
 }
 
-// Of numbers that are finite: whether they keep the rule. The others are said by themselves.
+// Adds the defect where the rule is broken by finite numbers; require_finite() speaks of others.
 inline void refuse_unless(bool keeps_rule, std::initializer_list<double> numbers, Defect defect,
                           Diagnosis& diagnosis) noexcept {
     bool all_finite = true;
@@ -15,7 +15,7 @@ inline void refuse_unless(bool keeps_rule, std::initializer_list<double> numbers
     if (all_finite && !keeps_rule) diagnosis.add(defect);
 }
 
-// Of a lens whose far plane may be infinitely far.
+// Examines the planes of a lens whose far plane may be infinitely far.
 inline void examine_planes(double z_near, double z_far, Diagnosis& diagnosis) noexcept {
     require_finite({z_near, z_far == infinity ? 0.0 : z_far}, diagnosis);
     refuse_unless(z_near > 0.0, {z_near}, Defect::near_not_in_front, diagnosis);
@@ -33,7 +33,7 @@ inline void examine(const PerspectiveLens& lens, Diagnosis& diagnosis) noexcept 
     const double angle = lens.fovy.in_radians();
     require_finite({angle, lens.aspect}, diagnosis);
     const bool has_turns = std::fabs(angle) > 2.0 * std::numbers::pi;
-    // Not of its half, as the lens has it: an angle above 0 whose half is none is in range, and its lens beyond double.
+    // Not half the angle, as in perspective(): where that half is 0 the angle is in range, and its lens beyond double.
     refuse_unless(angle > 0.0 && 0.5 * angle < 0.5 * std::numbers::pi, {angle},
                   has_turns ? Defect::angle_unit_mistaken : Defect::angle_out_of_range, diagnosis);
     refuse_unless(lens.aspect > 0.0, {lens.aspect}, Defect::aspect_not_positive, diagnosis);

@@ -32,7 +32,7 @@ inline glm::dmat4 magnitude_before_scale_bias(glm::dmat4 magnitude, const glm::d
     return magnitude;
 }
 
-// Whether it is the product of these factors, which may have been composed in float.
+// Whether texgen is the product of these factors, which may have been composed in float.
 inline bool is_product_of(const Factors& factors, const glm::dmat4& texgen) noexcept {
     return Multiple(right_composition(factors), texgen).within(composed_in_float) > 0.0;
 }
@@ -60,8 +60,8 @@ inline bool has_transposed_factor(const glm::dmat4& texgen, const Factors& facto
            (with_transposed.pose && is_product_with(*with_transposed.pose));
 }
 
-// P', the projection that a texgen matrix has in it, of a w as large as that of P; what rounding can have left of a
-// zero is 0. Empty where V X is singular, or so much is left that it is no lens.
+// P', the projection that a texgen matrix has in it, scaled until its w is as large as that of P. Elements that may be
+// the rounding of a zero are 0. Empty where V X is singular, or P' is no lens.
 inline std::optional<glm::dmat4> lens_within(const glm::dmat4& texgen, const Factors& factors) noexcept {
     const Product pose = pose_product(factors);
     const CertifiedInverse inverse(pose.value);
@@ -82,14 +82,14 @@ inline std::optional<glm::dmat4> lens_within(const glm::dmat4& texgen, const Fac
     return is_finite(p) && is_lens(p) && is_perspective(p) == was_perspective ? std::optional(p) : std::nullopt;
 }
 
-// The distance at which a lens has that depth; infinite where it has it nowhere in front.
+// The distance at which a lens has that depth; infinite where it has that depth nowhere in front.
 inline double distance_of(double depth, const glm::dmat4& p, Handedness handedness) noexcept {
     const double per_z = depth * p[2].w - p[2].z;
     const double distance = ahead_of(p, handedness) * ratio(p[3].z - depth * p[3].w, per_z);
     return is_finite(distance) && (distance > 0.0 || !is_perspective(p)) ? distance : infinity;
 }
 
-// What a lens was meant to be: what is known of it, and else what the projector's is.
+// What a lens was meant to be: what is known of it, and for the rest what the projector's lens is.
 inline LensFacts meant_by(const glm::dmat4& p, Conventions conventions, LensFacts facts) noexcept {
     if (!facts.fovy && is_perspective(p) && p[2].x == 0.0 && p[2].y == 0.0)
         facts.fovy = radians(2.0 * std::atan2(std::fabs(p[2].w), std::fabs(p[1].y)));
@@ -100,7 +100,7 @@ inline LensFacts meant_by(const glm::dmat4& p, Conventions conventions, LensFact
     return facts;
 }
 
-// Looks through a product that is none of its factors; says what it finds, and whether it found anything.
+// Looks at the lens in a matrix that is no product of its factors. Adds what it finds; returns whether it found any.
 inline bool look_through(const glm::dmat4& texgen, const Factors& factors, const SetupMatrices& setup,
                          Diagnosis& diagnosis) noexcept {
     if (has_pose_for_view(texgen, factors)) {
@@ -116,7 +116,7 @@ inline bool look_through(const glm::dmat4& texgen, const Factors& factors, const
     auto p = lens_within(texgen, factors);
     if (!p) return false;
     const Conventions conventions = setup.projector->conventions;
-    // The projector's own lens may mirror; what is seen is whether this one does what that one does.
+    // The projector's own lens may mirror: where it does, P' is turned back, and examined against a lens that does not.
     const double turns_y = conventions.ndc_y == NdcY::up ? 1.0 : -1.0;
     for (glm::length_t column = 0; column < 4; ++column) {
         if (given[0].x < 0.0) (*p)[column].x = -(*p)[column].x;

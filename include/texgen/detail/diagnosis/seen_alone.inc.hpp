@@ -3,8 +3,8 @@
 
 namespace TEXGEN_DETAIL {
 
-// Whether near or far, where they are known, land on an end of the other range, or infinity lands where they say it
-// does there: that holds in any units.
+// Whether near or far, where they are known, land on an end of the other range, or infinity lands where they put it in
+// that range: the latter holds in any units.
 inline bool lands_on_other_range(const SeenLens& lens, const DepthEnds& ends, const LensFacts& facts,
                                  bool is_placed) noexcept {
     for (const auto& distance : {facts.z_near, facts.z_far}) {
@@ -14,7 +14,7 @@ inline bool lands_on_other_range(const SeenLens& lens, const DepthEnds& ends, co
             if (r.error < 0x1p-5 && std::fabs(r.value - other) <= 0x1p-12 + 4.0 * r.error) return true;
     }
     if (!facts.z_near || !facts.z_far || !(*facts.z_far > *facts.z_near)) return false;
-    // Planes that were taken from a projector in float are no nearer.
+    // Planes that were taken from a projector in float are not known any better.
     const double accepted = 4.0 * larger(lens.rounding(), 0x1p-22);
     const double beyond = *facts.z_near / (*facts.z_far - *facts.z_near);
     if (!(beyond > 16.0 * accepted)) return false;
@@ -24,7 +24,7 @@ inline bool lands_on_other_range(const SeenLens& lens, const DepthEnds& ends, co
     return false;
 }
 
-// The matrix in the world, as far as it is known: without the pose.
+// The texgen matrix of the world, as far as the pose is known: without it.
 inline Product in_the_world(const glm::dmat4& texgen, const glm::dmat4* pose) noexcept {
     const Product given = lens_factor(texgen);
     if (pose == nullptr) return given;
@@ -32,7 +32,7 @@ inline Product in_the_world(const glm::dmat4& texgen, const glm::dmat4* pose) no
     return inverse.is_regular() ? given * lens_factor(inverse.matrix()) : given;
 }
 
-// S as it should be, and whether the axis of the lens hits (0, 0), as it does without a bias, or where S S has it.
+// S as it should be. A lens misses it whose axis goes to (0, 0), and doubles it where that goes to the bias of S S.
 struct SeenScaleBias {
     glm::dvec2 scale, bias, bias_of_two;
     double up_along_t;  // 1 where t grows upwards, -1 downwards, 0 where that is not known
@@ -55,9 +55,9 @@ inline SeenScaleBias seen_scale_bias(const SetupMatrices& setup) noexcept {
     return {{std::fabs(s[0].x), std::fabs(s[1].y)}, {s[3].x, s[3].y}, {bias_of_two.x, bias_of_two.y}, up_along_t};
 }
 
-// What makes `near` a round number, by row r, where a lens's axis goes to the picture's corner: that the lens is a
-// quarter of another, by a bias without w, or that it is whole and has no bias. Empty where r has no bias, or none is
-// known.
+// For a lens whose axis goes to the picture's corner: whether `near`, by row r, is a round number if the lens is a
+// quarter of another, by a bias without w, or only if it is a whole lens without a bias. Empty where r has no bias, or
+// none is known.
 struct RoundNear {
     bool of_quarter, of_whole;
 };
@@ -70,8 +70,8 @@ inline std::optional<RoundNear> round_near(const SeenLens& lens, const SetupMatr
     return RoundNear{of_quarter > enough_bits, !(of_quarter > 0.0) && roundness(lens.distance_of(-1.0)) > enough_bits};
 }
 
-// Says what the lens that is seen shows. What is known of the lens decides; where nothing is, only numbers that are
-// round with a mistake, and are not without it, speak for one: they are what people write.
+// Adds what the lens that is seen shows. Where facts of it are known they decide. Where none are, only numbers that are
+// round with a mistake, and not without it, show one: round numbers are what people write.
 inline void examine_seen_lens(const SeenLens& lens, const SetupMatrices& setup, const LensFacts& facts,
                               Diagnosis& diagnosis) noexcept {
     const SeenScaleBias s = seen_scale_bias(setup);
@@ -85,15 +85,15 @@ inline void examine_seen_lens(const SeenLens& lens, const SetupMatrices& setup, 
     };
     const bool is_missed = s.is_missed_by(lens);
     const std::optional<RoundNear> near_of = is_missed ? round_near(lens, setup) : std::nullopt;
-    // A tangent of 1 is that of a quarter, too, whose sides are as long as its near plane is far.
+    // A focal length of 1 is also that of a quarter of a lens, with sides as long as its near plane is far.
     const auto shows_meant = [&](double focal_length) {
         return is_meant(focal_length) &&
                (facts.fovy || (near_of && near_of->of_whole) || std::fabs(focal_length - 1.0) > error);
     };
-    // The size and the aspect of what is seen are the lens's only where they are not of an object that is stretched.
+    // The size and the aspect that are seen are the lens's own only where no object can be stretched.
     const bool shows_size = setup.is_placed() || setup.in_eye_space || !lens.may_be_stretched();
     const std::optional<DepthEnds> ends = depth_ends(setup.depth, known_conventions(setup));
-    // With w biased as well, and halved, only its size is another.
+    // Where w is biased, too, it is halved, and only its size differs.
     const bool halves_w = std::fabs(lens.per_distance() - 0.5) <= 4.0 * lens.rounding();
     if (is_missed && (facts.fovy || halves_w || !(near_of && near_of->of_quarter))) {
         if (shows_meant(as_clip.y) && !halves_w) {
@@ -105,11 +105,11 @@ inline void examine_seen_lens(const SeenLens& lens, const SetupMatrices& setup, 
             return;
         }
     } else if (facts.fovy && s.is_doubled_by(lens)) {
-        // Row r is then that of another range as well.
+        // Row r then looks like that of another range, too: nothing more is said.
         if (is_meant(in_ndc.y / s.scale.y)) diagnosis.add(Defect::scale_bias_doubled);
         return;
     } else if (facts.fovy) {
-        // A view by half a turn would turn the picture as well as a tangent below 0.
+        // A tangent below 0 turns the picture as a view by half a turn does: both signs are asked.
         if (shows_size && !is_meant(in_ndc.y) &&
             (mistakes_unit(in_ndc.y, *facts.fovy) || mistakes_unit(-in_ndc.y, *facts.fovy)))
             diagnosis.add(Defect::angle_unit_mistaken);
@@ -126,14 +126,15 @@ inline void examine_seen_lens(const SeenLens& lens, const SetupMatrices& setup, 
         diagnosis.add(Defect::depth_range_mismatch);
 }
 
-// Of a matrix whose rows r and q are none of a lens: whether they are when 1/2 is taken from every element, as it is
-// added to a glm::mat4. No parallel light has it: q would be that of a lens along a diagonal, and no view has its size.
+// For a matrix whose rows r and q are none of a lens: whether they are when 1/2 is taken from every element, as it is
+// added to a glm::mat4. Parallel light is none of it: q would be that of a lens along a diagonal, of a size that no
+// view has.
 inline bool has_bias_in_every_column(const glm::dmat4& texgen, const glm::dmat4* pose) noexcept {
     const SeenLens lens(in_the_world(texgen - 0.5, pose), rounding_of(texgen));
     return lens.is_lens() && lens.is_centred_on(glm::dvec2(0.0));
 }
 
-// Returns whether it is transposed.
+// Examines a matrix by its own marks. Returns whether it is transposed.
 inline bool examine_alone(const glm::dmat4& texgen, const SetupMatrices& setup, Diagnosis& diagnosis) noexcept {
     constexpr double margin = 0x1p-10;
     const DepthRows rows = depth_rows(texgen);

@@ -28,8 +28,8 @@ struct Estimate {
     double value, error;
 };
 
-// How unlikely it is that the number is by chance as near to a round one, of few digits, as it is: in bits; 0 where it
-// is none. Of 1, 2 and 5, of one digit, and of two there are 3, 9 and 90 in a decade.
+// How unlikely it is, in bits, that the number is as near to a round one, of few digits, by chance; 0 where it is near
+// to none. In a decade 3 numbers are 1, 2 or 5, 9 have one digit and 90 have two.
 inline double roundness(const Estimate& number, int most_digits = 2) noexcept {
     const auto bits = [&](double in_a_decade) { return -std::log2(in_a_decade * 8.0 / 2.3 * number.error); };
     if (!(number.value > 0x1p-100 && number.value < 0x1p100)) return 0.0;
@@ -71,7 +71,7 @@ public:
                std::fabs(cosine) <= 4.0 * rounding_ * (2.0 + 1.0 / focal_length_.x + 1.0 / focal_length_.y);
     }
 
-    // Whether one of its directions is along an axis of the space: a scale along that axis would be a part of the lens.
+    // Whether one of its directions is along an axis of the space: a scale along it would look like a part of the lens.
     bool may_be_stretched() const noexcept {
         const auto is_along_axis = [&](const glm::dvec3& v) {
             const double accepted = 8.0 * rounding_ * (1.0 + 1.0 / focal_length_.x + 1.0 / focal_length_.y);
@@ -87,12 +87,12 @@ public:
         return std::fabs(centre_.x - st.x) <= accepted.x && std::fabs(centre_.y - st.y) <= accepted.y;
     }
 
-    // q's length at distance 1, and r's limit at infinity.
+    // The q at distance 1, and the limit of r at infinity.
     double per_distance() const noexcept { return per_distance_; }
     double limit() const noexcept { return rows_.limit; }
     double rounding() const noexcept { return rounding_; }
 
-    // In units of s and t.
+    // The focal lengths in units of s and t, and the relative error of the second.
     const glm::dvec2& focal_length() const noexcept { return focal_length_; }
     double error_of_focal_length() const noexcept { return 2.0 * rounding_ * (1.0 + 1.0 / focal_length_.y); }
 
@@ -109,8 +109,8 @@ public:
         return {rows_.limit + offset_ / q, rounding_ + offset_error_ / q};
     }
 
-    // Whether the picture stands on its head: its side is level, over y or over z, and t grows downwards. Not where it
-    // is level over both and t grows upwards along one, which may be the world's up.
+    // Whether the picture stands on its head: its side is level if y is up, or if z is, and t grows downwards along
+    // that axis. Not where its side is level for both, and t grows upwards along the one that may be up.
     bool hangs_down(double up_along_t) const noexcept {
         const glm::dvec3 side = across_[0] / glm::length(across_[0]),
                          up = up_along_t / glm::length(across_[1]) * across_[1];
@@ -145,7 +145,7 @@ inline bool is_of_round_angle(const Estimate& focal_length) noexcept {
 }
 
 // The number of whole degrees that make that focal length, but for its sign, if they are taken for radians; 0 where
-// none do. Below half a turn it is a number of radians that people write, too.
+// none do. Numbers below half a turn are not tried: people write such radians, too.
 inline double degrees_as_radians(const Estimate& focal_length) noexcept {
     constexpr double turn = 2.0 * std::numbers::pi;
     const double step = focal_length.error < 0x1p-30 ? 1.0 : 5.0;
@@ -153,7 +153,7 @@ inline double degrees_as_radians(const Estimate& focal_length) noexcept {
     const double accepted = focal_length.error * std::sin(angle) + 0x1p-44;
     for (double turns = 0.0; turns < 180.0; turns += turn) {
         for (const double number : {turns + turn - angle, turns + turn + angle}) {
-            // The nearest whole number, of numbers that are small.
+            // The nearest whole number, as the sum keeps no fraction.
             const double round = step * ((number / step + 0x1.8p52) - 0x1.8p52);
             if (std::fabs(number - round) <= accepted && round > 0.0 && round < 180.0) return round;
         }
@@ -173,8 +173,8 @@ inline std::optional<DepthEnds> depth_ends(DepthMapping depth, const std::option
     return conventions ? std::optional(DepthEnds{-1.0, {0.0, 0.0}}) : std::nullopt;
 }
 
-// Whether near and far are round numbers if the range is the other one, and near is none as it is: what floats are not
-// exact enough to say. Of an object that is scaled, who knows by how much, a third, a seventh or a ninth is as round.
+// Whether near and far are round numbers if the range is the other one, and near is none as it is: floats are not exact
+// enough to say that. In an unknown scale a third, a seventh or a ninth of a round number is as round.
 inline bool is_round_in_other_range(const SeenLens& lens, const DepthEnds& ends, bool knows_unit) noexcept {
     constexpr double enough_bits = 24.0;
     const Estimate z_near = lens.distance_of(ends.low);
@@ -186,8 +186,8 @@ inline bool is_round_in_other_range(const SeenLens& lens, const DepthEnds& ends,
     return false;
 }
 
-// Whether the angle is that of whole degrees which were taken for radians. Where floats do not say it beyond doubt, the
-// picture stands on its head, as a tangent below 0 makes it.
+// Whether the angle is that of whole degrees which were taken for radians. Where floats leave doubt the picture must
+// stand on its head as well, as a tangent below 0 makes it.
 inline bool is_of_degrees_as_radians(const SeenLens& lens, double focal_length, double up_along_t) noexcept {
     const double error = lens.error_of_focal_length();
     const bool hangs_down = lens.hangs_down(up_along_t);

@@ -23,7 +23,7 @@ inline void examine(const Composition& composition, bool in_eye_space, Diagnosis
     if (composition.scale_bias == ScaleBiasUse::doubled) diagnosis.add(Defect::scale_bias_doubled);
     if (composition.scale_bias == ScaleBiasUse::without_w) diagnosis.add(Defect::bias_without_w);
     if (composition.other_depth) diagnosis.add(Defect::depth_range_mismatch);
-    // With the other sign as well both axes are as they were, and it is the depth that is turned round.
+    // With the other sign as well both axes are where they were, and depth is turned round.
     if (composition.s_mirrored && composition.t_mirrored && composition.multiple < 0.0) {
         diagnosis.add(Defect::mixed_handedness);
         return;
@@ -36,7 +36,7 @@ inline void examine(const Composition& composition, bool in_eye_space, Diagnosis
 inline bool are_numbers(const SetupMatrices& setup) noexcept {
     const TextureRegion& region = setup.picture.region;
     const LensFacts& lens = setup.lens;
-    // An infinite side of the region is none, but no scale-bias reaches it.
+    // An infinite side of the region is no limit, but a projector's scale-bias does not reach it.
     const auto is_side = [&](const glm::dvec2& side) {
         return setup.projector != nullptr ? is_finite(side) : !std::isnan(side.x) && !std::isnan(side.y);
     };
@@ -51,15 +51,15 @@ inline bool are_numbers(const SetupMatrices& setup) noexcept {
 // Half the bound on the rounding of an element to float, relative to it.
 inline constexpr double expected_rounding = 0.5 * unit_roundoff_float;
 
-// The smaller of the magnitudes of both elements.
+// The smaller of the two magnitudes of each element.
 inline glm::dmat4 smaller_elements(const glm::dmat4& a, const glm::dmat4& b) noexcept {
     glm::dmat4 result(0.0);
     for (glm::length_t k = 0; k < 4; ++k) result[k] = (glm::min)(glm::abs(a[k]), glm::abs(b[k]));
     return result;
 }
 
-// What floats lose of the matrix where the product is known: nothing of elements that are its own. The rounding of
-// others moves the multiple that fits best, so that one of few bits next to it is taken for what was meant.
+// What floats lose of the matrix where the product is known: nothing of elements that equal the product's. The rounding
+// of others moves the multiple that fits best; a number of few bits next to it is taken for what was meant.
 inline glm::dmat4 lost_of(const glm::dmat4& texgen, const Product& right) noexcept {
     const double fitted = Multiple(right, texgen).within(composed_in_float);
     const double large = 0x1p37 * fitted;
@@ -68,9 +68,9 @@ inline glm::dmat4 lost_of(const glm::dmat4& texgen, const Product& right) noexce
     return smaller_elements(texgen - multiple * right.value, expected_rounding * texgen);
 }
 
-// Says what else is wrong with a matrix that is no product of its factors: another mistake hides the product, but neither
-// that it is transposed nor what it shows without its pose, which may be what is mistaken. Returns whether it is
-// transposed.
+// Says what else is wrong with a matrix that is no product of its factors. Another mistake hides the product, but
+// neither that it is transposed nor what it shows without its pose, which may be what is mistaken. Returns whether it
+// is transposed.
 inline bool examine_no_product(const glm::dmat4& texgen, const Factors& factors, const SetupMatrices& setup,
                                Diagnosis& diagnosis) noexcept {
     const glm::dmat4 given = as_in_scenes(texgen);
@@ -117,7 +117,7 @@ inline Examined examine(const SetupMatrices& setup, Diagnosis& diagnosis) noexce
         glm::dmat4 turned_and_scaled = *setup.pose;
         turned_and_scaled[3] = glm::dvec4(0.0);
         if (turned_and_scaled == glm::dmat4(0.0)) diagnosis.add(Defect::rank_below_three);
-        // The identity stands in every order, and adds noise to none.
+        // The identity is left out: it fits in every order, and would add noise.
         if (factors && *setup.pose != glm::dmat4(1.0)) factors->pose = *setup.pose;
     }
     std::optional<Product> right;
