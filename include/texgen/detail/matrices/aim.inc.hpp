@@ -2,9 +2,9 @@
 
 namespace TEXGEN_DETAIL {
 
-// row . point for a row of a rotation, within 1 ulp however its terms cancel: far from the origin they do. They are
-// brought to where neither they nor their last bits leave the range. Two terms that cancel leave 0, or 2^-106 of
-// themselves: one that is 2^-200 of the largest counts where all others leave 0.
+// row . point for a row of a rotation, within 1 ulp however its terms cancel: far from the origin they do. The terms
+// are scaled so that neither they nor their last bits leave the range. Where two cancel they leave 0, or at least
+// 2^-106 of themselves: a term below 2^-200 of the largest counts only where all others leave 0.
 inline double rotated(const glm::dvec3& row, const glm::dvec3& point) noexcept {
     constexpr int none = -10000;  // less than any
     int exponent[3], largest = none;
@@ -26,7 +26,7 @@ inline double rotated(const glm::dvec3& row, const glm::dvec3& point) noexcept {
     return value != 0.0 ? times_power_of_two(value, largest) : last;
 }
 
-// A difference of two points as it is, unrounded: the sum of both.
+// A difference of two points, unrounded: high + low.
 struct Difference {
     glm::dvec3 high, low;
 };
@@ -60,7 +60,7 @@ inline glm::dvec3 cross(const Difference& a, const glm::dvec3& b) noexcept {
     return result;
 }
 
-// Whether view x up, of two vectors near 1, is more than rounding, so that up is not parallel.
+// Whether the product view x up, of two vectors near 1, is more than rounding: then up is not parallel to the view.
 inline bool is_sideways(const glm::dvec3& product, const glm::dvec3& view, const glm::dvec3& up) noexcept {
     return length(product) > 0x1p-98 * length(view) * length(up);
 }
@@ -76,7 +76,7 @@ inline std::optional<Projector> assemble(const std::optional<ProjectorProjection
 namespace TEXGEN_NAMESPACE {
 
 inline std::optional<ProjectorView> look_at(const Aim& aim, Handedness handedness) noexcept {
-    // Where up is nearly parallel the rounding of target - position would turn the picture.
+    // The difference is not rounded: where up is nearly parallel to it that would turn the picture.
     const detail::Difference view = detail::scaled_difference(aim.target, aim.position);
     const glm::dvec3& forward = view.high;
     const glm::dvec3 up = detail::scaled_near_one(aim.up);

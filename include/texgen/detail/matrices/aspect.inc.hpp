@@ -1,12 +1,12 @@
-// The bodies of what fits a picture into a lens of another aspect, of projector.hpp.
+// The bodies of contain() and cover() of projector.hpp.
 
 namespace TEXGEN_DETAIL {
 
-// Half of an angle that a lens opens by.
+// Whether it is half of an angle that a lens may open by.
 inline bool is_half_angle(double radians) noexcept { return radians > 0.0 && radians < 0.5 * std::numbers::pi; }
 inline bool is_aspect(double aspect) noexcept { return aspect > 0.0 && is_finite(aspect); }
 
-// Of large numbers in halves: no difference leaves the range. Those of subnormal ones would be rounded.
+// The aspect of a rectangle. Large numbers are halved, so that no difference leaves the range; small ones stay exact.
 double aspect_of(const auto& lens) noexcept {
     const double largest = larger(larger(std::fabs(lens.left), std::fabs(lens.right)),
                                   larger(std::fabs(lens.bottom), std::fabs(lens.top)));
@@ -54,7 +54,7 @@ inline PerspectiveLens contain(const PerspectiveLens& lens, double aspect) noexc
     result.aspect = aspect;
     const double half_angle = 0.5 * lens.fovy.in_radians();
     if (!detail::is_aspect(lens.aspect)) result.aspect = lens.aspect;
-    // An angle that is none keeps its number: its tangent could be that of another.
+    // An angle out of range keeps its number: by way of its tangent it could become one in range.
     if (aspect > lens.aspect && detail::is_half_angle(half_angle))
         result.fovy = radians(2.0 * std::atan(std::tan(half_angle) * (lens.aspect / aspect)));
     return result;

@@ -12,8 +12,8 @@ inline int coordinates_with(TexGenMode mode) noexcept {
     return mode == TexGenMode::sphere_map ? 2 : uses_normal(mode) ? 3 : 0;
 }
 
-// Sums for many vertices: std::fma() is a call where the compiler is given no instruction for it. What it rounds less is
-// nothing to the bounds.
+// Sums for many vertices. They are not fused: std::fma() is a call where the compiler is given no instruction for it,
+// and the bounds do not need the roundings that it saves.
 inline double plain_dot(const glm::dvec3& a, const glm::dvec3& b) noexcept { return a.x * b.x + a.y * b.y + a.z * b.z; }
 inline double plain_dot(const glm::dvec4& a, const glm::dvec4& b) noexcept {
     return (a.x * b.x + a.y * b.y) + (a.z * b.z + a.w * b.w);
@@ -25,7 +25,7 @@ inline double cancelling_dot(const glm::dvec4& a, const glm::dvec4& b) noexcept 
     const DoubleDouble first = two_sum(a.x * b.x, a.y * b.y);
     const DoubleDouble second = two_sum(a.z * b.z, a.w * b.w);
     const DoubleDouble sum = two_sum(first.high, second.high);
-    // What is lost of an infinity is no number.
+    // What is lost of an infinite sum is a NaN.
     return is_finite(sum.high) ? sum.high + (sum.low + (first.low + second.low)) : sum.high;
 }
 
@@ -34,8 +34,8 @@ inline double reciprocal_size(const glm::dvec3& v) noexcept {
     return reciprocal_power_of_two(larger(larger(std::fabs(v.x), std::fabs(v.y)), std::fabs(v.z)));
 }
 
-// v / |v|, and zero for zero; of what is 1 it may be an ulp more. The power of two keeps the squares inside the range of
-// double.
+// v / |v|, and zero for zero; a component that is 1 may become an ulp more. The power of two keeps the squares inside
+// the range of double.
 inline glm::dvec3 direction(const glm::dvec3& v) noexcept {
     if (v == glm::dvec3(0.0)) return v;
     const glm::dvec3 near_one = v * reciprocal_size(v);
@@ -92,7 +92,7 @@ struct TexGenUnit::EyeSpace {
                 detail::cancelling_dot(rows[2], position), detail::cancelling_dot(rows[3], position)};
     }
 
-    // Under the unit's normal scaling.
+    // Takes a normal to the eye, under the unit's normal scaling.
     glm::dvec3 normal(const glm::dvec3& row) const noexcept {
         const glm::dvec3 result(detail::plain_dot(row, inverse[0]), detail::plain_dot(row, inverse[1]),
                                 detail::plain_dot(row, inverse[2]));
@@ -147,15 +147,15 @@ inline void TexGenUnit::set_normal_scaling(NormalScaling scaling) noexcept {
         normal_scaling_ = scaling;
 }
 
-// Apart, so that one vertex and many have the same bits, whatever a compiler fuses.
+// Not inlined, so that one vertex and many have the same bits, whatever a compiler fuses.
 TEXGEN_APART inline glm::vec4 TexGenUnit::generate(const FixedFunctionVertex& vertex,
                                                    const EyeSpace& eye_space) const noexcept {
     const glm::dvec4 position = detail::widened(vertex.position);
     const glm::dvec4 eye = eye_space.wants_position ? eye_space.position(position) : glm::dvec4(0.0);
 
-    // With n k near 1 at most, k a power of two, the reflection is held as r k^2, because a normal under a tiny scale
-    // can be too long to square. r + (0, 0, 1) is m/2 long, so its direction halved is what the sphere map adds to 1/2:
-    // no square root of a difference, and zero where m is.
+    // The reflection is held as r k^2, k a power of two for which n k is near 1 at most, because a normal under a tiny
+    // scale can be too long to square. r + (0, 0, 1) is m/2 long, so its direction halved is what the sphere map adds
+    // to 1/2: no square root of a difference, and zero where m is.
     glm::dvec3 normal(0.0), scaled_reflection(0.0), sphere(0.0);
     double per_scale = 1.0;
     if (eye_space.wants_normal) normal = eye_space.normal(detail::widened(vertex.normal));

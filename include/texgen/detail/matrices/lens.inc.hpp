@@ -55,7 +55,7 @@ inline DepthRow orthographic_depth(const OrthographicLens& lens, DepthRange rang
                                : DepthRow{-scale, -depth.end_over_length(lens.z_near)};
 }
 
-// What a lens is for a right-handed eye and y up, for the conventions; empty where doubles cannot hold it.
+// Takes the matrix of a lens for a right-handed eye and y up to the conventions; empty where doubles cannot hold it.
 inline std::optional<ProjectorProjection> checked_projection(glm::dmat4 matrix, Conventions conventions) noexcept {
     if (conventions.handedness == Handedness::left) matrix[2] = -matrix[2];
     if (conventions.ndc_y == NdcY::down)
@@ -79,7 +79,7 @@ inline std::optional<ProjectorProjection> checked_perspective(const glm::dvec2& 
 }
 
 // 1 - 2 centre / size, where the centre is counted from the middle of the first pixel, or from its edge. Nothing is
-// rounded before the sum; it is one of quarters where it could leave the range.
+// rounded before the sum; where that could leave the range all is divided by 4.
 inline double off_axis_term(double centre, double size, PixelCentre convention) noexcept {
     const double unit = larger(std::fabs(centre), size) < 0x1p1000 ? 1.0 : 0.25;
     Expansion<3> sum;

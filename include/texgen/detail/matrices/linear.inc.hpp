@@ -15,7 +15,7 @@ inline glm::dmat4 solve_rows(const CertifiedInverse& inverse, const glm::dmat4& 
                                      inverse.solve_row(row[3])));
 }
 
-// Of what is rounded to a depth of the buffer, how far it may be from that.
+// How far a depth may be from what the buffer stores for it.
 inline double depth_rounding(DepthBuffer buffer, double depth) noexcept {
     const double steps = buffer == DepthBuffer::unorm16 ? 0x1p16 - 1.0 : 0x1p24 - 1.0;
     return half_ulp(magnitude(depth)) + (buffer == DepthBuffer::float32 ? 0.0 : 0.6 / steps);
@@ -50,7 +50,7 @@ inline std::optional<WindowTexgen> window_linear(const Projector& projector, con
     if (viewport.width == 0 || viewport.height == 0) return std::nullopt;
     const detail::CertifiedInverse view(camera.view.matrix()), projection(camera.projection.matrix());
     if (!view.is_regular() || !projection.is_regular()) return std::nullopt;
-    // What is far from the origin cancels in V_p V_c^-1, before anything else.
+    // Far from the origin V_p and V_c^-1 cancel in their product, which comes before anything else.
     const glm::dmat4 projector_from_camera = detail::solve_rows(view, projector.view.matrix());
     glm::dmat4 result = detail::solve_rows(
         projection, detail::texture_from_projector_eye(projector, region, depth).matrix() * projector_from_camera);
@@ -84,7 +84,7 @@ inline glm::dvec2 depth_error_bound(const WindowTexgen& texture_from_window, glm
         const double size = detail::magnitude(slope) * (q.error + detail::gamma(2) * detail::magnitude(q.value)) +
                             detail::magnitude(slope_q) * (s.error + detail::gamma(2) * detail::magnitude(s.value));
         const double error = 1.001 * rounding * (numerator + size) / least_q / last_q;
-        if (error >= 0.0) bound[row] = error + 0x1p-1000;  // of what underflows
+        if (error >= 0.0) bound[row] = error + 0x1p-1000;  // for what underflows
     }
     return bound;
 }

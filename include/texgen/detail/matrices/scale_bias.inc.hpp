@@ -11,7 +11,7 @@ struct RemapEnds {
     constexpr double bias() const noexcept { return 0.5 * at_plus_w + 0.5 * at_minus_w; }
 };
 
-// Of s, t and r.
+// The ends of s, t and r.
 constexpr std::array<RemapEnds, 3> texture_remap(Conventions conventions, const TextureRegion& region,
                                                  DepthMapping depth) noexcept {
     // t grows with the clip y where the corner that (s, t) = (0, 0) addresses is where clip y is -w.

@@ -38,7 +38,7 @@ inline glm::dvec3 scaled_near_one(const glm::dvec3& v) noexcept {
     return largest(v) > 0.0 ? times_power_of_two(v, -exponent_of(largest(v))) : v;
 }
 
-// v / |v| for a v near 1. The length is that of the exact squares, rounded once, so that it adds next to nothing.
+// v / |v| for a v near 1. The length is that of the exact squares, rounded once, so that it adds next to no error.
 inline glm::dvec3 normalized(const glm::dvec3& v) noexcept {
     DoubleDouble square{0.0, 0.0};
     for (glm::length_t i = 0; i < 3; ++i) square = add_product(square, v[i], v[i]);

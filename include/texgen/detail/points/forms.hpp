@@ -15,7 +15,7 @@
 
 namespace TEXGEN_DETAIL {
 
-// What GLM converts to a vec3 without a word, though that has less: the digits of doubles, or a w, are lost.
+// Whether GLM would make a vec3 of a vector without a word, and lose a w or the digits of doubles.
 template <class Vector>
 inline constexpr bool is_more_than_vec3 = false;
 template <glm::length_t Length, class Number, glm::qualifier Q>
@@ -47,14 +47,14 @@ inline Expansion<8> exactly_at(const PointForm& form, const glm::dvec3& v) noexc
     return sum;
 }
 
-// Whether a product is so small that what its rounding loses may be no double.
+// Whether a product is so small that the rounding error it leaves may be no double.
 inline bool has_small_product(const PointForm& form, const glm::dvec3& v) noexcept {
     const auto is_small = [](double a, double b) { return a != 0.0 && b != 0.0 && std::fabs(a * b) < 0x1p-900; };
     return is_small(form.x, v.x) || is_small(form.y, v.y) || is_small(form.z, v.z);
 }
 
-// With an error that is small beside the value: from the exact sum where the terms cancel. A NaN or an infinity stays
-// one in the error, which is infinite where products are too small to be bounded.
+// The value with an error that is small beside it: from the exact sum where the terms cancel. A NaN or an infinity
+// stays one in the error, which is infinite where products are too small to be bounded.
 inline Bounded accurately_at(const PointForm& form, const glm::dvec3& v) noexcept {
     if (has_small_product(form, v)) return {0.0, infinity};
     const Bounded close = value_at(form, v);

@@ -1,5 +1,5 @@
-// One point: in double with a bound on its error; what that leaves in doubt in two doubles, and what those leave by
-// exact sums. Included by texcoord.hpp.
+// One point: in double with a bound on its error; what that leaves in doubt in two doubles, and by exact sums what
+// those leave in doubt. Included by texcoord.hpp.
 
 namespace TEXGEN_DETAIL {
 
@@ -7,18 +7,18 @@ namespace TEXGEN_DETAIL {
 struct FormPair {
     Double2 x, y, z, w;
 
-    // Apart, clang++ 19 to 23 would read two numbers of a form at once, and wait for both of their stores.
+    // Inlined, because clang++ 19 to 23 else read two numbers of a form at once, and wait for both of their stores.
     TEXGEN_INLINE FormPair(const PointForm& a, const PointForm& b) noexcept
         : x(double2_of(a.x, b.x)), y(double2_of(a.y, b.y)), z(double2_of(a.z, b.z)), w(double2_of(a.w, b.w)) {}
 
     PointForm form(std::size_t k) const noexcept { return {x[k], y[k], z[k], w[k]}; }
 };
 
-// Two sums in two doubles each, and what they left out at most.
+// Two sums in two doubles each, and bounds on what these left out.
 struct CloseSums {
     Double2 high, low, lost;
 
-    // A sum in one double, and what that left.
+    // From sums in one double and the numbers that they left.
     template <std::size_t Count>
     CloseSums(const Double2& sum, const Double2 (&left)[Count]) noexcept {
         Double2 error[Count];
@@ -30,7 +30,7 @@ struct CloseSums {
         }
         high = two_sum(sum, rest, low);
         if (!any_less(magnitude(high) * 0x1p-60, lost)) return;
-        // Beside a sum that cancels that is much, and is kept.
+        // Beside a sum that cancels the lost part is large: it is added.
         Double2 third = error[1];
         for (std::size_t i = 2; i < Count; ++i) third = third + error[i];
         rest = two_sum(low, third, error[0]);
@@ -38,11 +38,11 @@ struct CloseSums {
         lost = lost * 0x1p-49 + magnitude(error[0]);
     }
 
-    // Whether it is certain to this share of itself, as 0 is where it is exact.
+    // Whether sum k is known to this share of itself; a 0 is where it is exact.
     bool is_within(double share, std::size_t k) const noexcept { return lost[k] <= share * std::fabs(high[k]); }
 };
 
-// At a point of floats: coefficients in two parts have exact products, without fma().
+// Two forms at a point of floats. Their coefficients are split in two parts, whose products are exact without fma().
 inline CloseSums closely_at(const FormPair& forms, const glm::dvec3& v) noexcept {
     const Double2 x = leading_27_bits(forms.x), y = leading_27_bits(forms.y), z = leading_27_bits(forms.z);
     Double2 left[6];
@@ -55,7 +55,7 @@ inline CloseSums closely_at(const FormPair& forms, const glm::dvec3& v) noexcept
     return {sum, left};
 }
 
-// A number as an integer of so many digits, if that is all of it, times a power of two.
+// A number as an integer of `count` bits times a power of two. Further bits are cut off.
 struct Digits {
     std::int64_t integer;
     int exponent;
@@ -70,7 +70,7 @@ struct Digits {
     }
 };
 
-// A sum modulo a power of two: an integer without a sign, of which the last digits are kept, times 2^unit.
+// A sum modulo a power of two: an integer without a sign, of which the last `size` bits are kept, times 2^unit.
 template <class Integer>
 class Residue {
 public:
@@ -92,7 +92,7 @@ public:
         is_whole_ = is_whole_ && other.is_whole_;
     }
 
-    // Whether all terms are multiples of the unit. Then, of a sum of less than 2^(size - 1) units, -1, 0 or 1.
+    // Whether all terms are multiples of the unit. If so sign() is that of a sum of less than 2^(size - 1) units.
     bool is_whole() const noexcept { return is_whole_; }
     int sign() const noexcept { return integer_ == 0 ? 0 : integer_ >> (size - 1) != 0 ? -1 : 1; }
 
@@ -110,7 +110,7 @@ private:
 };
 
 // The floats nearest to two numerators over q at a point of floats, every decision exact, in two doubles where they
-// suffice. False where q is not positive, or is no number.
+// suffice. False where q is not positive, or is a NaN.
 inline bool divide_closely(const FormPair& numerators, const PointForm& q_form, const glm::dvec3& v,
                            float (&value)[2]) noexcept {
     constexpr double enough = 0x1p-51;
@@ -133,7 +133,7 @@ inline bool divide_closely(const FormPair& numerators, const PointForm& q_form, 
         middle[k] = is_tied[k] ? middle_of(value[k], other[k]) : 0.0;
     }
     if (is_tied[0] || is_tied[1]) {
-        // As nearest_to(). Next to a tie s.high - middle q.high is exact, part by part.
+        // Decides as nearest_to() does. Next to a tie s.high - middle q.high is exact, part by part.
         const Double2 factor = double2_of(middle[0], middle[1]);
         const Double2 q_high = leading_27_bits(q.high), q_low = leading_27_bits(q.low);
         const Double2 left[3] = {s.low, -(factor * q_low), -(factor * (q.low - q_low))};
@@ -154,7 +154,7 @@ inline bool divide_closely(const FormPair& numerators, const PointForm& q_form, 
     return true;
 }
 
-// s/q and t/q of a point, where q is well above 0. Their errors are that of certain_quotient().
+// s/q and t/q of a point, where q is well above 0. Their errors are those of certain_quotient().
 struct PointQuotients {
     Double2 value, error;
 
@@ -169,10 +169,10 @@ struct PointQuotients {
 };
 inline bool is_well_above_0(const Bounded& q) noexcept { return q.value > 0x1p20 * q.error; }
 
-// The same beside a tie, from quotients within error of their values: |s - middle q| is at most 2.0001 q error, so
-// where that is 2^-44 of the quotient, with a middle of 25 digits times 2^f and q below 2^(e + 1), less than 2^(e - 16
-// + f). A template, as files of one program may differ in the widest integer. (Beside a q below 2^-600 elements of the
-// matrix may be subnormal, which are no digits.)
+// The same beside a tie, by a remainder modulo a power of two. From quotients within error of their values, |s - middle
+// q| is at most 2.0001 q error. Where that error is at most 2^-44 of the quotient, middle has 25 bits times 2^f and q
+// is below 2^(e + 1), that is less than 2^(e - 16 + f). A template, as files of one program may differ in the widest
+// integer. (Beside a q below 2^-600 elements of the matrix may be subnormal, which Digits cannot read.)
 template <class Integer>
 TEXGEN_APART bool divide_beside_ties(const FormPair& numerators, const PointForm& q_form, const glm::dvec3& v,
                                      float (&value)[2]) noexcept {
@@ -204,7 +204,7 @@ TEXGEN_APART bool divide_beside_ties(const FormPair& numerators, const PointForm
     return are_whole;
 }
 
-// Two numerators over q at a point, empty behind.
+// Two numerators over q at a point; empty behind the projector.
 inline std::optional<glm::vec2> divide_point(const FormPair& numerators, const PointForm& q_form,
                                              const glm::dvec3& v) noexcept {
     const Bounded q = value_at(q_form, v);

@@ -26,7 +26,7 @@ TEXGEN_INLINE void for_each_output(auto& out, const auto& function) noexcept {
             function(*output);
 }
 
-// Leaves the outputs that are computed; false if there are none.
+// Empties the outputs that are not computed; false if none is left.
 bool take_computed(auto& out, std::size_t count) noexcept {
     bool any = false;
     for_each_output(out, [&](std::span<float>& output) {
@@ -36,10 +36,10 @@ bool take_computed(auto& out, std::size_t count) noexcept {
     return any;
 }
 
-// Where one or two coordinates of all points go. What only the mask needs has no array; `st` takes two in turn.
+// Where one or two coordinates of all points go. One that only the mask needs has no array; `st` takes pairs.
 struct PointOutputs {
     float* coordinate[2] = {};
-    float* lit = nullptr;  // with one coordinate, r: what is lit so far, and stays so between r_min and r_max
+    float* lit = nullptr;  // where r alone is computed: what is lit so far, and stays so from r_min to r_max
     float* st = nullptr;
     float r_min = 0.0f, r_max = 0.0f;
 
@@ -71,12 +71,12 @@ struct JobPart {
     std::size_t first, count, whole;
 };
 
-// Copies hold a block of every kernel, so that its certificate serves as much as it would without them.
+// Copies hold a block of every kernel, so that a certificate serves as many values as it would without them.
 inline constexpr std::size_t copy_size = float_block;
 
 inline namespace TEXGEN_BUILD {
 
-// Runs a job for the r of a part, and takes the light where that is beyond the depth. What is dark already needs none.
+// Runs a job for the r of a part, and darkens what is beyond the depth. Where all is dark already it needs no r.
 void darken_part(auto job, const PointOutputs& out, const JobPart& part, const auto& run) noexcept {
     constexpr std::size_t size = 4 * copy_size;
     const auto [first, count, whole] = part;
@@ -97,8 +97,8 @@ void darken_part(auto job, const PointOutputs& out, const JobPart& part, const a
     }
 }
 
-// Has a kernel write the results of a part to their places, if each has one; else false. The job is changed in place: a
-// copy would wait for what has just been written in other sizes.
+// Has a kernel write the results of a part straight to their places; false where one has none. The job is changed in
+// place: a copy would wait for what has just been written in other sizes.
 TEXGEN_INLINE bool place(auto& job, const PointOutputs& out, const JobPart& part) noexcept {
     if (part.count != part.whole || !out.are_complete(job.numerators)) return false;
     if (job.numerators == 1 && out.lit != nullptr) return false;
@@ -110,7 +110,7 @@ TEXGEN_INLINE bool place(auto& job, const PointOutputs& out, const JobPart& part
     return true;
 }
 
-// Runs a job for a part. What has no place of its own goes through buffers.
+// Runs a job for a part. Results that have no place of their own go through buffers.
 void run_part(auto& job, const PointOutputs& out, const JobPart& part, const auto& run) noexcept {
     if (job.numerators == 1 && out.lit != nullptr) return darken_part(job, out, part, run);
     if (place(job, out, part)) return run(job);
@@ -134,7 +134,7 @@ void run_part(auto& job, const PointOutputs& out, const JobPart& part, const aut
     }
 }
 
-// The values of a job from `first` on by its kernel, and by one(job, i) what that cannot decide.
+// Computes the values of a job from `first` on by its kernel, and by one(job, i) those that it cannot decide.
 void fill_blocks(auto kernel, const auto& job, std::size_t first, const auto& one) noexcept {
     for (Undecided left = kernel(job, first); left.begin < job.count; left = kernel(job, first)) {
         for (std::uint64_t values = left.values; values != 0; values &= values - 1)

@@ -2,7 +2,7 @@
 
 namespace TEXGEN_DETAIL {
 
-// A float stands for the segment's value at alpha exactly: A - alpha A + alpha B.
+// The exact value at alpha, A - alpha A + alpha B, of the floats that are given.
 inline Expansion<5> exactly_mixed(double a, double b, double alpha) noexcept {
     Expansion<5> sum;
     sum.add(a);
@@ -11,7 +11,7 @@ inline Expansion<5> exactly_mixed(double a, double b, double alpha) noexcept {
     return sum;
 }
 
-// 1 - alpha, the products and the sum are rounded once each.
+// The value at alpha in double: 1 - alpha, the products and the sum are rounded once each.
 inline Bounded mixed(double a, double b, double alpha) noexcept {
     const double from_a = (1.0 - alpha) * a, from_b = alpha * b;
     return {from_a + from_b, gamma(4) * (std::fabs(from_a) + std::fabs(from_b))};
@@ -33,8 +33,8 @@ inline void interpolate_one(const SegmentJob& job, std::size_t i) noexcept {
     if (job.lit != nullptr) job.lit[i] = in_front && is_inside(value[0], value[1], job.min, job.max) ? 1.0f : 0.0f;
 }
 
-// Whether none is less than 0 or more than 1. Their bits say so quickly, but where there is a -0 or what is no number;
-// by sixteen GCC 12 does it in vectors at -O2 too.
+// Whether none is less than 0 or more than 1. Bits show it quickly, unless there is a -0 or a NaN. They are taken by
+// sixteen, which GCC 12 does in vectors at -O2, too.
 inline bool are_from_0_to_1(std::span<const float> alpha) noexcept {
     std::uint32_t signs = 0;
     const auto look_at = [&](float a) {
@@ -52,7 +52,7 @@ inline bool are_from_0_to_1(std::span<const float> alpha) noexcept {
     return true;
 }
 
-// A tile of one row whose corners are the ends: given, so without an error. Of two coordinates.
+// Two coordinates of a tile of one row whose corners are the ends. These are given, and so have no error.
 inline Corners segment_corners(const glm::dvec4& a, const glm::dvec4& b, glm::length_t first,
                                glm::length_t second) noexcept {
     Corners at{};
@@ -82,8 +82,8 @@ inline Mixture mixture_of(double a, double b) noexcept {
     return {a + 0.0, leading, step.high - leading, leading == step.high ? Mixture::is_short : Mixture::is_long};
 }
 
-// The sum a + alpha (b - a) in double is within so many ulps. Of a short mixture it is rounded once, of others the step
-// and the product too, which may be as large as the larger end.
+// A bound on the error of the sum a + alpha (b - a) in double, in ulps. That of a short mixture is rounded once; of
+// others the step and the product are too, which may be as large as the larger end.
 inline double ulps_of_sum(double a, double b) noexcept {
     if (mixture_of(a, b).kind == Mixture::is_short) return 1.0;
     const double ratio = larger(std::fabs(a), std::fabs(b)) / smaller(std::fabs(a), std::fabs(b));
@@ -92,7 +92,7 @@ inline double ulps_of_sum(double a, double b) noexcept {
 
 inline namespace TEXGEN_BUILD {
 
-// Whether quotients about the asymptote are normal floats and within quick_ulps; `ulps` is theirs.
+// Whether quotients about the asymptote are normal floats and within quick_ulps; `ulps` bounds their error.
 inline bool bound_about_asymptote(const Asymptote& about, const EndQuotients& u, double& ulps) noexcept {
     const Double2 least = u.least(), error = about.error(u);
     if (!about.is_in_range(u) || !all_less(double2_of(0.0, 0.0), u.at_a * u.at_b) ||
@@ -102,10 +102,10 @@ inline bool bound_about_asymptote(const Asymptote& about, const EndQuotients& u,
     return ulps < quick_ulps;
 }
 
-// Where sums a + alpha (b - a) can have a quotient that is no normal float: for alphas in (0, last], or all where that
-// is 2; 0 where they cannot. Between ends of one sign a sum is no less than the lesser. Of both signs, neither end 0,
-// it is 0 or more than 2^-49 of lesser^2 / larger: alpha is then no less than a half of their ratio, or the sum more
-// than half of a, and it is a multiple of alpha's last bit, 2^-24 of it at least, times that of the lesser.
+// Returns `last`: only for alphas in (0, last] a sum a + alpha (b - a) can have a quotient that is no normal float; 2
+// means all, 0 none. Between ends of one sign a sum is no less than the lesser. Between ends of both signs, neither 0,
+// it is 0 or more than 2^-49 of lesser^2 / larger: alpha is then at least half of lesser / larger, or the sum more than
+// half of a, and it is a multiple of alpha's last bit, at least 2^-24 alpha, times that of the lesser.
 inline double last_subnormal_alpha(double a, double b, double least_normal) noexcept {
     const double lesser = smaller(std::fabs(a), std::fabs(b)), larger_one = larger(std::fabs(a), std::fabs(b));
     if (!(larger_one > 0.0)) return 0.0;
@@ -123,7 +123,7 @@ inline double last_subnormal_alpha(const SegmentJob& job) noexcept {
     return last;
 }
 
-// The same for quotients of two sums. A division that two vectors share rounds four times.
+// As bound_about_asymptote(), for quotients of two sums. A division that two vectors share rounds four times.
 inline bool bound_by_sums(const SegmentJob& job, double& ulps) noexcept {
     ulps = 0.0;
     for (int k = 0; k < job.numerators; ++k) ulps = larger(ulps, ulps_of_sum(job.a[k], job.b[k]));
@@ -136,7 +136,7 @@ inline bool accepts_rounding(double largest, double tolerance) noexcept {
     return unit_roundoff_float * 1.001 * largest <= tolerance;
 }
 
-// What fill_in_double needs, and small_alpha; whether it is worth a try.
+// Sets what fill_in_double needs, and small_alpha. Returns whether it is worth a try.
 TEXGEN_APART inline bool prepare_in_double(SegmentJob& job) noexcept {
     const SegmentEnds ends(job);
     const EndQuotients u(ends);
@@ -161,7 +161,7 @@ TEXGEN_APART inline bool prepare_in_double(SegmentJob& job) noexcept {
     return true;
 }
 
-// What fill_all_float needs: the coordinate that steps more, and the other's share of its steps.
+// Sets what fill_all_float needs: the coordinate that steps more, and the other's share of it. False beyond tolerance.
 TEXGEN_INLINE bool prepare_in_float(SegmentJob& job, const SegmentEnds& ends, double tolerance) noexcept {
     if (!(tolerance > 0.0 && ends.are_in_front())) return false;
     const EndQuotients u(ends);
@@ -178,7 +178,7 @@ TEXGEN_INLINE bool prepare_in_float(SegmentJob& job, const SegmentEnds& ends, do
     return true;
 }
 
-// What the segments' kernels need, but for the alphas and the outputs: coordinates `first` and the next.
+// Sets what the segments' kernels need, but for the alphas and the outputs, for coordinate `first` and the next.
 TEXGEN_INLINE void prepare_job(SegmentJob& job, const Segment& segment, int first, int numerators,
                                double tolerance) noexcept {
     const SegmentEnds ends(segment, first, first + numerators - 1);
@@ -192,9 +192,9 @@ TEXGEN_INLINE void prepare_job(SegmentJob& job, const Segment& segment, int firs
     job.is_quick = !job.is_in_float && prepare_in_double(job);
 }
 
-// What fill_exact needs. The terms of a mixture in two doubles are multiples of alpha's last bit times that of the
-// lesser end, 2^-48 of their product at least: where alpha is not too small, what the first sum leaves and the rest
-// need no more than 53 bits above that.
+// Sets what fill_exact needs. The terms of a mixture in two doubles are multiples of alpha's last bit times that of the
+// lesser end: of at least 2^-48 of alpha times that end. Where alpha is not too small, what the first sum leaves and
+// the rest have no more than 53 bits above that.
 inline void prepare_exact(SegmentJob& job) noexcept {
     double inexact = 0.0;
     job.are_short = true;
@@ -207,12 +207,12 @@ inline void prepare_exact(SegmentJob& job) noexcept {
     };
     job.q = is_finite(job.q_a + job.q_b) ? mixed_exactly(job.q_a, job.q_b) : Mixture{nan, nan, 0.0, Mixture::is_short};
     for (int k = 0; k < job.numerators; ++k) job.numerator[k] = mixed_exactly(job.a[k], job.b[k]);
-    // As a float it has the same floats below it.
+    // Rounding keeps the order: floats up to the number are up to its float.
     job.inexact_alpha = static_cast<float>(smaller(inexact, 2.0));
 }
 
-// The nearest floats from value i on, where quotients in double decide nothing: in two doubles, with the rest of
-// sixteen blocks; what that cannot decide value by value.
+// Computes the nearest floats from value i on, which quotients in double have not decided: this block and the rest of
+// sixteen in two doubles, and value by value what those cannot decide.
 inline void interpolate_exactly(const SegmentKernels& kernels, SegmentJob& job, std::size_t i) noexcept {
     constexpr std::size_t part = 16 * exact_block;
     const std::size_t count = job.count;
@@ -226,7 +226,7 @@ inline void interpolate_exactly(const SegmentKernels& kernels, SegmentJob& job, 
     }
 }
 
-// The rest of a job, of which its kernel stopped at value i: in float at a block with an alpha that is no number.
+// Computes the rest of a job whose kernel stopped at value i: in float at a block with an alpha that is not finite.
 TEXGEN_APART inline void finish_job(const SegmentKernels& kernels, SegmentJob& job, std::size_t i) noexcept {
     if (!job.is_in_float) return interpolate_exactly(kernels, job, i);
     while (i < job.count) {
@@ -257,7 +257,7 @@ TEXGEN_APART void run_rest(SegmentJob& job, const PointOutputs& outputs, std::sp
     run_part(job, outputs, {first, rest, point_quantum}, run);
 }
 
-// Values along a segment, a group of coordinates after another.
+// Computes values along a segment, one group of coordinates after another.
 template <class CompiledWhereCalled = void>
 struct SegmentGroups {
     const Segment& segment;
@@ -318,7 +318,7 @@ inline glm::dvec2 error_bound(const Segment& segment, Tolerance tolerance) noexc
         double largest = detail::accepts_rounding(u.largest()[0], accepted) ? 1.001 * rounded : rounded;
         const detail::LesserEnd end(ends, u);
         const double error = end.error(u)[0];
-        // If error and tolerance are that near to one another, a file with other flags may have decided otherwise.
+        // Where error and tolerance are that close, a file with other flags may have decided otherwise.
         const bool is_in_float = end.is_in_range(u) && error * (1.0 - 0x1p-40) <= accepted;
         return is_in_float ? detail::larger(largest, error) : largest;
     };

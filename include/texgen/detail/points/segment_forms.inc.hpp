@@ -1,9 +1,9 @@
-// What a segment is divided as: its ends, the forms about them and about the asymptote, and their errors. Included by
+// How a segment is divided: its ends, the forms about them and about the asymptote, and their errors. Included by
 // segment.hpp.
 
 namespace TEXGEN_DETAIL_BUILD {
 
-// The ends of two coordinates, or of one in both places.
+// Both ends in two coordinates, or in one that is in both places.
 struct SegmentEnds {
     Double2 a, b;
     double q_a, q_b;
@@ -27,7 +27,7 @@ private:
 
 inline double larger_lane(const Double2& of) noexcept { return larger(of[0], of[1]); }
 
-// Written as a whole: what is read so soon after it was written in halves waits for all that was written before.
+// Written as a whole: a number that is read soon after it was written in halves waits for all writes before it.
 inline void put(double (&to)[2], const Double2& values) noexcept { std::memcpy(to, &values, sizeof values); }
 
 // The quotients at the ends of a segment in front, but for some ulps.
@@ -64,10 +64,10 @@ struct Asymptote {
                all_less(u.sum() + magnitude(base), double2_of(0x1p60, 0x1p60));
     }
 
-    // The error of that in unit roundoffs of double. D, its reciprocal and their products round p by 3, which is at
-    // most max(1, Q0 / Q1) times the divisor, U by 4 and d by 7. Those of p and d, one for the sum, three for a
-    // reciprocal that two vectors share, and one for the product are of u - U, which is largest at an end; the last sum
-    // is of u.
+    // The error of that in unit roundoffs of double. Roundings of D, its reciprocal and their products are 3 of p, 4 of
+    // U and 7 of d; p is at most max(1, Q0 / Q1) times the divisor. The errors of p and d, one of the sum, three of a
+    // reciprocal that two vectors share, and one of the product are relative to u - U, which is largest at an end; that
+    // of the last sum is relative to u.
     Double2 error(const EndQuotients& u) const noexcept {
         const Double2 part = larger(magnitude(u.at_a - base), magnitude(u.at_b - base));
         return (part * (12.0 + 3.0 * ratio) + magnitude(base) * 4.0 + u.largest()) * 1.01;
@@ -93,10 +93,10 @@ struct LesserEnd {
         return ratio < 0x1p60 && all_less(u.sum(), double2_of(0x1p60, 0x1p60));
     }
 
-    // The error of that in float, in whose unit roundoffs 1 - alpha, b, its product and the sum, the product of two
-    // sums, what it divides, the products with the other sum and with i, d, the share of the other d and its product
-    // are rounded by 11 of the step at most; u0 and the last sum once each. A share of d, and what of d two vectors
-    // divide, may be less than all normal floats: that times what is less than 2^60 is lost of each.
+    // The error of that in float. In its unit roundoffs the step errs by 11 at most: by those of 1 - alpha, b, its
+    // product and the sum, the product of two sums, what it divides, the products with the other sum and with i, d, the
+    // share of the other d and its product. u0 and the last sum are rounded once each. A share of d, and what of d two
+    // vectors divide, may be below the normal floats: of each that is lost, times less than 2^60.
     Double2 error(const EndQuotients& u) const noexcept {
         return (u.largest() * 2.0 + magnitude(u.at_a - u.at_b) * 12.0) * 1.001 * unit_roundoff_float + 0x1p-64;
     }

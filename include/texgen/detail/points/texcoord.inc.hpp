@@ -2,8 +2,8 @@
 
 namespace TEXGEN_DETAIL {
 
-// Copies `count` points from `first` on. Where x, y, z follow one another, they go together: a load and a store for each
-// take twice the time.
+// Copies `count` points from `first` on. Where x, y, z follow one another they are copied together: a load and a store
+// for each take twice the time.
 template <class Space>
 void copy_points(const Positions<Space>& positions, std::size_t first, std::size_t count, float* to) noexcept {
     constexpr std::size_t size = 3 * sizeof(float);
@@ -43,8 +43,8 @@ void for_each_part(const Positions<Space>& positions, std::size_t count, const R
     }
 }
 
-// A job without points and outputs: the forms of these rows over the row of q; one alone is in both places. What is not
-// known yet is left as it is: compilers clear so large a struct in ten times as long as all else takes.
+// A job without points and outputs: the forms of these rows over the row of q; one alone is in both places. Other
+// members are not initialized: to clear so large a struct takes ten times as long as all else.
 inline PointJob point_job(const glm::dmat4& matrix, int row, int numerators, const LitTest& lit,
                           Tolerance tolerance) noexcept {
     PointJob job;
@@ -61,7 +61,7 @@ inline PointJob point_job(const glm::dmat4& matrix, int row, int numerators, con
     return job;
 }
 
-// Whether a box is a word on points: a NaN is none.
+// Whether a box says where points are: not with a NaN, or min > max.
 inline bool is_word(const Box& box) noexcept {
     return box.min.x <= box.max.x && box.min.y <= box.max.y && box.min.z <= box.max.z;
 }
@@ -71,12 +71,12 @@ inline bool is_inside(const Box& box, const glm::vec3& point) noexcept {
            box.min.z <= point.z && point.z <= box.max.z;
 }
 
-// Takes what it means for a job that all points lie in a box: nothing if one of them may be next to q = 0 or behind.
+// Sets what follows for a job if all points lie in a box: nothing if one of them may be next to q = 0 or behind.
 inline void take_bounds(PointJob& job, const Box& box) noexcept {
     if (!is_word(box)) return;
     const glm::dvec3 min = widened(box.min), max = widened(box.max);
     const glm::dvec3 size(larger(-min.x, max.x), larger(-min.y, max.y), larger(-min.z, max.z));
-    // A form's values at the points of the box, and the sum of its terms.
+    // Bounds on a form's values at the points of the box, and on the sum of its terms.
     struct Range {
         double least, largest, terms;
     };
@@ -108,7 +108,8 @@ inline void take_bounds(PointJob& job, const Box& box) noexcept {
     double ulps = 0.0;
     for (int k = 0; k < job.numerators; ++k) {
         const Range& s = numerator[k];
-        // Of itself a quotient errs by e_s / |s| + e_q / q and four roundings, and its ulp is 2^-53 of it at least.
+        // Relative to itself a quotient errs by e_s / |s| + e_q / q and four roundings, and its ulp is at least 2^-53
+        // of it.
         const double least = larger(s.least, -s.largest);  // negative where the sign changes
         const double share = (s.terms / least + q.terms * reciprocal) * (gamma(5) * (1.0 + gamma(2)));
         ulps = larger(ulps, least > 0x1p-124 * q.largest ? share * 0x1.01p53 + 4.0 : quick_ulps);
@@ -119,7 +120,7 @@ inline void take_bounds(PointJob& job, const Box& box) noexcept {
 
 inline namespace TEXGEN_BUILD {
 
-// Positions from `first` on, one by one.
+// Projects positions from `first` on, one by one.
 template <class Space>
 void project_each(const Positions<Space>& positions, std::size_t first, const PointJob& job,
                   const PointOutputs& out) noexcept {
@@ -225,7 +226,7 @@ glm::dvec2 project_error_bound(const Transform<Texture, Space>& texture_from_spa
         return division.error(detail::terms_at(form[k], size), detail::terms_at(q_form, size),
                               size.x + size.y + size.z + 1.0, least_q, quotient);
     };
-    // Calls visit(|v|, the least q, the largest quotients) for each position, if there are bounds for all.
+    // Calls visit(|v|, the least q, the largest quotients) for each position; false where one has no bounds.
     const auto visit_all = [&](const auto& visit) {
         for (std::size_t i = 0; i < positions.size(); ++i) {
             const glm::dvec3 v = detail::widened(positions[i]);
@@ -250,8 +251,8 @@ glm::dvec2 project_error_bound(const Transform<Texture, Space>& texture_from_spa
             largest_quotient[k] = detail::larger_or_nan(largest_quotient[k], quotient[k]);
     });
     if (!are_bounded) return glm::dvec2(detail::infinity);
-    // Where that certifies all blocks with room, errors are those of a point's own terms. Else some may be divided about
-    // another point, whose differences are at most twice, and terms as much as, those of the farthest.
+    // Where these bounds certify all blocks with room, errors are those of a point's own terms. Else some may be
+    // divided about another point: differences are at most twice, and terms as much as, those of the farthest.
     const double q_terms = detail::terms_at(q_form, size);
     bool are_in_front = least_of_q > 2.0 * detail::least_q_in_front && q_terms < 0.5 * detail::largest_terms_in_float &&
                         detail::all_float.form_error * q_terms < 0.04 * least_of_q;
