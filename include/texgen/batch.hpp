@@ -49,8 +49,8 @@ public:
     template <class CompiledWhereCalled = detail::ThisBuild>
     void assign(std::span<const Triangle> triangles) noexcept;
 
-    // The same, but what faces away from the projector is dark, as the back of a solid body is.
-    // Guarantee: as above; dark are those of which facing() says so, exactly, besides what is refused. noexcept.
+    // Makes triangles ready likewise, but those that face away from the projector dark, as the back of a solid body is.
+    // Guarantee: as above; dark are exactly those that facing() calls away, besides those that are refused. noexcept.
     template <class CompiledWhereCalled = detail::ThisBuild>
     void assign_facing(std::span<const Triangle> triangles, TextureOrigin origin) noexcept;
 
@@ -77,42 +77,44 @@ private:
 
 inline namespace TEXGEN_BUILD {
 
-// Writes s/q, t/q and r/q of every fragment of a rectangle of each triangle, and whether it is lit: of rects[i] those
-// of triangle i, behind those of the rectangle before it.
+// Writes s/q, t/q and r/q of every fragment of a rectangle of each triangle, and whether it is lit. The values of
+// triangle i over rects[i] stand behind those of the rectangle before it.
 // Guarantee: each value as interpolate(TriangleSetup, rects[i], ...) has it: with `exact` the same bits, else within
 // the same bound of the exact value. Everything is written: where nothing of a rectangle is lit, lit is 0, and s, t, r
 // are 0 or their plane's; where a triangle is refused all outputs are 0. No allocation, noexcept.
 // Shapes: as many rectangles as triangles, and outputs of all their fragments together, or empty ones (all asserted;
-// else nothing is written, of a wrong count, or not the output of a wrong length). Fragments outside a triangle get the
-// values of its plane; where the interpolated 1/w is not positive nothing is promised.
+// else nothing is written where the count is wrong, or not the output whose length is wrong). Fragments outside a
+// triangle get the values of its plane; where the interpolated 1/w is not positive nothing is promised.
 // Cost: with its set-up a tile of 8 x 8 takes about half of what a TriangleSetup does; beyond 1024 fragments it is left
-// to one, as is what is in doubt: that takes as long as some tiles of a friendly triangle.
+// to one. So is what is in doubt, which takes as long as some tiles of a triangle without doubt.
 // Bad input: an empty rectangle has no values.
 template <class CompiledWhereCalled = void>
 void interpolate(const TriangleBatch& batch, std::span<const FragmentRect> rects, Texcoords out) noexcept;
 
-// Writes the same of a visibility buffer: of fragment k of the rectangle, row by row, those of triangle ids[k].
-// Guarantee: as above for the triangle's fragment. Where ids[k] is no_triangle, or its triangle is refused, all outputs
-// are 0. A fragment that is not lit has lit = 0, and s, t, r of its triangle's plane or 0. No allocation, noexcept.
+// Writes the same for a visibility buffer: fragment k of the rectangle, row by row, gets the values of triangle ids[k].
+// Guarantee: as above for the fragment of that triangle. Where ids[k] is no_triangle, or its triangle is refused, all
+// outputs are 0. A fragment that is not lit has lit = 0, and s, t, r of its triangle's plane or 0. No allocation,
+// noexcept.
 // Shapes: width * height ids, and as many floats an output, or none (asserted).
-// Cost: runs of 64 fragments and more of one id in a row take what interpolate() of a TriangleSetup does, which those of
-// the last few triangles share; others least where neighbours have one id, and ids in any order about twice as long.
+// Cost: runs of 64 fragments and more of one id in a row take what interpolate() of a TriangleSetup does, and share the
+// set-ups of the last few triangles. Other fragments take least where neighbours have one id, and about twice as long
+// with ids in any order.
 // Bad input: an empty rectangle does nothing; an id beyond the batch is no_triangle.
 template <class CompiledWhereCalled = void>
 void interpolate(const TriangleBatch& batch, std::span<const std::uint32_t> ids, FragmentRect rect,
                  Texcoords out) noexcept;
 
-// What footprint() by ids may err by besides the error_bound() of the triangle's FootprintSetup, relative to the
-// derivative's length: what cancels is not known to more digits there.
+// How far footprint() by ids may be off besides the error_bound() of the triangle's FootprintSetup, relative to the
+// length of the derivative: where terms cancel it is not known to more digits.
 inline constexpr double batch_footprint_error = 0x1p-34;
 
-// Writes the footprints of a visibility buffer, as textureGrad takes them: of fragment k that of triangle ids[k].
+// Writes the footprints of a visibility buffer, as textureGrad takes them: fragment k gets that of triangle ids[k].
 // Guarantee: as footprint() of a FootprintSetup of the triangle has it for the fragment, but for batch_footprint_error.
-// Behind, where ids[k] is no_triangle or its triangle is refused, all outputs are 0, as they may be of a run of 64
-// fragments and more of one id in a row of which none is lit. No allocation, noexcept.
+// Behind the projector, and where ids[k] is no_triangle or its triangle is refused, all outputs are 0; they may also be
+// 0 in a run of 64 fragments and more of one id in a row of which none is lit. No allocation, noexcept.
 // Shapes: as above.
 // Cost: derivatives take about twice what a visibility buffer's coordinates do; runs of 64 fragments and more of one id
-// in a row, and the little that lanes leave, take a FootprintSetup, which those of the last few triangles share.
+// in a row, and the little that lanes leave, take a FootprintSetup, and share those of the last few triangles.
 // Bad input: as of footprint(), and above.
 template <class CompiledWhereCalled = void>
 void footprint(const TriangleBatch& batch, std::span<const std::uint32_t> ids, FragmentRect rect, TexelsPerUnit texels,

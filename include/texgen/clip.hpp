@@ -95,7 +95,7 @@ private:
 // r - r_min q, r_max q - r. A point of the space is lit where all are >= 0 (and q > 0): for gl_ClipDistance, or in eye
 // space for glClipPlane. An infinite limit of depth is none: in its place q stands again.
 // Guarantee: each coefficient is the exact one of the matrix in double, rounded to double and then to float: within
-// (1/2 + 2^-29) float ulp, and of its sign, or 0. No allocation, noexcept.
+// (1/2 + 2^-29) float ulp, and with its sign, or 0. No allocation, noexcept.
 // Shape: coefficients (x, y, z, w) of points (x, y, z, 1) of the space that the matrix takes to the texture.
 // Bad input: NaN and infinity of the matrix or the region stay in the coefficients that they reach.
 // Source: Segal, Korobkin, van Widenfelt, Foran, Haeberli, Fast Shadows and Lighting Effects Using Texture Mapping
@@ -103,7 +103,7 @@ private:
 template <class Space>
 ClipPlanes clip_planes(const Transform<Texture, Space>& texgen, TextureRegion region) noexcept;
 
-// How far outside a side of the region a vertex of clip_to_slide() may be: min q - u and u - max q are at most
+// How far outside a side of the region a vertex from clip_to_slide() may be: min q - u and u - max q are at most
 // slide_clip_error max(|min|, |max|) q for u = s and t, and for r where the region has a depth, while no number, times
 // a side or not, is below the normal floats.
 //
@@ -127,8 +127,8 @@ inline namespace TEXGEN_COMPILER {
 // Shape: out.size() >= polygon.size() + 5, or 7 with a depth (asserted); out overlaps the polygon as that of
 // clip_to_near() may. At the projector itself (s = t = q = 0, the one point of the sides with q = 0) there is no
 // coordinate: a polygon that reaches it is cut at a millionth (2^-20) of the q of the edge's other end.
-// Bad input: a polygon with an s, t or q that is not finite is dropped, with a depth also one with such an r, and all
-// are where the region holds no point. The position may hold anything, as may r without a depth. What is not convex (as
+// Bad input: a polygon with an s, t or q that is not finite is dropped, with a depth also one with such an r; where the
+// region holds no point all are. The position may hold anything, as may r without a depth. What is not convex (as
 // rounding may leave a polygon with more than three corners) is cut as it is, and may be dropped where `out` has no
 // more room than that.
 // Source: Sutherland and Hodgman, Reentrant Polygon Clipping, CACM 17 (1974).

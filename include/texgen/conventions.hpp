@@ -20,8 +20,8 @@ enum class DepthRange { negative_one_to_one, zero_to_one };  // NDC depth of the
 enum class NdcY { up, down };                                // where y grows to in NDC
 enum class TextureOrigin { bottom_left, top_left };          // the corner of the picture that (s, t) = (0, 0) addresses
 
-// Of the world and of the projector's eye, whose x is to the right and whose y is up: a right-handed eye looks down -z,
-// a left-handed one down +z.
+// The handedness of the world and of the projector's eye, whose x is to the right and whose y is up: a right-handed eye
+// looks down -z, a left-handed one down +z.
 enum class Handedness { right, left };
 
 // Three independent choices of a graphics API, and the world's handedness. There is no default: the caller says which
@@ -56,9 +56,9 @@ enum class DepthMapping { unit, ndc };
 // says so: else to infinity. min() is the corner that TextureOrigin addresses.
 // A region with min() > max() in a component or in its depth, or with a NaN, contains no point, so nothing is lit in
 // it. An infinite side is no limit to what is lit: of a region of such sides alone s and t are written for all that is
-// in front, as textures that repeat need them; but a slide has no place there. Its functions are constexpr where GLM's
-// are: not under GLM_FORCE_INTRINSICS. min and max stand in parentheses because <windows.h> makes macros of them; where
-// it is included, a call is (region.min)().
+// in front, as textures that repeat need them; but a slide has no place there. The functions of a TextureRegion are
+// constexpr where GLM's are: not under GLM_FORCE_INTRINSICS. min and max stand in parentheses because <windows.h> makes
+// macros of them; where it is included, a call is (region.min)().
 class TextureRegion {
 public:
     constexpr const glm::dvec2&(min)() const noexcept { return min_; }
@@ -73,8 +73,8 @@ public:
         region.has_depth_ = true;
         return region;
     }
-    // Makes the one of the whole depth of a projector, reversed or not, with r as the mapping has it: [0, 1], or the
-    // range of NDC.
+    // Makes the region with the whole depth of a projector, reversed or not, with r as the mapping has it: [0, 1], or
+    // the range of NDC.
     [[nodiscard]] GLM_CONSTEXPR TextureRegion with_depth(Conventions conventions, DepthMapping mapping) const noexcept {
         return with_depth(
             mapping == DepthMapping::ndc && conventions.depth == DepthRange::negative_one_to_one ? -1.0 : 0.0, 1.0);

@@ -20,24 +20,24 @@
 
 namespace TEXGEN_NAMESPACE_BUILD {
 
-// The points that a slide lights, prepared once for many questions, of which the functions below ask one.
+// The points that a slide lights, prepared once for many questions; the functions below ask one each.
 // Guarantee: `outside` and `inside` are never false: they hold for the exact values of the matrix, the region and the
 // body as they are given, and for `lit` of project() with `exact`, whose s, t and r are rounded: within a float of a
 // side, or of a limit of depth, a body is `partial`. (What a tolerance moves across a side is not looked for here.) A
 // box is `partial` only where it is so, or touches a plane through an edge or through the apex of the projector's
 // pyramid within 2^-47 of the terms that it is the sum of, the largest coefficient for all; the pyramid's own planes,
 // with its sides at the floats next to the region's (next to 0 the normal ones), are decided exactly, as are the near
-// and the far plane of a depth. (Where nothing is lit at all, as no r in front is in the depth or no s and t go
-// together, boxes about q = 0 may be `partial`.) A sphere is `partial` too where it only touches a plane, where no plane
-// but one through a vertex of the volume leaves it out, and where a side that is moved inwards by those floats would cut
-// it, at the largest q that points as far from the origin may have. A batch answers as the single question does. No
-// allocation, noexcept; what is prepared is never changed, so threads may share it.
+// and the far plane of a depth. (Where nothing is lit at all, because no r in front is in the depth or no s and t go
+// together, boxes about q = 0 may be `partial`.) A sphere is `partial` too where it only touches a plane, where no
+// plane but one through a vertex of the volume leaves it out, and where a side that is moved inwards by those floats
+// would cut it, at the largest q that points as far from the origin may have. A batch answers as the single question
+// does. No allocation, noexcept; what is prepared is never changed, so threads may share it.
 // Shape: bodies of Space, in order; both spans have one size (asserted; else nothing is written).
 // Bad input, the first that applies: a NaN anywhere in a body: partial. A box with min > max in some axis, a sphere
 // with a negative radius: outside. A matrix that is not finite: partial. An empty region (see TextureRegion): outside.
-// Exponents so far apart that exact sums leave the range of double (elements below 2^-600 of the matrix's largest, which,
-// if it is not 0, is from 2^-1000 to 2^1000, row r left out where there is no depth; sides of the region beyond 2^+-200):
-// partial. A q that is 0 everywhere: outside. An infinite side of the region, or limit of its depth, is none.
+// Exponents so far apart that exact sums leave the range of double (elements below 2^-600 of the matrix's largest,
+// which, if it is not 0, is from 2^-1000 to 2^1000, row r left out where there is no depth; sides of the region beyond
+// 2^+-200): partial. A q that is 0 everywhere: outside. An infinite side of the region, or limit of its depth, is none.
 // Source: the separating axis theorem; Gottschalk, Lin, Manocha, OBBTree, SIGGRAPH 1996.
 template <class Space>
 class LitVolume {
@@ -48,7 +48,7 @@ public:
     Coverage coverage(const Box& box) const noexcept;
     Coverage coverage(const Sphere& sphere) const noexcept;
 
-    // Says it of each of many.
+    // Say how much of each of many bodies the slide lights.
     void coverage(std::span<const Box> boxes, std::span<Coverage> out) const noexcept;
     void coverage(std::span<const Sphere> spheres, std::span<Coverage> out) const noexcept;
 
@@ -59,7 +59,7 @@ private:
     detail::SeparatingForms separating_;
 };
 
-// Its space is that of the matrix.
+// A LitVolume has the space of its matrix.
 template <class Space>
 LitVolume(const Transform<Texture, Space>&, const TextureRegion&) -> LitVolume<Space>;
 

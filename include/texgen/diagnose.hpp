@@ -82,7 +82,7 @@ enum class Defect {
     smaller_than_texel,
 };
 
-// How many there are.
+// The number of defects.
 inline constexpr std::size_t defect_count = static_cast<std::size_t>(Defect::smaller_than_texel) + 1;
 
 // A defect, what is wrong and what to do, a sentence each.
@@ -91,7 +91,7 @@ struct DefectInWords {
     std::string_view what, remedy;
 };
 
-// What to say of each defect, in their order.
+// What to say of each defect, in the order of the enumerators.
 inline constexpr std::array<DefectInWords, defect_count> defects_in_words{{
     {Defect::not_finite, "A number is infinite or not a number.",
      "Look for a division by zero, an empty lens or an uninitialised value before it."},
@@ -247,7 +247,7 @@ using Setup = ProjectionSetup<Space>;
 // the worst set-up takes at most 8 times what one with a single defect does. No mistake is named of numbers beyond
 // 2^150 or below 2^-150. What it sees: of a projector alone, its matrices' own marks (transposed, exchanged, of rank
 // below 3, mirrored, reversed depth in the wrong range); with facts of the lens also an aspect, an angle or a depth
-// range that is theirs by a mistake: inverted, in another unit, for the other range. (A lens of other numbers is
+// range that becomes theirs by a mistake: inverted, in another unit, for the other range. (A lens of other numbers is
 // another lens, and not wrong.) With the projector, and the model or the camera, which of their products a texgen
 // matrix is, of up to two mistakes; and if it is none of them whether it or a factor of it is transposed, the lens that
 // it was made with, P' = S^-1 T X^-1 V^-1, against the projector's, and what shows without the pose. Of a texgen matrix

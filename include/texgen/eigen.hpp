@@ -41,7 +41,7 @@ Role from_eigen(const Matrix& matrix) noexcept(detail::owns_elements<Matrix>) {
     return Role(result);
 }
 
-// Makes it of an Eigen::Transform. An AffineCompact has no last row; of others it is kept, whatever the mode says of it.
+// Makes a Transform of an Eigen::Transform. Its last row is kept, whatever its mode says; an AffineCompact has none.
 template <detail::TransformOfSpaces Role, detail::EigenTransform EigenTransform>
 Role from_eigen(const EigenTransform& transform) noexcept {
     if constexpr (static_cast<int>(EigenTransform::Mode) == static_cast<int>(Eigen::AffineCompact))
@@ -116,7 +116,7 @@ Positions<Object> object_space(Floats&&... values) noexcept requires detail::Eig
 auto object_space(auto&&... values) requires detail::EigenTemporaries<decltype(values)...>
 = delete;
 
-// The same of points in the world.
+// Views the same as points in the world.
 template <class... Floats>
 Positions<World> world_space(Floats&&... values) noexcept requires detail::EigenPositions<Floats...> {
     return detail::positions_of<World>(values.derived()...);
@@ -124,7 +124,7 @@ Positions<World> world_space(Floats&&... values) noexcept requires detail::Eigen
 auto world_space(auto&&... values) requires detail::EigenTemporaries<decltype(values)...>
 = delete;
 
-// The same of points in the eye's space.
+// Views the same as points in the eye's space.
 template <class... Floats>
 Positions<Eye> eye_space(Floats&&... values) noexcept requires detail::EigenPositions<Floats...> {
     return detail::positions_of<Eye>(values.derived()...);
@@ -132,7 +132,7 @@ Positions<Eye> eye_space(Floats&&... values) noexcept requires detail::EigenPosi
 auto eye_space(auto&&... values) requires detail::EigenTemporaries<decltype(values)...>
 = delete;
 
-// The same of fragments: x and y in pixels, z the depth that the buffer holds.
+// Views the same as fragments: x and y in pixels, z the depth that the buffer holds.
 template <class... Floats>
 Positions<Window> window_space(Floats&&... values) noexcept requires detail::EigenPositions<Floats...> {
     return detail::positions_of<Window>(values.derived()...);
@@ -142,7 +142,7 @@ auto window_space(auto&&... values) requires detail::EigenTemporaries<decltype(v
 
 // Views the floats of a vector without gaps (VectorXf, Ref<ArrayXf>, a column of a matrix), or of a row-major matrix or
 // array that owns them (height x width fragments): an output of Texcoords, or an input of alphas.
-// Guarantee: a view as above; std::span<const float> of what is const. A vector that may have gaps does not compile.
+// Guarantee: a view as above, std::span<const float> of a const object. A vector that may have gaps does not compile.
 auto floats(detail::EigenSpan auto&& values) noexcept {
     return std::span(values.derived().data(), static_cast<std::size_t>(values.size()));
 }

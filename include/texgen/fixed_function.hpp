@@ -23,11 +23,11 @@
 
 namespace TEXGEN_NAMESPACE {
 
-// What glTexGen calls GL_OBJECT_LINEAR and so on, and GL_S to GL_Q.
+// The modes that glTexGen calls GL_OBJECT_LINEAR and so on, and its coordinates GL_S to GL_Q.
 enum class TexGenMode { object_linear, eye_linear, sphere_map, reflection_map, normal_map };
 enum class Coordinate { s, t, r, q };
 
-// What glVertex, glNormal and glTexCoord say. Position and normal are in object space.
+// A vertex as glVertex, glNormal and glTexCoord give it. Position and normal are in object space.
 struct FixedFunctionVertex {
     glm::vec4 position;
     glm::vec3 normal{0.0f, 0.0f, 1.0f};

@@ -27,8 +27,8 @@
 namespace TEXGEN_NAMESPACE {
 
 // How many texels one unit of s and of t spans: the size of the texture for normalised coordinates, those of an
-// atlas_tile too; 1 for a rectangle texture. Of level 0. Bad values (not above 2^-200 and below 2^200) make what is
-// measured in texels NaN.
+// atlas_tile too; 1 for a rectangle texture. Texels are those of level 0. Bad values (not above 2^-200 and below 2^200)
+// make what is measured in texels NaN.
 struct TexelsPerUnit {
     double s, t;
 };
@@ -56,14 +56,14 @@ struct Footprint {
     glm::dvec2 major;
 };
 
-// Planar; an empty span is not computed. The derivatives are named as GLSL would: dsdx is d(s/q)/dx.
+// Footprints, planar; an empty span is not computed. The derivatives are named as GLSL would: dsdx is d(s/q)/dx.
 struct Footprints {
     std::span<float> dsdx = {}, dtdx = {}, dsdy = {}, dtdy = {};
     std::span<float> level = {}, anisotropy = {}, major_s = {}, major_t = {};
 };
 
-// Over the fragments in front of the projector.
-//   least_level, largest_level   the range of `level`: 2^largest_level texels a pixel is the strongest minification, and
+// The extremes of footprints over the fragments in front of the projector.
+//   least_level, largest_level   the range of `level`: 2^largest_level texels a pixel is the strongest minification,
 //                                2^-least_level pixels a texel the strongest magnification
 //   least_area, largest_area     the range of |det J| in texels: the texels that a pixel covers
 //   largest_anisotropy           as in a Footprint
@@ -148,8 +148,8 @@ inline namespace TEXGEN_BUILD {
 // Guarantee: in front of the projector the derivatives are within setup.error_bound(rect): with `exact` next to half an
 // ulp, with a tolerance within max(tolerance, that), in units of s and t a pixel. level is within 2^-16 max(1, |level|
 // / 32) of that of derivatives within the bound, anisotropy and major within 2^-16 of theirs (major relative to its
-// length, in texels; where the anisotropy is near 1 its direction means nothing). Behind, all are 0, the sign of q decided
-// exactly. No allocation, noexcept.
+// length, in texels; where the anisotropy is near 1 its direction means nothing). Behind, all are 0, the sign of q
+// decided exactly. No allocation, noexcept.
 // Shapes: each output has width * height floats, row-major, or none (asserted). Fragments outside the triangle get the
 // values of its plane; where the interpolated 1/w is not positive nothing is promised.
 // Bad input: an empty rectangle does nothing. With bad texels level, anisotropy and major are NaN, the derivatives

@@ -4,8 +4,8 @@
 // per fragment. Segments are in segment.hpp.
 //
 // The tolerance chooses how it is computed: `exact` by a division in double with a certificate, and what that leaves in
-// doubt by exact sums; others by the first polynomial whose bound fits, or in short rows without one, else by a division
-// in float, if that fits, else as `exact`.
+// doubt by exact sums; others by the first polynomial whose bound fits, or in short rows without one, else by a
+// division in float, if that fits, else as `exact`.
 
 #include "detail/language.hpp"
 
@@ -80,10 +80,10 @@ inline namespace TEXGEN_BUILD {
 // Guarantee: in front each is within max(tolerance, 1/2 ulp) of the exact value of the given floats (r: the tolerance
 // relative to max(1, |r|)). With `exact` each is the nearest float, so that its bits depend on neither the rectangle,
 // the length, the alignment nor the build. lit = 1 inside the closed region, decided from the s and t, and with a depth
-// from the r, that are written; of one that is not asked for from a float as near to the exact value, so that with a
-// tolerance either may be right next to a side. Where r is certainly in the depth, or s and t leave all of a part of
-// the rectangle dark, it is not computed for that. Behind, s = t = r = lit = 0, the sign of q decided exactly. For
-// Work::nothing lit is 0 and s, t, r are not written. No allocation, noexcept.
+// from the r, that are written; where one is not asked for, from a float as near to the exact value, so that with a
+// tolerance either answer may be right next to a side. Where r is certainly in the depth, or s and t leave all of a
+// part of the rectangle dark, it is not computed for that. Behind, s = t = r = lit = 0, the sign of q decided exactly.
+// For Work::nothing lit is 0 and s, t, r are not written. No allocation, noexcept.
 // Shapes: each output has width * height floats, row-major, or none (asserted). Fragments outside the triangle get the
 // values of its plane; where the interpolated 1/w is not positive nothing is promised.
 // Bad input: an empty rectangle does nothing.

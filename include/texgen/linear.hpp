@@ -95,13 +95,13 @@ inline std::optional<WindowTexgen> window_linear(const Projector& projector, con
 
 enum class DepthBuffer { unorm16, unorm24, float32 };  // what a depth is rounded to
 
-// Bounds how far s and t of a fragment may be off because the depth buffer holds a rounded depth, which is the
-// fragment's here.
+// Bounds how far s and t of a fragment may be off because the depth buffer holds a rounded depth. The fragment is given
+// with that rounded depth.
 // Guarantee: s/q (x) and t/q (y) of this matrix differ by at most that between the fragment and any depth that is
 // stored as this one; infinite where some of those depths are not in front of the projector. A reversed depth in
-// float32 has small depths far away, and so small errors. What the hardware rounds is taken as 0.6 of a step of the
-// integers, as Direct3D allows, and half an ulp of float, in which a shader reads it. Of a matrix whose elements, but
-// for 0, are from 2^-500 to 2^500. No allocation, noexcept.
+// float32 has small depths far away, and so small errors. The rounding of the hardware is taken as 0.6 of a step of the
+// integers, as Direct3D allows, and half an ulp of float, in which a shader reads it. This holds for a matrix whose
+// elements, but for 0, are from 2^-500 to 2^500. No allocation, noexcept.
 // Bad input: infinite for what is not finite.
 inline glm::dvec2 depth_error_bound(const WindowTexgen& texture_from_window, glm::vec3 fragment,
                                     DepthBuffer buffer) noexcept;

@@ -170,7 +170,7 @@ inline std::optional<ProjectorView> look_at(const Aim& aim, Handedness handednes
 // is the element of R, which cv::Rodrigues() makes of solvePnP()'s vector.
 // Guarantee: each element is kept exactly; no allocation, noexcept.
 // Shape: world to projector eye space.
-// Bad input: empty for what is not finite. That R is a rotation is not asked.
+// Bad input: empty for what is not finite. Whether R is a rotation is not tested.
 inline std::optional<ProjectorView> view_from_opencv(const glm::dmat3& rotation, const glm::dvec3& translation,
                                                      Handedness handedness = Handedness::right) noexcept;
 
@@ -183,8 +183,8 @@ inline std::optional<ProjectorView> view_from_opencv(const glm::dmat3& rotation,
 // Bad input: empty where n is zero, and where the plane, the view or an element of the result is not finite.
 inline std::optional<ProjectorView> mirrored(const ProjectorView& view, const glm::dvec4& plane) noexcept;
 
-// Makes a projector of a lens and an aim, both of the conventions' handedness: empty where either is. Guarantees as
-// those of the lens and of look_at().
+// Makes a projector of a lens and an aim, both of the conventions' handedness: empty where the lens or the aim is
+// refused. Guarantees as those of the lens and of look_at().
 inline std::optional<Projector> make_projector(const PerspectiveLens& lens, const Aim& aim,
                                                Conventions conventions) noexcept;
 inline std::optional<Projector> make_projector(const FrustumLens& lens, const Aim& aim,

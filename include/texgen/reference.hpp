@@ -4,7 +4,7 @@
 // rational for the judge. Nothing here is fast, and nothing is shared with the fast path.
 //
 // A Scalar needs an exact constructor from float, + - * / and comparisons, and Eigen::NumTraits; integers are refused.
-// What its arithmetic loses is lost: a float finds no area in slivers that have one, and asserts.
+// What its arithmetic loses is lost: float finds no area in slivers that have one, and asserts.
 
 #include "detail/language.hpp"
 
@@ -25,7 +25,7 @@
 namespace TEXGEN_NAMESPACE::reference {
 inline namespace TEXGEN_COMPILER {
 
-// Columns of a scalar.
+// Column vectors of a scalar.
 template <class Scalar>
 using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
 template <class Scalar>
@@ -52,7 +52,7 @@ Vector4<Scalar> strq(const Segment& segment, Scalar alpha) {
     return detail::mix(detail::exactly<Scalar>(segment.a), detail::exactly<Scalar>(segment.b), alpha);
 }
 
-// s/q, t/q, r/q, whatever the sign of q: it is the caller who looks at it.
+// s/q, t/q, r/q, whatever the sign of q: the caller has to look at that.
 // Bad input: q = 0 is the Scalar's own division by zero.
 template <detail::HoldsFloats Scalar>
 Vector3<Scalar> quotient(const Vector4<Scalar>& strq) {

@@ -39,12 +39,12 @@ inline constexpr double to_texture_error = 0x1p-51;
 
 // Takes a clip coordinate to the texture as S does, without the matrix: x, y in [-w, w] become [0, w] for the whole
 // texture.
-// Guarantee: each component is computed in double and rounded once: within 1/2 float ulp + to_texture_error. The edges of
-// the picture are products alone: x = -w gives min * w in double, rounded to float, and x = w gives max * w. No
+// Guarantee: each component is computed in double and rounded once: within 1/2 float ulp + to_texture_error. The edges
+// of the picture are products alone: x = -w gives min * w in double, rounded to float, and x = w gives max * w. No
 // allocation, noexcept.
 // Shape: the projector's clip coordinates in, homogeneous (s, t, r, q) out; q = w.
-// Bad input: what is not finite, or a side times a coordinate that is none, leaves its component infinite or a NaN (w is
-// in all of them).
+// Bad input: what is not finite, or a side times a coordinate that is none, leaves its component infinite or a NaN (w
+// is in all of them).
 inline glm::vec4 to_texture(glm::vec4 projector_clip, Conventions conventions, TextureRegion region = whole_texture(),
                             DepthMapping depth = DepthMapping::unit) noexcept;
 

@@ -36,9 +36,9 @@ struct SceneView {
 };
 
 // What is not as it was at the last update: objects whose model matrix or bounds changed, projectors whose matrices,
-// conventions or region did. In any order; what is named twice changed once. Indices beyond the last update's counts
-// are new, those beyond the present ones are gone: neither needs a name. Where another object takes over an index, that
-// index changed.
+// conventions or region did. They may be in any order; what is named twice changed once. Indices beyond the last
+// update's counts are new, those beyond the present ones are gone: neither needs a name. Where another object takes
+// over an index, that index changed.
 struct SceneChanges {
     std::span<const std::uint32_t> objects = {};
     std::span<const std::uint32_t> projectors = {};
@@ -73,19 +73,19 @@ inline namespace TEXGEN_COMPILER {
 // Cost: an update in which nothing changed does nothing. Otherwise only pairs of which a part changed are tested,
 // eight bounds in the world at once, in trees over those of all objects and of the ones that changed: a changed
 // projector costs what its light is near to; any other costs up to eight changed objects one test, some 15 ns, and more
-// of them a few (6 for 100 of 5000 among small lights), or one for seven objects where its light is near to all. What is
-// found costs a T_o and a coverage(); and the lit pairs are gone through once, at some nanoseconds each. The trees are
-// sorted anew as objects change, a few objects for each, and as projectors test more bounds than they need to, at a part
-// of that time: no update sorts all, but one that changes as many, or allocates memory for more.
+// of them a few (6 for 100 of 5000 among small lights), or one for seven objects where its light is near to all. What
+// is found costs a T_o and a coverage(); and the lit pairs are gone through once, at some nanoseconds each. The trees
+// are sorted anew as objects change, a few objects for each, and as projectors test more bounds than they need to, at a
+// part of that time: no update sorts all, but one that changes as many, or allocates memory for more.
 // Memory: 210 bytes an object, 840 a projector, 165 a lit pair, up to twice that where they came one by one.
 // Bad input: where T_o, as it is computed, or a box is not finite, the pair is partial and kept, as coverage() has it:
 // where a product of finite matrices overflows, too. An empty box is never lit. Where exponents are so far apart that
 // coverage() might not say (elements beyond 2^+-200, or 2^190 apart), an object meets every projector, a projector
 // every object.
 // Spans that disagree in size, and an index that names nothing, are asserted; beyond the shortest nothing is
-// looked at. Of what changed without being named pairs stay as they were, and new ones may be of what it was, what it is,
-// or by halves of both; with assertions on, it is asserted, as far as the bounds in the world show it, so that an update
-// looks at every object: it takes 50 ns for each.
+// looked at. Where something changed without being named, its pairs stay as they were, and new ones may be of what it
+// was, of what it is, or half of each. With assertions on this is asserted, as far as the bounds in the world show it:
+// an update then looks at every object, and takes 50 ns for each.
 // Source: Everitt, Projective Texture Mapping: T_o "must be updated every time the model matrix changes".
 class Scene {
 public:
@@ -99,13 +99,13 @@ public:
     // Finds the pairs of one object, by bisection.
     std::span<const LitPair> pairs_of(std::uint32_t object) const noexcept;
 
-    // T_o of the pairs, each at its own place: those that no pair names are of no meaning. A pair keeps its place until
+    // T_o of the pairs, each at its own place: places that no pair names have no meaning. A pair keeps its place until
     // it changes.
     std::span<const ObjectTexgen> texgens() const noexcept { return texgens_; }
     const ObjectTexgen& texgen(const LitPair& pair) const noexcept { return texgens_[pair.texgen]; }
 
-    // Makes T_e = eye_linear() of each projector of the last update, for this camera: of those that changed since, or
-    // of all when the camera moved. Returns how many. One matrix of eye_texgens() then serves all objects of a
+    // Makes T_e = eye_linear() of each projector of the last update, for this camera: for those that changed since, or
+    // for all when the camera moved. Returns for how many. One matrix of eye_texgens() then serves all objects of a
     // projector.
     std::size_t update_eye(const CameraPose& world_from_eye) noexcept;
     std::span<const EyeTexgen> eye_texgens() const noexcept { return eye_texgens_; }
@@ -134,7 +134,7 @@ private:
     std::vector<Prepared> prepared_;
     std::vector<LitPair> pairs_, new_;
     std::vector<ObjectTexgen> texgens_;
-    std::vector<std::uint32_t> free_;  // places of texgens_
+    std::vector<std::uint32_t> free_;  // places of texgens_ that no pair has
     std::vector<EyeTexgen> eye_texgens_;
     std::optional<CameraPose> camera_;
 };

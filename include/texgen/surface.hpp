@@ -38,9 +38,9 @@ inline Facing facing(glm::vec4 a, glm::vec4 b, glm::vec4 c, TextureOrigin origin
 inline constexpr double slide_area_error = 0x1p-50;
 
 // Measures the area of a triangle on the slide, in units of s times units of t: of texels, for a rectangle texture.
-// Guarantee: within slide_area_error of itself, whatever cancels; positive where t grows from the edge a b towards c
-// when s grows to the right from a to b, as det [s t q]; 0 where it is exactly that. Over the triangle's area in the
-// scene it is the density of texels there. No allocation, noexcept.
+// Guarantee: within slide_area_error, whatever cancels; positive where t grows from the edge a b towards c when s grows
+// to the right from a to b, as det [s t q]; 0 where it is exactly that. Over the triangle's area in the scene it is the
+// density of texels there. No allocation, noexcept.
 // Shape: (s, t, r, q) of the corners in order; r is not looked at.
 // Bad input: empty unless all q > 0, and where an s, t or q is NaN or infinite.
 inline std::optional<double> slide_area(glm::vec4 a, glm::vec4 b, glm::vec4 c) noexcept;
@@ -51,8 +51,8 @@ inline constexpr double receiver_plane_error = 0x1p-49;
 // Finds how depth changes over the slide on the plane of a triangle: (A, B, C) with r/q = A s/q + B t/q + C. So the
 // slopes of r are two constants, dr/ds = A and dr/dt = B: what a shadow map's texels that lie beside the fragment are
 // biased by, without a constant to fit.
-// Guarantee: each within receiver_plane_error of itself, whatever cancels; some or all corners may be behind. No
-// allocation, noexcept.
+// Guarantee: each within receiver_plane_error, whatever cancels; some or all corners may be behind. No allocation,
+// noexcept.
 // Shape: (s, t, r, q) of the corners in any order. In a fragment shader, for a map that has r and texels of that size,
 //
 //     float bias = dot(abs(plane.xy), 0.5 * texel);  // to any point of the texel that the fragment falls on

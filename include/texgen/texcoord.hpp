@@ -42,9 +42,9 @@ struct HomogeneousTexcoords {
     std::span<float> s = {}, t = {}, r = {}, q = {};
 };
 
-// A view of points with w = 1 in a known space: three arrays of floats that share a stride. It owns nothing, so that of
-// a temporary array it is for the same expression alone, and reads floats at any alignment. Made by object_space(),
-// world_space(), eye_space() and window_space().
+// A view of points with w = 1 in a known space: three arrays of floats that share a stride. It owns nothing, so that a
+// view of a temporary array lives for the same expression alone, and it reads floats at any alignment. Made by
+// object_space(), world_space(), eye_space() and window_space().
 template <class Space>
 class Positions {
 public:
@@ -65,8 +65,8 @@ public:
 
     // The same points, with the caller's word that all of them lie in a box (asserted), as an engine has one of each
     // mesh: project() then bounds its errors once instead of block by block. Values are right by the same promises;
-    // `exact` has the same bits. Without assertions a point that is not in the box, as a NaN, gets what nothing bounds,
-    // and spoils no other. A box with min > max or a NaN is none, in the place of a former one.
+    // `exact` has the same bits. Without assertions a point that is not in the box, such as a NaN, gets values that
+    // nothing bounds, and spoils no other. A box with min > max or a NaN is none, and takes the place of a former one.
     [[nodiscard]] Positions within(const Box& box) const noexcept;
 
     // The box that within() was given; min > max without one.
@@ -135,7 +135,7 @@ inline Positions<Object> object_space(const float* first, std::size_t count, std
 inline Position<Object> object_space(const glm::vec3& point) noexcept { return Position<Object>(point); }
 Position<Object> object_space(const detail::MoreThanVec3 auto& point) = delete;
 
-// The same of points in the world.
+// Views the same as points in the world.
 inline Positions<World> world_space(std::span<const glm::vec3> points) noexcept { return Positions<World>(points); }
 inline Positions<World> world_space(std::span<const float> x, std::span<const float> y,
                                     std::span<const float> z) noexcept {
@@ -147,7 +147,7 @@ inline Positions<World> world_space(const float* first, std::size_t count, std::
 inline Position<World> world_space(const glm::vec3& point) noexcept { return Position<World>(point); }
 Position<World> world_space(const detail::MoreThanVec3 auto& point) = delete;
 
-// The same of points in the eye's space.
+// Views the same as points in the eye's space.
 inline Positions<Eye> eye_space(std::span<const glm::vec3> points) noexcept { return Positions<Eye>(points); }
 inline Positions<Eye> eye_space(std::span<const float> x, std::span<const float> y, std::span<const float> z) noexcept {
     return Positions<Eye>(x, y, z);
@@ -158,7 +158,7 @@ inline Positions<Eye> eye_space(const float* first, std::size_t count, std::size
 inline Position<Eye> eye_space(const glm::vec3& point) noexcept { return Position<Eye>(point); }
 Position<Eye> eye_space(const detail::MoreThanVec3 auto& point) = delete;
 
-// The same of fragments: x and y in pixels, z the depth that the buffer holds.
+// Views the same as fragments: x and y in pixels, z the depth that the buffer holds.
 inline Positions<Window> window_space(std::span<const glm::vec3> points) noexcept { return Positions<Window>(points); }
 inline Positions<Window> window_space(std::span<const float> x, std::span<const float> y,
                                       std::span<const float> z) noexcept {
@@ -195,9 +195,9 @@ void generate(const Transform<Texture, Space>& texture_from_space, Positions<Spa
 // (q > 0, decided exactly) each is within max(tolerance, 1/2 ulp) of the exact value of the given numbers (r: the
 // tolerance relative to max(1, |r|)). With `exact` each is the nearest float, whatever the layout, the count, the place
 // or the build. lit = 1 inside the closed region, decided from the s and t, and with a depth from the r, that are
-// written, or with `exact` would be; with a tolerance one that is not asked for is decided from some value inside it.
-// Behind, s = t = r = lit = 0. A depth costs at most what r costs; where s and t leave many neighbours dark, r is not
-// computed for them. No allocation, noexcept.
+// written, or with `exact` would be; with a tolerance, where one is not asked for, from some value inside that
+// tolerance. Behind, s = t = r = lit = 0. A depth costs at most what r costs; where s and t leave many neighbours dark,
+// r is not computed for them. No allocation, noexcept.
 // Shapes: as many values of an output as positions, or none (asserted; else that output is not written); outputs must
 // not overlap the positions.
 // Bad input: NaN and infinity spoil their own point only; a point whose q is NaN is behind.
@@ -223,10 +223,9 @@ std::optional<glm::vec2> project(const Transform<Texture, Space>& texture_from_s
 
 // Bounds the error of each coordinate (s, t, r, q) that generate() gives of these positions.
 // Guarantee: |computed - exact| is at most this for every position, the rounding to float included: 1/2 ulp +
-// generate_error, where that is largest. No allocation, noexcept; it looks at every position, one by one, for some twenty times
-// what generate() takes.
-// Bad input: a NaN or an infinity of a matrix's row or of a position makes a NaN or an infinity of the bounds it
-// reaches.
+// generate_error, where that is largest. No allocation, noexcept; it looks at every position, one by one, for some
+// twenty times what generate() takes.
+// Bad input: a NaN or an infinity of a matrix's row or of a position makes the bounds that it reaches NaN or infinite.
 template <class Space>
 glm::dvec4 generate_error_bound(const Transform<Texture, Space>& texture_from_space,
                                 Positions<Space> positions) noexcept;
@@ -235,7 +234,8 @@ glm::dvec4 generate_error_bound(const Transform<Texture, Space>& texture_from_sp
 // Guarantee: |computed - exact| is at most this for every position with q > 0, the rounding to float included; infinite
 // where none is known, as where a product leaves what project() says. No allocation, noexcept; it looks at every
 // position, one by one, for some fifty times what project() takes.
-// Bad input: a NaN or an infinity of a position, or of the rows of s, t and q, makes the bounds infinite that it reaches.
+// Bad input: a NaN or an infinity of a position, or of the rows of s, t and q, makes the bounds that it reaches
+// infinite.
 template <class Space>
 glm::dvec2 project_error_bound(const Transform<Texture, Space>& texture_from_space, Positions<Space> positions,
                                Tolerance tolerance = exact) noexcept;
