@@ -32,10 +32,10 @@ void examine_rectangle(const auto& lens, Diagnosis& diagnosis) noexcept {
 inline void examine(const PerspectiveLens& lens, Diagnosis& diagnosis) noexcept {
     const double angle = lens.fovy.in_radians();
     require_finite({angle, lens.aspect}, diagnosis);
-    const bool has_turns = std::fabs(angle) > 2.0 * std::numbers::pi;
+    const bool exceeds_a_turn = std::fabs(angle) > 2.0 * std::numbers::pi;
     // Not half the angle, as in perspective(): where that half is 0 the angle is in range, and its lens beyond double.
     refuse_unless(angle > 0.0 && 0.5 * angle < 0.5 * std::numbers::pi, {angle},
-                  has_turns ? Defect::angle_unit_mistaken : Defect::angle_out_of_range, diagnosis);
+                  exceeds_a_turn ? Defect::angle_unit_mistaken : Defect::angle_out_of_range, diagnosis);
     refuse_unless(lens.aspect > 0.0, {lens.aspect}, Defect::aspect_not_positive, diagnosis);
     examine_planes(lens.z_near, lens.z_far, diagnosis);
 }

@@ -18,14 +18,14 @@ struct FormPair {
 struct CloseSums {
     Double2 high, low, lost;
 
-    // From sums in one double and the numbers that they left.
+    // From sums in one double and the remainders of their roundings.
     template <std::size_t Count>
-    CloseSums(const Double2& sum, const Double2 (&left)[Count]) noexcept {
+    CloseSums(const Double2& sum, const Double2 (&remainder)[Count]) noexcept {
         Double2 error[Count];
-        Double2 rest = two_sum(left[0], left[1], error[1]);
+        Double2 rest = two_sum(remainder[0], remainder[1], error[1]);
         lost = magnitude(error[1]);
         for (std::size_t i = 2; i < Count; ++i) {
-            rest = two_sum(rest, left[i], error[i]);
+            rest = two_sum(rest, remainder[i], error[i]);
             lost = lost + magnitude(error[i]);
         }
         high = two_sum(sum, rest, low);
@@ -45,14 +45,14 @@ struct CloseSums {
 // Two forms at a point of floats. Their coefficients are split in two parts, whose products are exact without fma().
 inline CloseSums closely_at(const FormPair& forms, const glm::dvec3& v) noexcept {
     const Double2 x = leading_27_bits(forms.x), y = leading_27_bits(forms.y), z = leading_27_bits(forms.z);
-    Double2 left[6];
-    Double2 sum = two_sum(x * v.x, forms.w, left[3]);
-    sum = two_sum(sum, y * v.y, left[4]);
-    sum = two_sum(sum, z * v.z, left[5]);
-    left[0] = (forms.x - x) * v.x;
-    left[1] = (forms.y - y) * v.y;
-    left[2] = (forms.z - z) * v.z;
-    return {sum, left};
+    Double2 remainder[6];
+    Double2 sum = two_sum(x * v.x, forms.w, remainder[3]);
+    sum = two_sum(sum, y * v.y, remainder[4]);
+    sum = two_sum(sum, z * v.z, remainder[5]);
+    remainder[0] = (forms.x - x) * v.x;
+    remainder[1] = (forms.y - y) * v.y;
+    remainder[2] = (forms.z - z) * v.z;
+    return {sum, remainder};
 }
 
 // A number as an integer of `count` bits times a power of two. Further bits are cut off.
@@ -136,8 +136,8 @@ inline bool divide_closely(const FormPair& numerators, const PointForm& q_form, 
         // Decides as nearest_to() does. Next to a tie s.high - middle q.high is exact, part by part.
         const Double2 factor = double2_of(middle[0], middle[1]);
         const Double2 q_high = leading_27_bits(q.high), q_low = leading_27_bits(q.low);
-        const Double2 left[3] = {s.low, -(factor * q_low), -(factor * (q.low - q_low))};
-        CloseSums rest((s.high - factor * q_high) - factor * (q.high - q_high), left);
+        const Double2 remainder[3] = {s.low, -(factor * q_low), -(factor * (q.low - q_low))};
+        CloseSums rest((s.high - factor * q_high) - factor * (q.high - q_high), remainder);
         rest.lost = rest.lost + (s.lost + magnitude(factor) * q.lost);
         for (std::size_t k = 0; k < 2; ++k) {
             if (!is_tied[k]) continue;

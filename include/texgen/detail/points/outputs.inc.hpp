@@ -136,10 +136,10 @@ void run_part(auto& job, const PointOutputs& out, const JobPart& part, const aut
 
 // Computes the values of a job from `first` on by its kernel, and by one(job, i) those that it cannot decide.
 void fill_blocks(auto kernel, const auto& job, std::size_t first, const auto& one) noexcept {
-    for (Undecided left = kernel(job, first); left.begin < job.count; left = kernel(job, first)) {
-        for (std::uint64_t values = left.values; values != 0; values &= values - 1)
-            one(job, left.begin + static_cast<std::size_t>(std::countr_zero(values)));
-        first = (left.begin / exact_block + 1) * exact_block;
+    for (Undecided undecided = kernel(job, first); undecided.begin < job.count; undecided = kernel(job, first)) {
+        for (std::uint64_t values = undecided.values; values != 0; values &= values - 1)
+            one(job, undecided.begin + static_cast<std::size_t>(std::countr_zero(values)));
+        first = (undecided.begin / exact_block + 1) * exact_block;
     }
 }
 

@@ -62,7 +62,7 @@ inline PointJob point_job(const glm::dmat4& matrix, int row, int numerators, con
 }
 
 // Whether a box says where points are: not with a NaN, or min > max.
-inline bool is_word(const Box& box) noexcept {
+inline bool is_ordered(const Box& box) noexcept {
     return box.min.x <= box.max.x && box.min.y <= box.max.y && box.min.z <= box.max.z;
 }
 
@@ -73,7 +73,7 @@ inline bool is_inside(const Box& box, const glm::vec3& point) noexcept {
 
 // Sets what follows for a job if all points lie in a box: nothing if one of them may be next to q = 0 or behind.
 inline void take_bounds(PointJob& job, const Box& box) noexcept {
-    if (!is_word(box)) return;
+    if (!is_ordered(box)) return;
     const glm::dvec3 min = widened(box.min), max = widened(box.max);
     const glm::dvec3 size(larger(-min.x, max.x), larger(-min.y, max.y), larger(-min.z, max.z));
     // Bounds on a form's values at the points of the box, and on the sum of its terms.
@@ -192,7 +192,7 @@ namespace TEXGEN_NAMESPACE {
 
 template <class Space>
 Positions<Space> Positions<Space>::within(const Box& box) const noexcept {
-    if (detail::is_word(box))
+    if (detail::is_ordered(box))
         for (std::size_t i = 0; i < count_; ++i) TEXGEN_ASSERT(detail::is_inside(box, (*this)[i]));
     Positions result = *this;
     result.bounds_ = box;
