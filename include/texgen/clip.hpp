@@ -74,8 +74,8 @@ inline std::size_t clip_to_near(std::span<const ClipVertex> polygon, std::span<C
 
 }  // namespace TEXGEN_COMPILER
 
-// What clip_planes() returns, in its order, each plane (a, b, c, d) of a x + b y + c z + d >= 0: five, or seven of a
-// region with a depth.
+// The planes that clip_planes() returns, in its order: five, or seven of a region with a depth. Each is the (a, b, c,
+// d) of a x + b y + c z + d >= 0.
 class ClipPlanes {
 public:
     std::size_t size() const noexcept { return size_; }

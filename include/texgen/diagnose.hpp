@@ -253,8 +253,8 @@ using Setup = ProjectionSetup<Space>;
 // it was made with, P' = S^-1 T X^-1 V^-1, against the projector's, and what shows without the pose. Of a texgen matrix
 // alone, the marks of its rows r and q; with facts of the lens the lens in it, the scale-bias and the depth range; and
 // without them what numbers say that people write: whole degrees, or planes of two digits, which a mistake explains and
-// nothing valid does. In float those are too few for a range, and for an angle unless the picture stands on its head in
-// the world for the conventions given. Of a window's fragments it looks at numbers, rank and points alone.
+// nothing valid does. In float numbers have too few digits for a range, and for an angle unless the picture stands on
+// its head in the world for the conventions given. Of a window's fragments it looks at numbers, rank and points alone.
 // What it cannot see: mistakes that are other set-ups, until it is told what was meant. The lens from 0.1 to 100 for
 // [0, 1], under the bias of [-1, 1], is the one from 10/199.9 to 100 for [-1, 1]: any row z that is not reversed is
 // that of some lens in both ranges. NDC without a bias are a lens beside its axis, of 90 degrees one of round numbers;

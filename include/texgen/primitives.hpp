@@ -39,7 +39,7 @@ struct Viewport {
     int x, y, width, height;
 };
 
-// What the fragments of a rectangle need, in the order of its cost.
+// The work that the fragments of a rectangle need, in the order of its cost.
 //   nothing          no fragment is lit: all are behind the projector, or outside one side of the region or its depth
 //   affine           q/w is constant there (an orthographic projector, a parallel view), or varies so little that
 //                    straight lines stay inside the tolerance: no division
@@ -48,8 +48,8 @@ struct Viewport {
 //   divide           one division a fragment; all are in front of the projector, inside the region and its depth
 //   divide_and_test  one division a fragment; the sign of q or the sides of the region are tested, or its depth
 // Where the region's border crosses an affine or quadratic rectangle, the mask is compared from the coordinates. Rows
-// of less than 16 fragments, rectangles of no more than 128, and of no more than 512 in four rows and more that are no
-// longer than eight times as many, are divided though q/w varies: there a polynomial saves nothing.
+// of less than 16 fragments, rectangles of no more than 128, and those of no more than 512 in four rows or more that
+// are no wider than eight times their height, are divided though q/w varies: there a polynomial saves nothing.
 enum class Work { nothing, affine, quadratic, divide, divide_and_test };
 
 // How much of a box or a sphere the slide lights. A point is lit where q > 0 and (s, t) is in the closed region, as

@@ -132,8 +132,8 @@ inline constexpr double contain_error = 0x1p-50;
 // Guarantee: the fovy within 4 double ulp where it is above 2^-900, the sides of a rectangle within contain_error; two
 // opposite sides keep their places, and a lens of that aspect stays as it is. No allocation, noexcept.
 // Bad input: a lens that perspective(), frustum() or orthographic() refuses, where an aspect, the picture's or the
-// lens's, is not positive and finite, or the lens is one of those for more than a scale that is 0 in double. Where
-// doubles hold no sides so near to each other that they have the aspect, they are the same.
+// lens's, is not positive and finite, or where the given lens is refused for more than a scale that is 0 in double.
+// Where no two doubles are so near to each other that they have the aspect, two sides are the same.
 [[nodiscard]] inline PerspectiveLens contain(const PerspectiveLens& lens, double aspect) noexcept;
 [[nodiscard]] inline FrustumLens contain(const FrustumLens& lens, double aspect) noexcept;
 [[nodiscard]] inline OrthographicLens contain(const OrthographicLens& lens, double aspect) noexcept;

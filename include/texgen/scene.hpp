@@ -35,7 +35,7 @@ struct SceneView {
     std::span<const TextureRegion> regions = {};  // of each projector; none: the whole texture for all
 };
 
-// What is not as it was at the last update: objects whose model matrix or bounds changed, projectors whose matrices,
+// What changed since the last update: objects whose model matrix or bounds changed, projectors whose matrices,
 // conventions or region did. They may be in any order; what is named twice changed once. Indices beyond the last
 // update's counts are new, those beyond the present ones are gone: neither needs a name. Where another object takes
 // over an index, that index changed.
@@ -72,11 +72,11 @@ inline namespace TEXGEN_COMPILER {
 // in update_eye(). noexcept.
 // Cost: an update in which nothing changed does nothing. Otherwise only pairs of which a part changed are tested,
 // eight bounds in the world at once, in trees over those of all objects and of the ones that changed: a changed
-// projector costs what its light is near to; any other costs up to eight changed objects one test, some 15 ns, and more
-// of them a few (6 for 100 of 5000 among small lights), or one for seven objects where its light is near to all. What
-// is found costs a T_o and a coverage(); and the lit pairs are gone through once, at some nanoseconds each. The trees
-// are sorted anew as objects change, a few objects for each, and as projectors test more bounds than they need to, at a
-// part of that time: no update sorts all, but one that changes as many, or allocates memory for more.
+// projector costs what its light is near to; any other costs one test, some 15 ns, for up to eight changed objects, and
+// a few for more of them (6 for 100 of 5000 among small lights), or one for seven objects where its light is near to
+// all. What is found costs a T_o and a coverage(); and the lit pairs are gone through once, at some nanoseconds each.
+// The trees are sorted anew as objects change, a few objects for each, and as projectors test more bounds than they
+// need to, at a part of that time: no update sorts all, but one that changes as many, or allocates memory for more.
 // Memory: 210 bytes an object, 840 a projector, 165 a lit pair, up to twice that where they came one by one.
 // Bad input: where T_o, as it is computed, or a box is not finite, the pair is partial and kept, as coverage() has it:
 // where a product of finite matrices overflows, too. An empty box is never lit. Where exponents are so far apart that

@@ -30,7 +30,7 @@ public:
         return size < 0x1p1000 ? exactly().sign() : 0;
     }
 
-    // To a relative error of 2^-51: each of three products is within 2^-103 of its terms, and so is each of two sums.
+    // To a relative error of 2^-51: the three products and the two sums are each within 2^-103 of their terms.
     double value() const noexcept {
         const double size = this->size();
         if (!(size < 0x1p1000)) return nan;

@@ -48,8 +48,7 @@ public:
         glm::dmat4 lacking = residual();
         beta_ = certificate(lacking);
         if (!is_regular()) return;
-        // A step, X <- X + X (I - B X), takes about 50 bits from the error, and elements lie within 900 bits of one
-        // another.
+        // A step, X <- X + X (I - B X), takes about 50 bits from the error, and elements lie within 900 bits.
         constexpr int most_steps = 20;
         inverse_ += inverse_ * lacking;
         for (int step = 2; step <= most_steps; ++step) {

@@ -83,8 +83,7 @@ inline double last_bit(double value) noexcept {
     return bit_cast<double>(bits & 0x7ff0000000000000) * (0x1p-52 * from_last);
 }
 
-// The first `Bits` bits. Times a float, 26 of them are exact, and so are the 27 bits that follow those; 29 bits are,
-// too.
+// The first `Bits` bits. Times a float, 26 of them are exact, and so are the 27 behind those; 29 bits are as well.
 template <int Bits>
 double leading_bits(double value) noexcept {
     return bit_cast<double>(bit_cast<std::uint64_t>(value) & ~std::uint64_t{0} << (53 - Bits));
@@ -110,8 +109,7 @@ struct Bounded {
     double value, error;
 };
 
-// The error of a nearest float up to `largest`: half an ulp of that. From 2^128 - 2^103 on the float is infinite, as is
-// this.
+// The error of a nearest float up to `largest`: half an ulp of that; infinite, as the float is, from 2^128 - 2^103 on.
 inline double half_ulp(double largest) noexcept {
     return largest < 0x1.ffffffp127 ? unit_roundoff_float * largest + 0x1p-150 : infinity;
 }

@@ -123,8 +123,7 @@ private:
 };
 
 // The vertex where the edge crosses the side. Where d_i and d_o err by E_i and E_o, the numerator errs by E_o |inside|
-// + E_i |outside| and three roundings, the quotient by that and by E_i + E_o of itself, both over the difference, and
-// by its own.
+// + E_i |outside| and three roundings, the quotient by that and E_i + E_o of itself, over the difference, and its own.
 inline ClipVertex cut_at(const SlideDistance& side, const ClipVertex& inside, const ClipVertex& outside) noexcept {
     const Bounded of_inside = side(inside);
     const Bounded of_outside = side(outside);

@@ -36,7 +36,7 @@ inline bool is_empty(const TextureRegion& region) noexcept {
            (depth && !(depth->x <= depth->y));
 }
 
-// q >= 0, the sides of s (min, max) and of t, and those of r where the region has a depth. An infinite side is none.
+// q >= 0, the sides of s (min, max) and of t, and of r where the region has a depth. An infinite side is no limit.
 class SlidePlanes {
 public:
     static constexpr std::size_t without_depth = 5;

@@ -13,8 +13,7 @@ inline Coverage coverage_without_forms(const LitForms& forms, const Sphere& sphe
 inline namespace TEXGEN_BUILD {
 
 // Classifies a sphere. What is clear of all bounds by twice the error the kernel says as well, as their roundings
-// differ by less than one. No edge is asked where the centre is in front of all forms. slope_of(k) is form k's |a| in
-// `lanes`.
+// differ by less than one. Where the centre is in front of all forms no edge is asked. slope_of(k) is |a| of form k.
 Coverage coverage_of(const LitForms& forms, const FormLanes& lanes, const auto& slope_of, const auto& make_unit,
                      const Sphere& sphere) noexcept {
     const glm::dvec3 centre = widened(sphere.centre);

@@ -51,9 +51,9 @@ struct Closeness {
 // Composed in double, of the same factors, and rounded once at most.
 inline constexpr Closeness composed_in_double{0.0, 0x1p-44};
 inline constexpr Closeness rounded_once{0x1p-23, 0x1p-44};
-// Of the same factors in any order. Three products in float of factors rounded to float err by 16 * 2^-24 at most.
+// Of the same factors in any order: three products in float of factors rounded to float err by at most 16 * 2^-24.
 inline constexpr Closeness products_in_double{0.0, 0x1p-43}, products_in_float{0.0, 0x1p-20};
-// Where a float inverse is among the factors, too.
+// Composed with a float inverse among the factors, too.
 inline constexpr Closeness composed_in_float{0.0, 0x1p-16};
 
 // The k by which the product is nearest to `given`, in rows that are not zero there (if it was read transposed in such
@@ -190,8 +190,7 @@ inline bool is_of_other_range(const glm::dmat4& texgen, const glm::dmat4& scale_
     for (glm::length_t column = 0; column < 4; ++column) other_rows[column][2] = 0.0;
     const double multiple = Multiple(right, other_rows).within(composed_in_float);
     if (!(multiple > 0.0)) return false;
-    // How far row `row` of the matrix is from a times the right product's plus b times its row q; relative to
-    // magnitudes.
+    // How far row `row` of the matrix is from a times the right product's plus b times its row q, in its magnitudes.
     const auto distance = [&](glm::length_t row, double a, double b) {
         double result = 0.0;
         for (glm::length_t column = 0; column < 4; ++column) {
@@ -219,8 +218,8 @@ inline bool is_of_other_range(const glm::dmat4& texgen, const glm::dmat4& scale_
     return false;
 }
 
-// Whether the matrix is clip * scale + bias, the bias not times w: of x and y, and of z and w or not. Scale and bias
-// are those of S or 1/2, in either direction of t; the sum of a glm::mat4 and a number has the bias in every column.
+// Whether the matrix is clip * scale + bias with a bias that is not times w, in x and y, and in z and w or not. Scale
+// and bias are those of S or 1/2, in either direction of t; glm::mat4 + number has the bias in every column.
 inline bool is_bias_without_w(const glm::dmat4& texgen, const Factors& factors) noexcept {
     // Parallel light has w = 1, and needs no other bias.
     if (!is_perspective(factors.projection)) return false;

@@ -98,7 +98,7 @@ inline std::optional<ProjectorProjection> perspective(const PerspectiveLens& len
     if (!detail::is_half_angle(half_angle)) return std::nullopt;
     if (!detail::is_aspect(lens.aspect)) return std::nullopt;
     if (!(lens.z_near > 0.0 && lens.z_near < lens.z_far)) return std::nullopt;
-    // cos / sin and not 1 / tan: two correctly rounded functions and one division, at any angle whose half is exact.
+    // cos / sin and not 1 / tan: two functions within an ulp and one division, at any angle whose half is exact.
     const double focal_length =
         half_angle < 0x1p-30 ? 2.0 / lens.fovy.in_radians() : std::cos(half_angle) / std::sin(half_angle);
     return detail::checked_perspective({focal_length / lens.aspect, focal_length}, 0.0, glm::dvec2(0.0),

@@ -30,7 +30,7 @@ struct CloseSums {
         }
         high = two_sum(sum, rest, low);
         if (!any_less(magnitude(high) * 0x1p-60, lost)) return;
-        // Beside a sum that cancels the lost part is large: it is added.
+        // Beside a sum that cancels the lost part is large, and is added.
         Double2 third = error[1];
         for (std::size_t i = 2; i < Count; ++i) third = third + error[i];
         rest = two_sum(low, third, error[0]);

@@ -108,8 +108,8 @@ inline void take_bounds(PointJob& job, const Box& box) noexcept {
     double ulps = 0.0;
     for (int k = 0; k < job.numerators; ++k) {
         const Range& s = numerator[k];
-        // Relative to itself a quotient errs by e_s / |s| + e_q / q and four roundings, and its ulp is at least 2^-53
-        // of it.
+        // Relative to itself a quotient errs by e_s / |s| + e_q / q and four roundings, and its ulp is 2^-53 of it or
+        // more.
         const double least = larger(s.least, -s.largest);  // negative where the sign changes
         const double share = (s.terms / least + q.terms * reciprocal) * (gamma(5) * (1.0 + gamma(2)));
         ulps = larger(ulps, least > 0x1p-124 * q.largest ? share * 0x1.01p53 + 4.0 : quick_ulps);
