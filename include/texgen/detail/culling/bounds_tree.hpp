@@ -29,8 +29,8 @@ public:
         const bool grows = count > bounds_.size();
         if (grows) grow(count);
         for (const std::uint32_t object : objects) bounds_[object] = bounds_of(object);
-        // The last sorting says nothing of objects that moved since. To sort all anew costs less than as many moves do,
-        // or than growing does.
+        // The last sorting knows nothing of objects that moved since. To sort all anew costs less than as many moves
+        // do, or than growing does.
         moves_ += objects.size();
         if (grows || (stage_ == Stage::sorted && moves_ > bounds_.size())) sort_all();
         sort(grows ? (std::numeric_limits<std::size_t>::max)() : steps_a_move * objects.size());
@@ -82,7 +82,7 @@ private:
         std::uint32_t changed = 0;  // a bit for each
     };
 
-    // Each level has a block for every eight places of the one below.
+    // The lowest level has a block for every eight places, each other level one for every eight blocks below it.
     struct Levels {
         std::array<std::vector<Block>, 11> blocks;  // the lowest first; 8^11 is above 2^32
         HeldCount height;

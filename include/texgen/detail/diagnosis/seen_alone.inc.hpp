@@ -14,7 +14,7 @@ inline bool lands_on_other_range(const SeenLens& lens, const DepthEnds& ends, co
             if (r.error < 0x1p-5 && std::fabs(r.value - other) <= 0x1p-12 + 4.0 * r.error) return true;
     }
     if (!facts.z_near || !facts.z_far || !(*facts.z_far > *facts.z_near)) return false;
-    // Planes that were taken from a projector in float are not known any better.
+    // Planes that were taken from a projector in float are known to 2^-22 at best.
     const double accepted = 4.0 * larger(lens.rounding(), 0x1p-22);
     const double beyond = *facts.z_near / (*facts.z_far - *facts.z_near);
     if (!(beyond > 16.0 * accepted)) return false;

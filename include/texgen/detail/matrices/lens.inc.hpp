@@ -64,8 +64,7 @@ inline std::optional<ProjectorProjection> checked_projection(glm::dmat4 matrix, 
     return usable ? std::optional(ProjectorProjection(matrix)) : std::nullopt;
 }
 
-// The perspective matrix of the focal lengths on the diagonal, the skew beside them, and the off-axis terms in column
-// z.
+// The perspective matrix: the focal lengths on the diagonal, the skew beside them, the off-axis terms in column z.
 inline std::optional<ProjectorProjection> checked_perspective(const glm::dvec2& focal_length, double skew,
                                                               const glm::dvec2& off_axis, const DepthRow& depth,
                                                               Conventions conventions) noexcept {
