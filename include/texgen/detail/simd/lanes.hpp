@@ -4,9 +4,9 @@
 //
 // With GCC 12 or Clang the kernels are written on the vectors of the language, and compiled once for the instruction
 // set of the flags and, on x86-64, once more for AVX2 and for AVX-512; the machine decides which runs. A table of
-// kernels is reached by chosen<Table>(), and compiled only in files that call something which needs it: so all ways
-// there are templates, those without another parameter by one that says so, `class CompiledWhereCalled = void`. Macros
-// of the user:
+// kernels is reached by chosen<Table>(), and is compiled only in files that call a function which needs it. That takes
+// a template for every function on the way there: one without another parameter has `class CompiledWhereCalled = void`.
+// Macros of the user:
 //   TEXGEN_SCALAR            plain loops, as for every other compiler
 //   TEXGEN_NO_DISPATCH       only the instruction set of the flags
 //   TEXGEN_SEPARATE_KERNELS  the kernels are compiled in one file for all others of the same compiler and flags: in the
@@ -30,7 +30,7 @@
 // TEXGEN_BUILD names the compiler and what the flags decide. Every function that reaches the kernels stands in an
 // inline namespace of that name, so that translation units of different ones link, each with its own kernels.
 //
-// The front end of nvcc, which others have, too, says that it is its host's compiler, but stops at vectors in templates.
+// EDG, the front end of nvcc and of others, says that it is its host's compiler, but fails at vectors in templates.
 #if !defined(TEXGEN_SCALAR) && (defined(__GNUC__) || defined(__clang__)) && !defined(__NVCC__) && !defined(__EDG__) && \
     defined(__has_builtin)
 #if __has_builtin(__builtin_shufflevector)
@@ -49,7 +49,7 @@ namespace TEXGEN_DETAIL {
 
 using WideInteger = std::uint64_t;
 
-// Two doubles at a time, for s and t. Laid out as those below.
+// Two doubles at a time, for s and t. Laid out as the vector below.
 struct alignas(16) Double2 {
     double lane[2];
 
@@ -127,10 +127,12 @@ inline Float4 smaller(Float4 a, const Float4& b) noexcept {
 
 #define TEXGEN_INLINE [[gnu::always_inline]] inline
 
-// What the compilers have different words for: a loop over an array of vectors, which GCC keeps, and so the array in
-// memory, below -O3; doubles of as many floats or integers as 64, 32 or 16 bytes hold, which GCC 12 converts the
-// generic way in parts; all of sixteen lanes, of which a mask has a sign to GCC; a masked or, of 512 bits two
-// instructions to GCC 12; and which of sixteen lanes of a mask have any of these bits.
+// What GCC and Clang have different words for:
+//   TEXGEN_FOR            a loop over an array of vectors: else GCC keeps it, and the array in memory, below -O3
+//   TEXGEN_DOUBLES_*      floats, or integers, as 64, 32 or 16 bytes of doubles: GCC 12's generic way is in parts
+//   TEXGEN_SIXTEEN_LANES  all of sixteen lanes: GCC's masks are signed
+//   TEXGEN_MASKED_OR      (a & bits) | b of 512 bits: GCC 12 would make it two instructions
+//   TEXGEN_ANY_BITS       the lanes among sixteen of a mask in which a has any of these bits
 #ifdef __clang__
 #define TEXGEN_FOR for
 #define TEXGEN_DOUBLES_64(values) __builtin_convertvector(values, Doubles)
@@ -170,7 +172,7 @@ __extension__ using WideInteger = unsigned __int128;
 using WideInteger = std::uint64_t;
 #endif
 
-// Two doubles at a time, for s and t. A call that is inlined returns them in no way that the convention has to have.
+// Two doubles at a time, for s and t. As calls are inlined, -Wpsabi, about how they are returned, does not matter.
 using Double2 [[gnu::vector_size(16)]] = double;
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wpsabi"
@@ -179,7 +181,7 @@ TEXGEN_INLINE Double2 double2_of(double first, double second) noexcept { return 
 TEXGEN_INLINE Double2 smaller(const Double2& a, const Double2& b) noexcept { return a < b ? a : b; }
 TEXGEN_INLINE Double2 larger(const Double2& a, const Double2& b) noexcept { return a > b ? a : b; }
 using Bits2 [[gnu::vector_size(16)]] = long long;
-// Bit i: lane i of a mask.
+// Bit i is that of lane i of a mask.
 TEXGEN_INLINE int bits_of(const Bits2& mask) noexcept {
 #ifdef __SSE2__
     return __builtin_ia32_movmskpd(__builtin_bit_cast(Double2, mask));
@@ -200,7 +202,7 @@ TEXGEN_INLINE Double2 leading_27_bits(const Double2& a) noexcept {
 
 }  // namespace TEXGEN_DETAIL
 
-// The compilers of CUDA and HIP read a file for the device too, as if its processor were this one.
+// The compilers of CUDA and HIP read a file for the device too, with the macros of the host's processor.
 #if defined(__x86_64__) && !defined(TEXGEN_NO_DISPATCH) && !defined(__AVX512F__) && \
     !defined(TEXGEN_STACK_HOLDS_NARROW_VECTORS) && !defined(__CUDACC__) && !defined(__HIP__)
 #define TEXGEN_DISPATCHES
@@ -211,13 +213,13 @@ TEXGEN_INLINE Double2 leading_27_bits(const Double2& a) noexcept {
 
 #endif
 
-// Both for what is each build's own.
+// The library's namespaces with what each build has of its own.
 #define TEXGEN_DETAIL_BUILD TEXGEN_DETAIL::inline TEXGEN_BUILD
 #define TEXGEN_NAMESPACE_BUILD TEXGEN_NAMESPACE::inline TEXGEN_BUILD
 
 namespace TEXGEN_DETAIL {
 
-// Exactly a + b. As two_sum() of numbers.
+// Exactly a + b, as two_sum() of numbers.
 inline Double2 two_sum(const Double2& a, const Double2& b, Double2& error) noexcept {
     const Double2 sum = a + b;
     const Double2 b_part = sum - a;
@@ -225,7 +227,7 @@ inline Double2 two_sum(const Double2& a, const Double2& b, Double2& error) noexc
     return sum;
 }
 
-// Bit i: lane i of it is negative.
+// Bit i is set where lane i is negative.
 inline std::uint32_t negative_lanes(const Float4& a) noexcept {
 #if defined(TEXGEN_HAS_VECTORS) && defined(__SSE2__)
     return static_cast<std::uint32_t>(__builtin_ia32_movmskps(a));
@@ -236,8 +238,8 @@ inline std::uint32_t negative_lanes(const Float4& a) noexcept {
 #endif
 }
 
-// Four doubles at a time, for s, t, r and q: as one vector only where the flags have such, as no other functions may
-// hand it on.
+// Four doubles at a time, for s, t, r and q. They are one vector only where the flags have AVX: functions that are
+// compiled without it cannot pass one on.
 #if defined(TEXGEN_HAS_VECTORS) && defined(__AVX__)
 using Double4 [[gnu::vector_size(32)]] = double;
 TEXGEN_INLINE Double4 magnitude(const Double4& a) noexcept {
@@ -299,7 +301,7 @@ const Table& chosen() noexcept {
 #endif
 }
 
-struct ThisBuild;  // what members of a class of all builds are compiled for
+struct ThisBuild;  // the argument of member templates that each build compiles, of classes that all builds share
 
 }  // namespace TEXGEN_DETAIL_BUILD
 
