@@ -18,7 +18,7 @@ struct RampOf {
 };
 using Ramp = RampOf<double>;
 
-// Two of them, in pairs as compilers load them: a pair that is stored number by number would be waited for.
+// Two linear functions, in pairs as compilers load them: a load of a pair would wait for two separate stores.
 struct TwoRamps {
     alignas(16) double base[2];
     double dx[2], dy[2];
@@ -41,25 +41,26 @@ using Plane = PlaneOf<double>;
 
 inline constexpr int longest_chunk = 256;
 
-// The column or row of a rectangle, of `size` from `first` on, whose fragments have this coordinate; -1 if none.
+// The index of the column or row whose fragments have this coordinate, among `size` from `first` on; -1 if none has.
 inline int index_at(double coordinate, std::int64_t first, int size) noexcept {
     const double index = (coordinate - 0.5) - static_cast<double>(first);  // integers
     return index >= 0.0 && index < size && static_cast<int>(index) == index ? static_cast<int>(index) : -1;
 }
 
-// numerator[k] / q over a rectangle; out[k], and lit (or null) from the closed region. One numerator alone is in both
-// places. Rows of the outputs are pitch apart; those of an output that only the mask needs are one and the same.
+// numerator[k] / q over a rectangle, into out[k]; lit (or null) says what is in the closed region. One numerator alone
+// is in both places. Rows of the outputs are pitch apart; an output that only the mask needs (is_scratch) has one row,
+// which all rows overwrite.
 struct TileJob {
     int width, height;
-    int chunk = 0;                         // the most fragments of a row that share a middle
-    StepRule steps = StepRule::undecided;  // of all chunks
+    int chunk = 0;                         // the most fragments of a row in a chunk
+    StepRule steps = StepRule::undecided;  // the rule of all chunks
     TwoRamps numerator;
     Ramp q;
     bool q_is_constant;
-    bool is_in_float = false;        // numerators and q are rounded to float and divided there
-    double quotient_error[2] = {};   // for fill_exact; 0 where whatever is nearest to a double will do
+    bool is_in_float = false;        // numerators and q are rounded to float, then divided
+    double quotient_error[2] = {};   // for fill_exact; 0 where the float nearest to a quotient in double will do
     std::int32_t ulps = 0;           // see Corners::ulps_of_quotients
-    double numerator_error[2] = {};  // for fill_polynomial, as what follows
+    double numerator_error[2] = {};  // this and what follows: for fill_polynomial
     double q_error = 0.0;
     double least_q = 0.0;  // below it no certificate holds
     double tolerance = 0.0;
@@ -76,10 +77,10 @@ struct TileJob {
         int x_begin, x_end, y_begin, y_end;
     };
 
-    Unit filled = {0, 0, 0, 0};  // the columns of which all chunks without a rule are filled already
+    Unit filled = {0, 0, 0, 0};  // the columns in which chunks without a rule are filled already, down to the last row
 
     static constexpr int unit_size = 64;
-    static constexpr int longest_pair = 16;  // the fragments that share a division are no more, in vectors of any size
+    static constexpr int longest_pair = 16;  // at most so many fragments share a division, in vectors of any size
 
     int length_of_chunk(int begin) const noexcept { return chunk < width - begin ? chunk : width - begin; }
 
@@ -93,17 +94,17 @@ struct TileJob {
     bool is_done(const Unit& unit) const noexcept { return unit.y_begin >= height; }
 };
 
-// A tile of few fragments of which one certificate holds: see small_tile.inc.hpp.
+// A tile of few fragments that one certificate serves, see small_tile.inc.hpp.
 struct SmallTile {
     TwoRamps numerator;
     Ramp q;
     int width, height;
-    bool is_in_float;  // rounded and divided in float, without doubt; of a shape for it
+    bool is_in_float;  // rounded to float and divided, which leaves no doubt; its shape is one for that
     float* out[2];
     float* lit;            // or null
     float min[2], max[2];  // the region
 
-    // Of doubles, within this of half-way between two floats is in doubt.
+    // A quotient in double that is within so many ulps of half-way between two floats is in doubt.
     static constexpr int ulps = 0xfff;
     // The most fragments of rows that are shorter than vectors.
     static constexpr int most_in_short_rows = 256;
@@ -115,7 +116,7 @@ struct RowOutputs {
     std::ptrdiff_t pitch[2];
     float* lit;
     std::ptrdiff_t lit_pitch;
-    std::int64_t writable;  // from its first fragment on: where rows follow one another, the rows below too
+    std::int64_t writable;  // floats from its first fragment on: with the rows below, where these follow
     std::int64_t writable_pitch;
 
     RowOutputs(const TileJob& job, int y) noexcept
@@ -136,15 +137,15 @@ struct RowOutputs {
     }
 };
 
-// Chunks that follow one another, over the ends of rows too: their coefficients, and where they are not chosen for all
-// of the job, what their certificates need.
+// Chunks that follow one another, over the ends of rows too: their coefficients, and each one's rule if the job has
+// none.
 struct ChunkGroup {
     static constexpr int size = 16;
 
     float bend[size];
     float middle[2][size], slope[2][size];
     float rule[size];
-    alignas(64) float index[longest_chunk / 2];  // of each fragment in the first half of a chunk, from its middle
+    alignas(64) float index[longest_chunk / 2];  // of the fragments in the first half of a chunk, from its middle
     int indexed = 0;                             // the length of that chunk
 
     StepRule rule_of(const TileJob& job, int i) const noexcept {
@@ -152,11 +153,11 @@ struct ChunkGroup {
     }
 };
 
-// The same functions of a tile to twice the precision: each is high + low, within `error` of the exact one. The
+// A linear function of a tile to twice the precision of double: high + low is within `error` of the exact one. The
 // coefficients of high are multiples of a unit in which no value of the tile needs more than 52 bits, so that its
 // arithmetic is exact; those of low are what is left below the unit. The exact value is an integer times `grain` (0
-// where that is not known), and the residue is that integer modulo 2^64: what is certainly less than 2^62 grains is
-// known exactly by it.
+// where that is not known), and the residue is that integer modulo 2^64: it is all of what is certainly less than 2^62
+// grains.
 struct CloseFunction {
     Ramp high, low;
     double error, grain;
@@ -166,7 +167,7 @@ struct CloseFunctions {
     static constexpr std::size_t q = 2;
 
     CloseFunction function[3];      // two numerators, and q
-    double tolerance;               // within which whatever is nearest to a double will do
+    double tolerance;               // within which the float nearest to a quotient in double will do
     bool are_close, have_residues;  // are_close: in two doubles; else high alone, the planes
     bool are_sums_first;            // the sums of high and low say more than residues do
 };
@@ -209,8 +210,8 @@ struct PointJob : DividedOutput, PointInput {
     PointForm numerator[2];
     PointForm q;
     double tolerance;
-    // What bounds on all points make of the errors.
-    bool is_certified;  // all of it in float is inside the tolerance
+    // What follows from bounds on all points.
+    bool is_certified;  // a division in float is inside the tolerance for all points
     std::int32_t ulps;  // that quotients in double are within, 1 less than a power of two; 0 where that is not known
 };
 
@@ -219,7 +220,7 @@ struct Mixture {
     enum Kind : std::int32_t {
         is_short,      // there is no rest, so the sum in double is rounded once
         is_long,       // the rest is what 29 bits leave of b - a
-        is_far,        // b - a is no double: step and rest are the ends
+        is_far,        // b - a is no double: step and rest are the ends, one of them negated
         is_not_finite  // base and step are the ends
     };
 
@@ -233,18 +234,18 @@ struct SegmentJob : DividedOutput {
     double a[2], b[2];  // one numerator alone is in both places
     double q_a, q_b;
     double tolerance;
-    bool is_in_float, is_quick;  // fill_all_float is inside the tolerance; else whether fill_in_double is worth a try
-    // For both, where all is in front. In double about the asymptote, with what quotients tend to as alpha goes to
-    // infinity, base + slope / (alpha + pole); or (base + slope alpha) / (pole + bend alpha). In float, about the end
-    // where q is less, base + slope i / (1 + bend i), i the alpha from there: the slope of one coordinate is `step`,
-    // that of the other a share of it.
+    bool is_in_float, is_quick;  // fill_all_float fits the tolerance; else fill_in_double is worth a try
+    // For these two kernels, where all is in front. In double about the asymptote (is_asymptotic), base being what
+    // quotients tend to as alpha goes to infinity: base + slope / (alpha + pole); else (base + slope alpha) / (pole +
+    // bend alpha). In float, about the end where q is less: base + slope i / (1 + bend i), with i the alpha counted
+    // from there; the slope of the steeper coordinate is `step`, that of the other `share` of it.
     bool is_asymptotic;
     bool about_b;
     double base[2], slope[2], pole, bend;
     int steeper;
     double step, share;
     std::int32_t ulps;  // that quotients in double are within, 1 less than a power of two
-    bool are_accepted;  // whichever of two floats they are rounded to
+    bool are_accepted;  // by the tolerance, whichever of two floats they are rounded to
     float small_alpha;  // only for alphas in (0, small_alpha] floats may be subnormal, and the ulps too few
     // For fill_exact.
     Mixture numerator[2];
@@ -255,7 +256,7 @@ struct SegmentJob : DividedOutput {
     void advance(std::size_t values) noexcept { alpha += values; }
 };
 
-// The forms themselves, rounded to float. An output is null or an array; or all go to `strq`, four after one another.
+// Forms at points, not divided, rounded to float. An output is null or an array; or all go to `strq`, four by four.
 struct GenerateJob : PointInput {
     std::size_t count;
     PointForm form[4];
@@ -278,14 +279,14 @@ struct FootprintArrays {
     bool are_filtered() const noexcept { return level != nullptr || has_shape(); }
 };
 
-// The same over a rectangle. Slopes are d/dx Q^2 and d/dy Q^2, the rows of the arrays pitch apart.
+// Footprints over a rectangle. Slopes are d/dx Q^2 and d/dy Q^2; rows of the arrays are pitch apart.
 struct FootprintJob : FootprintArrays {
     struct Slope {
         double dx, dy;
         double twist;  // a step of y adds it to dx, a step of x takes it from dy
     };
 
-    // The sum of two squares of `texels` that the filters need in float, when the largest of the job is about 1.
+    // Filters need a sum of two squares of `texels` of at least this in float, when the job's largest is about 1.
     static constexpr float smallest_square = 0x1p-24f;
 
     int width, height;
@@ -302,14 +303,15 @@ struct FootprintJob : FootprintArrays {
 struct TileKernels {
     // Whether no value is in doubt.
     bool (*fill_small)(const SmallTile&) noexcept;
-    // Divide a part of a tile: all of it, and return which fragments are in doubt (of a unit, a bit for each, row by
-    // row); or, for a job that knows its ulps, unit by unit up to the first with doubt, which is returned.
+    // divide() returns which fragments of the part are in doubt: of a unit, a bit for each, row by row; of more units,
+    // only whether it is 0. divide_in_pairs(), for a job that knows its ulps, returns the first unit in doubt.
     std::uint64_t (*divide)(const TileJob&, const TileJob::Unit& part) noexcept;
     TileJob::Unit (*divide_in_pairs)(const TileJob&, const TileJob::Unit& first) noexcept;
-    // Makes a group of `count` chunks from one of row y on; and fills some of one rule, from x of a row on.
+    // weigh_chunks() makes a group of `count` chunks, beginning with one of row y; fill_chunks() fills those from
+    // `first` to `end`, which have one rule and begin at x of the row.
     void (*weigh_chunks)(const TileJob&, ChunkGroup&, int chunks_of_row, int y, int chunk, int count) noexcept;
     void (*fill_chunks)(const TileJob&, const RowOutputs&, ChunkGroup&, int first, int end, int x) noexcept;
-    // Decides what is asked of a unit on either side of the projector, bits as above. Returns those that stay in doubt.
+    // Decides fragments of a unit, bits as above, on either side of the projector. Returns those that stay in doubt.
     std::uint64_t (*fill_closely)(const TileJob&, const CloseFunctions&, TileJob::Unit unit,
                                   std::uint64_t asked) noexcept;
 };
@@ -330,10 +332,10 @@ struct PointKernels {
 
 struct SegmentKernels {
     Undecided (*fill_exact)(const SegmentJob&, std::size_t first) noexcept;
-    // The first value from `first` on of a block of float_block with one near the middle of two floats, or with an
-    // alpha that is no number or too small, or the count.
+    // Returns where the first block of float_block begins that has a value near the middle of two floats, or an alpha
+    // that is no number or too small; or the count.
     std::size_t (*fill_in_double)(const SegmentJob&, std::size_t first) noexcept;
-    // The first value from `first` on of a block of float_block with an alpha that is no number, or the count.
+    // Returns where the first block of float_block with an alpha that is no number begins, or the count.
     std::size_t (*fill_all_float)(const SegmentJob&, std::size_t first) noexcept;
 };
 
@@ -345,7 +347,7 @@ struct MaskKernels {
 
 struct FootprintKernels {
     void (*differentiate)(const FootprintJob&) noexcept;
-    // The first row from `first` on with a fragment that floats do not serve, or the height.
+    // Returns the first row from `first` on with a fragment that floats do not serve, or the height.
     int (*filter)(const FootprintJob&, int first) noexcept;
 };
 
