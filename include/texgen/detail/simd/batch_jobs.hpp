@@ -15,10 +15,10 @@
 
 namespace TEXGEN_DETAIL {
 
-// Triangles are made ready, and tiles divided, so many at once.
+// So many triangles are made ready, or tiles divided, at once.
 inline constexpr std::size_t batch_block = 8;
 
-// A vertex as the kernels read it: x, y, w and from `strq` on s, t, r, q, of `size` floats; they load eight.
+// A vertex as the kernels read it: x, y, w and from `strq` on s, t, r, q, `size` floats in all. They load eight.
 struct BatchVertex {
     struct Layout {
         glm::vec2 window;
@@ -29,26 +29,26 @@ struct BatchVertex {
     static constexpr std::size_t strq = size - 4;
 };
 
-// The linear functions of a triangle (triangle/planes.hpp), each as base, dx, dy about the vertex of the largest w and
-// e: their errors x and y from there are at most e (1 + |x| per_reach[0] + |y| per_reach[1]).
-// In whole vectors: the last four are 0.
+// The linear functions of a triangle (triangle/planes.hpp), each as base, dx, dy about the vertex of the largest w, and
+// e: at (x, y) from there it errs by at most e (1 + |x| per_reach[0] + |y| per_reach[1]). In whole vectors: the last
+// four are 0.
 struct alignas(64) BatchPlanes {
     static constexpr std::size_t s = 0, t = 4, q = 8, origin = 12, per_reach = 14, r = 16, count = 24;
     static constexpr std::size_t of_numerator[3] = {s, t, r};
 
     double value[count];
 
-    // Without a doubt, as what is refused.
+    // Whether it is behind everywhere without a doubt, as is what is refused.
     bool is_behind() const noexcept {
         return value[q] < 0.0 && value[q + 1] == 0.0 && value[q + 2] == 0.0 && value[q + 3] == 0.0;
     }
 };
 
-// Of the magnitudes of a plane's terms, see TrianglePlanes::error().
+// The error of a plane, of the magnitudes of its terms: see TrianglePlanes::error().
 inline constexpr double batch_plane_error = 1.0001 * gamma(20);
 
-// Tiles of more fragments are left to a TriangleSetup, which costs little beside them and resumes where one is in
-// doubt; and of more than scratch holds those that are in doubt, or need it.
+// Tiles of more fragments than largest_batch_tile are left to a TriangleSetup, which costs little beside them and
+// resumes where one is in doubt; so are those that scratch does not hold, if they need it or are in doubt.
 inline constexpr std::size_t largest_batch_tile = 1024;
 inline constexpr std::size_t largest_in_scratch = 512;
 
@@ -67,7 +67,7 @@ struct BatchJob : BatchOutputs {
     const float* vertices;
     double tolerance;
     std::size_t count;
-    double least[3], greatest[3];  // those of s, t and r as finite numbers
+    double least[3], greatest[3];  // the limits of s, t and r as finite numbers
 
     bool needs_r() const noexcept { return out[2] != nullptr || (has_depth && lit != nullptr); }
 };
@@ -88,7 +88,7 @@ struct VisibilityBuffer {
 // planes[triangles] stands for ids that are no triangle.
 struct FragmentsJob : BatchJob, VisibilityBuffer {};
 
-// The same for footprints.
+// The footprints of a visibility buffer.
 struct BatchFootprintsJob : VisibilityBuffer, FootprintArrays {
     const BatchPlanes* planes;
     const float* vertices;
@@ -97,7 +97,7 @@ struct BatchFootprintsJob : VisibilityBuffer, FootprintArrays {
     float per_texel[2];
 };
 
-// Where s, t and r of a triangle are 0 along an edge that stands in a column or a row of a tile: which one; else -1.
+// The column or row of a tile that holds an edge along which s, t or r of a triangle is 0; -1 where there is none.
 struct ZerosOfTile {
     int column[3] = {-1, -1, -1}, row[3] = {-1, -1, -1};
 
@@ -117,9 +117,9 @@ struct ZerosOfTile {
 };
 
 struct BatchKernels {
-    // A block; a float behind its last vertex is read. A bit for each triangle whose functions are not known.
+    // Makes a block ready; reads a float behind its last vertex. Returns a bit for each triangle that is not known.
     unsigned (*set_up)(const float* triangles, BatchPlanes* planes) noexcept;
-    // From a tile on that begins a block, with values from output `done` on. Stops at a block that has tiles in doubt.
+    // From tile `first` on, which begins a block, with values from `done` on. Stops at a block with tiles in doubt.
     Undecided (*divide_tiles)(const TilesJob& job, std::size_t first, std::size_t done) noexcept;
     Undecided (*divide_fragments)(const FragmentsJob& job, std::size_t first) noexcept;
 };

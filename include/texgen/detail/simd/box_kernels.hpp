@@ -16,32 +16,32 @@ inline constexpr std::size_t form_of_q = 4;
 inline constexpr std::size_t forms_without_depth = 5;
 inline constexpr std::size_t max_forms = 7;
 
-// The edges where two of them meet; those behind the fourth are of a depth.
+// The edges, in each of which two of these forms meet; those behind the fourth are of a depth.
 inline constexpr std::size_t max_edges = 12;
 inline constexpr std::size_t first_of_edge[max_edges] = {0, 0, 1, 1, 0, 0, 1, 1, 2, 2, 3, 3};
 inline constexpr std::size_t second_of_edge[max_edges] = {2, 3, 2, 3, 5, 6, 5, 6, 5, 6, 5, 6};
 constexpr std::size_t edge_count(std::size_t form_count) noexcept { return form_count < max_forms ? 4 : max_edges; }
 
-// A lane a form; those behind the last form are q's. Form k is of[0] T_s + of[1] T_t + of[2] T_r + of_q T_q, where one
-// of the three weights at most is not 0, but 1 or -1, and of_q is a float. Its inner side has others.
+// The weights of forms, a lane each; lanes behind the last form are q's. Form k is of[0] T_s + of[1] T_t + of[2] T_r +
+// of_q T_q: at most one of the three is not 0, but 1 or -1, and of_q is a float. Its inner side has others.
 inline constexpr std::size_t form_lanes = 8;
 struct FormWeights {
     double of[3][form_lanes], of_q[form_lanes];
 };
 
-// a . (x, y, z) + d, each coefficient rounded so that its sign is right and it is 0 only if it is 0, times a power of
-// two that brings the largest a of a form near to 1; in double it errs by at most error_a * size + error_d. Its inner
-// side is less by narrowing * T_q, and T_q at points of a size, the sum of their magnitudes, is at most largest_q *
-// size + last_q.
+// The forms a . (x, y, z) + d. A coefficient is rounded, but keeps its sign, and is 0 only if the exact one is; all of
+// a form are scaled by a power of two that brings its largest a near to 1. With size = |x| + |y| + |z| a form in double
+// errs by at most error_a * size + error_d, and T_q is at most largest_q * size + last_q. The inner side is less by
+// narrowing * T_q.
 struct FormLanes {
     double a[3][form_lanes], d[form_lanes], narrowing[form_lanes], error_a[form_lanes], error_d[form_lanes];
     double largest_q, last_q;
 };
 
-// The same, times numbers that bring |a| to 1, or up to 14 u below it; a constant form is far above any radius.
+// The same forms, scaled so that |a| is 1, or up to 14 u less; a constant form is far above any radius.
 struct UnitForms : FormLanes {};
 
-// The same in float, twice the value each, a lane a form, with one bound for all: over a body each errs by less than
+// The same forms in float, a lane each, of twice the value, with one bound for all: over a body each errs by less than
 // error_per_size * size + error, where the size of a box is the sum of |min + max| and max - min of its coordinates,
 // that of a sphere twice the sum of |x|, |y|, |z| and four times its radius. Lanes behind the last form are q's.
 struct FloatForms {
@@ -52,19 +52,19 @@ struct FloatForms {
     float error_per_size, error;
 };
 
-// The planes beside the slide's own: of 4 edges, or 12 where there is a depth, and of 8 vertices, for each axis, and of
-// the apex; in whole vectors. A coordinate whose coefficient is exactly 0 is not used: there a box may be infinite. d
-// holds its own error, and `error` is that of a point of size 1.
+// The planes that may separate boxes beside the slide's own: for each axis those of 4 edges, or 12 where there is a
+// depth, and of 8 vertices; and those of the apex; in whole vectors. A coordinate whose coefficient is 0 is not used:
+// there a box may be infinite. d has its own error added, and `error` is what a point of size 1 adds.
 inline constexpr std::size_t max_separating = 3 * 16 + 8 + 3 * 8;
 struct SeparatingForms {
     double a[3][max_separating], d[max_separating], error[max_separating];
     std::size_t count;
 };
 
-// A form at the vertex of a box where it is largest, or least: its four coefficients, each rounded once, and the rows
-// of the box that the first three are of: min, max, 1, and 0 where a coefficient is 0, which is of no use where a box
-// is infinite. `term` is the same as an exact sum, of factors with so few digits that the product with any float is a
-// double.
+// A form at the vertex of a box where it is largest, or least: its four coefficients, each rounded once, and for the
+// first three the row of the box that each is multiplied by. Rows are min, max, 1 and 0; a coefficient that is 0 has
+// the row of 0, as a box may be infinite there. `term` is the same form as an exact sum, of factors with so few digits
+// that the product with any float is a double.
 struct FormAtVertex {
     static constexpr std::size_t row_of_1 = 6, row_of_0 = 7, max_terms = 3 * 6 + 3 + 1;
     struct Term {
@@ -103,7 +103,7 @@ using OpenRow = float[body_quantum];
 // Each table is compiled where it is asked for: a program has what its questions need. The forms are made in double
 // and, for many bodies, in float.
 struct FormKernels {
-    // `narrowing` is given as it is without a scale.
+    // `narrowing` is given without the scale that forms get.
     void (*weigh)(const glm::dmat4& matrix, const FormWeights& weights, FormLanes& forms) noexcept;
 };
 struct FloatFormKernels {
@@ -127,10 +127,10 @@ struct SeparatingFormKernels {
 struct BoxKernels {
     // What doubles are certain of. Empty boxes are in doubt, and those whose coordinates in use are not finite.
     int (*classify)(const FormLanes& forms, const float* min, const float* max) noexcept;
-    // What the forms say of a box that has points, exactly; classify() has said what needs no question.
+    // What the forms say of a box that has points, exactly; what classify() decided with `answer` is not asked.
     int (*decide)(int answer, const glm::dmat4& matrix, const FormWeights& outer, const FormWeights& inner,
                   const float* min, const float* max) noexcept;
-    // Whether one of them is negative over all of a box that has points.
+    // Whether one of the planes is negative over all of a box that has points.
     bool (*is_separated)(const SeparatingForms& planes, const float* min, const float* max) noexcept;
 };
 
@@ -140,8 +140,8 @@ using Classify = void (*)(const FloatForms& forms, const float* bodies, std::siz
 
 struct BoxBatchKernels {
     Classify classify;
-    // What doubles are certain of, and where they are not, exact sums; without forms all are partial. Those that a
-    // plane separates are outside. What has no points is in doubt.
+    // Decides by the forms, in double or by exact sums, and by the planes: what one separates is outside. Without
+    // forms, what none separates is partial. What has no points is in doubt.
     void (*decide)(const DoubleForms* forms, const SeparatingForms& planes, const OpenRow* boxes, std::size_t count,
                    int* classes) noexcept;
 };
