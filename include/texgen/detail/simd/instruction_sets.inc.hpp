@@ -1,8 +1,8 @@
 // TEXGEN_KERNELS once per instruction set, inside that set's target region. Included by lanes.hpp, and by what has
 // kernels that not all files pay for (batch_lanes.hpp).
 
-// Vector arguments never cross a call that is not inlined, so their calling convention does not matter. GCC 12 stops at
-// masks whose code its tracer copies, which -fprofile-use has it do.
+// Vector arguments never cross a call that is not inlined, so their calling convention does not matter. GCC 12 fails at
+// masks whose code its tracer copies, as it does with -fprofile-use.
 #ifdef TEXGEN_HAS_VECTORS
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wpsabi"

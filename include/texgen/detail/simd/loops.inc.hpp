@@ -70,7 +70,7 @@ using Residues = Lanes<std::uint64_t>;
 using WideFloats = Floats;
 using WideWords = Words;
 
-// Lane by lane: the numbers converted, and their bits as they are.
+// converted() converts the number in each lane; bits_as() keeps its bits.
 template <class To, class From>
 TEXGEN_INLINE To converted(const From& from) noexcept {
     return To::of([&](int i) { return static_cast<typename To::Element>(from.lane[i]); });

@@ -2,14 +2,14 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// Where a number lies within so many of its ulps, 1 less than a power of two, of the middle of two normal floats (or
-// one more beyond it), and that middle.
+// The lanes whose number lies within so many of its ulps, 1 less than a power of two, of the middle of two normal
+// floats (or one more beyond it); middle_near() is that middle.
 TEXGEN_INLINE LongWords are_near_middles(const Doubles& a, std::int64_t ulps) noexcept {
     return ((__builtin_bit_cast(Residues, a) + static_cast<std::uint64_t>(ulps - 0x10000000)) &
             static_cast<std::uint64_t>(0x1ffffffe - 2 * ulps)) == 0;
 }
-// The low words of a and b, or the high ones, in whatever order. Shuffled as floats within 16 bytes: of words GCC takes
-// what crosses them.
+// The low words of a and b, or the high ones, in whatever order. They are shuffled as floats, within 16 bytes: for
+// integers GCC takes instructions that cross these.
 template <bool AreHigh, int... Lane>
 TEXGEN_INLINE WideResidues words_of(const Doubles& a, const Doubles& b, std::integer_sequence<int, Lane...>) noexcept {
     constexpr int word = AreHigh == (std::endian::native == std::endian::little) ? 1 : 0;
@@ -21,8 +21,8 @@ TEXGEN_INLINE Doubles middle_near(const Doubles& a) noexcept {
     return masked_or(a, ~0x1fffffffLL, __builtin_bit_cast(Doubles, LongWords{} + 0x10000000));
 }
 
-// How far numbers of two vectors at a time are from such middles: 0 for each place where one was near; the low words
-// decide. A mask where there are masks.
+// How far the numbers of two vectors at a time have been from such middles: 0 in each lane where one was near. Low
+// words decide. It is a mask of bits where the instruction set has those.
 #if TEXGEN_LANE_BYTES == 64
 using Distances = std::uint16_t;
 TEXGEN_INLINE Distances far_from_middles() noexcept { return 0xffff; }
@@ -48,7 +48,7 @@ TEXGEN_INLINE bool any_zero(const Distances& distances) noexcept {
     return any(is_zero);
 #endif
 }
-// Whether a number that is not subnormal is not 0 where either distance is.
+// Whether a number, of which none is subnormal, is not 0 in a lane where either distance is 0.
 TEXGEN_INLINE bool any_nonzero_near(const Distances& distances, const Doubles& a) noexcept {
     const WideResidues high = words_of<true>(a, a, std::make_integer_sequence<int, wide_lanes>()) & 0x7fffffffu;
 #if TEXGEN_LANE_BYTES == 64

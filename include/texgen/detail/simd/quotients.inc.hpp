@@ -3,7 +3,7 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// The bits of numbers; those of |a| are in the order of |a|, a NaN beyond infinity: a largest magnitude keeps it.
+// The bits of numbers. Those of |a| have the order of |a|, with a NaN beyond infinity: a maximum keeps it.
 TEXGEN_INLINE WideWords signed_bits(const WideFloats& a) noexcept { return bits_as<WideWords>(a); }
 TEXGEN_INLINE WideWords magnitude_bits(const WideFloats& a) noexcept { return signed_bits(a) & 0x7fffffff; }
 TEXGEN_INLINE WideFloats from_bits(const WideWords& words) noexcept { return bits_as<WideFloats>(words); }
@@ -16,7 +16,7 @@ template <int Bits>
 TEXGEN_INLINE Doubles leading_bits(const Doubles& a) noexcept {
     return bits_as<Doubles>(bits_as<Residues>(a) & ~std::uint64_t{0} << (53 - Bits));
 }
-// The power of two at or below the magnitude of a normal number; and the reciprocals of powers, where they are normal,
+// The power of two at or below the magnitude of a normal number; and the reciprocals of powers that have normal ones,
 // 2^1023 for 0.
 TEXGEN_INLINE Doubles power_of_two_below(const Doubles& a) noexcept {
     return bits_as<Doubles>(bits_as<Residues>(a) & std::uint64_t{0x7ff0000000000000});
@@ -24,7 +24,7 @@ TEXGEN_INLINE Doubles power_of_two_below(const Doubles& a) noexcept {
 TEXGEN_INLINE Doubles reciprocals_of_powers(const Doubles& a) noexcept {
     return bits_as<Doubles>(std::uint64_t{0x7fe0000000000000} - bits_as<Residues>(a));
 }
-// A number without its last bit that is set; of a power of two, or 0, it is none.
+// A number without its last bit that is set. A power of two has none, and gives nothing of use.
 TEXGEN_INLINE Doubles without_last_bit(const Doubles& a) noexcept {
     return bits_as<Doubles>(bits_as<Residues>(a) & (bits_as<Residues>(a) - std::uint64_t{1}));
 }
@@ -37,7 +37,7 @@ struct SharedDivision {
         : product(a * b), of_both(1.0 / product), reciprocal{of_both * b, of_both * a} {}
 };
 
-// A number within an error as a float: in doubt where its ends do not round to one.
+// Both ends of value +- error, rounded to float: the float is in doubt where they differ.
 struct RoundedEnds {
     Floats below, above;
 

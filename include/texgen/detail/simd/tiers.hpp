@@ -3,8 +3,8 @@
 // The tiers: how values are computed, the dearest way first, and what bounds their errors. What a tier's bound does not
 // cover goes to a dearer one.
 //
-//   exact           in double, with a certificate: the nearest float. What that leaves in doubt is decided closely, in two
-//                   doubles; and what those leave, one by one, by exact sums
+//   exact           in double, with a certificate: the nearest float. What that leaves in doubt is decided closely, in
+//                   two doubles; and what those leave, one by one, by exact sums
 //   in_double       numerators and quotient in double, rounded once
 //   float_divided   numerators and q in double, rounded; the quotient in float
 //   all_float       numerators, q and quotient in float; of points about the origin, or about one of them
@@ -57,7 +57,7 @@ inline constexpr double share_for_one_error = 0x1p-12;
 inline constexpr double cancelled_share = 0x1p-36;
 
 // How the steps i / (1 + x) of a chunk are computed: with 2 or 3 factors of 1 / (1 + x) = (1 - x) (1 + x^2) (1 + x^4)
-// ..., which leaves x^4 or x^8 of them; by a division; or not, as no bound holds. Undecided: chunk by chunk.
+// ..., which err by x^4 or x^8 of the step; by a division; or (none) not, as no bound holds. undecided: chunk by chunk.
 enum class StepRule { undecided, degree4, degree8, divide, none };
 
 }  // namespace TEXGEN_DETAIL

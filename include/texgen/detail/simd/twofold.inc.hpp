@@ -18,8 +18,8 @@ TEXGEN_INLINE Doubles quick_two_sum(const Doubles& a, Doubles b, Doubles& error)
     return sum;
 }
 
-// A number as an unevaluated sum, high the nearest double, with a rest far below, and a bound on what that lacks: 0
-// where it is exact. All of them are multiples of the grain, a power of two.
+// A number as the unevaluated sum high + low + rest, high being the nearest double and rest far below; `lost` bounds
+// what the sum lacks, and is 0 where it is exact. All parts are multiples of the grain, a power of two.
 struct PointSum {
     Doubles high, low, lost, rest, grain;
 };
@@ -28,7 +28,7 @@ struct PointLanes {
     Doubles v[3];
 };
 
-// A form with its coefficients in all lanes: GCC takes that out of no loop that has branches.
+// A form with its coefficients in all lanes: GCC does not take that out of loops that have branches.
 struct PointFormLanes {
     Doubles x, y, z, w;
 
@@ -42,8 +42,8 @@ TEXGEN_INLINE Doubles value_at(const Form& form, const PointLanes& point) noexce
     return point.v[0] * form.x + (point.v[1] * form.y + (point.v[2] * form.z + form.w));
 }
 
-// The last bit that is set of each number, not negative and of at most 51 bits; 2^500 for 0. A bit is put in front
-// first, as a power of two has no other.
+// The last bit that is set of each number, which is not negative and has at most 51 bits; 2^500 for 0. A bit is put in
+// front first, as without_last_bit() takes no power of two.
 TEXGEN_INLINE Doubles last_bits(const Doubles& size) noexcept {
     const Doubles longer = size + power_of_two_below(size) * 4.0;
     return select(greater(size, 0.0), longer - without_last_bit(longer), Doubles{} + 0x1p500);
@@ -54,7 +54,7 @@ struct TwofoldForm {
     PointForm form;
     double high[3], low[3], size[3], grain[3];
     double size_of_w, grain_of_w;
-    unsigned used = 0, with_low = 0, added = 0;  // a bit for each coefficient; added: to something
+    unsigned used = 0, with_low = 0, added = 0;  // a bit for each coefficient; added: to the terms before it
     bool is_finite;
 
     TwofoldForm() = default;
@@ -82,9 +82,10 @@ struct TwofoldForm {
         return (of.v[0] * size[0] + (of.v[1] * size[1] + (of.v[2] * size[2] + size_of_w))) * gamma(5);
     }
 
-    // The floats nearest to the sums of a finite form, which are quotients where q is 1. What the leading products
-    // leave of theirs, and the others, are six numbers; where all are 0, as of most ties, nothing is lost. A sum that is
-    // the middle of two floats but for these is on their side of it. `is_known` loses the lanes in doubt.
+    // The floats nearest to the values of a finite form, which are the quotients where q is 1. Beside the rounded sum
+    // of the products with `high` there are six numbers: what that sum leaves, and the products with `low`. Where all
+    // are 0, as in most ties, nothing is lost; at the middle of two floats they tell the side. `is_known` loses the
+    // lanes in doubt.
     TEXGEN_INLINE Floats nearest_at(const PointLanes& at, const PointLanes& of, LongWords& is_known) const noexcept {
         const RoundedEnds ends(value_at(form, at), error_at(of));
         if (!any(ends.differ())) return ends.below;
@@ -111,10 +112,10 @@ struct TwofoldForm {
         return to_floats(select(is_middle, beside, sum));
     }
 
-    // Of points that are numbers: a coordinate without a coefficient is not looked at. With T the sum of the terms'
-    // magnitudes, what is left of the sum are six terms of less than 2^-50 T together, and precisely what is left of
-    // their sum five of less than 2^-101 T. The last are added in one double, but for five roundings: exactly where
-    // their grain is at least 2^-102 T, as that of numbers of about one size is, or 2^-152 T.
+    // The value at points that are numbers; a coordinate whose coefficient is 0 is not looked at. With T the sum of the
+    // terms' magnitudes, the sum in double leaves six terms of less than 2^-50 T together, and their sum, kept where
+    // `precisely`, five of less than 2^-101 T. The last ones are added in one double, with five roundings: none where
+    // the grain is at least 2^-102 T, as that of numbers of about one size is, or precisely 2^-152 T.
     TEXGEN_INLINE PointSum at(const PointLanes& at, const PointLanes& of, bool precisely,
                               const PointLanes& grains) const noexcept {
         Doubles sum = Doubles{} + form.w;
@@ -153,7 +154,7 @@ struct TwofoldForm {
         if (precisely) {
             result.lost = lost_beyond(0x1p152);
             result.high = two_sum(sum, second, result.low);
-            // Beside a sum that cancels the rest is much.
+            // The rest is not small beside a sum that cancels.
             if (any(~at_most(magnitude(third), magnitude(result.high) * 0x1p-80))) {
                 second = two_sum(result.low, third, result.rest);
                 result.high = two_sum(result.high, second, result.low);
@@ -166,12 +167,12 @@ struct TwofoldForm {
     }
 };
 
-// Numbers with the signs of exact sums of up to 26 terms, which are lost, in these lanes; sigma is a power of two, at
-// least twice the sum of their magnitudes. What is added to sigma stays between a half and twice of it: without sigma
-// it is a multiple of 2^-53 sigma, and leaves at most that of each term, of all less than a quarter of the next sigma,
-// 2^-46 sigma. The sum so far is at most half the next sigma, and with what is added there an exact multiple again, or
-// has the sign of all that follows. What two sigmas leave, of each term at most 2^-7 of a third one, is taken as it is
-// summed in double, rounded 25 times, unless it cancels, too.
+// Numbers with the signs of exact sums of up to 26 terms in the lanes that are asked; the terms are overwritten. sigma
+// is a power of two, at least twice the sum of their magnitudes. Terms are added to sigma, and the sum stays between a
+// half and twice of it: so what is added is a multiple of 2^-53 sigma and leaves at most that of each term, of all less
+// than a quarter of the next sigma, 2^-46 sigma. The sum so far is at most half the next sigma, and with what is added
+// there an exact multiple again, or has the sign of all that follows. What two sigmas leave, of each term at most 2^-7
+// of a third one, is summed in double, rounded 25 times; where that cancels, too, two more sigmas follow.
 // Source: Rump, Ogita, Oishi, Accurate Floating-Point Summation I, SIAM J. Sci. Comput. 31 (2008), ExtractVector.
 TEXGEN_INLINE Doubles signed_sum(Doubles* term, std::size_t count, Doubles sigma, const LongWords& asked) noexcept {
     Doubles sum{};
@@ -210,7 +211,8 @@ struct TwofoldDivisor : PointSum {
     }
 };
 
-// The same of numerators with these errors. False where a lane is in doubt. 2^-49 covers what q lacks, and roundings.
+// The floats nearest to s / q, s with an error. False where a lane is in doubt. 2^-49 covers what q lacks, and
+// roundings.
 TEXGEN_INLINE bool divide_nearly(const Doubles& s, const Doubles& s_error, const TwofoldDivisor& q,
                                  Floats& value) noexcept {
     const Doubles quotient = where(q.in_front, s * q.reciprocal);
@@ -226,12 +228,11 @@ TEXGEN_INLINE Doubles middle_of_subnormals(const Doubles& a) noexcept {
     return (((a - 0x1p-150) + rounder) - rounder) + 0x1p-150;
 }
 
-// The floats nearest to s / q in front, 0 elsewhere; `is_known` loses the lanes in front where that is in doubt.
+// The floats nearest to s / q in front, 0 elsewhere; is_known says where that is not in doubt.
 // As nearest_quotient(): where the quotient, which errs by less than 2^-48 of it, 32 ulps, is so near the middle of two
-// floats, the sign of s - middle q decides. That is a small number beside both products, so s - middle q' is exact for
-// the leading 53 bits q' of q; and precisely the rest is summed exactly where it is but short, as it is of ties. Below
-// `within` either float will do. Integers know the middles of normal floats; those of subnormal ones are found by
-// rounding.
+// floats, the sign of s - middle q decides. That is small beside both products, so s - middle q' is exact for the
+// leading 53 bits q' of q; with `precisely` the rest is summed exactly where it is short, as in ties. Below `within`
+// either float will do. The middles of normal floats are found by integers, those of subnormal ones by rounding.
 TEXGEN_INLINE Floats nearest_quotients(const PointSum& s, const TwofoldDivisor& q, const Doubles& within,
                                        bool precisely, LongWords& is_known) noexcept {
     const Doubles quotient = where(q.in_front, s.high * q.reciprocal) + 0.0;
@@ -252,9 +253,9 @@ TEXGEN_INLINE Floats nearest_quotients(const PointSum& s, const TwofoldDivisor& 
         is_near = (is_near & ~is_small) | (is_small & at_most(magnitude(quotient - of_small), size * 0x1p-48));
     }
     const Doubles leading_rest = (s.high - middle * q.part[0]) - middle * q.part[1];
-    // All are multiples of the grains of s and of middle q, which is at least 2^-25 middle times q's. What is added in
-    // one double, less than 2^-47 s or precisely 2^-77 s, is exact where they are this near to it; else four roundings
-    // are lost, quickly of less than 2^-51 s.
+    // All numbers are multiples of the grain of s, or of that of middle q, which is at least 2^-25 middle times q's.
+    // What is added in one double, less than 2^-47 s or precisely 2^-77 s, is exact where no grain is too fine for this
+    // range; else four roundings are lost, if not `precisely` of less than 2^-51 s.
     const auto lost_beyond = [&](double range) {
         const LongWords is_exact = at_most(size_of_s, s.grain * range) & at_most(q.high, q.grain * (range * 0x1p-25));
         return where(~is_exact, size_of_s * (4.0 / range));

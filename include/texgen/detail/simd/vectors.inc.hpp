@@ -41,14 +41,14 @@ template <int... Lane>
 TEXGEN_INLINE WideFloats joined(const Floats& low, const Floats& high, std::integer_sequence<int, Lane...>) noexcept {
     return __builtin_shufflevector(low, high, Lane...);
 }
-// f(Doubles...) of each half of the vectors.
+// Calls f(Doubles...) for each half of the vectors.
 template <class Function, class... Vector>
 TEXGEN_INLINE void for_halves(const Function& f, const Vector&... values) noexcept {
     using Half = std::make_integer_sequence<int, lanes>;
     f(to_doubles(half<0>(values, Half()))...);
     f(to_doubles(half<lanes>(values, Half()))...);
 }
-// The same, rounded to float.
+// What f returns for each half, rounded to float.
 template <class Function, class... Vector>
 TEXGEN_INLINE WideFloats in_double(const Function& f, const Vector&... values) noexcept {
     Floats of[2], *next = of;
@@ -56,7 +56,7 @@ TEXGEN_INLINE WideFloats in_double(const Function& f, const Vector&... values) n
     return joined(of[0], of[1], std::make_integer_sequence<int, wide_lanes>());
 }
 
-// Towards zero, of numbers that an int can hold.
+// Rounds numbers that an int can hold towards zero.
 TEXGEN_INLINE Doubles truncated(const Doubles& values) noexcept {
     return to_doubles(__builtin_convertvector(values, Words));
 }
@@ -86,8 +86,8 @@ TEXGEN_INLINE Doubles masked_or(const Doubles& a, long long bits, const Doubles&
 #endif
 }
 
-// A number that is an integer of less than 2^63, and what is asked of residues. AVX2 converts one after another: the
-// low bits of a sum with 0x1.8p52 are those of an integer below 2^51.
+// The residues of numbers that are integers below 2^63. AVX2 would convert one after another: instead, the low bits of
+// a sum with 0x1.8p52 are those of an integer below 2^51.
 TEXGEN_INLINE Residues to_residues(const Doubles& integers) noexcept {
 #if TEXGEN_LANE_BYTES == 32
     constexpr double rounder = 0x1.8p52;
@@ -99,7 +99,7 @@ TEXGEN_INLINE Residues to_residues(const Doubles& integers) noexcept {
     return __builtin_bit_cast(Residues, __builtin_convertvector(integers, LongWords));
 #endif
 }
-// The doubles next to integers. AVX2 has 2^52 + the low half, and 2^84 + 2^63 + what the high one stands for.
+// The doubles next to signed integers. For AVX2 bits make 2^52 + the low half and 2^84 + 2^63 + the high one.
 TEXGEN_INLINE Doubles signed_numbers(const Residues& a) noexcept {
 #if TEXGEN_LANE_BYTES == 32
     const auto low = __builtin_bit_cast(Doubles, (a & 0xffffffff) | bit_cast<std::uint64_t>(0x1p52));
@@ -164,7 +164,7 @@ TEXGEN_INLINE Vector load(const void* from) noexcept {
     __builtin_memcpy(&values, from, sizeof values);
     return values;
 }
-// The same for several uses: GCC loads anew for each, and vectors as long as a cache line cross one each time.
+// Loads what is used several times: else GCC loads it for each use, and a vector as long as a cache line may cross two.
 template <class Vector>
 TEXGEN_INLINE Vector load_once(const void* from) noexcept {
     struct [[gnu::packed, gnu::may_alias]] Unaligned {
@@ -175,7 +175,7 @@ TEXGEN_INLINE Vector load_once(const void* from) noexcept {
 }
 TEXGEN_INLINE void store(void* to, const auto& values) noexcept { __builtin_memcpy(to, &values, sizeof values); }
 
-// A mask: all ones where it holds, else zero.
+// A mask, all ones where a value is from min to max, else zero.
 TEXGEN_INLINE auto inside(const auto& values, float min, float max) noexcept {
     return (values >= min) & (values <= max);
 }
@@ -195,7 +195,7 @@ TEXGEN_INLINE WideFloats reversed(const WideFloats& a) noexcept {
     return reversed(a, std::make_integer_sequence<int, wide_lanes>());
 }
 
-// Element 3 i + Component, for every lane i, of the three vectors that follow one another at `from`.
+// Element 3 i + Component, for every lane i, of the three vectors one after another.
 template <int Component, class Vector, int... Lane>
 TEXGEN_INLINE Vector every_third(const Vector& a, const Vector& b, const Vector& c,
                                  std::integer_sequence<int, Lane...>) noexcept {
@@ -217,7 +217,7 @@ template <int First, class Vector, int... Lane>
 TEXGEN_INLINE Vector every_second(const Vector& a, const Vector& b, std::integer_sequence<int, Lane...>) noexcept {
     return __builtin_shufflevector(a, b, (2 * Lane + First)...);
 }
-// Two corners of three floats a box.
+// Loads boxes of two corners of three floats.
 TEXGEN_INLINE void load_boxes(const float* from, WideFloats (&min)[3], WideFloats (&max)[3]) noexcept {
     WideFloats first[3], second[3];
     load_interleaved(from, first[0], first[1], first[2]);
@@ -228,7 +228,7 @@ TEXGEN_INLINE void load_boxes(const float* from, WideFloats (&min)[3], WideFloat
     }
 }
 
-// Four numbers for every lane, one after another.
+// Loads four numbers for every lane, which follow one another.
 template <class Vector, class Number>
 TEXGEN_INLINE void load_fours(const Number* from, Vector (&values)[4]) noexcept {
     constexpr int n = static_cast<int>(sizeof(Vector) / sizeof(Number));
@@ -266,7 +266,7 @@ TEXGEN_INLINE void store_interleaved(float* to, const Vector& a, const Vector& b
     store_interleaved(to + 2 * n, zipped<n / 2>(a, c, Lanes()), zipped<n / 2>(b, d, Lanes()));
 }
 
-// Lane i of vector k becomes lane k of vector i: in blocks of 16 bytes, then block by block: crossing them is dear.
+// Lane i of vector k becomes lane k of vector i: in blocks of 16 bytes, then block by block, as crossing them is dear.
 template <int First, int Block, class Vector, int... Lane>
 TEXGEN_INLINE Vector zipped_in_blocks(const Vector& a, const Vector& b, std::integer_sequence<int, Lane...>) noexcept {
     return __builtin_shufflevector(a, b,
