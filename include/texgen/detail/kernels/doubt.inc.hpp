@@ -1,5 +1,4 @@
-// What doubles leave in doubt of a vector of fragments, decided by what is known besides of their functions. Included
-// by kernels.inc.hpp.
+// Vectors of fragments that doubles leave in doubt, decided by what else is known of them. Included by kernels.inc.hpp.
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
@@ -7,22 +6,23 @@ namespace TEXGEN_DETAIL::TEXGEN_ISA {
 struct CloseValues {
     Doubles high, low, error;
 
-    // Where its residue times the grain, of all lanes or of each, is all of it; a grain of 0 is of 0 alone.
+    // The lanes where it is exactly its residue times the grain, one number or one a lane; if that is 0, only 0 is.
     TEXGEN_INLINE LongWords are_residues(const auto& grain) const noexcept {
         return at_most(magnitude(high + low) + error, Doubles{} + grain * 0x1p62);
     }
 };
 
-// Of integers below 2^115, or of at most 50 digits and zeros behind them, below 2^170, which the sums take for another.
+// The residues of integers below 2^115, or of at most 50 digits and zeros behind them: larger ones of these are
+// multiples of 2^64, and `rest` is 0.
 TEXGEN_INLINE Residues to_residues_of_any(const Doubles& integers) noexcept {
     const Doubles rest = integers - ((integers * 0x1p-64 + 0x1.8p52) - 0x1.8p52) * 0x1p64;
     return to_residues(rest - where(~greater(Doubles{} + 0x1p63, rest), Doubles{} + 0x1p64));
 }
 
-// The nearer float where a quotient is so near the middle m of two that the sign of F - m Q decides: of what two
-// doubles hold of it, or of its residue, where that says all of it.
+// Finds the nearer float where a quotient is so near the middle m of two that the sign of F - m Q decides: by what two
+// doubles hold of that, or by its residue, where that is all of it.
 struct CloseMiddle {
-    Doubles middle, unit;  // middle is a multiple of unit, and within 2^25 of them
+    Doubles middle, unit;  // middle is a multiple of unit, and below 2^25 units
 
     TEXGEN_INLINE explicit CloseMiddle(const Doubles& u) noexcept
         : middle(middle_near(u)), unit(power_of_two_below(u) * 0x1p-24) {}
@@ -38,8 +38,8 @@ struct CloseMiddle {
         return to_floats(middle + where(~is_tie, with_sign_of(unit * 0.25, sign)));
     }
 
-    // By two doubles: where F - m Q is larger than its error, or that is less than half a grain. Returns the lanes that
-    // this decides, and what F - m Q is at most.
+    // Decides by two doubles, where F - m Q is larger than its error, or that is less than half a grain. Returns the
+    // lanes that are decided; `bound` becomes what |F - m Q| is at most.
     template <class Grain>
     TEXGEN_INLINE LongWords decide_by_sums(const CloseValues& f, const CloseValues& q, const Grain& f_grain,
                                            const Grain& q_grain, Doubles& bound, Floats& value) const noexcept {
@@ -55,7 +55,7 @@ struct CloseMiddle {
         return ~is_tie | greater(grain_of(f_grain, q_grain), error * 2.25);
     }
 
-    // By residues, of F - m Q that is at most `bound`: where they say all of it. Returns the lanes that this decides.
+    // Decides by residues, where F - m Q, at most `bound`, is all in its residue. Returns the lanes that are decided.
     template <class Grain>
     TEXGEN_INLINE LongWords decide_by_residues(const Residues& of_f, const Grain& f_grain, const Residues& of_q,
                                                const Grain& q_grain, const Doubles& bound,
@@ -72,7 +72,7 @@ struct CloseMiddle {
     }
 };
 
-// A vector of q, and what its quotients share.
+// The q of a vector of fragments, and what their quotients share. is_beside: its sign is in doubt.
 struct CloseDivisor : CloseValues {
     Doubles value, reciprocal, relative_error;
     LongWords front, is_beside;
@@ -94,7 +94,7 @@ struct CloseQuotient {
 
     TEXGEN_INLINE CloseQuotient(const CloseValues& of_f, const CloseDivisor& q, double tolerance) noexcept
         : f(of_f),
-          u((f.high + f.low) * q.reciprocal + 0x1p-200),  // no 0, and normal times a grain
+          u((f.high + f.low) * q.reciprocal + 0x1p-200),  // never 0, and normal when multiplied by a grain
           size(magnitude(u)),
           error(size * q.relative_error + (q.reciprocal * f.error + 0x1p-152)),
           is_open(~greater(minimum(size * 0x1p-27, magnitude(u - middle_near(u))), error)) {
@@ -104,15 +104,15 @@ struct CloseQuotient {
     }
 };
 
-// A vector of fragments, again. `at` knows its functions there, q as the last, and whether its two doubles say more
-// than residues do and so are asked first. Where no lane is next to a middle, as of zeros, they may be skipped, for
-// which a tile's kernel has no room.
+// Divides a vector of fragments again. `at` has their functions, q as the last, and tells whether two doubles say more
+// than residues do and so are asked first. Middles that no lane is next to, as where all are zeros, are skipped; not so
+// in a tile's kernel, to keep it small.
 template <std::size_t Numerators, bool SkipsMiddles = true>
 struct CloseFragments {
     Floats quotient[Numerators];
     LongWords doubtful;
 
-    // Of `count` numerators, with residues or two doubles if there are any; else what doubles doubt stays so.
+    // Divides `count` numerators, if is_more_known with residues or two doubles; else what is in doubt stays so.
     TEXGEN_INLINE void divide(const auto& at, const CloseDivisor& q, std::size_t count, double tolerance,
                               bool is_more_known) noexcept {
         const auto q_grain = at.grain(Numerators);
@@ -128,7 +128,7 @@ struct CloseFragments {
             const LongWords is_open = close.is_open & q.front;
             if (!is_more_known) doubtful |= is_open;
             if (!is_more_known || !any(is_open)) continue;
-            // Of normal floats that err by less there is but one middle in reach.
+            // Only of quotients that err by less is but one middle of normal floats in reach.
             const LongWords is_rough = is_open & ~greater(close.size * 0x1p-27, close.error);
             const auto grain = at.grain(k);
             LongWords left = is_open;
@@ -138,7 +138,7 @@ struct CloseFragments {
                 left &= ~decided;
             };
             const CloseMiddle middle(close.u);
-            // The middle is as near to the quotient as F/Q is: so |F - m Q| is at most twice the error times Q.
+            // Both the middle and F/Q are within the error of the quotient: |F - m Q| is at most twice that times Q.
             Doubles bound = close.error * q.value * 2.25;
             Floats nearest;
             if (at.are_sums_first) {
