@@ -15,10 +15,9 @@ namespace TEXGEN_DETAIL::TEXGEN_ISA {
 // than all that. So with the last sum's share it errs by (6.1 + 2 X/(1 - X) + X/(1 - X^2)) r of itself, and that is
 // less than (6.4 + 24 X^4) r D. u adds 2 r |u|, by its rounding and the last sum's. Subnormals, or what is flushed to
 // zero, add less than 2^-116; the doubles (e_F + (|u| + D) e_Q) / Q.
-// As names: bend is b, extent X, reach D; room is what a chunk leaves of the tolerance for the remainder of its
-// factors, x^(2^n) D.
+// In the code bend is b, extent X, reach D; room is what the tolerance leaves for the factors' remainder, x^(2^n) D.
 
-// The rest of a chunk's error, of s or of t, or of both: u, reach, 1 / Q and X^4 at their largest.
+// A chunk's error but for that remainder, of s or of t, or of both: u, reach, 1 / Q and X^4 at their largest.
 template <class Number, class Error, class Extent>
 TEXGEN_INLINE Number chunk_error(const Number& u, const Number& reach, const Error& numerator_error, double q_error,
                                  const Extent& reciprocal, const Extent& fourth) noexcept {
@@ -39,7 +38,7 @@ void weigh_chunks(const TileJob& job, ChunkGroup& group, int chunks_of_row, int 
     const double per_row = chunks_of_row;
     const double rows_per_chunk = 1.0 / per_row;
     for (int i = 0; i < count; i += lanes) {
-        // Half of one more keeps the quotient away from the integers.
+        // A half more keeps the quotient away from the integers.
         const Doubles number = indices<Doubles>() + static_cast<double>(chunk + i);
         const Doubles row = truncated((number + 0.5) * rows_per_chunk);
         const Doubles begin = (number - row * per_row) * length;
@@ -54,7 +53,7 @@ void weigh_chunks(const TileJob& job, ChunkGroup& group, int chunks_of_row, int 
         for (std::size_t k = 0; k < 2; ++k) {
             const double dx = job.numerator.dx[k];
             u[k] = value(job.numerator.base[k], dx, job.numerator.dy[k]) * reciprocal;
-            // From a single fragment there are no steps, which nothing bounds.
+            // In a chunk of one fragment there are no steps, and nothing bounds its slope.
             d[k] = where(greater(half, 0.0), (u[k] * -job.q.dx + dx) * reciprocal);
             store(&group.middle[k][i], to_floats(u[k]));
             store(&group.slope[k][i], to_floats(d[k]));
@@ -81,8 +80,8 @@ void weigh_chunks(const TileJob& job, ChunkGroup& group, int chunks_of_row, int 
     }
 }
 
-// The group's chunks from `first` to `end`, of one rule, which begin at x of the row, and their mask. Those of less
-// than a vector, ends of rows, are written beside it.
+// Fills the group's chunks from `first` to `end`, which have one rule and begin at x of the row, and their mask. What
+// is shorter than a vector, at the end of a row, goes through a buffer.
 template <class CompiledWhereCalled = void>
 void fill_chunks(const TileJob& job, const RowOutputs& row, ChunkGroup& group, int first, int end, int x) noexcept {
     const StepRule rule = group.rule_of(job, first);
@@ -101,7 +100,7 @@ void fill_chunks(const TileJob& job, const RowOutputs& row, ChunkGroup& group, i
         const WideFloats slope[2] = {group.slope[0][i] - WideFloats{}, group.slope[1][i] - WideFloats{}};
         float* const s = is_short ? buffer[0] + wide_lanes : row.out[0] + begin;
         float* const t = is_short ? buffer[1] + wide_lanes : row.out[1] + begin;
-        // From both ends: what begins before the middle ends behind it. Indices are loaded: arithmetic leaves that idle.
+        // From both ends: the last vectors may overlap in the middle. Indices are loaded, which costs nothing here.
         std::ptrdiff_t last = length - wide_lanes;
         for (std::ptrdiff_t at = 0; 2 * at < length; at += wide_lanes, last -= wide_lanes) {
             const auto from_middle = load<WideFloats>(group.index + at);

@@ -38,7 +38,7 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// The kernels of a kind, compiled where it is asked for: named without the parameter they would be here.
+// The table of a kind of kernels, compiled where it is asked for: kernels without the parameter would be compiled here.
 template <class Table, class CompiledWhereCalled = void>
 inline constexpr Table kernel_table;
 

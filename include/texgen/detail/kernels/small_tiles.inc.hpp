@@ -1,11 +1,11 @@
-// Small tiles of which one certificate holds, see SmallTile. Included by kernels.inc.hpp.
+// Small tiles that one certificate serves, see SmallTile. Included by kernels.inc.hpp.
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// Two rows share a division of doubles, of an odd number of them the last two, and a short single row is both; integers
-// are asked whether a value is in doubt. A long one is cut into rows as wide as a vector, of which the last may begin
-// in the one before; and of two columns vectors of eight hold four rows each, if they come out even: y counts those. What
-// a vector writes beyond its row is written again by those that follow.
+// Divides in double, two rows at once, of an odd number the last two again; returns whether integers find no value in
+// doubt. A short single row is both rows. A long one is cut into rows as wide as a vector, of which the last may begin
+// in the one before. A vector of eight holds four rows of two columns, if they come out even, and y counts such
+// vectors. What a vector writes beyond its row is overwritten by those that follow.
 TEXGEN_INLINE bool divide_small(const SmallTile& tile) noexcept {
     const auto& [f_base, f_dx, f_dy] = tile.numerator;
     const Ramp& of_q = tile.q;
@@ -27,7 +27,7 @@ TEXGEN_INLINE bool divide_small(const SmallTile& tile) noexcept {
         for (double& of_row : dy) of_row *= 4.0;
         width = stride = lanes;
     }
-    // Shorter rows than vectors have no room for the last of them.
+    // Rows that are shorter than a vector have no room for the last one.
     float buffer[2][SmallTile::most_in_short_rows + lanes];
     const bool has_room = width >= lanes;
     float* const out[2] = {has_room ? tile.out[0] : buffer[0], has_room ? tile.out[1] : buffer[1]};
@@ -68,9 +68,9 @@ TEXGEN_INLINE bool divide_small(const SmallTile& tile) noexcept {
     return !any_zero(least);
 }
 
-// Divides a tile of eight columns, of which a vector holds whole rows, or a part of one; or of sixteen and more, of which
-// the last vector of a row may begin in the one before. Rows are counted from the middle. A width that is a constant
-// is quicker.
+// Divides in float a tile of eight columns, of which a vector holds whole rows, or a part of one; or of sixteen and
+// more, where the last vector of a row may begin in the one before. Rows are counted from the middle. It is quicker
+// with a width that is a constant.
 TEXGEN_INLINE void divide_small_in_float(const SmallTile& tile, int width, int columns) noexcept {
     const auto& [f_base, f_dx, f_dy] = tile.numerator;
     const Ramp of_q{tile.q.base, tile.q.dx, read_alone(tile.q.dy)};

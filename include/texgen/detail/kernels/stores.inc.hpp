@@ -2,7 +2,7 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// Whether a mask of points is asked for, their layout and that of their coordinates are looked at vector by vector: a
+// Loops over points look vector by vector at the layouts of points and coordinates, and whether a mask is asked for: a
 // branch that is always the same costs next to nothing, and a loop for each combination would be most of what a user
 // compiles.
 
@@ -11,13 +11,13 @@ template <class Output, class Vector>
 TEXGEN_INLINE auto in_region(const Output& to, const Vector (&value)[2]) noexcept {
     return inside(value[0], to.min[0], to.max[0]) & inside(value[1], to.min[1], to.max[1]);
 }
-// 1 there and in front, else 0.
+// 1 inside the region and in front, else 0.
 template <class Output, class Vector, class Mask>
 TEXGEN_INLINE Vector lit_of(const Output& to, const Vector (&value)[2], const Mask& in_front) noexcept {
     return one_where(in_front & in_region(to, value));
 }
 
-// The first `count` lanes, by parts of fixed sizes: of one after another compilers make a call of memcpy.
+// Stores the first `count` lanes, by parts of fixed sizes: lane by lane, compilers make a call of memcpy of it.
 template <class Vector>
 TEXGEN_INLINE void store_some(float* to, int count, const Vector& values) noexcept {
     constexpr auto size = sizeof(Vector) / sizeof(float);
@@ -33,8 +33,8 @@ TEXGEN_INLINE void store_some(float* to, int count, const Vector& values) noexce
     }
 }
 
-// The mask of `count` fragments or values in front, from the coordinates that stand there: so the loops that compute
-// them ask for no mask. A last vector is one that ends with them.
+// Makes the mask of `count` fragments or values in front from their stored coordinates, so that the loops that compute
+// these know no mask. The last vector ends with them, and overlaps. False where they are fewer than a vector has.
 template <class Vector>
 TEXGEN_INLINE bool light_in(const float (&min)[2], const float (&max)[2], const float* s, const float* t, float* lit,
                             std::int64_t count) noexcept {

@@ -3,7 +3,7 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// The functions of a row's index.
+// The functions along a row, of the fragment's index.
 struct TileRow {
     double base[2], q;
 
@@ -17,13 +17,13 @@ struct TileRow {
     }
 };
 
-// By up to 63 bits to the left. (std::rotl takes an int or an unsigned one, by the library.)
+// Rotates by up to 63 bits to the left. (std::rotl() counts in int or in unsigned, depending on the library.)
 TEXGEN_INLINE std::uint64_t rotated(std::uint64_t bits, int count) noexcept {
     return bits << count | bits >> (-count & 63);
 }
 
-// Divides a part of a row, or whole rows. Which fragments are in doubt (they are written all the same). What a last
-// vector writes beyond its row is written again by those that follow, and may only cause a doubt too many.
+// Divides a part of a row, or whole rows. Returns which fragments are in doubt (they are written all the same). What a
+// row's last vector writes beyond it is overwritten by those that follow, and causes needless doubt at worst.
 template <class CompiledWhereCalled = void>
 std::uint64_t divide_tile(const TileJob& job, const TileJob::Unit& part) noexcept {
     const auto [x_begin, x_end, y_begin, y_end] = part;
@@ -66,10 +66,9 @@ std::uint64_t divide_tile(const TileJob& job, const TileJob::Unit& part) noexcep
     return rotated(doubtful, static_cast<int>(count % 64));
 }
 
-// The same of a job that knows its ulps, unit by unit of its rows: pairs of vectors share a division, which adds two
-// roundings to a quotient, and integers are asked whether it is in doubt. Returns the first unit that is. The last pair
-// of a row ends with it, and may begin in the unit before, which was certain in here: the first unit is no shorter than
-// a pair.
+// The same for a job that knows its ulps, unit by unit of its rows: a pair of vectors shares a division, which adds two
+// roundings to a quotient, and integers tell whether one is in doubt. Returns the first unit with such a quotient. A
+// row's last pair ends with it, and may begin in the unit before, certain by then: a first unit is no shorter.
 inline constexpr int pair = 2 * lanes;
 template <class CompiledWhereCalled = void>
 TileJob::Unit divide_in_pairs(const TileJob& job, const TileJob::Unit& first) noexcept {
@@ -132,9 +131,9 @@ struct CloseFunctionsAt {
     TEXGEN_INLINE double grain(std::size_t n) const noexcept { return of[n].grain; }
 };
 
-// The fragments of a unit that are asked, as many at once as a vector has, wherever they stand: those of a column, or a
-// few that are left, share vectors; more than half of a unit is asked as all of it. One numerator alone stands in both
-// places. Short vectors need the most code: it is compiled for size.
+// Decides the fragments of a unit that are asked for. They are gathered into vectors wherever they stand, as in a
+// column; more than half of a unit is asked as all of it. One numerator alone stands in both places. Short vectors need
+// the most code, which is compiled for size.
 template <class CompiledWhereCalled = void>
 #if defined(TEXGEN_HAS_VECTORS) && TEXGEN_LANE_BYTES == 16
 TEXGEN_RARE
@@ -159,7 +158,7 @@ TEXGEN_RARE
     if (!are_all) store(number + count, Doubles{});
     for (int i = 0; i < count; i += lanes) {
         const Doubles n = are_all ? indices<Doubles>() + static_cast<double>(i) : load<Doubles>(number + i);
-        // Half of one more keeps the quotient away from the integers.
+        // A half more keeps the quotient away from the integers.
         const Doubles row = truncated((n + 0.5) * (1.0 / width));
         store(x + i, n - row * static_cast<double>(width) + static_cast<double>(unit.x_begin));
         store(y + i, row + static_cast<double>(unit.y_begin));
@@ -173,7 +172,7 @@ TEXGEN_RARE
         CloseFragments<2, false> fragments;
         fragments.divide(at, q, numerators, functions.tolerance, is_more_known);
         doubtful |= lane_bits(fragments.doubtful) << i;
-        // Doubt has company: where most of a first vector stay so, more is to be known of the others, too.
+        // Where most of the first vector stay in doubt, the others are likely to need more as well.
         if (!is_more_known && i == 0 && 2 * std::popcount(doubtful) > lanes) return asked;
         for (std::size_t k = 0; k < numerators; ++k) store(result[k] + i, fragments.quotient[k]);
         if (job.lit != nullptr) store(result[2] + i, lit_of(job, fragments.quotient, narrow(q.front)));
