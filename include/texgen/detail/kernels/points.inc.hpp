@@ -26,7 +26,7 @@ TEXGEN_INLINE void store_points(const DividedOutput& output, std::size_t i, std:
     store(output.out[0] + i, value[0]);
 }
 
-// Floats below are no further apart than the tolerance; none, of an exact one.
+// Below this floats are no further apart than the tolerance; 0 for an exact one.
 TEXGEN_INLINE Doubles limit_within(double tolerance) noexcept {
     return power_of_two_below(Doubles{} + tolerance) * 0x1p24;
 }
@@ -36,11 +36,11 @@ TEXGEN_INLINE LongWords is_within(double tolerance, const Doubles& size, const D
     return greater(limit_within(tolerance), size * 2.0) & at_most(error * 4.0, Doubles{} + tolerance);
 }
 
-// Lanes that cannot be vouched for: of whose float it is not certain, see RoundedEnds, or on which side the point is.
+// Lanes in doubt: which float is nearest, see RoundedEnds, or on which side of the projector the point is.
 struct Doubt {
     Words rounding{};
     LongWords side{};
-    LongWords behind{};  // no doubt, but no ordinary points
+    LongWords behind{};  // not certainly in front, which is no doubt by itself
 
     TEXGEN_INLINE bool any_lane() const noexcept { return any(rounding | narrow(side)); }
 };
@@ -50,8 +50,8 @@ struct PointDivision {
     Doubles numerator[2], q, reciprocal;
 };
 
-// numerator[k] / q with these errors, of all or of each lane. With Signed, q has either sign, and lanes that are
-// certainly behind give 0, and what either float is within the tolerance of is in no doubt; else all are in front.
+// Divides numerator[k] / q, with these errors of all lanes or of each. With Signed, q has either sign, lanes that are
+// certainly behind give 0, and where either float is within the tolerance there is no doubt; else all are in front.
 // Returns the mask of the lanes in front.
 // With u = 2^-53, r = 1/q, and S and Q the sums of terms, numerator and q err by 4.01 u S and 4.01 u Q, and their
 // errors are given as 9.9 u S and 9.9 u Q at least. So in front the quotient errs by r (4.01 u S + |quotient| 4.01 u
@@ -66,7 +66,7 @@ TEXGEN_INLINE LongWords divide_certainly(std::size_t numerators, const PointDivi
     if constexpr (Signed) {
         in_front = greater(of.q, q_error * 0x1p20);
         doubt.behind |= ~in_front;
-        doubt.side |= ~in_front & greater(of.q + q_error, 0.0);  // no doubt of a q that is no number
+        doubt.side |= ~in_front & greater(of.q + q_error, 0.0);  // a q that is no number leaves no doubt
         reciprocal = where(in_front, reciprocal);
     }
     for (std::size_t k = 0; k < numerators; ++k) {
@@ -85,7 +85,7 @@ TEXGEN_INLINE LongWords divide_certainly(std::size_t numerators, const PointDivi
     return in_front;
 }
 
-// The largest |x|, |y|, |z| in each lane, of those that are numbers: where one is none, so is q, whatever its form.
+// The largest |x|, |y|, |z| in each lane. A NaN is left out: it makes q a NaN, whatever the form.
 struct PointExtent {
     WideFloats x{}, y{}, z{};
 
@@ -113,7 +113,7 @@ TEXGEN_INLINE std::size_t end_of_block(std::size_t count, std::size_t begin, std
     return next < count ? next : count;
 }
 
-// Of eight doubles a division takes longer than all else, so two vectors of points share one.
+// A division of eight doubles takes longer than all else, so two vectors of points share one.
 inline constexpr bool divides_pairs = lanes == 8 && wide_lanes == 16;
 inline constexpr std::size_t vectors_at_once = wide_lanes / lanes;
 
@@ -137,8 +137,8 @@ TEXGEN_INLINE Doubles begin_division(const PointJob& job, const WideFloats& x, c
     return shared.of_both;
 }
 
-// Whether reciprocals, or those of products of two q, are between 2^-500 and 2^500, so that what shares a division is a
-// product of numbers in range. The sum tells of what the least of them forgets, a NaN, and is no less than the largest.
+// Whether reciprocals of q, or of products of two, are all between 2^-500 and 2^500, so that two q may share a
+// division. The sum is no less than the largest, and keeps a NaN, which `least` forgets.
 struct ReciprocalRange {
     Doubles least = Doubles{} + 1.0, sum{};
 
@@ -152,7 +152,7 @@ struct ReciprocalRange {
 };
 
 // A block of points of a job that knows its ulps. Returns whether all is certain (it is written all the same). A point
-// that is not in the job's box may spoil the one that shares its division, and only so any other: the range tells.
+// that is not in the job's box can spoil only the one that shares its division, and the range tells.
 template <std::size_t Numerators>
 TEXGEN_INLINE bool fill_bounded_block(const PointJob& job, std::size_t begin, std::size_t end) noexcept {
     Distances distance = far_from_middles();
@@ -200,7 +200,7 @@ TEXGEN_INLINE std::uint64_t fill_points_block(const PointJob& job, std::size_t b
     };
     Doubles numerator_error[2];
     for (std::size_t k = 0; k < Numerators; ++k) numerator_error[k] = error_of(job.numerator[k]);
-    // A NaN, of an infinite coordinate of another point, bounds nothing.
+    // An infinite coordinate of another point may make it a NaN: then infinity stands for it.
     const Doubles q_error = minimum(error_of(job.q), Doubles{} + infinity);
     std::uint64_t doubtful = 0;
     next = division;

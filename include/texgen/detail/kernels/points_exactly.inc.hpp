@@ -24,7 +24,7 @@ struct Effort {
 struct PointTerms {
     TwofoldForm q;
     TwofoldForm numerator[2];
-    bool are_quotients;  // the numerators: q is 1
+    bool are_quotients;  // q is 1: the numerators are the quotients
 
     TEXGEN_APART explicit PointTerms(const PointJob& job) noexcept
         : q(job.q), are_quotients(q.used == 0 && job.q.w == 1.0) {
@@ -47,7 +47,7 @@ TEXGEN_APART std::uint64_t fill_block_again(const PointJob& job, const PointTerm
     for (std::size_t i = begin; i < end; i += at_once) {
         const PointLanes at = load_points(job, i);
         const PointLanes sizes{{magnitude(at.v[0]), magnitude(at.v[1]), magnitude(at.v[2])}};
-        // Behind whatever their q is, as they are no numbers.
+        // Points that are no numbers are behind, whatever their q is.
         const Doubles zero = (at.v[0] + at.v[1] + at.v[2]) * (terms.q.is_finite ? 0.0 : nan);
         const LongWords are_dark = ~at_most(zero, zero);
         Floats value[2];
@@ -72,7 +72,7 @@ TEXGEN_APART std::uint64_t fill_block_again(const PointJob& job, const PointTerm
                 numerator_error[k] = terms.numerator[k].error_at(sizes);
             }
             Doubt doubt;
-            // Exactly: most of what the tolerance would allow is decided before this, and the rest below.
+            // Without the tolerance: most of what it would allow is decided before this, and the rest below.
             in_front = narrow(divide_certainly<true>(numerators, division, numerator_error, terms.q.error_at(sizes),
                                                      0.0, value, doubt));
             is_decided = !any(doubt.rounding | narrow(doubt.side & ~are_dark));
@@ -84,8 +84,7 @@ TEXGEN_APART std::uint64_t fill_block_again(const PointJob& job, const PointTerm
             q.in_front &= ~are_dark;
             in_front = narrow(q.in_front);
             unknown = lane_bits(~(q.is_known | are_dark));
-            // With q alone in two doubles. What that loses is small beside q unless ties, or q = 0, ask for the last
-            // bits of coordinates.
+            // At first q alone is in two doubles: these lose little unless ties, or q = 0, ask for the last bits.
             if (!effort.are_ties) {
                 is_decided = unknown == 0;
                 for (std::size_t k = 0; k < numerators; ++k)
@@ -117,8 +116,8 @@ TEXGEN_APART std::uint64_t fill_block_again(const PointJob& job, const PointTerm
     return doubtful;
 }
 
-// Decides these vectors of a block anew, a bit for each. Returns the first exact_block of which some points stay in
-// doubt, and these; or that none is.
+// Decides vectors of a block anew, those with a bit in `doubtful`. Returns the first exact_block of which points stay
+// in doubt, and these; or `end` and none.
 TEXGEN_APART inline Undecided fill_vectors_again(const PointJob& job, std::size_t begin, std::size_t end,
                                                  std::uint64_t doubtful, Effort& effort) noexcept {
     const PointTerms terms(job);
@@ -140,13 +139,14 @@ TEXGEN_INLINE bool are_few(std::uint64_t vectors) noexcept {
 }
 
 // Divides a block that may be on both sides of the projector, and anew those of its vectors that are in doubt. Where
-// these are more than a quarter, so are all blocks that follow, up to the next multiple of eight blocks, or further
-// while they need two doubles. Returns where the next block begins, or a block whose values stay in doubt.
+// these are more than a quarter, it is decided anew as a whole, like those that follow up to a multiple of eight
+// blocks, or further while they need two doubles. Returns where the next block begins, or a block whose values stay in
+// doubt.
 template <class CompiledWhereCalled = void>
 TEXGEN_APART Undecided fill_points_again(const PointJob& original, std::size_t begin, Effort& effort) noexcept {
     std::size_t end = end_of_block(original.count, begin, exact_block);
     PointJob job = original;
-    if (job.numerators == 1) {  // twice: this is not compiled for one
+    if (job.numerators == 1) {  // it stands in both places: this is compiled for two alone
         job.numerator[1] = job.numerator[0];
         job.out[1] = job.out[0];
     }
@@ -169,10 +169,10 @@ TEXGEN_APART Undecided fill_points_again(const PointJob& original, std::size_t b
     return {begin, 0};
 }
 
-// Most blocks are in front and in no doubt: they are divided four at once. Of one with a few vectors in doubt these are
-// done anew; another is done anew as a whole, and what it needed is expected of the blocks that follow, up to seven.
-// The job is copied, here and below, so that the compiler knows that no store changes it: nothing that the loop reads
-// may be reached from elsewhere.
+// Most blocks are in front and in no doubt: they are divided four at once. Of a block with a few vectors in doubt only
+// these are done anew; one with more is done anew as a whole, as may be those that follow, up to seven. The job is
+// copied, here and below, so that the compiler knows that no store changes it: nothing that the loop reads may be
+// reached from elsewhere.
 template <std::size_t Numerators>
 TEXGEN_INLINE Undecided fill_points_exact_of(const PointJob& original, std::size_t first) noexcept {
     const PointJob job = original;

@@ -27,14 +27,14 @@ struct FormsInFloat {
     }
 };
 
-// What bounds the errors of quotients in float, by FloatDivision::error(), in each lane: in float itself, whose
-// roundings, 16 units each at most, the factors cover.
+// Bounds on the errors of quotients in float, by FloatDivision::error(), in each lane. They are computed in float:
+// factors cover the roundings of that, 16 units each at most.
 struct FloatErrors {
     WideFloats of_form[3];   // of q and of the numerators
     WideWords are_in_range;  // the forms
     float roundings, accepted;
 
-    // Where these are the largest |x|, |y|, |z|.
+    // Of points whose largest |x|, |y|, |z| these are.
     template <std::size_t Count>
     TEXGEN_INLINE FloatErrors(const FloatDivision& division, const PointForm (&form)[Count], const PointExtent& extent,
                               double tolerance) noexcept
@@ -49,7 +49,7 @@ struct FloatErrors {
             of_form[k] = terms * form_error + underflow;
         }
     }
-    // Whether numerator k is within the tolerance for quotients of this size and this 1 / q at most. A NaN is not.
+    // The lanes where quotients of form k are within the tolerance, if they and 1 / q are at most these. A NaN is not.
     TEXGEN_INLINE WideWords are_within(std::size_t k, const WideFloats& size,
                                        const WideFloats& reciprocal) const noexcept {
         const WideFloats error = (of_form[k] + size * of_form[0]) * (reciprocal * 1.0015f) + size * roundings;
@@ -57,16 +57,16 @@ struct FloatErrors {
     }
 };
 
-// A block of points, if all are in front. The largest |v_j| bound the terms of the forms, and with the largest quotient
-// and the least q, found on the way, the error of every point. Returns whether all are inside the tolerance (they are
-// written all the same). A NaN makes the largest quotient one, and fails.
+// Fills a block of points as if all were in front. The largest |v_j| bound the terms of the forms, and with the largest
+// quotient and the least q, found on the way, the error of every point. Returns whether all are in front and inside the
+// tolerance (they are written all the same). A NaN becomes the largest quotient, and fails.
 template <std::size_t Numerators>
 TEXGEN_INLINE bool fill_in_front(const PointJob& job, const PointForm (&of)[1 + Numerators],
                                  const FormsInFloat<Numerators>& forms, std::size_t begin, std::size_t end) noexcept {
     PointExtent extent;
     WideWords largest[Numerators] = {};
     // The bits of positive floats have their order; those of a negative one, and of -0, are below them all. A q that
-    // overflowed in float would go unnoticed, not being the least; its terms tell.
+    // overflows is not the least: are_in_range tells of it.
     WideWords least_q = signed_bits(WideFloats{} + static_cast<float>(largest_q_in_front));
     WideFloats x, y, z, value[2];
     for (std::size_t i = begin; i < end; i += wide_at_once) {
@@ -79,7 +79,7 @@ TEXGEN_INLINE bool fill_in_front(const PointJob& job, const PointForm (&of)[1 + 
         store_points(job, i, Numerators, value, ~WideWords{});
     }
     const FloatErrors errors(all_float, of, extent, job.tolerance);
-    // The least that q is, where that is as computed.
+    // What q is at least, from the least one that was computed.
     const WideFloats q = from_bits(least_q) * (1.0f - (errors.roundings + 0x1p-20f)) - errors.of_form[0];
     WideWords are_within = errors.are_in_range & less(WideFloats{} + static_cast<float>(least_q_in_front), q);
     for (std::size_t k = 0; k < Numerators; ++k)
@@ -87,9 +87,9 @@ TEXGEN_INLINE bool fill_in_front(const PointJob& job, const PointForm (&of)[1 + 
     return !any(~are_within);
 }
 
-// A block on either side of the projector, about one of its points, so that what is far from the origin loses nothing
-// by it, with errors of each lane. Returns bit i for vector i of which a lane is neither certainly inside the tolerance
-// nor behind (it is written all the same); many_doubtful where it were more than an eighth of them.
+// Fills a block on either side of the projector from differences to one of its points, so that distance from the origin
+// costs no digits, with errors of each lane. Returns bit i for vector i if a lane of it is neither certainly inside the
+// tolerance nor certainly behind (it is written all the same); many_doubtful for more than an eighth of them.
 inline constexpr std::uint64_t many_doubtful = ~std::uint64_t{};
 template <class CompiledWhereCalled = void>
 TEXGEN_APART std::uint64_t fill_about_point(const PointJob& job, std::size_t begin, std::size_t end) noexcept {
@@ -107,8 +107,8 @@ TEXGEN_APART std::uint64_t fill_about_point(const PointJob& job, std::size_t beg
         extent.add(next[0], next[1], next[2]);
     }
     PointForm about[3] = {job.q, job.numerator[0], job.numerator[job.numerators - 1]};
-    // What sums in double lose, and differences that count as 0 as they are subnormal, are less than form_error of the
-    // terms there times 2^-28.
+    // What sums in double lose, and differences that count as 0 because they are subnormal, is less than form_error
+    // times this: 2^-28 of the terms at the point.
     double at[3], reach[3];
     for (std::size_t j = 0; j < 3; ++j) {
         at[j] = static_cast<double>(point[j]);
@@ -134,7 +134,7 @@ TEXGEN_APART std::uint64_t fill_about_point(const PointJob& job, std::size_t beg
         const auto value_of = [&](std::size_t k) { return forms.at(k, next[0], next[1], next[2]); };
         const WideFloats q = value_of(0), reciprocal = 1.0f / q;
         const WideWords are_in_front = errors.are_in_range & less(least_q, q);
-        // So is a q that is no number, of a point that is none.
+        // This takes a q that is no number, too, of a point that is none.
         const WideWords are_behind = errors.are_in_range & ~less(errors.of_form[0] * -1.001f, q);
         WideWords are_certain = are_in_front;
         WideFloats value[2];
@@ -150,10 +150,10 @@ TEXGEN_APART std::uint64_t fill_about_point(const PointJob& job, std::size_t beg
     return doubtful;
 }
 
-// Blocks of float_block points, about a point where one is not certainly in front, and of four times as many once one
-// is. Where more than an eighth of a block's vectors is in doubt they have company: more points after each such block
-// are done exactly. The job is copied for the loops, field by field: what was written by fields is waited for when it is
-// read whole, as it would be were its forms, which are found by their number, in the copy.
+// Fills blocks of float_block points, or of four times as many after one that was certainly in front; where one is not,
+// about a point. Where more than an eighth of a block's vectors are in doubt, so are likely those that follow: from
+// each such block on more points are done exactly. The loops read a copy of the job, made field by field: a load of
+// several fields would wait for their stores, as it would of the forms, which are found by number, in the copy.
 template <std::size_t Numerators>
 TEXGEN_INLINE Undecided fill_points_within_of(const PointJob& original, std::size_t first) noexcept {
     PointForm of[1 + Numerators] = {original.q};

@@ -2,7 +2,7 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// A sum of two doubles, the second the lesser, and its nearest double. What that leaves only ties ask for.
+// A sum of two doubles, the second the lesser, and the double nearest to it. Only ties ask for low(), what that leaves.
 struct ExactSum {
     Doubles first, second, high;
 
@@ -19,8 +19,8 @@ struct MixtureLanes {
     TEXGEN_INLINE explicit MixtureLanes(const Mixture& of) noexcept
         : base(Doubles{} + of.base), step(Doubles{} + of.step), rest(Doubles{} + of.rest), kind(of.kind) {}
 
-    // Exactly, but where an alpha is among inexact_alpha. The first term is a multiple of the second's ulp, so that the
-    // quick sum is exact too, but where the ends are far apart.
+    // The value, exact but for alphas in (0, inexact_alpha]. The first term is a multiple of the second's ulp, so that
+    // the quick sum is exact too, unless the ends are far apart.
     template <bool IsShort>
     TEXGEN_INLINE ExactSum exactly_at(const Doubles& alpha) const noexcept {
         const Doubles part = alpha * step;
@@ -52,7 +52,7 @@ TEXGEN_INLINE bool has_small_alpha(const SegmentJob& job, std::size_t begin, std
     return any(are);
 }
 
-// s - middle q but for middle q.low(), where both products are about the same.
+// s - middle q.high, where both are about the same.
 TEXGEN_INLINE Doubles small_difference(const ExactSum& s, const ExactSum& q, const Doubles& middle) noexcept {
     const Doubles q_part = leading_bits<27>(q.high);
     return ((s.high - middle * q_part) - middle * (q.high - q_part)) + s.low();
@@ -64,7 +64,7 @@ TEXGEN_INLINE Floats rounded_from(const Doubles& middle, const Doubles& remainde
     return to_floats(where(in_front, middle + where(are_nonzero(remainder), away)));
 }
 
-// Blocks, on both sides of the projector, up to the first with values that stay in doubt.
+// Fills blocks, on either side of the projector, up to the first with values that stay in doubt.
 template <std::size_t Numerators, bool AreShort>
 Undecided fill_segment_closely(const SegmentJob& job, std::size_t first) noexcept {
     const std::size_t count = job.count;
@@ -99,8 +99,8 @@ Undecided fill_segment_closely(const SegmentJob& job, std::size_t first) noexcep
             TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k) quotient[k] = s[k].high * reciprocal + 0x1p-900;
             const Distances distance = nearer(far_from_middles(), quotient[0], quotient[Numerators - 1], 7);
             const bool are_near = any_zero(distance);
-            // Where the float may be subnormal, and that is next to the middle of two. Elsewhere middle_near() serves:
-            // the middles of subnormal floats are among the floats that it would have next to it.
+            // The lanes where the float may be subnormal and the quotient is next to the middle of two such floats.
+            // Elsewhere middle_near() serves: to it the middles of subnormal floats are not middles, but floats.
             LongWords is_small[2] = {};
             bool are_small = false;
             if (has_subnormal) {
@@ -167,8 +167,8 @@ Undecided fill_segment_exact(const SegmentJob& job, std::size_t first) noexcept 
     return job.are_short ? fill_segment_closely<1, true>(job, first) : fill_segment_closely<1, false>(job, first);
 }
 
-// Values in front by fill(job, begin, end), which is the first value that it does not vouch for or the end; with their
-// mask, where one is asked for.
+// Fills values in front by fill(job, begin, end), which returns the first value that it does not vouch for, or the end;
+// and their mask, where one is asked for.
 template <class CompiledWhereCalled = void>
 TEXGEN_INLINE std::size_t fill_in_front(std::size_t (*fill)(const SegmentJob&, std::size_t, std::size_t) noexcept,
                                         const SegmentJob& job, std::size_t first) noexcept {
@@ -183,8 +183,8 @@ TEXGEN_INLINE std::size_t fill_in_front(std::size_t (*fill)(const SegmentJob&, s
     return job.count;
 }
 
-// Two vectors by one division, all of it in front: an alpha that is no number spoils its neighbour. The divisions of a
-// block go first: they take long, and what waits for one has little room to wait in.
+// Two vectors share a division; all values are in front. An alpha that is no number spoils its neighbour, and its block
+// is refused. The divisions of a block go first: they take long, and only so much can wait for one.
 template <std::size_t Numerators, bool IsAsymptotic>
 std::size_t fill_segment_in_double_of(const SegmentJob& job, std::size_t first, std::size_t count) noexcept {
     float* const out[2] = {job.out[0], job.out[Numerators - 1]};
@@ -238,8 +238,8 @@ std::size_t fill_segment_in_double(const SegmentJob& job, std::size_t first) noe
                          job, first);
 }
 
-// The same in float. The step of the steeper coordinate is what is divided by two vectors, and the other's a share of
-// it: a product less, and of fewer sums that compilers fuse with products, which wait for stores.
+// The same in float. Two vectors divide the slope of the steeper coordinate, and the step of the other is a share of
+// this one's: that is a product less, and fewer sums for compilers to fuse with products, which wait for stores.
 template <std::size_t Numerators>
 std::size_t fill_segment_all_float_of(const SegmentJob& job, std::size_t first, std::size_t count) noexcept {
     const float* const from = job.alpha;
