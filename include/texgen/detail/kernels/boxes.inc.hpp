@@ -2,9 +2,9 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// Many bodies, a lane each. Where the largest value of a form is negative, the body is outside; where the least of all
-// are positive, inside; where all are positive in the middle, no further plane makes it outside. An infinity makes the
-// error one or a NaN, and nothing is certain.
+// The classes of many bodies, a lane each. Where the largest value of a form is negative, the body is outside; where
+// the least of all are positive, inside; where all are positive in the middle, no further plane makes it outside. An
+// infinite coordinate makes the error infinite or a NaN: nothing is certain then.
 // In float a sum or difference of two corners is rounded, as are a coefficient, a product, at most three sums of them
 // and the sum of the two: 7 u.
 TEXGEN_INLINE WideWords classes(const FloatForms& forms, const WideFloats (&twice_middle)[3], const auto& change,
@@ -29,8 +29,8 @@ TEXGEN_INLINE WideWords classes(const FloatForms& forms, const WideFloats (&twic
     return body_in_doubt - (outside & 7) - (inside & 5) - (partial & 2) - (reached & 4);
 }
 
-// A copy's numbers GCC spreads over lanes before the loop, which takes a batch of 16 longer than the batch itself. Four
-// lanes have no instruction that spreads what it reads.
+// How the loops read forms: GCC spreads the numbers of a copy over lanes before the loop, which takes longer than a
+// batch of 16 bodies. With four lanes they are copied, as no instruction spreads what it reads.
 using ReadForms = std::conditional_t<wide_lanes == 4, const FloatForms, const FloatForms&>;
 
 template <class CompiledWhereCalled = void>
@@ -71,12 +71,12 @@ void classify_spheres(const FloatForms& original, const float* spheres, std::siz
     }
 }
 
-// A box as the rows that forms are of, a lane each.
+// A box in each lane, by the rows that a FormAtVertex names.
 using BoxRows = Doubles[8];
 
-// A form whose signs are right: an infinite value has the right one, and no size of a row is infinite. In double a
-// coefficient, a product and three sums are rounded, less than half of what gamma(8) has room for. Where that leaves
-// the sign open, and it is asked, the exact terms tell, whose magnitudes are 2^49 times that error together, as
+// Values of a form with the right signs, where asked: an infinite one has it in any case, and no size of a row is
+// infinite. In double a coefficient, a product and three sums are rounded, less than half of what gamma(8) has room
+// for. Where that leaves the sign open, exact terms are summed, whose magnitudes are 2^49 times that error together:
 // gamma(8) is 2^-49.
 TEXGEN_INLINE Doubles signed_form(const FormAtVertex& form, const BoxRows& row, const BoxRows& size,
                                   const LongWords& asked) noexcept {
@@ -94,8 +94,9 @@ TEXGEN_INLINE Doubles signed_form(const FormAtVertex& form, const BoxRows& row, 
     return select(is_open, signed_sum(term, form.term_count, sigma, is_open), value);
 }
 
-// Whether a form is negative where it is largest, or q is 0, then whether an inner one is where it is least; q first,
-// which is negative for half of what is at the apex. Where that is known of every box, the other forms are not asked.
+// A box is outside if a form is negative where it is largest, or q is 0; else inside if no inner form is negative where
+// it is least. q comes before the sides, as it is negative for half of what is at the apex. Once all boxes are known,
+// the other forms are not asked.
 TEXGEN_INLINE void bound_box(const DoubleForms& forms, const BoxRows& row, const LongWords& have_points,
                              LongWords& outside, LongWords& inside) noexcept {
     BoxRows size;
@@ -111,7 +112,7 @@ TEXGEN_INLINE void bound_box(const DoubleForms& forms, const BoxRows& row, const
     }
 }
 
-// What is in none of these three is partial.
+// A body that is in none of these three is partial.
 TEXGEN_INLINE void store_classes(int* out, const LongWords& outside, const LongWords& inside,
                                  const LongWords& in_doubt) noexcept {
     store(out, 1 - (narrow(outside) & 1) + (narrow(inside) & 1) + (narrow(in_doubt) & (body_in_doubt - 1)));
@@ -136,8 +137,8 @@ void decide_boxes(const DoubleForms* forms, const SeparatingForms& planes, const
 }
 
 // The extremes of a form over a sphere are its value at the centre +- the radius, as |a| = 1. Beside an edge, where
-// forms f and g meet, a sphere may be outside neither: where w_f = c g - f and w_g = c f - g, c = a_f.a_g, are positive
-// at the centre, the edge is what is nearest, at the squared distance -(w_f f + w_g g) / (1 - c^2).
+// forms f and g meet, a sphere may be outside, but of neither form: where w_f = c g - f and w_g = c f - g, c = a_f.a_g,
+// are positive at the centre, the edge is what is nearest, at the squared distance -(w_f f + w_g g) / (1 - c^2).
 // With E = error_f + error_g and M = E + |f| + |g|: a value errs by at most 3/8 of its error, of which 16 u of it are
 // no more, and a squared length |a|^2 by 28 u. So weights err by 2.2 E at most, and the sum by 2.8 M E: above 16 M E
 // one weight at most is negative, w_f say. Then g is so as well, and the sphere nearer, to g's side, by w_f^2 of the

@@ -75,7 +75,7 @@ TEXGEN_INLINE WideFloats half_log2_of_quotient(const WideFloats& a, const WideFl
     return series * s + to_numbers(exponent(a) - exponent(b)) * 0x1p-24f;
 }
 
-// 1 / sqrt(x) within 2^-22 of itself, of normal numbers; finite of 0: Newton's iteration from a guess within 3.5 %.
+// 1 / sqrt(x) of normal numbers, within 2^-22 of itself; finite for 0: Newton's iteration from a guess within 3.5 %.
 TEXGEN_INLINE WideFloats inverse_square_root(const WideFloats& x) noexcept {
     WideFloats y = from_bits((WideWords{} + 0x5f3759df) - halved(signed_bits(x)));
     for (int i = 0; i < 3; ++i) y = y * (1.5f - (x * 0.5f * y) * y);
@@ -104,8 +104,8 @@ struct SpectrumLanes {
     }
 };
 
-// Rows from `first` on, up to the first with a fragment whose derivatives are too small for the floats here (it is
-// written all the same); the height if there is none.
+// Fills rows from `first` on, up to the first with a fragment whose derivatives are too small for floats (it is written
+// all the same); returns that row, or the height.
 template <bool InFloat, bool Shape>
 TEXGEN_INLINE int filter_rows(const FootprintJob& job, int first) noexcept {
     constexpr int smallest = bit_cast<int>(FootprintJob::smallest_square);

@@ -11,8 +11,8 @@ struct WeightLanes {
           of_q(load<Doubles>(weights.of_q + i)) {}
 };
 
-// A coefficient of each, from a column of the matrix: exactly, in parts far below one another, as q is split so that
-// its products with a float are exact; and rounded.
+// A coefficient of each form, from a column of the matrix: exactly, as a sum of parts far below one another, for which
+// q is split so that its products with a float are exact; and rounded.
 struct CoefficientLanes {
     Doubles part[3], rounded;
 
@@ -60,14 +60,13 @@ void make_unit_forms(const FormLanes& forms, const double* slopes, UnitForms& re
     result.last_q = forms.last_q;
 }
 
-// Scaled by powers of two so that one bound serves all: 7 u (max|a_j| size + |d|) with u = 2^-24, see classes(), and
-// 0.1 u for the bound's own roundings; 8.1 leaves room for one more. The change over a sphere, whose slope may be
+// Scales forms by powers of two so that one bound serves all: 7 u (max|a_j| size + |d|) with u = 2^-24, see classes(),
+// and 0.1 u for the bound's own roundings; 8.1 leaves room for one more. The change over a sphere, whose slope may be
 // sqrt(3) max|a_j|, errs by at most 3 u of it, less than 8.1 u of four radii.
-// |a_j| and |d| are so small that nothing overflows before the size does. What holds with room for the inner sides
-// holds for both, so one bound has that room, too.
-// A form is worth as much as it changes within the scene. How large that is, the distances of the sides from the origin
-// tell: a form that hardly changes there (q, nearly orthographic, or a far plane) is not scaled up to them. Nor is a
-// limit of depth whose rounding moves it far.
+// |a_j| and |d| are so small that nothing overflows before the size does. The bound has room for the inner sides, too.
+// How much a form changes within the scene matters, and the distances of the sides from the origin tell how large that
+// is: a form that hardly changes there (q, nearly orthographic, or a far plane) is not scaled up to the others. Nor is
+// a limit of depth that its rounding moves far.
 template <class CompiledWhereCalled = void>
 void round_forms(const FormLanes& forms, std::size_t count, FloatForms& result) noexcept {
     Doubles gradient[form_lanes / at_once];
@@ -76,7 +75,7 @@ void round_forms(const FormLanes& forms, std::size_t count, FloatForms& result) 
         Doubles& sum = gradient[i / at_once];
         sum = magnitude(load<Doubles>(forms.a[0] + i)) + magnitude(load<Doubles>(forms.a[1] + i)) +
               magnitude(load<Doubles>(forms.a[2] + i));
-        // A form of constant value, whose d is about 1, is not at any distance.
+        // A constant form, whose d is about 1, is at no distance.
         store(distance + i,
               where(greater(sum, 0.0), magnitude(load<Doubles>(forms.d + i)) / maximum(sum, Doubles{} + 0x1p-900)));
     }
@@ -122,7 +121,7 @@ void round_forms(const FormLanes& forms, std::size_t count, FloatForms& result) 
 
 // One box in double, a lane a form: twice the value in its middle, and how much it changes to either end. A sum or
 // difference of two corners is rounded, as are a coefficient, a product, three sums of them and the sum of the two: 8
-// u. Of a form that uses a coordinate which is infinite nothing is certain here.
+// u. Nothing is certain of a form that uses an infinite coordinate.
 template <class CompiledWhereCalled = void>
 int classify_box(const FormLanes& forms, const float* box_min, const float* box_max) noexcept {
     double sum[3], extent[3], size[3];
@@ -179,11 +178,11 @@ int classify_box(const FormLanes& forms, const float* box_min, const float* box_
     return any(not_inside) ? body_not_outside : 2;
 }
 
-// Numbers with the exact signs of forms where they are largest over a box that has points, or least. A double tells
-// them where it is larger than its roundings, or infinite; two where they leave nothing, as of numbers with few digits,
-// or are larger than the roundings of what they leave. Then what is left is summed without loss as far as two doubles
-// go, which is all of it on a side that is touched, or but for the tiny weight of q beside a side at 0; and at last
-// exact sums tell, of 21 numbers at most. A coordinate without a coefficient is not used.
+// Numbers with the exact signs of forms where they are largest over a box that has points, or least. A double decides
+// where it is larger than its roundings, or infinite; then two doubles, where they leave nothing, as of numbers with
+// few digits, or are larger than the roundings of what they leave. Then what they leave is summed without loss as far
+// as two doubles go: that is all of it on a side that is touched, but for the tiny weight of q beside a side at 0. At
+// last exact sums decide, of 21 numbers at most. A coordinate whose coefficient is 0 is not used.
 TEXGEN_INLINE Doubles signed_forms(const glm::dmat4& matrix, const WeightLanes& weights, const double (&at_positive)[3],
                                    const double (&at_negative)[3]) noexcept {
     const CoefficientLanes constant(weights, matrix[3]);
@@ -222,8 +221,7 @@ TEXGEN_INLINE Doubles signed_forms(const glm::dmat4& matrix, const WeightLanes& 
     };
     take(high + low, size_of_low);
     if (!any(is_open)) return value;
-    // Beyond high + low each of 16 numbers is rounded once, and fifteen times their sum; all three are rounded twice
-    // more.
+    // Beyond high + low there are 16 numbers, each rounded once, their sum fifteen times, and the whole twice.
     Doubles rest = constant.part[2], lost = magnitude(rest);
     low = constant.part[1];
     TEXGEN_FOR (int j = 0; j < 3; ++j) {
@@ -251,7 +249,7 @@ TEXGEN_INLINE Doubles signed_forms(const glm::dmat4& matrix, const WeightLanes& 
             *next++ = (coefficient[j].part[k] - first) * at[j];
         }
     }
-    // Parts may cancel: they are larger than what they are of.
+    // Parts that cancel are larger than the coefficient, so sizes are summed anew.
     const std::size_t terms = static_cast<std::size_t>(7 * parts);
     size = Doubles{};
     for (std::size_t k = 0; k < terms; ++k) size = size + magnitude(term[k]);

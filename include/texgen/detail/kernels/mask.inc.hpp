@@ -1,4 +1,4 @@
-// The inner loops of a mask that is made by itself. Included by kernels.inc.hpp.
+// The inner loops of a mask that is made apart from coordinates. Included by kernels.inc.hpp.
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 

@@ -3,7 +3,7 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// Forms of a slide side by side: f of each pair, g, or h, a lane each.
+// Forms of a slide, a lane each: f of each pair or three, or g, or h.
 struct FormColumns {
     double a[3][2 * form_lanes], d[2 * form_lanes];
 
@@ -13,8 +13,8 @@ struct FormColumns {
     }
 };
 
-// The sum of N forms with weights >= 0, where they make a plane. Each coefficient is rounded, as are its product and
-// the sums, and those of a box; no a is above 2. What no form uses stays 0, and nothing else does.
+// Adds sums of N forms with weights >= 0, where they make a plane. Each coefficient is rounded, as are its product and
+// the sums, and those of a box; no a is above 2. A coefficient stays 0 if no form has it, or it is that of but_axis.
 template <std::size_t N>
 TEXGEN_INLINE void add_plane(SeparatingForms& planes, const FormColumns* const (&form)[N], const Doubles (&weight)[N],
                              const LongWords& is_plane, std::size_t but_axis, std::size_t i) noexcept {
@@ -46,7 +46,7 @@ TEXGEN_INLINE void add_plane(SeparatingForms& planes, const FormColumns* const (
 }
 
 // The planes through an edge, where forms f and g of two coordinates meet, and parallel to an axis of the space: with
-// coefficients f_k and g_k of that axis, |g_k| f + |f_k| g has none where f_k and g_k have opposite signs.
+// coefficients f_k and g_k of that axis, |g_k| f + |f_k| g does not use the axis where f_k and g_k have opposite signs.
 template <class CompiledWhereCalled = void>
 TEXGEN_INLINE void add_edges(SeparatingForms& planes, const FormLanes& forms, std::size_t form_count) noexcept {
     const std::size_t edges = edge_count(form_count);
@@ -65,8 +65,8 @@ TEXGEN_INLINE void add_edges(SeparatingForms& planes, const FormLanes& forms, st
     }
 }
 
-// The planes through a vertex, where three forms meet, and across an axis: as f, g and h have no other point in common,
-// the products across g x h, h x f and f x g are their weights, where they have one sign. Rounded ones serve, too.
+// The planes through a vertex, where forms f, g and h meet, and perpendicular to an axis: the weights are the
+// components along it of g x h, h x f and f x g, where these have one sign. Rounded ones serve, too.
 template <class CompiledWhereCalled = void>
 TEXGEN_INLINE void add_vertices(SeparatingForms& planes, const FormLanes& forms) noexcept {
     FormColumns f, g, h;
@@ -92,10 +92,10 @@ TEXGEN_INLINE void add_vertices(SeparatingForms& planes, const FormLanes& forms)
     }
 }
 
-// The planes through the apex that have x, y or z alone, a lane each. alpha T_s + beta T_t + gamma T_q with the
-// cofactors of that column of the 3x3 of the rows has no coefficient in the two others, and where alpha s + beta t +
-// gamma has one sign at the corners of the region, it has it in all of the pyramid; where a side is none, alpha, or
-// beta, has to have the sign that keeps it.
+// The planes through the apex that use x, y or z alone, a lane each. alpha T_s + beta T_t + gamma T_q, with the
+// cofactors of that column in the 3x3 of the rows, has no coefficient in the two others; where alpha s + beta t + gamma
+// has one sign at the corners of the region, it has that in all of the pyramid. Where a side of the region is infinite,
+// alpha, or beta, has to have the sign that keeps it.
 template <class CompiledWhereCalled = void>
 TEXGEN_INLINE void add_axes(SeparatingForms& planes, const glm::dmat4& matrix, const double* side) noexcept {
     constexpr double is_axis[3][form_lanes] = {{1.0}, {0.0, 1.0}, {0.0, 0.0, 1.0}};
@@ -170,7 +170,7 @@ void make_planes(const FormLanes& forms, const glm::dmat4& matrix, const double*
     if (form_count == max_forms) add_vertices(planes, forms);
 }
 
-// Whether a plane separates a box. Of a plane that uses a coordinate which is infinite nothing is certain. As below.
+// Whether a plane separates a box. Nothing is certain of a plane that uses an infinite coordinate.
 template <class CompiledWhereCalled = void>
 bool is_separated(const SeparatingForms& planes, const float* box_min, const float* box_max) noexcept {
     double min[3], max[3];
@@ -195,7 +195,7 @@ bool is_separated(const SeparatingForms& planes, const float* box_min, const flo
     return any(are_negative);
 }
 
-// The same for a box in each lane, by rows: min and max.
+// The same for a box in each lane, given as rows of min and max.
 TEXGEN_INLINE LongWords are_separated(const SeparatingForms& planes, const Doubles (&box)[8]) noexcept {
     Doubles min[3], max[3];
     Doubles size{};
