@@ -21,8 +21,8 @@ struct DifferenceLanes {
 struct EdgeLanes {
     Doubles high, low, size;
 
-    // The cross product of two differences, within 2^-98 of the size. They are short if their low parts are 0, and
-    // is_lost says that some lack a part.
+    // The cross product of two differences, within 2^-98 of the size. is_short: their low parts are 0; is_lost: some
+    // lack a part.
     TEXGEN_INLINE void set(const DifferenceLanes& to_x, const DifferenceLanes& to_y, const DifferenceLanes& from_x,
                            const DifferenceLanes& from_y, bool is_short, bool is_lost) noexcept {
         const Doubles left = to_x.high * from_y.high, right = to_y.high * from_x.high;
@@ -107,7 +107,7 @@ private:
     }
 };
 
-// Sums F = sum G_i f_i over the corners, with G_i = E_i w_j w_k: what the functions of the triangles share.
+// What a triangle's functions F = sum G_i f_i over the corners share: G_i = E_i w_j w_k.
 struct CloseTerms {
     Doubles leading[3], trailing[3], low[3];  // of G_i; leading and trailing are 27 and 26 bits
     Doubles size[3];                          // of what E_i is the difference of, times w_j w_k
@@ -215,7 +215,7 @@ struct CloseSteps : CloseTerms {
     }
 };
 
-// Three numbers, and the power of two of which they are integers.
+// Three numbers, and a power of two of which they are multiples.
 struct IntegerLanes {
     Doubles number[3];
     Doubles unit, per_unit, largest;
@@ -230,7 +230,7 @@ struct IntegerLanes {
     }
 };
 
-// The values of a function at the corners, as integers: these times the grain are its terms.
+// The values of a function at the corners as integers; times the edge functions and the grain these are its terms.
 struct ResidueValues {
     Residues value[3];
     Doubles grain;
@@ -344,8 +344,8 @@ struct NearLanes {
     }
 };
 
-// A value with its residue's help. Where the grain is coarse enough, only one integer that has the residue is, times
-// the grain, within `reach` of the leading part. Their difference is the rest, of which 2^-50 is lost, or nothing.
+// A value sharpened by its residue. Where the grain is coarse enough, only one integer with that residue is, times the
+// grain, within `reach` of the leading part. Their difference is the rest; 2^-50 of it may be lost.
 TEXGEN_INLINE CloseValues sharpened(const CloseValues& f, const Residues& residue, const Doubles& grain) noexcept {
     const Doubles reach = magnitude(f.high) * 0x1p-48 + f.error;
     const LongWords is_one = greater(grain * 0x1p60, reach);

@@ -1,10 +1,10 @@
-// The functions of a batch's triangles far off slivers, where the terms of batch_closely.inc.hpp cancel: about a
+// The functions of a batch's triangles far from slivers, where the terms of batch_closely.inc.hpp cancel: about a
 // corner, where only one of the three terms is not 0, and with coefficients that residues have sharpened. Included by
 // batch.inc.hpp.
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
-// The product of two doubles and a difference: three exact products, and the rest.
+// The product of a value in two doubles and a difference: three exact products, and the rest.
 struct ProductLanes {
     Doubles high, middle[2], rest;
 
@@ -85,7 +85,7 @@ private:
     Residues dx_[3], dy_[3];
 };
 
-// What is known of s, t, q, and r where it is needed, at fragments of a triangle each. A grain of 0: no residue.
+// What is known of s, t, q, and r where it is needed, at a fragment in each lane. A grain of 0: there is no residue.
 struct CloseFragmentsAt {
     const bool needs_r;
     bool are_sums_first;
@@ -95,7 +95,7 @@ struct CloseFragmentsAt {
 
     TEXGEN_INLINE explicit CloseFragmentsAt(bool with_r) noexcept : needs_r(with_r) {}
 
-    // Member by member: GCC would copy them in halves, for which a load of the whole waits.
+    // Member by member: GCC would copy a value in halves, for which a load of the whole would wait.
     TEXGEN_INLINE CloseValues values(std::size_t n) const noexcept {
         return {value[n].high, value[n].low, value[n].error};
     }

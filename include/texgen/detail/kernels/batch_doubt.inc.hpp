@@ -1,4 +1,4 @@
-// Tiles of a batch that are in doubt, again. Included by batch.inc.hpp.
+// Tiles of a batch that are in doubt, decided again. Included by batch.inc.hpp.
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
@@ -44,7 +44,7 @@ TEXGEN_APART inline std::uint64_t decide_tiles(const TilesJob& job, const Fragme
                                                std::size_t of_block, bool about_corners = false) noexcept {
     BatchFunctions functions;
     TileScratch scratch;
-    const auto known = static_cast<std::size_t>(std::countr_zero(doubtful));  // of finite numbers, as others may not be
+    const auto known = static_cast<std::size_t>(std::countr_zero(doubtful));  // has finite numbers, as others may not
     std::uint64_t taken = 0;
     const auto take = [&](std::size_t tile) {
         const std::size_t i = tile / at_once * at_once;

@@ -3,7 +3,7 @@
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
 // What the footprints of the triangle in each lane share: the functions of triangle/planes.hpp about its first vertex,
-// without a common factor. Of floats none of them leaves the range of double.
+// without a common factor. As they are made of floats, none leaves the range of double.
 struct FootprintLanes {
     VertexLanes given;
     Doubles q, q_dx, q_dy;
@@ -12,7 +12,7 @@ struct FootprintLanes {
     Doubles w;                             // of all vertices
     LongWords is_refused;                  // a w is not positive, or an s, t or r not finite
 
-    // A triangle, or that of each lane.
+    // Takes one triangle for all lanes, or one for each.
     TEXGEN_INLINE void take(const auto& triangle) noexcept {
         given.take(triangle);
         const auto number = [&](std::size_t i, std::size_t k) { return given.number(i, k); };
@@ -123,9 +123,9 @@ struct DeterminantLanes {
     }
 };
 
-// J of a block's fragments in texels, column by column and relative to a power of two: so floats hold it, and a
-// determinant that is made in double. That power is a product of two floats, of which the second is 1 but where J is very
-// large or small, and the first is 0 where a fragment is not in front.
+// J of a block's fragments in texels, column by column and relative to a power of two, so that floats hold it; with its
+// determinant, which is made in double. That power is a product of two floats, of which the second is 1 but where J is
+// very large or small, and the first is 0 where a fragment is not in front.
 struct JacobianBlock {
     float dx[2][exact_block], dy[2][exact_block];
     float determinant[exact_block], unit[2][exact_block];
@@ -199,7 +199,7 @@ struct JacobianBlock {
 
 template <class CompiledWhereCalled = void>
 Undecided fill_batch_footprints(const BatchFootprintsJob& original, std::size_t first) noexcept {
-    // w is 0: refused, and with an area, so that nobody looks for it.
+    // It is refused, as w is 0; it has an area, so that nobody looks for one closely.
     static constexpr float dark[3 * BatchVertex::size + 1] = {0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 1};
     const BatchFootprintsJob job = original;
     const bool filters = job.are_filtered();

@@ -10,7 +10,7 @@ struct OneTriangle {
 
 TEXGEN_INLINE bool all(const LongWords& mask) noexcept { return lane_bits(mask) == (std::uint64_t{1} << lanes) - 1; }
 
-// A vector of fragments at (x, y): the quotients where they are in front, and the lanes in doubt of side or value.
+// A vector of fragments at (x, y): quotients where they are in front, and the lanes whose side or value is in doubt.
 template <std::size_t Numerators>
 struct FragmentLanes {
     Floats quotient[Numerators];
@@ -117,8 +117,8 @@ private:
     double first_, column_;  // of the first fragment: its number, and its column
 };
 
-// What the vectors in doubt so far say about those to come: whether these are likely to share triangles, what to decide
-// them by first, and the functions of the triangles, over rows of this width from the first row on.
+// What earlier vectors in doubt say about later ones: whether these are likely to share triangles, how to decide them
+// first, and the functions of triangles, over rows of this width from the first row on.
 struct Learned {
     enum Way { nearly, closely, about_corners };
     static constexpr double rows = 64.0;
@@ -223,7 +223,7 @@ private:
         count_ = 0;
     }
 
-    // Decides a vector by the shared functions. Returns the lanes that stay in doubt, as do all that put vectors.
+    // Decides a vector by the shared functions. Returns the lanes that stay in doubt, as put() and put_closely() do.
     TEXGEN_APART std::uint64_t put_together(const Known& known) const noexcept {
         const Doubles x = known.vector.x - learned_.left, y = known.vector.y - learned_.top;
         const BatchFunction* const functions = learned_.functions.of;

@@ -11,7 +11,7 @@ struct alignas(64) BatchFunction {
     std::uint64_t residues[16];
 };
 
-// Those of one triangle in each lane.
+// The functions of the triangle in each lane.
 struct LaneFunctions {
     Doubles part[4][8];
     Residues residues[16];
@@ -23,7 +23,7 @@ struct LaneFunctions {
     }
 };
 
-// Those of a block of triangles.
+// The functions of a block of triangles.
 struct BatchFunctions {
     BatchFunction of[batch_block];
 
@@ -97,7 +97,7 @@ private:
     }
 };
 
-// The functions at (x, y) from the fragment that they are about. Sums of the high parts are exact.
+// The functions at (x, y) from the fragment that they are about. Sums of the high parts are exact: see CloseFunction.
 template <class Functions>
 struct BatchFunctionsAt {
     static constexpr bool are_sums_first = true;

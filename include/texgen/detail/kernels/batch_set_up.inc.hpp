@@ -6,7 +6,8 @@ TEXGEN_INLINE Doubles load_lanes(const double* from) noexcept { return load<Doub
 TEXGEN_INLINE Doubles load_lanes(const float* from) noexcept { return to_doubles(load<Floats>(from)); }
 TEXGEN_INLINE Residues load_lanes(const std::uint64_t* from) noexcept { return load<Residues>(from); }
 
-// The first `count` numbers, in whole vectors, that lane j has at from(j). The last first: with q a division begins.
+// Loads the first `count` numbers at from(j) to lane j, in whole vectors. The last come first: with q a division
+// begins.
 template <class Vector, std::size_t Size, class From>
 TEXGEN_INLINE void load_columns(Vector (&columns)[Size], std::size_t count, const From& from) noexcept {
     TEXGEN_FOR (std::size_t end = Size; end > 0; end -= at_once) {
@@ -19,7 +20,7 @@ TEXGEN_INLINE void load_columns(Vector (&columns)[Size], std::size_t count, cons
     }
 }
 
-// The other way.
+// Stores lane j of all columns at to(j).
 template <class Vector, std::size_t Size, class To>
 TEXGEN_INLINE void store_columns(const Vector (&columns)[Size], const To& to) noexcept {
     TEXGEN_FOR (std::size_t first = 0; first < Size; first += at_once) {
@@ -30,8 +31,8 @@ TEXGEN_INLINE void store_columns(const Vector (&columns)[Size], const To& to) no
     }
 }
 
-// What the vertices of a triangle are off its first float, the one of the largest w first, as TrianglePlanes has them.
-// Positive numbers are in the order of their bits; others are refused in any order. No branch: it would be random.
+// The offsets of a triangle's vertices from its first float, the one of the largest w first, as TrianglePlanes has
+// them. The bits of positive w have their order; others are refused in any order. A branch would be mispredicted.
 TEXGEN_INLINE const std::size_t* about_farthest(const float* triangle) noexcept {
     static constexpr std::size_t of_turned[5] = {0, BatchVertex::size, 2 * BatchVertex::size, 0, BatchVertex::size};
     const auto w = [&](std::size_t i) { return bit_cast<int>(triangle[i * BatchVertex::size + 2]); };
@@ -40,7 +41,7 @@ TEXGEN_INLINE const std::size_t* about_farthest(const float* triangle) noexcept 
     return of_turned + (is_b + 2 * is_c);
 }
 
-// The triangle in each lane: its vertices, the one of the largest w first.
+// Loads the triangle of each lane: its vertices, the one of the largest w first.
 TEXGEN_INLINE void load_about_farthest(const float* const (&triangle)[lanes], Doubles (&vertex)[3][8]) noexcept {
     const std::size_t* of_turned[lanes];
     TEXGEN_FOR (std::size_t j = 0; j < at_once; ++j) of_turned[j] = about_farthest(triangle[j]);
@@ -48,8 +49,8 @@ TEXGEN_INLINE void load_about_farthest(const float* const (&triangle)[lanes], Do
         load_columns(vertex[i], 8, [&](std::size_t j) { return triangle[j] + of_turned[j][i]; });
 }
 
-// As TrianglePlanes, with the same operations in the same order: what they err by is said there. Where the sign of the
-// area is in doubt, or a number is not one, as in lanes without a triangle, q is -1: those lanes are returned.
+// As TrianglePlanes, with the same operations in the same order, whose errors are bounded there. Returns the lanes
+// where the sign of the area is in doubt, or a number is not finite, as in lanes without a triangle; q is -1 there.
 TEXGEN_INLINE LongWords set_up_lanes(const float* triangles, BatchPlanes* planes) noexcept {
     const float* of_lane[lanes];
     TEXGEN_FOR (std::size_t j = 0; j < at_once; ++j) of_lane[j] = triangles + 3 * BatchVertex::size * j;
@@ -66,7 +67,7 @@ TEXGEN_INLINE LongWords set_up_lanes(const float* triangles, BatchPlanes* planes
     const Doubles factor = with_sign_of(reciprocals_of_powers(power_of_two_below(largest)), area);
     const Doubles weight_a = w_bc * factor, weight_b = w_ac * factor, weight_c = w_ab * factor;
 
-    // Beyond its vertices a small tile is as far from the first as it is large.
+    // A small tile may reach beyond the vertices by about its own size: eight pixels.
     const Doubles size_b_x = magnitude(b_x), size_b_y = magnitude(b_y);
     const Doubles size_c_x = magnitude(c_x), size_c_y = magnitude(c_y);
     const Doubles reach_x = maximum(size_b_x, size_c_x) + 8.0, reach_y = maximum(size_b_y, size_c_y) + 8.0;
@@ -118,7 +119,7 @@ unsigned set_up_batch(const float* triangles, BatchPlanes* planes) noexcept {
     return unknown;
 }
 
-// The functions of a triangle in each lane; of r only with_r.
+// The functions of a triangle in each lane; that of r only if with_r.
 struct BatchLanes {
     Doubles value[BatchPlanes::count]{};
 
@@ -129,11 +130,11 @@ struct BatchLanes {
     TEXGEN_INLINE const Doubles& operator[](std::size_t k) const noexcept { return value[k]; }
 };
 
-// The columns and rows of a vector of fragments, which follow one another row by row. Half of one more keeps the
-// quotient by the width away from the integers.
+// The columns and rows of a vector of fragments, which follow one another row by row. A half more than a fragment's
+// number keeps its quotient by the width away from the integers.
 template <class Vector, class Scalar>
 struct FragmentWalk {
-    Vector number, x, y;  // number: half of one more
+    Vector number, x, y;  // number: with the half
     Scalar width, per_width;
     Scalar rows_per_vector;  // where it has whole ones
 
@@ -150,7 +151,7 @@ struct FragmentWalk {
         place();
     }
 
-    // Adding and taking `rounder` leaves the nearest integer.
+    // Adding `rounder` and subtracting it leaves the nearest integer.
     template <class Number>
     TEXGEN_INLINE static Number row_of(const Number& number, Scalar per_width) noexcept {
         constexpr auto rounder = static_cast<Scalar>(sizeof(Scalar) == sizeof(double) ? 0x1.8p52 : 0x1.8p23);
@@ -166,7 +167,7 @@ private:
     }
 };
 
-// Where the values of fragments go: in whole vectors, of which those that follow overwrite what is too much.
+// Where the values of fragments go: in whole vectors, each of which overwrites what the one before wrote too much.
 struct FragmentOutputs : BatchOutputs {
     template <std::size_t Numerators>
     TEXGEN_INLINE void put(std::size_t n, const Floats (&value)[Numerators], const LongWords& in_front) const noexcept {

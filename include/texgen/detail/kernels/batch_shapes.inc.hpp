@@ -5,7 +5,7 @@ namespace TEXGEN_DETAIL::TEXGEN_ISA {
 // Whether a positive number divides a power of two: it is one, and no larger.
 TEXGEN_INLINE bool divides(int a, int power_of_two) noexcept { return (a & (a - 1)) == 0 && a <= power_of_two; }
 
-// The rectangle of a tile as its kernels walk it: a single row is walked as a column. Most are as the one before.
+// The rectangle of a tile as its kernels walk it: a single row as a column. Most tiles have that of the one before.
 struct ShapeOfTile {
     int width = 0;
     bool is_turned = false;

@@ -6,9 +6,9 @@ namespace TEXGEN_DETAIL::TEXGEN_ISA {
 // about the middle of the tile, u + (dx x + dy y) / (1 + bend_x x + bend_y y).
 struct BatchTiles {
     double base[3][batch_block], q[batch_block], error[3][batch_block];
-    double ulps[batch_block];  // what quotients are within, of their own, a power of two
+    double ulps[batch_block];  // so many of their own ulps quotients are within; a power of two
     float middle[3][batch_block], dx[3][batch_block], dy[3][batch_block], bend_x[batch_block], bend_y[batch_block];
-    // A bit for each tile and kind, in one number: stores of several would be waited for where they are read at once.
+    // A bit for each tile and kind, in one number: a load of several numbers would wait for their stores.
     enum Kind : std::size_t { is_dark, is_lit, is_exact, has_middles, is_float, is_polynomial };
     std::uint64_t kinds;
 
@@ -20,8 +20,7 @@ struct BatchTiles {
 };
 
 // A tile in each lane: its first fragment, from the vertex that its functions are about; the steps to its last column
-// and row; by how much more the functions may err there than at the vertices; and what a sum for each of its vectors is
-// rounded by.
+// and row; by how much more the functions may err there than at the vertices; and roundings of a sum for each vector.
 struct TileLanes {
     Doubles x, y, right, bottom, stretch, sums;
 
@@ -67,8 +66,8 @@ struct TileFunction {
     }
 };
 
-// Tiles all of whose fragments in front are below a bound, such as a side of the region, or above it, with the margins
-// of coverage_by_sides() in triangle/corners.hpp.
+// The tiles whose fragments in front are all below a bound, such as a side of the region, or all above it, with the
+// margins of coverage_by_sides() in triangle/corners.hpp.
 struct Beyond {
     LongWords below, above;
 
@@ -86,13 +85,14 @@ struct Beyond {
 // In float a tile is what a chunk is (chunks.inc.hpp), in two directions. With r = 2^-24 the numerator of a step D
 // carries 3 r D, x of the denominator 3 r X, X being its largest, so that the step has 3 r X / (1 - X) D of it; the
 // polynomial adds 3 r D (a division 2 r D), the product r D, and the value r D + 2 r |u|.
-// Prepares tiles in float. One whose middle is in the region is not dark: returns those of which no more need be known.
+// Prepares tiles in float. Returns those that need no more: floats serve, and the middle is lit, so that they are not
+// dark.
 template <std::size_t Numerators>
 TEXGEN_INLINE LongWords prepare_in_float(const BatchJob& job, const BatchPlanes* of_tiles, const int (*block)[4],
                                          std::size_t first, BatchTiles& tiles) noexcept {
     const BatchLanes planes([&](std::size_t j) { return of_tiles[j].value; }, Numerators == 3);
     const TileLanes tile(block, planes);
-    // Steps along a single column or row say nothing, and might be infinite.
+    // Slopes across a single column or row are of no use, and might be infinite.
     const LongWords has_columns = greater(tile.right, 0.0), has_rows = greater(tile.bottom, 0.0);
     const Doubles half_x = tile.right * 0.5, half_y = tile.bottom * 0.5;
     const Doubles middle_x = tile.x + half_x, middle_y = tile.y + half_y;
@@ -139,8 +139,8 @@ TEXGEN_INLINE LongWords prepare_in_float(const BatchJob& job, const BatchPlanes*
     return is_float & is_inside;
 }
 
-// The bounds are those of triangle/corners.hpp: the roundings of a quotient, four more than there where two share a
-// division, and of its bound are below 10 u.
+// Prepares tiles in double, with the bounds of triangle/corners.hpp: the roundings of a quotient, four more than there
+// where two share a division, and of its bound are below 10 u.
 template <std::size_t Numerators>
 TEXGEN_APART void prepare(const BatchJob& job, const BatchPlanes* of_tiles, const int (*block)[4], std::size_t first,
                           BatchTiles& tiles) noexcept {
@@ -160,7 +160,7 @@ TEXGEN_APART void prepare(const BatchJob& job, const BatchPlanes* of_tiles, cons
         is_lit &= of_min.above & of_max.below;
     };
     Doubles ulps = Doubles{} + 4.0;
-    // The product of two, and its reciprocal, are normal numbers.
+    // The product of two q, and its reciprocal, are normal numbers.
     LongWords have_middles = is_exact & greater(q.least, 0x1p-500) & greater(Doubles{} + 0x1p500, q.largest);
     TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k) {
         const TileFunction f(&value[BatchPlanes::of_numerator[k]], tile);

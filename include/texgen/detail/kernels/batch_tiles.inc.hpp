@@ -13,7 +13,7 @@ struct TileOutputs {
     }
 };
 
-// Quotients in double, rounded with a certificate. False where a value is in doubt. Apart: its loop has all registers.
+// Quotients in double, rounded with a certificate. False where a value is in doubt. Apart, its loop has all registers.
 template <std::size_t Numerators>
 TEXGEN_APART bool divide_tile(const BatchPlanes& planes, const BatchTiles& tiles, std::size_t i,
                               const ShapeOfTile& shape, const TileOutputs<Numerators>& original) noexcept {
@@ -51,7 +51,7 @@ TEXGEN_APART bool divide_whole_tile(const BatchPlanes& planes, const BatchTiles&
     Doubles x = shape.x;
     Distances least = far_from_middles();
     for (std::size_t begin = 0;;) {
-        // A column of vectors, from which to which the functions grow by steps; two by one division.
+        // A column of vectors, from one to the next of which the functions grow by `step`; two share a division.
         Doubles value[Numerators + 1], step[Numerators + 1];
         TEXGEN_FOR (std::size_t k = 0; k <= Numerators; ++k) {
             value[k] = f.at(k, x, shape.y);
@@ -59,7 +59,7 @@ TEXGEN_APART bool divide_whole_tile(const BatchPlanes& planes, const BatchTiles&
         }
         std::size_t to_next = pitch;
         for (std::size_t n = begin; n < end; n += 2 * pitch) {
-            if (n + pitch >= end) {  // one alone, twice
+            if (n + pitch >= end) {  // one alone takes both places
                 to_next = 0;
                 TEXGEN_FOR (Doubles& of_function : step) of_function = Doubles{};
             }
@@ -89,7 +89,7 @@ TEXGEN_APART bool divide_whole_tile(const BatchPlanes& planes, const BatchTiles&
     return !any_zero(least);
 }
 
-// 1 / (1 + x), see chunks.inc.hpp: what keeps powers normal adds 2^-61 of it to its roundings.
+// 1 / (1 + x), see chunks.inc.hpp; what keeps powers normal adds 2^-61 of it to the roundings.
 template <bool IsPolynomial>
 TEXGEN_INLINE WideFloats bent_factor(const WideFloats& x) noexcept {
     if constexpr (!IsPolynomial) return 1.0f / (x + 1.0f);
@@ -139,8 +139,8 @@ TEXGEN_APART void divide_tile_float(const BatchTiles& tiles, std::size_t i, cons
     }
 }
 
-// A tile's values to its place in the outputs, from `begin` on; by way of scratch where whole vectors might reach
-// beyond what may be written.
+// Fills a tile's place in the outputs, from `begin` on; by way of scratch where whole vectors might reach beyond what
+// may be written. Returns whether no value is in doubt.
 template <std::size_t Numerators>
 TEXGEN_INLINE bool fill_tile(const BatchPlanes& planes, const BatchTiles& tiles, std::size_t i,
                              const ShapeOfTile& shape, const FragmentOutputs& out, std::size_t begin, bool in_scratch,
@@ -148,7 +148,7 @@ TEXGEN_INLINE bool fill_tile(const BatchPlanes& planes, const BatchTiles& tiles,
     TileOutputs<Numerators> here;
     TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k)
         here.out[k] = out.out[k] == nullptr || in_scratch ? scratch.values[k] : out.out[k] + begin;
-    bool is_certain = true;  // false where a value is in doubt
+    bool is_certain = true;
     if (!tiles.has(BatchTiles::is_float, i))
         is_certain = !tiles.has(BatchTiles::has_middles, i) || !shape.is_whole
                          ? divide_tile<Numerators>(planes, tiles, i, shape, here)
@@ -194,7 +194,7 @@ TEXGEN_INLINE Undecided divide_all_tiles(const TilesJob& job, std::size_t first,
     TileScratch scratch;
     BatchTiles tiles;
     ShapeOfTile shape;
-    // Few lanes divide large tiles in float no faster than a set-up by chunks.
+    // With few lanes large tiles in float take no less here than a set-up with chunks does.
     std::size_t most = job.tolerance > 0.0 && lanes < 4 ? largest_in_scratch : largest_batch_tile;
     for (std::size_t k = 0; k < Numerators; ++k)
         if (out.out[k] == nullptr) most = largest_in_scratch;
@@ -202,7 +202,7 @@ TEXGEN_INLINE Undecided divide_all_tiles(const TilesJob& job, std::size_t first,
     for (; first < job.tile_count; first += batch_block) {
         const std::size_t count = job.tile_count - first < batch_block ? job.tile_count - first : batch_block;
         tiles.kinds = 0;
-        // The last block in a whole one.
+        // The last tiles are copied to a whole block.
         int padded[batch_block][4];
         const int(*block)[4] = job.tiles + first;
         if (count < batch_block) {
