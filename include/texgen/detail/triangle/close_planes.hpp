@@ -18,7 +18,7 @@
 
 namespace TEXGEN_DETAIL {
 
-// base + i dx + j dy: these three terms. Within `error` of the exact value at every fragment of the tile that it was
+// The terms of base + i dx + j dy, which is within `error` of the exact value at every fragment of the tile that it was
 // made for.
 struct CloseRamp {
     DoubleDouble term[3];
@@ -33,8 +33,8 @@ struct CloseRamp {
         return std::fabs(term[0].high) + tile.width * std::fabs(term[1].high) + tile.height * std::fabs(term[2].high);
     }
 
-    // As high and low parts, see CloseFunction. The coefficients of low are at most half a unit: they, two products and
-    // two sums are rounded in double, 6 u of half of width + height + 1 units: less than 2^-50 of those.
+    // Splits it into high and low, see CloseFunction. The coefficients of low are at most half a unit: these, two
+    // products and two sums are rounded in double, 6 u of half of width + height + 1 units, less than 2^-50 of those.
     TEXGEN_APART void copy_to(const Tile& tile, CloseFunction& result) const noexcept {
         const double size = size_over(tile);
         const double unit = size > 0.0 ? 0x1p-50 / reciprocal_power_of_two(size) : 0.0;
@@ -117,14 +117,14 @@ public:
         return ramp;
     }
 
-    // One coordinate alone takes the place of both.
+    // One coordinate alone stands in both places.
     TEXGEN_APART CloseRamps ramps(glm::length_t first, glm::length_t second) const noexcept {
         const CloseRamp of_first = ramp(first);
         return {tile_, {of_first, second == first ? of_first : ramp(second), ramp(3)}};
     }
 
 private:
-    // Exactly a - b of x and of y.
+    // Exactly a - b, for x and for y.
     struct Pair {
         Double2 high, low;
 
@@ -139,7 +139,7 @@ private:
     double magnitude_[3];
 };
 
-// A power of two of which three numbers are multiples: finite where they are 0, too.
+// A power of two of which three numbers are multiples; finite even if all are 0.
 TEXGEN_RARE inline double common_grain(double a, double b, double c) noexcept {
     return smaller(smaller(last_bit(a), smaller(last_bit(b), last_bit(c))), 0x1p500);
 }
@@ -173,9 +173,9 @@ TEXGEN_RARE inline bool are_decided_by_sums(const CloseFunctions& functions, dou
            0x1p27 * share * q.error < q.grain;
 }
 
-// Whether residues decide the quotients of a tile well in front, of numerators of the size that their errors let
-// expect. Coefficients are multiples of their grains, and exact where their errors leave one candidate each: what is
-// left is the error of computing with them, 2^-98 of the values.
+// Whether residues decide the quotients of a tile well in front, if its numerators are as large as their errors
+// suggest. Coefficients are multiples of their grains: where the error leaves one candidate they are made exact, and
+// what is left is the error of computing with them, 2^-98 of the values.
 TEXGEN_RARE inline bool let_residues_decide(CloseFunctions& functions) noexcept {
     for (CloseFunction& f : functions.function) {
         if (!(4.0 * f.error < f.grain)) continue;
@@ -188,7 +188,7 @@ TEXGEN_RARE inline bool let_residues_decide(CloseFunctions& functions) noexcept 
     return q.error < 0x1p33 * q.grain && first.error < 0x1p58 * first.grain && second.error < 0x1p58 * second.grain;
 }
 
-// Whether a coefficient of a function is u times q, which is constant: exactly.
+// Whether coefficient j of a function is exactly u times q, which is constant.
 TEXGEN_RARE inline bool is_multiple(const CloseFunction& f, std::size_t j, double u, const CloseFunction& q) noexcept {
     double Ramp::*const part = j == 0 ? &Ramp::base : j == 1 ? &Ramp::dx : &Ramp::dy;
     const std::uint64_t residue = j == 0 ? f.residue.base : j == 1 ? f.residue.dx : f.residue.dy;
@@ -216,7 +216,7 @@ TEXGEN_RARE inline bool take_exact_quotients(const CloseFunctions& functions, Ti
         Ramp ramp{(f.high.base + f.low.base) * reciprocal, (f.high.dx + f.low.dx) * reciprocal,
                   (f.high.dy + f.low.dy) * reciprocal};
         const double size = std::fabs(ramp.base) + job.width * std::fabs(ramp.dx) + job.height * std::fabs(ramp.dy);
-        // Of 45 bits, so that the kernel's products and sums are exact.
+        // Rounded to 45 bits, so that the kernel's products and sums are exact.
         const double rounder = 0x1.8p8 / reciprocal_power_of_two(size);
         const Ramp exact{(ramp.base + rounder) - rounder, (ramp.dx + rounder) - rounder, (ramp.dy + rounder) - rounder};
         const bool is_exact =
@@ -235,8 +235,8 @@ TEXGEN_RARE inline bool take_exact_quotients(const CloseFunctions& functions, Ti
 }
 
 // The linear functions of a triangle as integers modulo 2^64. Products and sums of floats are multiples of the products
-// of their last bits: so at every fragment a function is an integer times a power of two, its grain. Two doubles know
-// its leading digits, this its last ones.
+// of their last bits: so at every fragment a function is an integer times a power of two, its grain. Two doubles hold
+// its leading digits, the residue its last ones.
 class PlaneResidues {
 public:
     PlaneResidues(const TrianglePlanes& planes, const Tile& tile) noexcept : planes_(planes), tile_(tile) {
@@ -263,7 +263,7 @@ public:
         }
     }
 
-    // Of a part of the tile.
+    // Adds the residue and the grain of a coordinate's function over a part of the tile.
     TEXGEN_RARE void add_to(CloseFunction& function, glm::length_t coordinate, const Tile& part) const noexcept {
         const double unit =
             common_grain(planes_.value(0, coordinate), planes_.value(1, coordinate), planes_.value(2, coordinate));

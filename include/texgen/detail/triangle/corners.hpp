@@ -49,8 +49,8 @@ struct Corners {
 
     bool all_behind() const noexcept { return largest_q <= -q_error; }
     bool all_in_front() const noexcept { return least_q > q_error; }
-    // Whether so little is left of the functions' terms that many quotients would be in doubt: the planes are about a
-    // corner. Where q has both signs there is doubt beside q = 0 in any case.
+    // Whether so little is left of the functions' terms that many quotients would be in doubt, as far from the corner
+    // that the planes are about. Where q has both signs there is doubt beside q = 0 in any case.
     bool cancel() const noexcept {
         return q_cancels() || any_less(largest_numerator * cancelled_share, numerator_error);
     }
@@ -60,7 +60,7 @@ struct Corners {
     }
     bool is_well_in_front() const noexcept { return least_q > well_in_front * q_error; }
     bool has_one_error() const noexcept { return is_well_in_front() && least_q > share_for_one_error * largest_q; }
-    // The same, and the product of two q is in range, so that they may share a division.
+    // Also, the product of two q is in range, so that they may share a division.
     bool may_share_divisions() const noexcept { return has_one_error() && least_q > 0x1p-500 && largest_q < 0x1p500; }
 
     // The stretch of a tile that is next to q = 0, along the side by which q varies more: what comes before and after
@@ -100,14 +100,14 @@ struct Corners {
         return larger(larger(size[0], size[1]), larger(size[2], size[3])) * reciprocal;
     }
 
-    // The least |F| of numerators that do not change their sign, of others nothing above 0.
+    // The least |F| of a numerator that does not change its sign; of another 0 or less.
     Double2 least_numerator() const noexcept {
         const auto& f = numerator;
         return larger(smaller(smaller(f[0], f[1]), smaller(f[2], f[3])),
                       -larger(larger(f[0], f[1]), larger(f[2], f[3]))) -
                numerator_error;
     }
-    // Of a tile in front no |F/Q| is below this.
+    // No |F/Q| of a tile in front is below this.
     Double2 least_quotient() const noexcept { return least_numerator() / (largest_q + q_error); }
 
     // The error of F/Q in double for a tile well in front: as in certain_quotient(), where it is worst. A division for
@@ -226,7 +226,7 @@ TEXGEN_RARE inline bool cancel_beyond_zeros(const Corners& at, const TrianglePla
     return false;
 }
 
-// What |Q| is at most.
+// An upper bound on |Q|.
 inline double largest_q_of(const Corners& at) noexcept {
     return larger(std::fabs(at.least_q), std::fabs(at.largest_q)) + at.q_error;
 }
@@ -240,8 +240,8 @@ inline Double2 margin_of_sides(const Corners& at, double tolerance, double q) no
 }
 inline double margin_of_bounds(const Corners& at, double q) noexcept { return (at.q_error + 0x1.001p-22 * q) * 1.0001; }
 
-// The bounds of a region as finite numbers. For an infinite one stands what is rounded to infinity; but where it is none
-// a number that no quotient of a triangle's comes near. A NaN stays one.
+// The bounds of a region as finite numbers. An infinite one that bounds nothing becomes a number that no quotient of a
+// triangle comes near; one that only infinity meets becomes what is rounded to infinity. A NaN stays one.
 inline constexpr double bound_of_none = 0x1p500, bound_of_infinity = 0x1p128;
 inline Double2 finite_min(const Double2& min) noexcept {
     return larger(double2_of(-bound_of_none, -bound_of_none),
@@ -275,12 +275,12 @@ inline Coverage coverage_by_sides(const Corners& at, const Double2& min, const D
     return all_inside && at.all_in_front() ? Coverage::inside : Coverage::partial;
 }
 
-// How much is in the sides of a region, where the numerators are s and t.
+// How much is in the sides of a region; the numerators are s and t.
 inline Coverage st_coverage(const Corners& at, const LitTest& lit, double tolerance) noexcept {
     return coverage_by_sides(at, double2_of(lit.least(0), lit.least(1)), double2_of(lit.greatest(0), lit.greatest(1)),
                              tolerance);
 }
-// Of a depth, where the numerators are r twice.
+// How much is in its depth; both numerators are r.
 inline Coverage r_coverage(const Corners& at, const LitTest& lit, double tolerance) noexcept {
     const double min = widened(lit.r_min), max = widened(lit.r_max);
     return coverage_by_sides(at, double2_of(min, min), double2_of(max, max), tolerance);

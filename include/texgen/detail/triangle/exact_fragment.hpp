@@ -45,7 +45,7 @@ public:
         }
     }
 
-    // By how much the functions grow along a row (axis 0) or down (1): E_i does by what corners j and k are apart.
+    // By how much the functions grow along a row (axis 0) or down (1): E_i grows by the difference of corners j and k.
     TEXGEN_RARE static ExactFragment growth(const TrianglePlanes& planes, glm::length_t axis) noexcept {
         ExactFragment result(planes);
         for (std::size_t i = 0; i < 3; ++i) {

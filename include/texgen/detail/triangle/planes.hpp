@@ -37,7 +37,7 @@ struct Tile {
 
     std::int64_t count() const noexcept { return static_cast<std::int64_t>(width) * height; }
 
-    // Across the longer side, or a given one.
+    // Cuts across the longer side, or a given one.
     std::array<Tile, 2> halves() const noexcept { return halves(width >= height); }
     std::array<Tile, 2> halves(bool across_width) const noexcept {
         Tile first = *this;
@@ -84,7 +84,7 @@ inline std::size_t offset_in(const Tile& rect, std::int64_t x, std::int64_t y) n
     return static_cast<std::size_t>((y - rect.y) * rect.width + (x - rect.x));
 }
 
-// Gives a tile of them one value; an empty output has none.
+// Gives all fragments of a tile one value in such an output, unless it is empty.
 TEXGEN_APART inline void fill_rows(const std::span<float>& output, const Tile& rect, const Tile& tile,
                                    float value) noexcept {
     if (output.empty()) return;
@@ -126,7 +126,7 @@ public:
         factor_ = orientation_ * reciprocal_power_of_two(area_terms_ * (weight_[1] + weight_[2]));
     }
 
-    // Of the window in which x and y are exchanged.
+    // The same triangle in a window whose x and y are exchanged.
     TrianglePlanes mirrored() const noexcept {
         TrianglePlanes result = *this;
         for (WindowVertex* const vertex : {&result.triangle_.a, &result.triangle_.b, &result.triangle_.c})
@@ -142,12 +142,12 @@ public:
     // that follows means anything.
     bool is_usable() const noexcept {
         constexpr float largest = (std::numeric_limits<float>::max)();
-        // The first one is the largest, if none is a NaN.
+        // That of a is the largest, if none is a NaN.
         return triangle_.a.clip_w <= largest && triangle_.b.clip_w > 0.0f && triangle_.c.clip_w > 0.0f &&
                orientation_ != 0 && are_finite();
     }
 
-    // The plane of one coordinate, 0 to 3 for s, t, r, q, and that twice.
+    // The plane of one coordinate, 0 to 3 for s, t, r, q; and in both lanes.
     TEXGEN_APART Plane plane(glm::length_t coordinate) const noexcept {
         const auto corner = [&](const WindowVertex& vertex) { return widened(vertex.strq[coordinate]); };
         return plane_through(corner(triangle_.a), corner(triangle_.b), corner(triangle_.c));
@@ -268,7 +268,7 @@ public:
     }
 
 private:
-    // The plane through values at the corners. The common factor, which is known last, is the edges'.
+    // The plane through values at the corners. The edges take the common factor, as it is known last.
     template <class Number>
     PlaneOf<Number> plane_through(const Number& at_a, const Number& at_b, const Number& at_c) const noexcept {
         const Number a = at_a * weight_[0];
@@ -303,8 +303,8 @@ private:
         return {widened(vertex.window.x), widened(vertex.window.y)};
     }
 
-    // Two floats at a time: only the exponent of one that is not finite is all ones, so that 1 more carries to the
-    // sign.
+    // Looks at two floats at a time: only the exponent of one that is not finite is all ones, so that adding 1 carries
+    // to the sign.
     bool are_finite() const noexcept {
         std::uint64_t sum = 0;
         for (const WindowVertex* vertex : {&triangle_.a, &triangle_.b, &triangle_.c}) {
@@ -316,7 +316,7 @@ private:
         return (sum & 0x8000000080000000) == 0;
     }
 
-    // Twice the signed area within 4 u of itself; it may cancel below the rounding of the differences.
+    // Twice the signed area within 4 u of itself, even where it cancels below the rounding of the differences.
     double twice_area() const noexcept {
         const glm::dvec2 b = window(triangle_.b);
         const glm::dvec2 c = window(triangle_.c);
@@ -346,7 +346,7 @@ struct TriangleFunctions {
         planes.planes_of_stq(st, q);
     }
 
-    // Of the window in which x and y are exchanged, where a column is a row.
+    // The same in a window whose x and y are exchanged, where a column is a row.
     TEXGEN_RARE TriangleFunctions mirrored() const noexcept {
         TriangleFunctions result = *this;
         result.planes = planes.mirrored();

@@ -25,7 +25,7 @@ struct FootprintFunctions {
           slope{triangle.planes.slope(0), triangle.planes.slope(1)},
           determinant(triangle.planes.jacobian_determinant()) {}
 
-    // Of the window in which x and y are exchanged.
+    // The same in a window whose x and y are exchanged.
     TEXGEN_RARE FootprintFunctions mirrored() const noexcept {
         FootprintFunctions result = *this;
         result.triangle = triangle.mirrored();
@@ -45,7 +45,7 @@ struct FootprintFunctions {
         return {at_a.dx + p.y * at_a.twist, at_a.dy - p.x * at_a.twist, at_a.twist};
     }
 
-    // The largest over a tile, and a bound on the errors.
+    // The largest slope of a coordinate over a tile, and a bound on its errors.
     double largest(std::size_t k, const Tile& tile) const noexcept {
         const Slope::Terms at = at_first(k, tile);
         const double dx = larger(std::fabs(at.dx), std::fabs(at.dx + (tile.height - 1) * at.twist));

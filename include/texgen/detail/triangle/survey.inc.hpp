@@ -14,7 +14,7 @@ struct Plan {
 };
 
 struct TileSurvey {
-    // No more than the corners, and those in place: zeros, or a copy, would cost what a small tile does.
+    // Sets no more than the corners, in place: zeros, or a copy, would cost what a small tile does.
     TileSurvey(const TriangleFunctions& triangle, const Tile& tile) noexcept
         : at(corners_of(triangle.planes, triangle.st, triangle.q, tile)) {}
 
@@ -23,9 +23,9 @@ struct TileSurvey {
     OnDemand<CloseRamps> close;  // where the planes cancel
 };
 
-// Chunks are short where q varies much, so that their ends are not far from their middle, and in tiles that caches do not
-// hold: both halves of a chunk are written at once, which memory takes without delay only where they are neighbours. One
-// costs about as much as 32 fragments besides those that it has.
+// Chunks are short where q varies much, so that their ends are not far from their middle, and in tiles that caches do
+// not hold: both halves of a chunk are written at once, which memory takes without delay only where they are
+// neighbours. A chunk costs about as much as 32 fragments besides those that it has.
 inline int chunk_length(const Corners& at, const Tile& tile) noexcept {
     constexpr int shortest = 64;
     constexpr std::int64_t most_in_caches = std::int64_t{1} << 20;
@@ -39,7 +39,7 @@ inline int chunk_length(const Corners& at, const Tile& tile) noexcept {
     return ((width - 1) / chunks / lanes + 1) * lanes;
 }
 
-// A chunk costs as much as some fragments, and the first of them, with what they ask for, as much as some tens.
+// A chunk costs as much as some fragments, and the first one, with what chunks need, as much as some tens.
 inline bool pays_for_chunks(int width, int height) noexcept {
     return width >= 16 && static_cast<std::int64_t>(width) * height > 128;
 }
@@ -63,7 +63,7 @@ inline bool is_small(const Tile& tile, double tolerance) noexcept {
            (tolerance == 0.0 || !pays_for_chunks(width, height) || has_shape_for_float(width, height));
 }
 
-// The plan of a tile that is divided without being asked about.
+// The plan of a tile that is divided without a survey.
 inline Plan plan_without_survey(const Tile& tile, const Corners& at) noexcept {
     return {Work::divide,        pays_for_chunks(tile.width, tile.height) ? chunk_length(at, tile) : 0,
             StepRule::undecided, {},
@@ -104,15 +104,14 @@ inline void choose_steps(Plan& plan, const Corners& at, double tolerance) noexce
     if (plan.work != Work::affine) plan.work = is_affine ? Work::affine : Work::quadratic;
 }
 
-// How much of a tile is between the limits of the region's depth: by the planes as they are, as no more than their
-// leading digits are asked.
+// How much of a tile is between the limits of the region's depth. The planes serve: only leading digits matter.
 TEXGEN_APART inline Coverage depth_coverage(const TriangleFunctions& triangle, const Tile& tile) noexcept {
     const Corners at = corners_of(triangle.planes, triangle.planes.plane_twice(2), triangle.q, tile);
     return r_coverage(at, triangle.lit, triangle.tolerance);
 }
 
-// In place: a copy of what was just written field by field would wait for it, as would a comparison of two such fields
-// at once.
+// Writes the plan in place: a copy would wait for what was just written field by field, as would a comparison of two
+// fields.
 inline void choose_plan(const TriangleFunctions& triangle, const Tile& tile, const Corners& at, Plan& plan) noexcept {
     plan.work = Work::nothing;
     plan.chunk = 0;
@@ -173,7 +172,7 @@ inline glm::dvec2 TriangleSetup::error_bound(FragmentRect rect) const noexcept {
     const detail::Corners& at = found.at;
     const detail::Plan& plan = found.plan;
     if (at.all_behind()) return {0.0, 0.0};
-    // What floats divide errs by the tolerance at most, whatever a polynomial would.
+    // A small tile is divided, and errs by the tolerance at most, whatever a polynomial would.
     const bool has_rule = plan.steps != detail::StepRule::undecided && !detail::is_small(tile, functions_.tolerance);
     const auto bound = [&](std::size_t k) {
         if (has_rule) return plan.error[k];
