@@ -1,4 +1,5 @@
-// The bodies of TriangleBatch, and how its triangles come to their kernels and out of doubt. Included by batch.hpp.
+// The bodies of TriangleBatch: triangles go to kernels, and what these leave in doubt to set-ups. Included by
+// batch.hpp.
 
 namespace TEXGEN_DETAIL {
 
@@ -9,7 +10,7 @@ inline BatchPlanes planes_behind() noexcept {
     return result;
 }
 
-// The functions of a triangle of which vectors leave open whether it has an area, or is refused.
+// The functions of a triangle of which the kernel leaves open whether it has an area, or is refused.
 inline BatchPlanes batch_planes(const Triangle& triangle) noexcept {
     BatchPlanes result = planes_behind();
     const TrianglePlanes planes(triangle);
@@ -53,7 +54,7 @@ void clear(auto& out) noexcept {
     });
 }
 
-// The fragments of all together, or the most of which no array can be.
+// The count of the fragments of all together, or the largest std::size_t, which no array has.
 inline std::size_t count_of(std::span<const FragmentRect> rects) noexcept {
     constexpr std::size_t most = (std::numeric_limits<std::size_t>::max)();
     std::size_t left = most;
@@ -67,7 +68,7 @@ inline std::optional<TriangleSetup> set_up(const TriangleBatch& batch, std::size
     return TriangleSetup::of(Inside::triangle(batch, triangle), batch.region(), batch.tolerance());
 }
 
-// A rectangle of one triangle with fragments, by its own set-up.
+// Interpolates a rectangle, which has fragments, by the triangle's own set-up.
 template <class CompiledWhereCalled = void>
 void interpolate_apart(const std::optional<TriangleSetup>& setup, const Tile& tile, Texcoords out) noexcept {
     if (!setup || interpolate_tile(*setup, tile, out) == Work::nothing) clear(out);

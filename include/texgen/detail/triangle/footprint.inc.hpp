@@ -6,7 +6,7 @@ inline bool is_usable(const TexelsPerUnit& texels) noexcept {
     return texels.s > 0x1p-200 && texels.s < 0x1p200 && texels.t > 0x1p-200 && texels.t < 0x1p200;
 }
 
-// A footprint from J and det J, as det J has digits that J has lost where J is almost singular: determinant(unit) is
+// A footprint from J and det J: where J is almost singular, det J has digits that J has lost. determinant(unit) is
 // unit^2 det J, for a power of two that brings J near 1. So no square leaves the range of double.
 Footprint footprint_of(const glm::dvec2& dx, const glm::dvec2& dy, const auto& determinant,
                        const TexelsPerUnit& texels) noexcept {
@@ -52,7 +52,7 @@ inline double q_at(const TriangleFunctions& triangle, std::int64_t x, std::int64
     return q_at(triangle, x, y, [&] { return ClosePlane(triangle.planes, 3, {x, y, 1, 1}); });
 }
 
-// The footprint of a fragment, where q is this.
+// The footprint of a fragment whose q is given.
 inline std::optional<Footprint> footprint_at(const FootprintFunctions& functions, const TexelsPerUnit& texels,
                                              std::int64_t x, std::int64_t y, double q) noexcept {
     if (!(q > 0.0)) return std::nullopt;
@@ -65,7 +65,7 @@ inline std::optional<Footprint> footprint_at(const FootprintFunctions& functions
         texels);
 }
 
-// The extremes over a part of the window. Where its q are in doubt, are_behind() tells whether all are behind.
+// The extremes over a part of the window. Where the sign of its largest q is in doubt, are_behind() tells it.
 template <class AreBehind>
 std::optional<FootprintExtremes> extremes_over(const FootprintFunctions& functions, const TexelsPerUnit& texels,
                                                const WindowPolygon& polygon, const AreBehind& are_behind) noexcept {

@@ -12,8 +12,7 @@ inline void take_arrays(FootprintArrays& to, const Footprints& out, std::size_t 
           {array(out.major_s), array(out.major_t)}};
 }
 
-// Footprints into the caller's arrays: in vectors where the tile is well in front, else in its halves, and at last one
-// by one.
+// Fills the caller's arrays with footprints: in vectors where a tile is well in front, else by halves, or one by one.
 template <class CompiledWhereCalled = void>
 class TileFootprinter {
 public:
@@ -39,7 +38,7 @@ public:
 private:
     static constexpr int largest_index = 1 << 24;  // floats beyond are not every integer
 
-    // The corners of q alone.
+    // The corners of a tile, of q alone.
     Corners corners_at(const Tile& tile) noexcept {
         const CloseRamp q = close_q().moved_to(tile.x, tile.y);
         Corners at;
@@ -54,8 +53,8 @@ private:
 
     static Footprint nothing() noexcept { return {{0.0, 0.0}, {0.0, 0.0}, 0.0, {0.0, 0.0}, 0.0, {0.0, 0.0}}; }
 
-    // False where floats do not reach. They hold the numerators in texels relative to their largest, Q relative to its
-    // own, and the factors that bring both back.
+    // False where the range of floats is too small. They hold the numerators in texels relative to the largest, Q
+    // relative to its largest, and the factors that undo both.
     bool fill_in_vectors(const Tile& tile, const Corners& at) noexcept {
         const double numerator[2] = {functions_.largest(0, tile), functions_.largest(1, tile)};
         if (larger(numerator[0], numerator[1]) == 0.0) {
@@ -171,8 +170,7 @@ private:
     OnDemand<ClosePlane> close_q_;
 };
 
-// The footprints of a rectangle, for outputs that are computed; false where the slide lights none of it, and nothing is
-// written unless `always`.
+// Fills the footprints of a rectangle. False where none of it is lit: nothing is written then, unless `always`.
 template <class CompiledWhereCalled = void>
 bool footprint_tile(const FootprintFunctions& functions, const TexelsPerUnit& texels, const Tile& tile,
                     const Footprints& out, bool always) noexcept {
@@ -183,7 +181,7 @@ bool footprint_tile(const FootprintFunctions& functions, const TexelsPerUnit& te
     return may_be_lit;
 }
 
-// A column is a row of the mirrored triangle, whose derivatives by x are those by y.
+// A column is taken as a row of the mirrored triangle, whose derivatives by x are those by y.
 template <class CompiledWhereCalled = void>
 inline bool footprint_tile(const FootprintSetup& setup, const Tile& tile, Footprints& out,
                            bool always = false) noexcept {

@@ -1,10 +1,10 @@
 // The outputs of a triangle, one after another, and the body of interpolate(). Included by interpolate.hpp. A column
-// that one certificate does not serve is a row of the mirrored triangle: vectors are parts of rows.
+// that one certificate does not serve is taken as a row of the mirrored triangle, as vectors are parts of rows.
 
 namespace TEXGEN_DETAIL_BUILD {
 
-// Takes the light of a tile's fragments whose r, which nobody asked for, is beyond the depth, which cuts it. It is
-// halved until the buffer holds it; of a half where nothing is lit, or all is in the depth, r is not computed.
+// Darkens the fragments of a tile whose r is beyond the depth; r has no output. The tile is halved until the buffer
+// holds it; r is not computed for a half where nothing is lit, or all is in the depth.
 template <class CompiledWhereCalled = void>
 TEXGEN_RARE inline void darken_beyond_depth(const TriangleFunctions& triangle, const Tile& rect, const Tile& tile,
                                             const std::span<float>& buffer, const std::span<float>& lit) noexcept {
@@ -29,7 +29,7 @@ TEXGEN_RARE inline void darken_beyond_depth(const TriangleFunctions& triangle, c
                                      length, triangle.lit.r_min, triangle.lit.r_max);
 }
 
-// Darkens a mask that s and t have made where r is beyond the depth; r is there, where it was asked for.
+// Darkens a mask that s and t have made where r is beyond the depth; r is read from its output, if it has one.
 template <class CompiledWhereCalled = void>
 TEXGEN_APART void darken_beyond_depth(const TriangleFunctions& triangle, const Tile& tile,
                                       const Texcoords& out) noexcept {
@@ -43,7 +43,7 @@ TEXGEN_APART void darken_beyond_depth(const TriangleFunctions& triangle, const T
     }
 }
 
-// The fragments of a rectangle by a plan, for outputs that are computed.
+// Interpolates a rectangle by a plan; empty outputs are not computed.
 template <class CompiledWhereCalled = void>
 TEXGEN_APART Work interpolate_by_plan(const TriangleFunctions& triangle, const Tile& tile,
                                       const Texcoords& out) noexcept {
@@ -75,7 +75,7 @@ TEXGEN_APART Work interpolate_by_plan(const TriangleFunctions& triangle, const T
     return plan.work;
 }
 
-// The same, without a plan where none is needed.
+// Interpolates a rectangle, without a plan where none is needed.
 template <class CompiledWhereCalled = void>
 TEXGEN_INLINE Work interpolate_tile(const TriangleSetup& setup, const Tile& tile, const Texcoords& out) noexcept {
     const TriangleFunctions& triangle = Inside::functions(setup);

@@ -1,4 +1,4 @@
-// A triangle's tiles from one tier to the next. Included by interpolate.hpp.
+// Takes a triangle's tiles from one tier to the next. Included by interpolate.hpp.
 
 namespace TEXGEN_DETAIL_BUILD {
 
@@ -8,8 +8,8 @@ class TileInterpolator {
 public:
     static constexpr int scratch_width = 512;
 
-    // The coordinates of these planes, s and t, of which one that only the mask needs has no output; or one alone, in both
-    // places, that goes to out.s. `close` are their functions in two doubles, empty until a tile needs them.
+    // For the coordinates of these planes: s and t, of which one that only the mask needs has no output; or one alone
+    // in both places, which goes to out.s. `close` is for their functions in two doubles, made when a tile needs them.
     TEXGEN_APART TileInterpolator(const TriangleFunctions& triangle, const PlaneOf<Double2>& planes, const Tile& rect,
                                   OnDemand<CloseRamps>& close, glm::length_t first, glm::length_t second,
                                   const Texcoords& out) noexcept
@@ -22,7 +22,7 @@ public:
           output_{out.s, out.t},
           lit_(out.lit) {}
 
-    // For a mask that is known already.
+    // Leaves the mask as it is, which is known already.
     void leave_mask() noexcept { lit_ = {}; }
 
     TEXGEN_APART Corners corners_at(const Tile& tile) noexcept {
@@ -45,14 +45,14 @@ public:
         triangle_.tolerance == 0.0 ? fill_exact(tile, at) : fill(tile, at, plan);
     }
 
-    // A tile of at most one unit, well in front, of which doubles leave a fragment in doubt.
+    // Fills a tile of at most one unit, well in front, of which doubles leave a fragment in doubt.
     TEXGEN_RARE void interpolate_from_doubt(const Tile& tile) noexcept {
         const Corners at = corners_of(triangle_.planes, *planes_, triangle_.q, tile);
         TileJob job = make_job(tile, at);
         fill_from_doubt(tile, at, job, job.unit_at(0, 0));
     }
 
-    // In strips of a width that the scratch arrays hold.
+    // Fills a tile in strips of a width that the scratch arrays hold.
     void interpolate_in_strips(const Tile& tile, const Plan& plan) noexcept {
         Tile strip = tile;
         for (strip.width = scratch_width; strip.x < tile.x + tile.width; strip.x += scratch_width) {
@@ -136,8 +136,8 @@ private:
     }
 
     // Adds to what is known of the functions; false where there is no more. Residues come first where many are in
-    // doubt, as of ties. They do without two doubles in tiles of few fragments, where sums in double decide ties
-    // already, and where sums in two doubles would not.
+    // doubt, as with ties. They are enough, without two doubles, in tiles of few fragments, where sums in double decide
+    // ties already, and where sums in two doubles would not.
     static constexpr int few_ties = 16;
     TEXGEN_RARE bool sharpen(const Tile& tile, DoubtfulFunctions& functions, int fragments) noexcept {
         const bool have_both = functions.are_close && functions.have_residues;
@@ -176,8 +176,8 @@ private:
     // Exact sums of a single fragment cost less than two doubles and residues do, which pay where a tile shares them.
     bool is_one() const noexcept { return rect_.count() == 1; }
 
-    // Clears a tile behind. Of another what is next to q = 0 is decided closely, and what is before and behind that is
-    // filled as a tile of its own.
+    // Clears a tile behind. Of any other, what is next to q = 0 is decided closely, and what comes before and after
+    // that is filled as a tile of its own.
     TEXGEN_RARE void split(const Tile& tile, const Corners& at) noexcept {
         if (at.all_behind()) return clear(tile);
         if (tile.count() <= TileJob::unit_size) return fill_closely(tile);
@@ -192,14 +192,13 @@ private:
         }
     }
 
-    // In double, from the first unit on, or from a given one.
+    // Fills a tile in double, from the first unit on, or from a given one.
     TEXGEN_APART void fill_exact(const Tile& tile, const Corners& at, const TileJob::Unit* from = nullptr) noexcept {
         if (!at.may_share_divisions()) return split(tile, at);
         TileJob job = make_job(tile, at);
         const Double2 largest = at.largest_quotient();
         const Double2 error = at.quotient_error(largest);
-        // The float next to a quotient in double errs by half an ulp more, of 2^-24 of it, or by what is flushed to
-        // zero.
+        // The float next to a quotient in double errs by 2^-24 of it more, half an ulp, or by what is flushed to zero.
         const Double2 written = error * 1.001 + (largest * (1.0001 * unit_roundoff_float) + 0x1p-125);
         TEXGEN_FOR (std::size_t k = 0; k < 2; ++k)
             job.quotient_error[k] = written[k] <= triangle_.tolerance ? 0.0 : error[k];
@@ -214,7 +213,7 @@ private:
 
     TEXGEN_RARE void fill_from_doubt(const Tile& tile, const Corners& at, TileJob& job, TileJob::Unit unit,
                                      std::uint64_t doubtful = ~std::uint64_t{0}) noexcept {
-        // A plane of zeros is that of a numerator which fill_around() has left out.
+        // Where a plane is all zeros fill_around() has left its numerator out.
         for (std::size_t k = 0; k < count_; ++k)
             if (planes_->magnitude.dx[k] + planes_->magnitude.dy[k] != 0.0)
                 if (const Stretch zeros = zeros_of(triangle_.planes, coordinate_[k], tile); zeros.end != 0)
@@ -222,7 +221,7 @@ private:
         if (is_one()) return fill_one(tile.x, tile.y);
         DoubtfulFunctions functions = functions_of(tile, at);
         functions.adds_residues_first = true;
-        // Few fragments are decided by residues sooner than it is seen whether their quotients are exact.
+        // For few fragments it takes less to decide them by residues than to see whether their quotients are exact.
         if (is_constant(functions.function[CloseFunctions::q].high) && sharpen(tile, functions, TileJob::unit_size) &&
             tile.width + tile.height > 4 && take_exact_quotients(functions, job))
             unit = detail::fill_exact(kernels_, job, unit, TileJob::unit_size, doubtful);
@@ -234,8 +233,8 @@ private:
                  ++i, unit = job.unit_after(unit), doubtful = ~std::uint64_t{0})
                 if (fill_closely(tile, job, functions, unit, doubtful)) many = many < 4 ? 4 : many;
             if (job.is_done(unit)) return;
-            // Two doubles, rounded, err by less than the planes. They take their place where planes leave much in
-            // doubt: at once if they are made already, else after the planes have failed twice.
+            // Two doubles, rounded, err by less than the planes. They replace the planes where these leave much in
+            // doubt: at once if they are made already, else after a second failure.
             bool is_closer = may_get_closer && functions.are_close;
             if (!is_closer) {
                 unit = detail::fill_exact(kernels_, job, unit, TileJob::unit_size, doubtful);
@@ -272,7 +271,7 @@ private:
         planes_ = planes;
     }
 
-    // A part of the tile, unit by unit. All such parts share one job and what is known of the functions.
+    // Decides a part of the tile, unit by unit. All such parts share one job and what is known of the functions.
     TEXGEN_RARE void fill_closely(const Tile& tile) noexcept {
         if (is_one()) return fill_one(tile.x, tile.y);
         if (tile.count() > TileJob::unit_size) {
@@ -297,8 +296,8 @@ private:
                                 [&](const TileJob::Unit& refused) { fill_refused(tile, job, refused); });
     }
 
-    // A unit that was refused, in shorter chunks or by divisions. With it go the fragments below it, which would be
-    // refused as well.
+    // Fills a refused unit in shorter chunks or by divisions, and with it the fragments below, which would be refused
+    // as well.
     TEXGEN_RARE void fill_refused(const Tile& tile, TileJob& job, const TileJob::Unit& refused) noexcept {
         Tile rest = part_of(tile, refused);
         const bool touches = refused.x_begin == job.filled.x_end || refused.x_end == job.filled.x_begin;
@@ -321,7 +320,7 @@ private:
         kernels_.divide(job, {0, tile.width, 0, tile.height});
     }
 
-    // One fragment, every decision exact.
+    // Fills one fragment; every decision is exact.
     TEXGEN_RARE void fill_one(std::int64_t x, std::int64_t y) noexcept {
         const ExactFragment exact(triangle_.planes, x, y, ExactFragment::Factor::any);
         const ExactFragment::Sum q = exact.function(3);
@@ -338,7 +337,7 @@ private:
         for (const std::span<float>& output : {output_[0], output_[1], lit_}) fill_rows(output, rect_, tile, 0.0f);
     }
 
-    // A job with what every kernel needs. Numerators and q may share any factor.
+    // A job with what every kernel needs. `factor` is common to numerators and q.
     TEXGEN_APART TileJob make_job(const Tile& tile, const Corners& at, double factor = 1.0) noexcept {
         TileJob job;  // not {}: all zeros would cost what a row does
         job.width = tile.width;
@@ -349,7 +348,7 @@ private:
         job.is_contiguous = tile.width == rect_.width;
         const auto& [base, dx, dy] = at.numerator_ramp;
         store_ramps({base * factor, dx * factor, dy * factor}, job.numerator);
-        // One coordinate alone takes the place of both.
+        // One coordinate alone stands in both places.
         TEXGEN_FOR (std::size_t k = 0; k < 2; ++k) {
             const std::span<float>& output = output_[k < count_ ? k : 0];
             job.is_scratch[k] = output.empty();

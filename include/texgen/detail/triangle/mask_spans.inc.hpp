@@ -16,7 +16,7 @@ public:
     TEXGEN_APART HalfPlanes(const TriangleFunctions& triangle, const Corners& at, const Tile& tile) noexcept
         : tile_(tile) {
         const double q = largest_q_of(at);
-        // Under a tolerance only a function that is 0 is sure to be written as it is.
+        // Under a tolerance only quotients of 0 are sure to be written as they are.
         const bool is_exact = triangle.tolerance == 0.0;
         add(at.q_ramp, at.q_error + 0x1p-46 * q);
         const auto& [base, dx, dy] = at.numerator_ramp;
@@ -108,7 +108,8 @@ private:
     bool are_finite_ = true;
 };
 
-// The mask of a tile by the spans of its rows. Returns the part in which floats decide: all, where they do in much of it.
+// Makes the mask of a tile by the spans of its rows. Returns the part where floats have to decide, or all, if that is
+// much.
 TEXGEN_APART inline Tile light_spans(const TriangleFunctions& triangle, const Tile& tile, const Corners& at,
                                      const std::span<float>& lit) noexcept {
     const HalfPlanes planes(triangle, at, tile);

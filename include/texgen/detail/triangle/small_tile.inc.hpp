@@ -3,8 +3,8 @@
 
 namespace TEXGEN_DETAIL_BUILD {
 
-// Where a tile begins from the vertex that the planes are about, how far it reaches from there at least, and its last
-// column and row.
+// Where a tile begins, from the vertex that planes are about, a bound on how far it reaches, and its last column and
+// row.
 struct SmallPlace {
     double x, y, reach_x, reach_y, right, bottom;
 
@@ -60,8 +60,8 @@ struct SmallDivisor {
     }
 };
 
-// Whether all of s and t is lit, or certainly a part. The sides are those of coverage_by_sides() with twice its margins,
-// so that nothing is said of a tile of which that says something else.
+// Whether all of the tile is lit by s and t, or certainly a part. The sides are those of coverage_by_sides() with twice
+// its margins, so that nothing is said of a tile of which that says something else.
 enum class SmallAnswer { doubt, lit, partly_lit };
 inline SmallAnswer ask(const LitTest& lit, double tolerance, const SmallFunction<Double2>& f,
                        const SmallDivisor& divisor) noexcept {
@@ -96,9 +96,9 @@ inline SmallAnswer ask(const LitTest& lit, double tolerance, const SmallFunction
 // Whether one bound serves all quotients; the tile is in float where that does. Exact: F errs by less than 2^-41.5 of
 // itself and q by 2^-44, and four roundings follow: within SmallTile::ulps; |F| is above 2^-124 q, so the floats are
 // normal. In float, with u = 2^-24 and b the steps to the last row, of which y is at most half: F is rounded with its
-// column, its step, the product with y, and the sum, by u (2 F + 1.5 b), as is q, and the reciprocal and the product
-// round by 2 u. Of quotients that are `greatest` at most this is 6 u greatest + 1.5 u (b_F + greatest b_q) / q, and what
-// floats below 2^-126 lose, one of them times y and over q, is less than 2^-96.
+// column, its step, the product with y and the sum, by u (2 F + 1.5 b), as is q, and the reciprocal and the product
+// round by 2 u. Of quotients that are `greatest` at most this is 6 u greatest + 1.5 u (b_F + greatest b_q) / q, and
+// what floats below 2^-126 lose, one of them times y and over q, is less than 2^-96.
 inline bool serves(const SmallFunction<Double2>& f, const SmallDivisor& divisor, double tolerance,
                    SmallTile& tile) noexcept {
     const SmallFunction<double>& q = divisor.function;
@@ -119,11 +119,11 @@ inline bool serves(const SmallFunction<Double2>& f, const SmallDivisor& divisor,
     return all_less(f.error * 0x1.8p41 + 0x1.1p-124 * divisor.largest, larger(least, -largest));
 }
 
-// What of a tile is left: nothing, what has to be divided again, or all, as no one bound serves.
+// What is left of a tile: nothing; its one unit, in doubt; or all, as no one bound serves, or it has more units.
 enum class SmallDoubt { none, of_unit, of_all };
 
-// The quotients of one or two coordinates, if one bound serves them; `tile` says where they go. A column is a row, but
-// in doubt one of the mirrored triangle.
+// Divides one or two coordinates, if one bound serves them; `tile` says where they go. A column is divided as a row; if
+// that is in doubt it is left to the mirrored triangle.
 template <class CompiledWhereCalled = void>
 TEXGEN_APART SmallDoubt divide_small(const TriangleFunctions& triangle, const Tile& rect, const RampOf<Double2>& ramp,
                                      const SmallFunction<Double2>& f, const SmallDivisor& q, SmallTile& tile) noexcept {
@@ -138,7 +138,7 @@ TEXGEN_APART SmallDoubt divide_small(const TriangleFunctions& triangle, const Ti
     return !is_column && tile.width * tile.height <= TileJob::unit_size ? SmallDoubt::of_unit : SmallDoubt::of_all;
 }
 
-// One coordinate of a rectangle; without a plan nothing is known of it.
+// Interpolates one coordinate of a rectangle; without a plan (null) nothing is known of it.
 template <class CompiledWhereCalled = void>
 TEXGEN_APART void interpolate_alone(const TriangleFunctions& triangle, const Tile& rect, glm::length_t coordinate,
                                     const std::span<float>& output, const Plan* plan) noexcept {
@@ -149,7 +149,7 @@ TEXGEN_APART void interpolate_alone(const TriangleFunctions& triangle, const Til
         .interpolate(rect, plan);
 }
 
-// The same for a small tile; the one coordinate takes the place of both.
+// The same for a small tile; the one coordinate stands in both places.
 template <class CompiledWhereCalled = void>
 TEXGEN_APART void fill_small_alone(const TriangleFunctions& triangle, const Tile& rect, const SmallPlace& place,
                                    const SmallDivisor& q, glm::length_t coordinate, const std::span<float>& output,
@@ -164,7 +164,7 @@ TEXGEN_APART void fill_small_alone(const TriangleFunctions& triangle, const Tile
     TileInterpolator<>(triangle, plane, rect, close, coordinate, coordinate, {output}).interpolate_from_doubt(rect);
 }
 
-// s, t, r and the mask of a small tile, if one certificate serves all of s and t that is asked for.
+// Fills s, t, r and the mask of a small tile, if one certificate serves all of s and t that is asked for.
 template <class CompiledWhereCalled = void>
 TEXGEN_APART SmallAnswer fill_small(const TriangleFunctions& triangle, const Tile& rect,
                                     const Texcoords& out) noexcept {
@@ -176,7 +176,7 @@ TEXGEN_APART SmallAnswer fill_small(const TriangleFunctions& triangle, const Til
     const bool is_lit = answer == SmallAnswer::lit;
     SmallTile tile;
     const bool needs_mask = !is_lit && !out.lit.empty();
-    // Few fragments have their mask by s and t sooner than by spans, whether these are asked for or not.
+    // For few fragments s and t give the mask sooner than spans do, even if they have no outputs.
     float scratch[2][TileJob::unit_size];
     Texcoords both = out;
     if (needs_mask && rect.count() <= TileJob::unit_size) {

@@ -2,9 +2,9 @@
 
 namespace TEXGEN_DETAIL_BUILD {
 
-// Does the units from the given one on up to the first with fragments in doubt, and says which. Where none is, more and
-// more of them are done at once, `most` fragments at most, and one by one after what is in doubt then; or all in pairs,
-// but those that are in doubt then.
+// Fills units from the given one on up to the first with fragments in doubt, which it returns; `doubtful` says which
+// fragments. While none is, more and more units are filled at once, of `most` fragments at most; if one of these is in
+// doubt, they are filled again, one by one. A job that knows its ulps goes in pairs, but for units in doubt.
 inline TileJob::Unit fill_exact(const TileKernels& kernels, const TileJob& job, TileJob::Unit unit, int most,
                                 std::uint64_t& doubtful) noexcept {
     for (int size = TileJob::unit_size; !job.is_done(unit);) {
@@ -25,8 +25,8 @@ inline TileJob::Unit fill_exact(const TileKernels& kernels, const TileJob& job, 
     return unit;
 }
 
-// Does the job from `first` on. Chunks that no rule serves, a part of one row or whole rows, are handed to `refuse`,
-// unless they are filled.
+// Fills the tile from `first` on. Chunks that no rule serves, a part of one row or whole rows, are handed to `refuse`,
+// unless they are filled already.
 void fill_polynomial(const TileKernels& kernels, const TileJob& job, TileJob::Unit first, const auto& refuse) noexcept {
     const int width = job.width, height = job.height;
     const int longest = job.chunk;
@@ -40,8 +40,8 @@ void fill_polynomial(const TileKernels& kernels, const TileJob& job, TileJob::Un
         const int count = left < group.size ? static_cast<int>(left) : group.size;
         kernels.weigh_chunks(job, group, per_row, y, chunk, count);
         for (int i = 0, end; i < count; i = end) {
-            // Chunks of a rule that follow one another are filled at once; where the rows of the outputs follow one
-            // another, and consist of whole chunks, over the ends of rows.
+            // Successive chunks of one rule are filled at once; over the ends of rows, too, where the rows of the
+            // outputs follow one another and consist of whole chunks.
             const StepRule rule = group.rule_of(job, i);
             const bool is_refused = rule == StepRule::none;
             const bool is_seamless = job.is_contiguous && whole_chunks * longest == width && !is_refused;

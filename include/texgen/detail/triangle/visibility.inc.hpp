@@ -1,5 +1,5 @@
-// A visibility buffer of a batch's triangles: its long runs of one id to set-ups, what is between them to kernels, and
-// their doubt to set-ups again. Included by batch.hpp.
+// A visibility buffer of a batch's triangles: long runs of one id go to set-ups, what is between them to kernels, and
+// what these leave in doubt to set-ups again. Included by batch.hpp.
 
 namespace TEXGEN_DETAIL_BUILD {
 
@@ -8,11 +8,11 @@ inline void describe(VisibilityBuffer& buffer, const TriangleBatch& batch, std::
     buffer = {ids.data(), static_cast<std::uint32_t>(batch.size()), rect.x, rect.y, rect.width};
 }
 
-// What was made of the triangles that a visibility buffer asked for last, of which neighbours share few.
+// What was made of the triangles that were asked for last: neighbouring fragments share few triangles.
 template <class Made>
 class Recent {
 public:
-    // What was made of a triangle; make() makes it where it is not kept.
+    // What was made of a triangle; if it is not kept, make() makes it.
     const std::optional<Made>& of(std::uint32_t id, const auto& make) noexcept {
         Known& known = known_[id % batch_block];
         if (known.id != id) {
@@ -30,7 +30,7 @@ private:
     Known known_[batch_block];
 };
 
-// A part of a row of a rectangle, or whole rows.
+// Those `count` fragments of a rectangle from `first` on: a part of a row, or whole rows.
 inline Tile part_of(const FragmentRect& rect, std::size_t first, std::size_t count) noexcept {
     const auto width = static_cast<std::size_t>(rect.width);
     return {rect.x + static_cast<std::int64_t>(first % width), rect.y + static_cast<std::int64_t>(first / width),
@@ -41,7 +41,7 @@ inline Tile part_of(const FragmentRect& rect, std::size_t first, std::size_t cou
 inline constexpr std::size_t long_run = 64;
 
 // Calls run(first, count) for the long runs of one id within a row, and once for rows that are of one id together. A
-// long run holds a whole probe, wherever it begins.
+// long run holds a whole probe, wherever it begins, so only probes are looked at first.
 void for_each_long_run(std::span<const std::uint32_t> ids, std::size_t width, const auto& run) noexcept {
     constexpr std::size_t probe = long_run / 2;
     const auto are_as_before = [&](std::size_t first, std::size_t count) {
@@ -70,7 +70,7 @@ void for_each_long_run(std::span<const std::uint32_t> ids, std::size_t width, co
 }
 
 // Calls run(triangle, row part, first fragment) for the runs of one id in a row among `count` fragments from `first`
-// on, of those that is_wanted(fragment).
+// on, where is_wanted(fragment).
 void for_each_run(std::span<const std::uint32_t> ids, const FragmentRect& rect, std::size_t first, std::size_t count,
                   const auto& is_wanted, const auto& run) noexcept {
     const auto width = static_cast<std::size_t>(rect.width);
