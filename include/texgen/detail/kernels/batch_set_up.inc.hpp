@@ -186,7 +186,7 @@ struct FragmentOutputs : BatchOutputs {
     }
     template <std::size_t Numerators, class Vector>
     TEXGEN_INLINE auto are_inside(const Vector (&value)[Numerators]) const noexcept {
-        auto result = inside(value[0], min[0], max[0]) & inside(value[1], min[1], max[1]);
+        auto result = in_region(*this, value);
         if constexpr (Numerators == 3)
             if (has_depth) result &= inside(value[2], r_min, r_max);
         return result;

@@ -6,9 +6,9 @@ namespace TEXGEN_DETAIL::TEXGEN_ISA {
 // branch that is always the same costs next to nothing, and a loop for each combination would be most of what a user
 // compiles.
 
-// A mask of what is inside the region of an output.
-template <class Output, class Vector>
-TEXGEN_INLINE auto in_region(const Output& to, const Vector (&value)[2]) noexcept {
+// A mask of what is inside the region of an output, by its first two coordinates.
+template <class Output, class Vector, std::size_t Numerators>
+TEXGEN_INLINE auto in_region(const Output& to, const Vector (&value)[Numerators]) noexcept {
     return inside(value[0], to.min[0], to.max[0]) & inside(value[1], to.min[1], to.max[1]);
 }
 // 1 inside the region and in front, else 0.
