@@ -49,7 +49,7 @@ TEXGEN_APART bool divide_whole_tile(const BatchPlanes& planes, const BatchTiles&
     const double rows = shape.rows;
     const int ulps = static_cast<int>(tiles.ulps[i]) - 1;
     Doubles x = shape.x;
-    Distances least = far_from_middles();
+    Distances distance = far_from_middles();
     for (std::size_t begin = 0;;) {
         // A column of vectors, from one to the next of which the functions grow by `step`; two share a division.
         Doubles value[Numerators + 1], step[Numerators + 1];
@@ -74,7 +74,7 @@ TEXGEN_APART bool divide_whole_tile(const BatchPlanes& planes, const BatchTiles&
                 }
             }
             TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k)
-                least = nearer(least, quotient[0][k], quotient[1][k], ulps);
+                distance = nearer(distance, quotient[0][k], quotient[1][k], ulps);
             TEXGEN_FOR (std::size_t j = 0; j < 2; ++j) {
                 Floats rounded[Numerators];
                 TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k) rounded[k] = to_floats(quotient[j][k]);
@@ -86,7 +86,7 @@ TEXGEN_APART bool divide_whole_tile(const BatchPlanes& planes, const BatchTiles&
         begin += to_right;
         x = x + static_cast<double>(to_right);
     }
-    return !any_zero(least);
+    return !any_zero(distance);
 }
 
 // 1 / (1 + x), see chunks.inc.hpp; what keeps powers normal adds 2^-61 of it to the roundings.

@@ -209,9 +209,9 @@ TEXGEN_INLINE Doubles signed_forms(const glm::dmat4& matrix, const WeightLanes& 
         high = two_sum(high, first * at[j], left[j][0]);
         high = two_sum(high, (part[0] - first) * at[j], left[j][1]);
         left[j][2] = part[1] * at[j];
-        TEXGEN_FOR (const Doubles& of_sum : left[j]) {
-            low = low + of_sum;
-            size_of_low = size_of_low + magnitude(of_sum);
+        TEXGEN_FOR (const Doubles& number : left[j]) {
+            low = low + number;
+            size_of_low = size_of_low + magnitude(number);
         }
         last = last + magnitude(part[2]);
     }

@@ -44,12 +44,12 @@ struct MixtureLanes {
 // Whether one of these alphas is in (0, last].
 TEXGEN_INLINE bool has_small_alpha(const SegmentJob& job, std::size_t begin, std::size_t end, float last) noexcept {
     if (!(last > 0.0f)) return false;
-    WideWords are{};
+    WideWords are_small{};
     for (std::size_t i = begin; i < end; i += wide_at_once) {
         const auto alpha = load<WideFloats>(job.alpha + i);
-        are |= less(WideFloats{}, alpha) & at_most(alpha, WideFloats{} + last);
+        are_small |= less(WideFloats{}, alpha) & at_most(alpha, WideFloats{} + last);
     }
-    return any(are);
+    return any(are_small);
 }
 
 // s - middle q.high, where both are about the same.

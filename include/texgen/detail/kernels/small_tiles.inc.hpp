@@ -31,7 +31,7 @@ TEXGEN_INLINE bool divide_small(const SmallTile& tile) noexcept {
     float buffer[2][SmallTile::most_in_short_rows + lanes];
     const bool has_room = width >= lanes;
     float* const out[2] = {has_room ? tile.out[0] : buffer[0], has_room ? tile.out[1] : buffer[1]};
-    Distances least = far_from_middles();
+    Distances distance = far_from_middles();
     for (int begin = 0;;) {
         const Doubles x = column + static_cast<double>(begin);
         const Doubles first_q = x * of_q.dx + of_q.base;
@@ -49,7 +49,7 @@ TEXGEN_INLINE bool divide_small(const SmallTile& tile) noexcept {
             }
             TEXGEN_FOR (int i = 0; i < 2; ++i) {
                 TEXGEN_FOR (std::size_t k = 0; k < 2; ++k) store(out[k] + (n + i * stride), to_floats(quotient[i][k]));
-                least = nearer(least, quotient[i][0], quotient[i][1], SmallTile::ulps);
+                distance = nearer(distance, quotient[i][0], quotient[i][1], SmallTile::ulps);
             }
             if (n == last) break;
             n += 2 * width;
@@ -65,7 +65,7 @@ TEXGEN_INLINE bool divide_small(const SmallTile& tile) noexcept {
     if (!has_room)
         for (std::size_t k = 0; k < 2; ++k)
             std::memcpy(tile.out[k], buffer[k], static_cast<std::size_t>(count) * sizeof(float));
-    return !any_zero(least);
+    return !any_zero(distance);
 }
 
 // Divides in float a tile of eight columns, of which a vector holds whole rows, or a part of one; or of sixteen and

@@ -84,7 +84,7 @@ TileJob::Unit divide_in_pairs(const TileJob& job, const TileJob::Unit& first) no
         int certain = begin;
         while (certain < width) {
             const int end = width - certain < TileJob::unit_size ? width : certain + TileJob::unit_size;
-            Distances least = far_from_middles();
+            Distances distance = far_from_middles();
             for (int x = certain; x < end; x += pair, index = index + static_cast<double>(pair)) {
                 if (x > end - pair) {
                     index = index - static_cast<double>(x - (end - pair));
@@ -100,10 +100,10 @@ TileJob::Unit divide_in_pairs(const TileJob& job, const TileJob::Unit& first) no
                     store(out[k] + x, to_floats(value[k]));
                     store(out[k] + x + lanes, to_floats(next_value[k]));
                 }
-                least = nearer(least, value[0], value[1], ulps);
-                least = nearer(least, next_value[0], next_value[1], ulps);
+                distance = nearer(distance, value[0], value[1], ulps);
+                distance = nearer(distance, next_value[0], next_value[1], ulps);
             }
-            if (any_zero(least)) break;
+            if (any_zero(distance)) break;
             certain = end;
         }
         light(job, row, begin, certain);

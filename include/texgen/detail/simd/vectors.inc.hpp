@@ -51,9 +51,9 @@ TEXGEN_INLINE void for_halves(const Function& f, const Vector&... values) noexce
 // What f returns for each half, rounded to float.
 template <class Function, class... Vector>
 TEXGEN_INLINE WideFloats in_double(const Function& f, const Vector&... values) noexcept {
-    Floats of[2], *next = of;
+    Floats result[2], *next = result;
     for_halves([&](const auto&... doubles) { *next++ = to_floats(f(doubles...)); }, values...);
-    return joined(of[0], of[1], std::make_integer_sequence<int, wide_lanes>());
+    return joined(result[0], result[1], std::make_integer_sequence<int, wide_lanes>());
 }
 
 // Rounds numbers that an int can hold towards zero.
