@@ -1,6 +1,6 @@
-// What doubles leave in doubt of a batch's fragments, to twice their precision: the edge functions from the differences
+// A batch's fragments that doubles leave in doubt, to twice their precision: the edge functions from the differences
 // between the fragment and the vertices, as in triangle/close_planes.hpp, a triangle in each lane. Included by
-// batch.inc.hpp. For rounding to nearest; only exact products are added to what their sum is compared with, so that
+// batch.inc.hpp. For rounding to nearest; products are exact wherever the loss of their sum is computed, so that
 // contraction changes nothing.
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
@@ -21,8 +21,8 @@ struct DifferenceLanes {
 struct EdgeLanes {
     Doubles high, low, size;
 
-    // The cross product of two differences, within 2^-98 of the size. is_short: their low parts are 0; is_lost: some
-    // lack a part.
+    // The cross product of two differences, within 2^-98 of the size. is_short: low parts are 0; is_lost: some lack a
+    // part.
     TEXGEN_INLINE void set(const DifferenceLanes& to_x, const DifferenceLanes& to_y, const DifferenceLanes& from_x,
                            const DifferenceLanes& from_y, bool is_short, bool is_lost) noexcept {
         const Doubles left = to_x.high * from_y.high, right = to_y.high * from_x.high;
@@ -134,7 +134,7 @@ struct CloseTerms {
         is_leading = !any(are_nonzero(rest));
     }
 
-    // Of coordinate k, 0 to 3 for s, t, r, q.
+    // The function of coordinate k, 0 to 3 for s, t, r, q.
     TEXGEN_INLINE CloseValues function(const VertexLanes& given, std::size_t k) const noexcept {
         Doubles f[3];
         TEXGEN_FOR (std::size_t i = 0; i < 3; ++i) f[i] = given.number(i, 3 + k);
@@ -280,7 +280,7 @@ struct ResidueLanes {
         }
     }
 
-    // By how much the edge functions grow along a row and down a column, without the factors one_x and one_y of all.
+    // By how much the edge functions grow along a row and down a column, without the common factors one_x and one_y.
     TEXGEN_INLINE void steps(Residues (&dx)[3], Residues (&dy)[3]) const noexcept {
         TEXGEN_FOR (std::size_t i = 0; i < 3; ++i) {
             const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
@@ -294,7 +294,7 @@ struct ResidueLanes {
     }
     TEXGEN_INLINE Doubles area_grain() const noexcept { return where(is_known, reciprocals_of_powers(per_x * per_y)); }
 
-    // Of coordinate k, 0 to 3 for s, t, r, q.
+    // The corners' values of coordinate k, 0 to 3 for s, t, r, q.
     TEXGEN_INLINE ResidueValues values(std::size_t k) noexcept {
         const IntegerLanes f(given.number(0, 3 + k), given.number(1, 3 + k), given.number(2, 3 + k));
         take_known(is_known, f.largest);

@@ -142,7 +142,7 @@ public:
         std::size_t n, place;  // where the first fragment goes: in `out`, and in the block
     };
 
-    // For fragments of a rectangle. What is learned outlives this block of them.
+    // For a block of the fragments of a rectangle, which `learned` outlives.
     TEXGEN_INLINE DoubtfulFragments(const FragmentsJob& job, Learned& learned, double left, double top, double width,
                                     double height) noexcept
         : job_(job), learned_(learned), left_(left), top_(top), width_(width), height_(height) {}

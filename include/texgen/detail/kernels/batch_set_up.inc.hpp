@@ -6,8 +6,7 @@ TEXGEN_INLINE Doubles load_lanes(const double* from) noexcept { return load<Doub
 TEXGEN_INLINE Doubles load_lanes(const float* from) noexcept { return to_doubles(load<Floats>(from)); }
 TEXGEN_INLINE Residues load_lanes(const std::uint64_t* from) noexcept { return load<Residues>(from); }
 
-// Loads the first `count` numbers at from(j) to lane j, in whole vectors. The last come first: with q a division
-// begins.
+// Loads the first `count` numbers at from(j) to lane j, in whole vectors. The last come first: a division needs q.
 template <class Vector, std::size_t Size, class From>
 TEXGEN_INLINE void load_columns(Vector (&columns)[Size], std::size_t count, const From& from) noexcept {
     TEXGEN_FOR (std::size_t end = Size; end > 0; end -= at_once) {

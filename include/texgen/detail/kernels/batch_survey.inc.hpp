@@ -82,11 +82,10 @@ struct Beyond {
     }
 };
 
-// In float a tile is what a chunk is (chunks.inc.hpp), in two directions. With r = 2^-24 the numerator of a step D
-// carries 3 r D, x of the denominator 3 r X, X being its largest, so that the step has 3 r X / (1 - X) D of it; the
+// In float a tile is treated as a chunk is (chunks.inc.hpp), in two directions. With r = 2^-24 the numerator of a step
+// D errs by 3 r D, x of the denominator by 3 r X, X being its largest, and the step by 3 r X / (1 - X) D for that; the
 // polynomial adds 3 r D (a division 2 r D), the product r D, and the value r D + 2 r |u|.
-// Prepares tiles in float. Returns those that need no more: floats serve, and the middle is lit, so that they are not
-// dark.
+// Prepares tiles in float. Returns those that need no more: floats serve, and the middle is lit.
 template <std::size_t Numerators>
 TEXGEN_INLINE LongWords prepare_in_float(const BatchJob& job, const BatchPlanes* of_tiles, const int (*block)[4],
                                          std::size_t first, BatchTiles& tiles) noexcept {
@@ -169,7 +168,7 @@ TEXGEN_APART void prepare(const BatchJob& job, const BatchPlanes* of_tiles, cons
             (f.error + largest * q.error) * (reciprocal * 1.0001) + largest * (10.0 * unit_roundoff_double);
         store(&tiles.base[k][first], f.at[0]);
         store(&tiles.error[k][first], error);
-        // For a numerator of one sign, q times a lower bound on what quotients have above 2^-125: if that is positive
+        // For a numerator of one sign, q times a lower bound on how far quotients are above 2^-125: if that is positive
         // they are normal floats, and an ulp of one in double is at least 2^-53 of it.
         const Doubles least = (maximum(f.least, f.largest * -1.0) - f.error) - q.largest * 0x1p-125;
         const LongWords is_normal = greater(least, 0.0);

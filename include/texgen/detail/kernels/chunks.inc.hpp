@@ -28,7 +28,7 @@ TEXGEN_INLINE Number chunk_error(const Number& u, const Number& reach, const Err
            ((u + reach) * q_error + numerator_error) * (reciprocal * 1.001);
 }
 
-// One rule in all lanes. Not a closure: behind a precompiled header GCC warns of one that takes no vector and returns one.
+// One rule in all lanes. Not a closure: behind a precompiled header GCC warns of one that only returns a vector.
 TEXGEN_INLINE Doubles in_all_lanes(StepRule rule) noexcept { return Doubles{} + static_cast<double>(rule); }
 
 // The coefficients of `count` chunks from the given one of row y on.

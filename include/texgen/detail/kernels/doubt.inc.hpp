@@ -27,7 +27,7 @@ struct CloseMiddle {
     TEXGEN_INLINE explicit CloseMiddle(const Doubles& u) noexcept
         : middle(middle_near(u)), unit(power_of_two_below(u) * 0x1p-24) {}
 
-    // What F - m Q is a multiple of.
+    // A power of two of which F - m Q is a multiple.
     template <class Grain>
     TEXGEN_INLINE Doubles grain_of(const Grain& f_grain, const Grain& q_grain) const noexcept {
         return minimum(unit * q_grain, Doubles{} + f_grain);

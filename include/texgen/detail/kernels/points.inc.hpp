@@ -31,7 +31,7 @@ TEXGEN_INLINE Doubles limit_within(double tolerance) noexcept {
     return power_of_two_below(Doubles{} + tolerance) * 0x1p24;
 }
 
-// Where a quotient may be rounded to either float within its error: at most half a tolerance is lost by each.
+// The lanes whose quotient may be rounded to either float within its error: both lose at most half a tolerance.
 TEXGEN_INLINE LongWords is_within(double tolerance, const Doubles& size, const Doubles& error) noexcept {
     return greater(limit_within(tolerance), size * 2.0) & at_most(error * 4.0, Doubles{} + tolerance);
 }
@@ -151,8 +151,8 @@ struct ReciprocalRange {
     }
 };
 
-// A block of points of a job that knows its ulps. Returns whether all is certain (it is written all the same). A point
-// that is not in the job's box can spoil only the one that shares its division, and the range tells.
+// Fills a block of points of a job that knows its ulps. Returns whether all is certain (it is written all the same). A
+// point that is not in the job's box can spoil only the one that shares its division, and the range tells.
 template <std::size_t Numerators>
 TEXGEN_INLINE bool fill_bounded_block(const PointJob& job, std::size_t begin, std::size_t end) noexcept {
     Distances distance = far_from_middles();
@@ -176,8 +176,8 @@ TEXGEN_INLINE bool fill_bounded_block(const PointJob& job, std::size_t begin, st
     return !any(~range.holds()) && !any_zero(distance);
 }
 
-// A block of points, with errors that hold for all of it, all in front if not Signed. Returns a bit for each wide vector
-// of which a value is in doubt (it is written all the same).
+// Fills a block of points, with errors that hold for all of it; all are in front if not Signed. Returns a bit for each
+// wide vector that has a value in doubt (it is written all the same).
 // All divisions are begun before the first result is asked for: what waits for one keeps others from being begun.
 template <bool Signed, std::size_t Numerators>
 TEXGEN_INLINE std::uint64_t fill_points_block(const PointJob& job, std::size_t begin, std::size_t end,

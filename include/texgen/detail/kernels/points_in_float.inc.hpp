@@ -34,7 +34,7 @@ struct FloatErrors {
     WideWords are_in_range;  // the forms
     float roundings, accepted;
 
-    // Of points whose largest |x|, |y|, |z| these are.
+    // For points with these largest |x|, |y|, |z|.
     template <std::size_t Count>
     TEXGEN_INLINE FloatErrors(const FloatDivision& division, const PointForm (&form)[Count], const PointExtent& extent,
                               double tolerance) noexcept

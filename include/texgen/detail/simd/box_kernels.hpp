@@ -116,8 +116,8 @@ struct UnitFormKernels {
 };
 
 // Further forms that are >= 0 wherever all of a slide's are, each a combination of those with weights that are exactly
-// >= 0. Where one of them is negative over all of a convex body, nothing of the body is lit. The matrix is so large that
-// no product of two of its elements underflows, see LitForms::separating().
+// >= 0. Where one of them is negative over all of a convex body, nothing of the body is lit. The matrix is so large
+// that no product of two elements underflows, see LitForms::separating().
 struct SeparatingFormKernels {
     void (*make)(const FormLanes& forms, const glm::dmat4& matrix, const double* side, std::size_t form_count,
                  SeparatingForms& planes) noexcept;

@@ -1,4 +1,4 @@
-// What quotients share wherever they are made: two divisors' one division, and what an error leaves of a float.
+// What quotients share wherever they are made: one division for two divisors, and the floats at the ends of an error.
 // Included by kernels.inc.hpp.
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {

@@ -1,5 +1,4 @@
-// The bodies of TriangleBatch: triangles go to kernels, and what these leave in doubt to set-ups. Included by
-// batch.hpp.
+// The bodies of TriangleBatch: triangles go to kernels, and their doubt to set-ups. Included by batch.hpp.
 
 namespace TEXGEN_DETAIL {
 

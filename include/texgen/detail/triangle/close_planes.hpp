@@ -160,8 +160,8 @@ struct DoubtfulJob {
     TileJob job;
     DoubtfulFunctions functions;
 
-    // In place of braces: of what is larger than 256 bytes and initialised by those GCC 12 clears members, where it
-    // should clear padding, if it is told to initialise all variables (-ftrivial-auto-var-init).
+    // In place of braces: where these initialise more than 256 bytes, GCC 12 clears members where it should clear
+    // padding, if it is told to initialise all variables (-ftrivial-auto-var-init).
     DoubtfulJob(const TileJob& tile, const DoubtfulFunctions& known) noexcept : job(tile), functions(known) {}
 };
 

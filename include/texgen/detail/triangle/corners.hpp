@@ -127,8 +127,8 @@ struct Corners {
     // How many of its own ulps the error of a quotient in double is at most, two more roundings included, as 1 less
     // than a power of two: the middles of floats are doubles whose last 29 bits are 2^28, so of a quotient that is
     // farther from those the nearest float is certain. 0 where that is too many, or a quotient may be no normal float.
-    // Of a tile well in front, where no numerator changes its sign, so that the corners have the least |F|: F/Q errs by
-    // e_F / |F| + e_Q / Q of itself and six roundings, and an ulp of it is at least 2^-53 of it.
+    // For a tile well in front, where no numerator changes its sign, so that the corners have the least |F|: F/Q errs
+    // by e_F / |F| + e_Q / Q of itself and six roundings, and an ulp of it is at least 2^-53 of it.
     std::int32_t ulps_of_quotients() const noexcept {
         const Double2 least = least_numerator();
         if (!all_less(double2_of(0x1p-124, 0x1p-124) * largest_q, least)) return 0;

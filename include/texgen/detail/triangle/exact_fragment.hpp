@@ -1,6 +1,6 @@
 #pragma once
 
-// What doubles leave in doubt of a triangle's planes, by exact sums: at one fragment, or of all of a tile.
+// Exact sums for what doubles leave in doubt of a triangle's planes, at one fragment or over a tile.
 
 #include <cmath>
 #include <cstddef>

@@ -26,7 +26,7 @@ public:
     const glm::dvec2& operator[](std::size_t i) const noexcept { return corners_[i]; }
     const glm::dvec2& after(std::size_t i) const noexcept { return corners_[i + 1 < count_ ? i + 1 : 0]; }
 
-    // What has sign * p[axis] <= bound.
+    // The part where sign * p[axis] <= bound.
     WindowPolygon cut(glm::length_t axis, double sign, double bound) const noexcept {
         WindowPolygon result;
         for (std::size_t i = 0; i < count_; ++i) {

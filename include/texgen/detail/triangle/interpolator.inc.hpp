@@ -296,8 +296,7 @@ private:
                                 [&](const TileJob::Unit& refused) { fill_refused(tile, job, refused); });
     }
 
-    // Fills a refused unit in shorter chunks or by divisions, and with it the fragments below, which would be refused
-    // as well.
+    // Fills a refused unit in shorter chunks or by divisions, and with it those below, which would be refused as well.
     TEXGEN_RARE void fill_refused(const Tile& tile, TileJob& job, const TileJob::Unit& refused) noexcept {
         Tile rest = part_of(tile, refused);
         const bool touches = refused.x_begin == job.filled.x_end || refused.x_end == job.filled.x_begin;

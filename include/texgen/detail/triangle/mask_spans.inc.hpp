@@ -108,8 +108,7 @@ private:
     bool are_finite_ = true;
 };
 
-// Makes the mask of a tile by the spans of its rows. Returns the part where floats have to decide, or all, if that is
-// much.
+// Makes the mask of a tile by the spans of its rows. Returns the part where floats decide, or all if that is much.
 TEXGEN_APART inline Tile light_spans(const TriangleFunctions& triangle, const Tile& tile, const Corners& at,
                                      const std::span<float>& lit) noexcept {
     const HalfPlanes planes(triangle, at, tile);

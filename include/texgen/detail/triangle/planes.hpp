@@ -303,8 +303,8 @@ private:
         return {widened(vertex.window.x), widened(vertex.window.y)};
     }
 
-    // Looks at two floats at a time: only the exponent of one that is not finite is all ones, so that 1 more carries to
-    // the sign.
+    // Looks at two floats at a time: only the exponent of one that is not finite is all ones: 1 more carries to the
+    // sign.
     bool are_finite() const noexcept {
         std::uint64_t sum = 0;
         for (const WindowVertex* vertex : {&triangle_.a, &triangle_.b, &triangle_.c}) {

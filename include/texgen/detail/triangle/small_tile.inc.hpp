@@ -3,8 +3,7 @@
 
 namespace TEXGEN_DETAIL_BUILD {
 
-// Where a tile begins, from the vertex that planes are about, a bound on how far it reaches, and its last column and
-// row.
+// Where a tile begins, from the vertex that planes are about, how far it reaches at most, its last column and row.
 struct SmallPlace {
     double x, y, reach_x, reach_y, right, bottom;
 

@@ -37,7 +37,7 @@ inline Tile part_of(const FragmentRect& rect, std::size_t first, std::size_t cou
             static_cast<int>((std::min)(count, width)), static_cast<int>((count - 1) / width) + 1};
 }
 
-// From this many fragments of one id in a row on a run has a set-up of its own.
+// A run of at least so many fragments of one id in a row has a set-up of its own.
 inline constexpr std::size_t long_run = 64;
 
 // Calls run(first, count) for the long runs of one id within a row, and once for rows that are of one id together. A
@@ -136,7 +136,7 @@ TEXGEN_APART void interpolate_runs(const TriangleBatch& batch, FragmentsJob& job
         [&](std::size_t begin, std::size_t end) { interpolate_ids(batch, job, rect, begin, end, out); });
 }
 
-// What the kernel of footprints is given of a visibility buffer.
+// Gives the kernel of footprints what it needs of a visibility buffer.
 inline void describe(BatchFootprintsJob& job, const TriangleBatch& batch, std::span<const std::uint32_t> ids,
                      const FragmentRect& rect, const TexelsPerUnit& texels, const Footprints& out) noexcept {
     describe(job, batch, ids, rect);
