@@ -44,14 +44,14 @@ TEXGEN_APART inline std::uint64_t decide_tiles(const TilesJob& job, const Fragme
                                                std::size_t of_block, bool about_corners = false) noexcept {
     BatchFunctions functions;
     TileScratch scratch;
-    const auto finite = static_cast<std::size_t>(std::countr_zero(doubtful));  // of finite numbers; others may not be
+    const auto stand_in = static_cast<std::size_t>(std::countr_zero(doubtful));  // of finite numbers; others may not be
     std::uint64_t taken = 0;
     const auto take = [&](std::size_t tile) {
         const std::size_t i = tile / at_once * at_once;
         taken |= ((std::uint64_t{1} << lanes) - 1) << i;
         const float* of_lane[lanes];
         TEXGEN_FOR (std::size_t j = 0; j < at_once; ++j)
-            of_lane[j] = vertices_of(job, first + ((doubtful >> (i + j) & 1u) != 0 ? i + j : finite));
+            of_lane[j] = vertices_of(job, first + ((doubtful >> (i + j) & 1u) != 0 ? i + j : stand_in));
         Words given[4];
         load_fours(block[i], given);
         functions.take(of_lane, job.needs_r(), to_doubles(given[0]) + 0.5, to_doubles(given[1]) + 0.5,
