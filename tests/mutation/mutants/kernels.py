@@ -223,6 +223,8 @@ KERNELS = [
         ("the least q is not looked for", "least_q = minimum(signed_bits(q), least_q);", "", "texcoord_test")),
     *of("detail/kernels/generate.inc.hpp",
         ("generate stores r in q", "value[0], value[1], value[2], value[3]);", "value[0], value[1], value[2], value[2]);",
+         "texcoord_test"),
+        ("the last points are beyond the end", "        if (i > last) i = last;\n", "        if (i > last) return;\n",
          "texcoord_test")),
     *of("detail/kernels/stores.inc.hpp",
         ("behind is not masked", "one_where(in_front & in_region(to, value))",

@@ -52,13 +52,14 @@ void classify_many(const LitForms& forms, const FloatForms& float_forms, std::sp
         }
     };
     for (std::size_t begin = 0; begin < bodies.size();) {
-        // Whole quanta are read where they are, the rest from a copy.
+        // Whole quanta are read where they are, a rest with some of the bodies before it, and a few from a copy.
         const std::size_t left = bodies.size() - begin;
         const std::size_t count = left >= chunk          ? chunk
                                   : left >= body_quantum ? left / body_quantum * body_quantum
                                                          : left;
-        if (is_dense && count >= body_quantum) {
-            classify(float_forms, reinterpret_cast<const float*>(&bodies[begin]), count, classes);
+        const std::size_t before = is_dense && begin != 0 && count < body_quantum ? body_quantum - count : 0;
+        if (is_dense && before + count >= body_quantum) {
+            classify(float_forms, reinterpret_cast<const float*>(&bodies[begin - before]), before + count, classes);
         } else {
             float copies[copied][Floats] = {};
             for (std::size_t i = 0; i < count; ++i) copy_floats(bodies[begin + i], copies[i], 1);
@@ -66,9 +67,10 @@ void classify_many(const LitForms& forms, const FloatForms& float_forms, std::sp
         }
         // Each body is written behind the open ones, and counted if it is open: there is no branch for each.
         for (std::size_t i = 0; i < count; ++i) {
-            out[begin + i] = static_cast<Coverage>(classes[i] & 3);
+            const int body_class = classes[before + i];
+            out[begin + i] = static_cast<Coverage>(body_class & 3);
             open[open_count] = begin + i;
-            open_count += static_cast<std::size_t>(classes[i] >= open_body);
+            open_count += static_cast<std::size_t>(body_class >= open_body);
         }
         begin += count;
         while (open_count >= body_quantum) decide_last(body_quantum);

@@ -270,16 +270,22 @@ struct SegmentGroups {
         prepare_job(job, segment, first, numerators, accepted);
         if (outputs.lit != nullptr) lit.copy_to(job.min, job.max);
         const auto run = [](SegmentJob& part) { interpolate_job(chosen<SegmentKernels>(), part); };
-        const std::size_t whole = alpha.size() / point_quantum * point_quantum;
-        job.alpha = alpha.data();
-        if (whole != 0) {
-            if (place(job, outputs, {0, whole, whole}))
+        const auto run_from = [&](std::size_t begin, std::size_t count) {
+            job.alpha = alpha.data() + begin;
+            if (place(job, outputs, {begin, count, count}))
                 run(job);
             else
-                run_part(job, outputs, {0, whole, whole}, run);
-        }
+                run_part(job, outputs, {begin, count, count}, run);
+        };
+        const std::size_t whole = alpha.size() / point_quantum * point_quantum;
+        if (whole != 0) run_from(0, whole);
         if (whole == alpha.size()) return;
-        run_rest(job, outputs, alpha, run);
+        // A last vector may be done twice in part, as outputs overlap no alpha, unless the first time has darkened it.
+        const bool darkens = numerators == 1 && outputs.lit != nullptr;
+        if (whole != 0 && !darkens)
+            run_from(alpha.size() - point_quantum, point_quantum);
+        else
+            run_rest(job, outputs, alpha, run);
     }
 };
 

@@ -168,17 +168,22 @@ void generate_all(const glm::dmat4& matrix, const Positions<Space>& positions, f
                   float* strq) noexcept {
     GenerateJob job;
     for (int k = 0; k < 4; ++k) job.form[k] = form(matrix, k);
-    for_each_part(positions, positions.size(), [&](const PointInput& input, const JobPart& part) {
+    const std::size_t size = positions.size();
+    if (size >= point_quantum && (positions.is_interleaved() || positions.is_planar())) {
+        static_cast<PointInput&>(job) = {positions.is_interleaved(), positions.x(), positions.y(), positions.z()};
+        job.count = size;
+        job.strq = strq;
+        for (std::size_t k = 0; k < 4; ++k) job.out[k] = out[k];
+        return chosen<PointKernels>().generate(job);
+    }
+    for_each_part(positions, size, [&](const PointInput& input, const JobPart& part) {
         const auto [first, count, whole] = part;
+        float buffer[4 * copy_size];
         static_cast<PointInput&>(job) = input;
         job.count = whole;
-        const bool is_padded = count != whole;
-        float buffer[4 * copy_size];  // a part that is padded is a copy
-        job.strq = strq == nullptr ? nullptr : is_padded ? buffer : strq + 4 * first;
-        for (std::size_t k = 0; k < 4; ++k)
-            job.out[k] = out[k] == nullptr ? nullptr : is_padded ? buffer + k * copy_size : out[k] + first;
+        job.strq = strq == nullptr ? nullptr : buffer;
+        for (std::size_t k = 0; k < 4; ++k) job.out[k] = out[k] == nullptr ? nullptr : buffer + k * copy_size;
         chosen<PointKernels>().generate(job);
-        if (!is_padded) return;
         if (strq != nullptr) std::memcpy(strq + 4 * first, buffer, 4 * count * sizeof(float));
         for (std::size_t k = 0; k < 4; ++k)
             if (out[k] != nullptr) std::memcpy(out[k] + first, job.out[k], count * sizeof(float));

@@ -177,7 +177,8 @@ struct PointForm {
     double x, y, z, w;
 };
 
-// The number of points, and of values along a segment, that a kernel does is a multiple of point_quantum.
+// The number of points, and of values along a segment, that a kernel does is a multiple of point_quantum; of points
+// that are not divided it is any from there on.
 inline constexpr std::size_t point_quantum = 16;
 inline constexpr std::size_t exact_block = 64;
 inline constexpr std::size_t float_block = 256;
