@@ -174,6 +174,7 @@ TEST_CASE("a column takes little more than a row of as many fragments, and a nar
                                  {1, 200, 200, 1, 1.75},
                                  {1, 4000, 4000, 1, 1.5},
                                  {2, 64, 16, 8, 4.0},
+                                 {2, 200, 40, 10, 4.0},
                                  {7, 16, 8, 16, 2.5}}) {
             const auto call = [&](int width, int height) {
                 return [&, rect = FragmentRect{300, 100, width, height}] {

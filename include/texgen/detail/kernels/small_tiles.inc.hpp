@@ -2,10 +2,14 @@
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 
+// The row of each lane, over the number of rows, where a vector holds four rows of two columns, or two rows of four.
+inline constexpr double joined_rows[2][8] = {{0.0, 0.0, 0.25, 0.25, 0.5, 0.5, 0.75, 0.75},
+                                             {0.0, 0.0, 0.0, 0.0, 0.5, 0.5, 0.5, 0.5}};
+
 // Divides in double, two rows at once, of an odd number the last two again; returns whether integers find no value in
 // doubt. A short single row is both rows. A long one is cut into rows as wide as a vector, of which the last may begin
-// in the one before. A vector of eight holds four rows of two columns, if they come out even, and y counts such
-// vectors. What a vector writes beyond its row is overwritten by those that follow.
+// in the one before. A vector of eight holds several rows of two or four columns, and y counts such vectors. What a
+// vector writes beyond its row is overwritten by those that follow.
 TEXGEN_INLINE bool divide_small(const SmallTile& tile) noexcept {
     const auto& [f_base, f_dx, f_dy] = tile.numerator;
     const Ramp& of_q = tile.q;
@@ -20,11 +24,12 @@ TEXGEN_INLINE bool divide_small(const SmallTile& tile) noexcept {
         if (!is_short) width = lanes;
     }
     Doubles column = indices<Doubles>(), first_y{};
-    if (lanes > 4 && width == 2 && count % (2 * lanes) == 0) {
-        first_y = (column * 0.125 - 0.0625 + 0x1.8p50) - 0x1.8p50;  // to fourths: 0, 0, 1/4, 1/4, ...
+    if (lanes > 4 && width % 2 == 0 && width <= 4 && count >= 2 * lanes) {
+        const double rows = width == 2 ? 4.0 : 2.0;
+        first_y = load<Doubles>(joined_rows[width == 4]);
         column = column - first_y * 8.0;
-        q_dy *= 4.0;
-        for (double& of_row : dy) of_row *= 4.0;
+        q_dy *= rows;
+        for (double& of_row : dy) of_row *= rows;
         width = stride = lanes;
     }
     // Rows that are shorter than a vector have no room for the last one.
@@ -56,7 +61,7 @@ TEXGEN_INLINE bool divide_small(const SmallTile& tile) noexcept {
             y = y + 2.0;
             if (n > last) {
                 n = last;
-                y = Doubles{} + static_cast<double>(n - begin) / width;
+                y = first_y + static_cast<double>(n - begin) / width;
             }
         }
         if (begin + lanes >= width) break;

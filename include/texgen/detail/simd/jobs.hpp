@@ -107,7 +107,7 @@ struct SmallTile {
     // A quotient in double that is within so many ulps of half-way between two floats is in doubt.
     static constexpr int ulps = 0xfff;
     // The most fragments of rows that are shorter than vectors.
-    static constexpr int most_in_short_rows = 256;
+    static constexpr int most_in_short_rows = 2048;
 };
 
 // Where a row of a TileJob goes. A copy, so that the compiler knows that no store changes it.
