@@ -48,8 +48,9 @@ struct Viewport {
 //   divide           one division a fragment; all are in front of the projector, inside the region and its depth
 //   divide_and_test  one division a fragment; the sign of q or the sides of the region are tested, or its depth
 // Where the region's border crosses an affine or quadratic rectangle, the mask is compared from the coordinates. Rows
-// of less than 16 fragments, rectangles of no more than 128, and those of no more than 512 in four rows or more that
-// are no wider than eight times their height, are divided though q/w varies: there a polynomial saves nothing.
+// of less than 16 fragments, rectangles of no more than 128, and those of four rows or more that are no wider than eight
+// times their height and hold no more than 512 fragments, or 16384 in rows of less than 64, are divided though q/w
+// varies: there a polynomial saves nothing.
 enum class Work { nothing, affine, quadratic, divide, divide_and_test };
 
 // How much of a box or a sphere the slide lights. A point is lit where q > 0 and (s, t) is in the closed region, as

@@ -321,20 +321,21 @@ TEST_CASE(
         const Work of_more = setup.work(rect_of(129, 1));  // or q is next to 0, or varies too much for a chunk
         if (of_more != Work::affine && of_more != Work::quadratic) continue;
         ++many;
-        for (const FragmentRect& rect : {rect_of(128, 1), rect_of(16, 8), rect_of(15, 40), rect_of(1, 1),
-                                         rect_of(16, 32), rect_of(32, 4), rect_of(64, 8)}) {
+        for (const FragmentRect& rect :
+             {rect_of(128, 1), rect_of(16, 8), rect_of(15, 40), rect_of(1, 1), rect_of(16, 32), rect_of(32, 4),
+              rect_of(64, 8), rect_of(16, 1024), rect_of(63, 260)}) {
             const Work work = setup.work(rect);
             if (work == Work::nothing) continue;
             ++few;
             REQUIRE_MESSAGE(work >= Work::divide, hex(Shot{shot.triangle, rect}));
         }
         // One more than those fragments, and than those rows have.
-        for (const FragmentRect& rect : {rect_of(19, 27), rect_of(65, 8), rect_of(43, 3)}) {
+        for (const FragmentRect& rect : {rect_of(16, 1025), rect_of(64, 9), rect_of(65, 8), rect_of(43, 3)}) {
             const Work work = setup.work(rect);
             larger += work == Work::affine || work == Work::quadratic;
         }
     }
-    CHECK(few > 1800);
+    CHECK(few > 2300);
     CHECK(larger > 600);
 }
 

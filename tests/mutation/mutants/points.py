@@ -42,7 +42,7 @@ POINTS = [
          "if (of_st == Coverage::outside) return Work::nothing;", "segment_test"),
         ("what the depth cuts of a segment is lit", "lit, accepted) == Coverage::inside) lit.has_depth = false;",
          "lit, accepted) != Coverage::outside) lit.has_depth = false;", "segment_test"),
-        ("what was darkened by another r stays dark", "if (whole != 0 && !darkens)", "if (whole != 0)", "segment_test")),
+        ("what was darkened by another r stays dark", "if (whole != 0 && !is_r)", "if (whole != 0)", "segment_test")),
     *of("detail/points/segment.inc.hpp",
         ("the sums of a segment are taken for short", "a * b > 0.0 && is_finite(ratio) ? 1.0 + 2.0 * ratio",
          "a * b > 0.0 && is_finite(ratio) ? 1.0", "segment_test doubt_test near_ties_test"),

@@ -280,9 +280,10 @@ struct SegmentGroups {
         const std::size_t whole = alpha.size() / point_quantum * point_quantum;
         if (whole != 0) run_from(0, whole);
         if (whole == alpha.size()) return;
-        // A last vector may be done twice in part, as outputs overlap no alpha, unless the first time has darkened it.
-        const bool darkens = numerators == 1 && outputs.lit != nullptr;
-        if (whole != 0 && !darkens)
+        // The last vector begins in the one before, as outputs overlap no alpha. Not that of r: what its first values
+        // have darkened would stay dark, and they are to be the same without a mask.
+        const bool is_r = first == 2;
+        if (whole != 0 && !is_r)
             run_from(alpha.size() - point_quantum, point_quantum);
         else
             run_rest(job, outputs, alpha, run);

@@ -44,23 +44,24 @@ inline bool pays_for_chunks(int width, int height) noexcept {
     return width >= 16 && static_cast<std::int64_t>(width) * height > 128;
 }
 
-// Whether a small tile has a shape that is divided in float: what is done in double once a column pays from a few rows
-// on, and takes less time then than chunks, which make up for it in larger tiles.
+// Whether a tile has a shape that is divided in float, where its tolerance allows: what is done in double once a column
+// pays from a few rows on, and takes less time then than chunks, which make up for it in long rows, and where columns of
+// vectors leave the cache.
 inline bool has_shape_for_float(int width, int height) noexcept {
-    if (width == 8) return height % 2 == 0;
-    return width >= 16 && height >= 4 && width <= 8 * height && width * height <= 512;
+    if (static_cast<std::int64_t>(width) * height > (width < 64 ? 16384 : 512)) return false;
+    return width == 8 ? height % 2 == 0 : width >= 16 && height >= 4 && width <= 8 * height;
 }
 
 // Whether a tile goes by the path of small ones. Rows that are shorter than vectors are gathered in a buffer. The more
-// fragments a tile has, the likelier one is in doubt, and then all are divided again; and in long rows vectors that
-// follow one another share a division at less cost.
+// fragments a tile has, the likelier one is in doubt in double, and then all are divided again; and in long rows vectors
+// that follow one another share a division at less cost. In float there is no doubt.
 inline bool is_small(const Tile& tile, double tolerance) noexcept {
     constexpr int longest_vector = 8;
     const bool is_column = tile.is_column();  // a row
     const int width = is_column ? tile.height : tile.width, height = is_column ? 1 : tile.height;
+    if (tolerance != 0.0 && has_shape_for_float(width, height)) return true;
     const int most = width < longest_vector ? SmallTile::most_in_short_rows : width <= 64 ? 4096 : 512;
-    return tile.count() <= most &&
-           (tolerance == 0.0 || !pays_for_chunks(width, height) || has_shape_for_float(width, height));
+    return tile.count() <= most && (tolerance == 0.0 || !pays_for_chunks(width, height));
 }
 
 // The plan of a tile that is divided without a survey.
@@ -132,7 +133,7 @@ inline void choose_plan(const TriangleFunctions& triangle, const Tile& tile, con
     if (triangle.tolerance == 0.0 || !pays_for_chunks(tile.width, tile.height)) return;
     plan.chunk = chunk_length(at, tile);
     if (at.is_well_in_front()) choose_steps(plan, at, triangle.tolerance * (1.0 - 0x1p-18));
-    if (is_small(tile, triangle.tolerance)) plan.work = without_chunks;  // whether or not floats serve
+    if (has_shape_for_float(tile.width, tile.height)) plan.work = without_chunks;  // whether or not floats serve
 }
 
 // Surveys a tile; a column as the row of the mirrored triangle that interpolate.inc.hpp makes of it.
@@ -172,8 +173,9 @@ inline glm::dvec2 TriangleSetup::error_bound(FragmentRect rect) const noexcept {
     const detail::Corners& at = found.at;
     const detail::Plan& plan = found.plan;
     if (at.all_behind()) return {0.0, 0.0};
-    // A small tile is divided, and errs by the tolerance at most, whatever a polynomial would.
-    const bool has_rule = plan.steps != detail::StepRule::undecided && !detail::is_small(tile, functions_.tolerance);
+    // A tile that is divided in float errs by the tolerance at most, whatever a polynomial would.
+    const bool has_rule =
+        plan.steps != detail::StepRule::undecided && !detail::has_shape_for_float(tile.width, tile.height);
     const auto bound = [&](std::size_t k) {
         if (has_rule) return plan.error[k];
         if (!at.all_in_front()) return detail::infinity;
