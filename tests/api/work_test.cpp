@@ -335,8 +335,8 @@ TEST_CASE(
             larger += work == Work::affine || work == Work::quadratic;
         }
     }
-    CHECK(few > 2300);
-    CHECK(larger > 600);
+    CHECK(few > 2600);
+    CHECK(larger > 1000);
 }
 
 }  // namespace work_cases
