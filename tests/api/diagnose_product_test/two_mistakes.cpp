@@ -56,14 +56,49 @@ TEST_CASE("one transposed factor of a product is named, whatever the hand") {
     Random random(662);
     for (int i = 0; i < 3000; ++i) {
         const Meant m = human(Mistake::none, random);
-        glm::dmat4 p = Code<double>::lens(m), v = Code<double>::view(m), x = m.pose;
-        glm::dmat4& factor = i % 3 == 0 ? p : i % 3 == 1 ? v : x;
+        glm::dmat4 s = Code<double>::bias(m), p = Code<double>::lens(m), v = Code<double>::view(m), x = m.pose;
+        glm::dmat4& factor = i % 4 == 0 ? s : i % 4 == 1 ? p : i % 4 == 2 ? v : x;
         factor = glm::transpose(factor);
-        const glm::dmat4 clip = p * v * x, texgen = Code<double>::bias(m) * clip;
+        const glm::dmat4 texgen = s * (p * v * x);
         const Diagnosis diagnosis = diagnosis_of(m, In::object, right_projector(m), Told::projector, false, texgen);
         REQUIRE_MESSAGE(!diagnosis.empty(), text(m, texgen, diagnosis));
         REQUIRE_MESSAGE(diagnosis[0].defect == Defect::transposed, text(m, texgen, diagnosis));
     }
+}
+
+TEST_CASE("a scale and a bias in the other order are in the wrong one, and no bias is one without w") {
+    Random random(665);
+    for (int i = 0; i < 3000; ++i) {
+        const Meant m = human(Mistake::none, random);
+        const bool is_left_out = i % 2 == 0;
+        glm::dmat4 s = Code<double>::bias(m);
+        for (glm::length_t row = 0; row < 3; ++row) s[3][row] *= is_left_out ? 0.0 : s[row][row];
+        const glm::dmat4 product = s * (Code<double>::lens(m) * Code<double>::view(m) * m.pose);
+        const glm::dmat4 texgen = random.coin() ? product : glm::dmat4(support::rounded(product));
+        const Diagnosis diagnosis = diagnosis_of(m, In::object, right_projector(m), Told::projector, false, texgen);
+        REQUIRE_MESSAGE(diagnosis.size() == 1, text(m, texgen, diagnosis));
+        REQUIRE_MESSAGE(diagnosis[0].defect == (is_left_out ? Defect::bias_without_w : Defect::wrong_order),
+                        text(m, texgen, diagnosis));
+    }
+}
+
+TEST_CASE("where s and t are wrong as well more is said than that r is of another range") {
+    Random random(666);
+    int of_depth = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const Meant m = human(Mistake::none, random);
+        glm::dmat4 s = Code<double>::bias(m);
+        s[3].x += 0.0625;
+        const bool is_halved = s[3].z != 0.0;
+        s[2].z = is_halved ? 1.0 : 0.5;
+        s[3].z = is_halved ? 0.0 : 0.5;
+        const glm::dmat4 texgen = s * (Code<double>::lens(m) * Code<double>::view(m) * m.pose);
+        const Diagnosis diagnosis = diagnosis_of(m, In::object, right_projector(m), Told::projector, false, texgen);
+        const bool is_of_depth = diagnosis.contains(Defect::depth_range_mismatch);
+        of_depth += is_of_depth;
+        REQUIRE_MESSAGE(diagnosis.size() > (is_of_depth ? 1u : 0u), text(m, texgen, diagnosis));
+    }
+    CHECK(of_depth > 100);
 }
 
 TEST_CASE("what shows without the pose is named where the pose is mistaken as well") {

@@ -56,8 +56,23 @@ inline bool has_transposed_factor(const glm::dmat4& texgen, const Factors& facto
         factor = given;
         return is_product;
     };
-    return is_product_with(with_transposed.projection) || is_product_with(with_transposed.view) ||
-           (with_transposed.pose && is_product_with(*with_transposed.pose));
+    return is_product_with(with_transposed.scale_bias) || is_product_with(with_transposed.projection) ||
+           is_product_with(with_transposed.view) || (with_transposed.pose && is_product_with(*with_transposed.pose));
+}
+
+// Whether the product has this share of the scale-bias's bias: the scale, where they were multiplied in the other order,
+// or nothing.
+inline bool has_bias_times(const glm::dvec3& share, const glm::dmat4& texgen, const Factors& factors) noexcept {
+    Factors with_share = factors;
+    for (glm::length_t row = 0; row < 3; ++row) with_share.scale_bias[3][row] *= share[row];
+    return is_product_of(with_share, texgen);
+}
+
+// Whether rows s, t and q are those of the product.
+inline bool has_other_rows_than_r(const glm::dmat4& texgen, const Factors& factors) noexcept {
+    glm::dmat4 rows = texgen;
+    for (glm::length_t column = 0; column < 4; ++column) rows[column][2] = 0.0;
+    return is_product_of(factors, rows);
 }
 
 // P', the projection that a texgen matrix has in it, scaled until its w is as large as that of P. Elements that may be
@@ -111,6 +126,15 @@ inline bool look_through(const glm::dmat4& texgen, const Factors& factors, const
         diagnosis.add(Defect::transposed);
         return true;
     }
+    const glm::dmat4& scale_bias = factors.scale_bias;
+    if (has_bias_times({scale_bias[0].x, scale_bias[1].y, scale_bias[2].z}, texgen, factors)) {
+        diagnosis.add(Defect::wrong_order);
+        return true;
+    }
+    if (has_bias_times(glm::dvec3(0.0), texgen, factors)) {
+        diagnosis.add(Defect::bias_without_w);
+        return true;
+    }
     const glm::dmat4& given = factors.projection;
     if (!is_lens(given)) return false;
     auto p = lens_within(texgen, factors);
@@ -125,7 +149,8 @@ inline bool look_through(const glm::dmat4& texgen, const Factors& factors, const
     Diagnosis of_lens;
     examine_lens(*p, false, conventions, meant_by(given, conventions, setup.lens), setup.picture, of_lens);
     for (const Finding& finding : of_lens) diagnosis.add(finding.defect, finding.number);
-    return !of_lens.empty();
+    const bool is_of_depth_alone = of_lens.size() == 1 && of_lens.contains(Defect::depth_range_mismatch);
+    return !of_lens.empty() && !(is_of_depth_alone && !has_other_rows_than_r(texgen, factors));
 }
 
 }  // namespace TEXGEN_DETAIL
