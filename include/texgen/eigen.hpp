@@ -106,7 +106,8 @@ requires detail::EigenDense<Vector> && detail::FloatOrDouble<typename Vector::Sc
 // Guarantee: they are not copied, and must outlive the view; no allocation, noexcept.
 // Shapes: points as columns of a 3 x N (Matrix3Xf, Ref, Map, middleRows<3>(i), but not block(i, 0, 3, n), whose rows
 // are not known when it is compiled; interleaved where its columns are dense, planar where it is row-major), as rows of
-// an N x 3, or as three vectors of coordinates of one size and one inner stride. Any strides.
+// an N x 3, or as three vectors of coordinates of one size and one inner stride. Any strides. A 3 x 3 may be either, and
+// is refused: Map<const Matrix3Xf>(triangle.data(), 3, 3) are its columns.
 // Bad input: three vectors that disagree, and strides from point to point that are negative, are asserted; without
 // assertions they are no points.
 template <class... Floats>

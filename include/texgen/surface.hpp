@@ -86,7 +86,8 @@ inline constexpr double keystone_error = 0x1p-48;
 // was measured.
 // Guarantee: as quadrilateral(), with the same q; each element is the difference of two terms, or their sum, and within
 // keystone_error of their magnitudes, unless a term is below 2^-1000 for the whole texture. No allocation, noexcept.
-// Shape: (x, y, z, 1) to (s, t, 0, q), whatever z is. q > 0 on the side of the horizon where the quadrilateral is.
+// Shape: (x, y, z, 1) to (s, t, 0, q), whatever z is. q > 0 on the side of the horizon where the quadrilateral is, but
+// for that error: a corner between two that are nearly on a line with it is next to the horizon.
 // Bad input: empty as quadrilateral(), though q, s and t may be of any size, and where an element is not finite.
 inline std::optional<WindowTexgen> keystone(const std::array<glm::dvec2, 4>& corners,
                                             const TextureRegion& region = whole_texture()) noexcept;

@@ -57,7 +57,8 @@ Transform<A, C> operator*(const Transform<A, B>& a_from_b, const Transform<B, C>
 // are: from_row_vectors<Eye, World>(view) is its transpose.
 // Guarantee: each element is kept exactly; no allocation, noexcept.
 // Shape: matrix[column][row] is the element of M, which has its translation in row 3. Of 16 floats: row after row, as
-// an XMFLOAT4X4 is in memory. (Those 16 copied into a mat4 are the transpose already: a Transform of it is right.)
+// an XMFLOAT4X4 m is in memory: std::span<const float, 16>(&m.m[0][0], 16). (Those 16 copied into a mat4 are the
+// transpose already: a Transform of it is right.)
 // Bad input: as Transform.
 template <class To, class From>
 Transform<To, From> from_row_vectors(const glm::mat4& matrix) noexcept;

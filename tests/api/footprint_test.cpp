@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -238,6 +239,19 @@ TEST_CASE("only what is asked for is written, the same whatever else is asked fo
                         (same_bits(some[k][f], all[k][f]) ||
                          (k >= 4 && std::fabs(some.at(k, f) - all.at(k, f)) <= 1e-5 * std::fabs(all.at(k, f)))),
                         hex(shot));
+    }
+}
+
+TEST_CASE("of a rectangle of any size nothing is done where nothing is asked, but to say whether it may be lit") {
+    constexpr int most = std::numeric_limits<int>::max();
+    Random random(96);
+    for (int i = 0; i < 300; ++i) {
+        const Shot shot =
+            support::hard_families[static_cast<std::size_t>(i) % support::hard_families.size()].make(random);
+        const texgen::TriangleSetup triangle = setup_of(shot.triangle);
+        const texgen::FootprintSetup setup(triangle, {256.0, 256.0});
+        for (const FragmentRect& rect : {shot.rect, FragmentRect{0, 0, most, most}, {-most, -most, most, most}})
+            REQUIRE_MESSAGE(footprint(setup, rect, {}) == (triangle.work(rect) != texgen::Work::nothing), hex(shot));
     }
 }
 

@@ -241,7 +241,7 @@ Diagnosis diagnose(const Transform<Texture, Space>& texgen,
                    const ProjectionSetup<std::type_identity_t<Space>>& setup) noexcept {
     ProjectionSetup<Space> whole = setup;
     whole.texgen = texgen;
-    return diagnose(whole);
+    return detail::diagnose(whole, false);
 }
 
 template <class Space>

@@ -296,8 +296,9 @@ template <class Space>
 void generate(const Transform<Texture, Space>& texture_from_space, Positions<Space> positions,
               HomogeneousTexcoords out) noexcept {
     const auto array = [&](const std::span<float>& output) { return detail::array_of(output, positions.size()); };
-    detail::generate_all(texture_from_space.matrix(), positions,
-                         {array(out.s), array(out.t), array(out.r), array(out.q)}, nullptr);
+    float* const arrays[4] = {array(out.s), array(out.t), array(out.r), array(out.q)};
+    for (const float* const any : arrays)
+        if (any != nullptr) return detail::generate_all(texture_from_space.matrix(), positions, arrays, nullptr);
 }
 
 template <class Space>

@@ -201,8 +201,10 @@ template <class CompiledWhereCalled>
 bool footprint(const FootprintSetup& setup, FragmentRect rect, Footprints out) noexcept {
     const std::size_t count = detail::count_of(rect);
     if (count == 0) return false;
-    detail::take_computed(out, count);
-    return detail::footprint_tile(setup, detail::tile_of(rect), out);
+    const detail::Tile tile = detail::tile_of(rect);
+    if (!detail::take_computed(out, count))
+        return detail::survey(detail::Inside::functions(setup).triangle, tile).plan.work != Work::nothing;
+    return detail::footprint_tile(setup, tile, out);
 }
 
 }  // namespace TEXGEN_NAMESPACE_BUILD
