@@ -147,7 +147,7 @@ inline Shot draw(Random& random) {
         default:
             break;
     }
-    if (random.integer(0, 15) == 0) shot.rect.width = random.integer(1, 80), shot.rect.height = random.integer(1, 40);
+    if (random.integer(0, 15) == 0) shot.rect.width = random.integer(1, 160), shot.rect.height = random.integer(1, 60);
     return shot;
 }
 

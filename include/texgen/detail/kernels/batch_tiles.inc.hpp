@@ -194,8 +194,9 @@ TEXGEN_INLINE Undecided divide_all_tiles(const TilesJob& job, std::size_t first,
     TileScratch scratch;
     BatchTiles tiles;
     ShapeOfTile shape;
-    // With few lanes large tiles in float take no less here than a set-up with chunks does.
-    std::size_t most = job.tolerance > 0.0 && lanes < 4 ? largest_in_scratch : largest_batch_tile;
+    // Within a tolerance a set-up's chunks take less than large tiles do here, the sooner the fewer lanes there are.
+    constexpr std::size_t largest_in_float = wide_lanes == 16 ? 2048 : lanes < 4 ? largest_in_scratch : 1024;
+    std::size_t most = job.tolerance > 0.0 ? largest_in_float : largest_batch_tile;
     for (std::size_t k = 0; k < Numerators; ++k)
         if (out.out[k] == nullptr) most = largest_in_scratch;
     const bool is_mask_alone = out.out[0] == nullptr && out.out[1] == nullptr && out.out[2] == nullptr;

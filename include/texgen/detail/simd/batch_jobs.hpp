@@ -49,7 +49,7 @@ inline constexpr double batch_plane_error = 1.0001 * gamma(20);
 
 // Tiles of more fragments than largest_batch_tile are left to a TriangleSetup, which costs little beside them and
 // resumes where one is in doubt; so are those that scratch does not hold, if they need it or are in doubt.
-inline constexpr std::size_t largest_batch_tile = 1024;
+inline constexpr std::size_t largest_batch_tile = 4096;
 inline constexpr std::size_t largest_in_scratch = 512;
 
 // Where the values of fragments go: an output is null, or an array of `count` floats.

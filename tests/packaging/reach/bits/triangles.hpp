@@ -70,8 +70,8 @@ inline bool is_placed_behind_an_empty_one([[maybe_unused]] const texgen::Triangl
 #ifdef WITH_BATCHES
     std::vector<texgen::FragmentRect> rects(40, {0, 0, 2, 2});
     rects[3] = {0, 0, 0, 4};
-    rects.back() = {0, 0, 64, 64};
-    const std::size_t large = 64 * 64, before = 4 * (rects.size() - 2);
+    rects.back() = {0, 0, 64, 65};
+    const std::size_t large = 64 * 65, before = 4 * (rects.size() - 2);
     std::vector<float> all(before + large, -777.0f), alone(large);
     texgen::TriangleBatch batch(boundless);
     batch.assign(std::vector<texgen::Triangle>(rects.size(), triangle));
