@@ -153,7 +153,7 @@ inline TextureRegion with_some_depth(const TextureRegion& region, Random& random
         case 4:
             return random.coin() ? region.with_depth(0.0, HUGE_VAL) : region.with_depth(-HUGE_VAL, 0.99);
         case 10:
-            return region.with_depth(1.0, 0.0);
+            return random.coin() ? region.with_depth(1.0, 0.0) : region.with_depth(HUGE_VAL, HUGE_VAL);
         case 11:
             return region.with_depth(random.coin() ? std::nan("") : random.power_of_ten(-300.0, 300.0), 1.0);
         default:

@@ -136,8 +136,8 @@ inline WorldBounds world_bounds(const glm::dmat4& m, const Box& box) noexcept {
 // bounds, that of T_o is negative over the box, and where all are above slack, all of T_o are positive.
 class WorldForms {
 public:
-    // texture_from_eye is S P. Where coverage() may not decide there are no forms, and all is partial. The form of an
-    // infinite side leaves nothing out either.
+    // texture_from_eye is S P. Where coverage() may not decide there are no forms, and all is partial. An infinite side
+    // has none, as it leaves nothing out.
     WorldForms(const glm::dmat4& texture_from_eye, const glm::dmat4& view, const TextureRegion& region) noexcept {
         const glm::dmat4 matrix = texture_from_eye * view;
         const bool without_r = !region.depth();
@@ -147,11 +147,13 @@ public:
             if (!LitForms::is_usable_side(plane.sign * plane.bound)) return;
         const glm::dmat4 magnitude = absolute(texture_from_eye) * absolute(view);
         // q comes last: few bounds are behind a projector and beyond none of its sides.
-        while (count_ < planes.size()) {
-            LinearForm& form = forms_[count_];
-            set(form, matrix, magnitude, planes[(count_ + 1) % planes.size()]);
+        for (std::size_t i = 1; i <= planes.size(); ++i) {
+            const bool is_q = i == planes.size();
+            const SlidePlane& plane = planes[is_q ? 0 : i];
+            if (!is_finite(plane.bound)) continue;
+            LinearForm& form = forms_[count_++];
+            set(form, matrix, magnitude, plane);
             // may_light() does not ask q, nor a side that needs a larger error than it has.
-            const bool is_q = ++count_ == planes.size();
             if (!is_q && form.error_a < 0x1p-21 && form.error_d < 0x1p-21)
                 sides_[side_count_++] = {static_cast<float>(form.a[0]), static_cast<float>(form.a[1]),
                                          static_cast<float>(form.a[2]), static_cast<float>(form.d)};
@@ -203,10 +205,9 @@ public:
 
 private:
     // The form sign (row - bound q), times a power of two that brings the sum of the magnitudes near 1. The given side
-    // is between the outer and the inner one, and may be off by their distance. An infinite one sets no form.
+    // is between the outer and the inner one, and may be off by their distance.
     static void set(LinearForm& form, const glm::dmat4& matrix, const glm::dmat4& magnitude,
                     const SlidePlane& plane) noexcept {
-        if (!is_finite(plane.bound)) return;
         const RoundedSide side = RoundedSide::of_min(plane.sign * plane.bound);
         const double width = plane.coordinate == 3 ? 0.0 : std::fabs(side.inner - side.outer);
         const double of_q = -plane.sign * plane.bound;
