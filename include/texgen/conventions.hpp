@@ -11,8 +11,8 @@
 
 #include "detail/matrices/required.hpp"
 
-// 0.4.32: 10000 major + 100 minor + patch.
-#define TEXGEN_VERSION 432
+// 0.4.33: 10000 major + 100 minor + patch.
+#define TEXGEN_VERSION 433
 
 namespace TEXGEN_NAMESPACE {
 

@@ -170,6 +170,37 @@ TEST_CASE("a value depends neither on what else is asked, nor on the alignment, 
     }
 }
 
+TEST_CASE(
+    "where a first cache does not hold a tile its values do not depend on the alignment, and keep the tolerance") {
+    Random random(401);
+    // Rows of one chunk and of several, with and without a rest that is shorter than a vector.
+    const glm::ivec2 sizes[] = {{16, 600}, {37, 150}, {64, 70}, {100, 90}, {257, 40}, {513, 9}, {1537, 7}, {4097, 3}};
+    constexpr double tolerance = 0x1p-20;
+    std::size_t rests = 0;
+    for (const glm::ivec2 size : sizes) {
+        Triangle triangle = gentle_triangle(random);
+        for (texgen::WindowVertex* vertex : {&triangle.a, &triangle.b, &triangle.c}) vertex->window *= 16.0f;
+        const Shot shot{triangle, {random.integer(0, 90), random.integer(0, 90), size.x, size.y}};
+        Outputs nearest(count_of(shot.rect)), all(count_of(shot.rect));
+        interpolate(setup_of(triangle), shot.rect, nearest.spans());
+        const TriangleSetup setup = setup_of(triangle, texgen::whole_texture(), texgen::Tolerance{tolerance});
+        const Work work = interpolate(setup, shot.rect, all.spans());
+        REQUIRE((work == Work::quadratic || work == Work::divide || work == Work::affine));
+        if (size.x % 16 == 1 && size.x > 256) ++rests;
+        for (std::size_t k = 0; k < 4; ++k)
+            for (std::size_t i = 0; i < all.size(); ++i)
+                REQUIRE_MESSAGE(std::abs(all[k][i] - nearest[k][i]) <= 1.25 * tolerance, i, " of ", hex(shot));
+        for (std::size_t misalignment = 0; misalignment <= 16; ++misalignment) {
+            Outputs some(count_of(shot.rect), misalignment % 3 == 0 ? 3u : 15u, misalignment);
+            interpolate(setup, shot.rect, some.spans());
+            for (std::size_t k = 0; k < 4; ++k)
+                if (some.asked(k)) REQUIRE_MESSAGE(same_bits(some[k], all[k]), misalignment, " of ", hex(shot));
+            REQUIRE_MESSAGE(some.pads_are_intact(), misalignment, " of ", hex(shot));
+        }
+    }
+    CHECK(rests == 4);
+}
+
 TEST_CASE("a mask without coordinates is right in rows wider than the scratch of a strip") {
     Random random(450);
     Seen seen;

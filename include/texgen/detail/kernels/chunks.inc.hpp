@@ -31,7 +31,7 @@ TEXGEN_INLINE Number chunk_error(const Number& u, const Number& reach, const Err
 // One rule in all lanes. Not a closure: behind a precompiled header GCC warns of one that only returns a vector.
 TEXGEN_INLINE Doubles in_all_lanes(StepRule rule) noexcept { return Doubles{} + static_cast<double>(rule); }
 
-// The coefficients of `count` chunks from the given one of row y on.
+// The coefficients of `count` chunks from the given one of row y on; none is shorter than a vector.
 template <class CompiledWhereCalled = void>
 void weigh_chunks(const TileJob& job, ChunkGroup& group, int chunks_of_row, int y, int chunk, int count) noexcept {
     const double width = job.width, length = job.chunk;
@@ -53,8 +53,7 @@ void weigh_chunks(const TileJob& job, ChunkGroup& group, int chunks_of_row, int 
         for (std::size_t k = 0; k < 2; ++k) {
             const double dx = job.numerator.dx[k];
             u[k] = value(job.numerator.base[k], dx, job.numerator.dy[k]) * reciprocal;
-            // In a chunk of one fragment there are no steps, and nothing bounds its slope.
-            d[k] = where(greater(half, 0.0), (u[k] * -job.q.dx + dx) * reciprocal);
+            d[k] = (u[k] * -job.q.dx + dx) * reciprocal;
             store(&group.middle[k][i], to_floats(u[k]));
             store(&group.slope[k][i], to_floats(d[k]));
         }
@@ -80,29 +79,30 @@ void weigh_chunks(const TileJob& job, ChunkGroup& group, int chunks_of_row, int 
     }
 }
 
-// Fills the group's chunks from `first` to `end`, which have one rule and begin at x of the row, and their mask. What
-// is shorter than a vector, at the end of a row, goes through a buffer.
+// Fills the group's chunks from `first` to `end`, which have one rule and begin at x of the row, and their mask.
 template <class CompiledWhereCalled = void>
 void fill_chunks(const TileJob& job, const RowOutputs& row, ChunkGroup& group, int first, int end, int x) noexcept {
     const StepRule rule = group.rule_of(job, first);
     const int length = job.length_of_chunk(x);
+    // Shorter vectors take longer by that than memory does, but for what no cache holds.
+    const bool is_in_order = job.is_beyond(wide_lanes == 16 ? 8192 : 1 << 21);
+    const std::ptrdiff_t reach = is_in_order ? length : (length + 1) / 2;
     if (length != group.indexed) {
         group.indexed = length;
         const WideFloats first_index = indices<WideFloats>() - 0.5f * static_cast<float>(length - 1);
-        for (int i = 0; 2 * i < length; i += wide_lanes) store(group.index + i, first_index + static_cast<float>(i));
+        for (int i = 0; i < reach; i += wide_lanes) store(group.index + i, first_index + static_cast<float>(i));
     }
-    const bool is_short = length < wide_lanes;
-    float buffer[2][2 * wide_lanes];
     std::int64_t begin = x;
     for (std::ptrdiff_t i = first; i < end; ++i, begin += length) {
         const WideFloats bend = group.bend[i] - WideFloats{};
         const WideFloats middle[2] = {group.middle[0][i] - WideFloats{}, group.middle[1][i] - WideFloats{}};
         const WideFloats slope[2] = {group.slope[0][i] - WideFloats{}, group.slope[1][i] - WideFloats{}};
-        float* const s = is_short ? buffer[0] + wide_lanes : row.out[0] + begin;
-        float* const t = is_short ? buffer[1] + wide_lanes : row.out[1] + begin;
-        // From both ends: the last vectors may overlap in the middle. Indices are loaded, which costs nothing here.
+        float* const s = row.out[0] + begin;
+        float* const t = row.out[1] + begin;
         std::ptrdiff_t last = length - wide_lanes;
-        for (std::ptrdiff_t at = 0; 2 * at < length; at += wide_lanes, last -= wide_lanes) {
+        // From both ends, where the last vectors may overlap in the middle; or in order, in whole lines of a cache, where
+        // the first one does not hold the tile. The bits are the same. Indices are loaded, which costs nothing here.
+        for (std::ptrdiff_t at = 0; at < reach;) {
             const auto from_middle = load<WideFloats>(group.index + at);
             const WideFloats bent = from_middle * bend, square = bent * bent;
             WideFloats mean;
@@ -112,15 +112,21 @@ void fill_chunks(const TileJob& job, const RowOutputs& row, ChunkGroup& group, i
                 mean = from_middle + from_middle * square;
                 if (rule == StepRule::degree8) mean = mean + mean * (square * square);
             }
-            const WideFloats step = mean - mean * bent, step_back = reversed(mean + mean * bent);
+            const WideFloats step = mean - mean * bent;
             store(s + at, step * slope[0] + middle[0]);
             store(t + at, step * slope[1] + middle[1]);
+            if (is_in_order) {
+                if (at == last) break;
+                at += floats_to_line<WideFloats>(s + at);
+                if (at > last) at = last;
+                continue;
+            }
+            const WideFloats step_back = reversed(mean + mean * bent);
             store(s + last, middle[0] - step_back * slope[0]);
             store(t + last, middle[1] - step_back * slope[1]);
+            at += wide_lanes;
+            last -= wide_lanes;
         }
-        if (!is_short) continue;
-        for (std::size_t k = 0; k < 2; ++k)
-            std::memcpy(row.out[k] + begin, buffer[k] + wide_lanes, static_cast<std::size_t>(length) * sizeof(float));
     }
     light(job, row, x, begin);
 }

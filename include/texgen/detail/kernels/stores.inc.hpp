@@ -17,6 +17,14 @@ TEXGEN_INLINE Vector lit_of(const Output& to, const Vector (&value)[2], const Ma
     return one_where(in_front & in_region(to, value));
 }
 
+// How far behind `to` the next place is from which a vector does not span two lines of a cache. Vectors that do, stored
+// to one array and another in turn, take twice as long where the first cache does not hold these.
+template <class Vector>
+TEXGEN_INLINE std::ptrdiff_t floats_to_line(const float* to) noexcept {
+    const std::uintptr_t behind = reinterpret_cast<std::uintptr_t>(to) % sizeof(Vector);
+    return static_cast<std::ptrdiff_t>((sizeof(Vector) - behind) / sizeof(float));
+}
+
 // Stores the first `count` lanes, by parts of fixed sizes: lane by lane, compilers make a call of memcpy of it.
 template <class Vector>
 TEXGEN_INLINE void store_some(float* to, int count, const Vector& values) noexcept {

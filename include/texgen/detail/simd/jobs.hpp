@@ -80,7 +80,8 @@ struct TileJob {
     Unit filled = {0, 0, 0, 0};  // the columns in which chunks without a rule are filled already, down to the last row
 
     static constexpr int unit_size = 64;
-    static constexpr int longest_pair = 16;  // at most so many fragments share a division, in vectors of any size
+    static constexpr int longest_vector = 16;  // the most floats in one
+    static constexpr int longest_pair = 16;    // at most so many fragments share a division, in vectors of any size
 
     int length_of_chunk(int begin) const noexcept { return chunk < width - begin ? chunk : width - begin; }
 
@@ -92,6 +93,11 @@ struct TileJob {
         return unit.x_end < width ? unit_at(unit.x_end, unit.y_begin, size) : unit_at(0, unit.y_end, size);
     }
     bool is_done(const Unit& unit) const noexcept { return unit.y_begin >= height; }
+
+    // Whether its outputs have more floats than that.
+    bool is_beyond(std::int64_t floats) const noexcept {
+        return static_cast<std::int64_t>(width) * height * (lit == nullptr ? 2 : 3) > floats;
+    }
 };
 
 // A tile of few fragments that one certificate serves, see small_tile.inc.hpp.
@@ -145,8 +151,8 @@ struct ChunkGroup {
     float bend[size];
     float middle[2][size], slope[2][size];
     float rule[size];
-    alignas(64) float index[longest_chunk / 2];  // of the fragments in the first half of a chunk, from its middle
-    int indexed = 0;                             // the length of that chunk
+    alignas(64) float index[longest_chunk];  // of the fragments of a chunk, or of its first half, from its middle
+    int indexed = 0;                         // the length of that chunk
 
     StepRule rule_of(const TileJob& job, int i) const noexcept {
         return job.steps == StepRule::undecided ? static_cast<StepRule>(static_cast<int>(rule[i])) : job.steps;

@@ -23,25 +23,23 @@ struct TileSurvey {
     OnDemand<CloseRamps> close;  // where the planes cancel
 };
 
-// Chunks are short where q varies much, so that their ends are not far from their middle, and in tiles that caches do
-// not hold: both halves of a chunk are written at once, which memory takes without delay only where they are
-// neighbours. A chunk costs about as much as 32 fragments besides those that it has.
+// Chunks are short where q varies much, so that their ends are not far from their middle. A chunk costs about as much as
+// 32 fragments besides those that it has. None is shorter than a vector, but what may be left at the end of a row.
 inline int chunk_length(const Corners& at, const Tile& tile) noexcept {
     constexpr int shortest = 64;
-    constexpr std::int64_t most_in_caches = std::int64_t{1} << 20;
     const int width = tile.width;
     const double q = 0.25 * (at.q[0] + at.q[1] + at.q[2] + at.q[3]);
-    int longest = tile.count() > most_in_caches ? shortest : longest_chunk;
+    int longest = longest_chunk;
     while (longest > shortest && std::fabs(at.q_ramp.dx) * longest > 0.5 * q) longest /= 2;
     if (width <= longest) return width;
     const int chunks = (width - 1) / longest + 1;
-    constexpr int lanes = 16;
+    constexpr int lanes = TileJob::longest_vector;
     return ((width - 1) / chunks / lanes + 1) * lanes;
 }
 
 // A chunk costs as much as some fragments, and the first one, with what chunks need, as much as some tens.
 inline bool pays_for_chunks(int width, int height) noexcept {
-    return width >= 16 && static_cast<std::int64_t>(width) * height > 128;
+    return width >= TileJob::longest_vector && static_cast<std::int64_t>(width) * height > 128;
 }
 
 // Whether a tile has a shape that is divided in float, where its tolerance allows: what is done in double once a column
