@@ -43,6 +43,22 @@ TEXGEN_APART void darken_beyond_depth(const TriangleFunctions& triangle, const T
     }
 }
 
+// Makes the mask of a part of few fragments from the floats nearest to s and t, if one certificate serves all of them.
+template <class CompiledWhereCalled = void>
+bool light_small(const TriangleFunctions& triangle, const Tile& rect, const Tile& part,
+                 const std::span<float>& lit) noexcept {
+    if (part.count() > TileJob::unit_size || triangle.tolerance != 0.0) return false;
+    float mask[TileJob::unit_size];
+    Texcoords out;
+    out.lit = {mask, static_cast<std::size_t>(part.count())};
+    if (fill_small(triangle, part, out) == SmallAnswer::doubt) return false;
+    float* to = lit.data() + offset_in(rect, part.x, part.y);
+    const auto width = static_cast<std::size_t>(part.width);
+    for (const float* from = mask; from != mask + part.count(); from += width, to += rect.width)
+        std::memcpy(to, from, width * sizeof(float));
+    return true;
+}
+
 // Interpolates a rectangle by a plan; empty outputs are not computed.
 template <class CompiledWhereCalled = void>
 TEXGEN_APART Work interpolate_by_plan(const TriangleFunctions& triangle, const Tile& tile,
@@ -67,7 +83,7 @@ TEXGEN_APART Work interpolate_by_plan(const TriangleFunctions& triangle, const T
         interpolate_alone(triangle, tile, 0, out.s, &plan);
         interpolate_alone(triangle, tile, 1, out.t, &plan);
         const Tile left = asks_mask ? light_spans(triangle, tile, found.at, out.lit) : Tile{};
-        if (left.count() > 0)
+        if (left.count() > 0 && !light_small(triangle, tile, left, out.lit))
             TileInterpolator<>(triangle, triangle.st, tile, found.close, 0, 1, out).interpolate_in_strips(left, plan);
     }
     interpolate_alone(triangle, tile, 2, out.r, nullptr);

@@ -25,7 +25,7 @@ struct TileSurvey {
 
 // Chunks are short where q varies much, so that their ends are not far from their middle. A chunk costs about as much as
 // 32 fragments besides those that it has. None is shorter than a vector, but what may be left at the end of a row.
-inline int chunk_length(const Corners& at, const Tile& tile) noexcept {
+TEXGEN_APART inline int chunk_length(const Corners& at, const Tile& tile) noexcept {
     constexpr int shortest = 64;
     const int width = tile.width;
     const double q = 0.25 * (at.q[0] + at.q[1] + at.q[2] + at.q[3]);
