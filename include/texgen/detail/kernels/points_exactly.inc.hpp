@@ -37,10 +37,15 @@ struct PointTerms {
 
 // Decides points anew: as sums where q is 1; in double with the error of each lane, unless four vectors in a row needed
 // more (then one in eight blocks tries again); and in two doubles, where a vector begins with what the one before
-// needed. Returns what stays in doubt, bit i for point begin + i.
+// needed. Returns what stays in doubt, bit i for point begin + i. Short vectors are compiled for size, see
+// fill_tile_closely().
 template <class CompiledWhereCalled = void>
-TEXGEN_APART std::uint64_t fill_block_again(const PointJob& job, const PointTerms& terms, std::size_t begin,
-                                            std::size_t end, Effort& effort) noexcept {
+#if defined(TEXGEN_HAS_VECTORS) && TEXGEN_LANE_BYTES == 16
+TEXGEN_RARE
+#endif
+    TEXGEN_APART std::uint64_t
+    fill_block_again(const PointJob& job, const PointTerms& terms, std::size_t begin, std::size_t end,
+                     Effort& effort) noexcept {
     const std::size_t numerators = job.numerators == 2 ? 2 : 1;  // never 0: GCC 12 fails on a loop that may be none
     const Doubles within = limit_within(job.tolerance);
     std::uint64_t doubtful = 0;
@@ -61,8 +66,7 @@ TEXGEN_APART std::uint64_t fill_block_again(const PointJob& job, const PointTerm
             for (std::size_t k = 0; k < numerators; ++k)
                 value[k] = select(in_front, terms.numerator[k].nearest_at(at, sizes, is_known), Floats{});
             is_decided = !any(~(is_known | are_dark));
-        }
-        if (is_tried && !is_decided) {
+        } else if (is_tried) {
             PointDivision division;
             Doubles numerator_error[2];
             division.q = value_at(terms.q.form, at);
@@ -76,8 +80,8 @@ TEXGEN_APART std::uint64_t fill_block_again(const PointJob& job, const PointTerm
             in_front = narrow(divide_certainly<true>(numerators, division, numerator_error, terms.q.error_at(sizes),
                                                      0.0, value, doubt));
             is_decided = !any(doubt.rounding | narrow(doubt.side & ~are_dark));
-            effort.in_vain = is_decided ? 0 : effort.in_vain + 1;
         }
+        if (is_tried) effort.in_vain = is_decided ? 0 : effort.in_vain + 1;
         while (!is_decided) {
             const PointLanes grains{{last_bits(sizes.v[0]), last_bits(sizes.v[1]), last_bits(sizes.v[2])}};
             TwofoldDivisor q(terms.q.at(at, sizes, effort.precisely[2], grains));

@@ -191,17 +191,17 @@ TEXGEN_APART bool divide_beside_ties(const FormPair& numerators, const PointForm
     };
     const int unit = static_cast<int>(bit_cast<std::uint64_t>(q.value) >> 52) - 1023 - 15 - Residue<Integer>::size;
     const Residue<Integer> of_q = residue_of(q_form, unit);
-    bool are_whole = true;
-    for (std::size_t k = 0; k < 2; ++k) {
+    bool is_whole = true;
+    for (std::size_t k = 0; k < 2 && is_whole; ++k) {
         value[k] = nearest_to(quotient.value[k] + 0.0, quotient.error[k], [&](double middle) {
             const Digits factor(-middle, 25);
             Residue<Integer> remainder = residue_of(numerators.form(k), unit + factor.exponent);
             remainder.add_scaled(of_q, factor);
-            are_whole = are_whole && remainder.is_whole();
+            is_whole = remainder.is_whole();
             return remainder.sign();
         });
     }
-    return are_whole;
+    return is_whole;
 }
 
 // Two numerators over q at a point; empty behind the projector.

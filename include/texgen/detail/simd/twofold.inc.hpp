@@ -83,26 +83,27 @@ struct TwofoldForm {
     }
 
     // The floats nearest to the values of a finite form, which are the quotients where q is 1. Beside the rounded sum
-    // of the products with `high` there are six numbers: what that sum leaves, and the products with `low`. Where all
-    // are 0, as in most ties, nothing is lost; at the middle of two floats they tell the side. `is_known` loses the
-    // lanes in doubt.
+    // of the products with `high` there are six numbers: what that sum leaves, and the products with `low`. At the
+    // middle of two floats their sum tells the side. It loses nothing where all are 0, as in most ties, or cancel:
+    // products with `low` follow, so as to cancel by themselves. `is_known` loses the lanes in doubt.
     TEXGEN_INLINE Floats nearest_at(const PointLanes& at, const PointLanes& of, LongWords& is_known) const noexcept {
         const RoundedEnds ends(value_at(form, at), error_at(of));
         if (!any(ends.differ())) return ends.below;
-        Doubles sum = Doubles{} + form.w, second{}, size_of_second{};
+        Doubles sum = Doubles{} + form.w, second{}, lost{};
         const auto keep = [&](const Doubles& term) {
-            second = second + term;
-            size_of_second = size_of_second + magnitude(term);
+            Doubles left;
+            second = two_sum(second, term, left);
+            lost = lost + magnitude(left);
         };
         TEXGEN_FOR (unsigned j = 0; j < 3; ++j) {
             if ((used >> j & 1u) == 0) continue;
             Doubles left;
             sum = two_sum(sum, at.v[j] * high[j], left);
             keep(left);
-            if ((with_low >> j & 1u) != 0) keep(at.v[j] * low[j]);
         }
+        for (unsigned j = 0; j < 3; ++j)
+            if ((with_low >> j & 1u) != 0) keep(at.v[j] * low[j]);
         sum = two_sum(sum, second, second) + 0.0;
-        const Doubles lost = size_of_second * gamma(8);
         const Doubles size_of_sum = magnitude(sum);
         const LongWords is_middle = ~are_nonzero(sum - middle_near(sum + 0x1p-900));
         const LongWords is_small = greater(Doubles{} + 0x1p-125, size_of_sum) & are_nonzero(sum);
