@@ -174,6 +174,15 @@ inline std::vector<Cloud> doubtful_clouds(std::size_t count, Random& random) {
             clouds.push_back(cloud);
         }
     }
+    // What is left of the sums beside a tie is far below what cancels there.
+    add("ties but for what sums of sums lose",
+        matrix_of_rows({0x1p-60, 0x1p-123, -0x1p-60, 1.0 + 0x1p-24},
+                       {tenth * 0x1p-60, -0x1p-125, tenth * -0x1p-60, 1.0 + 0x1p-24},
+                       {tenth * 0x1p-55, tenth * 0x1p-123, tenth * -0x1p-55, 0x1p-24 - 1.0}, {0.0, 0.0, 0.0, 1.0}),
+        [&] {
+            const float x = random.uniform_float(1.0, 2.0);
+            return glm::vec3(x, random.uniform_float(1.0, 2.0), x);
+        });
     return clouds;
 }
 

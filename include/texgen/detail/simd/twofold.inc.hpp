@@ -84,16 +84,18 @@ struct TwofoldForm {
 
     // The floats nearest to the values of a finite form, which are the quotients where q is 1. Beside the rounded sum
     // of the products with `high` there are six numbers: what that sum leaves, and the products with `low`. At the
-    // middle of two floats their sum tells the side. It loses nothing where all are 0, as in most ties, or cancel:
-    // products with `low` follow, so as to cancel by themselves. `is_known` loses the lanes in doubt.
+    // middle of two floats their sum tells the side: five of their sums are rounded, and what these leave is added with
+    // five roundings more. It loses nothing where all are 0, as in most ties, or cancel. `is_known` loses the lanes in
+    // doubt.
     TEXGEN_INLINE Floats nearest_at(const PointLanes& at, const PointLanes& of, LongWords& is_known) const noexcept {
         const RoundedEnds ends(value_at(form, at), error_at(of));
         if (!any(ends.differ())) return ends.below;
-        Doubles sum = Doubles{} + form.w, second{}, lost{};
+        Doubles sum = Doubles{} + form.w, second{}, third{}, size_of_third{};
         const auto keep = [&](const Doubles& term) {
             Doubles left;
             second = two_sum(second, term, left);
-            lost = lost + magnitude(left);
+            third = third + left;
+            size_of_third = size_of_third + magnitude(left);
         };
         TEXGEN_FOR (unsigned j = 0; j < 3; ++j) {
             if ((used >> j & 1u) == 0) continue;
@@ -103,6 +105,8 @@ struct TwofoldForm {
         }
         for (unsigned j = 0; j < 3; ++j)
             if ((with_low >> j & 1u) != 0) keep(at.v[j] * low[j]);
+        second = second + third;
+        const Doubles lost = size_of_third * gamma(8) + magnitude(second) * (1.01 * unit_roundoff_double);
         sum = two_sum(sum, second, second) + 0.0;
         const Doubles size_of_sum = magnitude(sum);
         const LongWords is_middle = ~are_nonzero(sum - middle_near(sum + 0x1p-900));
