@@ -155,6 +155,7 @@ TEXGEN_RARE inline std::uint64_t residue_of(double number) noexcept {
 // tell apart, but not next to q = 0.
 struct DoubtfulFunctions : CloseFunctions {
     bool adds_residues_first = false;
+    bool are_vain = false;  // all that there is has left fragments in doubt
 };
 struct DoubtfulJob {
     TileJob job;

@@ -158,13 +158,16 @@ private:
     }
 
     // Decides the fragments of a unit that are asked for: with what is known of the functions, with more while any
-    // stays in doubt, and the last ones one by one. Returns whether all of 64 were in doubt at first.
+    // stays in doubt, and the last ones one by one, as a few at once where that was in vain before. Returns whether all
+    // of 64 were in doubt at first.
     TEXGEN_APART bool fill_closely(const Tile& tile, const TileJob& job, DoubtfulFunctions& functions,
                                    const TileJob::Unit& unit, std::uint64_t asked = ~std::uint64_t{0}) noexcept {
-        std::uint64_t doubtful = kernels_.fill_closely(job, functions, unit, asked);
+        const bool is_vain = functions.are_vain && are_few(std::popcount(asked), tile);
+        std::uint64_t doubtful = is_vain ? asked : kernels_.fill_closely(job, functions, unit, asked);
         const bool are_all = doubtful == ~std::uint64_t{0};
         while (doubtful != 0 && sharpen(tile, functions, std::popcount(doubtful)))
             doubtful = kernels_.fill_closely(job, functions, unit, doubtful);
+        functions.are_vain |= doubtful != 0;
         const int width = unit.x_end - unit.x_begin;
         for (; doubtful != 0; doubtful &= doubtful - 1) {
             const int i = std::countr_zero(doubtful);
