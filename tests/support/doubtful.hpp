@@ -41,21 +41,28 @@ inline Cloud ordinary_cloud(std::size_t count, Random& random) {
     return cloud;
 }
 
-// Whose sums have terms of many sizes: s and t are middles of floats times q everywhere, or multiples of a q of which
-// only the least term is left.
+// Whose sums have terms of many sizes: s and t are middles of floats times q everywhere; or multiples of a q of which
+// only the least term is left; or middles but for a term far below what cancels beside them.
 inline std::vector<Cloud> clouds_of_long_sums(std::size_t count, Random& random) {
     const auto multiples_of = [](const glm::dvec4& q, double s, double t) {
         return matrix_of_rows(s * q, t * q, (s + 1.0) * q, q);
     };
     const glm::dvec4 long_row(0x1.8b3a6p-1, -0x1.2c5f4ep-1, 0x1.d10932p-1, 0x1.46a1cp+0);
     const glm::dvec4 cancelling_row(0x1.999999999999p-4, 0x1p-60, -0x1.999999999999p-4, 0.0);
-    std::vector<Cloud> clouds{{"long ties", multiples_of(long_row, 16.0 + 0x1p-20, 0x3p-20 - 16.0), {}},
-                              {"all but the least term cancels", multiples_of(cancelling_row, 3.0, 5.0), {}}};
+    std::vector<Cloud> clouds{
+        {"long ties", multiples_of(long_row, 16.0 + 0x1p-20, 0x3p-20 - 16.0), {}},
+        {"all but the least term cancels", multiples_of(cancelling_row, 3.0, 5.0), {}},
+        {"ties but for what sums of sums lose",
+         matrix_of_rows({0x1p-60, 0x1p-123, -0x1p-60, 1.0 + 0x1p-24},
+                        {0.1 * 0x1p-60, -0x1p-125, -0.1 * 0x1p-60, 1.0 + 0x1p-24},
+                        {0.1 * 0x1p-55, 0.1 * 0x1p-123, -0.1 * 0x1p-55, 0x1p-24 - 1.0}, {0.0, 0.0, 0.0, 1.0}),
+         {}}};
     const auto of_any_size = [&] { return std::ldexp(random.uniform_float(1.0, 2.0), random.integer(-18, 17)); };
     for (std::size_t i = 0; i < count; ++i) {
         clouds[0].points.push_back({of_any_size(), -of_any_size(), of_any_size()});
         const float x = random.uniform_float(1.0, 2.0);
         clouds[1].points.push_back({x, std::ldexp(x, -50), x});
+        clouds[2].points.push_back({x, random.uniform_float(1.0, 2.0), x});
     }
     return clouds;
 }
@@ -174,15 +181,6 @@ inline std::vector<Cloud> doubtful_clouds(std::size_t count, Random& random) {
             clouds.push_back(cloud);
         }
     }
-    // What is left of the sums beside a tie is far below what cancels there.
-    add("ties but for what sums of sums lose",
-        matrix_of_rows({0x1p-60, 0x1p-123, -0x1p-60, 1.0 + 0x1p-24},
-                       {tenth * 0x1p-60, -0x1p-125, tenth * -0x1p-60, 1.0 + 0x1p-24},
-                       {tenth * 0x1p-55, tenth * 0x1p-123, tenth * -0x1p-55, 0x1p-24 - 1.0}, {0.0, 0.0, 0.0, 1.0}),
-        [&] {
-            const float x = random.uniform_float(1.0, 2.0);
-            return glm::vec3(x, random.uniform_float(1.0, 2.0), x);
-        });
     return clouds;
 }
 
