@@ -11,6 +11,7 @@
 
 #include "support/doubtful.hpp"
 #include "support/limits.hpp"
+#include "support/outputs.hpp"
 #include "support/random.hpp"
 #include "support/special_values.hpp"
 #include "support/stopwatch.hpp"
@@ -149,6 +150,26 @@ TEST_CASE("within a sixteenth of a texel points behind the projector cost little
                                                                     Projection(*cloud, way, tolerance));
             CHECK_MESSAGE(cost <= most, cloud->name, ": ", cost, " times, layout ", static_cast<int>(way));
         }
+    }
+}
+
+TEST_CASE("within a tolerance points cost little more where their arrays do not begin with a line of a cache") {
+    Random random(60);
+    constexpr std::size_t count = 32768;
+    constexpr double most = 1.5;
+    const support::Cloud cloud = support::ordinary_cloud(count, random);
+    const Planes planes(cloud.points);
+    const texgen::WorldTexgen texgen(cloud.matrix);
+    std::vector<float> s(count + 32), t(s.size());
+    const auto alone = texgen::world_space(planes.x, planes.y, planes.z);
+    for (const auto& positions : {alone, alone.within({glm::vec3(-9.0f), glm::vec3(9.0f)})}) {
+        const auto run = [&](std::size_t behind) {
+            return [&, of_s = support::behind_line(s, behind, count), of_t = support::behind_line(t, behind, count)] {
+                project(texgen, positions, texgen::whole_texture(), {of_s, of_t}, texgen::texels(1.0 / 16.0, 1024.0));
+            };
+        };
+        const double ratio = support::worst_over_ordinary_within(most, run(0), run(4));
+        CHECK_MESSAGE(ratio <= most, ratio, " times");
     }
 }
 

@@ -7,6 +7,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -65,6 +66,13 @@ private:
     std::size_t first_;
     std::array<std::vector<float>, 4> arrays_;
 };
+
+// `count` floats of an array that has 32 more, `behind` floats from where a line of a cache begins.
+inline std::span<float> behind_line(std::vector<float>& array, std::size_t behind, std::size_t count) {
+    void* begin = array.data();
+    std::size_t room = array.size() * sizeof(float);
+    return {static_cast<float*>(std::align(64, (behind + count) * sizeof(float), begin, room)) + behind, count};
+}
 
 inline bool same_bits(float a, float b) { return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b); }
 inline bool same_bits(std::span<const float> a, std::span<const float> b) {

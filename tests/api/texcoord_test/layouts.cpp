@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <span>
@@ -15,6 +16,7 @@
 #include "api/texcoord_test/point_families.hpp"
 #include "judges/exact.hpp"
 #include "judges/verdict.hpp"
+#include "support/doubtful.hpp"
 #include "support/hex.hpp"
 #include "support/outputs.hpp"
 #include "support/random.hpp"
@@ -142,6 +144,38 @@ TEST_CASE("a point's bits do not depend on how the positions are laid out, nor o
             expected_strq[i] = expected_strq[0];
         }
         require_same(texgen::object_space(&point.x, count, 0));  // one point, as often as asked
+    }
+}
+
+TEST_CASE("within a tolerance coordinates in arrays have the same bits wherever these begin") {
+    Random random(6501);
+    const Tolerance tolerance = texgen::texels(1.0 / 16.0, 1024.0);
+    for (const std::size_t count : {16u, 31u, 48u, 100u, 256u, 300u, 1100u, 5000u}) {
+        const support::Cloud cloud = support::ordinary_cloud(count, random);
+        const texgen::WorldTexgen texgen(cloud.matrix);
+        std::vector<float> x, y, z;
+        for (const glm::vec3& point : cloud.points) {
+            x.push_back(point.x);
+            y.push_back(point.y);
+            z.push_back(point.z);
+        }
+        const Positions<texgen::World> alone = texgen::world_space(x, y, z);
+        for (const auto& positions : {alone, alone.within({glm::vec3(-9.0f), glm::vec3(9.0f)})}) {
+            Outputs nearest(count), first(count, 3u);
+            project(texgen, positions, texgen::whole_texture(), nearest.spans());
+            project(texgen, positions, texgen::whole_texture(), first.spans(), tolerance);
+            for (std::size_t misalignment = 1; misalignment <= 16; ++misalignment) {
+                Outputs out(count, misalignment % 4 == 0 ? 11u : 3u, misalignment);
+                project(texgen, positions, texgen::whole_texture(), out.spans(), tolerance);
+                REQUIRE(out.pads_are_intact());
+                REQUIRE_MESSAGE(same_bits(out.s(), first.s()), count, " points, ", misalignment);
+                REQUIRE_MESSAGE(same_bits(out.t(), first.t()), count, " points, ", misalignment);
+            }
+            for (std::size_t i = 0; i < count; ++i) {
+                REQUIRE(std::abs(first.s()[i] - nearest.s()[i]) <= 1.01 * tolerance.value);
+                REQUIRE(std::abs(first.t()[i] - nearest.t()[i]) <= 1.01 * tolerance.value);
+            }
+        }
     }
 }
 

@@ -5,13 +5,13 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "judges/fragments.hpp"
 #include "promises/cost_of_triangles_test/ordinary.hpp"
+#include "support/outputs.hpp"
 #include "support/random.hpp"
 #include "support/shot.hpp"
 #include "support/stopwatch.hpp"
@@ -89,23 +89,19 @@ TEST_CASE("a batch takes no longer than its triangles one by one, however large 
 }
 
 TEST_CASE("within a tolerance rows take little longer where their arrays do not begin with a line of a cache") {
-    constexpr std::size_t line = 64 / sizeof(float);
     const texgen::TriangleSetup within =
         support::setup_of(ordinary(1, 1).triangle, texgen::whole_texture(), tolerances[1]);
     // In the first cache; in the second; in none, where memory takes its time, whatever the place.
     for (const glm::ivec2 size : {glm::ivec2(1024, 4), glm::ivec2(1024, 64), glm::ivec2(4096, 2048)}) {
         const FragmentRect rect{300, 100, size.x, size.y};
-        std::vector<float> s(support::count_of(rect) + 2 * line), t(s.size());
-        const auto run = [&](std::size_t floats_behind_line) {
-            const auto place = [&](std::vector<float>& all) {
-                void* begin = all.data();
-                std::size_t room = all.size() * sizeof(float);
-                return std::span(static_cast<float*>(std::align(64, 64, begin, room)) + floats_behind_line,
-                                 support::count_of(rect));
+        const std::size_t count = support::count_of(rect);
+        std::vector<float> s(count + 32), t(s.size());
+        const auto run = [&](std::size_t behind) {
+            return [&, of_s = support::behind_line(s, behind, count), of_t = support::behind_line(t, behind, count)] {
+                interpolate(within, rect, {of_s, of_t});
             };
-            return [&, of_s = place(s), of_t = place(t)] { interpolate(within, rect, {of_s, of_t}); };
         };
-        const double ratio = support::worst_over_ordinary_within(1.75, run(0), run(line / 4));
+        const double ratio = support::worst_over_ordinary_within(1.75, run(0), run(4));
         CHECK_MESSAGE(ratio <= 1.75, size.x, " x ", size.y, ": ", ratio, " times");
     }
 }

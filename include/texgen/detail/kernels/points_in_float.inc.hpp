@@ -57,6 +57,16 @@ struct FloatErrors {
     }
 };
 
+// Where the vector behind the one at point i begins. Two planar arrays are written from planar points in whole lines of
+// a cache, where vectors are as long; a block's last vector ends with it, and overlaps. The bits are the same.
+template <std::size_t Numerators>
+TEXGEN_INLINE std::size_t next_vector(const PointJob& job, std::size_t i, std::size_t end) noexcept {
+    const std::size_t next = i + wide_at_once;
+    if (wide_lanes < 16 || Numerators < 2 || job.interleaved_xyz || job.interleaved_st || next >= end) return next;
+    const std::size_t of_line = i + static_cast<std::size_t>(floats_to_line<WideFloats>(job.out[0] + i));
+    return of_line < end - wide_at_once ? of_line : end - wide_at_once;
+}
+
 // Fills a block of points as if all were in front. The largest |v_j| bound the terms of the forms, and with the largest
 // quotient and the least q, found on the way, the error of every point. Returns whether all are in front and inside the
 // tolerance (they are written all the same). A NaN becomes the largest quotient, and fails.
@@ -69,7 +79,7 @@ TEXGEN_INLINE bool fill_in_front(const PointJob& job, const PointForm (&of)[1 + 
     // overflows is not the least: are_in_range tells of it.
     WideWords least_q = signed_bits(WideFloats{} + static_cast<float>(largest_q_in_front));
     WideFloats x, y, z, value[2];
-    for (std::size_t i = begin; i < end; i += wide_at_once) {
+    for (std::size_t i = begin; i < end; i = next_vector<Numerators>(job, i, end)) {
         load_points(job, i, x, y, z);
         extent.add(x, y, z);
         const WideFloats q = forms.at(0, x, y, z);
@@ -162,7 +172,7 @@ TEXGEN_INLINE Undecided fill_points_within_of(const PointJob& original, std::siz
     const PointJob job = original;
     if (job.is_certified) {
         WideFloats x, y, z, value[2];
-        for (std::size_t i = first; i < job.count; i += wide_at_once) {
+        for (std::size_t i = first; i < job.count; i = next_vector<Numerators>(job, i, job.count)) {
             load_points(job, i, x, y, z);
             forms.divide(x, y, z, forms.at(0, x, y, z), value);
             store_points(job, i, Numerators, value, ~WideWords{});

@@ -252,20 +252,20 @@ std::size_t fill_segment_all_float_of(const SegmentJob& job, std::size_t first, 
     // alpha, or 1 - alpha.
     const float start = job.about_b ? 1.0f : 0.0f, direction = job.about_b ? -1.0f : 1.0f;
     const auto load_alpha = [&](std::size_t i) { return load<WideFloats>(from + i) * direction + start; };
-    const auto store_at = [&](std::size_t i, const WideFloats& alpha, const WideFloats& of_q) {
-        const WideFloats step = of_q * alpha;
-        store(out + i, step + base);
-        if (Numerators == 2) store(other_out + i, step * share + other_base);
-    };
     WideFloats sum{};
+    // An array at a time: stores to one and another in turn take longer where vectors span two lines of a cache.
     const auto fill_both = [&](std::size_t i, std::size_t next) {
         const WideFloats alpha = load_alpha(i), next_alpha = load_alpha(next);
         const WideFloats q = alpha * bend + 1.0f, next_q = next_alpha * bend + 1.0f;
         const WideFloats product = q * next_q;
         sum = sum + product;
         const WideFloats of_both = slope / product;
-        store_at(i, alpha, of_both * next_q);
-        store_at(next, next_alpha, of_both * q);
+        const WideFloats step = of_both * next_q * alpha, next_step = of_both * q * next_alpha;
+        store(out + i, step + base);
+        store(out + next, next_step + base);
+        if (Numerators == 1) return;
+        store(other_out + i, step * share + other_base);
+        store(other_out + next, next_step * share + other_base);
     };
     for (std::size_t begin = first; begin < count;) {
         const std::size_t end = end_of_block(count, begin, float_block);
