@@ -55,18 +55,19 @@ inline CloseSums closely_at(const FormPair& forms, const glm::dvec3& v) noexcept
     return {sum, remainder};
 }
 
-// A number as an integer of `count` bits times a power of two. Further bits are cut off.
+// A number as an odd integer of up to `count` bits times a power of two. Further bits are cut off.
 struct Digits {
     std::int64_t integer;
     int exponent;
 
     explicit Digits(double number, int count = 53) noexcept {
         const auto bits = bit_cast<std::uint64_t>(number);
-        const auto size =
-            static_cast<std::int64_t>(((bits & 0xfffffffffffff) | std::uint64_t{1} << 52) >> (53 - count));
+        const std::uint64_t size = ((bits & 0xfffffffffffff) | std::uint64_t{1} << 52) >> (53 - count);
+        const int zeros = std::countr_zero(size);
+        const auto odd = static_cast<std::int64_t>(size >> zeros);
         const std::int64_t sign = static_cast<std::int64_t>(bits) >> 63;
-        integer = number == 0.0 ? 0 : (size ^ sign) - sign;
-        exponent = static_cast<int>(bits >> 52 & 0x7ff) - (1022 + count);
+        integer = number == 0.0 ? 0 : (odd ^ sign) - sign;
+        exponent = static_cast<int>(bits >> 52 & 0x7ff) - (1022 + count) + zeros;
     }
 };
 
