@@ -115,7 +115,7 @@ void fill_chunks(const TileJob& job, const RowOutputs& row, ChunkGroup& group, i
             const WideFloats step = mean - mean * bent;
             store(s + at, step * slope[0] + middle[0]);
             store(t + at, step * slope[1] + middle[1]);
-            if (is_in_order) {
+            if (is_in_order) [[unlikely]] {
                 if (at == last) break;
                 at += floats_to_line<WideFloats>(s + at);
                 if (at > last) at = last;
