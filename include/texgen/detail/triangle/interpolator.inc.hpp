@@ -287,13 +287,19 @@ private:
         fill_closely(whole_, doubtful_->job, doubtful_->functions, {x, x + tile.width, y, y + tile.height});
     }
 
+    // What is left of rows for a last chunk is divided where it is shorter than a vector.
+    TEXGEN_APART void fill_narrow_rest(const Tile& tile, const Corners& at, const Plan& plan, int rest) noexcept {
+        const int whole = tile.width - rest;
+        if (whole == 0) return fill_exact(tile, at);
+        fill_polynomial(part_of(tile, {0, whole, 0, tile.height}), at, plan);
+        const Tile narrow = part_of(tile, {whole, tile.width, 0, tile.height});
+        fill_exact(narrow, corners_at(narrow));
+    }
+
     TEXGEN_APART void fill_polynomial(const Tile& tile, const Corners& at, const Plan& plan) noexcept {
-        // What is left for a last chunk is divided where it is shorter than a vector.
-        Tile whole = tile;
         const int rest = tile.width % plan.chunk;
-        if (rest < TileJob::longest_vector) whole.width -= rest;
-        if (whole.width == 0) return fill_exact(tile, at);
-        TileJob job = make_job(whole, at);
+        if (rest != 0 && rest < TileJob::longest_vector) return fill_narrow_rest(tile, at, plan, rest);
+        TileJob job = make_job(tile, at);
         job.chunk = plan.chunk;
         job.steps = plan.steps;
         job.tolerance = triangle_.tolerance * (1.0 - 0x1p-20);
@@ -301,10 +307,7 @@ private:
         job.least_q = well_in_front * at.q_error;
         for (std::size_t k = 0; k < 2; ++k) job.numerator_error[k] = at.numerator_error[k];
         detail::fill_polynomial(kernels_, job, {0, 0, 0, 0},
-                                [&](const TileJob::Unit& refused) { fill_refused(whole, job, refused); });
-        if (whole.width == tile.width) return;
-        const Tile narrow = part_of(tile, {whole.width, tile.width, 0, tile.height});
-        fill_exact(narrow, corners_at(narrow));
+                                [&](const TileJob::Unit& refused) { fill_refused(tile, job, refused); });
     }
 
     // Fills a refused unit in shorter chunks or by divisions, and with it those below, which would be refused as well.
