@@ -84,8 +84,9 @@ template <class CompiledWhereCalled = void>
 void fill_chunks(const TileJob& job, const RowOutputs& row, ChunkGroup& group, int first, int end, int x) noexcept {
     const StepRule rule = group.rule_of(job, first);
     const int length = job.length_of_chunk(x);
-    // Shorter vectors take longer by that than memory does, but for what no cache holds.
-    const bool is_in_order = job.is_beyond(wide_lanes == 16 ? 8192 : 1 << 21);
+    // The first cache holds so many floats, or the last one, as shorter vectors take longer in order than caches do.
+    constexpr std::int64_t most_from_both_ends = wide_lanes == 16 ? 8192 : 1 << 21;
+    const bool is_in_order = job.is_beyond(most_from_both_ends);
     const std::ptrdiff_t reach = is_in_order ? length : (length + 1) / 2;
     if (length != group.indexed) {
         group.indexed = length;
@@ -100,8 +101,8 @@ void fill_chunks(const TileJob& job, const RowOutputs& row, ChunkGroup& group, i
         float* const s = row.out[0] + begin;
         float* const t = row.out[1] + begin;
         std::ptrdiff_t last = length - wide_lanes;
-        // From both ends, where the last vectors may overlap in the middle; or in order, in whole lines of a cache, where
-        // the first one does not hold the tile. The bits are the same. Indices are loaded, which costs nothing here.
+        // From both ends, where the last vectors may overlap in the middle; or in order, in whole lines of a cache. The
+        // bits are the same. Indices are loaded, which costs nothing here.
         for (std::ptrdiff_t at = 0; at < reach;) {
             const auto from_middle = load<WideFloats>(group.index + at);
             const WideFloats bent = from_middle * bend, square = bent * bent;
@@ -117,8 +118,7 @@ void fill_chunks(const TileJob& job, const RowOutputs& row, ChunkGroup& group, i
             store(t + at, step * slope[1] + middle[1]);
             if (is_in_order) [[unlikely]] {
                 if (at == last) break;
-                at += floats_to_line<WideFloats>(s + at);
-                if (at > last) at = last;
+                at = next_in_line<WideFloats>(s, at, last);
                 continue;
             }
             const WideFloats step_back = reversed(mean + mean * bent);

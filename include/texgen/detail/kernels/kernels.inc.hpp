@@ -10,6 +10,13 @@
 #include "../simd/loops.inc.hpp"
 #endif
 
+// What decides doubt is the most code, the more so for short vectors: for these it is compiled for size.
+#if defined(TEXGEN_HAS_VECTORS) && TEXGEN_LANE_BYTES == 16
+#define TEXGEN_LARGE TEXGEN_RARE
+#else
+#define TEXGEN_LARGE TEXGEN_APART
+#endif
+
 #include "../simd/quotients.inc.hpp"
 
 #include "stores.inc.hpp"
@@ -101,3 +108,5 @@ inline constexpr SphereKernels kernel_table<SphereKernels, CompiledWhereCalled>{
     .classify = classify_spheres<CompiledWhereCalled>, .decide = decide_spheres<CompiledWhereCalled>};
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA
+
+#undef TEXGEN_LARGE

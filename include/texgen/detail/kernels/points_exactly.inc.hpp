@@ -37,15 +37,10 @@ struct PointTerms {
 
 // Decides points anew: as sums where q is 1; in double with the error of each lane, unless four vectors in a row needed
 // more (then one in eight blocks tries again); and in two doubles, where a vector begins with what the one before
-// needed. Returns what stays in doubt, bit i for point begin + i. Short vectors are compiled for size, see
-// fill_tile_closely().
+// needed. Returns what stays in doubt, bit i for point begin + i.
 template <class CompiledWhereCalled = void>
-#if defined(TEXGEN_HAS_VECTORS) && TEXGEN_LANE_BYTES == 16
-TEXGEN_RARE
-#endif
-    TEXGEN_APART std::uint64_t
-    fill_block_again(const PointJob& job, const PointTerms& terms, std::size_t begin, std::size_t end,
-                     Effort& effort) noexcept {
+TEXGEN_LARGE std::uint64_t fill_block_again(const PointJob& job, const PointTerms& terms, std::size_t begin,
+                                            std::size_t end, Effort& effort) noexcept {
     const std::size_t numerators = job.numerators == 2 ? 2 : 1;  // never 0: GCC 12 fails on a loop that may be none
     const Doubles within = limit_within(job.tolerance);
     std::uint64_t doubtful = 0;

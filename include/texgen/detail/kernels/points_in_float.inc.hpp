@@ -63,8 +63,8 @@ template <std::size_t Numerators>
 TEXGEN_INLINE std::size_t next_vector(const PointJob& job, std::size_t i, std::size_t end) noexcept {
     const std::size_t next = i + wide_at_once;
     if (wide_lanes < 16 || Numerators < 2 || job.interleaved_xyz || job.interleaved_st || next >= end) return next;
-    const std::size_t of_line = i + static_cast<std::size_t>(floats_to_line<WideFloats>(job.out[0] + i));
-    return of_line < end - wide_at_once ? of_line : end - wide_at_once;
+    const auto last = static_cast<std::ptrdiff_t>(end - wide_at_once);
+    return static_cast<std::size_t>(next_in_line<WideFloats>(job.out[0], static_cast<std::ptrdiff_t>(i), last));
 }
 
 // Fills a block of points as if all were in front. The largest |v_j| bound the terms of the forms, and with the largest

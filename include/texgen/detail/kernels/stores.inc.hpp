@@ -17,12 +17,14 @@ TEXGEN_INLINE Vector lit_of(const Output& to, const Vector (&value)[2], const Ma
     return one_where(in_front & in_region(to, value));
 }
 
-// How far behind `to` the next place is from which a vector does not span two lines of a cache. Vectors that do, stored
-// to one array and another in turn, take twice as long where the first cache does not hold these.
+// Where the vector behind the one at `at` begins, so that it does not span two lines of a cache; at `last` at most, where
+// it overlaps. Vectors that span two, stored to one array and another in turn, take twice as long where the first cache
+// does not hold these.
 template <class Vector>
-TEXGEN_INLINE std::ptrdiff_t floats_to_line(const float* to) noexcept {
-    const std::uintptr_t behind = reinterpret_cast<std::uintptr_t>(to) % sizeof(Vector);
-    return static_cast<std::ptrdiff_t>((sizeof(Vector) - behind) / sizeof(float));
+TEXGEN_INLINE std::ptrdiff_t next_in_line(const float* to, std::ptrdiff_t at, std::ptrdiff_t last) noexcept {
+    const std::uintptr_t behind = reinterpret_cast<std::uintptr_t>(to + at) % sizeof(Vector);
+    at += static_cast<std::ptrdiff_t>((sizeof(Vector) - behind) / sizeof(float));
+    return at < last ? at : last;
 }
 
 // Stores the first `count` lanes, by parts of fixed sizes: lane by lane, compilers make a call of memcpy of it.
