@@ -242,6 +242,28 @@ TEST_CASE("only what is asked for is written, the same whatever else is asked fo
     }
 }
 
+TEST_CASE("where a first cache does not hold a rectangle its derivatives do not depend on the alignment") {
+    Random random(6403);
+    for (int i = 0; i < 40; ++i) {
+        Shot shot = support::detail::ordinary(support::Family::friendly, random);
+        shot.rect.width = random.integer(48, 300);
+        shot.rect.height = 2048 / shot.rect.width + random.integer(1, 4);
+        const FootprintSetup setup(setup_of(shot.triangle, texgen::whole_texture(), Tolerance{1e-4}),
+                                   some_texels(random));
+        FootprintOutputs all(shot.rect, 15u);
+        if (!footprint(setup, shot.rect, all.spans())) continue;
+        for (std::size_t misalignment = 0; misalignment < 16; ++misalignment) {
+            const unsigned asked = misalignment % 4 == 0 ? 15u : static_cast<unsigned>(random.integer(1, 15));
+            FootprintOutputs some(shot.rect, asked, misalignment);
+            footprint(setup, shot.rect, some.spans());
+            REQUIRE_MESSAGE(some.pads_are_intact(), misalignment, " of ", hex(shot));
+            for (std::size_t k = 0; k < 4; ++k)
+                for (std::size_t f = 0; (asked >> k & 1u) != 0 && f < count_of(shot.rect); ++f)
+                    REQUIRE_MESSAGE(same_bits(some[k][f], all[k][f]), misalignment, " of ", hex(shot));
+        }
+    }
+}
+
 TEST_CASE("of a rectangle of any size nothing is done where nothing is asked, but to say whether it may be lit") {
     constexpr int most = std::numeric_limits<int>::max();
     Random random(96);

@@ -16,7 +16,7 @@ set(calls
     "8000 texcoord.hpp auto one project(texgen, world_space(position))"
     "36000 coverage.hpp Coverage coverage coverage(texgen, whole_texture(), box)"
     "62000 segment.hpp void along interpolate(segment, alpha, whole_texture(), out)"
-    "49000 footprint.hpp bool footprints footprint(setup, rect, out)"
+    "48000 footprint.hpp bool footprints footprint(setup, rect, out)"
     "330000 batch.hpp void batch interpolate(batch, rects, out)"
     "124000 batch.hpp void buffer footprint(batch, ids, rect, {1024, 1024}, out)")
 

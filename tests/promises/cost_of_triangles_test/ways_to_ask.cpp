@@ -106,6 +106,25 @@ TEST_CASE("within a tolerance rows take little longer where their arrays do not 
     }
 }
 
+TEST_CASE("within a tolerance derivatives take little longer where their arrays do not begin with a line of a cache") {
+    const texgen::FootprintSetup within(
+        support::setup_of(ordinary(1, 1).triangle, texgen::whole_texture(), tolerances[1]), {4096.0, 4096.0});
+    for (const glm::ivec2 size : {glm::ivec2(64, 4), glm::ivec2(256, 64), glm::ivec2(1024, 256)}) {
+        const FragmentRect rect{300, 100, size.x, size.y};
+        const std::size_t count = support::count_of(rect);
+        std::vector<float> arrays[4];
+        for (std::vector<float>& array : arrays) array.resize(count + 32);
+        const auto run = [&](std::size_t behind) {
+            texgen::Footprints out{
+                support::behind_line(arrays[0], behind, count), support::behind_line(arrays[1], behind, count),
+                support::behind_line(arrays[2], behind, count), support::behind_line(arrays[3], behind, count)};
+            return [&within, rect, out] { footprint(within, rect, out); };
+        };
+        const double ratio = support::worst_over_ordinary_within(1.5, run(0), run(4));
+        CHECK_MESSAGE(ratio <= 1.5, size.x, " x ", size.y, ": ", ratio, " times");
+    }
+}
+
 TEST_CASE(
     "a tolerance takes little longer than exact at most, of whatever shape a tile of four rows and more is, and no "
     "longer in tall tiles and where caches do not hold one") {

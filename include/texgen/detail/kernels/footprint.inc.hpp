@@ -10,6 +10,10 @@ TEXGEN_INLINE void differentiate_rows(const FootprintJob& job) noexcept {
     using Result = std::remove_cvref_t<decltype(to_floats(Vector()))>;
     constexpr int vector_size = static_cast<int>(sizeof(Result) / sizeof(float));
     const int count = job.width < vector_size ? job.width : vector_size;
+    const int last = job.width - count;
+    // Where the first cache does not hold four arrays, long vectors do not span two lines; in double that is no matter.
+    const bool begins_with_lines =
+        std::is_same_v<Scalar, float> && vector_size > 4 && std::int64_t{job.width} * job.height > 2048;
     const Vector lane = indices<Vector>();
     const auto q_dx = static_cast<Scalar>(job.q.dx);
     const auto s_dy = static_cast<Scalar>(job.slope[0].dy);
@@ -27,8 +31,8 @@ TEXGEN_INLINE void differentiate_rows(const FootprintJob& job) noexcept {
         float* const dtdx = job.row(job.dx[1], y);
         float* const dsdy = job.row(job.dy[0], y);
         float* const dtdy = job.row(job.dy[1], y);
-        for (int begin = 0; begin < job.width; begin += count) {
-            const int x = begin + count <= job.width ? begin : job.width - count;
+        const float* const first = dsdx != nullptr ? dsdx : dtdy;
+        for (int x = 0;;) {
             const Vector index = lane + static_cast<Scalar>(x);
             const Vector reciprocal = Scalar(1) / (index * q_dx + q);
             const Vector squared = reciprocal * reciprocal;
@@ -36,6 +40,10 @@ TEXGEN_INLINE void differentiate_rows(const FootprintJob& job) noexcept {
             put(dtdx, x, squared * t_dx);
             put(dsdy, x, squared * (index * s_twist + s_dy));
             put(dtdy, x, squared * (index * t_twist + t_dy));
+            if (x == last) break;
+            x = begins_with_lines && first != nullptr ? static_cast<int>(next_in_line<Result>(first, x, last))
+                : x + count < last                    ? x + count
+                                                      : last;
         }
     }
 }
@@ -109,7 +117,7 @@ struct SpectrumLanes {
 template <bool InFloat, bool Shape>
 TEXGEN_INLINE int filter_rows(const FootprintJob& job, int first) noexcept {
     constexpr int smallest = bit_cast<int>(FootprintJob::smallest_square);
-    const int count = job.width < wide_lanes ? job.width : wide_lanes;
+    const int count = job.width < wide_lanes ? job.width : wide_lanes, last = job.width - count;
     const WideFloats lane = indices<WideFloats>();
     for (int y = first; y < job.height; ++y) {
         const double q_base = job.q.base + y * job.q.dy;
@@ -121,8 +129,7 @@ TEXGEN_INLINE int filter_rows(const FootprintJob& job, int first) noexcept {
         float* const major_s = job.row(job.major[0], y);
         float* const major_t = job.row(job.major[1], y);
         WideWords too_small{};
-        for (int begin = 0; begin < job.width; begin += count) {
-            const int x = begin + count <= job.width ? begin : job.width - count;
+        for (int x = 0;; x = x + count < last ? x + count : last) {
             const WideFloats index = lane + static_cast<float>(x);
             const WideFloats q = linear<InFloat>(index, q_base, job.q.dx);
             const WideFloats s_dy = linear<InFloat>(index, job.texels[0].dy, -job.texels[0].twist);
@@ -148,6 +155,7 @@ TEXGEN_INLINE int filter_rows(const FootprintJob& job, int first) noexcept {
                     if (major_t != nullptr) store_some(major_t + x, count, axis[1] * job.major_factor[1]);
                 }
             }
+            if (x == last) break;
         }
         if (any(too_small)) return y;
     }
