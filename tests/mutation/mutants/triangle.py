@@ -155,7 +155,7 @@ TRIANGLE = [
         ("an id beyond the batch has a footprint", "        if (id >= batch.size()) return clear(here);\n        const auto& setup", "        const auto& setup", "batch_test"),
         ("runs of one id go on in the next row", "(std::min)((row + 1) * width, first + count)",
          "first + count", "batch_test"),
-        ("a long run begins where its probe does", "while (begin > row && ids[begin - 1] == id) --begin;", "", "batch_test"),
+        ("a long run begins where its probe does", "while (is_probe && begin > row && is_here(begin - 1)) --begin;", "", "batch_test"),
         ("a long run without a triangle is none", "if (id >= batch.size()) return clear(here);\n            interpolate_apart",
          "interpolate_apart", "batch_test"),
         ("rows that are no run are done together", "if (end - begin == width && width >= long_run)", "if (width >= long_run)", "batch_test"),

@@ -303,4 +303,33 @@ TEST_CASE("long runs of a visibility buffer take little more than rows of their 
     }
 }
 
+TEST_CASE("a visibility buffer takes little more where its runs are longer, and less where rows share long ones") {
+    const FragmentRect rect{100, 100, 1024, 16};
+    std::vector<std::uint32_t> ids_in_runs[2];
+    std::vector<float> s(support::count_of(rect)), t(s.size());
+    for (const Tolerance tolerance : tolerances) {
+        texgen::TriangleBatch batch(texgen::whole_texture(), tolerance);
+        batch.assign(std::vector<Triangle>(4096, ordinary(1, 1).triangle));
+        struct Runs {
+            int shorter, longer;
+            double most;
+        };
+        for (const Runs& runs : {Runs{8, 32, 1.2}, {8, 63, 1.6}, {48, 64, 1.0}}) {
+            for (const int longer : {0, 1}) {
+                const int length = longer != 0 ? runs.longer : runs.shorter;
+                ids_in_runs[longer].clear();
+                for (std::size_t i = 0; i < s.size(); ++i)
+                    ids_in_runs[longer].push_back(
+                        static_cast<std::uint32_t>(static_cast<int>(i % 1024) / length * 7 % 4096));
+            }
+            const auto run = [&](int longer) {
+                return [&, ids = ids_in_runs[longer]] { interpolate(batch, ids, rect, {s, t}); };
+            };
+            const double ratio = support::worst_over_ordinary_within(runs.most, run(0), run(1));
+            CHECK_MESSAGE(ratio <= runs.most, runs.longer, " in a run, tolerance ", tolerance.value, ": ", ratio,
+                          " times");
+        }
+    }
+}
+
 }  // namespace triangle_costs

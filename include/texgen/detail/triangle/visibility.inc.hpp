@@ -8,13 +8,13 @@ inline void describe(VisibilityBuffer& buffer, const TriangleBatch& batch, std::
     buffer = {ids.data(), static_cast<std::uint32_t>(batch.size()), rect.x, rect.y, rect.width};
 }
 
-// What was made of the triangles that were asked for last: neighbouring fragments share few triangles.
+// What was made of the triangles that were asked for last: a row shares most of them with the one before.
 template <class Made>
 class Recent {
 public:
     // What was made of a triangle; if it is not kept, make() makes it.
     const std::optional<Made>& of(std::uint32_t id, const auto& make) noexcept {
-        Known& known = known_[id % batch_block];
+        Known& known = known_[id % size];
         if (known.id != id) {
             known.made = make();
             known.id = id;
@@ -23,11 +23,12 @@ public:
     }
 
 private:
+    static constexpr std::size_t size = 16;
     struct Known {
         std::uint32_t id = no_triangle;
         std::optional<Made> made;
     };
-    Known known_[batch_block];
+    Known known_[size];
 };
 
 // Those `count` fragments of a rectangle from `first` on: a part of a row, or whole rows.
@@ -41,7 +42,8 @@ inline Tile part_of(const FragmentRect& rect, std::size_t first, std::size_t cou
 inline constexpr std::size_t long_run = 64;
 
 // Calls run(first, count) for the long runs of one id within a row, and once for rows that are of one id together. A
-// long run holds a whole probe, wherever it begins, so only probes are looked at first.
+// long run holds a whole probe, wherever it begins, and as much beside it, half of that on one side: those few fragments
+// are looked at first.
 void for_each_long_run(std::span<const std::uint32_t> ids, std::size_t width, const auto& run) noexcept {
     constexpr std::size_t probe = long_run / 2;
     const auto are_as_before = [&](std::size_t first, std::size_t count) {
@@ -50,17 +52,21 @@ void for_each_long_run(std::span<const std::uint32_t> ids, std::size_t width, co
     for (std::size_t row = 0; row < ids.size(); row += width) {
         const std::size_t end_of_row = row + width;
         for (std::size_t at = row; at + probe <= end_of_row;) {
-            const std::uint32_t id = ids[at];
-            if (ids[at + probe - 1] != id || !are_as_before(at + 1, probe - 1)) {
+            const auto is_here = [&](std::size_t place) { return place < end_of_row && ids[place] == ids[at]; };
+            std::size_t begin = at;
+            const bool is_probe = is_here(at + probe - 1) &&
+                                  (is_here(at + probe + probe / 2 - 1) || (at > row && is_here(at - probe / 2))) &&
+                                  are_as_before(at + 1, probe - 1);
+            while (is_probe && begin > row && is_here(begin - 1)) --begin;
+            if (!is_probe || !is_here(begin + long_run - 1)) {
                 at += probe;
                 continue;
             }
-            std::size_t begin = at, end = at + probe, step = probe;
-            while (begin > row && ids[begin - 1] == id) --begin;
+            std::size_t end = at + probe, step = probe;
             for (; end + step <= end_of_row && are_as_before(end, step); step *= 2) end += step;
             for (; step >= probe; step /= 2)
                 if (end + step <= end_of_row && are_as_before(end, step)) end += step;
-            while (end < end_of_row && ids[end] == id) ++end;
+            while (is_here(end)) ++end;
             if (end - begin == width && width >= long_run)
                 for (; end + width <= ids.size() && are_as_before(end, width); row += width) end += width;
             if (end - begin >= long_run) run(begin, end - begin);
