@@ -50,12 +50,12 @@ TEXGEN_INLINE bool light_in(const float (&min)[2], const float (&max)[2], const 
                             std::int64_t count) noexcept {
     constexpr auto size = static_cast<std::int64_t>(sizeof(Vector) / sizeof(float));
     if (count < size) return false;
-    for (std::int64_t x = 0; x < count; x += size) {
-        const std::int64_t at = x < count - size ? x : count - size;
+    const std::int64_t last = count - size;
+    for (std::int64_t at = 0;; at = at + size < last ? at + size : last) {
         const Vector value[2] = {load<Vector>(s + at), load<Vector>(t + at)};
         store(lit + at, one_where(inside(value[0], min[0], max[0]) & inside(value[1], min[1], max[1])));
+        if (at == last) return true;
     }
-    return true;
 }
 template <class CompiledWhereCalled = void>
 TEXGEN_APART void light_apart(const float (&min)[2], const float (&max)[2], const float* s, const float* t, float* lit,
