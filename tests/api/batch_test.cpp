@@ -154,6 +154,38 @@ TEST_CASE(
     }
 }
 
+TEST_CASE("where a first cache does not hold the tiles of a batch their values do not depend on the alignment") {
+    Random random(34);
+    int in_whole_rows = 0;
+    for (int round = 0; round < 40; ++round) {
+        TriangleBatch batch(texgen::whole_texture(), Tolerance{random.power_of_ten(-6.0, -3.0)});
+        std::vector<Triangle> triangles;
+        std::vector<FragmentRect> rects;
+        std::size_t count = 0;
+        const int shift = random.integer(0, 4);
+        while (count < 5000) {
+            triangles.push_back(support::make_triangle(support::Family::friendly, random));
+            const int width = random.integer(0, 3) != 0 ? 1 << shift : random.integer(1, 40);
+            rects.push_back({random.integer(0, 600), random.integer(0, 600), width, random.integer(1, 400 / width)});
+            in_whole_rows += 16 % width == 0;
+            count += count_of(rects.back());
+        }
+        batch.assign(triangles);
+        Outputs all(count);
+        interpolate(batch, rects, all.spans());
+        for (std::size_t misalignment = 1; misalignment <= 16; ++misalignment) {
+            Outputs some(count, misalignment % 4 == 0 ? 15u : static_cast<unsigned>(random.integer(1, 15)),
+                         misalignment);
+            interpolate(batch, rects, some.spans());
+            REQUIRE(some.pads_are_intact());
+            for (std::size_t k = 0; k < 4; ++k)
+                if (some.asked(k))
+                    REQUIRE_MESSAGE(support::same_bits(some[k], all[k]), misalignment, " in round ", round);
+        }
+    }
+    CHECK(in_whole_rows > 500);
+}
+
 TEST_CASE("what faces away is dark where that is asked for, and nothing else is changed") {
     Random random(8);
     const auto mirrored = [](Triangle triangle) {

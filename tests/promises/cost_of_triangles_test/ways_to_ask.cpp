@@ -106,6 +106,25 @@ TEST_CASE("within a tolerance rows take little longer where their arrays do not 
     }
 }
 
+TEST_CASE(
+    "within a tolerance tiles of a batch take little longer where their arrays do not begin with a line of a cache") {
+    for (const glm::ivec2 size : {glm::ivec2(8, 8), glm::ivec2(64, 1), glm::ivec2(16, 16)}) {
+        texgen::TriangleBatch within(texgen::whole_texture(), tolerances[1]);
+        const auto fragments = static_cast<std::size_t>(size.x * size.y), tiles = 65536 / fragments;
+        within.assign(std::vector<Triangle>(tiles, ordinary(1, 1).triangle));
+        const std::vector<FragmentRect> rects(tiles, {300, 100, size.x, size.y});
+        const std::size_t count = tiles * fragments;
+        std::vector<float> s(count + 32), t(s.size());
+        const auto run = [&](std::size_t behind) {
+            return [&, of_s = support::behind_line(s, behind, count), of_t = support::behind_line(t, behind, count)] {
+                interpolate(within, rects, {of_s, of_t});
+            };
+        };
+        const double ratio = support::worst_over_ordinary_within(1.5, run(0), run(4));
+        CHECK_MESSAGE(ratio <= 1.5, size.x, " x ", size.y, ": ", ratio, " times");
+    }
+}
+
 TEST_CASE("within a tolerance derivatives take little longer where their arrays do not begin with a line of a cache") {
     const texgen::FootprintSetup within(
         support::setup_of(ordinary(1, 1).triangle, texgen::whole_texture(), tolerances[1]), {4096.0, 4096.0});

@@ -17,13 +17,13 @@ struct ShapeOfTile {
     // the middle of the tile.
     Doubles x{}, y{};
     double rows = 1.0;
-    WideFloats wide_x{}, wide_y{};
+    float wide_x[2 * wide_lanes], wide_y[2 * wide_lanes];  // of as many fragments more, for a vector that begins later
     float wide_rows = 1.0f;
 
     TEXGEN_INLINE bool is_of(int tile_width, int tile_height) const noexcept {
         return given_[0] == tile_width && given_[1] == tile_height;
     }
-    TEXGEN_INLINE void take(int tile_width, int tile_height) noexcept {
+    TEXGEN_APART void take(int tile_width, int tile_height) noexcept {
         given_[0] = tile_width;
         given_[1] = tile_height;
         is_turned = tile_height == 1;
@@ -45,9 +45,13 @@ struct ShapeOfTile {
         }
         if (!has_wide_columns) return;
         const FragmentWalk<WideFloats, float> wide(static_cast<float>(width), static_cast<float>(per_width), 0.0);
-        wide_x = wide.x - 0.5f * static_cast<float>(width - 1);
-        wide_y = wide.y - static_cast<float>(0.5 * last_row);
         wide_rows = wide.rows_per_vector;
+        const WideFloats first_x = wide.x - 0.5f * static_cast<float>(width - 1);
+        const WideFloats first_y = wide.y - static_cast<float>(0.5 * last_row);
+        store(wide_x, first_x);
+        store(wide_x + wide_lanes, first_x);
+        store(wide_y, first_y);
+        store(wide_y + wide_lanes, first_y + wide_rows);
     }
 
 private:

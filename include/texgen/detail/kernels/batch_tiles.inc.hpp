@@ -100,7 +100,7 @@ TEXGEN_INLINE WideFloats bent_factor(const WideFloats& x) noexcept {
     return factor * power + factor;
 }
 
-template <std::size_t Numerators, bool HasWholeRows, bool IsPolynomial>
+template <std::size_t Numerators, bool HasWholeRows, bool IsPolynomial, bool BeginsWithLines = false>
 TEXGEN_APART void divide_tile_float(const BatchTiles& tiles, std::size_t i, const ShapeOfTile& shape,
                                     const TileOutputs<Numerators>& original) noexcept {
     const TileOutputs<Numerators> out = original;
@@ -110,12 +110,11 @@ TEXGEN_APART void divide_tile_float(const BatchTiles& tiles, std::size_t i, cons
     const float bend_y = shape.is_turned ? tiles.bend_x[i] : tiles.bend_y[i];
     const auto& down = shape.is_turned ? tiles.dx : tiles.dy;
     float dx[Numerators], dy[Numerators];
-    WideFloats middle[Numerators], first[Numerators];
+    WideFloats middle[Numerators];
     TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k) {
         dx[k] = tiles.dx[k][i];
         dy[k] = down[k][i];
         middle[k] = WideFloats{} + tiles.middle[k][i];
-        first[k] = shape.wide_x * dx[k];
     }
     const auto put = [&](std::size_t n, const WideFloats& bend, const auto& step) {
         const WideFloats factor = bent_factor<IsPolynomial>(bend);
@@ -124,10 +123,18 @@ TEXGEN_APART void divide_tile_float(const BatchTiles& tiles, std::size_t i, cons
         out.put(n, value);
     };
     if constexpr (HasWholeRows) {
-        const WideFloats bend_start = shape.wide_x * bend_x;
-        WideFloats y = shape.wide_y;
-        for (std::size_t n = 0; n < end; n += wide_at_once, y = y + shape.wide_rows)
-            put(n, y * bend_y + bend_start, [&](std::size_t k) { return y * dy[k] + first[k]; });
+        // All of it, or the first vector, and those that begin with lines.
+        for (std::size_t n = 0, stop = BeginsWithLines ? 1 : end;; stop = end) {
+            const auto x = load<WideFloats>(shape.wide_x + n);
+            auto y = load<WideFloats>(shape.wide_y + n);
+            const WideFloats bend_start = x * bend_x;
+            WideFloats first[Numerators];
+            TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k) first[k] = x * dx[k];
+            for (; n < stop; n += wide_at_once, y = y + shape.wide_rows)
+                put(n, y * bend_y + bend_start, [&](std::size_t k) { return y * dy[k] + first[k]; });
+            if (!BeginsWithLines || n >= end) break;
+            n = static_cast<std::size_t>(next_in_line<WideFloats>(out.out[0], 0, wide_at_once));
+        }
     } else {
         FragmentWalk<WideFloats, float> walk(static_cast<float>(shape.width), static_cast<float>(shape.per_width), 0.0);
         const float half_x = 0.5f * static_cast<float>(shape.width - 1);
@@ -156,6 +163,9 @@ TEXGEN_INLINE bool fill_tile(const BatchPlanes& planes, const BatchTiles& tiles,
                                             : divide_whole_tile<Numerators, false>(planes, tiles, i, shape, here);
     else if (!tiles.has(BatchTiles::is_polynomial, i))
         divide_tile_float<Numerators, false, false>(tiles, i, shape, here);
+    else if (shape.has_wide_columns && wide_lanes == 16 && out.are_beyond(floats_in_first_cache) &&
+             !begins_with_line<WideFloats>(here.out[0]))
+        divide_tile_float<Numerators, true, true, true>(tiles, i, shape, here);
     else if (shape.has_wide_columns)
         divide_tile_float<Numerators, true, true>(tiles, i, shape, here);
     else

@@ -84,8 +84,8 @@ template <class CompiledWhereCalled = void>
 void fill_chunks(const TileJob& job, const RowOutputs& row, ChunkGroup& group, int first, int end, int x) noexcept {
     const StepRule rule = group.rule_of(job, first);
     const int length = job.length_of_chunk(x);
-    // The first cache holds so many floats, or the last one, as shorter vectors take longer in order than caches do.
-    constexpr std::int64_t most_from_both_ends = wide_lanes == 16 ? 8192 : 1 << 21;
+    // Shorter vectors take longer in order than caches do; no cache holds more than that.
+    constexpr std::int64_t most_from_both_ends = wide_lanes == 16 ? floats_in_first_cache : 1 << 21;
     const bool is_in_order = job.is_beyond(most_from_both_ends);
     const std::ptrdiff_t reach = is_in_order ? length : (length + 1) / 2;
     if (length != group.indexed) {

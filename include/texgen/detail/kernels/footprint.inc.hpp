@@ -11,9 +11,9 @@ TEXGEN_INLINE void differentiate_rows(const FootprintJob& job) noexcept {
     constexpr int vector_size = static_cast<int>(sizeof(Result) / sizeof(float));
     const int count = job.width < vector_size ? job.width : vector_size;
     const int last = job.width - count;
-    // Where the first cache does not hold four arrays, long vectors do not span two lines; in double that is no matter.
-    const bool begins_with_lines =
-        std::is_same_v<Scalar, float> && vector_size > 4 && std::int64_t{job.width} * job.height > 2048;
+    // In double, or of short vectors, it is no matter whether these span two lines.
+    const bool begins_with_lines = std::is_same_v<Scalar, float> && vector_size > 4 &&
+                                   4 * std::int64_t{job.width} * job.height > floats_in_first_cache;
     const Vector lane = indices<Vector>();
     const auto q_dx = static_cast<Scalar>(job.q.dx);
     const auto s_dy = static_cast<Scalar>(job.slope[0].dy);

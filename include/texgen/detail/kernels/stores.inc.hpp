@@ -27,6 +27,11 @@ TEXGEN_INLINE std::ptrdiff_t next_in_line(const float* to, std::ptrdiff_t at, st
     return at < last ? at : last;
 }
 
+template <class Vector>
+TEXGEN_INLINE bool begins_with_line(const float* to) noexcept {
+    return reinterpret_cast<std::uintptr_t>(to) % sizeof(Vector) == 0;
+}
+
 // Stores the first `count` lanes, by parts of fixed sizes: lane by lane, compilers make a call of memcpy of it.
 template <class Vector>
 TEXGEN_INLINE void store_some(float* to, int count, const Vector& values) noexcept {

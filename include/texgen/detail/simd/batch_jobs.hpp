@@ -56,9 +56,17 @@ inline constexpr std::size_t largest_in_scratch = 512;
 struct BatchOutputs {
     float* out[3];
     float* lit;
+    std::size_t count;
     float min[2], max[2];  // the region
     bool has_depth;
     float r_min, r_max;
+
+    // Whether they have more floats than that.
+    bool are_beyond(std::int64_t floats) const noexcept {
+        std::size_t arrays = lit != nullptr ? 1 : 0;
+        for (const float* const array : out) arrays += array != nullptr ? 1 : 0;
+        return count * arrays > static_cast<std::size_t>(floats);
+    }
 };
 
 // r is computed where it has an output, and for the depth of a mask.
@@ -66,7 +74,6 @@ struct BatchJob : BatchOutputs {
     const BatchPlanes* planes;
     const float* vertices;
     double tolerance;
-    std::size_t count;
     double least[3], greatest[3];  // the limits of s, t and r as finite numbers
 
     bool needs_r() const noexcept { return out[2] != nullptr || (has_depth && lit != nullptr); }
