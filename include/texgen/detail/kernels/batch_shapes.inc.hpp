@@ -17,7 +17,8 @@ struct ShapeOfTile {
     // the middle of the tile.
     Doubles x{}, y{};
     double rows = 1.0;
-    float wide_x[2 * wide_lanes], wide_y[2 * wide_lanes];  // of as many fragments more, for a vector that begins later
+    // Of as many fragments more, for a vector that begins later. GCC 12 fails at -O0 where they have no values.
+    float wide_x[2 * wide_lanes] = {}, wide_y[2 * wide_lanes] = {};
     float wide_rows = 1.0f;
 
     TEXGEN_INLINE bool is_of(int tile_width, int tile_height) const noexcept {
