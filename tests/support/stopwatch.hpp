@@ -81,7 +81,7 @@ inline std::size_t calls_in(double nanoseconds, const Calls& calls) {
 }
 
 // The least time of a call of each, in turns from other depths of the stack: where a call writes there what lies a
-// multiple of 4096 bytes from what it reads, reads wait for writes, which made one fragment take 1.7 times as long.
+// multiple of 4096 bytes from what it reads, some processors let the reads wait for the writes.
 inline std::vector<double> least_times(const std::vector<Calls>& all, int turns, double nanoseconds = 2e4) {
     std::vector<std::size_t> count;
     for (const Calls& calls : all) count.push_back(calls_in(nanoseconds, calls));

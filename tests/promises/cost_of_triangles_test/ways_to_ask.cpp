@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -88,20 +89,28 @@ TEST_CASE("a batch takes no longer than its triangles one by one, however large 
     }
 }
 
+// The time of call(arrays) where these begin 4 floats behind a line of a cache, over that where they begin with one.
+template <std::size_t Arrays>
+double behind_line_over_at_line(double most, std::size_t count, const auto& call) {
+    std::array<std::vector<float>, Arrays> memory;
+    for (std::vector<float>& array : memory) array.resize(count + 32);
+    const auto run = [&](std::size_t behind) {
+        std::array<std::span<float>, Arrays> arrays;
+        for (std::size_t i = 0; i < Arrays; ++i) arrays[i] = support::behind_line(memory[i], behind, count);
+        return [&call, arrays] { call(arrays); };
+    };
+    return support::worst_over_ordinary_within(most, run(0), run(4));
+}
+
 TEST_CASE("within a tolerance rows take little longer where their arrays do not begin with a line of a cache") {
     const texgen::TriangleSetup within =
         support::setup_of(ordinary(1, 1).triangle, texgen::whole_texture(), tolerances[1]);
     // In the first cache; in the second; in none, where memory takes its time, whatever the place.
     for (const glm::ivec2 size : {glm::ivec2(1024, 4), glm::ivec2(1024, 64), glm::ivec2(4096, 2048)}) {
         const FragmentRect rect{300, 100, size.x, size.y};
-        const std::size_t count = support::count_of(rect);
-        std::vector<float> s(count + 32), t(s.size());
-        const auto run = [&](std::size_t behind) {
-            return [&, of_s = support::behind_line(s, behind, count), of_t = support::behind_line(t, behind, count)] {
-                interpolate(within, rect, {of_s, of_t});
-            };
-        };
-        const double ratio = support::worst_over_ordinary_within(1.75, run(0), run(4));
+        const double ratio = behind_line_over_at_line<2>(1.75, support::count_of(rect), [&](const auto& arrays) {
+            interpolate(within, rect, {arrays[0], arrays[1]});
+        });
         CHECK_MESSAGE(ratio <= 1.75, size.x, " x ", size.y, ": ", ratio, " times");
     }
 }
@@ -113,14 +122,9 @@ TEST_CASE(
         const auto fragments = static_cast<std::size_t>(size.x * size.y), tiles = 65536 / fragments;
         within.assign(std::vector<Triangle>(tiles, ordinary(1, 1).triangle));
         const std::vector<FragmentRect> rects(tiles, {300, 100, size.x, size.y});
-        const std::size_t count = tiles * fragments;
-        std::vector<float> s(count + 32), t(s.size());
-        const auto run = [&](std::size_t behind) {
-            return [&, of_s = support::behind_line(s, behind, count), of_t = support::behind_line(t, behind, count)] {
-                interpolate(within, rects, {of_s, of_t});
-            };
-        };
-        const double ratio = support::worst_over_ordinary_within(1.5, run(0), run(4));
+        const double ratio = behind_line_over_at_line<2>(1.5, tiles * fragments, [&](const auto& arrays) {
+            interpolate(within, rects, {arrays[0], arrays[1]});
+        });
         CHECK_MESSAGE(ratio <= 1.5, size.x, " x ", size.y, ": ", ratio, " times");
     }
 }
@@ -130,16 +134,9 @@ TEST_CASE("within a tolerance derivatives take little longer where their arrays 
         support::setup_of(ordinary(1, 1).triangle, texgen::whole_texture(), tolerances[1]), {4096.0, 4096.0});
     for (const glm::ivec2 size : {glm::ivec2(64, 4), glm::ivec2(256, 64), glm::ivec2(1024, 256)}) {
         const FragmentRect rect{300, 100, size.x, size.y};
-        const std::size_t count = support::count_of(rect);
-        std::vector<float> arrays[4];
-        for (std::vector<float>& array : arrays) array.resize(count + 32);
-        const auto run = [&](std::size_t behind) {
-            texgen::Footprints out{
-                support::behind_line(arrays[0], behind, count), support::behind_line(arrays[1], behind, count),
-                support::behind_line(arrays[2], behind, count), support::behind_line(arrays[3], behind, count)};
-            return [&within, rect, out] { footprint(within, rect, out); };
-        };
-        const double ratio = support::worst_over_ordinary_within(1.5, run(0), run(4));
+        const double ratio = behind_line_over_at_line<4>(1.5, support::count_of(rect), [&](const auto& arrays) {
+            footprint(within, rect, {arrays[0], arrays[1], arrays[2], arrays[3]});
+        });
         CHECK_MESSAGE(ratio <= 1.5, size.x, " x ", size.y, ": ", ratio, " times");
     }
 }

@@ -40,7 +40,8 @@ struct PlaneOf {
 using Plane = PlaneOf<double>;
 
 inline constexpr int longest_chunk = 256;
-// What is written of more floats has to wait for lines of a cache, see next_in_line().
+// Of more floats than that the first cache does not hold all lines, so that it matters how vectors lie in them: see
+// next_in_line().
 inline constexpr std::int64_t floats_in_first_cache = 8192;
 
 // The index of the column or row whose fragments have this coordinate, among `size` from `first` on; -1 if none has.
