@@ -11,8 +11,8 @@
 
 #include "detail/matrices/required.hpp"
 
-// 0.4.33: 10000 major + 100 minor + patch.
-#define TEXGEN_VERSION 433
+// 0.4.34: 10000 major + 100 minor + patch.
+#define TEXGEN_VERSION 434
 
 namespace TEXGEN_NAMESPACE {
 

@@ -84,14 +84,19 @@ template <class CompiledWhereCalled = void>
 void fill_chunks(const TileJob& job, const RowOutputs& row, ChunkGroup& group, int first, int end, int x) noexcept {
     const StepRule rule = group.rule_of(job, first);
     const int length = job.length_of_chunk(x);
-    // Shorter vectors take longer in order than caches do; no cache holds more than that.
-    constexpr std::int64_t most_from_both_ends = wide_lanes == 16 ? floats_in_first_cache : 1 << 21;
-    const bool is_in_order = job.is_beyond(most_from_both_ends);
+    // Beyond the first cache, which holds r and a mask, too, vectors begin with lines: long ones go in order, in whole
+    // lines; shorter ones take longer so, and the first begins with one, as chunks have room for one more. Where no cache
+    // holds 2^21 floats memory takes longer than order does, but for the shortest.
+    constexpr bool are_long = wide_lanes == TileJob::longest_vector, are_shortest = wide_lanes == 4;
+    static_assert(are_long || 2 * wide_lanes <= TileJob::longest_vector);
+    const bool is_in_order = !are_shortest && job.is_beyond(are_long ? floats_in_first_cache : 1 << 21);
+    const bool begins_with_line = !are_long && job.is_beyond(floats_in_first_cache / 2);
     const std::ptrdiff_t reach = is_in_order ? length : (length + 1) / 2;
     if (length != group.indexed) {
         group.indexed = length;
         const WideFloats first_index = indices<WideFloats>() - 0.5f * static_cast<float>(length - 1);
-        for (int i = 0; i < reach; i += wide_lanes) store(group.index + i, first_index + static_cast<float>(i));
+        for (int i = 0; i < reach + wide_lanes; i += wide_lanes)
+            store(group.index + i, first_index + static_cast<float>(i));
     }
     std::int64_t begin = x;
     for (std::ptrdiff_t i = first; i < end; ++i, begin += length) {
@@ -100,9 +105,11 @@ void fill_chunks(const TileJob& job, const RowOutputs& row, ChunkGroup& group, i
         const WideFloats slope[2] = {group.slope[0][i] - WideFloats{}, group.slope[1][i] - WideFloats{}};
         float* const s = row.out[0] + begin;
         float* const t = row.out[1] + begin;
-        std::ptrdiff_t last = length - wide_lanes;
-        // From both ends, where the last vectors may overlap in the middle; or in order, in whole lines of a cache. The
-        // bits are the same. Indices are loaded, which costs nothing here.
+        std::ptrdiff_t last = length - wide_lanes, to_next = wide_lanes;
+        if (begins_with_line) [[unlikely]]
+            to_next = next_in_line<WideFloats>(s, 0, wide_lanes);
+        // From both ends, where the last vectors may overlap in the middle; or in order. The bits are the same. Indices
+        // are loaded, which costs nothing here.
         for (std::ptrdiff_t at = 0; at < reach;) {
             const auto from_middle = load<WideFloats>(group.index + at);
             const WideFloats bent = from_middle * bend, square = bent * bent;
@@ -124,8 +131,9 @@ void fill_chunks(const TileJob& job, const RowOutputs& row, ChunkGroup& group, i
             const WideFloats step_back = reversed(mean + mean * bent);
             store(s + last, middle[0] - step_back * slope[0]);
             store(t + last, middle[1] - step_back * slope[1]);
-            at += wide_lanes;
-            last -= wide_lanes;
+            at += to_next;
+            last -= to_next;
+            to_next = wide_lanes;
         }
     }
     light(job, row, x, begin);

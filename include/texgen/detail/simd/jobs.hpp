@@ -128,7 +128,7 @@ struct RowOutputs {
     std::int64_t writable;  // floats from its first fragment on: with the rows below, where these follow
     std::int64_t writable_pitch;
 
-    RowOutputs(const TileJob& job, int y) noexcept
+    TEXGEN_APART RowOutputs(const TileJob& job, int y) noexcept
         : lit(job.lit == nullptr ? nullptr : job.lit + y * job.pitch),
           lit_pitch(job.lit == nullptr ? 0 : job.pitch),
           writable(job.is_contiguous ? (job.height - std::int64_t{y}) * job.width : job.width),
@@ -154,8 +154,8 @@ struct ChunkGroup {
     float bend[size];
     float middle[2][size], slope[2][size];
     float rule[size];
-    alignas(64) float index[longest_chunk];  // of the fragments of a chunk, or of its first half, from its middle
-    int indexed = 0;                         // the length of that chunk
+    alignas(64) float index[longest_chunk + 16];  // of the fragments of a chunk, or of its first half, from its middle
+    int indexed = 0;                              // the length of that chunk
 
     StepRule rule_of(const TileJob& job, int i) const noexcept {
         return job.steps == StepRule::undecided ? static_cast<StepRule>(static_cast<int>(rule[i])) : job.steps;
