@@ -115,18 +115,26 @@ TEST_CASE("within a tolerance rows take little longer where their arrays do not 
     }
 }
 
+// s and t of a batch's tiles, or all there is of them, in arrays of so many floats.
+template <std::size_t Arrays>
+void check_tiles_behind_line(const glm::ivec2& size, double most, std::size_t floats) {
+    texgen::TriangleBatch within(texgen::whole_texture(), tolerances[1]);
+    const auto fragments = static_cast<std::size_t>(size.x * size.y), tiles = floats / fragments;
+    within.assign(std::vector<Triangle>(tiles, ordinary(1, 1).triangle));
+    const std::vector<FragmentRect> rects(tiles, {300, 100, size.x, size.y});
+    const double ratio = behind_line_over_at_line<Arrays>(most, tiles * fragments, [&](const auto& arrays) {
+        texgen::Texcoords out{arrays[0], arrays[1]};
+        if constexpr (Arrays == 4) out = {arrays[0], arrays[1], arrays[2], arrays[3]};
+        interpolate(within, rects, out);
+    });
+    CHECK_MESSAGE(ratio <= most, size.x, " x ", size.y, ": ", ratio, " times");
+}
+
 TEST_CASE(
     "within a tolerance tiles of a batch take little longer where their arrays do not begin with a line of a cache") {
-    for (const glm::ivec2 size : {glm::ivec2(8, 8), glm::ivec2(64, 1), glm::ivec2(16, 16)}) {
-        texgen::TriangleBatch within(texgen::whole_texture(), tolerances[1]);
-        const auto fragments = static_cast<std::size_t>(size.x * size.y), tiles = 65536 / fragments;
-        within.assign(std::vector<Triangle>(tiles, ordinary(1, 1).triangle));
-        const std::vector<FragmentRect> rects(tiles, {300, 100, size.x, size.y});
-        const double ratio = behind_line_over_at_line<2>(1.5, tiles * fragments, [&](const auto& arrays) {
-            interpolate(within, rects, {arrays[0], arrays[1]});
-        });
-        CHECK_MESSAGE(ratio <= 1.5, size.x, " x ", size.y, ": ", ratio, " times");
-    }
+    for (const glm::ivec2 size : {glm::ivec2(8, 8), glm::ivec2(64, 1), glm::ivec2(16, 16)})
+        check_tiles_behind_line<2>(size, 1.5, 65536);
+    for (const glm::ivec2 size : {glm::ivec2(32, 8), glm::ivec2(24, 24)}) check_tiles_behind_line<4>(size, 1.35, 32768);
 }
 
 TEST_CASE("within a tolerance derivatives take little longer where their arrays do not begin with a line of a cache") {

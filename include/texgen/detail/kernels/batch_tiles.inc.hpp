@@ -122,9 +122,11 @@ TEXGEN_APART void divide_tile_float(const BatchTiles& tiles, std::size_t i, cons
         TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k) value[k] = step(k) * factor + middle[k];
         out.put(n, value);
     };
-    if constexpr (HasWholeRows) {
-        // All of it, or the first vector, and those that begin with lines.
-        for (std::size_t n = 0, stop = BeginsWithLines ? 1 : end;; stop = end) {
+    const float half_x = 0.5f * static_cast<float>(shape.width - 1);
+    const auto half_y = static_cast<float>(0.5 * shape.last_row);
+    // All of it, or the first vector, and those that begin with lines.
+    for (std::size_t n = 0, stop = BeginsWithLines ? 1 : end;; stop = end) {
+        if constexpr (HasWholeRows) {
             const auto x = load<WideFloats>(shape.wide_x + n);
             auto y = load<WideFloats>(shape.wide_y + n);
             const WideFloats bend_start = x * bend_x;
@@ -132,17 +134,16 @@ TEXGEN_APART void divide_tile_float(const BatchTiles& tiles, std::size_t i, cons
             TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k) first[k] = x * dx[k];
             for (; n < stop; n += wide_at_once, y = y + shape.wide_rows)
                 put(n, y * bend_y + bend_start, [&](std::size_t k) { return y * dy[k] + first[k]; });
-            if (!BeginsWithLines || n >= end) break;
-            n = static_cast<std::size_t>(next_in_line<WideFloats>(out.out[0], 0, wide_at_once));
+        } else {
+            FragmentWalk<WideFloats, float> walk(static_cast<float>(shape.width), static_cast<float>(shape.per_width),
+                                                 static_cast<double>(n));
+            for (; n < stop; n += wide_at_once, walk.advance()) {
+                const WideFloats y = walk.y - half_y, x = walk.x - half_x;
+                put(n, y * bend_y + x * bend_x, [&](std::size_t k) { return y * dy[k] + x * dx[k]; });
+            }
         }
-    } else {
-        FragmentWalk<WideFloats, float> walk(static_cast<float>(shape.width), static_cast<float>(shape.per_width), 0.0);
-        const float half_x = 0.5f * static_cast<float>(shape.width - 1);
-        const auto half_y = static_cast<float>(0.5 * shape.last_row);
-        for (std::size_t n = 0; n < end; n += wide_at_once, walk.advance()) {
-            const WideFloats y = walk.y - half_y, x = walk.x - half_x;
-            put(n, y * bend_y + x * bend_x, [&](std::size_t k) { return y * dy[k] + x * dx[k]; });
-        }
+        if (!BeginsWithLines || n >= end) break;
+        n = static_cast<std::size_t>(next_in_line<WideFloats>(out.out[0], 0, wide_at_once));
     }
 }
 
@@ -163,9 +164,11 @@ TEXGEN_INLINE bool fill_tile(const BatchPlanes& planes, const BatchTiles& tiles,
                                             : divide_whole_tile<Numerators, false>(planes, tiles, i, shape, here);
     else if (!tiles.has(BatchTiles::is_polynomial, i))
         divide_tile_float<Numerators, false, false>(tiles, i, shape, here);
-    else if (shape.has_wide_columns && wide_lanes == 16 && out.are_beyond(floats_in_first_cache) &&
-             !begins_with_line<WideFloats>(here.out[0]))
-        divide_tile_float<Numerators, true, true, true>(tiles, i, shape, here);
+    else if (wide_lanes == 16 && out.are_beyond(floats_in_first_cache) && !begins_with_line<WideFloats>(here.out[0]) &&
+             (shape.has_wide_columns || (Numerators == 3 && shape.count > 8 * wide_at_once)))
+        // One vector more takes longer than lines do that it spares of two arrays, where it has to find its rows.
+        shape.has_wide_columns ? divide_tile_float<Numerators, true, true, true>(tiles, i, shape, here)
+                               : divide_tile_float<Numerators, false, true, Numerators == 3>(tiles, i, shape, here);
     else if (shape.has_wide_columns)
         divide_tile_float<Numerators, true, true>(tiles, i, shape, here);
     else
