@@ -36,6 +36,10 @@ public:
     explicit Transform(const glm::mat4& matrix) noexcept : matrix_(detail::widened(matrix)) {}
     explicit Transform(const glm::dmat4& matrix) noexcept : matrix_(matrix) {}
 
+    // GLM makes a mat4 of a matrix of another shape without a word: the translation of a 3x4 becomes a row.
+    template <glm::length_t Columns, glm::length_t Rows, class Number, glm::qualifier Qualifier>
+    requires(Columns != 4 || Rows != 4) explicit Transform(const glm::mat<Columns, Rows, Number, Qualifier>&) = delete;
+
     const glm::dmat4& matrix() const noexcept { return matrix_; }
     glm::mat4 rounded() const noexcept { return glm::mat4(matrix_); }
 
@@ -52,6 +56,12 @@ template <class A, class B, class C>
 Transform<A, C> operator*(const Transform<A, B>& a_from_b, const Transform<B, C>& b_from_c) noexcept {
     return Transform<A, C>(a_from_b.matrix() * b_from_c.matrix());
 }
+
+// Vectors and matrices do not say what space they are of: points go by project() and generate(), all else by matrix().
+template <class To, class From, glm::length_t Size, class Number, glm::qualifier Qualifier>
+void operator*(const Transform<To, From>&, const glm::vec<Size, Number, Qualifier>&) = delete;
+template <class To, class From, glm::length_t Columns, glm::length_t Rows, class Number, glm::qualifier Qualifier>
+void operator*(const Transform<To, From>&, const glm::mat<Columns, Rows, Number, Qualifier>&) = delete;
 
 // Makes the Transform of a matrix M that was written for row vectors, v_to = v_from * M, as Direct3D's and Unreal's
 // are: from_row_vectors<Eye, World>(view) is its transpose.
