@@ -94,7 +94,7 @@ struct DefectInWords {
 // What to say of each defect, in the order of the enumerators.
 inline constexpr std::array<DefectInWords, defect_count> defects_in_words{{
     {Defect::not_finite, "A number is infinite or not a number.",
-     "Look for a division by zero, an empty lens or an uninitialised value before it."},
+     "Look for a division by zero, an uninitialised value, or a z_far whose lens has no infinite one."},
     {Defect::angle_out_of_range, "The lens's angle is not between 0 and 180 degrees, both excluded.",
      "Pass the full vertical angle, as texgen::degrees() or texgen::radians()."},
     {Defect::aspect_not_positive, "The lens's aspect is not positive.",
@@ -127,7 +127,7 @@ inline constexpr std::array<DefectInWords, defect_count> defects_in_words{{
     {Defect::view_projection_swapped, "The projector's view and projection have changed places.",
      "Compose P_p V_p, the projection on the left."},
     {Defect::wrong_order, "The factors stand in the wrong order.",
-     "Compose S P_p V_p M or S P_p V_p V_e^-1: column vectors, the first transform on the right."},
+     "Compose S P_p V_p M or S P_p V_p V_e^-1: column vectors, the first on the right, none transposed."},
     {Defect::view_not_inverted, "The projector's pose stands where its view belongs, the pose's inverse.",
      "Pass V_p as look_at() makes it, from the world to the projector: invert the pose."},
     {Defect::camera_not_inverted, "The camera's view matrix stands where its inverse belongs.",
@@ -153,7 +153,8 @@ inline constexpr std::array<DefectInWords, defect_count> defects_in_words{{
      "reverse.",
      "Take view, lens and conventions for one handedness: left_handed(...) for LookAtLH and PerspectiveFovLH."},
     {Defect::depth_range_mismatch, "The depth range is not that of the conventions.",
-     "Build projection and scale-bias for one range: [-1, 1] for OpenGL, [0, 1] for Direct3D, Metal and Vulkan."},
+     "Build lens and scale-bias for one range, [-1, 1] for OpenGL and [0, 1] for Direct3D, Metal and Vulkan, and one "
+     "mapping of r."},
     {Defect::angle_unit_mistaken,
      "The lens opens by another angle than meant, or turns the picture by half a turn: an angle has the wrong unit.",
      "Pass the angle as texgen::degrees() or texgen::radians()."},
@@ -210,7 +211,8 @@ private:
     std::size_t size_ = 0;
 };
 
-// What the lens was meant to be, as far as it is known.
+// What the lens was meant to be, as far as it is known. A mistake is named that makes of it the lens that is there;
+// where none does, that is another lens, and not wrong.
 struct LensFacts {
     std::optional<Angle> fovy = std::nullopt;
     std::optional<double> aspect = std::nullopt;  // otherwise that of the region in texels, where they are given
@@ -246,15 +248,15 @@ using Setup = ProjectionSetup<Space>;
 // Cost: about a microsecond for what was composed in double, several for what was composed in float or has a defect;
 // the worst set-up takes at most 8 times what one with a single defect does. No mistake is named of numbers beyond
 // 2^150 or below 2^-150. What it sees: of a projector alone, its matrices' own marks (transposed, exchanged, of rank
-// below 3, mirrored, reversed depth in the wrong range); with facts of the lens also an aspect, an angle or a depth
-// range that becomes theirs by a mistake: inverted, in another unit, for the other range. (A lens of other numbers is
-// another lens, and not wrong.) With the projector, and the model or the camera, which of their products a texgen
-// matrix is, of up to two mistakes; and if it is none of them whether it or a factor of it is transposed, the lens that
-// it was made with, P' = S^-1 T X^-1 V^-1, against the projector's, and what shows without the pose. Of a texgen matrix
-// alone, the marks of its rows r and q; with facts of the lens the lens in it, the scale-bias and the depth range; and
-// without them what numbers say that people write: whole degrees, or planes of two digits, which a mistake explains and
-// nothing valid does. In float numbers have too few digits for a range, and for an angle unless the picture stands on
-// its head in the world for the conventions given. Of a window's fragments it looks at numbers, rank and points alone.
+// below 3, mirrored, reversed depth in the wrong range, a near plane that is not in front); with facts of the lens also
+// an aspect, an angle or a depth range that becomes theirs by a mistake: inverted, in another unit, for the other
+// range. With the projector, and the model or the camera, which of their products a texgen matrix is, of up to two
+// mistakes; and if it is none of them whether it or a factor of it is transposed, the lens that it was made with, P' =
+// S^-1 T X^-1 V^-1, against the projector's, and what shows without the pose. Of a texgen matrix alone, the marks of
+// rows r and q; with facts of the lens the lens in it, the scale-bias and the depth range; and without them what
+// numbers say that people write: whole degrees, or planes of two digits, which a mistake explains and nothing valid
+// does. In float, or of factors in float, numbers have too few digits for a range, and for an angle unless the picture
+// stands on its head in the world for the conventions given. Of a window's fragments: numbers, rank and points alone.
 // What it cannot see: mistakes that are other set-ups, until it is told what was meant. The lens from 0.1 to 100 for
 // [0, 1], under the bias of [-1, 1], is the one from 10/199.9 to 100 for [-1, 1]: any row z that is not reversed is
 // that of some lens in both ranges. NDC without a bias are a lens beside its axis, of 90 degrees one of round numbers;

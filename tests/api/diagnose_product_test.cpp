@@ -210,6 +210,37 @@ TEST_CASE("of a projector alone the numbers that people write name the wrong uni
     CHECK(ranges >= 950);
 }
 
+TEST_CASE(
+    "a near plane at the eye, or both planes behind it, are named of a projector alone, and a reversed depth not") {
+    Random random(4720);
+    for (int i = 0; i < 3000; ++i) {
+        Meant m = any_meant(Mistake::lens_of_other_hand, random);
+        if (m.kind == LensKind::frustum) m.kind = LensKind::perspective;
+        const Meant right = m;
+        const bool is_float = random.coin();
+        const auto diagnosis_of = [&](const Meant& of) {
+            const glm::dmat4 p = is_float ? glm::dmat4(Code<float>::lens(of)) : Code<double>::lens(of);
+            return diagnose(
+                Projector{texgen::ProjectorProjection(p), texgen::ProjectorView(glm::dmat4(1.0)), of.conventions});
+        };
+        REQUIRE(diagnosis_of(right).empty());
+        std::swap(m.z_near, m.z_far);  // near and far exchanged is a reversed depth, in its range or in the other
+        REQUIRE(!diagnosis_of(m).contains(Defect::near_not_in_front));
+        m = right;
+        m.z_near *= -1.0;
+        m.z_far *= -1.0;
+        if (right.kind == LensKind::infinite) m.z_far = right.z_far;
+        const Diagnosis behind = diagnosis_of(m);
+        REQUIRE_MESSAGE(behind.contains(Defect::near_not_in_front), text(m, glm::dmat4(1.0), behind));
+        REQUIRE(behind[0].defect == Defect::near_not_in_front);
+        if (right.kind == LensKind::infinite) continue;  // GLM divides 0 by 0
+        m = right;
+        m.z_near = 0.0;
+        const Diagnosis at_eye = diagnosis_of(m);
+        REQUIRE_MESSAGE(at_eye.contains(Defect::near_not_in_front), text(m, glm::dmat4(1.0), at_eye));
+    }
+}
+
 TEST_CASE("a matrix that lacks a column, or whose lens is another that mirrors alike, is not of this set-up") {
     Random random(655);
     for (int i = 0; i < 300; ++i) {

@@ -134,26 +134,27 @@ enum class Mistake {
     inverted_aspect
 };
 
-template <class T>
+// Of factors in one number, and composed in that or in another.
+template <class T, class Composed = T>
 glm::dmat4 made(const Meant& m, Mistake mistake, Random& random) {
     using My = Code<T>;
-    using Matrix = typename My::Matrix;
-    const Matrix s = My::bias(m), p = My::lens(m), v = My::view(m), x = My::pose(m);
+    using Matrix = glm::mat<4, 4, Composed>;
+    const Matrix s(My::bias(m)), p(My::lens(m)), v(My::view(m)), x(My::pose(m));
     const bool from_left = random.coin();
     const auto product = [&](const Matrix& a, const Matrix& b, const Matrix& c, const Matrix& d) {
         return glm::dmat4(from_left ? a * b * c * d : a * (b * (c * d)));
     };
     switch (mistake) {
         case Mistake::radians:
-            return product(s, My::lens(m, static_cast<T>(m.fovy), m.is_zero_to_one()), v, x);
+            return product(s, Matrix(My::lens(m, static_cast<T>(m.fovy), m.is_zero_to_one())), v, x);
         case Mistake::lens_of_other_range:
-            return product(s, My::lens(m, glm::radians(static_cast<T>(m.fovy)), !m.is_zero_to_one()), v, x);
+            return product(s, Matrix(My::lens(m, glm::radians(static_cast<T>(m.fovy)), !m.is_zero_to_one())), v, x);
         case Mistake::bias_of_other_range:
-            return product(My::bias(m, s[2][2] == T(1)), p, v, x);
+            return product(Matrix(My::bias(m, s[2][2] == Composed(1))), p, v, x);
         case Mistake::no_bias:
             return glm::dmat4(p * v * x);
         case Mistake::pose_for_view:
-            return product(s, p, glm::inverse(v), x);
+            return product(s, p, Matrix(glm::inverse(My::view(m))), x);
         case Mistake::lens_of_other_hand: {
             Matrix other = p;
             other[2] = -other[2];
@@ -162,15 +163,16 @@ glm::dmat4 made(const Meant& m, Mistake mistake, Random& random) {
         case Mistake::inverted_aspect: {
             Meant other = m;
             other.aspect = 1.0 / m.aspect;
-            return product(s, My::lens(other), v, x);
+            return product(s, Matrix(My::lens(other)), v, x);
         }
         case Mistake::bias_without_w: {
             Matrix clip = from_left ? p * v * x : p * (v * x);
             const int way = random.integer(0, 3);
-            if (way == 3) return glm::dmat4(clip * T(0.5) + T(0.5));
+            if (way == 3) return glm::dmat4(clip * Composed(0.5) + Composed(0.5));
             for (int i = 0; i < 4; ++i) {
                 const int rows = way == 0 ? 2 : way == 1 ? 3 : 4;
-                for (int row = 0; row < rows; ++row) clip[i][row] = clip[i][row] * T(0.5) + (i == 3 ? T(0.5) : T(0));
+                for (int row = 0; row < rows; ++row)
+                    clip[i][row] = clip[i][row] * Composed(0.5) + (i == 3 ? Composed(0.5) : Composed(0));
             }
             return glm::dmat4(clip);
         }
@@ -350,11 +352,13 @@ inline In put_in_space(Meant& m, Random& random) {
 }
 
 inline glm::dmat4 made_somehow(const Meant& m, Mistake mistake, Random& random) {
-    switch (random.integer(0, 2)) {
+    switch (random.integer(0, 3)) {
         case 0:
             return made<double>(m, mistake, random);
         case 1:
             return glm::dmat4(support::rounded(made<double>(m, mistake, random)));
+        case 2:
+            return made<float, double>(m, mistake, random);
         default:
             return made<float>(m, mistake, random);
     }

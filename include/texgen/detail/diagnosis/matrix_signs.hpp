@@ -166,6 +166,13 @@ inline bool mistakes_depth(const glm::dmat4& p, DepthRange range, Handedness han
     return lands_on_other(z_near) || lands_on_other(z_far);
 }
 
+// Whether nothing in front of a perspective is within its depth range: depth is a + b / w, and a near plane in front
+// puts a beyond the end to which it grows with w, or falls.
+inline bool has_no_depth_in_front(const glm::dmat4& p, DepthRange range) noexcept {
+    const double at_infinity = ratio(p[2].z, p[2].w), per_distance = p[3].z;
+    return !(per_distance < 0.0 && at_infinity > low_end(range)) && !(per_distance > 0.0 && at_infinity < 1.0);
+}
+
 // Whether the focal length is that of an angle whose number was taken for one of the other unit, and not that of fovy.
 // Degrees taken for radians make many turns, so that they are compared as angles, by the sine of half their difference.
 inline bool mistakes_unit(double focal_length, const Angle& fovy) noexcept {

@@ -93,7 +93,10 @@ inline void examine(const Projector& projector, const LensFacts& facts, const Pi
         const bool regular = are_independent(p, {0, 1, 3});
         if (!regular) diagnosis.add(Defect::rank_below_three);
         const bool view_reflects = has_view && is_affine(v) && minor_of(v, axes, axes).value < 0.0;
-        if (regular && is_lens(p)) examine_lens(p, view_reflects, projector.conventions, facts, picture, diagnosis);
+        const Conventions conventions = projector.conventions;
+        if (is_perspective(p) && !looks_away(p, conventions.handedness) && has_no_depth_in_front(p, conventions.depth))
+            diagnosis.add(Defect::near_not_in_front);
+        if (regular && is_lens(p)) examine_lens(p, view_reflects, conventions, facts, picture, diagnosis);
     }
 }
 

@@ -138,16 +138,20 @@ inline bool has_bias_in_every_column(const glm::dmat4& texgen, const glm::dmat4*
 inline bool examine_alone(const glm::dmat4& texgen, const SetupMatrices& setup, Diagnosis& diagnosis) noexcept {
     constexpr double margin = 0x1p-10;
     const DepthRows rows = depth_rows(texgen);
+    const SeenLens lens(in_the_world(texgen, setup.pose), rounding_of(texgen));
+    const bool shows_lens = lens.is_lens();
+    const bool has_bias = !shows_lens && !rows.is_parallel_light && has_bias_in_every_column(texgen, setup.pose);
+    // Factors in float show in their product in double what that shows when it is rounded.
+    const glm::dmat4 rounded = widened(glm::mat4(texgen));
+    const bool may_be_of_floats = rounded != texgen && is_finite(rounded);
+    if (may_be_of_floats && !shows_lens && !has_bias) return examine_alone(rounded, setup, diagnosis);
     if (!rows.are_parallel) {
         const bool is_transposed = shows_transposed(texgen);
-        diagnosis.add(is_transposed                                  ? Defect::transposed
-                      : has_bias_in_every_column(texgen, setup.pose) ? Defect::bias_without_w
-                                                                     : Defect::wrong_order);
+        diagnosis.add(is_transposed ? Defect::transposed : has_bias ? Defect::bias_without_w : Defect::wrong_order);
         return is_transposed;
     }
     const std::optional<Conventions> conventions = known_conventions(setup);
-    const SeenLens lens(in_the_world(texgen, setup.pose), rounding_of(texgen));
-    const bool shows_lens = lens.is_lens();
+    const std::size_t found_before = diagnosis.size();
     // As in mistakes_depth(): no range has infinity there.
     if (rows.limit > margin && rows.limit < 1.0 - margin) {
         const bool lacks_w = shows_lens && seen_scale_bias(setup).is_missed_by(lens);
@@ -156,7 +160,7 @@ inline bool examine_alone(const glm::dmat4& texgen, const SetupMatrices& setup, 
         const glm::dmat4* p = setup.projector != nullptr ? &setup.projector->projection.matrix() : nullptr;
         examine_seen_lens(lens, setup,
                           p != nullptr && is_lens(*p) ? meant_by(*p, *conventions, setup.lens) : setup.lens, diagnosis);
-    } else if (!rows.is_parallel_light && has_bias_in_every_column(texgen, setup.pose)) {
+    } else if (has_bias) {
         diagnosis.add(Defect::bias_without_w);
     }
     const bool has_scale_bias =
@@ -165,7 +169,8 @@ inline bool examine_alone(const glm::dmat4& texgen, const SetupMatrices& setup, 
         !diagnosis.contains(Defect::mixed_handedness) &&
         is_mirrored(texgen, setup.pose != nullptr ? *setup.pose : glm::dmat4(1.0), *conventions))
         diagnosis.add(Defect::mirrored);
-    return false;
+    const bool is_faultless = diagnosis.size() == found_before;
+    return may_be_of_floats && is_faultless && examine_alone(rounded, setup, diagnosis);
 }
 
 }  // namespace TEXGEN_DETAIL
