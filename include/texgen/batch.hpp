@@ -45,12 +45,14 @@ public:
     // caller's is kept but copies, of 276 bytes a triangle. Memory is allocated only when the count exceeds all former
     // ones; noexcept.
     // Shapes: as TriangleSetup::of(). Fewer than 2^32 - 1 triangles (asserted).
-    // Bad input: what TriangleSetup::of() refuses is dark: all that is computed of it is 0.
+    // Bad input: what TriangleSetup::of() refuses, as a triangle without area in the window, is dark: all that is
+    // computed of it is 0.
     template <class CompiledWhereCalled = detail::ThisBuild>
     void assign(std::span<const Triangle> triangles) noexcept;
 
     // Makes triangles ready likewise, but those that face away from the projector dark, as the back of a solid body is.
-    // Guarantee: as above; dark are exactly those that facing() calls away, besides those that are refused. noexcept.
+    // Guarantee: as above; dark are exactly those that facing() calls away, besides those that are refused: a
+    // lightmap's triangle that has no area in the world is edge_on, and stays lit. noexcept.
     template <class CompiledWhereCalled = detail::ThisBuild>
     void assign_facing(std::span<const Triangle> triangles, TextureOrigin origin) noexcept;
 

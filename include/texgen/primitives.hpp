@@ -34,7 +34,8 @@ struct FragmentRect {
     int x, y, width, height;
 };
 
-// The window's pixels that NDC [-1, 1] x [-1, 1] covers. A negative width or height mirrors.
+// The window's pixels that NDC [-1, 1] x [-1, 1] covers. A negative width or height mirrors: y grows as NDC y does,
+// whatever the origin of textures is, and with a negative height the other way.
 struct Viewport {
     int x, y, width, height;
 };

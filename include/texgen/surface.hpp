@@ -56,7 +56,7 @@ inline constexpr double receiver_plane_error = 0x1p-49;
 // Shape: (s, t, r, q) of the corners in any order. In a fragment shader, for a map that has r and texels of that size,
 //
 //     float bias = dot(abs(plane.xy), 0.5 * texel);  // to any point of the texel that the fragment falls on
-//     bool lit = strq.z / strq.w <= texture(map, strq.xy / strq.w).r + bias;
+//     bool lit = strq.z / strq.w <= texture(map, strq.xy / strq.w).r + bias;  // of a reversed depth: >= and - bias
 //
 // Bad input: empty where the projector sees the triangle edge on (facing()), or a number is NaN or infinite.
 // Source: Isidoro, Shadow Mapping: GPU-based Tips and Techniques, GDC 2006 (receiver plane depth bias).
