@@ -32,13 +32,17 @@ inline Product in_the_world(const glm::dmat4& texgen, const glm::dmat4* pose) no
     return inverse.is_regular() ? given * lens_factor(inverse.matrix()) : given;
 }
 
-// S as it should be. A lens misses it whose axis goes to (0, 0), and doubles it where that goes to the bias of S S.
+// S as it should be. A lens misses it whose axis goes to (0, 0), and doubles it where that goes to the bias of S S; in
+// the other order its scale is applied to its bias as well.
 struct SeenScaleBias {
-    glm::dvec2 scale, bias, bias_of_two;
+    glm::dvec2 scale, bias, scaled_bias, bias_of_two;
     double up_along_t;  // 1 where t grows upwards, -1 downwards, 0 where that is not known
 
     bool is_missed_by(const SeenLens& lens) const noexcept {
         return lens.is_centred_on(glm::dvec2(0.0)) && !lens.is_centred_on(bias);
+    }
+    bool is_in_other_order_by(const SeenLens& lens) const noexcept {
+        return lens.is_centred_on(scaled_bias) && !lens.is_centred_on(bias);
     }
     bool is_doubled_by(const SeenLens& lens) const noexcept {
         return lens.is_centred_on(bias_of_two) && !lens.is_centred_on(bias);
@@ -52,7 +56,11 @@ inline SeenScaleBias seen_scale_bias(const SetupMatrices& setup) noexcept {
     const glm::dmat4 s = texgen::scale_bias(conventions.value_or(opengl), setup.picture.region, setup.depth).matrix();
     const glm::dvec4 bias_of_two = s * s[3];
     const double up_along_t = !conventions ? 0.0 : conventions->origin == TextureOrigin::bottom_left ? 1.0 : -1.0;
-    return {{std::fabs(s[0].x), std::fabs(s[1].y)}, {s[3].x, s[3].y}, {bias_of_two.x, bias_of_two.y}, up_along_t};
+    return {{std::fabs(s[0].x), std::fabs(s[1].y)},
+            {s[3].x, s[3].y},
+            {s[0].x * s[3].x, s[1].y * s[3].y},
+            {bias_of_two.x, bias_of_two.y},
+            up_along_t};
 }
 
 // For a lens whose axis goes to the picture's corner: whether `near`, by row r, is a round number if the lens is a
@@ -154,8 +162,11 @@ inline bool examine_alone(const glm::dmat4& texgen, const SetupMatrices& setup, 
     const std::size_t found_before = diagnosis.size();
     // As in mistakes_depth(): no range has infinity there.
     if (rows.limit > margin && rows.limit < 1.0 - margin) {
-        const bool lacks_w = shows_lens && seen_scale_bias(setup).is_missed_by(lens);
-        diagnosis.add(lacks_w ? Defect::bias_without_w : Defect::depth_range_mismatch);
+        const SeenScaleBias s = seen_scale_bias(setup);
+        diagnosis.add(!shows_lens                    ? Defect::depth_range_mismatch
+                      : s.is_missed_by(lens)         ? Defect::bias_without_w
+                      : s.is_in_other_order_by(lens) ? Defect::wrong_order
+                                                     : Defect::depth_range_mismatch);
     } else if (shows_lens) {
         const glm::dmat4* p = setup.projector != nullptr ? &setup.projector->projection.matrix() : nullptr;
         examine_seen_lens(lens, setup,
