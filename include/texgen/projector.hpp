@@ -67,8 +67,8 @@ struct Aim {
     glm::dvec3 position, target, up;
 };
 
-// A slide projector: where its light goes, and the conventions of its numbers. A view with a scale, as
-// the inverse of a scaled node's pose, has the lens's z_near and z_far in the node's units, and r by them.
+// A slide projector: where its light goes, and the conventions of its numbers. A view with a scale, as the inverse of a
+// scaled node's pose, has the lens's z_near and z_far in the node's units, and r by them.
 struct Projector {
     ProjectorProjection projection;
     ProjectorView view;
