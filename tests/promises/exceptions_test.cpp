@@ -8,6 +8,7 @@
 #include <cfenv>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,18 +16,21 @@
 
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include "api/diagnose_product_test/users_code.hpp"
 #include "support/random.hpp"
 #include "support/special_values.hpp"
 #include "support/stopwatch.hpp"
+#include "support/triangles.hpp"
 #include "support/workloads.hpp"
 #include "texgen/batch.hpp"
 #include "texgen/clip.hpp"
 #include "texgen/coverage.hpp"
 #include "texgen/diagnose.hpp"
 #include "texgen/fixed_function.hpp"
+#include "texgen/footprint.hpp"
 #include "texgen/interpolate.hpp"
 #include "texgen/linear.hpp"
 #include "texgen/projector.hpp"
@@ -61,6 +65,12 @@ std::vector<texgen::Projector> draw_projectors(Random& random) {
                                         texgen::opengl)
                              .value());
     return projectors;
+}
+
+// What a function finds where it has written nothing yet.
+[[gnu::noinline]] void fill_stack_with_nans() {
+    volatile float stack[40000];
+    for (volatile float& number : stack) number = std::numeric_limits<float>::quiet_NaN();
 }
 
 }  // namespace
@@ -192,6 +202,53 @@ TEST_CASE("nor does one for the holes of a visibility buffer, fragments behind, 
             interpolate(segment, alpha, texgen::whole_texture(), {out[0], out[1], out[2], out[3]}, tolerance);
             CHECK(std::fetestexcept(trapped) == 0);
         }
+    }
+}
+
+TEST_CASE(
+    "nor does one where the outputs and the stack held NaNs before, of triangles of any size, alone or in a batch") {
+    Random random(8300);
+    const texgen::TextureRegion region = texgen::atlas_tile({0.1, 0.01}, {0.5, 0.7});
+    for (int round = 0; round < 400; ++round) {
+        const texgen::Triangle triangle = support::make_triangle(support::Family::friendly, random);
+        const std::vector<texgen::Triangle> triangles(4, triangle);
+        const texgen::Tolerance tolerance = random.coin() ? texgen::exact : texgen::texels(1.0 / 512.0, 4096.0);
+        const texgen::TextureRegion sides = random.coin() ? region : region.with_depth(0.2, 0.8);
+        texgen::TriangleBatch batch(sides, tolerance);
+        batch.assign(triangles);
+        const glm::vec2 middle = (triangle.a.window + triangle.b.window + triangle.c.window) / 3.0f;
+        const texgen::FragmentRect rect{static_cast<int>(middle.x), static_cast<int>(middle.y), random.integer(1, 40),
+                                        random.integer(1, random.coin() ? 1 : 40)};
+        const std::vector<texgen::FragmentRect> rects(triangles.size(), rect);
+        const auto one = static_cast<std::size_t>(rect.width) * static_cast<std::size_t>(rect.height);
+        std::array<std::vector<float>, 8> array;
+        const auto out = [&](std::size_t which, std::size_t count) {
+            array[which].assign(count, std::numeric_limits<float>::quiet_NaN());
+            return std::span<float>(array[which]);
+        };
+        const bool has_r = random.coin();
+        const auto texcoords = [&](std::size_t count) {
+            return texgen::Texcoords{out(0, count), out(1, count), has_r ? out(2, count) : std::span<float>(),
+                                     out(3, count)};
+        };
+        const auto require_none = [&](const auto& call) {
+            fill_stack_with_nans();
+            std::feclearexcept(FE_ALL_EXCEPT);
+            call();
+            REQUIRE_MESSAGE(std::fetestexcept(trapped) == 0, support::hex(triangle), " in ", rect.width, " x ",
+                            rect.height, " at ", rect.x, ", ", rect.y);
+        };
+        const texgen::TriangleSetup setup = texgen::TriangleSetup::of(triangle, sides, tolerance).value();
+        const std::vector<std::uint32_t> ids(one, 2u);
+        const texgen::Texcoords of_all = texcoords(triangles.size() * one);
+        require_none([&] { interpolate(batch, rects, of_all); });
+        const texgen::Texcoords of_one = texcoords(one);
+        require_none([&] { interpolate(setup, rect, of_one); });
+        require_none([&] { interpolate(batch, ids, rect, of_one); });
+        const texgen::Footprints footprints{out(0, one), out(1, one), out(2, one), out(3, one),
+                                            out(4, one), out(5, one), out(6, one), out(7, one)};
+        require_none([&] { footprint(texgen::FootprintSetup(setup, {1024.0, 1024.0}), rect, footprints); });
+        require_none([&] { footprint(batch, ids, rect, {1024.0, 1024.0}, footprints); });
     }
 }
 

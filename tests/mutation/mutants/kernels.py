@@ -40,6 +40,8 @@ KERNELS = [
         ("vectors of a column are a row apart", "            rows = walk.rows_per_vector;\n", "", "batch_test"),
         ("a vector that begins with a line ends in its first row", "first_y + wide_rows", "first_y", "batch_test")),
     *of("detail/kernels/batch_tiles.inc.hpp",
+        ("a mask reads what lies behind its tile", "if (shape.count % wide_at_once != 0)", "if (shape.count == 0)",
+         "exceptions_test"),
         ("a mask of a batch that is lit at once is dark", "tiles.has(BatchTiles::is_dark, i) ? 0.0f : 1.0f", "0.0f",
          "batch_test"),
         ("where a mask is lit at once other outputs are not divided", "(is_mask_alone && tiles.has", "(tiles.has", "batch_test"),

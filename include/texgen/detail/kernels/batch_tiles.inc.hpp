@@ -175,6 +175,9 @@ TEXGEN_INLINE bool fill_tile(const BatchPlanes& planes, const BatchTiles& tiles,
         divide_tile_float<Numerators, false, true>(tiles, i, shape, here);
     if (out.lit != nullptr) {
         float* const lit = in_scratch ? scratch.values[3] : out.lit + begin;
+        // The last vector may end behind what the tile has written, where NaNs would raise an exception.
+        if (shape.count % wide_at_once != 0)
+            TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k) store(here.out[k] + shape.count, WideFloats{});
         for (std::size_t n = 0; n < shape.count; n += wide_at_once) {
             if (tiles.has(BatchTiles::is_lit, i)) {
                 store(lit + n, WideFloats{} + 1.0f);
