@@ -164,6 +164,40 @@ TEST_CASE("planes that are no round numbers only in the units of an object are n
     }
 }
 
+TEST_CASE("an angle or an aspect that a stretched object, whose pose is not given, shows by chance is none") {
+    // Each is one of millions that a search has found.
+    const Conventions ndc{DepthRange::zero_to_one, NdcY::up, TextureOrigin::top_left, texgen::Handedness::right};
+    glm::dmat4 stretched(1.0);
+    stretched[0].x = 0x1.10a6bf42cadddp-1;
+    stretched[1].y = 0x1.f464dbf40864dp-1;
+    stretched[2].z = 0x1.05a4ef11fb949p-1;
+    stretched[3] = {4.0, 0.0, -14.0, 1.0};
+    const texgen::TextureRegion tile = texgen::atlas_tile({0.25, 0.5}, {1.0, 1.0});
+    const Projector level =
+        make_projector(
+            texgen::PerspectiveLens{texgen::degrees(0x1.b16311424236ep+5), 0x1.583b4d5d15089p+1, 0.5,
+                                    0x1.ae7f9f3d27ad4p+17},
+            texgen::Aim{{0.0, -3.5, 0x1.19bc29ca27f35p+7}, {0.0, -2.5, 0x1.19bc29ca27f35p+7}, {0.0, 0.0, -1.0}}, ndc)
+            .value();
+    const auto of_level = object_linear(level, texgen::ModelMatrix(stretched), tile, DepthMapping::ndc).rounded();
+    CHECK(diagnose(texgen::ObjectTexgen(of_level), {.region = tile, .depth = DepthMapping::ndc, .conventions = ndc})
+              .empty());
+
+    const Conventions left{DepthRange::zero_to_one, NdcY::down, TextureOrigin::top_left, texgen::Handedness::left};
+    const Projector mirrored =
+        make_projector(texgen::FrustumLens{0x1.f299f26348105p-6, -0x1.88a2eada892dap-1, -0x1.0eb3aad514c56p+0,
+                                           0x1.494b659823dd7p-5, 0x1.0eb3aad514c56p+0, 0x1.9d0ee68b62d1bp+16},
+                       texgen::Aim{{-0x1.0b8331f08e874p+3, -0x1.68p+6, -0x1.92c785ae03caap-11},
+                                   {-0x1.f4eceef1281f9p+2, -0x1.4a0fa6c537d56p+6, 0x1.2e368ba8b60dbp+5},
+                                   {0.0, 1.0, 0.0}},
+                       left)
+            .value();
+    glm::dmat4 higher(1.0);
+    higher[1].y = 2.0;
+    const auto of_mirrored = object_linear(mirrored, texgen::ModelMatrix(higher)).rounded();
+    CHECK(diagnose(texgen::ObjectTexgen(of_mirrored), {.projector = mirrored, .lens = {.mirrored = true}}).empty());
+}
+
 TEST_CASE("what users' own code gets right is not found fault with, whatever else is told") {
     Random random(623);
     const int count = valid_setups();

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <optional>
+#include <utility>
 
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
@@ -139,13 +140,36 @@ TEST_CASE("a scale-bias that is there twice is named without the pose as well, a
         Meant m = human(Mistake::none, random);
         m.pose = random.rotation();
         m.pose[3] = glm::dvec4(random.direction(), 1.0);
-        const glm::dmat4 s = Code<double>::bias(m), clip = Code<double>::lens(m) * Code<double>::view(m);
-        const glm::dmat4 right = s * (clip * m.pose);
+        // A lens whose planes are exchanged reverses depth.
+        if (m.kind == LensKind::perspective && random.coin()) std::swap(m.z_near, m.z_far);
+        const glm::dmat4 s = Code<double>::bias(m), lens = Code<double>::lens(m), view = Code<double>::view(m);
+        const Projector projector{texgen::ProjectorProjection(lens), texgen::ProjectorView(view), m.conventions};
+        const glm::dmat4 right = s * (lens * view * m.pose);
         const glm::dmat4 texgen = random.coin() ? s * right : glm::dmat4(support::rounded(s * right));
-        const Diagnosis diagnosis = diagnose(texgen::ObjectTexgen(texgen),
-                                             {.projector = right_projector(m), .region = m.region, .depth = m.depth});
+        const Diagnosis diagnosis =
+            diagnose(texgen::ObjectTexgen(texgen), {.projector = projector, .region = m.region, .depth = m.depth});
         REQUIRE_MESSAGE(diagnosis.size() == 1, text(m, texgen, diagnosis));
         REQUIRE_MESSAGE(diagnosis[0].defect == Defect::scale_bias_doubled, text(m, texgen, diagnosis));
+    }
+}
+
+TEST_CASE(
+    "a lens without a far plane is of the other range by its near plane, before a camera whose pose is not given") {
+    Random random(668);
+    for (int i = 0; i < 2000; ++i) {
+        Meant m = human(Mistake::lens_of_other_range, random);
+        m.kind = LensKind::infinite;
+        m.depth = DepthMapping::unit;
+        m.pose = random.rotation();
+        m.pose[3] = glm::dvec4(m.aim.position + random.direction(), 1.0);
+        const Mistake mistake = random.coin() ? Mistake::lens_of_other_range : Mistake::bias_of_other_range;
+        const glm::dmat4 texgen = made<double>(m, mistake, random);
+        const Diagnosis diagnosis = diagnose(texgen::EyeTexgen(texgen),
+                                             {.region = m.region,
+                                              .conventions = m.conventions,
+                                              .lens = {texgen::degrees(m.fovy), m.aspect, m.z_near, infinity_double}});
+        REQUIRE_MESSAGE(diagnosis.size() == 1, text(m, texgen, diagnosis));
+        REQUIRE_MESSAGE(diagnosis[0].defect == Defect::depth_range_mismatch, text(m, texgen, diagnosis));
     }
 }
 

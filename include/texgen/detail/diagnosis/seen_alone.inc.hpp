@@ -99,7 +99,8 @@ inline void examine_seen_lens(const SeenLens& lens, const SetupMatrices& setup, 
                (facts.fovy || (near_of && near_of->of_whole) || std::fabs(focal_length - 1.0) > error);
     };
     // The size and the aspect that are seen are the lens's own only where no object can be stretched.
-    const bool shows_size = setup.is_placed() || setup.in_eye_space || !lens.may_be_stretched();
+    const bool knows_unit = setup.is_placed() || setup.in_eye_space;
+    const bool shows_size = knows_unit || !lens.may_be_stretched();
     const std::optional<DepthEnds> ends = depth_ends(setup.depth, known_conventions(setup));
     // Where w is biased, too, it is halved, and only its size differs.
     const bool halves_w = std::fabs(lens.per_distance() - 0.5) <= 4.0 * lens.rounding();
@@ -121,16 +122,20 @@ inline void examine_seen_lens(const SeenLens& lens, const SetupMatrices& setup, 
         if (shows_size && !is_meant(in_ndc.y) &&
             (mistakes_unit(in_ndc.y, *facts.fovy) || mistakes_unit(-in_ndc.y, *facts.fovy)))
             diagnosis.add(Defect::angle_unit_mistaken);
-    } else if (lens.is_centred_on(s.bias) && !is_meant(in_ndc.y) &&
+    } else if (shows_size && lens.is_centred_on(s.bias) && !is_meant(in_ndc.y) &&
                is_of_degrees_as_radians(lens, in_ndc.y, s.up_along_t)) {
         diagnosis.add(Defect::angle_unit_mistaken);
     }
+    // People write an aspect in few digits. A projector's lens has all of them, with which what is stretched seldom agrees
+    // by chance.
+    const double of_aspect =
+        setup.lens.aspect ? 0x1p-12 : larger(0x1p-20, 4.0 * (error + lens.error_of_focal_length(0)));
     if (shows_size && facts.aspect && std::fabs(*facts.aspect - 1.0) > 0x1p-10 &&
-        std::fabs(in_ndc.y / in_ndc.x * *facts.aspect - 1.0) <= 0x1p-12)
+        std::fabs(in_ndc.y / in_ndc.x * *facts.aspect - 1.0) <= of_aspect)
         diagnosis.add(Defect::aspect_inverted);
     const bool knows_planes = facts.z_near || facts.z_far;
-    if (ends && (knows_planes ? lands_on_other_range(lens, *ends, facts, setup.is_placed())
-                              : is_round_in_other_range(lens, *ends, setup.is_placed() || setup.in_eye_space)))
+    if (ends && (knows_planes ? lands_on_other_range(lens, *ends, facts, knows_unit)
+                              : is_round_in_other_range(lens, *ends, knows_unit)))
         diagnosis.add(Defect::depth_range_mismatch);
 }
 
@@ -165,6 +170,7 @@ inline bool examine_alone(const glm::dmat4& texgen, const SetupMatrices& setup, 
         const SeenScaleBias s = seen_scale_bias(setup);
         diagnosis.add(!shows_lens                    ? Defect::depth_range_mismatch
                       : s.is_missed_by(lens)         ? Defect::bias_without_w
+                      : s.is_doubled_by(lens)        ? Defect::scale_bias_doubled
                       : s.is_in_other_order_by(lens) ? Defect::wrong_order
                                                      : Defect::depth_range_mismatch);
     } else if (shows_lens) {

@@ -92,9 +92,11 @@ public:
     double limit() const noexcept { return rows_.limit; }
     double rounding() const noexcept { return rounding_; }
 
-    // The focal lengths in units of s and t, and the relative error of the second.
+    // The focal lengths in units of s and t, and the relative error of one.
     const glm::dvec2& focal_length() const noexcept { return focal_length_; }
-    double error_of_focal_length() const noexcept { return 2.0 * rounding_ * (1.0 + 1.0 / focal_length_.y); }
+    double error_of_focal_length(glm::length_t of = 1) const noexcept {
+        return 2.0 * rounding_ * (1.0 + 1.0 / focal_length_[of]);
+    }
 
     // The distance at which r has that value, and r at that distance.
     Estimate distance_of(double r) const noexcept {
