@@ -26,8 +26,8 @@ namespace TEXGEN_NAMESPACE {
 // In general s runs from region.min().x at clip x = -w to region.max().x at x = w; t likewise with y, upside down where
 // the y direction and the texture origin disagree; r is depth in [0, 1] (unit) or as the projector has it (ndc). A
 // depth of the region (with_depth) changes nothing.
-// Guarantee: each element within one rounding of a double (exact for the whole texture), of a region without subnormal
-// sides; no allocation, noexcept.
+// Guarantee: each element within one rounding of a double (exact for the whole texture), of a region whose sides are 0
+// or above 2^-1021; no allocation, noexcept.
 // Bad input: a region with NaN gives a matrix with NaN.
 // Source: Everitt, Projective Texture Mapping, (3); the same matrix with r in NDC is SGI's recipe.
 inline ScaleBias scale_bias(Conventions conventions, TextureRegion region = whole_texture(),
