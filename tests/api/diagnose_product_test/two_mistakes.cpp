@@ -173,4 +173,22 @@ TEST_CASE(
     }
 }
 
+TEST_CASE("parallel light of the other hand is named where all is told, and its r is not taken for another range") {
+    Random random(669);
+    for (int i = 0; i < 2000; ++i) {
+        Meant m = any_meant(Mistake::none, random);
+        m.kind = LensKind::orthographic;
+        const glm::dmat4 right = Code<double>::lens(m);
+        glm::dmat4 other = right;
+        other[2] = -other[2];
+        const glm::dmat4 product = Code<double>::bias(m) * (other * Code<double>::view(m) * m.pose);
+        const glm::dmat4 texgen = random.coin() ? product : glm::dmat4(support::rounded(product));
+        const Projector projector{texgen::ProjectorProjection(right), texgen::ProjectorView(Code<double>::view(m)),
+                                  m.conventions};
+        const Diagnosis diagnosis = diagnosis_of(m, In::object, projector, Told::projector, false, texgen);
+        REQUIRE_MESSAGE(!diagnosis.empty(), text(m, texgen, diagnosis));
+        REQUIRE_MESSAGE(diagnosis[0].defect == Defect::mixed_handedness, text(m, texgen, diagnosis));
+    }
+}
+
 }  // namespace product_cases

@@ -33,6 +33,8 @@ DIAGNOSIS = [
         ("w is never biased", "is_row(3, 0.5, 0.5 * constant) ||", "", "diagnose_product_test"),
         ("parallel light misses w", "if (!is_perspective(factors.projection)) return false;", "", "diagnose_test")),
     *of("detail/diagnosis/see_through.inc.hpp",
+        ("parallel light has no hand", "if (has_lens_of_other_hand(texgen, factors)) {", "if (false) {",
+         "diagnose_product_test"),
         ("what is seen through a product is not rounded", "composed_in_float.of_magnitude * terms", "0.0 * terms",
          "diagnose_product_test"),
         ("no factor is transposed", "if (has_transposed_factor(texgen, factors)) {", "if (false) {", "diagnose_product_test"),

@@ -46,6 +46,13 @@ inline bool has_pose_for_view(const glm::dmat4& texgen, const Factors& factors) 
     return is_product_of(with_pose, texgen);
 }
 
+// Whether the lens is that of the other hand, which looks along the other axis. Of parallel light only r says it.
+inline bool has_lens_of_other_hand(const glm::dmat4& texgen, const Factors& factors) noexcept {
+    Factors with_other = factors;
+    with_other.projection[2] = -factors.projection[2];
+    return is_product_of(with_other, texgen);
+}
+
 // Whether one of the factors is transposed in the product.
 inline bool has_transposed_factor(const glm::dmat4& texgen, const Factors& factors) noexcept {
     Factors with_transposed = factors;
@@ -120,6 +127,10 @@ inline bool look_through(const glm::dmat4& texgen, const Factors& factors, const
                          Diagnosis& diagnosis) noexcept {
     if (has_pose_for_view(texgen, factors)) {
         diagnosis.add(Defect::view_not_inverted);
+        return true;
+    }
+    if (has_lens_of_other_hand(texgen, factors)) {
+        diagnosis.add(Defect::mixed_handedness);
         return true;
     }
     if (has_transposed_factor(texgen, factors)) {
