@@ -11,7 +11,7 @@ set(arguments_of_footprints "const FootprintSetup& setup, FragmentRect rect, Foo
 set(arguments_of_batch "const TriangleBatch& batch, std::span<const FragmentRect> rects, Texcoords out")
 set(arguments_of_buffer "const TriangleBatch& batch, std::span<const std::uint32_t> ids, FragmentRect rect, Footprints out")
 set(calls
-    "69000 interpolate.hpp Work interpolate interpolate(setup, rect, out)"
+    "68700 interpolate.hpp Work interpolate interpolate(setup, rect, out)"
     "100000 texcoord.hpp void project project(texgen, positions, whole_texture(), out)"
     "8000 texcoord.hpp auto one project(texgen, world_space(position))"
     "36000 coverage.hpp Coverage coverage coverage(texgen, whole_texture(), box)"
