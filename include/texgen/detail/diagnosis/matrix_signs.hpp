@@ -167,8 +167,9 @@ inline bool mistakes_depth(const glm::dmat4& p, DepthRange range, Handedness han
 }
 
 // Whether nothing in front of a perspective is within its depth range: depth is a + b / w, and a near plane in front
-// puts a beyond the end to which it grows with w, or falls.
+// puts a beyond the end to which it grows with w, or falls. A row z that was never written says nothing.
 inline bool has_no_depth_in_front(const glm::dmat4& p, DepthRange range) noexcept {
+    if (is_zero_row(p, 2)) return false;
     const double at_infinity = ratio(p[2].z, p[2].w), per_distance = p[3].z;
     return !(per_distance < 0.0 && at_infinity > low_end(range)) && !(per_distance > 0.0 && at_infinity < 1.0);
 }

@@ -84,13 +84,13 @@ template <class CompiledWhereCalled = void>
 void fill_chunks(const TileJob& job, const RowOutputs& row, ChunkGroup& group, int first, int end, int x) noexcept {
     const StepRule rule = group.rule_of(job, first);
     const int length = job.length_of_chunk(x);
-    // Beyond the first cache, which holds r and a mask, too, vectors begin with lines: long ones go in order, in whole
-    // lines; shorter ones take longer so, and the first begins with one, as chunks have room for one more. Where no cache
-    // holds 2^21 floats memory takes longer than order does, but for the shortest.
+    // Beyond the first cache, which holds r and a mask, too, vectors begin with lines. Long ones go in order. Shorter ones
+    // take longer so, and go from both ends, in front with lines from the second on: chunks have room for one more. No
+    // cache holds 2^21 floats, and memory takes longer than order does, but for the shortest.
     constexpr bool are_long = wide_lanes == TileJob::longest_vector, are_shortest = wide_lanes == 4;
     static_assert(are_long || 2 * wide_lanes <= TileJob::longest_vector);
     const bool is_in_order = !are_shortest && job.is_beyond(are_long ? floats_in_first_cache : 1 << 21);
-    const bool begins_with_line = !are_long && job.is_beyond(floats_in_first_cache / 2);
+    const bool has_lines_in_front = !are_long && job.is_beyond(floats_in_first_cache / 2);
     const std::ptrdiff_t reach = is_in_order ? length : (length + 1) / 2;
     if (length != group.indexed) {
         group.indexed = length;
@@ -106,7 +106,7 @@ void fill_chunks(const TileJob& job, const RowOutputs& row, ChunkGroup& group, i
         float* const s = row.out[0] + begin;
         float* const t = row.out[1] + begin;
         std::ptrdiff_t last = length - wide_lanes, to_next = wide_lanes;
-        if (begins_with_line) [[unlikely]]
+        if (has_lines_in_front) [[unlikely]]
             to_next = next_in_line<WideFloats>(s, 0, wide_lanes);
         // From both ends, where the last vectors may overlap in the middle; or in order. The bits are the same. Indices
         // are loaded, which costs nothing here.
