@@ -84,13 +84,13 @@ template <class CompiledWhereCalled = void>
 void fill_chunks(const TileJob& job, const RowOutputs& row, ChunkGroup& group, int first, int end, int x) noexcept {
     const StepRule rule = group.rule_of(job, first);
     const int length = job.length_of_chunk(x);
-    // Beyond the first cache, which holds r and a mask, too, vectors begin with lines. Long ones go in order. Shorter ones
-    // take longer so, and go from both ends, in front with lines from the second on: chunks have room for one more. No
-    // cache holds 2^21 floats, and memory takes longer than order does, but for the shortest.
+    // Beyond the first cache vectors begin with lines. Long ones go in order. Shorter ones take longer so, and go from both
+    // ends, in front with lines from the second on: chunks have room for one more. No cache holds 2^21 floats, and memory
+    // takes longer than order does, but for the shortest.
     constexpr bool are_long = wide_lanes == TileJob::longest_vector, are_shortest = wide_lanes == 4;
     static_assert(are_long || 2 * wide_lanes <= TileJob::longest_vector);
     const bool is_in_order = !are_shortest && job.is_beyond(are_long ? floats_in_first_cache : 1 << 21);
-    const bool has_lines_in_front = !are_long && job.is_beyond(floats_in_first_cache / 2);
+    const bool has_lines_in_front = !are_long && job.is_beyond(floats_in_first_cache);
     const std::ptrdiff_t reach = is_in_order ? length : (length + 1) / 2;
     if (length != group.indexed) {
         group.indexed = length;
