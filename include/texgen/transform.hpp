@@ -36,9 +36,10 @@ public:
     explicit Transform(const glm::mat4& matrix) noexcept : matrix_(detail::widened(matrix)) {}
     explicit Transform(const glm::dmat4& matrix) noexcept : matrix_(matrix) {}
 
-    // GLM makes a mat4 of a matrix of another shape without a word: the translation of a 3x4 becomes a row.
-    template <glm::length_t Columns, glm::length_t Rows, class Number, glm::qualifier Qualifier>
-    requires(Columns != 4 || Rows != 4) explicit Transform(const glm::mat<Columns, Rows, Number, Qualifier>&) = delete;
+    // Of an affine matrix whose rows stand in columns, of which GLM makes a mat4 without a word, with the translation in
+    // its last row. Its transpose, a mat4x3, is right.
+    template <class Number, glm::qualifier Qualifier>
+    explicit Transform(const glm::mat<3, 4, Number, Qualifier>&) = delete;
 
     const glm::dmat4& matrix() const noexcept { return matrix_; }
     glm::mat4 rounded() const noexcept { return glm::mat4(matrix_); }
