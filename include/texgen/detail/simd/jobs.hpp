@@ -154,10 +154,9 @@ struct ChunkGroup {
     float bend[size];
     float middle[2][size], slope[2][size];
     float rule[size];
-    alignas(
-        64) float index[longest_chunk +
-                        TileJob::longest_vector];  // of the fragments of a chunk, or of its first half, from its middle
-    int indexed = 0;                               // the length of that chunk
+    // Of the fragments of a chunk, or of its first half, from its middle; and a vector more.
+    alignas(64) float index[longest_chunk + TileJob::longest_vector];
+    int indexed = 0;  // the length of that chunk
 
     StepRule rule_of(const TileJob& job, int i) const noexcept {
         return job.steps == StepRule::undecided ? static_cast<StepRule>(static_cast<int>(rule[i])) : job.steps;
