@@ -125,27 +125,18 @@ inline LensFacts meant_by(const glm::dmat4& p, Conventions conventions, LensFact
 // Looks at the lens in a matrix that is no product of its factors. Adds what it finds; returns whether it found any.
 inline bool look_through(const glm::dmat4& texgen, const Factors& factors, const SetupMatrices& setup,
                          Diagnosis& diagnosis) noexcept {
-    if (has_pose_for_view(texgen, factors)) {
-        diagnosis.add(Defect::view_not_inverted);
-        return true;
-    }
-    if (has_lens_of_other_hand(texgen, factors)) {
-        diagnosis.add(Defect::mixed_handedness);
-        return true;
-    }
-    if (has_transposed_factor(texgen, factors)) {
-        diagnosis.add(Defect::transposed);
-        return true;
-    }
+    const auto finds = [&](bool is_there, Defect defect) {
+        if (is_there) diagnosis.add(defect);
+        return is_there;
+    };
     const glm::dmat4& scale_bias = factors.scale_bias;
-    if (has_bias_times({scale_bias[0].x, scale_bias[1].y, scale_bias[2].z}, texgen, factors)) {
-        diagnosis.add(Defect::wrong_order);
+    if (finds(has_pose_for_view(texgen, factors), Defect::view_not_inverted) ||
+        finds(has_lens_of_other_hand(texgen, factors), Defect::mixed_handedness) ||
+        finds(has_transposed_factor(texgen, factors), Defect::transposed) ||
+        finds(has_bias_times({scale_bias[0].x, scale_bias[1].y, scale_bias[2].z}, texgen, factors),
+              Defect::wrong_order) ||
+        finds(has_bias_times(glm::dvec3(0.0), texgen, factors), Defect::bias_without_w))
         return true;
-    }
-    if (has_bias_times(glm::dvec3(0.0), texgen, factors)) {
-        diagnosis.add(Defect::bias_without_w);
-        return true;
-    }
     const glm::dmat4& given = factors.projection;
     if (!is_lens(given)) return false;
     auto p = lens_within(texgen, factors);
