@@ -121,31 +121,21 @@ void round_forms(const FormLanes& forms, std::size_t count, FloatForms& result) 
 
 // One box in double, a lane a form: twice the value in its middle, and how much it changes to either end. A sum or
 // difference of two corners is rounded, as are a coefficient, a product, three sums of them and the sum of the two: 8
-// u. Nothing is certain of a form that uses an infinite coordinate.
+// u. Nothing is certain of an infinite coordinate.
 template <class CompiledWhereCalled = void>
 int classify_box(const FormLanes& forms, const float* box_min, const float* box_max) noexcept {
     double sum[3], extent[3], size[3];
-    bool is_proper = true;
+    bool is_certain = true;
     for (std::size_t j = 0; j < 3; ++j) {
         const double min = widened(box_min[j]), max = widened(box_max[j]);
         sum[j] = min + max;
         extent[j] = max - min;
         size[j] = std::fabs(sum[j]) + extent[j];
-        is_proper &= extent[j] >= 0.0;
-        is_proper &= size[j] < infinity;
+        is_certain &= extent[j] >= 0.0;
+        is_certain &= size[j] < infinity;
     }
-    double narrowed = 2.2 * forms.last_q;
-    bool is_unbounded[3] = {};
-    if (!is_proper) {
-        for (std::size_t j = 0; j < 3; ++j) {
-            if (!(extent[j] >= 0.0)) return body_in_doubt;
-            is_unbounded[j] = !(size[j] < infinity);
-            if (!is_unbounded[j]) continue;
-            sum[j] = extent[j] = size[j] = 0.0;
-            if (forms.a[j][form_of_q] != 0.0) narrowed = infinity;
-        }
-    }
-    narrowed += 1.1 * forms.largest_q * (size[0] + size[1] + size[2]);
+    if (!is_certain) return body_in_doubt;
+    const double narrowed = 2.2 * forms.last_q + 1.1 * forms.largest_q * (size[0] + size[1] + size[2]);
 
     constexpr std::size_t count = form_lanes / at_once;
     Doubles value[count], change[count], error[count];
@@ -160,8 +150,6 @@ int classify_box(const FormLanes& forms, const float* box_min, const float* box_
         error[i] =
             (magnitude(a[0]) * size[0] + magnitude(a[1]) * size[1]) + (magnitude(a[2]) * size[2] + magnitude(twice_d));
         error[i] = minimum(error[i], Doubles{} + 0x1p900) * gamma(8);
-        for (std::size_t j = 0; j < 3; ++j)
-            if (is_unbounded[j]) error[i] = select(greater(magnitude(a[j]), 0.0), Doubles{} + infinity, error[i]);
         outside = outside | greater(0.0 - error[i], value[i] + change[i]);
     }
     if (any(outside)) return 0;

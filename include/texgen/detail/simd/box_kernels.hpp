@@ -125,7 +125,7 @@ struct SeparatingFormKernels {
 
 // One box.
 struct BoxKernels {
-    // What doubles are certain of. Empty boxes are in doubt, and those whose coordinates in use are not finite.
+    // What doubles are certain of. Empty boxes are in doubt, and those that have a coordinate that is not finite.
     int (*classify)(const FormLanes& forms, const float* min, const float* max) noexcept;
     // What the forms say of a box that has points, exactly; what classify() decided with `answer` is not asked.
     int (*decide)(int answer, const glm::dmat4& matrix, const FormWeights& outer, const FormWeights& inner,
