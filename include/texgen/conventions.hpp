@@ -11,8 +11,8 @@
 
 #include "detail/matrices/required.hpp"
 
-// 0.4.34: 10000 major + 100 minor + patch.
-#define TEXGEN_VERSION 434
+// 0.4.35: 10000 major + 100 minor + patch.
+#define TEXGEN_VERSION 435
 
 namespace TEXGEN_NAMESPACE {
 
