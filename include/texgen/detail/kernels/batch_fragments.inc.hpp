@@ -29,7 +29,7 @@ struct FragmentLanes {
         const Doubles stretched = stretch * (reciprocal * 1.0001);
         Doubles u[Numerators], largest{}, largest_error{};
         TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k) {
-            const std::size_t place = BatchPlanes::of_numerator[k];
+            const std::size_t place = BatchPlanes::of_coordinate[k];
             u[k] = (functions[place] + (functions[place + 1] * p_x + functions[place + 2] * p_y)) * reciprocal +
                    0.0;  // no -0
             largest = k == 0 ? magnitude(u[k]) : maximum(largest, magnitude(u[k]));
@@ -51,7 +51,7 @@ struct FragmentLanes {
         const Doubles relative_error = functions[BatchPlanes::q + 3] * stretched + 8.0 * unit_roundoff_double;
         TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k) {
             const Doubles error =
-                functions[BatchPlanes::of_numerator[k] + 3] * stretched + magnitude(u[k]) * relative_error;
+                functions[BatchPlanes::of_coordinate[k] + 3] * stretched + magnitude(u[k]) * relative_error;
             const RoundedEnds ends(u[k], error);
             quotient[k] = ends.below;
             doubtful |= ends.differ();

@@ -66,10 +66,10 @@ TEXGEN_INLINE LongWords set_up_lanes(const float* triangles, BatchPlanes* planes
     const Doubles factor = with_sign_of(reciprocals_of_powers(power_of_two_below(largest)), area);
     const Doubles weight_a = w_bc * factor, weight_b = w_ac * factor, weight_c = w_ab * factor;
 
-    // A small tile may reach beyond the vertices by about its own size: eight pixels.
     const Doubles size_b_x = magnitude(b_x), size_b_y = magnitude(b_y);
     const Doubles size_c_x = magnitude(c_x), size_c_y = magnitude(c_y);
-    const Doubles reach_x = maximum(size_b_x, size_c_x) + 8.0, reach_y = maximum(size_b_y, size_c_y) + 8.0;
+    const Doubles reach_x = maximum(size_b_x, size_c_x) + BatchPlanes::margin;
+    const Doubles reach_y = maximum(size_b_y, size_c_y) + BatchPlanes::margin;
     const Doubles base_terms = (size_b_x * size_c_y + size_b_y * size_c_x) * batch_plane_error;
     const Doubles b_dx_terms = size_c_y * reach_x * batch_plane_error;
     const Doubles c_dx_terms = size_b_y * reach_x * batch_plane_error;
@@ -79,8 +79,7 @@ TEXGEN_INLINE LongWords set_up_lanes(const float* triangles, BatchPlanes* planes
     Doubles value[BatchPlanes::count]{};
     Doubles all_slopes{};
     TEXGEN_FOR (std::size_t k = 0; k < 4; ++k) {
-        constexpr std::size_t place[4] = {BatchPlanes::s, BatchPlanes::t, BatchPlanes::r, BatchPlanes::q};
-        Doubles* const function = &value[place[k]];
+        Doubles* const function = &value[BatchPlanes::of_coordinate[k]];
         const Doubles at_a = a[BatchVertex::strq + k] * weight_a;
         const Doubles at_b = b[BatchVertex::strq + k] * weight_b;
         const Doubles at_c = c[BatchVertex::strq + k] * weight_c;

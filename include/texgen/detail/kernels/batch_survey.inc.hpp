@@ -52,16 +52,16 @@ struct TileFunction {
         at[1] = at[0] + dx * tile.right;
         at[2] = at[0] + dy * tile.bottom;
         at[3] = at[2] + dx * tile.right;
-        least = least_of(at);
-        largest = largest_of(at);
+        least = least_at_corners(at);
+        largest = largest_at_corners(at);
         size = maximum(largest, least * -1.0);
         error = function[3] * tile.stretch + size * tile.sums;
     }
 
-    TEXGEN_INLINE static Doubles least_of(const Doubles (&at)[4]) noexcept {
+    TEXGEN_INLINE static Doubles least_at_corners(const Doubles (&at)[4]) noexcept {
         return minimum(minimum(at[0], at[1]), minimum(at[2], at[3]));
     }
-    TEXGEN_INLINE static Doubles largest_of(const Doubles (&at)[4]) noexcept {
+    TEXGEN_INLINE static Doubles largest_at_corners(const Doubles (&at)[4]) noexcept {
         return maximum(maximum(at[0], at[1]), maximum(at[2], at[3]));
     }
 };
@@ -77,15 +77,15 @@ struct Beyond {
         const Doubles margin = (f.error + q.error * (size + slack) + q.size * (slack + size * gamma(4))) * 1.0002;
         Doubles g[4];
         TEXGEN_FOR (std::size_t i = 0; i < 4; ++i) g[i] = f.at[i] - q.at[i] * bound;
-        below = greater(margin * -1.0, TileFunction::largest_of(g));
-        above = greater(TileFunction::least_of(g), margin);
+        below = greater(margin * -1.0, TileFunction::largest_at_corners(g));
+        above = greater(TileFunction::least_at_corners(g), margin);
     }
 };
 
+// Prepares tiles in float. Returns those that need no more: floats serve, and the middle is lit.
 // In float a tile is treated as a chunk is (chunks.inc.hpp), in two directions. With r = 2^-24 the numerator of a step
 // D errs by 3 r D, x of the denominator by 3 r X, X being its largest, and the step by 3 r X / (1 - X) D for that; the
 // polynomial adds 3 r D (a division 2 r D), the product r D, and the value r D + 2 r |u|.
-// Prepares tiles in float. Returns those that need no more: floats serve, and the middle is lit.
 template <std::size_t Numerators>
 TEXGEN_INLINE LongWords prepare_in_float(const BatchJob& job, const BatchPlanes* of_tiles, const int (*block)[4],
                                          std::size_t first, BatchTiles& tiles) noexcept {
@@ -114,7 +114,7 @@ TEXGEN_INLINE LongWords prepare_in_float(const BatchJob& job, const BatchPlanes*
     LongWords is_polynomial = at_most(extent, Doubles{} + 0.25);
     LongWords is_inside = is_float, is_lit = is_float;
     TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k) {
-        const Doubles* const f = &planes.value[BatchPlanes::of_numerator[k]];
+        const Doubles* const f = &planes.value[BatchPlanes::of_coordinate[k]];
         const Doubles u = (f[0] + (f[1] * middle_x + f[2] * middle_y)) * per_q;
         const Doubles slope_x = where(has_columns, (f[1] - u * q[1]) * per_q);
         const Doubles slope_y = where(has_rows, (f[2] - u * q[2]) * per_q);
@@ -162,7 +162,7 @@ TEXGEN_APART void prepare(const BatchJob& job, const BatchPlanes* of_tiles, cons
     // The product of two q, and its reciprocal, are normal numbers.
     LongWords have_middles = is_exact & greater(q.least, 0x1p-500) & greater(Doubles{} + 0x1p500, q.largest);
     TEXGEN_FOR (std::size_t k = 0; k < Numerators; ++k) {
-        const TileFunction f(&value[BatchPlanes::of_numerator[k]], tile);
+        const TileFunction f(&value[BatchPlanes::of_coordinate[k]], tile);
         const Doubles largest = (f.size + f.error) * reciprocal;
         const Doubles error =
             (f.error + largest * q.error) * (reciprocal * 1.0001) + largest * (10.0 * unit_roundoff_double);
@@ -198,7 +198,7 @@ struct TileFunctions {
                                 std::size_t known = Numerators) noexcept {
         TEXGEN_FOR (std::size_t k = 0; k <= Numerators; ++k) {
             if (k >= known && k < Numerators) continue;
-            const double* const plane = &planes.value[k < Numerators ? BatchPlanes::of_numerator[k] : BatchPlanes::q];
+            const double* const plane = &planes.value[k < Numerators ? BatchPlanes::of_coordinate[k] : BatchPlanes::q];
             base[k] = k < Numerators ? tiles.base[k][i] : tiles.q[i];
             along[k] = plane[1];  // a row alone is a column, whose x is 0
             down[k] = plane[is_turned ? 1 : 2];

@@ -34,7 +34,8 @@ struct BatchVertex {
 // four are 0.
 struct alignas(64) BatchPlanes {
     static constexpr std::size_t s = 0, t = 4, q = 8, origin = 12, per_reach = 14, r = 16, count = 24;
-    static constexpr std::size_t of_numerator[3] = {s, t, r};
+    static constexpr std::size_t of_coordinate[4] = {s, t, r, q};
+    static constexpr double margin = 8.0;  // pixels: a small tile may reach beyond the vertices by about its own size
 
     double value[count];
 

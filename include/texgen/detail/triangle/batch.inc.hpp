@@ -15,14 +15,13 @@ inline BatchPlanes batch_planes(const Triangle& triangle) noexcept {
     const TrianglePlanes planes(triangle);
     if (!planes.is_usable()) return result;
     const auto reach_of = [&](glm::length_t axis) {
-        return larger(std::fabs(planes.to_b()[axis]), std::fabs(planes.to_c()[axis])) + 8.0;
+        return larger(std::fabs(planes.to_b()[axis]), std::fabs(planes.to_c()[axis])) + BatchPlanes::margin;
     };
     const double reach_x = reach_of(0);
     const double reach_y = reach_of(1);
-    constexpr std::size_t place[4] = {BatchPlanes::s, BatchPlanes::t, BatchPlanes::r, BatchPlanes::q};
     for (std::size_t k = 0; k < 4; ++k) {
         const Plane plane = planes.plane(static_cast<glm::length_t>(k));
-        double* const function = &result.value[place[k]];
+        double* const function = &result.value[BatchPlanes::of_coordinate[k]];
         function[0] = plane.value.base;
         function[1] = plane.value.dx;
         function[2] = plane.value.dy;
@@ -152,7 +151,7 @@ void interpolate(const TriangleBatch& batch, std::span<const FragmentRect> rects
     TEXGEN_ASSERT(rects.size() == batch.size());
     if (rects.size() != batch.size() || rects.empty()) return;
     const std::size_t count = detail::count_of(rects);
-    if (!detail::take_computed(out, count)) return;
+    if (!detail::drop_unasked(out, count)) return;
     detail::TilesJob job{};
     detail::describe(job, batch, out, count);
     job.tiles = reinterpret_cast<const int(*)[4]>(rects.data());
