@@ -21,17 +21,19 @@
 namespace TEXGEN_NAMESPACE_BUILD {
 
 // The points that a slide lights, prepared once for many questions; the functions below ask one each.
-// Guarantee: `outside` and `inside` are never false: they hold for the exact values of the matrix, the region and the
+// Guarantee: `outside` and `inside` are never false. They hold for the exact values of the matrix, the region and the
 // body as they are given, and for `lit` of project() with `exact`, whose s, t and r are rounded: within a float of a
 // side, or of a limit of depth, a body is `partial`. (What a tolerance moves across a side is not looked for here.) A
-// box is `partial` only where it is so, or touches a plane through an edge or through the apex of the projector's
-// pyramid within 2^-47 of the terms that it is the sum of, the largest coefficient for all; the pyramid's own planes,
-// with its sides at the floats next to the region's (next to 0 the normal ones), are decided exactly, as are the near
-// and the far plane of a depth. (Where nothing is lit at all, because no r in front is in the depth or no s and t go
-// together, boxes about q = 0 may be `partial`.) A sphere is `partial` too where it only touches a plane, where no
-// plane but one through a vertex of the volume leaves it out, and where a side that is moved inwards by those floats
-// would cut it, at the largest q that points as far from the origin may have. A batch answers as the single question
-// does. No allocation, noexcept; what is prepared is never changed, so threads may share it.
+// batch answers as the single question does. No allocation, noexcept; what is prepared is never changed, so threads may
+// share it. `partial` is also said
+//   of a box      that touches a plane through an edge or through the apex of the projector's pyramid within 2^-47 of
+//                 the terms that the plane's value is the sum of, the largest coefficient for all. (The pyramid's own
+//                 planes, with its sides at the floats next to the region's, next to 0 the normal ones, are decided
+//                 exactly, as are the near and the far plane of a depth.)
+//   of a box      about q = 0 where nothing is lit at all: no r in front is in the depth, or no s and t go together
+//   of a sphere   that only touches a plane, that no plane but one through a vertex of the volume leaves out, or that a
+//                 side would cut if it were moved inwards by those floats, at the largest q that points as far from the
+//                 origin may have
 // Shape: bodies of Space, in order; both spans have one size (asserted; else nothing is written).
 // Bad input, the first that applies: a NaN anywhere in a body: partial. A box with min > max in some axis, a sphere
 // with a negative radius: outside. A matrix that is not finite: partial. An empty region (see TextureRegion): outside.
@@ -56,7 +58,7 @@ private:
     detail::LitForms forms_;
     detail::FloatForms float_forms_;
     detail::UnitForms unit_forms_;
-    detail::SeparatingForms separating_;
+    detail::SeparatingPlanes separating_;
 };
 
 // A LitVolume has the space of its matrix.

@@ -244,10 +244,8 @@ using Setup = ProjectionSetup<Space>;
 // any conventions, lens, pose of regular matrices (of a camera that is not given: a rigid one) and distance from the
 // origin, but for what is true of it: that it lights none of the points, shows all of them less than a texel, or loses
 // half a texel (of a picture of 4096, where the texture's size is not given). A lens that mirrors says so in its facts,
-// a model may mirror. No allocation, noexcept.
-// Cost: about a microsecond for what was composed in double, several for what was composed in float or has a defect;
-// the worst set-up takes at most 8 times what one with a single defect does. No mistake is named of numbers beyond
-// 2^150 or below 2^-150. What it sees: of a projector alone, its matrices' own marks (transposed, exchanged, of rank
+// a model may mirror. No mistake is named of numbers beyond 2^150 or below 2^-150. No allocation, noexcept.
+// What it sees: of a projector alone, its matrices' own marks (transposed, exchanged, of rank
 // below 3, mirrored, reversed depth in the wrong range, a near plane that is not in front); with facts of the lens also
 // an aspect, an angle or a depth range that becomes theirs by a mistake: inverted, in another unit, for the other
 // range. With the projector, and the model or the camera, which of their products a texgen matrix is, of up to two
@@ -259,10 +257,12 @@ using Setup = ProjectionSetup<Space>;
 // stands on its head in the world for the conventions given. Of a window's fragments: numbers, rank and points alone.
 // What it cannot see: mistakes that are other set-ups, until it is told what was meant. The lens from 0.1 to 100 for
 // [0, 1], under the bias of [-1, 1], is the one from 10/199.9 to 100 for [-1, 1]: any row z that is not reversed is
-// that of some lens in both ranges. NDC without a bias are a lens beside its axis, of 90 degrees one of round numbers;
-// a pose is the view from another place; and a lens along an axis of an object whose pose is not given may have been
+// that of some lens in both ranges. A matrix in NDC, without the bias, is that of an off-axis lens (with a fovy of 90
+// degrees even of one with round numbers); a pose is the view from another place; and a lens along an axis of an object whose pose is not given may have been
 // stretched with it. A projection whose near plane is oblique, by hand, shows what a wrong order shows until projector
 // and model are given.
+// Cost: about a microsecond for what was composed in double, several for what was composed in float or has a defect;
+// the worst set-up takes at most 8 times what one with a single defect does.
 // Bad input: what is not finite is reported, and the rest is examined without it.
 // Source: Everitt, Projective Texture Mapping, (3) and (4), and what is made of them.
 template <class Space>

@@ -96,9 +96,10 @@ public:
     // columns scaled),
     //     object_linear   2^-100 sum |p_i v_i|
     //     eye_linear      2^-50 sum |p'_i e_i|
-    //     normal_map      2^-48 k         with k the length of (sum_i |normal_i| |M^-1_ij|)_j under the normal scaling:
-    //     reflection_map  2^-48 (1 + k)^2      |n| where nothing cancels
+    //     normal_map      2^-48 k
+    //     reflection_map  2^-48 (1 + k)^2
     //     sphere_map      2^-48 (1 + k)^2 / m  and never outside [0, 1]
+    // with k the length of (sum_i |normal_i| |M^-1_ij|)_j under the normal scaling: |n| where nothing cancels.
     // Another texture matrix multiplies these errors, before the rounding, and adds 2^-50 of its terms. A coordinate
     // that is off is the vertex's own.
     // Shape: `modelview` takes the vertex's object space to the eye. With e = M v, u = e.xyz / |e.xyz| (not divided by

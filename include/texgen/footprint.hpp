@@ -33,7 +33,7 @@ struct TexelsPerUnit {
     double s, t;
 };
 
-// The same for a region that covers width x height texels.
+// Returns the texels per unit of a region that covers width x height of them.
 constexpr TexelsPerUnit texels_per_unit(const TextureRegion& region, double width, double height) noexcept {
     return {width / ((region.max)().x - (region.min)().x), height / ((region.max)().y - (region.min)().y)};
 }
@@ -115,7 +115,7 @@ public:
     // texels are bad. It takes as long as some hundreds of fragments, and never visits them. No allocation, noexcept.
     std::optional<FootprintExtremes> extremes(FragmentRect rect) const noexcept;
 
-    // The same for all fragments inside the triangle.
+    // Finds those over all fragments inside the triangle.
     std::optional<FootprintExtremes> extremes() const noexcept;
 
 private:

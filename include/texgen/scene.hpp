@@ -53,7 +53,7 @@ struct LitPair {
 
 // What an update did.
 struct SceneWork {
-    std::size_t bounds_tested = 0;     // up to eight world bounds, of objects or groups of them, against a projector
+    std::size_t bounds_tested = 0;     // of a projector against up to eight bounds, of objects or groups
     std::size_t pairs_tested = 0;      // boxes against a T_o
     std::size_t texgens_computed = 0;  // T_o
 };

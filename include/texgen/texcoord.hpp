@@ -63,8 +63,8 @@ public:
 
     std::size_t size() const noexcept { return count_; }
 
-    // The same points, with the caller's word that all of them lie in a box (asserted), as an engine has one of each
-    // mesh: project() then bounds its errors once instead of block by block. Values are right by the same promises;
+    // Returns the same points with the caller's word that all of them lie in a box (asserted), as an engine has one of
+    // each mesh: project() then bounds its errors once instead of block by block. Values are right by the same promises;
     // `exact` has the same bits. Without assertions a point that is not in the box, such as a NaN, gets values that
     // nothing bounds, and spoils no other. A box with min > max or a NaN is none, and takes the place of a former one.
     [[nodiscard]] Positions within(const Box& box) const noexcept;
@@ -185,7 +185,7 @@ template <class Space>
 void generate(const Transform<Texture, Space>& texture_from_space, Positions<Space> positions,
               std::span<glm::vec4> strq) noexcept;
 
-// The same into one array a coordinate; an empty one is left out.
+// Generates the same into one array a coordinate; an empty one is left out.
 template <class Space>
 void generate(const Transform<Texture, Space>& texture_from_space, Positions<Space> positions,
               HomogeneousTexcoords out) noexcept;
@@ -206,7 +206,7 @@ template <class Space>
 void project(const Transform<Texture, Space>& texture_from_space, Positions<Space> positions, TextureRegion region,
              Texcoords out, Tolerance tolerance = exact) noexcept;
 
-// The same into pairs, without a mask: behind the projector both are 0.
+// Writes the same in pairs, without a mask: behind the projector both are 0.
 template <class Space>
 void project(const Transform<Texture, Space>& texture_from_space, Positions<Space> positions, std::span<glm::vec2> st,
              Tolerance tolerance = exact) noexcept;

@@ -36,8 +36,8 @@ public:
     explicit Transform(const glm::mat4& matrix) noexcept : matrix_(detail::widened(matrix)) {}
     explicit Transform(const glm::dmat4& matrix) noexcept : matrix_(matrix) {}
 
-    // Of an affine matrix whose rows stand in columns, of which GLM makes a mat4 without a word, with the translation in
-    // its last row. Its transpose, a mat4x3, is right.
+    // Refuses an affine matrix whose rows stand in columns: GLM makes a mat4 of it without a word, with the translation
+    // in its last row. Its transpose, a mat4x3, is right.
     template <class Number, glm::qualifier Qualifier>
     explicit Transform(const glm::mat<3, 4, Number, Qualifier>&) = delete;
 

@@ -57,12 +57,12 @@ LitVolume<Space>::LitVolume(const Transform<Texture, Space>& texture_from_space,
     : forms_(texture_from_space.matrix(), region, detail::chosen<detail::FormKernels>()),
       float_forms_(forms_.in_float(detail::chosen<detail::FloatFormKernels>())),
       unit_forms_(forms_.unit(detail::chosen<detail::UnitFormKernels>())),
-      separating_(forms_.separating(detail::chosen<detail::SeparatingFormKernels>())) {}
+      separating_(forms_.separating(detail::chosen<detail::SeparatingPlaneKernels>())) {}
 
 template <class Space>
 Coverage LitVolume<Space>::coverage(const Box& box) const noexcept {
     return detail::coverage_of(detail::chosen<detail::BoxKernels>(), forms_, box,
-                               [this]() -> const detail::SeparatingForms& { return separating_; });
+                               [this]() -> const detail::SeparatingPlanes& { return separating_; });
 }
 template <class Space>
 Coverage LitVolume<Space>::coverage(const Sphere& sphere) const noexcept {
@@ -74,7 +74,7 @@ Coverage LitVolume<Space>::coverage(const Sphere& sphere) const noexcept {
 template <class Space>
 void LitVolume<Space>::coverage(std::span<const Box> boxes, std::span<Coverage> out) const noexcept {
     detail::coverage_of_many(
-        forms_, float_forms_, [this]() -> const detail::SeparatingForms& { return separating_; }, boxes, out);
+        forms_, float_forms_, [this]() -> const detail::SeparatingPlanes& { return separating_; }, boxes, out);
 }
 template <class Space>
 void LitVolume<Space>::coverage(std::span<const Sphere> spheres, std::span<Coverage> out) const noexcept {
@@ -87,7 +87,7 @@ Coverage coverage(const Transform<Texture, Space>& texture_from_space, const Tex
                   const Box& box) noexcept {
     const detail::LitForms forms(texture_from_space.matrix(), region, detail::chosen<detail::FormKernels>());
     return detail::coverage_of(detail::chosen<detail::BoxKernels>(), forms, box,
-                               [&] { return forms.separating(detail::chosen<detail::SeparatingFormKernels>()); });
+                               [&] { return forms.separating(detail::chosen<detail::SeparatingPlaneKernels>()); });
 }
 template <class Space>
 Coverage coverage(const Transform<Texture, Space>& texture_from_space, const TextureRegion& region,
@@ -101,11 +101,11 @@ template <class Space>
 void coverage(const Transform<Texture, Space>& texture_from_space, const TextureRegion& region,
               std::span<const Box> boxes, std::span<Coverage> out) noexcept {
     const detail::LitForms forms(texture_from_space.matrix(), region, detail::chosen<detail::FormKernels>());
-    detail::OnDemand<detail::SeparatingForms> separating;
+    detail::OnDemand<detail::SeparatingPlanes> separating;
     detail::coverage_of_many(
         forms, forms.in_float(detail::chosen<detail::FloatFormKernels>()),
-        [&]() -> const detail::SeparatingForms& {
-            if (!separating) separating.make(forms.separating(detail::chosen<detail::SeparatingFormKernels>()));
+        [&]() -> const detail::SeparatingPlanes& {
+            if (!separating) separating.make(forms.separating(detail::chosen<detail::SeparatingPlaneKernels>()));
             return *separating;
         },
         boxes, out);

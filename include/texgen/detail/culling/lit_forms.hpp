@@ -77,8 +77,8 @@ struct LitForms {
         return result;
     }
 
-    SeparatingForms separating(const SeparatingFormKernels& kernels) const noexcept {
-        SeparatingForms result;
+    SeparatingPlanes separating(const SeparatingPlaneKernels& kernels) const noexcept {
+        SeparatingPlanes result;
         // Elements are 0 or from 2^-600 to 2. Times 2^200 no product of two underflows, so that a cofactor is 0 only
         // where it is exactly 0.
         kernels.make(lanes, matrix * 0x1p200, side.data(), count, result);

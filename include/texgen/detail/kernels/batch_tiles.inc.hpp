@@ -15,8 +15,8 @@ struct TileOutputs {
 
 // Quotients in double, rounded with a certificate. False where a value is in doubt. Apart, its loop has all registers.
 template <std::size_t Numerators>
-TEXGEN_APART bool divide_tile(const BatchPlanes& planes, const BatchTiles& tiles, std::size_t i,
-                              const ShapeOfTile& shape, const TileOutputs<Numerators>& original) noexcept {
+TEXGEN_APART bool divide_batch_tile(const BatchPlanes& planes, const BatchTiles& tiles, std::size_t i,
+                                    const ShapeOfTile& shape, const TileOutputs<Numerators>& original) noexcept {
     const TileOutputs<Numerators> out = original;
     const TileFunctions<Numerators> f(planes, tiles, i, shape.is_turned);
     const Doubles last_row = Doubles{} + shape.last_row;
@@ -159,7 +159,7 @@ TEXGEN_INLINE bool fill_tile(const BatchPlanes& planes, const BatchTiles& tiles,
     bool is_certain = true;
     if (!tiles.has(BatchTiles::is_float, i))
         is_certain = !tiles.has(BatchTiles::has_middles, i) || !shape.is_whole
-                         ? divide_tile<Numerators>(planes, tiles, i, shape, here)
+                         ? divide_batch_tile<Numerators>(planes, tiles, i, shape, here)
                      : shape.width <= lanes ? divide_whole_tile<Numerators, true>(planes, tiles, i, shape, here)
                                             : divide_whole_tile<Numerators, false>(planes, tiles, i, shape, here);
     else if (!tiles.has(BatchTiles::is_polynomial, i))

@@ -119,7 +119,7 @@ TEXGEN_INLINE void store_classes(int* out, const LongWords& outside, const LongW
 }
 
 template <class CompiledWhereCalled = void>
-void decide_boxes(const DoubleForms* forms, const SeparatingForms& planes, const OpenRow* boxes, std::size_t count,
+void decide_boxes(const DoubleForms* forms, const SeparatingPlanes& planes, const OpenRow* boxes, std::size_t count,
                   int* classes) noexcept {
     for (std::size_t i = 0; i < count; i += at_once) {
         BoxRows row;

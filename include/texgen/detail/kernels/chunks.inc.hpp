@@ -84,9 +84,10 @@ template <class CompiledWhereCalled = void>
 void fill_chunks(const TileJob& job, const RowOutputs& row, ChunkGroup& group, int first, int end, int x) noexcept {
     const StepRule rule = group.rule_of(job, first);
     const int length = job.length_of_chunk(x);
-    // Beyond the first cache vectors begin with lines. Long ones go in order. Shorter ones take longer so, and go from both
-    // ends, in front with lines from the second on: chunks have room for one more. No cache holds 2^21 floats, and memory
-    // takes longer than order does, but for the shortest.
+    // Outputs that the first cache does not hold are stored by whole lines. Vectors of 64 bytes fill a chunk in order.
+    // Shorter ones would take longer so: they fill it from both ends, and only the stores in front begin with lines, from
+    // the second on (chunks have room for one more); beyond 2^21 floats, which no cache holds, those of 32 bytes go in
+    // order, too.
     constexpr bool are_long = wide_lanes == TileJob::longest_vector, are_shortest = wide_lanes == 4;
     static_assert(are_long || 2 * wide_lanes <= TileJob::longest_vector);
     const bool is_in_order = !are_shortest && job.is_beyond(are_long ? floats_in_first_cache : 1 << 21);

@@ -82,8 +82,8 @@ template <class CompiledWhereCalled>
 inline constexpr FormKernels kernel_table<FormKernels, CompiledWhereCalled>{.weigh = weigh_forms<CompiledWhereCalled>};
 
 template <class CompiledWhereCalled>
-inline constexpr SeparatingFormKernels kernel_table<SeparatingFormKernels, CompiledWhereCalled>{
-    .make = make_planes<CompiledWhereCalled>};
+inline constexpr SeparatingPlaneKernels kernel_table<SeparatingPlaneKernels, CompiledWhereCalled>{
+    .make = make_separating_planes<CompiledWhereCalled>};
 
 template <class CompiledWhereCalled>
 inline constexpr FloatFormKernels kernel_table<FloatFormKernels, CompiledWhereCalled>{

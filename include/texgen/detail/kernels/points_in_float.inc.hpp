@@ -97,10 +97,11 @@ TEXGEN_INLINE bool fill_in_front(const PointJob& job, const PointForm (&of)[1 + 
     return !any(~are_within);
 }
 
+inline constexpr std::uint64_t many_doubtful = ~std::uint64_t{};
+
 // Fills a block on either side of the projector from differences to one of its points, so that distance from the origin
 // costs no digits, with errors of each lane. Returns bit i for vector i if a lane of it is neither certainly inside the
 // tolerance nor certainly behind (it is written all the same); many_doubtful for more than an eighth of them.
-inline constexpr std::uint64_t many_doubtful = ~std::uint64_t{};
 template <class CompiledWhereCalled = void>
 TEXGEN_APART std::uint64_t fill_about_point(const PointJob& job, std::size_t begin, std::size_t end) noexcept {
     WideFloats x, y, z;

@@ -170,8 +170,8 @@ Undecided fill_segment_exact(const SegmentJob& job, std::size_t first) noexcept 
 // Fills values in front by fill(job, begin, end), which returns the first value that it does not vouch for, or the end;
 // and their mask, where one is asked for.
 template <class CompiledWhereCalled = void>
-TEXGEN_INLINE std::size_t fill_in_front(std::size_t (*fill)(const SegmentJob&, std::size_t, std::size_t) noexcept,
-                                        const SegmentJob& job, std::size_t first) noexcept {
+TEXGEN_INLINE std::size_t fill_with_mask(std::size_t (*fill)(const SegmentJob&, std::size_t, std::size_t) noexcept,
+                                         const SegmentJob& job, std::size_t first) noexcept {
     if (job.lit == nullptr) return fill(job, first, job.count);
     for (std::size_t begin = first; begin < job.count;) {
         const std::size_t end = end_of_block(job.count, begin, float_block);
@@ -232,10 +232,10 @@ std::size_t fill_segment_in_double_of(const SegmentJob& job, std::size_t first, 
 template <class CompiledWhereCalled = void>
 std::size_t fill_segment_in_double(const SegmentJob& job, std::size_t first) noexcept {
     if (job.numerators == 2)
-        return fill_in_front(
+        return fill_with_mask(
             job.is_asymptotic ? fill_segment_in_double_of<2, true> : fill_segment_in_double_of<2, false>, job, first);
-    return fill_in_front(job.is_asymptotic ? fill_segment_in_double_of<1, true> : fill_segment_in_double_of<1, false>,
-                         job, first);
+    return fill_with_mask(job.is_asymptotic ? fill_segment_in_double_of<1, true> : fill_segment_in_double_of<1, false>,
+                          job, first);
 }
 
 // The same in float. Two vectors divide the slope of the steeper coordinate, and the step of the other is a share of
@@ -281,7 +281,8 @@ std::size_t fill_segment_all_float_of(const SegmentJob& job, std::size_t first, 
 
 template <class CompiledWhereCalled = void>
 std::size_t fill_segment_all_float(const SegmentJob& job, std::size_t first) noexcept {
-    return fill_in_front(job.numerators == 2 ? fill_segment_all_float_of<2> : fill_segment_all_float_of<1>, job, first);
+    return fill_with_mask(job.numerators == 2 ? fill_segment_all_float_of<2> : fill_segment_all_float_of<1>, job,
+                          first);
 }
 
 }  // namespace TEXGEN_DETAIL::TEXGEN_ISA

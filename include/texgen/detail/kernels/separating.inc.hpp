@@ -16,7 +16,7 @@ struct FormColumns {
 // Adds sums of N forms with weights >= 0, where they make a plane. Each coefficient is rounded, as are its product and
 // the sums, and those of a box; no a is above 2. A coefficient stays 0 if no form has it, or it is that of but_axis.
 template <std::size_t N>
-TEXGEN_INLINE void add_plane(SeparatingForms& planes, const FormColumns* const (&form)[N], const Doubles (&weight)[N],
+TEXGEN_INLINE void add_plane(SeparatingPlanes& planes, const FormColumns* const (&form)[N], const Doubles (&weight)[N],
                              const LongWords& is_plane, std::size_t but_axis, std::size_t i) noexcept {
     if (!any(is_plane)) return;
     constexpr double rounding = 1.001 * gamma(11 + static_cast<int>(N));
@@ -48,7 +48,7 @@ TEXGEN_INLINE void add_plane(SeparatingForms& planes, const FormColumns* const (
 // The planes through an edge, where forms f and g of two coordinates meet, and parallel to an axis of the space: with
 // coefficients f_k and g_k of that axis, |g_k| f + |f_k| g does not use the axis where f_k and g_k have opposite signs.
 template <class CompiledWhereCalled = void>
-TEXGEN_INLINE void add_edges(SeparatingForms& planes, const FormLanes& forms, std::size_t form_count) noexcept {
+TEXGEN_INLINE void add_edges(SeparatingPlanes& planes, const FormLanes& forms, std::size_t form_count) noexcept {
     const std::size_t edges = edge_count(form_count);
     FormColumns f{}, g{};  // what fills a vector is 0, and no plane
     for (std::size_t i = 0; i < edges; ++i) {
@@ -68,7 +68,7 @@ TEXGEN_INLINE void add_edges(SeparatingForms& planes, const FormLanes& forms, st
 // The planes through a vertex, where forms f, g and h meet, and perpendicular to an axis: the weights are the
 // components along it of g x h, h x f and f x g, where these have one sign. Rounded ones serve, too.
 template <class CompiledWhereCalled = void>
-TEXGEN_INLINE void add_vertices(SeparatingForms& planes, const FormLanes& forms) noexcept {
+TEXGEN_INLINE void add_vertices(SeparatingPlanes& planes, const FormLanes& forms) noexcept {
     FormColumns f, g, h;
     for (std::size_t i = 0; i < 8; ++i) {
         f.put(forms, i / 4, i);
@@ -97,7 +97,7 @@ TEXGEN_INLINE void add_vertices(SeparatingForms& planes, const FormLanes& forms)
 // has one sign at the corners of the region, it has that in all of the pyramid. Where a side of the region is infinite,
 // alpha, or beta, has to have the sign that keeps it.
 template <class CompiledWhereCalled = void>
-TEXGEN_INLINE void add_axes(SeparatingForms& planes, const glm::dmat4& matrix, const double* side) noexcept {
+TEXGEN_INLINE void add_axes(SeparatingPlanes& planes, const glm::dmat4& matrix, const double* side) noexcept {
     constexpr double is_axis[3][form_lanes] = {{1.0}, {0.0, 1.0}, {0.0, 0.0, 1.0}};
     constexpr double is_any_axis[form_lanes] = {1.0, 1.0, 1.0};
     constexpr glm::length_t coordinates[3] = {0, 1, 3};
@@ -162,8 +162,8 @@ TEXGEN_INLINE void add_axes(SeparatingForms& planes, const glm::dmat4& matrix, c
 }
 
 template <class CompiledWhereCalled = void>
-void make_planes(const FormLanes& forms, const glm::dmat4& matrix, const double* side, std::size_t form_count,
-                 SeparatingForms& planes) noexcept {
+void make_separating_planes(const FormLanes& forms, const glm::dmat4& matrix, const double* side,
+                            std::size_t form_count, SeparatingPlanes& planes) noexcept {
     planes.count = 0;
     add_edges(planes, forms, form_count);
     add_axes(planes, matrix, side);
@@ -172,7 +172,7 @@ void make_planes(const FormLanes& forms, const glm::dmat4& matrix, const double*
 
 // Whether a plane separates a box. Nothing is certain of a plane that uses an infinite coordinate.
 template <class CompiledWhereCalled = void>
-bool is_separated(const SeparatingForms& planes, const float* box_min, const float* box_max) noexcept {
+bool is_separated(const SeparatingPlanes& planes, const float* box_min, const float* box_max) noexcept {
     double min[3], max[3];
     double size = 0.0;
     for (std::size_t j = 0; j < 3; ++j) {
@@ -196,7 +196,7 @@ bool is_separated(const SeparatingForms& planes, const float* box_min, const flo
 }
 
 // The same for a box in each lane, given as rows of min and max.
-TEXGEN_INLINE LongWords are_separated(const SeparatingForms& planes, const Doubles (&box)[8]) noexcept {
+TEXGEN_INLINE LongWords are_separated(const SeparatingPlanes& planes, const Doubles (&box)[8]) noexcept {
     Doubles min[3], max[3];
     Doubles size{};
     TEXGEN_FOR (std::size_t j = 0; j < 3; ++j) {

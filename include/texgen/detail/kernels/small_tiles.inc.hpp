@@ -10,7 +10,7 @@ inline constexpr double joined_rows[2][8] = {{0.0, 0.0, 0.25, 0.25, 0.5, 0.5, 0.
 // doubt. A short single row is both rows. A long one is cut into rows as wide as a vector, of which the last may begin
 // in the one before. A vector of eight holds several rows of two or four columns, and y counts such vectors. What a
 // vector writes beyond its row is overwritten by those that follow.
-TEXGEN_INLINE bool divide_small(const SmallTile& tile) noexcept {
+TEXGEN_INLINE bool divide_small_tile(const SmallTile& tile) noexcept {
     const auto& [f_base, f_dx, f_dy] = tile.numerator;
     const Ramp& of_q = tile.q;
     int width = tile.width, stride = width;
@@ -109,7 +109,7 @@ TEXGEN_INLINE void divide_small_in_float(const SmallTile& tile, int width, int c
 template <class CompiledWhereCalled = void>
 bool fill_small_tile(const SmallTile& tile) noexcept {
     if (!tile.is_in_float) {
-        if (!divide_small(tile)) return false;
+        if (!divide_small_tile(tile)) return false;
     } else if (tile.width == 8) {
         divide_small_in_float(tile, 8, wide_lanes < 8 ? wide_lanes : 8);
     } else {

@@ -66,10 +66,11 @@ std::uint64_t divide_tile(const TileJob& job, const TileJob::Unit& part) noexcep
     return rotated(doubtful, static_cast<int>(count % 64));
 }
 
+inline constexpr int pair = 2 * lanes;
+
 // The same for a job that knows its ulps, unit by unit of its rows: a pair of vectors shares a division, which adds two
 // roundings to a quotient, and integers tell whether one is in doubt. Returns the first unit with such a quotient. A
 // row's last pair ends with it, and may begin in the unit before, certain by then: a first unit is no shorter.
-inline constexpr int pair = 2 * lanes;
 template <class CompiledWhereCalled = void>
 TileJob::Unit divide_in_pairs(const TileJob& job, const TileJob::Unit& first) noexcept {
     const int width = job.width, height = job.height;

@@ -26,8 +26,8 @@ TEXGEN_INLINE void for_each_output(auto& out, const auto& function) noexcept {
             function(*output);
 }
 
-// Empties the outputs that are not computed; false if none is left.
-bool take_computed(auto& out, std::size_t count) noexcept {
+// Empties the outputs that are not asked for, or have another size; false if none is left.
+bool drop_unasked(auto& out, std::size_t count) noexcept {
     bool any = false;
     for_each_output(out, [&](std::span<float>& output) {
         if (!is_computed(output, count)) output = {};

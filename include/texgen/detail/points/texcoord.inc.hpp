@@ -72,7 +72,7 @@ inline bool is_inside(const Box& box, const glm::vec3& point) noexcept {
 }
 
 // Sets what follows for a job if all points lie in a box: nothing if one of them may be next to q = 0 or behind.
-inline void take_bounds(PointJob& job, const Box& box) noexcept {
+inline void set_bounds(PointJob& job, const Box& box) noexcept {
     if (!is_ordered(box)) return;
     const glm::dvec3 min = widened(box.min), max = widened(box.max);
     const glm::dvec3 size(larger(-min.x, max.x), larger(-min.y, max.y), larger(-min.z, max.z));
@@ -153,7 +153,7 @@ void project_all(const Positions<Space>& positions, PointJob& job, const PointOu
     if (count != positions.size()) project_each(positions, count, job, out);
     if (count == 0) return;
     const PointKernels& kernels = chosen<PointKernels>();
-    take_bounds(job, positions.bounds());
+    set_bounds(job, positions.bounds());
     for_each_part(positions, count, [&](const PointInput& input, const JobPart& part) {
         static_cast<PointInput&>(job) = input;
         run_part(job, out, part, [&](const PointJob& points) {

@@ -56,7 +56,7 @@ struct FloatForms {
 // depth, and of 8 vertices; and those of the apex; in whole vectors. A coordinate whose coefficient is 0 is not used:
 // there a box may be infinite. d has its own error added, and `error` is what a point of size 1 adds.
 inline constexpr std::size_t max_separating = 3 * 16 + 8 + 3 * 8;
-struct SeparatingForms {
+struct SeparatingPlanes {
     double a[3][max_separating], d[max_separating], error[max_separating];
     std::size_t count;
 };
@@ -118,9 +118,9 @@ struct UnitFormKernels {
 // Further forms that are >= 0 wherever all of a slide's are, each a combination of those with weights that are exactly
 // >= 0. Where one of them is negative over all of a convex body, nothing of the body is lit. The matrix is so large
 // that no product of two elements underflows, see LitForms::separating().
-struct SeparatingFormKernels {
+struct SeparatingPlaneKernels {
     void (*make)(const FormLanes& forms, const glm::dmat4& matrix, const double* side, std::size_t form_count,
-                 SeparatingForms& planes) noexcept;
+                 SeparatingPlanes& planes) noexcept;
 };
 
 // One box.
@@ -131,7 +131,7 @@ struct BoxKernels {
     int (*decide)(int answer, const glm::dmat4& matrix, const FormWeights& outer, const FormWeights& inner,
                   const float* min, const float* max) noexcept;
     // Whether one of the planes is negative over all of a box that has points.
-    bool (*is_separated)(const SeparatingForms& planes, const float* min, const float* max) noexcept;
+    bool (*is_separated)(const SeparatingPlanes& planes, const float* min, const float* max) noexcept;
 };
 
 // What floats are certain of. A box is six floats, min first; a sphere four, the radius last. NaN, infinities, empty
@@ -142,7 +142,7 @@ struct BoxBatchKernels {
     Classify classify;
     // Decides by the forms, in double or by exact sums, and by the planes: what one separates is outside. Without
     // forms, what none separates is partial. What has no points is in doubt.
-    void (*decide)(const DoubleForms* forms, const SeparatingForms& planes, const OpenRow* boxes, std::size_t count,
+    void (*decide)(const DoubleForms* forms, const SeparatingPlanes& planes, const OpenRow* boxes, std::size_t count,
                    int* classes) noexcept;
 };
 struct SphereKernels {

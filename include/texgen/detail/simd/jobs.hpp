@@ -18,7 +18,8 @@ struct RampOf {
 };
 using Ramp = RampOf<double>;
 
-// Two linear functions, in pairs as compilers load them: a load of a pair would wait for two separate stores.
+// Two linear functions, each coefficient of both side by side: compilers load such a pair as 16 bytes, and a load waits
+// for two stores of 8.
 struct TwoRamps {
     alignas(16) double base[2];
     double dx[2], dy[2];

@@ -1,6 +1,7 @@
 #pragma once
 
-// Which vectors the inner loops run on. The only file with #if on instruction sets but instruction_sets.inc.hpp.
+// Which vectors the inner loops run on. Instruction sets are told apart here and in instruction_sets.inc.hpp; elsewhere
+// only their vectors' size counts, of which 32 and 64 bytes are x86's.
 //
 // With GCC 12 or Clang the kernels are written on the vectors of the language, and compiled once for the instruction
 // set of the flags and, on x86-64, once more for AVX2 and for AVX-512; the machine decides which runs. A table of
@@ -320,7 +321,7 @@ TEXGEN_EXTERN template const FootprintKernels& chosen<FootprintKernels>() noexce
 TEXGEN_EXTERN template const FormKernels& chosen<FormKernels>() noexcept;
 TEXGEN_EXTERN template const FloatFormKernels& chosen<FloatFormKernels>() noexcept;
 TEXGEN_EXTERN template const UnitFormKernels& chosen<UnitFormKernels>() noexcept;
-TEXGEN_EXTERN template const SeparatingFormKernels& chosen<SeparatingFormKernels>() noexcept;
+TEXGEN_EXTERN template const SeparatingPlaneKernels& chosen<SeparatingPlaneKernels>() noexcept;
 TEXGEN_EXTERN template const BoxKernels& chosen<BoxKernels>() noexcept;
 TEXGEN_EXTERN template const BoxBatchKernels& chosen<BoxBatchKernels>() noexcept;
 TEXGEN_EXTERN template const SphereKernels& chosen<SphereKernels>() noexcept;

@@ -63,11 +63,12 @@ struct Corners {
     // Also, the product of two q is in range, so that they may share a division.
     bool may_share_divisions() const noexcept { return has_one_error() && least_q > 0x1p-500 && largest_q < 0x1p500; }
 
+    static constexpr int few = 4 * TileJob::unit_size;
+
     // The stretch of a tile that is next to q = 0, along the side by which q varies more: what comes before and after
     // it is behind, or there q is no less than a fourth of its largest. The whole tile where no such stretch is found;
     // where it would hold more than a few fragments, an empty one in the middle of the longer side, which halves the
     // tile.
-    static constexpr int few = 4 * TileJob::unit_size;
     TEXGEN_RARE Stretch next_to_zero(const Tile& tile) const noexcept {
         const bool across_width = std::fabs(q_ramp.dx) * tile.width >= std::fabs(q_ramp.dy) * tile.height;
         const int size = across_width ? tile.width : tile.height;

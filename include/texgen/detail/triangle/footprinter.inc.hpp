@@ -202,7 +202,7 @@ bool footprint(const FootprintSetup& setup, FragmentRect rect, Footprints out) n
     const std::size_t count = detail::count_of(rect);
     if (count == 0) return false;
     const detail::Tile tile = detail::tile_of(rect);
-    if (!detail::take_computed(out, count))
+    if (!detail::drop_unasked(out, count))
         return detail::survey(detail::Inside::functions(setup).triangle, tile).plan.work != Work::nothing;
     return detail::footprint_tile(setup, tile, out);
 }

@@ -114,7 +114,7 @@ template <class CompiledWhereCalled>
 TEXGEN_INLINE Work interpolate(const TriangleSetup& setup, FragmentRect rect, Texcoords out) noexcept {
     const std::size_t count = detail::count_of(rect);
     if (count == 0) return Work::nothing;
-    detail::take_computed(out, count);
+    detail::drop_unasked(out, count);
     return detail::interpolate_tile(setup, detail::tile_of(rect), out);
 }
 

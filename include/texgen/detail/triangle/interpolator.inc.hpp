@@ -135,10 +135,11 @@ private:
         return fragments * tile.count() <= 4 * TileJob::unit_size && fragments <= 2;
     }
 
+    static constexpr int few_ties = 16;
+
     // Adds to what is known of the functions; false where there is no more. Residues come first where many are in
     // doubt, as with ties. They are enough, without two doubles, in tiles of few fragments, where sums in double decide
     // ties already, and where sums in two doubles would not.
-    static constexpr int few_ties = 16;
     TEXGEN_RARE bool sharpen(const Tile& tile, DoubtfulFunctions& functions, int fragments) noexcept {
         const bool have_both = functions.are_close && functions.have_residues;
         if (have_both && (are_exact_ || are_few(fragments, tile))) return false;
@@ -209,7 +210,7 @@ private:
         job.ulps = tile.count() < TileJob::unit_size ? 0 : at.ulps_of_quotients();
         const TileJob::Unit first = from == nullptr ? job.unit_at(0, 0) : *from;
         std::uint64_t doubtful = 0;
-        const TileJob::Unit unit = detail::fill_exact(kernels_, job, first, 16 * TileJob::unit_size, doubtful);
+        const TileJob::Unit unit = fill_units(kernels_, job, first, 16 * TileJob::unit_size, doubtful);
         if (job.is_done(unit)) return;
         fill_from_doubt(tile, at, job, unit, doubtful);
     }
@@ -227,7 +228,7 @@ private:
         // For few fragments it takes less to decide them by residues than to see whether their quotients are exact.
         if (is_constant(functions.function[CloseFunctions::q].high) && sharpen(tile, functions, TileJob::unit_size) &&
             tile.width + tile.height > 4 && take_exact_quotients(functions, job))
-            unit = detail::fill_exact(kernels_, job, unit, TileJob::unit_size, doubtful);
+            unit = fill_units(kernels_, job, unit, TileJob::unit_size, doubtful);
         // Doubt comes in runs. So several units are decided closely before doubles are tried again: four after one that
         // was in doubt altogether, and four times as many whenever doubles fail for most of a unit again.
         for (int many = 1; !job.is_done(unit);) {
@@ -240,7 +241,7 @@ private:
             // doubt: at once if they are made already, else after a second failure.
             bool is_closer = may_get_closer && functions.are_close;
             if (!is_closer) {
-                unit = detail::fill_exact(kernels_, job, unit, TileJob::unit_size, doubtful);
+                unit = fill_units(kernels_, job, unit, TileJob::unit_size, doubtful);
                 const bool fails_again = are_many(std::popcount(doubtful), tile);
                 is_closer = fails_again && !job.is_done(unit) && !functions.are_close && !functions.have_residues;
                 const int size = (unit.x_end - unit.x_begin) * (unit.y_end - unit.y_begin);
@@ -306,8 +307,7 @@ private:
         job.q_error = at.q_error;
         job.least_q = well_in_front * at.q_error;
         for (std::size_t k = 0; k < 2; ++k) job.numerator_error[k] = at.numerator_error[k];
-        detail::fill_polynomial(kernels_, job, {0, 0, 0, 0},
-                                [&](const TileJob::Unit& refused) { fill_refused(tile, job, refused); });
+        fill_chunk_groups(kernels_, job, [&](const TileJob::Unit& refused) { fill_refused(tile, job, refused); });
     }
 
     // Fills a refused unit in shorter chunks or by divisions, and with it those below, which would be refused as well.

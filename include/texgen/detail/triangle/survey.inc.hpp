@@ -42,9 +42,8 @@ inline bool pays_for_chunks(int width, int height) noexcept {
     return width >= TileJob::longest_vector && static_cast<std::int64_t>(width) * height > 128;
 }
 
-// Whether a tile has a shape that is divided in float, where its tolerance allows: what is done in double once a column
-// pays from a few rows on, and takes less time then than chunks, which make up for it in long rows, and where columns of
-// vectors leave the cache.
+// Whether a tile has a shape that is divided in float, where its tolerance allows. Each column of vectors is made ready in
+// double once, which pays from four rows on; chunks take less time in long rows, and where a column leaves the cache.
 inline bool has_shape_for_float(int width, int height) noexcept {
     if (static_cast<std::int64_t>(width) * height > (width < 64 ? 16384 : 512)) return false;
     return width == 8 ? height % 2 == 0 : width >= 16 && height >= 4 && width <= 8 * height;
@@ -54,11 +53,11 @@ inline bool has_shape_for_float(int width, int height) noexcept {
 // fragments a tile has, the likelier one is in doubt in double, and then all are divided again; and in long rows vectors
 // that follow one another share a division at less cost. In float there is no doubt.
 inline bool is_small(const Tile& tile, double tolerance) noexcept {
-    constexpr int longest_vector = 8;
+    constexpr int most_in_vector = 8;
     const bool is_column = tile.is_column();  // a row
     const int width = is_column ? tile.height : tile.width, height = is_column ? 1 : tile.height;
     if (tolerance != 0.0 && has_shape_for_float(width, height)) return true;
-    const int most = width < longest_vector ? SmallTile::most_in_short_rows : width <= 64 ? 4096 : 512;
+    const int most = width < most_in_vector ? SmallTile::most_in_short_rows : width <= 64 ? 4096 : 512;
     return tile.count() <= most && (tolerance == 0.0 || !pays_for_chunks(width, height));
 }
 

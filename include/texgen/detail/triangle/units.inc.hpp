@@ -5,7 +5,7 @@ namespace TEXGEN_DETAIL_BUILD {
 // Fills units from the given one on up to the first with fragments in doubt, which it returns; `doubtful` says which
 // fragments. While none is, more and more units are filled at once, of `most` fragments at most; if one of these is in
 // doubt, they are filled again, one by one. A job that knows its ulps goes in pairs, but for units in doubt.
-inline TileJob::Unit fill_exact(const TileKernels& kernels, const TileJob& job, TileJob::Unit unit, int most,
+inline TileJob::Unit fill_units(const TileKernels& kernels, const TileJob& job, TileJob::Unit unit, int most,
                                 std::uint64_t& doubtful) noexcept {
     for (int size = TileJob::unit_size; !job.is_done(unit);) {
         if (job.ulps != 0 && unit.x_end - unit.x_begin >= TileJob::longest_pair) {
@@ -25,14 +25,14 @@ inline TileJob::Unit fill_exact(const TileKernels& kernels, const TileJob& job, 
     return unit;
 }
 
-// Fills the tile from `first` on. Chunks that no rule serves, a part of one row or whole rows, are handed to `refuse`,
-// unless they are filled already.
-void fill_polynomial(const TileKernels& kernels, const TileJob& job, TileJob::Unit first, const auto& refuse) noexcept {
+// Fills the tile. Chunks that no rule serves, a part of one row or whole rows, are handed to `refuse`, unless they are
+// filled already.
+void fill_chunk_groups(const TileKernels& kernels, const TileJob& job, const auto& refuse) noexcept {
     const int width = job.width, height = job.height;
     const int longest = job.chunk;
     const int whole_chunks = width / longest;
     const int per_row = whole_chunks + (whole_chunks * longest < width ? 1 : 0);
-    int chunk = first.x_begin / longest, y = first.y_begin;
+    int chunk = 0, y = 0;
     ChunkGroup group;
     RowOutputs row(job, y);
     while (y < height) {

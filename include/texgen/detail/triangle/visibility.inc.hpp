@@ -201,7 +201,7 @@ void interpolate(const TriangleBatch& batch, std::span<const std::uint32_t> ids,
     const std::size_t count = detail::count_of(rect);
     if (count == 0) return;
     TEXGEN_ASSERT(ids.size() == count);
-    if (ids.size() != count || !detail::take_computed(out, count)) return;
+    if (ids.size() != count || !detail::drop_unasked(out, count)) return;
     if (batch.size() == 0) return detail::clear(out);
     detail::FragmentsJob job{};
     detail::describe(job, batch, out, count);
@@ -218,7 +218,7 @@ void footprint(const TriangleBatch& batch, std::span<const std::uint32_t> ids, F
     const std::size_t count = detail::count_of(rect);
     if (count == 0) return;
     TEXGEN_ASSERT(ids.size() == count);
-    if (ids.size() != count || !detail::take_computed(out, count)) return;
+    if (ids.size() != count || !detail::drop_unasked(out, count)) return;
     if (batch.size() == 0) return detail::clear(out);
     detail::footprint_ids(batch, ids, rect, texels, out);
 }
