@@ -81,13 +81,9 @@ void glm_interleaved(const Generate& work, std::size_t i) {
     for (std::size_t k = 0; k < work.size(); ++k) strq[k] = matrix * glm::vec4(vectors[k], 1.0f);
 }
 
-Eigen::Map<const Eigen::Matrix4f> eigen_matrix(const Generate& work, std::size_t i) {
-    return Eigen::Map<const Eigen::Matrix4f>(&work.points().matrix(i)[0][0]);
-}
-
 void eigen_planar(const Generate& work, std::size_t i) {
     using Block = Eigen::Array<float, block, 1>;
-    const Eigen::Matrix4f m = eigen_matrix(work, i);
+    const Eigen::Matrix4f m = eigen_matrix(work.points(), i);
     const auto at = [&](const float* axis, std::size_t k) { return Eigen::Map<const Block>(axis + k); };
     for (std::size_t k = 0; k < work.size(); k += block) {
         const auto x = at(work.points().axis(0), k), y = at(work.points().axis(1), k), z = at(work.points().axis(2), k);
@@ -100,7 +96,7 @@ void eigen_planar(const Generate& work, std::size_t i) {
 void eigen_interleaved(const Generate& work, std::size_t i) {
     const auto count = static_cast<Eigen::Index>(work.size());
     const Eigen::Map<const Eigen::Matrix3Xf> points(&work.points().vectors()->x, 3, count);
-    const Eigen::Matrix4f matrix = eigen_matrix(work, i);
+    const Eigen::Matrix4f matrix = eigen_matrix(work.points(), i);
     Eigen::Map<Eigen::Matrix4Xf> strq(&work.strq()->x, 4, count);
     for (Eigen::Index k = 0; k < count; k += block)
         strq.middleCols<block>(k).noalias() = matrix * points.middleCols<block>(k).colwise().homogeneous();

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
@@ -75,6 +76,10 @@ private:
     Layout layout_;
     std::vector<glm::mat4> matrices_;
 };
+
+inline Eigen::Map<const Eigen::Matrix4f> eigen_matrix(const Points& points, std::size_t i) {
+    return Eigen::Map<const Eigen::Matrix4f>(&points.matrix(i)[0][0]);
+}
 
 // The scenes of a workload: by size and layout. name is the workload's.
 inline Scene scene_of(const std::string& name, const Points& points) {

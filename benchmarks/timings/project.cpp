@@ -108,13 +108,9 @@ void glm_interleaved(const Project& work, std::size_t i) {
     }
 }
 
-Eigen::Map<const Eigen::Matrix4f> eigen_matrix(const Project& work, std::size_t i) {
-    return Eigen::Map<const Eigen::Matrix4f>(&work.points().matrix(i)[0][0]);
-}
-
 void eigen_planar(const Project& work, std::size_t i) {
     using Block = Eigen::Array<float, block, 1>;
-    const Eigen::Matrix4f m = eigen_matrix(work, i);
+    const Eigen::Matrix4f m = eigen_matrix(work.points(), i);
     const auto at = [&](const float* axis, std::size_t k) { return Eigen::Map<const Block>(axis + k); };
     for (std::size_t k = 0; k < work.size(); k += block) {
         const auto x = at(work.points().axis(0), k), y = at(work.points().axis(1), k), z = at(work.points().axis(2), k);
@@ -128,7 +124,7 @@ void eigen_interleaved(const Project& work, std::size_t i) {
     const auto count = static_cast<Eigen::Index>(work.size());
     const Eigen::Map<const Eigen::Matrix3Xf> points(&work.points().vectors()->x, 3, count);
     Eigen::Matrix<float, 3, 4> rows;
-    rows << eigen_matrix(work, i).topRows<2>(), eigen_matrix(work, i).bottomRows<1>();
+    rows << eigen_matrix(work.points(), i).topRows<2>(), eigen_matrix(work.points(), i).bottomRows<1>();
     Eigen::Map<Eigen::Matrix2Xf> pairs(&work.pairs()->x, 2, count);
     for (Eigen::Index k = 0; k < count; k += block)
         pairs.middleCols<block>(k) =

@@ -320,10 +320,10 @@ void interpolate_segment(Input& input) {
             require_same(out, i, alone, "a value's bits are those that it has alone");
         if (out.asked(3)) must(out.lit()[i] == 0.0f || out.lit()[i] == 1.0f, "lit is 0 or 1");
         if (std::isnan(alpha[i]) && out.asked(3)) must(out.lit()[i] == 0.0f, "an alpha that is NaN is not lit");
-        if (!std::isnan(alpha[i]) && has_finite_ends)
-            require_within(out, i, support::exactly_at(segment, alpha[i]), bound);
-        if (!std::isnan(alpha[i]) && has_finite_ends)
-            must_be_right(what_is_wrong(support::exactly_at(segment, alpha[i]), region, tolerance, out, i));
+        if (std::isnan(alpha[i]) || !has_finite_ends) continue;
+        const auto exact_values = support::exactly_at(segment, alpha[i]);
+        require_within(out, i, exact_values, bound);
+        must_be_right(what_is_wrong(exact_values, region, tolerance, out, i));
     }
 }
 

@@ -109,7 +109,7 @@ TEXGEN_INLINE LongWords prepare_in_float(const BatchJob& job, const BatchPlanes*
     share = share * share;
     const Doubles step_error = (extent * stretched * 3.1 + 8.1) * unit_roundoff_float;
     const Doubles error_share = per_q * stretched * 1.001;
-    const Doubles tolerance = Doubles{} + job.tolerance * (1.0 - 0x1p-18);
+    const Doubles tolerance = Doubles{} + job.tolerance * share_for_tiles;
     LongWords is_float = greater(middle_q, q_error * 0x1p26) & at_most(extent, Doubles{} + 0.75);
     LongWords is_polynomial = at_most(extent, Doubles{} + 0.25);
     LongWords is_inside = is_float, is_lit = is_float;

@@ -52,6 +52,9 @@ inline constexpr double well_in_front = 0x1p24;
 // One error bound serves all quotients of a tile whose least q is above this share of the largest: beyond, that of the
 // largest quotient would make the smallest ones doubtful.
 inline constexpr double share_for_one_error = 0x1p-12;
+// The shares of a tolerance that the bounds of chunks and of whole tiles may take: they are rounded themselves, those of
+// tiles more often.
+inline constexpr double share_for_chunks = 1.0 - 0x1p-20, share_for_tiles = 1.0 - 0x1p-18;
 // Functions cancel where they err by more than this share of what is left of them: more than one float in 2^12 would be
 // in doubt.
 inline constexpr double cancelled_share = 0x1p-36;

@@ -303,7 +303,7 @@ private:
         TileJob job = make_job(tile, at);
         job.chunk = plan.chunk;
         job.steps = plan.steps;
-        job.tolerance = triangle_.tolerance * (1.0 - 0x1p-20);
+        job.tolerance = triangle_.tolerance * share_for_chunks;
         job.q_error = at.q_error;
         job.least_q = well_in_front * at.q_error;
         for (std::size_t k = 0; k < 2; ++k) job.numerator_error[k] = at.numerator_error[k];

@@ -129,7 +129,7 @@ inline void choose_plan(const TriangleFunctions& triangle, const Tile& tile, con
     const Work without_chunks = plan.work;
     if (triangle.tolerance == 0.0 || !pays_for_chunks(tile.width, tile.height)) return;
     plan.chunk = chunk_length(at, tile);
-    if (at.is_well_in_front()) choose_steps(plan, at, triangle.tolerance * (1.0 - 0x1p-18));
+    if (at.is_well_in_front()) choose_steps(plan, at, triangle.tolerance * share_for_tiles);
     if (has_shape_for_float(tile.width, tile.height)) plan.work = without_chunks;  // whether or not floats serve
 }
 
