@@ -69,7 +69,7 @@ TEST_CASE("units and chunks at the end of the longest rows and columns are done,
         std::ranges::fill(array.last(tail), poison);
         TileJob::Unit unit = is_row ? job.unit_at(longest - 300, 0) : job.unit_at(0, longest - 300);
         std::uint64_t doubtful = 0;
-        for (int units = 0; !job.is_done(unit = fill_exact(kernels, job, unit, TileJob::unit_size, doubtful));
+        for (int units = 0; !job.is_done(unit = fill_units(kernels, job, unit, TileJob::unit_size, doubtful));
              unit = job.unit_after(unit))
             REQUIRE(++units < 300);
         CHECK(is_right(array.last(300), 0.0f));
@@ -82,7 +82,7 @@ TEST_CASE("units and chunks at the end of the longest rows and columns are done,
         for (const StepRule rule : {StepRule::degree4, StepRule::undecided}) {
             job.steps = rule;
             const int first = (longest - 300) / job.chunk * job.chunk;
-            fill_polynomial(kernels, job, at(first), [](const TileJob::Unit&) { FAIL_CHECK("refused"); });
+            fill_chunk_groups(kernels, job, at(first), [](const TileJob::Unit&) { FAIL_CHECK("refused"); });
             CHECK(is_right(array.last(300), 0x1p-10f));
         }
 
@@ -91,7 +91,7 @@ TEST_CASE("units and chunks at the end of the longest rows and columns are done,
         job.steps = StepRule::undecided;
         const int first = (longest - 1) / job.chunk * job.chunk;
         TileJob::Unit refused{};
-        fill_polynomial(kernels, job, at(first), [&](const TileJob::Unit& rest) { refused = rest; });
+        fill_chunk_groups(kernels, job, at(first), [&](const TileJob::Unit& rest) { refused = rest; });
         CHECK(refused.x_begin == first);
         CHECK(refused.x_end == longest);
     }

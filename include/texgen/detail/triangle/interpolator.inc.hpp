@@ -307,7 +307,8 @@ private:
         job.q_error = at.q_error;
         job.least_q = well_in_front * at.q_error;
         for (std::size_t k = 0; k < 2; ++k) job.numerator_error[k] = at.numerator_error[k];
-        fill_chunk_groups(kernels_, job, [&](const TileJob::Unit& refused) { fill_refused(tile, job, refused); });
+        fill_chunk_groups(kernels_, job, {0, 0, 0, 0},
+                          [&](const TileJob::Unit& refused) { fill_refused(tile, job, refused); });
     }
 
     // Fills a refused unit in shorter chunks or by divisions, and with it those below, which would be refused as well.

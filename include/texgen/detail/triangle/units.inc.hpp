@@ -25,14 +25,15 @@ inline TileJob::Unit fill_units(const TileKernels& kernels, const TileJob& job, 
     return unit;
 }
 
-// Fills the tile. Chunks that no rule serves, a part of one row or whole rows, are handed to `refuse`, unless they are
-// filled already.
-void fill_chunk_groups(const TileKernels& kernels, const TileJob& job, const auto& refuse) noexcept {
+// Fills the tile from `first` on. Chunks that no rule serves, a part of one row or whole rows, are handed to `refuse`,
+// unless they are filled already.
+void fill_chunk_groups(const TileKernels& kernels, const TileJob& job, TileJob::Unit first,
+                       const auto& refuse) noexcept {
     const int width = job.width, height = job.height;
     const int longest = job.chunk;
     const int whole_chunks = width / longest;
     const int per_row = whole_chunks + (whole_chunks * longest < width ? 1 : 0);
-    int chunk = 0, y = 0;
+    int chunk = first.x_begin / longest, y = first.y_begin;
     ChunkGroup group;
     RowOutputs row(job, y);
     while (y < height) {
