@@ -37,7 +37,7 @@ inline namespace TEXGEN_COMPILER {
 // Triangles made ready for interpolation, in the order in which they were given. A triangle is known by its index.
 class TriangleBatch {
 public:
-    explicit TriangleBatch(TextureRegion region, Tolerance tolerance = exact) noexcept
+    explicit TriangleBatch(const TextureRegion& region, const Tolerance& tolerance = exact) noexcept
         : region_(region), tolerance_(tolerance), lit_(region) {}
 
     // Makes triangles ready, in place of those that it had.
@@ -48,13 +48,13 @@ public:
     // Bad input: what TriangleSetup::of() refuses, as a triangle without area in the window, is dark: all that is
     // computed of it is 0.
     template <class CompiledWhereCalled = detail::ThisBuild>
-    void assign(std::span<const Triangle> triangles) noexcept;
+    void assign(const std::span<const Triangle>& triangles) noexcept;
 
     // Makes triangles ready likewise, but those that face away from the projector dark, as the back of a solid body is.
     // Guarantee: as above; dark are exactly those that facing() calls away, besides those that are refused: a
     // lightmap's triangle that has no area in the world is edge_on, and stays lit. noexcept.
     template <class CompiledWhereCalled = detail::ThisBuild>
-    void assign_facing(std::span<const Triangle> triangles, TextureOrigin origin) noexcept;
+    void assign_facing(const std::span<const Triangle>& triangles, TextureOrigin origin) noexcept;
 
     std::size_t size() const noexcept { return size_; }
     const TextureRegion& region() const noexcept { return region_; }
@@ -63,7 +63,7 @@ public:
 private:
     friend detail::Inside;
 
-    void take(std::span<const Triangle> triangles) noexcept;
+    void take(const std::span<const Triangle>& triangles) noexcept;
     template <class CompiledWhereCalled>
     void set_up() noexcept;
 
@@ -93,7 +93,7 @@ inline namespace TEXGEN_BUILD {
 // without doubt.
 // Bad input: an empty rectangle has no values.
 template <class CompiledWhereCalled = void>
-void interpolate(const TriangleBatch& batch, std::span<const FragmentRect> rects, Texcoords out) noexcept;
+void interpolate(const TriangleBatch& batch, const std::span<const FragmentRect>& rects, const Texcoords& out) noexcept;
 
 // Writes the same for a visibility buffer: fragment k of the rectangle, row by row, gets the values of triangle ids[k].
 // Guarantee: as above for the fragment of that triangle. Where ids[k] is no_triangle, or its triangle is refused, all
@@ -105,8 +105,8 @@ void interpolate(const TriangleBatch& batch, std::span<const FragmentRect> rects
 // with ids in any order.
 // Bad input: an empty rectangle does nothing; an id beyond the batch is no_triangle.
 template <class CompiledWhereCalled = void>
-void interpolate(const TriangleBatch& batch, std::span<const std::uint32_t> ids, FragmentRect rect,
-                 Texcoords out) noexcept;
+void interpolate(const TriangleBatch& batch, const std::span<const std::uint32_t>& ids, const FragmentRect& rect,
+                 const Texcoords& out) noexcept;
 
 // How far footprint() by ids may be off besides the error_bound() of the triangle's FootprintSetup, relative to the
 // length of the derivative: where terms cancel it is not known to more digits.
@@ -121,8 +121,8 @@ inline constexpr double batch_footprint_error = 0x1p-34;
 // in a row, and the little that lanes leave, take a FootprintSetup, and share those of the last few triangles.
 // Bad input: as of footprint(), and above.
 template <class CompiledWhereCalled = void>
-void footprint(const TriangleBatch& batch, std::span<const std::uint32_t> ids, FragmentRect rect, TexelsPerUnit texels,
-               Footprints out) noexcept;
+void footprint(const TriangleBatch& batch, const std::span<const std::uint32_t>& ids, const FragmentRect& rect,
+               const TexelsPerUnit& texels, const Footprints& out) noexcept;
 
 }  // namespace TEXGEN_BUILD
 }  // namespace TEXGEN_NAMESPACE

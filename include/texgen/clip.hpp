@@ -46,7 +46,7 @@ inline constexpr double to_window_error = 0x1p-51;
 // No allocation, noexcept.
 // Bad input: precondition, asserted: position.w > 0. What is not finite stays so in its component.
 // Source: OpenGL 2.1 specification, 2.11.1.
-inline WindowVertex to_window(const ClipVertex& vertex, Viewport viewport) noexcept;
+inline WindowVertex to_window(const ClipVertex& vertex, const Viewport& viewport) noexcept;
 
 // How far a new vertex of clip_to_near() may be from the exact intersection, before its one rounding to float: relative
 // to (1 - t) |a_i| + t |b_i| in component i of the point (1 - t) a + t b.
@@ -69,8 +69,8 @@ inline constexpr double clip_error = 0x1p-50;
 // front; that can take one vertex more, and where `out` has no room for it the polygon is dropped.
 // Source: Blinn and Newell, Clipping Using Homogeneous Coordinates (1978); Sutherland and Hodgman, Reentrant Polygon
 // Clipping, CACM 17 (1974).
-inline std::size_t clip_to_near(std::span<const ClipVertex> polygon, std::span<ClipVertex> out, DepthRange range,
-                                bool reversed_depth = false) noexcept;
+inline std::size_t clip_to_near(const std::span<const ClipVertex>& polygon, const std::span<ClipVertex>& out,
+                                DepthRange range, bool reversed_depth = false) noexcept;
 
 }  // namespace TEXGEN_COMPILER
 
@@ -85,7 +85,7 @@ public:
 
 private:
     template <class Space>
-    friend ClipPlanes clip_planes(const Transform<Texture, Space>&, TextureRegion) noexcept;
+    friend ClipPlanes clip_planes(const Transform<Texture, Space>&, const TextureRegion&) noexcept;
 
     std::array<glm::vec4, detail::SlidePlanes::max_size> planes_{};
     std::size_t size_ = 0;
@@ -101,7 +101,7 @@ private:
 // Source: Segal, Korobkin, van Widenfelt, Foran, Haeberli, Fast Shadows and Lighting Effects Using Texture Mapping
 // (SIGGRAPH 1992): what is not to be lit is clipped.
 template <class Space>
-ClipPlanes clip_planes(const Transform<Texture, Space>& texgen, TextureRegion region) noexcept;
+ClipPlanes clip_planes(const Transform<Texture, Space>& texgen, const TextureRegion& region) noexcept;
 
 // How far outside a side of the region a vertex from clip_to_slide() may be: min q - u and u - max q are at most
 // slide_clip_error max(|min|, |max|) q for u = s and t, and for r where the region has a depth, while no number, times
@@ -132,8 +132,8 @@ inline namespace TEXGEN_COMPILER {
 // rounding may leave a polygon with more than three corners) is cut as it is, and may be dropped where `out` has no
 // more room than that.
 // Source: Sutherland and Hodgman, Reentrant Polygon Clipping, CACM 17 (1974).
-inline std::size_t clip_to_slide(std::span<const ClipVertex> polygon, TextureRegion region,
-                                 std::span<ClipVertex> out) noexcept;
+inline std::size_t clip_to_slide(const std::span<const ClipVertex>& polygon, const TextureRegion& region,
+                                 const std::span<ClipVertex>& out) noexcept;
 
 }  // namespace TEXGEN_COMPILER
 }  // namespace TEXGEN_NAMESPACE

@@ -44,7 +44,7 @@ inline constexpr Conventions vulkan{DepthRange::zero_to_one, NdcY::down, Texture
 
 // Makes the conventions of the same API in a left-handed world, as Unity's, Unreal's and that of XMMatrixLookAtLH:
 // left_handed(direct3d).
-[[nodiscard]] constexpr Conventions left_handed(Conventions api) noexcept {
+[[nodiscard]] constexpr Conventions left_handed(const Conventions& api) noexcept {
     return {api.depth, api.ndc_y, api.origin, Handedness::left};
 }
 
@@ -75,7 +75,8 @@ public:
     }
     // Makes the region with the whole depth of a projector, reversed or not, with r as the mapping has it: [0, 1], or
     // the range of NDC.
-    [[nodiscard]] GLM_CONSTEXPR TextureRegion with_depth(Conventions conventions, DepthMapping mapping) const noexcept {
+    [[nodiscard]] GLM_CONSTEXPR TextureRegion with_depth(const Conventions& conventions,
+                                                         DepthMapping mapping) const noexcept {
         return with_depth(
             mapping == DepthMapping::ndc && conventions.depth == DepthRange::negative_one_to_one ? -1.0 : 0.0, 1.0);
     }
@@ -91,10 +92,11 @@ public:
                a.has_depth_ == b.has_depth_ && a.depth_.x == b.depth_.x && a.depth_.y == b.depth_.y;
     }
 
-    friend GLM_CONSTEXPR TextureRegion atlas_tile(glm::dvec2 min, glm::dvec2 max) noexcept;
+    friend GLM_CONSTEXPR TextureRegion atlas_tile(const glm::dvec2& min, const glm::dvec2& max) noexcept;
 
 private:
-    GLM_CONSTEXPR TextureRegion(glm::dvec2 min, glm::dvec2 max) noexcept : min_(min), max_(max), depth_(0.0, 0.0) {}
+    GLM_CONSTEXPR TextureRegion(const glm::dvec2& min, const glm::dvec2& max) noexcept
+        : min_(min), max_(max), depth_(0.0, 0.0) {}
 
     glm::dvec2 min_;
     glm::dvec2 max_;
@@ -103,7 +105,9 @@ private:
 };
 
 // Makes the region from min to max: a tile of a larger texture, in the units of that texture.
-inline GLM_CONSTEXPR TextureRegion atlas_tile(glm::dvec2 min, glm::dvec2 max) noexcept { return {min, max}; }
+inline GLM_CONSTEXPR TextureRegion atlas_tile(const glm::dvec2& min, const glm::dvec2& max) noexcept {
+    return {min, max};
+}
 
 // Makes the region [0, width] x [0, height] in texels, as GL_TEXTURE_RECTANGLE addresses its image.
 inline GLM_CONSTEXPR TextureRegion rectangle_texture(double width, double height) noexcept {

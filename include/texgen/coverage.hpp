@@ -51,8 +51,8 @@ public:
     Coverage coverage(const Sphere& sphere) const noexcept;
 
     // Say how much of each of many bodies the slide lights.
-    void coverage(std::span<const Box> boxes, std::span<Coverage> out) const noexcept;
-    void coverage(std::span<const Sphere> spheres, std::span<Coverage> out) const noexcept;
+    void coverage(const std::span<const Box>& boxes, const std::span<Coverage>& out) const noexcept;
+    void coverage(const std::span<const Sphere>& spheres, const std::span<Coverage>& out) const noexcept;
 
 private:
     detail::LitForms forms_;
@@ -74,10 +74,10 @@ Coverage coverage(const Transform<Texture, Space>& texture_from_space, const Tex
                   const Sphere& sphere) noexcept;
 template <class Space>
 void coverage(const Transform<Texture, Space>& texture_from_space, const TextureRegion& region,
-              std::span<const Box> boxes, std::span<Coverage> out) noexcept;
+              const std::span<const Box>& boxes, const std::span<Coverage>& out) noexcept;
 template <class Space>
 void coverage(const Transform<Texture, Space>& texture_from_space, const TextureRegion& region,
-              std::span<const Sphere> spheres, std::span<Coverage> out) noexcept;
+              const std::span<const Sphere>& spheres, const std::span<Coverage>& out) noexcept;
 
 }  // namespace TEXGEN_NAMESPACE_BUILD
 

@@ -284,10 +284,10 @@ Diagnosis diagnose(const std::array<glm::vec4, 4>& planes, const ProjectionSetup
 // Guarantee: empty where, and only where, make_projector() makes a projector. No allocation, noexcept.
 // An angle of more than a turn is taken for degrees that were passed as radians.
 // Bad input: what is not finite is reported, and the rest is examined without it.
-inline Diagnosis diagnose(const PerspectiveLens& lens, const Aim& aim, Conventions conventions) noexcept;
-inline Diagnosis diagnose(const FrustumLens& lens, const Aim& aim, Conventions conventions) noexcept;
-inline Diagnosis diagnose(const OrthographicLens& lens, const Aim& aim, Conventions conventions) noexcept;
-inline Diagnosis diagnose(const PinholeLens& lens, const Aim& aim, Conventions conventions) noexcept;
+inline Diagnosis diagnose(const PerspectiveLens& lens, const Aim& aim, const Conventions& conventions) noexcept;
+inline Diagnosis diagnose(const FrustumLens& lens, const Aim& aim, const Conventions& conventions) noexcept;
+inline Diagnosis diagnose(const OrthographicLens& lens, const Aim& aim, const Conventions& conventions) noexcept;
+inline Diagnosis diagnose(const PinholeLens& lens, const Aim& aim, const Conventions& conventions) noexcept;
 
 }  // namespace TEXGEN_NAMESPACE
 

@@ -57,7 +57,7 @@ public:
     TexGenMode mode(Coordinate coordinate) const noexcept { return state(coordinate).mode; }
 
     // Stores a plane of object space as it is: a row; object_linear gives plane . position.
-    void set_object_plane(Coordinate coordinate, glm::vec4 plane) noexcept;
+    void set_object_plane(Coordinate coordinate, const glm::vec4& plane) noexcept;
 
     // Stores p M^-1, the plane of the eye's space that `plane` is under this MODELVIEW. It is a snapshot: whatever
     // MODELVIEW becomes later, the stored plane stays. T(10, 20, 30) with p = (1, 2, 3, 4) stores (1, 2, 3, -136).
@@ -70,14 +70,16 @@ public:
     // the size of a determinant: any uniform scale is regular), where M or p is not finite, or where a component of the
     // result is beyond the largest float.
     // Far from the origin a float plane is itself the error; eye_linear() in linear.hpp composes in double.
-    [[nodiscard]] bool set_eye_plane(Coordinate coordinate, glm::vec4 plane, const glm::mat4& modelview) noexcept;
+    [[nodiscard]] bool set_eye_plane(Coordinate coordinate, const glm::vec4& plane,
+                                     const glm::mat4& modelview) noexcept;
 
     // Bounds how far each component of the stored eye plane of this coordinate is from p M^-1, the rounding to float
     // included.
     // Guarantee: next to the error itself while the condition of M (rows and columns scaled) stays below 1e7 and these
     // are within 2^40 of one another in size; never below it.
     // Bad input: infinite where set_eye_plane() refuses M; a NaN or an infinity of p stays one.
-    glm::dvec4 eye_plane_error_bound(Coordinate coordinate, glm::vec4 plane, const glm::mat4& modelview) const noexcept;
+    glm::dvec4 eye_plane_error_bound(Coordinate coordinate, const glm::vec4& plane,
+                                     const glm::mat4& modelview) const noexcept;
 
     // Return what glGetTexGenfv does: the eye plane is p M^-1, in eye space. Zero for no coordinate.
     glm::vec4 object_plane(Coordinate coordinate) const noexcept { return state(coordinate).object_plane; }
@@ -118,8 +120,8 @@ public:
 
     // Generates the same bits for many vertices under one MODELVIEW, whose inverse is taken once, and only where a mode
     // needs it. Precondition, asserted: as many outputs as vertices; else nothing is written.
-    void generate(std::span<const FixedFunctionVertex> vertices, const glm::mat4& modelview,
-                  std::span<glm::vec4> strq) const noexcept;
+    void generate(const std::span<const FixedFunctionVertex>& vertices, const glm::mat4& modelview,
+                  const std::span<glm::vec4>& strq) const noexcept;
 
 private:
     struct CoordinateState {

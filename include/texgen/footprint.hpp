@@ -92,7 +92,7 @@ class FootprintSetup {
 public:
     // Makes footprints of a triangle ready.
     // Guarantee: in double, about the vertex with the largest clip_w; no allocation, noexcept.
-    FootprintSetup(const TriangleSetup& triangle, TexelsPerUnit texels) noexcept;
+    FootprintSetup(const TriangleSetup& triangle, const TexelsPerUnit& texels) noexcept;
 
     // Computes the footprint of the fragment (x, y), empty behind the projector; the sign of q is decided exactly.
     // Guarantee: dx and dy within error_bound() without its rounding to float. The rest has no bound: it is computed
@@ -102,7 +102,7 @@ public:
     // Bounds the error of what footprint() writes to dsdx and dsdy (x), dtdx and dtdy (y).
     // Guarantee: |computed - exact| is at most this at every fragment of the rectangle with q > 0; infinite where none
     // is known, as next to q = 0. noexcept.
-    glm::dvec2 error_bound(FragmentRect rect) const noexcept;
+    glm::dvec2 error_bound(const FragmentRect& rect) const noexcept;
 
     // Finds the extremes of the footprints over a rectangle.
     // Guarantee: no fragment of the rectangle that is in front of the projector has a level, an area or an anisotropy
@@ -113,7 +113,7 @@ public:
     // is so nearly singular that its smaller axis is not known: beyond 2^40, and sooner where terms cancel. Empty where
     // all is behind the projector or the rectangle is empty. A level of the Jacobian 0 is -infinity, and NaN where the
     // texels are bad. It takes as long as some hundreds of fragments, and never visits them. No allocation, noexcept.
-    std::optional<FootprintExtremes> extremes(FragmentRect rect) const noexcept;
+    std::optional<FootprintExtremes> extremes(const FragmentRect& rect) const noexcept;
 
     // Finds those over all fragments inside the triangle.
     std::optional<FootprintExtremes> extremes() const noexcept;
@@ -155,7 +155,7 @@ inline namespace TEXGEN_BUILD {
 // Bad input: an empty rectangle does nothing. With bad texels level, anisotropy and major are NaN, the derivatives
 // right. A Jacobian that is 0 has level -infinity, anisotropy 1 and major 0.
 template <class CompiledWhereCalled = void>
-bool footprint(const FootprintSetup& setup, FragmentRect rect, Footprints out) noexcept;
+bool footprint(const FootprintSetup& setup, const FragmentRect& rect, const Footprints& out) noexcept;
 
 }  // namespace TEXGEN_BUILD
 }  // namespace TEXGEN_NAMESPACE

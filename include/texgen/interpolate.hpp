@@ -46,22 +46,22 @@ public:
     // Guarantee: everything in double, about the vertex with the largest clip_w; no allocation, noexcept.
     // Shapes: window positions in pixels, the camera's clip w, and homogeneous (s, t, r, q), in either winding.
     // Bad input: empty where a number is not finite, a clip_w is not positive, or the area is zero (decided exactly).
-    static std::optional<TriangleSetup> of(const Triangle& triangle, TextureRegion region,
-                                           Tolerance tolerance = exact) noexcept;
+    static std::optional<TriangleSetup> of(const Triangle& triangle, const TextureRegion& region,
+                                           const Tolerance& tolerance = exact) noexcept;
 
     // For of() alone, which makes it in place: Key is private.
-    TriangleSetup(Key, const Triangle& triangle, const TextureRegion& region, Tolerance tolerance) noexcept
+    TriangleSetup(Key, const Triangle& triangle, const TextureRegion& region, const Tolerance& tolerance) noexcept
         : functions_(triangle, region, detail::accepted(tolerance)) {}
 
     // Tells the work that the fragments of a rectangle need.
     // Guarantee: the least that is certified to stay inside the tolerance for every fragment of the rectangle; never
     // nothing where a fragment is lit. noexcept. An empty rectangle needs nothing.
-    Work work(FragmentRect rect) const noexcept;
+    Work work(const FragmentRect& rect) const noexcept;
 
     // Bounds the error of s (x) and t (y) over a rectangle.
     // Guarantee: |computed - exact| is at most this for every fragment of the rectangle with q > 0, the rounding to
     // float included; infinite where none is known, as next to q = 0. noexcept.
-    glm::dvec2 error_bound(FragmentRect rect) const noexcept;
+    glm::dvec2 error_bound(const FragmentRect& rect) const noexcept;
 
 private:
     friend detail::Inside;
@@ -89,7 +89,7 @@ inline namespace TEXGEN_BUILD {
 // Bad input: an empty rectangle does nothing.
 // Source: OpenGL compatibility specification, polygon rasterization; Everitt, Projective Texture Mapping, section 2.
 template <class CompiledWhereCalled = void>
-Work interpolate(const TriangleSetup& setup, FragmentRect rect, Texcoords out) noexcept;
+Work interpolate(const TriangleSetup& setup, const FragmentRect& rect, const Texcoords& out) noexcept;
 
 }  // namespace TEXGEN_BUILD
 }  // namespace TEXGEN_NAMESPACE

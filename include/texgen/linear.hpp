@@ -30,7 +30,7 @@ namespace TEXGEN_NAMESPACE {
 // Shape: world points to homogeneous (s, t, r, q) in the units of the region; q > 0 in front of the projector.
 // Bad input: NaN and infinity of the projector stay in the elements that they reach.
 // Source: Everitt, Projective Texture Mapping, (3) with M = I.
-inline WorldTexgen texture_from_world(const Projector& projector, TextureRegion region = whole_texture(),
+inline WorldTexgen texture_from_world(const Projector& projector, const TextureRegion& region = whole_texture(),
                                       DepthMapping depth = DepthMapping::unit) noexcept;
 
 // Makes the texgen matrix of an object, T_o = S P_p V_p M. It must be made anew whenever M, V_p or P_p changes. In a
@@ -44,7 +44,7 @@ inline WorldTexgen texture_from_world(const Projector& projector, TextureRegion 
 // Bad input: as texture_from_world().
 // Source: Everitt, Projective Texture Mapping, (3).
 inline ObjectTexgen object_linear(const Projector& projector, const ModelMatrix& world_from_object,
-                                  TextureRegion region = whole_texture(),
+                                  const TextureRegion& region = whole_texture(),
                                   DepthMapping depth = DepthMapping::unit) noexcept;
 
 // Makes the texgen matrix of a camera's eye space, T_e = S P_p V_p V_e^-1: one matrix serves every object of the frame.
@@ -54,7 +54,8 @@ inline ObjectTexgen object_linear(const Projector& projector, const ModelMatrix&
 // Bad input: as texture_from_world().
 // Source: Everitt, Projective Texture Mapping, (4).
 inline EyeTexgen eye_linear(const Projector& projector, const CameraPose& world_from_eye,
-                            TextureRegion region = whole_texture(), DepthMapping depth = DepthMapping::unit) noexcept;
+                            const TextureRegion& region = whole_texture(),
+                            DepthMapping depth = DepthMapping::unit) noexcept;
 
 // Makes the texgen matrix of a projector that the camera carries, S P_p V, with V from the camera's eye space to the
 // projector's: a flashlight. It holds for all frames, wherever the camera goes; the identity is a light at the eye.
@@ -64,7 +65,7 @@ inline EyeTexgen eye_linear(const Projector& projector, const CameraPose& world_
 // Bad input: as texture_from_world().
 // Source: Segal et al., Fast Shadows and Lighting Effects Using Texture Mapping; SGI's recipe for projective textures.
 inline EyeTexgen eye_linear(const ProjectorProjection& projection, const Transform<ProjectorEye, Eye>& view,
-                            Conventions conventions, TextureRegion region = whole_texture(),
+                            const Conventions& conventions, const TextureRegion& region = whole_texture(),
                             DepthMapping depth = DepthMapping::unit) noexcept;
 
 // How far s/q of a fragment by window_linear() may be from the exact value: relative to (m_s + |s/q| m_q) / |q|, with m
@@ -90,7 +91,8 @@ inline constexpr double window_linear_error = 0x1p-47;
 // Eye>(W P_c), made once, takes 40 ns; it errs little more, but nothing bounds that.
 // Source: Everitt, Projective Texture Mapping, (4), with the window in the place of the eye.
 inline std::optional<WindowTexgen> window_linear(const Projector& projector, const Projector& camera,
-                                                 const Viewport& viewport, TextureRegion region = whole_texture(),
+                                                 const Viewport& viewport,
+                                                 const TextureRegion& region = whole_texture(),
                                                  DepthMapping depth = DepthMapping::unit) noexcept;
 
 enum class DepthBuffer { unorm16, unorm24, float32 };  // what a depth is rounded to
@@ -103,7 +105,7 @@ enum class DepthBuffer { unorm16, unorm24, float32 };  // what a depth is rounde
 // integers, as Direct3D allows, and half an ulp of float, in which a shader reads it. This holds for a matrix whose
 // elements, but for 0, are from 2^-500 to 2^500. No allocation, noexcept.
 // Bad input: infinite for what is not finite.
-inline glm::dvec2 depth_error_bound(const WindowTexgen& texture_from_window, glm::vec3 fragment,
+inline glm::dvec2 depth_error_bound(const WindowTexgen& texture_from_window, const glm::vec3& fragment,
                                     DepthBuffer buffer) noexcept;
 
 // Returns what OpenGL stores when the rows of `planes` are given to glTexGen under that MODELVIEW: each row p becomes p

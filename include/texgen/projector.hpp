@@ -93,7 +93,8 @@ struct Projector {
 // too, where doubles cannot hold the matrix: an element would be infinite, or the scale of x or y 0.
 // Source: Everitt, Projective Texture Mapping, P_p in (3); OpenGL 2.1 specification, 2.11 (gluPerspective's lens);
 // DirectXMath, XMMatrixPerspectiveFovLH.
-inline std::optional<ProjectorProjection> perspective(const PerspectiveLens& lens, Conventions conventions) noexcept;
+inline std::optional<ProjectorProjection> perspective(const PerspectiveLens& lens,
+                                                      const Conventions& conventions) noexcept;
 
 // Makes the projection of a lens that may be off its axis: (right + left)/(right - left) and (top + bottom)/(top -
 // bottom) stand in column z.
@@ -101,14 +102,15 @@ inline std::optional<ProjectorProjection> perspective(const PerspectiveLens& len
 // Bad input: empty unless all fields are finite, left != right, bottom != top, and 0 < z_near < z_far; and where
 // doubles cannot hold the matrix, as perspective().
 // Source: OpenGL 2.1 specification, 2.11.2 (glFrustum).
-inline std::optional<ProjectorProjection> frustum(const FrustumLens& lens, Conventions conventions) noexcept;
+inline std::optional<ProjectorProjection> frustum(const FrustumLens& lens, const Conventions& conventions) noexcept;
 
 // Makes the projection of parallel rays: the last row is (0, 0, 0, 1), so q = 1.
 // Guarantee, shape: as perspective().
 // Bad input: empty unless all fields are finite, left != right, bottom != top, and z_near < z_far; and where doubles
 // cannot hold the matrix, as perspective().
 // Source: OpenGL 2.1 specification, 2.11.2 (glOrtho).
-inline std::optional<ProjectorProjection> orthographic(const OrthographicLens& lens, Conventions conventions) noexcept;
+inline std::optional<ProjectorProjection> orthographic(const OrthographicLens& lens,
+                                                       const Conventions& conventions) noexcept;
 
 // Makes the projection of a calibrated camera, so that a projector throws a picture where the camera saw it. With (u,
 // v) the pixel K (R X + t), counted from the picture's edge, s is u/width, and t is v/height, or 1 - v/height where the
@@ -122,7 +124,7 @@ inline std::optional<ProjectorProjection> orthographic(const OrthographicLens& l
 // Bad input: empty unless fx, fy, width, height > 0 and 0 < z_near < z_far, and all but z_far are finite; and where
 // doubles cannot hold the matrix, as perspective().
 // Source: Hartley and Zisserman, Multiple View Geometry, 6.1; OpenCV's camera model without distortion.
-inline std::optional<ProjectorProjection> pinhole(const PinholeLens& lens, Conventions conventions) noexcept;
+inline std::optional<ProjectorProjection> pinhole(const PinholeLens& lens, const Conventions& conventions) noexcept;
 
 // How far a side of a rectangle by contain() may be from the exact one: relative to the largest of the lens, which is
 // above 2^-960.
@@ -147,11 +149,11 @@ inline constexpr double cover_error = 0x1p-51;
 // allocation, noexcept.
 // Bad input: a region without points where an aspect, the picture's or the lens's, is not positive and finite.
 [[nodiscard]] inline TextureRegion cover(const PerspectiveLens& lens, double aspect,
-                                         TextureRegion picture = whole_texture()) noexcept;
+                                         const TextureRegion& picture = whole_texture()) noexcept;
 [[nodiscard]] inline TextureRegion cover(const FrustumLens& lens, double aspect,
-                                         TextureRegion picture = whole_texture()) noexcept;
+                                         const TextureRegion& picture = whole_texture()) noexcept;
 [[nodiscard]] inline TextureRegion cover(const OrthographicLens& lens, double aspect,
-                                         TextureRegion picture = whole_texture()) noexcept;
+                                         const TextureRegion& picture = whole_texture()) noexcept;
 
 // Makes the view V_p of a projector that stands at the position and looks at the target.
 // Guarantee: each element of the rotation within 4 double ulp of 1 (2^-50) of the definition's, its rows orthonormal
@@ -168,7 +170,8 @@ inline std::optional<ProjectorView> look_at(const Aim& aim, Handedness handednes
 
 // Makes the view of a camera that OpenCV has posed, x_camera = R x + t, with x to the right, y down and z forwards:
 // diag(1, -1, -1) [R|t], or diag(1, -1, 1) [R|t] where the world is left-handed (then R mirrors). rotation[column][row]
-// is the element of R, which cv::Rodrigues() makes of solvePnP()'s vector.
+// is the element of R, which cv::Rodrigues() makes of solvePnP()'s vector: its memory goes row by row, so that R is
+// glm::transpose(glm::make_mat3(...)) of that.
 // Guarantee: each element is kept exactly; no allocation, noexcept.
 // Shape: world to projector eye space.
 // Bad input: empty for what is not finite. Whether R is a rotation is not tested.
@@ -187,13 +190,13 @@ inline std::optional<ProjectorView> mirrored(const ProjectorView& view, const gl
 // Makes a projector of a lens and an aim, both of the conventions' handedness: empty where the lens or the aim is
 // refused. Guarantees as those of the lens and of look_at().
 inline std::optional<Projector> make_projector(const PerspectiveLens& lens, const Aim& aim,
-                                               Conventions conventions) noexcept;
+                                               const Conventions& conventions) noexcept;
 inline std::optional<Projector> make_projector(const FrustumLens& lens, const Aim& aim,
-                                               Conventions conventions) noexcept;
+                                               const Conventions& conventions) noexcept;
 inline std::optional<Projector> make_projector(const OrthographicLens& lens, const Aim& aim,
-                                               Conventions conventions) noexcept;
+                                               const Conventions& conventions) noexcept;
 inline std::optional<Projector> make_projector(const PinholeLens& lens, const Aim& aim,
-                                               Conventions conventions) noexcept;
+                                               const Conventions& conventions) noexcept;
 
 }  // namespace TEXGEN_NAMESPACE
 

@@ -110,7 +110,8 @@ inline constexpr double interpolation_error = 0x1p-50;
 // where the interpolated 1/w is not positive nothing is promised.
 // Bad input: preconditions, asserted: as strq(), and the sizes agree. NaN and infinity in a coordinate stay in that
 // coordinate; in q they make every fragment dark.
-inline void interpolate(const Triangle& triangle, TextureRegion region, FragmentRect rect, Texcoords out) noexcept {
+inline void interpolate(const Triangle& triangle, const TextureRegion& region, const FragmentRect& rect,
+                        const Texcoords& out) noexcept {
     const auto width = static_cast<std::size_t>(rect.width > 0 ? rect.width : 0);
     const auto height = static_cast<std::size_t>(rect.height > 0 ? rect.height : 0);
     for ([[maybe_unused]] const std::span<float> span : {out.s, out.t, out.r, out.lit})

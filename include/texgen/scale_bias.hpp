@@ -30,7 +30,7 @@ namespace TEXGEN_NAMESPACE {
 // or above 2^-1021; no allocation, noexcept.
 // Bad input: a region with NaN gives a matrix with NaN.
 // Source: Everitt, Projective Texture Mapping, (3); the same matrix with r in NDC is SGI's recipe.
-inline ScaleBias scale_bias(Conventions conventions, TextureRegion region = whole_texture(),
+inline ScaleBias scale_bias(const Conventions& conventions, const TextureRegion& region = whole_texture(),
                             DepthMapping depth = DepthMapping::unit) noexcept;
 
 // How far to_texture() may be from the exact value, before its one rounding to float: relative to max(|min|, |max|)
@@ -45,7 +45,8 @@ inline constexpr double to_texture_error = 0x1p-51;
 // Shape: the projector's clip coordinates in, homogeneous (s, t, r, q) out; q = w.
 // Bad input: what is not finite, or a side times a coordinate that is none, leaves its component infinite or a NaN (w
 // is in all of them).
-inline glm::vec4 to_texture(glm::vec4 projector_clip, Conventions conventions, TextureRegion region = whole_texture(),
+inline glm::vec4 to_texture(const glm::vec4& projector_clip, const Conventions& conventions,
+                            const TextureRegion& region = whole_texture(),
                             DepthMapping depth = DepthMapping::unit) noexcept;
 
 }  // namespace TEXGEN_NAMESPACE

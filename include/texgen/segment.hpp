@@ -34,8 +34,8 @@ namespace TEXGEN_NAMESPACE_BUILD {
 // Bad input: NaN and infinity spoil their own value only; an alpha that is NaN is never lit, and not asserted.
 // Source: the C_u note, (2).
 template <class CompiledWhereCalled = void>
-void interpolate(const Segment& segment, std::span<const float> alpha, TextureRegion region, Texcoords out,
-                 Tolerance tolerance = exact) noexcept;
+void interpolate(const Segment& segment, const std::span<const float>& alpha, const TextureRegion& region,
+                 const Texcoords& out, const Tolerance& tolerance = exact) noexcept;
 
 }  // namespace TEXGEN_NAMESPACE_BUILD
 
@@ -45,13 +45,13 @@ namespace TEXGEN_NAMESPACE_COMPILER {
 // Guarantee: never nothing where a value is lit (in the region, and its depth where it has one); else affine where q is
 // the same at both ends, and never less than divide_and_test where it is not and a value is dark or behind. noexcept.
 // Bad input: an end whose s, t or q is not finite needs divide_and_test; a NaN for r is in no depth.
-inline Work work(const Segment& segment, TextureRegion region, Tolerance tolerance = exact) noexcept;
+inline Work work(const Segment& segment, const TextureRegion& region, const Tolerance& tolerance = exact) noexcept;
 
 // Bounds the error of s (x) and t (y) along a segment.
 // Guarantee: |computed - exact| is at most this for every alpha in [0, 1] with q > 0, the rounding to float included;
 // infinite where q reaches 0 and no finite bound exists. noexcept.
 // Bad input: infinite where an s, t or q of an end is not finite.
-inline glm::dvec2 error_bound(const Segment& segment, Tolerance tolerance = exact) noexcept;
+inline glm::dvec2 error_bound(const Segment& segment, const Tolerance& tolerance = exact) noexcept;
 
 }  // namespace TEXGEN_NAMESPACE_COMPILER
 

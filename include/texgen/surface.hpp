@@ -32,7 +32,7 @@ enum class Facing { towards, away, edge_on };
 // Bad input: edge_on where an s, t or q is NaN or infinite, as where the projector is in the plane of the triangle, or
 // the triangle has no area.
 // Source: Olano, Greer, Triangle Scan Conversion using 2D Homogeneous Coordinates (1997).
-inline Facing facing(glm::vec4 a, glm::vec4 b, glm::vec4 c, TextureOrigin origin) noexcept;
+inline Facing facing(const glm::vec4& a, const glm::vec4& b, const glm::vec4& c, TextureOrigin origin) noexcept;
 
 // How far slide_area() may be from the exact area, relative to it.
 inline constexpr double slide_area_error = 0x1p-50;
@@ -43,7 +43,7 @@ inline constexpr double slide_area_error = 0x1p-50;
 // density of texels there. No allocation, noexcept.
 // Shape: (s, t, r, q) of the corners in order; r is not looked at.
 // Bad input: empty unless all q > 0, and where an s, t or q is NaN or infinite.
-inline std::optional<double> slide_area(glm::vec4 a, glm::vec4 b, glm::vec4 c) noexcept;
+inline std::optional<double> slide_area(const glm::vec4& a, const glm::vec4& b, const glm::vec4& c) noexcept;
 
 // How far each number of receiver_plane() may be from the exact one, relative to it.
 inline constexpr double receiver_plane_error = 0x1p-49;
@@ -60,7 +60,7 @@ inline constexpr double receiver_plane_error = 0x1p-49;
 //
 // Bad input: empty where the projector sees the triangle edge on (facing()), or a number is NaN or infinite.
 // Source: Isidoro, Shadow Mapping: GPU-based Tips and Techniques, GDC 2006 (receiver plane depth bias).
-inline std::optional<glm::dvec3> receiver_plane(glm::vec4 a, glm::vec4 b, glm::vec4 c) noexcept;
+inline std::optional<glm::dvec3> receiver_plane(const glm::vec4& a, const glm::vec4& b, const glm::vec4& c) noexcept;
 
 // Makes the (s, t, 0, q) of a quadrilateral's corners with which textureProj shows the slide on it in perspective,
 // where s and t alone would break along the diagonal.

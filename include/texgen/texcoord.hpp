@@ -54,9 +54,10 @@ public:
 
     // An array of vectors; three arrays (of one size, asserted; else there are no points); x, y, z that follow one
     // another every stride_bytes.
-    explicit Positions(std::span<const glm::vec3> points) noexcept
+    explicit Positions(const std::span<const glm::vec3>& points) noexcept
         : Positions(points.empty() ? nullptr : &points[0].x, points.size(), sizeof(glm::vec3)) {}
-    explicit Positions(std::span<const float> x, std::span<const float> y, std::span<const float> z) noexcept
+    explicit Positions(const std::span<const float>& x, const std::span<const float>& y,
+                       const std::span<const float>& z) noexcept
         : Positions(x.data(), y.data(), z.data(), common_size(x, y, z), sizeof(float)) {}
     explicit Positions(const float* first, std::size_t count, std::size_t stride_bytes) noexcept
         : Positions(first, first + (count != 0 ? 1 : 0), first + (count != 0 ? 2 : 0), count, stride_bytes) {}
@@ -90,8 +91,8 @@ public:
     }
 
 private:
-    static std::size_t common_size(std::span<const float> x, std::span<const float> y,
-                                   std::span<const float> z) noexcept {
+    static std::size_t common_size(const std::span<const float>& x, const std::span<const float>& y,
+                                   const std::span<const float>& z) noexcept {
         const bool is_common = x.size() == y.size() && x.size() == z.size();
         TEXGEN_ASSERT(is_common);
         return is_common ? x.size() : 0;
@@ -124,9 +125,11 @@ struct Position {
 
 // Points of a space from an array of vectors, from three arrays (of one size, asserted), or from x, y, z that follow
 // one another every stride_bytes; and one point, which is a glm::vec3: what has doubles or a w does not compile.
-inline Positions<Object> object_space(std::span<const glm::vec3> points) noexcept { return Positions<Object>(points); }
-inline Positions<Object> object_space(std::span<const float> x, std::span<const float> y,
-                                      std::span<const float> z) noexcept {
+inline Positions<Object> object_space(const std::span<const glm::vec3>& points) noexcept {
+    return Positions<Object>(points);
+}
+inline Positions<Object> object_space(const std::span<const float>& x, const std::span<const float>& y,
+                                      const std::span<const float>& z) noexcept {
     return Positions<Object>(x, y, z);
 }
 inline Positions<Object> object_space(const float* first, std::size_t count, std::size_t stride_bytes) noexcept {
@@ -136,9 +139,11 @@ inline Position<Object> object_space(const glm::vec3& point) noexcept { return P
 Position<Object> object_space(const detail::MoreThanVec3 auto& point) = delete;
 
 // Views the same as points in the world.
-inline Positions<World> world_space(std::span<const glm::vec3> points) noexcept { return Positions<World>(points); }
-inline Positions<World> world_space(std::span<const float> x, std::span<const float> y,
-                                    std::span<const float> z) noexcept {
+inline Positions<World> world_space(const std::span<const glm::vec3>& points) noexcept {
+    return Positions<World>(points);
+}
+inline Positions<World> world_space(const std::span<const float>& x, const std::span<const float>& y,
+                                    const std::span<const float>& z) noexcept {
     return Positions<World>(x, y, z);
 }
 inline Positions<World> world_space(const float* first, std::size_t count, std::size_t stride_bytes) noexcept {
@@ -148,8 +153,9 @@ inline Position<World> world_space(const glm::vec3& point) noexcept { return Pos
 Position<World> world_space(const detail::MoreThanVec3 auto& point) = delete;
 
 // Views the same as points in the eye's space.
-inline Positions<Eye> eye_space(std::span<const glm::vec3> points) noexcept { return Positions<Eye>(points); }
-inline Positions<Eye> eye_space(std::span<const float> x, std::span<const float> y, std::span<const float> z) noexcept {
+inline Positions<Eye> eye_space(const std::span<const glm::vec3>& points) noexcept { return Positions<Eye>(points); }
+inline Positions<Eye> eye_space(const std::span<const float>& x, const std::span<const float>& y,
+                                const std::span<const float>& z) noexcept {
     return Positions<Eye>(x, y, z);
 }
 inline Positions<Eye> eye_space(const float* first, std::size_t count, std::size_t stride_bytes) noexcept {
@@ -159,9 +165,11 @@ inline Position<Eye> eye_space(const glm::vec3& point) noexcept { return Positio
 Position<Eye> eye_space(const detail::MoreThanVec3 auto& point) = delete;
 
 // Views the same as fragments: x and y in pixels, z the depth that the buffer holds.
-inline Positions<Window> window_space(std::span<const glm::vec3> points) noexcept { return Positions<Window>(points); }
-inline Positions<Window> window_space(std::span<const float> x, std::span<const float> y,
-                                      std::span<const float> z) noexcept {
+inline Positions<Window> window_space(const std::span<const glm::vec3>& points) noexcept {
+    return Positions<Window>(points);
+}
+inline Positions<Window> window_space(const std::span<const float>& x, const std::span<const float>& y,
+                                      const std::span<const float>& z) noexcept {
     return Positions<Window>(x, y, z);
 }
 inline Positions<Window> window_space(const float* first, std::size_t count, std::size_t stride_bytes) noexcept {
@@ -182,19 +190,19 @@ inline constexpr double generate_error = 0x1p-50;
 // Bad input: NaN and infinity spoil their own point only.
 // Source: Everitt, Projective Texture Mapping, (3) and (4).
 template <class Space>
-void generate(const Transform<Texture, Space>& texture_from_space, Positions<Space> positions,
-              std::span<glm::vec4> strq) noexcept;
+void generate(const Transform<Texture, Space>& texture_from_space, const Positions<Space>& positions,
+              const std::span<glm::vec4>& strq) noexcept;
 
 // Generates the same into one array a coordinate; an empty one is left out.
 template <class Space>
-void generate(const Transform<Texture, Space>& texture_from_space, Positions<Space> positions,
-              HomogeneousTexcoords out) noexcept;
+void generate(const Transform<Texture, Space>& texture_from_space, const Positions<Space>& positions,
+              const HomogeneousTexcoords& out) noexcept;
 
 // Writes s/q, t/q and r/q of every position in front of the projector, and whether it is lit.
 // Guarantee, as long as no product of a matrix element and a coordinate, but 0, leaves 2^-900 .. 2^1000: in front
 // (q > 0, decided exactly) each is within max(tolerance, 1/2 ulp) of the exact value of the given numbers (r: the
 // tolerance relative to max(1, |r|)). With `exact` each is the nearest float, whatever the layout, the count, the place
-// or the build. lit = 1 inside the closed region, decided from the s and t, and with a depth from the r, that are
+// or the build (but the sign of a 0 below 2^-1074). lit = 1 inside the closed region, decided from the s and t, and with a depth from the r, that are
 // written, or with `exact` would be; with a tolerance, where one is not asked for, from some value inside that
 // tolerance. Behind, s = t = r = lit = 0. A depth costs at most what r costs; where s and t leave many neighbours dark,
 // r is not computed for them. No allocation, noexcept.
@@ -203,13 +211,13 @@ void generate(const Transform<Texture, Space>& texture_from_space, Positions<Spa
 // Bad input: NaN and infinity spoil their own point only; a point whose q is NaN is behind.
 // Source: Everitt, Projective Texture Mapping, section 2; the reverse projection is behind q = 0.
 template <class Space>
-void project(const Transform<Texture, Space>& texture_from_space, Positions<Space> positions, TextureRegion region,
-             Texcoords out, Tolerance tolerance = exact) noexcept;
+void project(const Transform<Texture, Space>& texture_from_space, const Positions<Space>& positions,
+             const TextureRegion& region, const Texcoords& out, const Tolerance& tolerance = exact) noexcept;
 
 // Writes the same in pairs, without a mask: behind the projector both are 0.
 template <class Space>
-void project(const Transform<Texture, Space>& texture_from_space, Positions<Space> positions, std::span<glm::vec2> st,
-             Tolerance tolerance = exact) noexcept;
+void project(const Transform<Texture, Space>& texture_from_space, const Positions<Space>& positions,
+             const std::span<glm::vec2>& st, const Tolerance& tolerance = exact) noexcept;
 
 // Divides one point: (s/q, t/q), empty behind the projector.
 // Guarantee: the floats that the others give with `exact`: each the nearest; empty for q <= 0, decided exactly, and for
@@ -228,7 +236,7 @@ std::optional<glm::vec2> project(const Transform<Texture, Space>& texture_from_s
 // Bad input: a NaN or an infinity of a matrix's row or of a position makes the bounds that it reaches NaN or infinite.
 template <class Space>
 glm::dvec4 generate_error_bound(const Transform<Texture, Space>& texture_from_space,
-                                Positions<Space> positions) noexcept;
+                                const Positions<Space>& positions) noexcept;
 
 // Bounds the error of s (x) and t (y) that project() gives of these positions.
 // Guarantee: |computed - exact| is at most this for every position with q > 0, the rounding to float included; infinite
@@ -237,8 +245,8 @@ glm::dvec4 generate_error_bound(const Transform<Texture, Space>& texture_from_sp
 // Bad input: a NaN or an infinity of a position, or of the rows of s, t and q, makes the bounds that it reaches
 // infinite.
 template <class Space>
-glm::dvec2 project_error_bound(const Transform<Texture, Space>& texture_from_space, Positions<Space> positions,
-                               Tolerance tolerance = exact) noexcept;
+glm::dvec2 project_error_bound(const Transform<Texture, Space>& texture_from_space, const Positions<Space>& positions,
+                               const Tolerance& tolerance = exact) noexcept;
 
 // Divides one homogeneous coordinate: (s/q, t/q), empty behind the projector.
 // Guarantee: each is the nearest float; empty for q <= 0 and for a NaN q. noexcept.
@@ -247,7 +255,7 @@ glm::dvec2 project_error_bound(const Transform<Texture, Space>& texture_from_spa
 //     vec3 light = textureProj(slide, strq).rgb;
 //     bool lit = strq.q > 0.0 && st == clamp(st, region.xy, region.zw);
 //
-inline std::optional<glm::vec2> divide(glm::vec4 strq) noexcept {
+inline std::optional<glm::vec2> divide(const glm::vec4& strq) noexcept {
     if (!(strq.w > 0.0f)) return std::nullopt;
     return glm::vec2(strq.x / strq.w, strq.y / strq.w);
 }

@@ -76,7 +76,7 @@ Transform<To, From> from_row_vectors(const glm::mat4& matrix) noexcept;
 template <class To, class From>
 Transform<To, From> from_row_vectors(const glm::dmat4& matrix) noexcept;
 template <class To, class From>
-Transform<To, From> from_row_vectors(std::span<const float, 16> rows) noexcept;
+Transform<To, From> from_row_vectors(const std::span<const float, 16>& rows) noexcept;
 
 // The roles, named as the papers name them; the type says destination from source.
 using ModelMatrix = Transform<World, Object>;                        // M

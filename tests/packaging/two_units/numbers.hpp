@@ -7,8 +7,8 @@
 inline constexpr std::size_t side = 16;
 using Plane = std::array<float, side * side>;
 struct Numbers {
-    texgen::Work (*interpolate)(const texgen::TriangleSetup&, texgen::FragmentRect,
-                                texgen::Texcoords) noexcept;  // its own
+    texgen::Work (*interpolate)(const texgen::TriangleSetup&, const texgen::FragmentRect&,
+                                const texgen::Texcoords&) noexcept;  // its own
     Plane point_s, point_t, point_lit, fragment_s, fragment_t, fragment_lit;
 };
 

@@ -21,8 +21,8 @@ inline void copy_floats(const Sphere& sphere, float* to, std::size_t distance) n
 // vectors, and `decide` classifies them. Where bodies have gaps between them, as where the user aligns GLM's vectors,
 // their floats are copied.
 template <std::size_t Floats, class Body, class Decide>
-void classify_many(const LitForms& forms, const FloatForms& float_forms, std::span<const Body> bodies,
-                   std::span<Coverage> out, Classify classify, const Decide& decide) noexcept {
+void classify_many(const LitForms& forms, const FloatForms& float_forms, const std::span<const Body>& bodies,
+                   const std::span<Coverage>& out, Classify classify, const Decide& decide) noexcept {
     constexpr std::size_t chunk = 16 * body_quantum;
     constexpr bool is_dense = sizeof(Body) == Floats * sizeof(float);
     constexpr std::size_t copied = is_dense ? body_quantum : chunk;

@@ -25,7 +25,7 @@ public:
 
     // Takes the bounds of the objects that changed from bounds_of(object); objects from `count` on have none. These are
     // the changed ones until the next call.
-    void change(std::span<const std::uint32_t> objects, std::size_t count, const auto& bounds_of) noexcept {
+    void change(const std::span<const std::uint32_t>& objects, std::size_t count, const auto& bounds_of) noexcept {
         const bool grows = count > bounds_.size();
         if (grows) grow(count);
         for (const std::uint32_t object : objects) bounds_[object] = bounds_of(object);

@@ -16,7 +16,7 @@ namespace TEXGEN_DETAIL {
 
 class Changes {
 public:
-    void begin(std::span<const std::uint32_t> named, std::size_t count) noexcept {
+    void begin(const std::span<const std::uint32_t>& named, std::size_t count) noexcept {
         if (count > is_changed_.size()) is_changed_.resize(count, 0);
         changed_.reserve(is_changed_.capacity());
         const std::size_t before = count_;

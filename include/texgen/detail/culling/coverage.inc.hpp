@@ -23,7 +23,7 @@ inline namespace TEXGEN_BUILD {
 
 // Classifies many boxes; separating() as below.
 void coverage_of_many(const LitForms& forms, const FloatForms& float_forms, const auto& separating,
-                      std::span<const Box> boxes, const std::span<Coverage>& out) noexcept {
+                      const std::span<const Box>& boxes, const std::span<Coverage>& out) noexcept {
     const BoxBatchKernels& kernels = chosen<BoxBatchKernels>();
     DoubleForms double_forms;  // made when first needed
     classify_many<6>(forms, float_forms, boxes, out, kernels.classify,
@@ -72,12 +72,12 @@ Coverage LitVolume<Space>::coverage(const Sphere& sphere) const noexcept {
 }
 
 template <class Space>
-void LitVolume<Space>::coverage(std::span<const Box> boxes, std::span<Coverage> out) const noexcept {
+void LitVolume<Space>::coverage(const std::span<const Box>& boxes, const std::span<Coverage>& out) const noexcept {
     detail::coverage_of_many(
         forms_, float_forms_, [this]() -> const detail::SeparatingPlanes& { return separating_; }, boxes, out);
 }
 template <class Space>
-void LitVolume<Space>::coverage(std::span<const Sphere> spheres, std::span<Coverage> out) const noexcept {
+void LitVolume<Space>::coverage(const std::span<const Sphere>& spheres, const std::span<Coverage>& out) const noexcept {
     detail::coverage_of_many(forms_, float_forms_, unit_forms_, spheres, out);
 }
 
@@ -99,7 +99,7 @@ Coverage coverage(const Transform<Texture, Space>& texture_from_space, const Tex
 }
 template <class Space>
 void coverage(const Transform<Texture, Space>& texture_from_space, const TextureRegion& region,
-              std::span<const Box> boxes, std::span<Coverage> out) noexcept {
+              const std::span<const Box>& boxes, const std::span<Coverage>& out) noexcept {
     const detail::LitForms forms(texture_from_space.matrix(), region, detail::chosen<detail::FormKernels>());
     detail::OnDemand<detail::SeparatingPlanes> separating;
     detail::coverage_of_many(
@@ -112,7 +112,7 @@ void coverage(const Transform<Texture, Space>& texture_from_space, const Texture
 }
 template <class Space>
 void coverage(const Transform<Texture, Space>& texture_from_space, const TextureRegion& region,
-              std::span<const Sphere> spheres, std::span<Coverage> out) noexcept {
+              const std::span<const Sphere>& spheres, const std::span<Coverage>& out) noexcept {
     const detail::LitForms forms(texture_from_space.matrix(), region, detail::chosen<detail::FormKernels>());
     detail::coverage_of_many(forms, forms.in_float(detail::chosen<detail::FloatFormKernels>()),
                              forms.unit(detail::chosen<detail::UnitFormKernels>()), spheres, out);

@@ -56,7 +56,7 @@ inline float just_in_front(float inside) noexcept {
 
 // Cuts the convex polygon in storage[0, count) and returns the new count. cut(inside, outside) makes the new vertex of
 // an edge. As it gets the ends by their sides, not in the order of the walk, it makes the same one for both neighbours.
-std::size_t cut_convex(std::span<ClipVertex> storage, std::size_t count, const ClipDistance& distance,
+std::size_t cut_convex(const std::span<ClipVertex>& storage, std::size_t count, const ClipDistance& distance,
                        const auto& cut) noexcept {
     std::size_t inside = 0;
     std::size_t entries = 0;  // edges that lead from the outside in
@@ -95,7 +95,7 @@ std::size_t cut_convex(std::span<ClipVertex> storage, std::size_t count, const C
 
 namespace TEXGEN_NAMESPACE_COMPILER {
 
-inline WindowVertex to_window(const ClipVertex& vertex, Viewport viewport) noexcept {
+inline WindowVertex to_window(const ClipVertex& vertex, const Viewport& viewport) noexcept {
     TEXGEN_ASSERT(vertex.position.w > 0.0f);
     const auto along = [w = detail::widened(vertex.position.w)](float clip, int first, int size) {
         const double half = 0.5 * size;
@@ -107,8 +107,8 @@ inline WindowVertex to_window(const ClipVertex& vertex, Viewport viewport) noexc
         vertex.strq};
 }
 
-inline std::size_t clip_to_near(std::span<const ClipVertex> polygon, std::span<ClipVertex> out, DepthRange range,
-                                bool reversed_depth) noexcept {
+inline std::size_t clip_to_near(const std::span<const ClipVertex>& polygon, const std::span<ClipVertex>& out,
+                                DepthRange range, bool reversed_depth) noexcept {
     TEXGEN_ASSERT(out.size() > polygon.size());
     if (out.size() <= polygon.size() || polygon.size() < 3) return 0;
     const auto near_plane = detail::ClipDistance::from_near(range, reversed_depth);

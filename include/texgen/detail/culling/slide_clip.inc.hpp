@@ -158,7 +158,8 @@ inline ClipVertex cut_at(const SlideDistance& side, const ClipVertex& inside, co
 // Cuts the polygon in storage[0, count) edge by edge and returns the new count; 0 where nothing is inside but corners
 // on the side, or where storage has no room. sign() is that of the distance of a vertex; cut() as for cut_convex. The
 // polygon is read from the end of the storage, so that what is written at its begin grows into free room.
-std::size_t cut_edges(std::span<ClipVertex> storage, std::size_t count, const auto& sign, const auto& cut) noexcept {
+std::size_t cut_edges(const std::span<ClipVertex>& storage, std::size_t count, const auto& sign,
+                      const auto& cut) noexcept {
     std::size_t inside = 0;
     while (inside < count && sign(storage[inside]) >= 0) ++inside;
     if (inside == count) return count;
@@ -189,7 +190,7 @@ std::size_t cut_edges(std::span<ClipVertex> storage, std::size_t count, const au
 namespace TEXGEN_NAMESPACE {
 
 template <class Space>
-ClipPlanes clip_planes(const Transform<Texture, Space>& texgen, TextureRegion region) noexcept {
+ClipPlanes clip_planes(const Transform<Texture, Space>& texgen, const TextureRegion& region) noexcept {
     ClipPlanes result;
     for (const detail::SlidePlane& plane : detail::SlidePlanes(region)) {
         glm::vec4& coefficients = result.planes_[result.size_++];
@@ -203,8 +204,8 @@ ClipPlanes clip_planes(const Transform<Texture, Space>& texgen, TextureRegion re
 
 inline namespace TEXGEN_COMPILER {
 
-inline std::size_t clip_to_slide(std::span<const ClipVertex> polygon, TextureRegion region,
-                                 std::span<ClipVertex> out) noexcept {
+inline std::size_t clip_to_slide(const std::span<const ClipVertex>& polygon, const TextureRegion& region,
+                                 const std::span<ClipVertex>& out) noexcept {
     const detail::SlidePlanes planes(region);
     const bool has_depth = planes.size() > planes.without_depth;
     TEXGEN_ASSERT(out.size() >= polygon.size() + planes.size());

@@ -44,7 +44,7 @@ Coverage coverage_of(const LitForms& forms, const FormLanes& lanes, const auto& 
 
 template <class CompiledWhereCalled = void>
 void coverage_of_many(const LitForms& forms, const FloatForms& float_forms, const UnitForms& unit,
-                      std::span<const Sphere> spheres, const std::span<Coverage>& out) noexcept {
+                      const std::span<const Sphere>& spheres, const std::span<Coverage>& out) noexcept {
     const SphereKernels& kernels = chosen<SphereKernels>();
     classify_many<4>(forms, float_forms, spheres, out, kernels.classify,
                      [&](const OpenRow* open, std::size_t count, bool, int* classes) {

@@ -119,7 +119,8 @@ bool any_wrong_order(const FactorsInUse& factors, const Glance& glance, const au
 // The composition with the fewest mistakes, `most` or fewer, that gives the matrix as closely as `closest`; else
 // `in_float`, or if that is empty the first that gives the matrix as closely as products in float do.
 inline std::optional<Composition> composition_of(const glm::dmat4& texgen, const Factors& factors, int most,
-                                                 Closeness closest, std::optional<Composition> in_float) noexcept {
+                                                 const Closeness& closest,
+                                                 std::optional<Composition> in_float) noexcept {
     const std::array<glm::dmat4, 2> given{texgen, glm::transpose(texgen)};
     const std::array<Glance, 2> glances{Glance(given[0], false), Glance(given[1], true)};
     const Product projection = lens_factor(factors.projection);

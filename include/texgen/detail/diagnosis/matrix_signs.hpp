@@ -199,7 +199,9 @@ struct DepthRows {
 inline DepthRows depth_rows(const glm::dmat4& m) noexcept {
     const glm::dvec3 r{m[0].z, m[1].z, m[2].z};
     const glm::dvec3 q{m[0].w, m[1].w, m[2].w};
-    const auto largest = [](glm::dvec3 v) { return larger(std::fabs(v.x), larger(std::fabs(v.y), std::fabs(v.z))); };
+    const auto largest = [](const glm::dvec3& v) {
+        return larger(std::fabs(v.x), larger(std::fabs(v.y), std::fabs(v.z)));
+    };
     // Where the limit is 0 by cancellation, row r is only what the rounding of q has left.
     const double rounding = is_in_float(m) ? 0x1p-20 : 0x1p-44;
     const double size_r = largest(r);
@@ -234,7 +236,7 @@ inline bool is_opengl_default(const glm::dmat4& m) noexcept {
 // have a positive determinant in a left-handed world and a negative one in a right-handed one, unless they are
 // mirrored. Parallel light does not say which way is forwards.
 inline bool is_mirrored(const glm::dmat4& texgen, const glm::dmat4& world_from_space,
-                        Conventions conventions) noexcept {
+                        const Conventions& conventions) noexcept {
     const Minor picture = minor_of(texgen, {0, 1, 3}, axes);
     const Minor pose = minor_of(world_from_space, axes, axes);
     if (!picture.stands_out || !pose.stands_out) return false;

@@ -78,7 +78,7 @@ public:
         multiple_ = norm > 0.0 ? along / norm : 0.0;
     }
 
-    double within(Closeness closeness) const noexcept {
+    double within(const Closeness& closeness) const noexcept {
         for (glm::length_t row = 0; row < 4; ++row) {
             if (is_zero_row(given_, row)) continue;
             for (glm::length_t column = 0; column < 4; ++column) {
@@ -119,7 +119,8 @@ struct Composition {
 };
 
 // Numbers that no scene has cost time (subnormal ones) or make products overflow: small ones become 0, large ones NaN.
-inline glm::dmat4 as_in_scenes(glm::dmat4 m) noexcept {
+inline glm::dmat4 as_in_scenes(const glm::dmat4& matrix) noexcept {
+    glm::dmat4 m = matrix;
     for (glm::length_t column = 0; column < 4; ++column) {
         for (glm::length_t row = 0; row < 4; ++row) {
             double& element = m[column][row];
@@ -140,7 +141,8 @@ struct Factors {
         : scale_bias(s), projection(p), view(v), pose(of_points) {}
 };
 
-inline Factors as_in_scenes(Factors factors) noexcept {
+inline Factors as_in_scenes(const Factors& given) noexcept {
+    Factors factors = given;
     for (glm::dmat4* const matrix : {&factors.scale_bias, &factors.projection, &factors.view})
         *matrix = as_in_scenes(*matrix);
     if (factors.pose) factors.pose = as_in_scenes(*factors.pose);

@@ -11,8 +11,8 @@ inline bool examine_usable(const glm::dmat4& m, Diagnosis& diagnosis) noexcept {
 }
 
 // Where nothing is known of a lens, round numbers may show its mistakes.
-inline void examine_numbers(const glm::dmat4& p, bool is_upright, Conventions conventions, const LensFacts& facts,
-                            Diagnosis& diagnosis) noexcept {
+inline void examine_numbers(const glm::dmat4& p, bool is_upright, const Conventions& conventions,
+                            const LensFacts& facts, Diagnosis& diagnosis) noexcept {
     const SeenLens seen(lens_factor(p), rounding_of(p));
     if (!seen.is_lens()) return;
     const double focal_length = seen.focal_length().y;
@@ -25,8 +25,8 @@ inline void examine_numbers(const glm::dmat4& p, bool is_upright, Conventions co
         diagnosis.add(Defect::depth_range_mismatch);
 }
 
-inline void examine_lens(const glm::dmat4& p, bool view_reflects, Conventions conventions, const LensFacts& facts,
-                         const Picture& picture, Diagnosis& diagnosis) noexcept {
+inline void examine_lens(const glm::dmat4& p, bool view_reflects, const Conventions& conventions,
+                         const LensFacts& facts, const Picture& picture, Diagnosis& diagnosis) noexcept {
     const bool is_away = looks_away(p, conventions.handedness);
     const double x = p[0].x, y = conventions.ndc_y == NdcY::up ? p[1].y : -p[1].y;
     // Where both axes of the picture are turned round as well, the whole matrix has the other sign.

@@ -70,7 +70,7 @@ inline void examine(const Aim& aim, Diagnosis& diagnosis) noexcept {
         diagnosis.add(Defect::up_parallel_to_view);
 }
 
-Diagnosis diagnose(const auto& lens, const Aim& aim, Conventions conventions) noexcept {
+Diagnosis diagnose(const auto& lens, const Aim& aim, const Conventions& conventions) noexcept {
     Diagnosis diagnosis;
     if (make_projector(lens, aim, conventions)) return diagnosis;
     examine(lens, diagnosis);
@@ -83,16 +83,16 @@ Diagnosis diagnose(const auto& lens, const Aim& aim, Conventions conventions) no
 
 namespace TEXGEN_NAMESPACE {
 
-inline Diagnosis diagnose(const PerspectiveLens& lens, const Aim& aim, Conventions conventions) noexcept {
+inline Diagnosis diagnose(const PerspectiveLens& lens, const Aim& aim, const Conventions& conventions) noexcept {
     return detail::diagnose(lens, aim, conventions);
 }
-inline Diagnosis diagnose(const FrustumLens& lens, const Aim& aim, Conventions conventions) noexcept {
+inline Diagnosis diagnose(const FrustumLens& lens, const Aim& aim, const Conventions& conventions) noexcept {
     return detail::diagnose(lens, aim, conventions);
 }
-inline Diagnosis diagnose(const OrthographicLens& lens, const Aim& aim, Conventions conventions) noexcept {
+inline Diagnosis diagnose(const OrthographicLens& lens, const Aim& aim, const Conventions& conventions) noexcept {
     return detail::diagnose(lens, aim, conventions);
 }
-inline Diagnosis diagnose(const PinholeLens& lens, const Aim& aim, Conventions conventions) noexcept {
+inline Diagnosis diagnose(const PinholeLens& lens, const Aim& aim, const Conventions& conventions) noexcept {
     return detail::diagnose(lens, aim, conventions);
 }
 

@@ -19,13 +19,15 @@ struct SetupMatrices {
 };
 
 // S^-1 T, or what that does to magnitudes.
-inline glm::dmat4 before_scale_bias(glm::dmat4 texgen, const glm::dmat4& scale_bias) noexcept {
+inline glm::dmat4 before_scale_bias(const glm::dmat4& given, const glm::dmat4& scale_bias) noexcept {
+    glm::dmat4 texgen = given;
     for (glm::length_t column = 0; column < 4; ++column)
         for (glm::length_t row = 0; row < 3; ++row)
             texgen[column][row] = (texgen[column][row] - scale_bias[3][row] * texgen[column][3]) / scale_bias[row][row];
     return texgen;
 }
-inline glm::dmat4 magnitude_before_scale_bias(glm::dmat4 magnitude, const glm::dmat4& scale_bias) noexcept {
+inline glm::dmat4 magnitude_before_scale_bias(const glm::dmat4& given, const glm::dmat4& scale_bias) noexcept {
+    glm::dmat4 magnitude = given;
     for (glm::length_t column = 0; column < 4; ++column)
         for (glm::length_t row = 0; row < 3; ++row)
             magnitude[column][row] += 2.0 * std::fabs(scale_bias[3][row] / scale_bias[row][row]) * magnitude[column][3];
@@ -112,7 +114,8 @@ inline double distance_of(double depth, const glm::dmat4& p, Handedness handedne
 }
 
 // What a lens was meant to be: what is known of it, and for the rest what the projector's lens is.
-inline LensFacts meant_by(const glm::dmat4& p, Conventions conventions, LensFacts facts) noexcept {
+inline LensFacts meant_by(const glm::dmat4& p, const Conventions& conventions, const LensFacts& known) noexcept {
+    LensFacts facts = known;
     if (!facts.fovy && is_perspective(p) && p[2].x == 0.0 && p[2].y == 0.0)
         facts.fovy = radians(2.0 * std::atan2(std::fabs(p[2].w), std::fabs(p[1].y)));
     if (!facts.aspect) facts.aspect = std::fabs(p[1].y / p[0].x);

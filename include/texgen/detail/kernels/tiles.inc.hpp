@@ -135,8 +135,8 @@ struct CloseFunctionsAt {
 // Decides the fragments of a unit that are asked for. They are gathered into vectors wherever they stand, as in a
 // column; more than half of a unit is asked as all of it. One numerator alone stands in both places.
 template <class CompiledWhereCalled = void>
-TEXGEN_LARGE std::uint64_t fill_tile_closely(const TileJob& job, const CloseFunctions& functions, TileJob::Unit unit,
-                                             std::uint64_t asked) noexcept {
+TEXGEN_LARGE std::uint64_t fill_tile_closely(const TileJob& job, const CloseFunctions& functions,
+                                             const TileJob::Unit& unit, std::uint64_t asked) noexcept {
     constexpr int most = TileJob::unit_size + lanes;
     const bool is_more_known = functions.have_residues || functions.are_close;
     const std::size_t numerators = job.out[0] == job.out[1] ? 1 : 2;

@@ -66,7 +66,8 @@ inline bool is_sideways(const glm::dvec3& product, const glm::dvec3& view, const
 }
 
 inline std::optional<Projector> assemble(const std::optional<ProjectorProjection>& projection,
-                                         const std::optional<ProjectorView>& view, Conventions conventions) noexcept {
+                                         const std::optional<ProjectorView>& view,
+                                         const Conventions& conventions) noexcept {
     if (!projection || !view) return std::nullopt;
     return Projector{*projection, *view, conventions};
 }
@@ -133,20 +134,20 @@ inline std::optional<ProjectorView> mirrored(const ProjectorView& view, const gl
 }
 
 inline std::optional<Projector> make_projector(const PerspectiveLens& lens, const Aim& aim,
-                                               Conventions conventions) noexcept {
+                                               const Conventions& conventions) noexcept {
     return detail::assemble(perspective(lens, conventions), look_at(aim, conventions.handedness), conventions);
 }
 inline std::optional<Projector> make_projector(const FrustumLens& lens, const Aim& aim,
-                                               Conventions conventions) noexcept {
+                                               const Conventions& conventions) noexcept {
     return detail::assemble(frustum(lens, conventions), look_at(aim, conventions.handedness), conventions);
 }
 inline std::optional<Projector> make_projector(const OrthographicLens& lens, const Aim& aim,
-                                               Conventions conventions) noexcept {
+                                               const Conventions& conventions) noexcept {
     return detail::assemble(orthographic(lens, conventions), look_at(aim, conventions.handedness), conventions);
 }
 
 inline std::optional<Projector> make_projector(const PinholeLens& lens, const Aim& aim,
-                                               Conventions conventions) noexcept {
+                                               const Conventions& conventions) noexcept {
     return detail::assemble(pinhole(lens, conventions), look_at(aim, conventions.handedness), conventions);
 }
 

@@ -22,7 +22,8 @@ inline void narrow(double& low, double& high, double fraction) noexcept {
 }
 
 template <class RectangularLens>
-RectangularLens contain_rectangle(RectangularLens lens, double aspect) noexcept {
+RectangularLens contain_rectangle(const RectangularLens& given, double aspect) noexcept {
+    RectangularLens lens = given;
     const double of_lens = aspect_of(lens);
     if (!is_aspect(aspect) || !is_aspect(of_lens))
         lens.left = lens.right = nan;
@@ -66,13 +67,13 @@ inline OrthographicLens contain(const OrthographicLens& lens, double aspect) noe
     return detail::contain_rectangle(lens, aspect);
 }
 
-inline TextureRegion cover(const PerspectiveLens& lens, double aspect, TextureRegion picture) noexcept {
+inline TextureRegion cover(const PerspectiveLens& lens, double aspect, const TextureRegion& picture) noexcept {
     return detail::cover_aspect(lens.aspect, aspect, picture);
 }
-inline TextureRegion cover(const FrustumLens& lens, double aspect, TextureRegion picture) noexcept {
+inline TextureRegion cover(const FrustumLens& lens, double aspect, const TextureRegion& picture) noexcept {
     return detail::cover_aspect(detail::aspect_of(lens), aspect, picture);
 }
-inline TextureRegion cover(const OrthographicLens& lens, double aspect, TextureRegion picture) noexcept {
+inline TextureRegion cover(const OrthographicLens& lens, double aspect, const TextureRegion& picture) noexcept {
     return detail::cover_aspect(detail::aspect_of(lens), aspect, picture);
 }
 

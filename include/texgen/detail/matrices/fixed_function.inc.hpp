@@ -115,7 +115,7 @@ inline void TexGenUnit::enable(Coordinate coordinate, bool on) noexcept {
     if (CoordinateState* const state = find(coordinate)) state->enabled = on;
 }
 
-inline void TexGenUnit::set_object_plane(Coordinate coordinate, glm::vec4 plane) noexcept {
+inline void TexGenUnit::set_object_plane(Coordinate coordinate, const glm::vec4& plane) noexcept {
     if (CoordinateState* const state = find(coordinate)) state->object_plane = plane;
 }
 
@@ -126,7 +126,8 @@ inline bool TexGenUnit::set_mode(Coordinate coordinate, TexGenMode mode) noexcep
     return true;
 }
 
-inline bool TexGenUnit::set_eye_plane(Coordinate coordinate, glm::vec4 plane, const glm::mat4& modelview) noexcept {
+inline bool TexGenUnit::set_eye_plane(Coordinate coordinate, const glm::vec4& plane,
+                                      const glm::mat4& modelview) noexcept {
     CoordinateState* const state = find(coordinate);
     const detail::CertifiedInverse inverse(detail::widened(modelview));
     if (state == nullptr || !inverse.is_regular()) return false;
@@ -136,7 +137,7 @@ inline bool TexGenUnit::set_eye_plane(Coordinate coordinate, glm::vec4 plane, co
     return true;
 }
 
-inline glm::dvec4 TexGenUnit::eye_plane_error_bound(Coordinate coordinate, glm::vec4 plane,
+inline glm::dvec4 TexGenUnit::eye_plane_error_bound(Coordinate coordinate, const glm::vec4& plane,
                                                     const glm::mat4& modelview) const noexcept {
     return detail::CertifiedInverse(detail::widened(modelview))
         .error_of(detail::widened(eye_plane(coordinate)), detail::widened(plane));
@@ -191,8 +192,8 @@ inline glm::vec4 TexGenUnit::generate(const FixedFunctionVertex& vertex, const g
     return generate(vertex, EyeSpace(modelview, *this));
 }
 
-inline void TexGenUnit::generate(std::span<const FixedFunctionVertex> vertices, const glm::mat4& modelview,
-                                 std::span<glm::vec4> strq) const noexcept {
+inline void TexGenUnit::generate(const std::span<const FixedFunctionVertex>& vertices, const glm::mat4& modelview,
+                                 const std::span<glm::vec4>& strq) const noexcept {
     TEXGEN_ASSERT(vertices.size() == strq.size());
     if (vertices.size() != strq.size()) return;
     const EyeSpace eye_space(modelview, *this);

@@ -56,7 +56,9 @@ inline DepthRow orthographic_depth(const OrthographicLens& lens, DepthRange rang
 }
 
 // Takes the matrix of a lens for a right-handed eye and y up to the conventions; empty where doubles cannot hold it.
-inline std::optional<ProjectorProjection> checked_projection(glm::dmat4 matrix, Conventions conventions) noexcept {
+inline std::optional<ProjectorProjection> checked_projection(const glm::dmat4& in_right_hand,
+                                                             const Conventions& conventions) noexcept {
+    glm::dmat4 matrix = in_right_hand;
     if (conventions.handedness == Handedness::left) matrix[2] = -matrix[2];
     if (conventions.ndc_y == NdcY::down)
         for (glm::length_t column = 0; column < 4; ++column) matrix[column][1] = -matrix[column][1];
@@ -67,7 +69,7 @@ inline std::optional<ProjectorProjection> checked_projection(glm::dmat4 matrix, 
 // The perspective matrix: the focal lengths on the diagonal, the skew beside them, the off-axis terms in column z.
 inline std::optional<ProjectorProjection> checked_perspective(const glm::dvec2& focal_length, double skew,
                                                               const glm::dvec2& off_axis, const DepthRow& depth,
-                                                              Conventions conventions) noexcept {
+                                                              const Conventions& conventions) noexcept {
     glm::dmat4 matrix(0.0);
     matrix[0][0] = focal_length.x;
     matrix[1][0] = skew;
@@ -92,7 +94,8 @@ inline double off_axis_term(double centre, double size, PixelCentre convention) 
 
 namespace TEXGEN_NAMESPACE {
 
-inline std::optional<ProjectorProjection> perspective(const PerspectiveLens& lens, Conventions conventions) noexcept {
+inline std::optional<ProjectorProjection> perspective(const PerspectiveLens& lens,
+                                                      const Conventions& conventions) noexcept {
     const double half_angle = 0.5 * lens.fovy.in_radians();
     if (!detail::is_half_angle(half_angle)) return std::nullopt;
     if (!detail::is_aspect(lens.aspect)) return std::nullopt;
@@ -104,7 +107,7 @@ inline std::optional<ProjectorProjection> perspective(const PerspectiveLens& len
                                        detail::perspective_depth(lens, conventions.depth), conventions);
 }
 
-inline std::optional<ProjectorProjection> frustum(const FrustumLens& lens, Conventions conventions) noexcept {
+inline std::optional<ProjectorProjection> frustum(const FrustumLens& lens, const Conventions& conventions) noexcept {
     if (!(lens.z_near > 0.0 && lens.z_near < lens.z_far && detail::is_finite(lens.z_far))) return std::nullopt;
     const detail::LensExtent width(lens.left, lens.right);
     const detail::LensExtent height(lens.bottom, lens.top);
@@ -113,7 +116,8 @@ inline std::optional<ProjectorProjection> frustum(const FrustumLens& lens, Conve
                                        detail::perspective_depth(lens, conventions.depth), conventions);
 }
 
-inline std::optional<ProjectorProjection> orthographic(const OrthographicLens& lens, Conventions conventions) noexcept {
+inline std::optional<ProjectorProjection> orthographic(const OrthographicLens& lens,
+                                                       const Conventions& conventions) noexcept {
     if (!(lens.z_near < lens.z_far && detail::is_finite(lens.z_near) && detail::is_finite(lens.z_far)))
         return std::nullopt;
     const detail::LensExtent width(lens.left, lens.right);
@@ -131,7 +135,7 @@ inline std::optional<ProjectorProjection> orthographic(const OrthographicLens& l
 }
 
 // With the camera's x = x_eye, y = -y_eye and z = -z_eye: u = (fx x + skew y) / z + cx, and NDC x = 2 u / width - 1.
-inline std::optional<ProjectorProjection> pinhole(const PinholeLens& lens, Conventions conventions) noexcept {
+inline std::optional<ProjectorProjection> pinhole(const PinholeLens& lens, const Conventions& conventions) noexcept {
     if (!(lens.fx > 0.0 && lens.fy > 0.0 && lens.width > 0.0 && lens.height > 0.0)) return std::nullopt;
     if (!(detail::is_finite(lens.width) && detail::is_finite(lens.height))) return std::nullopt;
     if (!(lens.z_near > 0.0 && lens.z_near < lens.z_far)) return std::nullopt;

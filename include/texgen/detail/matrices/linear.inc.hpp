@@ -25,27 +25,28 @@ inline double depth_rounding(DepthBuffer buffer, double depth) noexcept {
 
 namespace TEXGEN_NAMESPACE {
 
-inline WorldTexgen texture_from_world(const Projector& projector, TextureRegion region, DepthMapping depth) noexcept {
+inline WorldTexgen texture_from_world(const Projector& projector, const TextureRegion& region,
+                                      DepthMapping depth) noexcept {
     return detail::texture_from_projector_eye(projector, region, depth) * projector.view;
 }
 
 inline ObjectTexgen object_linear(const Projector& projector, const ModelMatrix& world_from_object,
-                                  TextureRegion region, DepthMapping depth) noexcept {
+                                  const TextureRegion& region, DepthMapping depth) noexcept {
     return detail::texture_from_projector_eye(projector, region, depth) * (projector.view * world_from_object);
 }
 
-inline EyeTexgen eye_linear(const Projector& projector, const CameraPose& world_from_eye, TextureRegion region,
+inline EyeTexgen eye_linear(const Projector& projector, const CameraPose& world_from_eye, const TextureRegion& region,
                             DepthMapping depth) noexcept {
     return detail::texture_from_projector_eye(projector, region, depth) * (projector.view * world_from_eye);
 }
 
 inline EyeTexgen eye_linear(const ProjectorProjection& projection, const Transform<ProjectorEye, Eye>& view,
-                            Conventions conventions, TextureRegion region, DepthMapping depth) noexcept {
+                            const Conventions& conventions, const TextureRegion& region, DepthMapping depth) noexcept {
     return scale_bias(conventions, region, depth) * projection * view;
 }
 
 inline std::optional<WindowTexgen> window_linear(const Projector& projector, const Projector& camera,
-                                                 const Viewport& viewport, TextureRegion region,
+                                                 const Viewport& viewport, const TextureRegion& region,
                                                  DepthMapping depth) noexcept {
     if (viewport.width == 0 || viewport.height == 0) return std::nullopt;
     const detail::CertifiedInverse view(camera.view.matrix()), projection(camera.projection.matrix());
@@ -64,7 +65,7 @@ inline std::optional<WindowTexgen> window_linear(const Projector& projector, con
     return detail::is_finite(result) ? std::optional(WindowTexgen(result)) : std::nullopt;
 }
 
-inline glm::dvec2 depth_error_bound(const WindowTexgen& texture_from_window, glm::vec3 fragment,
+inline glm::dvec2 depth_error_bound(const WindowTexgen& texture_from_window, const glm::vec3& fragment,
                                     DepthBuffer buffer) noexcept {
     const glm::dvec3 v = detail::widened(fragment);
     // A common factor changes no quotient: the terms of q are brought near 1, so that no product leaves the range.

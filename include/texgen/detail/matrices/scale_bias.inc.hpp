@@ -12,7 +12,7 @@ struct RemapEnds {
 };
 
 // The ends of s, t and r.
-constexpr std::array<RemapEnds, 3> texture_remap(Conventions conventions, const TextureRegion& region,
+constexpr std::array<RemapEnds, 3> texture_remap(const Conventions& conventions, const TextureRegion& region,
                                                  DepthMapping depth) noexcept {
     // t grows with the clip y where the corner that (s, t) = (0, 0) addresses is where clip y is -w.
     const bool t_follows_y = (conventions.ndc_y == NdcY::up) == (conventions.origin == TextureOrigin::bottom_left);
@@ -27,7 +27,7 @@ constexpr std::array<RemapEnds, 3> texture_remap(Conventions conventions, const 
 
 namespace TEXGEN_NAMESPACE {
 
-inline ScaleBias scale_bias(Conventions conventions, TextureRegion region, DepthMapping depth) noexcept {
+inline ScaleBias scale_bias(const Conventions& conventions, const TextureRegion& region, DepthMapping depth) noexcept {
     const auto [s, t, r] = detail::texture_remap(conventions, region, depth);
     glm::dmat4 matrix(1.0);
     matrix[0].x = s.scale();
@@ -37,8 +37,8 @@ inline ScaleBias scale_bias(Conventions conventions, TextureRegion region, Depth
     return ScaleBias(matrix);
 }
 
-inline glm::vec4 to_texture(glm::vec4 projector_clip, Conventions conventions, TextureRegion region,
-                            DepthMapping depth) noexcept {
+inline glm::vec4 to_texture(const glm::vec4& projector_clip, const Conventions& conventions,
+                            const TextureRegion& region, DepthMapping depth) noexcept {
     const auto [s, t, r] = detail::texture_remap(conventions, region, depth);
     const glm::dvec4 clip = detail::widened(projector_clip);
     const auto component = [w = clip.w](double coordinate, const detail::RemapEnds& ends) {

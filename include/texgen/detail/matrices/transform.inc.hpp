@@ -14,7 +14,7 @@ Transform<To, From> from_row_vectors(const glm::dmat4& matrix) noexcept {
 
 // The rows of M are the columns of its transpose.
 template <class To, class From>
-Transform<To, From> from_row_vectors(std::span<const float, 16> rows) noexcept {
+Transform<To, From> from_row_vectors(const std::span<const float, 16>& rows) noexcept {
     glm::mat4 columns;
     for (glm::length_t i = 0; i < 16; ++i) columns[i / 4][i % 4] = rows[static_cast<std::size_t>(i)];
     return Transform<To, From>(columns);

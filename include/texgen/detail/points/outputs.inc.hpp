@@ -9,9 +9,10 @@ inline bool is_computed(const std::span<float>& output, std::size_t count) noexc
     return !output.empty() && is_empty_or_has_one_float_each;
 }
 
-// The array of an output that is computed, or null. The span comes by reference, here and everywhere: where a function
-// takes it by value, out of an aggregate that the caller has by reference, and returns its pointer, GCC 12 at -O2 and
-// -Os forgets that what it points to is written, and the user's variables keep what they held (bug 115033 of GCC).
+// The array of an output that is computed, or null. The span comes by reference, as all aggregates do everywhere: where
+// a function takes it by value, out of an aggregate that the caller has by reference, and returns its pointer, GCC 12 at
+// -O2 and -Os forgets that what it points to is written, and the user's variables keep what they held (bug 115033 of
+// GCC).
 inline float* array_of(const std::span<float>& output, std::size_t count) noexcept {
     return is_computed(output, count) ? output.data() : nullptr;
 }
@@ -19,9 +20,9 @@ inline float* array_of(const std::span<float>& output, std::size_t count) noexce
 // Calls function(span) for each output of Texcoords or Footprints.
 TEXGEN_INLINE void for_each_output(auto& out, const auto& function) noexcept {
     if constexpr (requires { out.s; })
-        for (std::span<float>* output : {&out.s, &out.t, &out.r, &out.lit}) function(*output);
+        for (auto* output : {&out.s, &out.t, &out.r, &out.lit}) function(*output);
     else
-        for (std::span<float>* output :
+        for (auto* output :
              {&out.dsdx, &out.dtdx, &out.dsdy, &out.dtdy, &out.level, &out.anisotropy, &out.major_s, &out.major_t})
             function(*output);
 }
@@ -77,10 +78,11 @@ inline constexpr std::size_t copy_size = float_block;
 inline namespace TEXGEN_BUILD {
 
 // Runs a job for the r of a part, and darkens what is beyond the depth. Where all is dark already it needs no r.
-void darken_part(auto job, const PointOutputs& out, const JobPart& part, const auto& run) noexcept {
+void darken_part(const auto& original, const PointOutputs& out, const JobPart& part, const auto& run) noexcept {
     constexpr std::size_t size = 4 * copy_size;
     const auto [first, count, whole] = part;
     float buffer[size];
+    auto job = original;
     job.lit = nullptr;
     for (std::size_t begin = 0; begin < count; begin += size, job.advance(job.count)) {
         job.count = whole - begin < size ? whole - begin : size;

@@ -35,7 +35,7 @@ inline void interpolate_one(const SegmentJob& job, std::size_t i) noexcept {
 
 // Whether none is less than 0 or more than 1. Bits show it quickly, unless there is a -0 or a NaN. They are taken by
 // sixteen, which GCC 12 does in vectors at -O2, too.
-inline bool are_from_0_to_1(std::span<const float> alpha) noexcept {
+inline bool are_from_0_to_1(const std::span<const float>& alpha) noexcept {
     std::uint32_t signs = 0;
     const auto look_at = [&](float a) {
         const auto bits = bit_cast<std::uint32_t>(a);
@@ -248,7 +248,7 @@ inline void interpolate_job(const SegmentKernels& kernels, SegmentJob& job) noex
 }
 
 // The last values, fewer than a kernel takes.
-TEXGEN_APART void run_rest(SegmentJob& job, const PointOutputs& outputs, std::span<const float> alpha,
+TEXGEN_APART void run_rest(SegmentJob& job, const PointOutputs& outputs, const std::span<const float>& alpha,
                            const auto& run) noexcept {
     const std::size_t rest = alpha.size() % point_quantum, first = alpha.size() - rest;
     float padded[point_quantum];
@@ -295,7 +295,7 @@ struct SegmentGroups {
 
 namespace TEXGEN_NAMESPACE_COMPILER {
 
-inline Work work(const Segment& segment, TextureRegion region, Tolerance tolerance) noexcept {
+inline Work work(const Segment& segment, const TextureRegion& region, const Tolerance& tolerance) noexcept {
     const glm::dvec4 a = detail::widened(segment.a);
     const glm::dvec4 b = detail::widened(segment.b);
     if (!detail::is_finite(a.x + a.y + a.w) || !detail::is_finite(b.x + b.y + b.w)) return Work::divide_and_test;
@@ -311,7 +311,7 @@ inline Work work(const Segment& segment, TextureRegion region, Tolerance toleran
     return all_inside ? Work::divide : Work::divide_and_test;
 }
 
-inline glm::dvec2 error_bound(const Segment& segment, Tolerance tolerance) noexcept {
+inline glm::dvec2 error_bound(const Segment& segment, const Tolerance& tolerance) noexcept {
     const double accepted = detail::accepted(tolerance);
     const detail::SegmentEnds st(segment, 0, 1);
     if (!detail::is_finite(st.a[0] + st.a[1] + st.b[0] + st.b[1] + st.q_a + st.q_b))
@@ -337,8 +337,8 @@ inline glm::dvec2 error_bound(const Segment& segment, Tolerance tolerance) noexc
 namespace TEXGEN_NAMESPACE_BUILD {
 
 template <class CompiledWhereCalled>
-void interpolate(const Segment& segment, std::span<const float> alpha, TextureRegion region, Texcoords out,
-                 Tolerance tolerance) noexcept {
+void interpolate(const Segment& segment, const std::span<const float>& alpha, const TextureRegion& region,
+                 const Texcoords& out, const Tolerance& tolerance) noexcept {
     TEXGEN_ASSERT(detail::are_from_0_to_1(alpha));
     const double accepted = detail::accepted(tolerance);
     detail::LitTest lit(out.lit.empty() ? whole_texture() : region);

@@ -46,7 +46,7 @@ void for_each_part(const Positions<Space>& positions, std::size_t count, const R
 // A job without points and outputs: the forms of these rows over the row of q; one alone is in both places. Other
 // members are not initialized: to clear so large a struct takes ten times as long as all else.
 inline PointJob point_job(const glm::dmat4& matrix, int row, int numerators, const LitTest& lit,
-                          Tolerance tolerance) noexcept {
+                          const Tolerance& tolerance) noexcept {
     PointJob job;
     job.numerators = numerators;
     job.interleaved_st = false;
@@ -206,7 +206,7 @@ Positions<Space> Positions<Space>::within(const Box& box) const noexcept {
 
 template <class Space>
 glm::dvec4 generate_error_bound(const Transform<Texture, Space>& texture_from_space,
-                                Positions<Space> positions) noexcept {
+                                const Positions<Space>& positions) noexcept {
     glm::dvec4 largest(0.0);
     for (glm::length_t k = 0; k < 4; ++k) {
         const detail::PointForm form = detail::form(texture_from_space.matrix(), k);
@@ -220,8 +220,8 @@ glm::dvec4 generate_error_bound(const Transform<Texture, Space>& texture_from_sp
 }
 
 template <class Space>
-glm::dvec2 project_error_bound(const Transform<Texture, Space>& texture_from_space, Positions<Space> positions,
-                               Tolerance tolerance) noexcept {
+glm::dvec2 project_error_bound(const Transform<Texture, Space>& texture_from_space, const Positions<Space>& positions,
+                               const Tolerance& tolerance) noexcept {
     const glm::dmat4& matrix = texture_from_space.matrix();
     const detail::PointForm form[2] = {detail::form(matrix, 0), detail::form(matrix, 1)};
     const detail::PointForm q_form = detail::form(matrix, 3);
@@ -285,16 +285,16 @@ glm::dvec2 project_error_bound(const Transform<Texture, Space>& texture_from_spa
 inline namespace TEXGEN_BUILD {
 
 template <class Space>
-void generate(const Transform<Texture, Space>& texture_from_space, Positions<Space> positions,
-              std::span<glm::vec4> strq) noexcept {
+void generate(const Transform<Texture, Space>& texture_from_space, const Positions<Space>& positions,
+              const std::span<glm::vec4>& strq) noexcept {
     TEXGEN_ASSERT(strq.size() == positions.size());
     if (strq.empty() || strq.size() != positions.size()) return;
     detail::generate_all(texture_from_space.matrix(), positions, {}, &strq[0].x);
 }
 
 template <class Space>
-void generate(const Transform<Texture, Space>& texture_from_space, Positions<Space> positions,
-              HomogeneousTexcoords out) noexcept {
+void generate(const Transform<Texture, Space>& texture_from_space, const Positions<Space>& positions,
+              const HomogeneousTexcoords& out) noexcept {
     const auto array = [&](const std::span<float>& output) { return detail::array_of(output, positions.size()); };
     float* const arrays[4] = {array(out.s), array(out.t), array(out.r), array(out.q)};
     for (const float* const any : arrays)
@@ -302,8 +302,8 @@ void generate(const Transform<Texture, Space>& texture_from_space, Positions<Spa
 }
 
 template <class Space>
-void project(const Transform<Texture, Space>& texture_from_space, Positions<Space> positions, TextureRegion region,
-             Texcoords out, Tolerance tolerance) noexcept {
+void project(const Transform<Texture, Space>& texture_from_space, const Positions<Space>& positions,
+             const TextureRegion& region, const Texcoords& out, const Tolerance& tolerance) noexcept {
     const glm::dmat4& matrix = texture_from_space.matrix();
     const detail::LitTest lit(region);
     detail::for_each_group(out, positions.size(), lit,
@@ -314,8 +314,8 @@ void project(const Transform<Texture, Space>& texture_from_space, Positions<Spac
 }
 
 template <class Space>
-void project(const Transform<Texture, Space>& texture_from_space, Positions<Space> positions, std::span<glm::vec2> st,
-             Tolerance tolerance) noexcept {
+void project(const Transform<Texture, Space>& texture_from_space, const Positions<Space>& positions,
+             const std::span<glm::vec2>& st, const Tolerance& tolerance) noexcept {
     TEXGEN_ASSERT(st.size() == positions.size());
     if (st.empty() || st.size() != positions.size()) return;
     const detail::LitTest unused(whole_texture());

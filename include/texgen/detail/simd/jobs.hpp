@@ -324,7 +324,7 @@ struct TileKernels {
     void (*weigh_chunks)(const TileJob&, ChunkGroup&, int chunks_of_row, int y, int chunk, int count) noexcept;
     void (*fill_chunks)(const TileJob&, const RowOutputs&, ChunkGroup&, int first, int end, int x) noexcept;
     // Decides fragments of a unit, bits as above, on either side of the projector. Returns those that stay in doubt.
-    std::uint64_t (*fill_closely)(const TileJob&, const CloseFunctions&, TileJob::Unit unit,
+    std::uint64_t (*fill_closely)(const TileJob&, const CloseFunctions&, const TileJob::Unit& unit,
                                   std::uint64_t asked) noexcept;
 };
 

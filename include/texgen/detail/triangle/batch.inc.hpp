@@ -47,13 +47,13 @@ Outputs subspans(const Outputs& all, std::size_t first, std::size_t count) noexc
 }
 
 void clear(auto& out) noexcept {
-    for_each_output(out, [](std::span<float>& output) {
+    for_each_output(out, [](const std::span<float>& output) {
         for (float& value : output) value = 0.0f;
     });
 }
 
 // The count of the fragments of all together, or the largest std::size_t, which no array has.
-inline std::size_t count_of(std::span<const FragmentRect> rects) noexcept {
+inline std::size_t count_of(const std::span<const FragmentRect>& rects) noexcept {
     constexpr std::size_t most = (std::numeric_limits<std::size_t>::max)();
     std::size_t left = most;
     for (const FragmentRect& rect : rects) left -= (std::min)(count_of(rect), left);
@@ -68,7 +68,7 @@ inline std::optional<TriangleSetup> set_up(const TriangleBatch& batch, std::size
 
 // Interpolates a rectangle, which has fragments, by the triangle's own set-up.
 template <class CompiledWhereCalled = void>
-void interpolate_apart(const std::optional<TriangleSetup>& setup, const Tile& tile, Texcoords out) noexcept {
+void interpolate_apart(const std::optional<TriangleSetup>& setup, const Tile& tile, const Texcoords& out) noexcept {
     if (!setup || interpolate_tile(*setup, tile, out) == Work::nothing) clear(out);
 }
 
@@ -100,7 +100,7 @@ inline void describe(BatchJob& job, const TriangleBatch& batch, const Texcoords&
 
 namespace TEXGEN_NAMESPACE_COMPILER {
 
-inline void TriangleBatch::take(std::span<const Triangle> triangles) noexcept {
+inline void TriangleBatch::take(const std::span<const Triangle>& triangles) noexcept {
     using detail::batch_block;
     static_assert(sizeof(Triangle) == 3 * sizeof(detail::BatchVertex::Layout));
     TEXGEN_ASSERT(triangles.size() < no_triangle);
@@ -126,13 +126,13 @@ void TriangleBatch::set_up() noexcept {
 }
 
 template <class CompiledWhereCalled>
-void TriangleBatch::assign(std::span<const Triangle> triangles) noexcept {
+void TriangleBatch::assign(const std::span<const Triangle>& triangles) noexcept {
     take(triangles);
     set_up<CompiledWhereCalled>();
 }
 
 template <class CompiledWhereCalled>
-void TriangleBatch::assign_facing(std::span<const Triangle> triangles, TextureOrigin origin) noexcept {
+void TriangleBatch::assign_facing(const std::span<const Triangle>& triangles, TextureOrigin origin) noexcept {
     take(triangles);
     for (std::size_t i = 0; i < size_; ++i) {
         auto& [a, b, c] = triangles_[i];
@@ -146,7 +146,9 @@ void TriangleBatch::assign_facing(std::span<const Triangle> triangles, TextureOr
 namespace TEXGEN_NAMESPACE_BUILD {
 
 template <class CompiledWhereCalled>
-void interpolate(const TriangleBatch& batch, std::span<const FragmentRect> rects, Texcoords out) noexcept {
+void interpolate(const TriangleBatch& batch, const std::span<const FragmentRect>& rects,
+                 const Texcoords& asked) noexcept {
+    Texcoords out = asked;
     static_assert(sizeof(FragmentRect) == sizeof(int[4]));
     TEXGEN_ASSERT(rects.size() == batch.size());
     if (rects.size() != batch.size() || rects.empty()) return;

@@ -138,7 +138,7 @@ inline Footprint footprint_of(const glm::dvec2& dx, const glm::dvec2& dy, const 
     return detail::footprint_of(dx, dy, determinant, texels);
 }
 
-inline FootprintSetup::FootprintSetup(const TriangleSetup& triangle, TexelsPerUnit texels) noexcept
+inline FootprintSetup::FootprintSetup(const TriangleSetup& triangle, const TexelsPerUnit& texels) noexcept
     : functions_(detail::Inside::functions(triangle)), texels_(texels) {}
 
 inline std::optional<Footprint> FootprintSetup::at(int x, int y) const noexcept {
@@ -148,7 +148,7 @@ inline std::optional<Footprint> FootprintSetup::at(int x, int y) const noexcept 
 // A numerator N = N^ + e over (Q^ + f)^2: the error is at most (e + 2 |f| |N|/Q) / Q^2 but for squares of f/Q, below
 // 2^-23 where the tile is well in front. Rounding adds 4 u |N|/Q^2, and half an ulp. Where the planes cancel anywhere
 // in the tile f is what q_at() leaves at most.
-inline glm::dvec2 FootprintSetup::error_bound(FragmentRect rect) const noexcept {
+inline glm::dvec2 FootprintSetup::error_bound(const FragmentRect& rect) const noexcept {
     if (rect.width <= 0 || rect.height <= 0) return {0.0, 0.0};
     const detail::Tile tile = detail::tile_of(rect);
     const detail::TileSurvey found = detail::survey(functions_.triangle, tile);
@@ -168,7 +168,7 @@ inline glm::dvec2 FootprintSetup::error_bound(FragmentRect rect) const noexcept 
     return {bound(0), bound(1)};
 }
 
-inline std::optional<FootprintExtremes> FootprintSetup::extremes(FragmentRect rect) const noexcept {
+inline std::optional<FootprintExtremes> FootprintSetup::extremes(const FragmentRect& rect) const noexcept {
     if (rect.width <= 0 || rect.height <= 0) return std::nullopt;
     const glm::dvec2 first = functions_.triangle.planes.from_a({rect.x, rect.y, 1, 1});
     const glm::dvec2 last = first + glm::dvec2(rect.width - 1, rect.height - 1);

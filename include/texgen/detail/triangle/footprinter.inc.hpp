@@ -166,7 +166,7 @@ private:
     const FootprintFunctions& functions_;
     TexelsPerUnit texels_;
     Tile rect_;
-    Footprints out_;
+    const Footprints& out_;
     OnDemand<ClosePlane> close_q_;
 };
 
@@ -198,7 +198,8 @@ inline bool footprint_tile(const FootprintSetup& setup, const Tile& tile, Footpr
 namespace TEXGEN_NAMESPACE_BUILD {
 
 template <class CompiledWhereCalled>
-bool footprint(const FootprintSetup& setup, FragmentRect rect, Footprints out) noexcept {
+bool footprint(const FootprintSetup& setup, const FragmentRect& rect, const Footprints& asked) noexcept {
+    Footprints out = asked;
     const std::size_t count = detail::count_of(rect);
     if (count == 0) return false;
     const detail::Tile tile = detail::tile_of(rect);

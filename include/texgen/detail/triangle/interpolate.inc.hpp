@@ -111,7 +111,8 @@ TEXGEN_INLINE Work interpolate_tile(const TriangleSetup& setup, const Tile& tile
 namespace TEXGEN_NAMESPACE_BUILD {
 
 template <class CompiledWhereCalled>
-TEXGEN_INLINE Work interpolate(const TriangleSetup& setup, FragmentRect rect, Texcoords out) noexcept {
+TEXGEN_INLINE Work interpolate(const TriangleSetup& setup, const FragmentRect& rect, const Texcoords& asked) noexcept {
+    Texcoords out = asked;
     const std::size_t count = detail::count_of(rect);
     if (count == 0) return Work::nothing;
     detail::drop_unasked(out, count);

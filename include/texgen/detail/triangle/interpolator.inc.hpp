@@ -136,7 +136,6 @@ private:
     }
 
     static constexpr int few_ties = 16;
-
     // Adds to what is known of the functions; false where there is no more. Residues come first where many are in
     // doubt, as with ties. They are enough, without two doubles, in tiles of few fragments, where sums in double decide
     // ties already, and where sums in two doubles would not.
@@ -208,15 +207,16 @@ private:
             job.quotient_error[k] = written[k] <= triangle_.tolerance ? 0.0 : error[k];
         // Less than a unit does not repay the search for its least quotient.
         job.ulps = tile.count() < TileJob::unit_size ? 0 : at.ulps_of_quotients();
-        const TileJob::Unit first = from == nullptr ? job.unit_at(0, 0) : *from;
+        TileJob::Unit unit = from == nullptr ? job.unit_at(0, 0) : *from;
         std::uint64_t doubtful = 0;
-        const TileJob::Unit unit = fill_units(kernels_, job, first, 16 * TileJob::unit_size, doubtful);
+        unit = fill_units(kernels_, job, unit, 16 * TileJob::unit_size, doubtful);
         if (job.is_done(unit)) return;
         fill_from_doubt(tile, at, job, unit, doubtful);
     }
 
-    TEXGEN_RARE void fill_from_doubt(const Tile& tile, const Corners& at, TileJob& job, TileJob::Unit unit,
+    TEXGEN_RARE void fill_from_doubt(const Tile& tile, const Corners& at, TileJob& job, const TileJob::Unit& from,
                                      std::uint64_t doubtful = ~std::uint64_t{0}) noexcept {
+        TileJob::Unit unit = from;
         // Where a plane is all zeros fill_around() has left its numerator out.
         for (std::size_t k = 0; k < count_; ++k)
             if (planes_->magnitude.dx[k] + planes_->magnitude.dy[k] != 0.0)

@@ -66,20 +66,20 @@ inline bool is_lost(float product, float factor) noexcept { return factor != 0.0
 
 namespace TEXGEN_NAMESPACE {
 
-inline Facing facing(glm::vec4 a, glm::vec4 b, glm::vec4 c, TextureOrigin origin) noexcept {
+inline Facing facing(const glm::vec4& a, const glm::vec4& b, const glm::vec4& c, TextureOrigin origin) noexcept {
     const int sign = detail::slide_determinant(detail::widened(a), detail::widened(b), detail::widened(c)).sign();
     if (sign == 0) return Facing::edge_on;
     return (sign > 0) == (origin == TextureOrigin::bottom_left) ? Facing::towards : Facing::away;
 }
 
-inline std::optional<double> slide_area(glm::vec4 a, glm::vec4 b, glm::vec4 c) noexcept {
+inline std::optional<double> slide_area(const glm::vec4& a, const glm::vec4& b, const glm::vec4& c) noexcept {
     if (!(a.w > 0.0f && b.w > 0.0f && c.w > 0.0f)) return std::nullopt;
     const glm::dvec4 first = detail::widened(a), second = detail::widened(b), third = detail::widened(c);
     const double area = 0.5 * detail::slide_determinant(first, second, third).value() / (first.w * second.w * third.w);
     return detail::is_finite(area) ? std::optional(area) : std::nullopt;
 }
 
-inline std::optional<glm::dvec3> receiver_plane(glm::vec4 a, glm::vec4 b, glm::vec4 c) noexcept {
+inline std::optional<glm::dvec3> receiver_plane(const glm::vec4& a, const glm::vec4& b, const glm::vec4& c) noexcept {
     const glm::dvec4 corner[] = {detail::widened(a), detail::widened(b), detail::widened(c)};
     const double divisor = detail::slide_determinant(corner[0], corner[1], corner[2]).value();
     if (divisor == 0.0) return std::nullopt;

@@ -151,19 +151,19 @@ TEXGEN_APART inline TileSurvey survey(const TriangleFunctions& triangle, const T
 
 namespace TEXGEN_NAMESPACE_COMPILER {
 
-inline std::optional<TriangleSetup> TriangleSetup::of(const Triangle& triangle, TextureRegion region,
-                                                      Tolerance tolerance) noexcept {
+inline std::optional<TriangleSetup> TriangleSetup::of(const Triangle& triangle, const TextureRegion& region,
+                                                      const Tolerance& tolerance) noexcept {
     std::optional<TriangleSetup> setup(std::in_place, Key(), triangle, region, tolerance);
     if (!setup->functions_.planes.is_usable()) setup.reset();
     return setup;
 }
 
-inline Work TriangleSetup::work(FragmentRect rect) const noexcept {
+inline Work TriangleSetup::work(const FragmentRect& rect) const noexcept {
     if (rect.width <= 0 || rect.height <= 0) return Work::nothing;
     return detail::survey(functions_, detail::tile_of(rect)).plan.work;
 }
 
-inline glm::dvec2 TriangleSetup::error_bound(FragmentRect rect) const noexcept {
+inline glm::dvec2 TriangleSetup::error_bound(const FragmentRect& rect) const noexcept {
     if (rect.width <= 0 || rect.height <= 0) return {0.0, 0.0};
     const detail::Tile tile = detail::tile_of(rect);
     const detail::TileSurvey found = detail::survey(functions_, tile);

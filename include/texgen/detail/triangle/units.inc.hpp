@@ -5,8 +5,9 @@ namespace TEXGEN_DETAIL_BUILD {
 // Fills units from the given one on up to the first with fragments in doubt, which it returns; `doubtful` says which
 // fragments. While none is, more and more units are filled at once, of `most` fragments at most; if one of these is in
 // doubt, they are filled again, one by one. A job that knows its ulps goes in pairs, but for units in doubt.
-inline TileJob::Unit fill_units(const TileKernels& kernels, const TileJob& job, TileJob::Unit unit, int most,
+inline TileJob::Unit fill_units(const TileKernels& kernels, const TileJob& job, const TileJob::Unit& from, int most,
                                 std::uint64_t& doubtful) noexcept {
+    TileJob::Unit unit = from;
     for (int size = TileJob::unit_size; !job.is_done(unit);) {
         if (job.ulps != 0 && unit.x_end - unit.x_begin >= TileJob::longest_pair) {
             unit = kernels.divide_in_pairs(job, unit);
@@ -27,7 +28,7 @@ inline TileJob::Unit fill_units(const TileKernels& kernels, const TileJob& job, 
 
 // Fills the tile from `first` on. Chunks that no rule serves, a part of one row or whole rows, are handed to `refuse`,
 // unless they are filled already.
-void fill_chunk_groups(const TileKernels& kernels, const TileJob& job, TileJob::Unit first,
+void fill_chunk_groups(const TileKernels& kernels, const TileJob& job, const TileJob::Unit& first,
                        const auto& refuse) noexcept {
     const int width = job.width, height = job.height;
     const int longest = job.chunk;

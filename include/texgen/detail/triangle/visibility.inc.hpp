@@ -3,7 +3,7 @@
 
 namespace TEXGEN_DETAIL_BUILD {
 
-inline void describe(VisibilityBuffer& buffer, const TriangleBatch& batch, std::span<const std::uint32_t> ids,
+inline void describe(VisibilityBuffer& buffer, const TriangleBatch& batch, const std::span<const std::uint32_t>& ids,
                      const FragmentRect& rect) noexcept {
     buffer = {ids.data(), static_cast<std::uint32_t>(batch.size()), rect.x, rect.y, rect.width};
 }
@@ -44,7 +44,7 @@ inline constexpr std::size_t long_run = 64;
 // Calls run(first, count) for the long runs of one id within a row, and once for rows that are of one id together. A
 // long run holds a whole probe, wherever it begins, and as much beside it, half of that on one side: those few fragments
 // are looked at first.
-void for_each_long_run(std::span<const std::uint32_t> ids, std::size_t width, const auto& run) noexcept {
+void for_each_long_run(const std::span<const std::uint32_t>& ids, std::size_t width, const auto& run) noexcept {
     constexpr std::size_t probe = long_run / 2;
     const auto are_as_before = [&](std::size_t first, std::size_t count) {
         return std::memcmp(&ids[first - 1], &ids[first], count * sizeof ids[0]) == 0;
@@ -77,8 +77,8 @@ void for_each_long_run(std::span<const std::uint32_t> ids, std::size_t width, co
 
 // Calls run(triangle, row part, first fragment) for the runs of one id in a row among `count` fragments from `first`
 // on, where is_wanted(fragment).
-void for_each_run(std::span<const std::uint32_t> ids, const FragmentRect& rect, std::size_t first, std::size_t count,
-                  const auto& is_wanted, const auto& run) noexcept {
+void for_each_run(const std::span<const std::uint32_t>& ids, const FragmentRect& rect, std::size_t first,
+                  std::size_t count, const auto& is_wanted, const auto& run) noexcept {
     const auto width = static_cast<std::size_t>(rect.width);
     for (std::size_t begin = first; begin < first + count;) {
         std::size_t end = begin + 1;
@@ -114,7 +114,7 @@ void interpolate_ids(const TriangleBatch& batch, FragmentsJob& job, const Fragme
 }
 
 // Calls of_one(first, count) for the long runs of one id in a row, and of_any(begin, end) for what is between them.
-void for_each_stretch(std::span<const std::uint32_t> ids, std::size_t width, const auto& of_one,
+void for_each_stretch(const std::span<const std::uint32_t>& ids, std::size_t width, const auto& of_one,
                       const auto& of_any) noexcept {
     std::size_t done = 0;
     for_each_long_run(ids, width, [&](std::size_t first, std::size_t length) {
@@ -129,7 +129,7 @@ void for_each_stretch(std::span<const std::uint32_t> ids, std::size_t width, con
 // for these.
 template <class CompiledWhereCalled = void>
 TEXGEN_APART void interpolate_runs(const TriangleBatch& batch, FragmentsJob& job, const FragmentRect& rect,
-                                   std::span<const std::uint32_t> ids, const Texcoords& out) noexcept {
+                                   const std::span<const std::uint32_t>& ids, const Texcoords& out) noexcept {
     Recent<TriangleSetup> recent;
     for_each_stretch(
         ids, static_cast<std::size_t>(rect.width),
@@ -143,7 +143,7 @@ TEXGEN_APART void interpolate_runs(const TriangleBatch& batch, FragmentsJob& job
 }
 
 // Gives the kernel of footprints what it needs of a visibility buffer.
-inline void describe(BatchFootprintsJob& job, const TriangleBatch& batch, std::span<const std::uint32_t> ids,
+inline void describe(BatchFootprintsJob& job, const TriangleBatch& batch, const std::span<const std::uint32_t>& ids,
                      const FragmentRect& rect, const TexelsPerUnit& texels, const Footprints& out) noexcept {
     describe(job, batch, ids, rect);
     job.planes = Inside::planes(batch);
@@ -157,7 +157,7 @@ inline void describe(BatchFootprintsJob& job, const TriangleBatch& batch, std::s
 
 // The footprints of a visibility buffer: of long runs by set-ups, of others in lanes, and by set-ups what these leave.
 template <class CompiledWhereCalled = void>
-void footprint_ids(const TriangleBatch& batch, std::span<const std::uint32_t> ids, const FragmentRect& rect,
+void footprint_ids(const TriangleBatch& batch, const std::span<const std::uint32_t>& ids, const FragmentRect& rect,
                    const TexelsPerUnit& texels, const Footprints& out) noexcept {
     Recent<FootprintSetup> recent;
     // Fills a run by a set-up: if `always`, also where nothing of it is lit; else that is cleared.
@@ -196,8 +196,9 @@ void footprint_ids(const TriangleBatch& batch, std::span<const std::uint32_t> id
 namespace TEXGEN_NAMESPACE_BUILD {
 
 template <class CompiledWhereCalled>
-void interpolate(const TriangleBatch& batch, std::span<const std::uint32_t> ids, FragmentRect rect,
-                 Texcoords out) noexcept {
+void interpolate(const TriangleBatch& batch, const std::span<const std::uint32_t>& ids, const FragmentRect& rect,
+                 const Texcoords& asked) noexcept {
+    Texcoords out = asked;
     const std::size_t count = detail::count_of(rect);
     if (count == 0) return;
     TEXGEN_ASSERT(ids.size() == count);
@@ -213,8 +214,9 @@ void interpolate(const TriangleBatch& batch, std::span<const std::uint32_t> ids,
 }
 
 template <class CompiledWhereCalled>
-void footprint(const TriangleBatch& batch, std::span<const std::uint32_t> ids, FragmentRect rect, TexelsPerUnit texels,
-               Footprints out) noexcept {
+void footprint(const TriangleBatch& batch, const std::span<const std::uint32_t>& ids, const FragmentRect& rect,
+               const TexelsPerUnit& texels, const Footprints& asked) noexcept {
+    Footprints out = asked;
     const std::size_t count = detail::count_of(rect);
     if (count == 0) return;
     TEXGEN_ASSERT(ids.size() == count);
