@@ -68,8 +68,8 @@ inline namespace TEXGEN_COMPILER {
 // for each in that of the projectors, whatever happened before: two scenes that see the same arrays have the same pairs
 // and the same matrices.
 // Nothing of the engine's is kept but copies. Memory is allocated only in an update, and only when the number of
-// objects, of projectors or of lit pairs exceeds all former ones; but a copy may allocate in its first updates, and
-// in update_eye(). noexcept.
+// objects, of projectors or of lit pairs exceeds all former ones; but a copy may allocate until its arrays have grown
+// again, and in update_eye(). noexcept.
 // Cost: an update in which nothing changed does nothing. Otherwise only pairs of which a part changed are tested,
 // eight bounds in the world at once, in trees over those of all objects and of the ones that changed: a changed
 // projector costs what its light is near to; any other costs one test, some 15 ns, for up to eight changed objects, and
