@@ -95,20 +95,22 @@ TEST_CASE("a polygon beyond one side leaves nothing, even where a corner touches
     CHECK(touching > 100);
 }
 
-TEST_CASE("an edge on a side leaves nothing of what is beyond it, whatever corners it has") {
+TEST_CASE("an edge on a side leaves nothing of what is beyond it, whatever corners it has and whatever else cuts it") {
     Random random(1105);
-    const TextureRegion region = texgen::whole_texture();
+    const TextureRegion region = texgen::rectangle_texture(640.0, 480.0);
     for (int side = 0; side < 4; ++side) {
         for (int corners = 1; corners <= 5; ++corners) {
             for (int i = 0; i < 100; ++i) {
                 const auto at = [&](double along, double beyond) {
-                    const double q = std::ldexp(1.0, random.integer(-2, 2));
+                    const double q =
+                        1.0 + random.integer(0, 1023) / 1024.0;  // of a side's product a float has all digits
                     const double across = side % 2 == 0 ? -beyond : 1.0 + beyond;
                     const glm::dvec2 st = side < 2 ? glm::dvec2(across, along) : glm::dvec2(along, across);
-                    return ClipVertex{random.vector4(1.0), glm::vec4(glm::dvec4(q * st.x, q * st.y, 0.5, q))};
+                    return ClipVertex{random.vector4(1.0),
+                                      glm::vec4(glm::dvec4(q * 640.0 * st.x, q * 480.0 * st.y, 0.5, q))};
                 };
                 Polygon polygon;
-                for (int k = 0; k < corners; ++k) polygon.push_back(at(0.125 + 0.125 * k, 0.0));
+                for (int k = 0; k < corners; ++k) polygon.push_back(at(-0.25 + 0.35 * k, 0.0));
                 polygon.push_back(at(0.625, 0.5));
                 polygon.push_back(at(0.125, 0.5));
                 std::rotate(polygon.begin(), polygon.begin() + random.integer(0, corners + 1), polygon.end());

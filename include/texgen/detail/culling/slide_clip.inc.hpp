@@ -217,19 +217,19 @@ inline std::size_t clip_to_slide(const std::span<const ClipVertex>& polygon, con
         out[i] = polygon[i];
     }
 
-    // Polygons beyond a limit of depth are dropped first: a cut at a side could round their r to within it.
-    std::size_t count = polygon.size();
-    for (std::size_t k = planes.without_depth; k < planes.size(); ++k) {
-        const detail::SlideDistance limit(planes[k]);
+    // What is beyond a plane, or only touches it, is dropped first: a cut at another could round it to within.
+    for (const detail::SlidePlane& plane : planes) {
+        const detail::SlideDistance side(plane);
         bool is_beyond = false, is_within = false;
-        for (std::size_t i = 0; i < count; ++i) {
-            const int sign = limit.sign(out[i]);
+        for (const ClipVertex& vertex : out.first(polygon.size())) {
+            const int sign = side.sign(vertex);
             is_beyond = is_beyond || sign < 0;
             is_within = is_within || sign > 0;
         }
         if (is_beyond && !is_within) return 0;
     }
 
+    std::size_t count = polygon.size();
     // q >= 0 comes first: it and the sides leave a cone, in which q = 0 only where s = t = 0.
     for (const detail::SlidePlane& plane : planes) {
         const detail::SlideDistance side(plane);
