@@ -1,7 +1,8 @@
 // What a user keeps in a struct, and hands to functions of his own by reference: each passes members of it on. GCC 12
 // takes a member that is passed by value out of a reference for unread (its bug 115033): linked with -flto it leaves out
-// what the caller has written there, so that no function of the library takes an aggregate by value. Every public
-// function that takes one is called; the light is a local variable, written anew for each call.
+// what the caller has written there, so that no function of the library takes an aggregate by value, which the
+// floors' check holds. Of the headers that take members of a light such functions are called; the light is a local
+// variable, written anew for each call.
 
 #include <cstddef>
 #include <cstdint>
