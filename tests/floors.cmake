@@ -178,6 +178,10 @@ foreach(header IN LISTS headers)
     if(code MATCHES "[(,][ \n]*(const )?(${aggregate}) +[a-z_]+ *([,)]|= [a-z_]+(\\(\\))?[,)])")
         complain("${header}: an aggregate by value in ${CMAKE_MATCH_0}")
     endif()
+    # clang++ 14 forgets a cast of an lvalue to volatile; a reference of that type it keeps.
+    if(code MATCHES "static_cast<(const )?volatile [^<>]+&>")
+        complain("${header}: ${CMAKE_MATCH_0} is no volatile read by clang++ 14")
+    endif()
     # What was given in float is widened by one function (see detail/arithmetic/widen.hpp); a cast of integers says so. Kernels load
     # their floats from arrays. What is converted without a cast, the build of every header alone refuses.
     if(NOT header MATCHES "widen\\.hpp$|^detail/(simd|kernels)/.*\\.inc\\.hpp$")

@@ -11,8 +11,8 @@
 
 #include "detail/matrices/required.hpp"
 
-// 0.4.35: 10000 major + 100 minor + patch.
-#define TEXGEN_VERSION 435
+// 0.4.36: 10000 major + 100 minor + patch.
+#define TEXGEN_VERSION 436
 
 namespace TEXGEN_NAMESPACE {
 

@@ -70,10 +70,11 @@ constexpr To bit_cast(const From& from) noexcept {
 }
 
 // Reads a number by a load of its own. Compilers load a number together with its neighbour where they can, and where
-// the two were stored one by one such a load waits for both stores.
+// the two were stored one by one such a load waits for both stores. By a name: clang++ 14 forgets a cast to volatile.
 template <class Number>
 Number read_alone(const Number& number) noexcept {
-    return static_cast<const volatile Number&>(number);
+    const volatile Number& alone = number;
+    return alone;
 }
 
 }  // namespace TEXGEN_DETAIL

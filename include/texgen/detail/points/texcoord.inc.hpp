@@ -124,8 +124,11 @@ inline namespace TEXGEN_BUILD {
 template <class Space>
 void project_each(const Positions<Space>& positions, std::size_t first, const PointJob& job,
                   const PointOutputs& out) noexcept {
-    const FormPair numerators(job.numerator[0], job.numerator[1]);
-    const PointForm q_form = job.q;
+    const auto alone = [](const PointForm& form) -> PointForm {
+        return {read_alone(form.x), read_alone(form.y), read_alone(form.z), read_alone(form.w)};
+    };
+    const FormPair numerators(alone(job.numerator[0]), alone(job.numerator[1]));
+    const PointForm q_form = alone(job.q);
     for (std::size_t i = first; i < positions.size(); ++i) {
         const std::optional<glm::vec2> divided = divide_point(numerators, q_form, widened(positions[i]));
         const glm::vec2 value = divided ? *divided : glm::vec2(0.0f);

@@ -58,11 +58,7 @@ struct Tile {
     Tile mirrored() const noexcept { return {y, x, height, width}; }
 };
 
-// A rectangle comes in two registers: GCC would spill those to load x and y at once, and the load wait for both stores.
-inline Tile tile_of(const FragmentRect& rect) noexcept {
-    const volatile int y = rect.y;
-    return {rect.x, y, rect.width, rect.height};
-}
+inline Tile tile_of(const FragmentRect& rect) noexcept { return {rect.x, read_alone(rect.y), rect.width, rect.height}; }
 
 // How many fragments a rectangle has: where std::size_t cannot say it, more than any array holds. An empty one has a
 // product of 0 and not a branch: GCC 15 and 16, at -O3 for AVX-512, lose terms of a sum that leaves products out.

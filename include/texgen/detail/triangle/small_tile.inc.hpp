@@ -7,13 +7,13 @@ namespace TEXGEN_DETAIL_BUILD {
 struct SmallPlace {
     double x, y, reach_x, reach_y, right, bottom;
 
-    SmallPlace(const glm::dvec2& from_a, const Tile& rect) noexcept
+    SmallPlace(const glm::dvec2& from_a, double width, double height) noexcept
         : x(from_a.x),
           y(from_a.y),
-          reach_x(std::fabs(x) + rect.width),
-          reach_y(std::fabs(y) + read_alone(rect.height)),
-          right(rect.width - 1.0),
-          bottom(read_alone(rect.height) - 1.0) {}
+          reach_x(std::fabs(x) + width),
+          reach_y(std::fabs(y) + height),
+          right(width - 1.0),
+          bottom(height - 1.0) {}
 };
 
 // A linear function over the tile: at its first fragment, its steps to the last column and row, and a bound on its
@@ -24,7 +24,7 @@ struct SmallFunction {
     Number base, right, bottom, error;
 
     SmallFunction(const PlaneOf<Number>& plane, const SmallPlace& place) noexcept
-        : base(plane.value.base + (plane.value.dx * place.x + plane.value.dy * place.y)),
+        : base(plane.value.base + plane.value.dx * place.x + plane.value.dy * place.y),
           right(plane.value.dx * place.right),
           bottom(plane.value.dy * place.bottom),
           error((plane.magnitude.base + plane.magnitude.dx * place.reach_x + plane.magnitude.dy * place.reach_y) *
@@ -167,7 +167,8 @@ TEXGEN_APART void fill_small_alone(const TriangleFunctions& triangle, const Tile
 template <class CompiledWhereCalled = void>
 TEXGEN_APART SmallAnswer fill_small(const TriangleFunctions& triangle, const Tile& rect,
                                     const Texcoords& out) noexcept {
-    const SmallPlace place(triangle.planes.from_a({rect.x, read_alone(rect.y), rect.width, rect.height}), rect);
+    const SmallPlace place(triangle.planes.from_a({rect.x, read_alone(rect.y), rect.width, rect.height}), rect.width,
+                           read_alone(rect.height));
     const SmallFunction<Double2> f(triangle.st, place);
     const SmallDivisor q(triangle.q, place);
     const SmallAnswer answer = ask(triangle.lit, triangle.tolerance, f, q);
@@ -177,22 +178,24 @@ TEXGEN_APART SmallAnswer fill_small(const TriangleFunctions& triangle, const Til
     const bool needs_mask = !is_lit && !out.lit.empty();
     // For few fragments s and t give the mask sooner than spans do, even if they have no outputs.
     float scratch[2][TileJob::unit_size];
-    Texcoords both = out;
+    float* s = out.s.data();
+    float* t = out.t.data();
     if (needs_mask && rect.count() <= TileJob::unit_size) {
-        const auto count = static_cast<std::size_t>(rect.count());
-        if (out.s.empty()) both.s = {scratch[0], count};
-        if (out.t.empty()) both.t = {scratch[1], count};
+        if (s == nullptr) s = scratch[0];
+        if (t == nullptr) t = scratch[1];
     }
-    if (!both.s.empty() && !both.t.empty()) {
-        tile.out[0] = both.s.data();
-        tile.out[1] = both.t.data();
+    if (s != nullptr && t != nullptr) {
+        tile.out[0] = s;
+        tile.out[1] = t;
         tile.lit = needs_mask ? out.lit.data() : nullptr;
         if (tile.lit != nullptr) triangle.lit.copy_to(tile.min, tile.max);
         const SmallDoubt doubt = divide_small(triangle, rect, triangle.st.value, f, q, tile);
         if (doubt == SmallDoubt::of_all) return SmallAnswer::doubt;
         if (doubt == SmallDoubt::of_unit) {
             OnDemand<CloseRamps> close;
-            TileInterpolator<>(triangle, triangle.st, rect, close, 0, 1, both).interpolate_from_doubt(rect);
+            const auto count = static_cast<std::size_t>(rect.count());
+            TileInterpolator<>(triangle, triangle.st, rect, close, 0, 1, {{s, count}, {t, count}, {}, out.lit})
+                .interpolate_from_doubt(rect);
         }
     } else {
         if (needs_mask) return SmallAnswer::doubt;
