@@ -130,6 +130,12 @@ struct JacobianBlock {
     float dx[2][exact_block], dy[2][exact_block];
     float determinant[exact_block], unit[2][exact_block];
 
+    // Vectors read beyond the last fragment.
+    void clear() noexcept {
+        *this = {};
+        for (float& value : determinant) value = 1.0f;
+    }
+
     // Returns the lanes that floats do not hold.
     TEXGEN_INLINE LongWords put(std::size_t n, const FootprintLanes& functions, const JacobianLanes& of,
                                 const BatchFootprintsJob& job) noexcept {
@@ -210,8 +216,8 @@ Undecided fill_batch_footprints(const BatchFootprintsJob& original, std::size_t 
     FootprintLanes known;
     Words known_ids{};
     bool has_known = false;
-    JacobianBlock block{};  // vectors read beyond the last fragment
-    for (float& determinant : block.determinant) determinant = 1.0f;
+    JacobianBlock block;
+    if (filters) block.clear();
     for (std::size_t n = first; n < job.count;) {
         const std::size_t begin = n;
         const std::size_t end = job.count - begin < exact_block ? job.count : begin + exact_block;

@@ -63,7 +63,7 @@ private:
             return true;
         }
         const double largest = larger(numerator[0] * texels_.s, numerator[1] * texels_.t);
-        FootprintJob job{};
+        FootprintJob job;
         take_arrays(job, out_, offset_in(rect_, tile.x, tile.y));
         const bool filters = job.are_filtered();
         if (!(larger(numerator[0], numerator[1]) < 0x1p500) || !(at.largest_q < 0x1p200) || !(at.least_q > 0x1p-200))

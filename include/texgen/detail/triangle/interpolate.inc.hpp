@@ -64,7 +64,7 @@ template <class CompiledWhereCalled = void>
 TEXGEN_APART Work interpolate_by_plan(const TriangleFunctions& triangle, const Tile& tile,
                                       const Texcoords& out) noexcept {
     if (tile.is_column()) return interpolate_by_plan(triangle.mirrored(), tile.mirrored(), out);
-    TileSurvey found = survey(triangle, tile);
+    TileSurvey found = survey_rows(triangle, tile);
     const Plan& plan = found.plan;
     if (plan.work == Work::nothing) {
         for (float& lit : out.lit) lit = 0.0f;

@@ -133,9 +133,8 @@ inline void choose_plan(const TriangleFunctions& triangle, const Tile& tile, con
     if (has_shape_for_float(tile.width, tile.height)) plan.work = without_chunks;  // whether or not floats serve
 }
 
-// Surveys a tile; a column as the row of the mirrored triangle that interpolate.inc.hpp makes of it.
-TEXGEN_APART inline TileSurvey survey(const TriangleFunctions& triangle, const Tile& tile) noexcept {
-    if (tile.is_column()) return survey(triangle.mirrored(), tile.mirrored());
+// Surveys a tile that is no column. What it returns is made in its place.
+TEXGEN_APART inline TileSurvey survey_rows(const TriangleFunctions& triangle, const Tile& tile) noexcept {
     TileSurvey found(triangle, tile);
     for (;;) {
         choose_plan(triangle, tile, found.at, found.plan);
@@ -145,6 +144,11 @@ TEXGEN_APART inline TileSurvey survey(const TriangleFunctions& triangle, const T
         found.close.make(ClosePlanes(triangle.planes, tile).ramps(0, 1));
         take_corners(found.at, *found.close);
     }
+}
+
+// Surveys a tile; a column as the row of the mirrored triangle that interpolate.inc.hpp makes of it.
+inline TileSurvey survey(const TriangleFunctions& triangle, const Tile& tile) noexcept {
+    return tile.is_column() ? survey_rows(triangle.mirrored(), tile.mirrored()) : survey_rows(triangle, tile);
 }
 
 }  // namespace TEXGEN_DETAIL_BUILD

@@ -27,6 +27,8 @@ private:
     struct Known {
         std::uint32_t id = no_triangle;
         std::optional<Made> made;
+
+        Known() noexcept {}
     };
     Known known_[size];
 };
