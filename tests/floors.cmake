@@ -171,7 +171,7 @@ foreach(header IN LISTS headers)
     endif()
     # GCC 12 takes for unread what an aggregate that is passed by value out of a reference holds, and leaves out what was
     # written there (its bug 115033; see one_light.cpp, and array_of() in outputs.inc.hpp). So aggregates are taken by reference.
-    string(JOIN "|" aggregate "std::span<[^<>()]+>" "glm::d?(vec|mat)[234]" "Positions<[A-Za-z]+>" "Transform<[^<>()]+>"
+    string(JOIN "|" aggregate "std::span<[^<>()]+>" "glm::d?(vec|mat)[234]" "Positions?<[A-Za-z]+>" "Transform<[^<>()]+>"
         TextureRegion Conventions Tolerance FragmentRect Viewport TexelsPerUnit Texcoords Footprints HomogeneousTexcoords
         Projector Aim Segment Triangle Box Sphere "[A-Z][a-z]+Lens" LensFacts Factors Closeness TileJob::Unit)
     string(REGEX REPLACE "//[^\n]*" "" code "${text}")

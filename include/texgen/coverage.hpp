@@ -27,7 +27,8 @@ namespace TEXGEN_NAMESPACE_BUILD {
 // batch answers as the single question does. No allocation, noexcept; what is prepared is never changed, so threads may
 // share it. `partial` is also said
 //   of a box      that touches a plane through an edge or through the apex of the projector's pyramid within 2^-47 of
-//                 the terms that the plane's value is the sum of, the largest coefficient for all. (The pyramid's own
+//                 the terms that the plane's value is the sum of, the largest coefficient for all; where a side of
+//                 the box is infinite, or one of 1e30, any plane through an edge may be so near. (The pyramid's own
 //                 planes, with its sides at the floats next to the region's, next to 0 the normal ones, are decided
 //                 exactly, as are the near and the far plane of a depth.)
 //   of a box      about q = 0 where nothing is lit at all: no r in front is in the depth, or no s and t go together

@@ -86,7 +86,7 @@ inline namespace TEXGEN_BUILD {
 // For Work::nothing lit is 0 and s, t, r are not written. No allocation, noexcept.
 // Shapes: each output has width * height floats, row-major, or none (asserted). Fragments outside the triangle get the
 // values of its plane; where the interpolated 1/w is not positive nothing is promised.
-// Bad input: an empty rectangle does nothing.
+// Bad input: an empty rectangle does nothing, whatever the outputs.
 // Source: OpenGL compatibility specification, polygon rasterization; Everitt, Projective Texture Mapping, section 2.
 template <class CompiledWhereCalled = void>
 Work interpolate(const TriangleSetup& setup, const FragmentRect& rect, const Texcoords& out) noexcept;

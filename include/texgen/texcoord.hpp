@@ -225,7 +225,7 @@ void project(const Transform<Texture, Space>& texture_from_space, const Position
 // Source: as above.
 template <class Space>
 std::optional<glm::vec2> project(const Transform<Texture, Space>& texture_from_space,
-                                 Position<Space> position) noexcept;
+                                 const Position<Space>& position) noexcept;
 
 }  // namespace TEXGEN_BUILD
 

@@ -120,7 +120,7 @@ glm::dmat4 inverse_error_bound(const Transform<To, From>& transform, const Trans
 // Guarantee: exact transposition of the rotation; the translation -R^T t within 1 double ulp of its exact value for
 // that rotation, while its terms do not cancel below 2^-50 of the largest. No allocation, noexcept.
 // Precondition, asserted to 1e-3: the transform is rigid (an orthonormal rotation and a translation). The last row is
-// not read.
+// read for that alone.
 // Bad input: a NaN or an infinity is not asserted, and stays in what is made of it.
 template <class To, class From>
 Transform<From, To> inverse_rigid(const Transform<To, From>& transform) noexcept;

@@ -328,7 +328,7 @@ void project(const Transform<Texture, Space>& texture_from_space, const Position
 
 template <class Space>
 std::optional<glm::vec2> project(const Transform<Texture, Space>& texture_from_space,
-                                 Position<Space> position) noexcept {
+                                 const Position<Space>& position) noexcept {
     const glm::dmat4& matrix = texture_from_space.matrix();
     return detail::divide_point({detail::form(matrix, 0), detail::form(matrix, 1)}, detail::form(matrix, 3),
                                 detail::widened(position.point));
