@@ -52,6 +52,7 @@ CULLING = [
         ("a matrix of any size is usable", "        if (largest > 0.0 && !(largest >= 0x1p-1000 && largest < 0x1p1000)) return false;\n",
          "", "coverage_test"),
         ("a cofactor that underflows is 0", "matrix * 0x1p200,", "matrix,", "coverage_test"),
+        ("a sphere's slope is one", "1.0 / larger(slope(k), 0x1p-400)", "1.0", "coverage_test"),
         ("the sign of a side's weight", "is_finite ? -bound : bound", "is_finite ? bound : bound", "coverage_test"),
         ("an infinite side is at zero", "is_finite ? sign : 0.0", "sign", "coverage_test"),
         ("the far limit of depth is the near one", "take(q + 1, *region.depth())",

@@ -56,7 +56,7 @@ template <class Space>
 LitVolume<Space>::LitVolume(const Transform<Texture, Space>& texture_from_space, const TextureRegion& region) noexcept
     : forms_(texture_from_space.matrix(), region, detail::chosen<detail::FormKernels>()),
       float_forms_(forms_.in_float(detail::chosen<detail::FloatFormKernels>())),
-      unit_forms_(forms_.unit(detail::chosen<detail::UnitFormKernels>())),
+      unit_forms_(forms_.unit()),
       separating_(forms_.separating(detail::chosen<detail::SeparatingPlaneKernels>())) {}
 
 template <class Space>
@@ -94,8 +94,7 @@ Coverage coverage(const Transform<Texture, Space>& texture_from_space, const Tex
                   const Sphere& sphere) noexcept {
     const detail::LitForms forms(texture_from_space.matrix(), region, detail::chosen<detail::FormKernels>());
     return detail::coverage_of(
-        forms, forms.lanes, [&](std::size_t k) { return forms.slope(k); },
-        [&] { return forms.unit(detail::chosen<detail::UnitFormKernels>()); }, sphere);
+        forms, forms.lanes, [&](std::size_t k) { return forms.slope(k); }, [&] { return forms.unit(); }, sphere);
 }
 template <class Space>
 void coverage(const Transform<Texture, Space>& texture_from_space, const TextureRegion& region,
@@ -114,8 +113,8 @@ template <class Space>
 void coverage(const Transform<Texture, Space>& texture_from_space, const TextureRegion& region,
               const std::span<const Sphere>& spheres, const std::span<Coverage>& out) noexcept {
     const detail::LitForms forms(texture_from_space.matrix(), region, detail::chosen<detail::FormKernels>());
-    detail::coverage_of_many(forms, forms.in_float(detail::chosen<detail::FloatFormKernels>()),
-                             forms.unit(detail::chosen<detail::UnitFormKernels>()), spheres, out);
+    detail::coverage_of_many(forms, forms.in_float(detail::chosen<detail::FloatFormKernels>()), forms.unit(), spheres,
+                             out);
 }
 
 }  // namespace TEXGEN_NAMESPACE_BUILD

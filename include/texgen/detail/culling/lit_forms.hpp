@@ -69,11 +69,20 @@ struct LitForms {
     }
 
     // The forms with |a| near 1, for spheres.
-    UnitForms unit(const UnitFormKernels& kernels) const noexcept {
+    UnitForms unit() const noexcept {
         UnitForms result;
-        double slopes[form_lanes];
-        for (std::size_t k = 0; k < form_lanes; ++k) slopes[k] = slope(k);
-        kernels.make(lanes, slopes, result);
+        double scale[form_lanes];
+        for (std::size_t k = 0; k < form_lanes; ++k) scale[k] = 1.0 / larger(slope(k), 0x1p-400);
+        const auto take = [&](const double(&from)[form_lanes], double(&to)[form_lanes]) {
+            for (std::size_t k = 0; k < form_lanes; ++k) to[k] = from[k] * scale[k];
+        };
+        for (std::size_t j = 0; j < 3; ++j) take(lanes.a[j], result.a[j]);
+        take(lanes.d, result.d);
+        take(lanes.narrowing, result.narrowing);
+        take(lanes.error_a, result.error_a);
+        take(lanes.error_d, result.error_d);
+        result.largest_q = lanes.largest_q;
+        result.last_q = lanes.last_q;
         return result;
     }
 

@@ -45,21 +45,6 @@ void weigh_forms(const glm::dmat4& matrix, const FormWeights& weights, FormLanes
     }
 }
 
-template <class CompiledWhereCalled = void>
-void make_unit_forms(const FormLanes& forms, const double* slopes, UnitForms& result) noexcept {
-    for (std::size_t i = 0; i < form_lanes; i += at_once) {
-        const Doubles scale = 1.0 / maximum(load<Doubles>(slopes + i), Doubles{} + 0x1p-400);
-        const auto take = [&](const double* from, double* to) { store(to + i, load<Doubles>(from + i) * scale); };
-        for (std::size_t j = 0; j < 3; ++j) take(forms.a[j], result.a[j]);
-        take(forms.d, result.d);
-        take(forms.narrowing, result.narrowing);
-        take(forms.error_a, result.error_a);
-        take(forms.error_d, result.error_d);
-    }
-    result.largest_q = forms.largest_q;
-    result.last_q = forms.last_q;
-}
-
 // Scales forms by powers of two so that one bound serves all: 7 u (max|a_j| size + |d|) with u = 2^-24, see classes(),
 // and 0.1 u for the bound's own roundings; 8.1 leaves room for one more. The change over a sphere, whose slope may be
 // sqrt(3) max|a_j|, errs by at most 3 u of it, less than 8.1 u of four radii.

@@ -90,10 +90,6 @@ inline constexpr FloatFormKernels kernel_table<FloatFormKernels, CompiledWhereCa
     .round = round_forms<CompiledWhereCalled>};
 
 template <class CompiledWhereCalled>
-inline constexpr UnitFormKernels kernel_table<UnitFormKernels, CompiledWhereCalled>{
-    .make = make_unit_forms<CompiledWhereCalled>};
-
-template <class CompiledWhereCalled>
 inline constexpr BoxKernels kernel_table<BoxKernels, CompiledWhereCalled>{
     .classify = classify_box<CompiledWhereCalled>,
     .decide = decide_box<CompiledWhereCalled>,

@@ -110,11 +110,6 @@ struct FloatFormKernels {
     void (*round)(const FormLanes& forms, std::size_t count, FloatForms& result) noexcept;
 };
 
-// Forms for spheres.
-struct UnitFormKernels {
-    void (*make)(const FormLanes& forms, const double* slopes, UnitForms& result) noexcept;
-};
-
 // Further forms that are >= 0 wherever all of a slide's are, each a combination of those with weights that are exactly
 // >= 0. Where one of them is negative over all of a convex body, nothing of the body is lit. The matrix is so large
 // that no product of two elements underflows, see LitForms::separating().

@@ -320,7 +320,6 @@ TEXGEN_EXTERN template const MaskKernels& chosen<MaskKernels>() noexcept;
 TEXGEN_EXTERN template const FootprintKernels& chosen<FootprintKernels>() noexcept;
 TEXGEN_EXTERN template const FormKernels& chosen<FormKernels>() noexcept;
 TEXGEN_EXTERN template const FloatFormKernels& chosen<FloatFormKernels>() noexcept;
-TEXGEN_EXTERN template const UnitFormKernels& chosen<UnitFormKernels>() noexcept;
 TEXGEN_EXTERN template const SeparatingPlaneKernels& chosen<SeparatingPlaneKernels>() noexcept;
 TEXGEN_EXTERN template const BoxKernels& chosen<BoxKernels>() noexcept;
 TEXGEN_EXTERN template const BoxBatchKernels& chosen<BoxBatchKernels>() noexcept;
