@@ -9,30 +9,11 @@ inline BatchPlanes planes_behind() noexcept {
     return result;
 }
 
-// The functions of a triangle of which the kernel leaves open whether it has an area, or is refused.
-inline BatchPlanes batch_planes(const Triangle& triangle) noexcept {
+// Those of a triangle of which the kernel leaves open whether it has an area, or is refused: if it is not, all of it is
+// in doubt.
+inline BatchPlanes planes_in_doubt(const Triangle& triangle) noexcept {
     BatchPlanes result = planes_behind();
-    const TrianglePlanes planes(triangle);
-    if (!planes.is_usable()) return result;
-    const auto reach_of = [&](glm::length_t axis) {
-        return larger(std::fabs(planes.to_b()[axis]), std::fabs(planes.to_c()[axis])) + BatchPlanes::margin;
-    };
-    const double reach_x = reach_of(0);
-    const double reach_y = reach_of(1);
-    for (std::size_t k = 0; k < 4; ++k) {
-        const Plane plane = planes.plane(static_cast<glm::length_t>(k));
-        double* const function = &result.value[BatchPlanes::of_coordinate[k]];
-        function[0] = plane.value.base;
-        function[1] = plane.value.dx;
-        function[2] = plane.value.dy;
-        function[3] = batch_plane_error *
-                      larger(plane.magnitude.base, larger(plane.magnitude.dx * reach_x, plane.magnitude.dy * reach_y));
-    }
-    const glm::dvec2 origin = planes.corner(0);
-    result.value[BatchPlanes::origin] = origin.x;
-    result.value[BatchPlanes::origin + 1] = origin.y;
-    result.value[BatchPlanes::per_reach] = 1.0 / reach_x;
-    result.value[BatchPlanes::per_reach + 1] = 1.0 / reach_y;
+    if (TrianglePlanes(triangle).is_usable()) result.value[BatchPlanes::q + 3] = 0x1p400;
     return result;
 }
 
@@ -120,7 +101,7 @@ void TriangleBatch::set_up() noexcept {
     for (std::size_t first = 0; first < size_; first += batch_block) {
         unsigned unknown = kernels.set_up(&triangles_[first].a.window.x, &planes_[first]);
         for (std::size_t i = first; unknown != 0 && i < size_; unknown >>= 1, ++i)
-            if ((unknown & 1u) != 0) planes_[i] = detail::batch_planes(triangles_[i]);
+            if ((unknown & 1u) != 0) planes_[i] = detail::planes_in_doubt(triangles_[i]);
     }
     planes_[size_] = detail::planes_behind();
 }
