@@ -178,7 +178,11 @@ TEST_CASE("the bounds of forms, of mixtures and of planes in double cover their 
         REQUIRE(planes.is_usable());
         const std::int64_t x = random.integer(-100, 100), y = random.integer(-100, 100);
         // Both are known up to the same positive factor: s / q of one is that of the other, and so is s q' - s' q = 0.
-        const texgen::detail::Bounded s = planes.at(planes.plane(0), x, y), q = planes.at(planes.plane(3), x, y);
+        const auto plane = [&](glm::length_t coordinate) -> texgen::detail::Plane {
+            const auto [value, magnitude] = planes.plane_twice(coordinate);
+            return {{value.base[0], value.dx[0], value.dy[0]}, {magnitude.base[0], magnitude.dx[0], magnitude.dy[0]}};
+        };
+        const texgen::detail::Bounded s = planes.at(plane(0), x, y), q = planes.at(plane(3), x, y);
         const support::Homogeneous exact = support::ExactTriangle(triangle).at(x, y);
         const support::Dyadic cross = support::Dyadic(s.value) * exact.q - support::Dyadic(q.value) * exact.s;
         const double room = s.error * std::fabs(exact.q.estimate()) + q.error * std::fabs(exact.s.estimate());

@@ -143,17 +143,13 @@ public:
                orientation_ != 0 && are_finite();
     }
 
-    // The plane of one coordinate, 0 to 3 for s, t, r, q; and in both lanes.
-    TEXGEN_APART Plane plane(glm::length_t coordinate) const noexcept {
-        const auto corner = [&](const WindowVertex& vertex) { return widened(vertex.strq[coordinate]); };
-        return plane_through(corner(triangle_.a), corner(triangle_.b), corner(triangle_.c));
-    }
+    // The plane of one coordinate, 0 to 3 for s, t, r, q, in both lanes.
     TEXGEN_APART PlaneOf<Double2> plane_twice(glm::length_t coordinate) const noexcept {
-        const Plane once = plane(coordinate);
-        const auto twice = [](const Ramp& ramp) -> RampOf<Double2> {
-            return {double2_of(ramp.base, ramp.base), double2_of(ramp.dx, ramp.dx), double2_of(ramp.dy, ramp.dy)};
+        const auto corner = [&](const WindowVertex& vertex) {
+            const double value = widened(vertex.strq[coordinate]);
+            return double2_of(value, value);
         };
-        return {twice(once.value), twice(once.magnitude)};
+        return plane_through(corner(triangle_.a), corner(triangle_.b), corner(triangle_.c));
     }
 
     // The planes of s and t, and that of q.
