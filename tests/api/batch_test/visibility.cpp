@@ -119,8 +119,14 @@ TEST_CASE("long runs of one id in a row are found whole, as are rows that are on
             for (int run = random.integer(1, longest); run > 0 && i < ids.size(); --run) ids[i++] = id;
         }
         std::vector<std::pair<std::size_t, std::size_t>> found;
-        texgen::detail::for_each_long_run(
-            ids, width, [&](std::size_t first, std::size_t count) { found.emplace_back(first, count); });
+        std::size_t done = 0;
+        const auto of_one = [&](std::size_t first, std::size_t count) {
+            REQUIRE(std::exchange(done, first + count) == first);
+            found.emplace_back(first, count);
+        };
+        const auto of_any = [&](std::size_t begin, std::size_t end) { REQUIRE(std::exchange(done, end) == begin); };
+        texgen::detail::for_each_stretch(ids, width, of_one, of_any);
+        REQUIRE(done == ids.size());
         REQUIRE_MESSAGE(found == long_runs(ids, width), "width ", width, ", round ", round);
         runs += static_cast<int>(found.size());
         for (const auto& [first, count] : found) of_rows += count > width;

@@ -158,7 +158,7 @@ TRIANGLE = [
         ("a long run begins where its probe does", "while (is_probe && begin > row && is_here(begin - 1)) --begin;", "", "batch_test"),
         ("a long run without a triangle is none", "if (id >= batch.size()) return clear(here);\n            interpolate_apart",
          "interpolate_apart", "batch_test"),
-        ("rows that are no run are done together", "if (end - begin == width && width >= long_run)", "if (width >= long_run)", "batch_test"),
+        ("rows that are no run are done together", "            if (end - begin == width)\n", "", "batch_test"),
         ("rows that are one are done as one", "static_cast<int>((count - 1) / width) + 1};", "1};", "batch_test"),
         ("a footprint in doubt may be dark", "fill_run(id, part, first, true);", "fill_run(id, part, first, false);", "footprint_test")),
     *of("detail/triangle/slopes.hpp",

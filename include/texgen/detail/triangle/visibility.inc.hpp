@@ -43,11 +43,13 @@ inline Tile part_of(const FragmentRect& rect, std::size_t first, std::size_t cou
 // A run of at least so many fragments of one id in a row has a set-up of its own.
 inline constexpr std::size_t long_run = 64;
 
-// Calls run(first, count) for the long runs of one id within a row, and once for rows that are of one id together. A
-// long run holds a whole probe, wherever it begins, and as much beside it, half of that on one side: those few fragments
-// are looked at first.
-void for_each_long_run(const std::span<const std::uint32_t>& ids, std::size_t width, const auto& run) noexcept {
+// Calls of_one(first, count) for the long runs of one id within a row, and once for rows that are of one id together,
+// and of_any(begin, end) for what is between them. A long run holds a whole probe, wherever it begins, and as much
+// beside it, half of that on one side: those few fragments are looked at first.
+void for_each_stretch(const std::span<const std::uint32_t>& ids, std::size_t width, const auto& of_one,
+                      const auto& of_any) noexcept {
     constexpr std::size_t probe = long_run / 2;
+    std::size_t done = 0;
     const auto are_as_before = [&](std::size_t first, std::size_t count) {
         return std::memcmp(&ids[first - 1], &ids[first], count * sizeof ids[0]) == 0;
     };
@@ -69,12 +71,16 @@ void for_each_long_run(const std::span<const std::uint32_t>& ids, std::size_t wi
             for (; step >= probe; step /= 2)
                 if (end + step <= end_of_row && are_as_before(end, step)) end += step;
             while (is_here(end)) ++end;
-            if (end - begin == width && width >= long_run)
+            if (end - begin == width)
                 for (; end + width <= ids.size() && are_as_before(end, width); row += width) end += width;
-            if (end - begin >= long_run) run(begin, end - begin);
             at = end;
+            if (end - begin < long_run) continue;
+            if (done < begin) of_any(done, begin);
+            done = end;
+            of_one(begin, end - begin);
         }
     }
+    if (done < ids.size()) of_any(done, ids.size());
 }
 
 // Calls run(triangle, row part, first fragment) for the runs of one id in a row among `count` fragments from `first`
@@ -113,18 +119,6 @@ void interpolate_ids(const TriangleBatch& batch, FragmentsJob& job, const Fragme
         interpolate_apart(set_up(batch, id), part, subspans(out, first, static_cast<std::size_t>(part.width)));
     };
     fill_buffer(chosen<BatchKernels>().divide_fragments, job, rect, begin, end, run);
-}
-
-// Calls of_one(first, count) for the long runs of one id in a row, and of_any(begin, end) for what is between them.
-void for_each_stretch(const std::span<const std::uint32_t>& ids, std::size_t width, const auto& of_one,
-                      const auto& of_any) noexcept {
-    std::size_t done = 0;
-    for_each_long_run(ids, width, [&](std::size_t first, std::size_t length) {
-        if (done < first) of_any(done, first);
-        done = first + length;
-        of_one(first, length);
-    });
-    if (done < ids.size()) of_any(done, ids.size());
 }
 
 // Interpolates a buffer that may have long runs, which go to set-ups. Apart, so that buffers without them need no room
