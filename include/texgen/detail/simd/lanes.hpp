@@ -281,24 +281,19 @@ namespace TEXGEN_DETAIL_BUILD {
 namespace of_flags = TEXGEN_FLAGS(flags_);
 
 template <class Table>
-const Table& choose() noexcept {
-#ifdef TEXGEN_DISPATCHES
-    __builtin_cpu_init();
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq") &&
-        __builtin_cpu_supports("avx512bw"))
-        return avx512::kernel_table<Table>;
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return avx2::kernel_table<Table>;
-#endif
-    return of_flags::kernel_table<Table>;
-}
-
-template <class Table>
 const Table& chosen() noexcept {
 #ifdef TEXGEN_DISPATCHES
-    static const Table& table = choose<Table>();
+    static const Table& table = []() -> const Table& {
+        __builtin_cpu_init();
+        if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+            __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw"))
+            return avx512::kernel_table<Table>;
+        if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return avx2::kernel_table<Table>;
+        return of_flags::kernel_table<Table>;
+    }();
     return table;
 #else
-    return choose<Table>();
+    return of_flags::kernel_table<Table>;
 #endif
 }
 
