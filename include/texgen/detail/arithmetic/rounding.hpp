@@ -132,19 +132,15 @@ inline DoubleDouble quick_two_sum(double a, double b) noexcept {
     return {sum, b - (sum - a)};
 }
 
-// a b, rounded. It is a fused instruction where there is one, because GCC at -O3 may copy a plain product, and fuse one
-// copy with a sum: that sum would have the exact product, and its error would be taken from the rounded one.
-inline double rounded_product(double a, double b) noexcept {
-#ifdef __FP_FAST_FMA
-    return std::fma(a, b, -0.0);
-#else
-    return a * b;
-#endif
-}
-
-// Exactly a * b where neither the product nor its last bit leaves the range of double.
+// Exactly a * b where neither the product nor its last bit leaves the range of double. The product is a fused
+// instruction where there is one, because GCC at -O3 may copy a plain product, and fuse one copy with a sum: that sum
+// would have the exact product, and its error would be taken from the rounded one.
 inline DoubleDouble two_product(double a, double b) noexcept {
-    const double product = rounded_product(a, b);
+#ifdef __FP_FAST_FMA
+    const double product = std::fma(a, b, -0.0);
+#else
+    const double product = a * b;
+#endif
     return {product, std::fma(a, b, -product)};
 }
 
