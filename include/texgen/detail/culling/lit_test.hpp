@@ -42,7 +42,7 @@ struct LitTest {
     float min[2], max[2];
     // Whether the four sides of s and t are finite, and no further apart than those of the largest textures.
     bool is_narrow, has_depth;
-    float r_min = 0.0f, r_max = 0.0f;
+    float r_min = 0.0f, r_max = 0.0f;  // of a depth
 
     explicit LitTest(const TextureRegion& region) noexcept
         : min{float_at_least((region.min)().x), float_at_least((region.min)().y)},
@@ -54,9 +54,6 @@ struct LitTest {
         r_min = float_at_least(region.depth()->x);
         r_max = -float_at_least(-region.depth()->y);
     }
-
-    // Whether s and t are lit, as 1 or 0. Where there is a depth, r has to be in [r_min, r_max] as well.
-    float operator()(float s, float t) const noexcept { return is_inside(s, t, min, max) ? 1.0f : 0.0f; }
 
     // The bounds of s (0) and of t (1).
     double least(std::size_t coordinate) const noexcept { return widened(read_alone(min[coordinate])); }

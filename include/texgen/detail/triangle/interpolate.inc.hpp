@@ -103,7 +103,8 @@ TEXGEN_INLINE Work interpolate_tile(const TriangleSetup& setup, const Tile& tile
     }
     if (answer == SmallAnswer::doubt) return interpolate_by_plan(triangle, tile, out);
     if (depth != Coverage::inside) darken_beyond_depth(triangle, tile, out);
-    return work_of(triangle, answer == SmallAnswer::lit && depth == Coverage::inside);
+    const bool is_lit = answer == SmallAnswer::lit && depth == Coverage::inside;
+    return is_constant(triangle.q.value) ? Work::affine : is_lit ? Work::divide : Work::divide_and_test;
 }
 
 }  // namespace TEXGEN_DETAIL_BUILD

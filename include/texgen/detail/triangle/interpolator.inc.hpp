@@ -317,8 +317,7 @@ private:
         const bool touches = refused.x_begin == job.filled.x_end || refused.x_end == job.filled.x_begin;
         if (rest.width < tile.width && (job.filled.x_end == 0 || touches)) {
             rest.height = tile.height - refused.y_begin;
-            const bool is_first = job.filled.x_end == 0 || refused.x_begin < job.filled.x_begin;
-            if (is_first) job.filled.x_begin = refused.x_begin;
+            if (job.filled.x_end == 0 || refused.x_begin < job.filled.x_begin) job.filled.x_begin = refused.x_begin;
             if (refused.x_end > job.filled.x_end) job.filled.x_end = refused.x_end;
         }
         fill(rest, job.chunk - 1);
@@ -344,7 +343,8 @@ private:
             if (in_front) value[k] = nearest_quotient(exact.function(coordinate_[k]), q);
             if (!output_[k].empty()) output_[k][offset(x, y)] = value[k];
         }
-        if (!lit_.empty()) lit_[offset(x, y)] = in_front ? triangle_.lit(value[0], value[1]) : 0.0f;
+        const bool is_lit = in_front && is_inside(value[0], value[1], triangle_.lit.min, triangle_.lit.max);
+        if (!lit_.empty()) lit_[offset(x, y)] = is_lit ? 1.0f : 0.0f;
     }
 
     void clear(const Tile& tile) noexcept {

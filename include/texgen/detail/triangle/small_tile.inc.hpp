@@ -207,8 +207,4 @@ TEXGEN_APART SmallAnswer fill_small(const TriangleFunctions& triangle, const Til
     return answer;
 }
 
-inline Work work_of(const TriangleFunctions& triangle, bool is_lit) noexcept {
-    return is_constant(triangle.q.value) ? Work::affine : is_lit ? Work::divide : Work::divide_and_test;
-}
-
 }  // namespace TEXGEN_DETAIL_BUILD
