@@ -16,9 +16,9 @@ inline void take_arrays(FootprintArrays& to, const Footprints& out, std::size_t 
 template <class CompiledWhereCalled = void>
 class TileFootprinter {
 public:
-    TileFootprinter(const FootprintKernels& kernels, const FootprintFunctions& functions, const TexelsPerUnit& texels,
-                    const Tile& rect, const Footprints& out) noexcept
-        : kernels_(kernels), functions_(functions), texels_(texels), rect_(rect), out_(out) {}
+    TileFootprinter(const FootprintFunctions& functions, const TexelsPerUnit& texels, const Tile& rect,
+                    const Footprints& out) noexcept
+        : functions_(functions), texels_(texels), rect_(rect), out_(out) {}
 
     void fill_all(const Tile& tile, const Corners& at) noexcept {
         if (at.all_behind()) return store_rows(tile, nothing());  // behind, or 0 everywhere
@@ -162,7 +162,7 @@ private:
         for (const auto& [output, number] : stores) fill_rows(output, rect_, tile, static_cast<float>(number));
     }
 
-    const FootprintKernels& kernels_;
+    const FootprintKernels& kernels_ = chosen<FootprintKernels>();
     const FootprintFunctions& functions_;
     TexelsPerUnit texels_;
     Tile rect_;
@@ -176,8 +176,7 @@ bool footprint_tile(const FootprintFunctions& functions, const TexelsPerUnit& te
                     const Footprints& out, bool always) noexcept {
     const TileSurvey found = survey(functions.triangle, tile);
     const bool may_be_lit = found.plan.work != Work::nothing;
-    if (may_be_lit || always)
-        TileFootprinter<>(chosen<FootprintKernels>(), functions, texels, tile, out).fill_all(tile, found.at);
+    if (may_be_lit || always) TileFootprinter<>(functions, texels, tile, out).fill_all(tile, found.at);
     return may_be_lit;
 }
 
