@@ -58,8 +58,7 @@ private:
     bool fill_in_vectors(const Tile& tile, const Corners& at) noexcept {
         const double numerator[2] = {functions_.largest(0, tile), functions_.largest(1, tile)};
         if (larger(numerator[0], numerator[1]) == 0.0) {
-            const auto determinant = [](double) { return 0.0; };
-            store_rows(tile, footprint_of({}, {}, determinant, texels_));
+            store_rows(tile, texgen::footprint_of({}, {}, texels_));
             return true;
         }
         const double largest = larger(numerator[0] * texels_.s, numerator[1] * texels_.t);
