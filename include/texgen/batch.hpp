@@ -85,8 +85,7 @@ inline namespace TEXGEN_BUILD {
 // the same bound of the exact value. Everything is written: where nothing of a rectangle is lit, lit is 0, and s, t, r
 // are 0 or their plane's; where a triangle is refused all outputs are 0. No allocation, noexcept.
 // Shapes: as many rectangles as triangles, and outputs of all their fragments together, or empty ones (all asserted;
-// else nothing is written where the count is wrong, or not the output whose length is wrong). Fragments outside a
-// triangle get the values of its plane; where the interpolated 1/w is not positive nothing is promised.
+// else nothing is written where the count is wrong, or not the output whose length is wrong).
 // Cost: with its set-up a tile of 8 x 8 takes about half of what a TriangleSetup does, but as eight are made ready at
 // once a triangle alone takes up to four times as long, and two twice; beyond 4096 fragments, or 512 to 2048 with a
 // tolerance, a tile is left to a TriangleSetup. So is what is in doubt, which takes as long as some tiles of a triangle

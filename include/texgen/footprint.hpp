@@ -150,8 +150,7 @@ inline namespace TEXGEN_BUILD {
 // / 32) of that of derivatives within the bound, anisotropy and major within 2^-16 of theirs (major relative to its
 // length, in texels; where the anisotropy is near 1 its direction means nothing). Behind, all are 0, the sign of q
 // decided exactly. No allocation, noexcept.
-// Shapes: each output has width * height floats, row-major, or none (asserted). Fragments outside the triangle get the
-// values of its plane; where the interpolated 1/w is not positive nothing is promised.
+// Shapes: as interpolate(), for fragments outside the triangle, too.
 // Bad input: an empty rectangle does nothing. With bad texels level, anisotropy and major are NaN, the derivatives
 // right. A Jacobian that is 0 has level -infinity, anisotropy 1 and major 0.
 template <class CompiledWhereCalled = void>
