@@ -54,7 +54,7 @@ struct TwofoldForm {
     PointForm form;
     double high[3], low[3], size[3], grain[3];
     double size_of_w, grain_of_w;
-    unsigned used = 0, with_low = 0, added = 0;  // a bit for each coefficient; added: to the terms before it
+    unsigned used = 0, with_low = 0;  // a bit for each coefficient
     bool is_finite;
 
     TwofoldForm() = default;
@@ -64,17 +64,13 @@ struct TwofoldForm {
           grain_of_w(last_bit(form.w)),
           is_finite(0.0 * (form.x + form.y + form.z + form.w) == 0.0) {
         const double coefficient[3] = {form.x, form.y, form.z};
-        bool has_terms = form.w != 0.0;
         for (unsigned j = 0; j < 3; ++j) {
             high[j] = detail::leading_bits<29>(coefficient[j]);
             low[j] = coefficient[j] - high[j];
             size[j] = std::fabs(coefficient[j]);
             grain[j] = last_bit(coefficient[j]);
-            const bool is_used = coefficient[j] != 0.0;
-            used |= is_used ? 1u << j : 0;
+            used |= coefficient[j] != 0.0 ? 1u << j : 0;
             with_low |= low[j] != 0.0 ? 1u << j : 0;
-            added |= has_terms ? 1u << j : 0;
-            has_terms |= is_used;
         }
     }
 
@@ -142,12 +138,8 @@ struct TwofoldForm {
             Doubles left;
             const Doubles product = quick_two_sum(at.v[j] * high[j], at.v[j] * low[j], left);
             if ((with_low >> j & 1u) != 0) keep(left);
-            if ((added >> j & 1u) != 0) {
-                sum = two_sum(sum, product, left);
-                keep(left);
-            } else {
-                sum = product;
-            }
+            sum = two_sum(sum, product, left);
+            keep(left);
             terms = terms + of.v[j] * size[j];
             result.grain = minimum(grains.v[j] * grain[j], result.grain);
         }
