@@ -259,8 +259,9 @@ using Setup = ProjectionSetup<Space>;
 // What it cannot see: mistakes that are other set-ups, until it is told what was meant. The lens from 0.1 to 100 for
 // [0, 1], under the bias of [-1, 1], is the one from 10/199.9 to 100 for [-1, 1]: any row z that is not reversed is
 // that of some lens in both ranges. A matrix in NDC, without the bias, is that of an off-axis lens (with a fovy of 90
-// degrees even of one with round numbers); a pose is the view from another place; and a lens along an axis of an object whose pose is not given may have been
-// stretched with it. A near plane that is oblique, by hand, shows a wrong order until projector and model are given.
+// degrees even of one with round numbers); a pose is the view from another place; and a lens along an axis of an object
+// whose pose is not given may have been stretched with it. A near plane that is oblique, by hand, shows a wrong order
+// until projector and model are given.
 // Cost: about a microsecond for what was composed in double, several for what was composed in float or has a defect;
 // the worst set-up takes at most 8 times what one with a single defect does.
 // Bad input: what is not finite is reported, and the rest is examined without it.

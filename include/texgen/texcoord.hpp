@@ -199,13 +199,13 @@ void generate(const Transform<Texture, Space>& texture_from_space, const Positio
               const HomogeneousTexcoords& out) noexcept;
 
 // Writes s/q, t/q and r/q of every position in front of the projector, and whether it is lit.
-// Guarantee, as long as no product of a matrix element and a coordinate, but 0, leaves 2^-900 .. 2^1000: in front
-// (q > 0, decided exactly) each is within max(tolerance, 1/2 ulp) of the exact value of the given numbers (r: the
-// tolerance relative to max(1, |r|)). With `exact` each is the nearest float, whatever the layout, the count, the place
-// or the build (but the sign of a 0 below 2^-1074). lit = 1 inside the closed region, decided from the s and t, and with a depth from the r, that are
-// written, or with `exact` would be; with a tolerance, where one is not asked for, from some value inside that
-// tolerance. Behind, s = t = r = lit = 0. A depth costs at most what r costs; where s and t leave many neighbours dark,
-// r is not computed for them. No allocation, noexcept.
+// Guarantee, as long as no product of a matrix element and a coordinate, but 0, leaves 2^-900 .. 2^1000: in front (q >
+// 0, decided exactly) each is within max(tolerance, 1/2 ulp) of the exact value of the given numbers (r: the tolerance
+// relative to max(1, |r|)). With `exact` each is the nearest float, whatever the layout, the count, the place or the
+// build (but the sign of a 0 below 2^-1074). lit = 1 inside the closed region, decided from the s and t, and with a
+// depth from the r, that are written, or with `exact` would be; with a tolerance, where one is not asked for, from some
+// value inside that tolerance. Behind, s = t = r = lit = 0. A depth costs at most what r costs; where s and t leave
+// many neighbours dark, r is not computed for them. No allocation, noexcept.
 // Shapes: as many values of an output as positions, or none (asserted; else that output is not written); outputs must
 // not overlap the positions.
 // Bad input: NaN and infinity spoil their own point only; a point whose q is NaN is behind.

@@ -8,7 +8,7 @@ struct FootprintLanes {
     VertexLanes given;
     Doubles q, q_dx, q_dy;
     Doubles q_size, q_size_dx, q_size_dy;  // the sizes of their terms
-    Doubles dx[2], dy[2], twist[2];        // Slope, but for the area and all w
+    Doubles dx[2], dy[2], twist[2];        // BoundedSlope's, but for the area and all w
     Doubles w;                             // of all vertices
     LongWords is_refused;                  // a w is not positive, or an s, t or r not finite
 

@@ -9,7 +9,7 @@ struct BatchTiles {
     double ulps[batch_block];  // so many of their own ulps quotients are within; a power of two
     float middle[3][batch_block], dx[3][batch_block], dy[3][batch_block], bend_x[batch_block], bend_y[batch_block];
     // A bit for each tile and kind, in one number: a load of several numbers would wait for their stores.
-    enum Kind : std::size_t { is_dark, is_lit, is_exact, has_middles, is_float, is_polynomial };
+    enum Kind : std::size_t { is_dark, is_lit, is_exact, may_ask_middles, is_float, is_polynomial };
     std::uint64_t kinds;
 
     TEXGEN_INLINE void add(Kind kind, const LongWords& mask, std::size_t first) noexcept {
@@ -184,7 +184,7 @@ TEXGEN_APART void prepare(const BatchJob& job, const BatchPlanes* of_tiles, cons
     tiles.add(BatchTiles::is_dark, is_dark, first);
     tiles.add(BatchTiles::is_lit, is_lit, first);
     tiles.add(BatchTiles::is_exact, is_exact, first);
-    tiles.add(BatchTiles::has_middles, have_middles & greater(Doubles{} + 0x1p14, ulps), first);
+    tiles.add(BatchTiles::may_ask_middles, have_middles & greater(Doubles{} + 0x1p14, ulps), first);
 }
 
 using TileScratch = ScratchOutputs<largest_in_scratch + wide_lanes>;

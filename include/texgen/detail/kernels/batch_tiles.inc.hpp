@@ -158,7 +158,7 @@ TEXGEN_INLINE bool fill_tile(const BatchPlanes& planes, const BatchTiles& tiles,
         here.out[k] = out.out[k] == nullptr || in_scratch ? scratch.values[k] : out.out[k] + begin;
     bool is_certain = true;
     if (!tiles.has(BatchTiles::is_float, i))
-        is_certain = !tiles.has(BatchTiles::has_middles, i) || !shape.is_whole
+        is_certain = !tiles.has(BatchTiles::may_ask_middles, i) || !shape.is_whole
                          ? divide_batch_tile<Numerators>(planes, tiles, i, shape, here)
                      : shape.width <= lanes ? divide_whole_tile<Numerators, true>(planes, tiles, i, shape, here)
                                             : divide_whole_tile<Numerators, false>(planes, tiles, i, shape, here);

@@ -56,7 +56,7 @@ inline double q_at(const TriangleFunctions& triangle, std::int64_t x, std::int64
 inline std::optional<Footprint> footprint_at(const FootprintFunctions& functions, const TexelsPerUnit& texels,
                                              std::int64_t x, std::int64_t y, double q) noexcept {
     if (!(q > 0.0)) return std::nullopt;
-    const Slope::Terms s = functions.at_first(0, {x, y, 1, 1}), t = functions.at_first(1, {x, y, 1, 1});
+    const FootprintJob::Slope s = functions.at_first(0, {x, y, 1, 1}), t = functions.at_first(1, {x, y, 1, 1});
     const double reciprocal = 1.0 / q;
     const auto divided = [&](double numerator) { return numerator * reciprocal * reciprocal; };
     return footprint_of(
@@ -74,7 +74,7 @@ std::optional<FootprintExtremes> extremes_over(const FootprintFunctions& functio
     glm::dvec2 reach(0.0, 0.0);
     for (std::size_t i = 0; i < polygon.count(); ++i)
         for (glm::length_t axis = 0; axis < 2; ++axis) reach[axis] = larger(std::fabs(polygon[i][axis]), reach[axis]);
-    const auto size_of = [&](const Slope::Terms& magnitude, double texels_per_unit) {
+    const auto size_of = [&](const FootprintJob::Slope& magnitude, double texels_per_unit) {
         const double size = larger(magnitude.dx + reach.y * magnitude.twist, magnitude.dy + reach.x * magnitude.twist);
         return size > 0.0 ? larger(size * texels_per_unit, 0x1p-1000) : 0.0;
     };

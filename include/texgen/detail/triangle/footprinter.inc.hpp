@@ -72,8 +72,8 @@ private:
         const double q_scale = reciprocal_power_of_two(at.largest_q);
         const double q_scale_squared = q_scale * q_scale;
         const double texel_scale = reciprocal_power_of_two(largest);
-        const auto scaled = [](const Slope::Terms& terms, double factor) {
-            return Slope::Terms{terms.dx * factor, terms.dy * factor, terms.twist * factor};
+        const auto scaled = [](const FootprintJob::Slope& terms, double factor) {
+            return FootprintJob::Slope{terms.dx * factor, terms.dy * factor, terms.twist * factor};
         };
         job.width = tile.width;
         job.height = tile.height;
@@ -81,7 +81,7 @@ private:
         job.derivatives_in_float = float_fits(tile, at, numerator);
         job.pitch = rect_.width;
         for (std::size_t k = 0; k < 2; ++k) {
-            const Slope::Terms first = functions_.at_first(k, tile);
+            const FootprintJob::Slope first = functions_.at_first(k, tile);
             job.slope[k] = scaled(first, q_scale_squared);
             if (filters) job.texels[k] = scaled(first, (k == 0 ? texels_.s : texels_.t) * texel_scale);
         }
@@ -111,7 +111,8 @@ private:
     // within 2^-16. With u = 2^-24 base, slope, product and sum of a component N are rounded: u (2 |N| + 2 |twist|
     // width), where |N| is at most about 1; and one of the columns is nowhere shorter than at the first fragment less
     // what the twist takes.
-    static bool float_serves_filters(const Tile& tile, const Corners& at, const Slope::Terms (&texels)[2]) noexcept {
+    static bool float_serves_filters(const Tile& tile, const Corners& at,
+                                     const FootprintJob::Slope (&texels)[2]) noexcept {
         constexpr double u = 1.001 * unit_roundoff_float;
         const auto length = [](double s, double t) { return std::sqrt(s * s + t * t); };
         const double twist = length(texels[0].twist, texels[1].twist);

@@ -95,9 +95,8 @@ TEXGEN_APART inline void fill_rows(const std::span<float>& output, const Tile& r
 //   d(f/q)/dx Q^2 = F_x Q - F Q_x = -area (mu_ab (c - p).y + mu_bc (a - p).y + mu_ca (b - p).y)
 //   d(f/q)/dy Q^2 = F_y Q - F Q_y =  area (mu_ab (c - p).x + mu_bc (a - p).x + mu_ca (b - p).x):
 // the one does not depend on x, nor the other on y. `magnitude` is the same with the absolute values of all terms.
-struct Slope {
-    using Terms = FootprintJob::Slope;  // at the first vertex
-    Terms value, magnitude;
+struct BoundedSlope {
+    FootprintJob::Slope value, magnitude;  // at the first vertex
 };
 
 class TrianglePlanes {
@@ -169,7 +168,7 @@ public:
     // sums 5 u: gamma(16) of the magnitudes covers the values, and a step from the first vertex. A weight times the
     // area is at most 2, so only the last product of a mu may be below the normal numbers, and errs by 2^-1074 there,
     // as what it is multiplied by does; gamma(16) 2^-1020 covers both.
-    Slope slope(glm::length_t coordinate) const noexcept {
+    BoundedSlope slope(glm::length_t coordinate) const noexcept {
         const WindowVertex* const corner[] = {&triangle_.a, &triangle_.b, &triangle_.c};
         const double area = twice_area();
         double least = 0.0;
