@@ -12,10 +12,10 @@ set(arguments_of_batch "const TriangleBatch& batch, std::span<const FragmentRect
 set(arguments_of_buffer "const TriangleBatch& batch, std::span<const std::uint32_t> ids, FragmentRect rect, Footprints out")
 set(calls
     "68700 interpolate.hpp Work interpolate interpolate(setup, rect, out)"
-    "100000 texcoord.hpp void project project(texgen, positions, whole_texture(), out)"
+    "98000 texcoord.hpp void project project(texgen, positions, whole_texture(), out)"
     "8000 texcoord.hpp auto one project(texgen, world_space(position))"
-    "36000 coverage.hpp Coverage coverage coverage(texgen, whole_texture(), box)"
-    "62000 segment.hpp void along interpolate(segment, alpha, whole_texture(), out)"
+    "34000 coverage.hpp Coverage coverage coverage(texgen, whole_texture(), box)"
+    "61000 segment.hpp void along interpolate(segment, alpha, whole_texture(), out)"
     "48000 footprint.hpp bool footprints footprint(setup, rect, out)"
     "330000 batch.hpp void batch interpolate(batch, rects, out)"
     "124000 batch.hpp void buffer footprint(batch, ids, rect, {1024, 1024}, out)")

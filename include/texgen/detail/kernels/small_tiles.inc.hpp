@@ -37,8 +37,8 @@ TEXGEN_INLINE bool divide_small_tile(const SmallTile& tile) noexcept {
     const bool has_room = width >= lanes;
     float* const out[2] = {has_room ? tile.out[0] : buffer[0], has_room ? tile.out[1] : buffer[1]};
     Distances distance = far_from_middles();
+    Doubles x = column;
     for (int begin = 0;;) {
-        const Doubles x = column + static_cast<double>(begin);
         const Doubles first_q = x * of_q.dx + of_q.base;
         const Doubles first[2] = {x * f_dx[0] + f_base[0], x * f_dx[1] + f_base[1]};
         const int last = begin + count - width - stride;
@@ -66,6 +66,7 @@ TEXGEN_INLINE bool divide_small_tile(const SmallTile& tile) noexcept {
         }
         if (begin + lanes >= width) break;
         begin = begin + 2 * lanes <= width ? begin + lanes : width - lanes;
+        x = column + static_cast<double>(begin);
     }
     if (!has_room)
         for (std::size_t k = 0; k < 2; ++k)

@@ -169,8 +169,8 @@ TEXGEN_APART SmallAnswer fill_small(const TriangleFunctions& triangle, const Til
                                     const Texcoords& out) noexcept {
     const SmallPlace place(triangle.planes.from_a({rect.x, read_alone(rect.y), rect.width, rect.height}), rect.width,
                            read_alone(rect.height));
-    const SmallFunction<Double2> f(triangle.st, place);
     const SmallDivisor q(triangle.q, place);
+    const SmallFunction<Double2> f(triangle.st, place);
     const SmallAnswer answer = ask(triangle.lit, triangle.tolerance, f, q);
     if (answer == SmallAnswer::doubt) return answer;
     const bool is_lit = answer == SmallAnswer::lit;
@@ -178,24 +178,22 @@ TEXGEN_APART SmallAnswer fill_small(const TriangleFunctions& triangle, const Til
     const bool needs_mask = !is_lit && !out.lit.empty();
     // For few fragments s and t give the mask sooner than spans do, even if they have no outputs.
     float scratch[2][TileJob::unit_size];
-    float* s = out.s.data();
-    float* t = out.t.data();
+    Texcoords both = out;
     if (needs_mask && rect.count() <= TileJob::unit_size) {
-        if (s == nullptr) s = scratch[0];
-        if (t == nullptr) t = scratch[1];
+        const auto count = static_cast<std::size_t>(rect.count());
+        if (out.s.empty()) both.s = {scratch[0], count};
+        if (out.t.empty()) both.t = {scratch[1], count};
     }
-    if (s != nullptr && t != nullptr) {
-        tile.out[0] = s;
-        tile.out[1] = t;
+    if (!both.s.empty() && !both.t.empty()) {
+        tile.out[0] = both.s.data();
+        tile.out[1] = both.t.data();
         tile.lit = needs_mask ? out.lit.data() : nullptr;
         if (tile.lit != nullptr) triangle.lit.copy_to(tile.min, tile.max);
         const SmallDoubt doubt = divide_small(triangle, rect, triangle.st.value, f, q, tile);
         if (doubt == SmallDoubt::of_all) return SmallAnswer::doubt;
         if (doubt == SmallDoubt::of_unit) {
             OnDemand<CloseRamps> close;
-            const auto count = static_cast<std::size_t>(rect.count());
-            TileInterpolator<>(triangle, triangle.st, rect, close, 0, 1, {{s, count}, {t, count}, {}, out.lit})
-                .interpolate_from_doubt(rect);
+            TileInterpolator<>(triangle, triangle.st, rect, close, 0, 1, both).interpolate_from_doubt(rect);
         }
     } else {
         if (needs_mask) return SmallAnswer::doubt;
