@@ -28,7 +28,7 @@ private:
         std::uint32_t id = no_triangle;
         std::optional<Made> made;
 
-        Known() noexcept {}
+        Known() noexcept {}  // without it GCC clears all 16 as a whole, what is not made as well
     };
     Known known_[size];
 };
