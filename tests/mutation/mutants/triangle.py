@@ -62,7 +62,7 @@ TRIANGLE = [
         ("a clip_w of zero is taken", "b.clip_w > 0.0f && triangle_.c.clip_w > 0.0f &&",
          "b.clip_w >= 0.0f && triangle_.c.clip_w >= 0.0f &&", "interpolate_test")),
     *of("detail/triangle/exact_fragment.hpp",
-        ("the exact edge forgets a term", "axis == 0 ? to_x[j] : -to_y[j]", "axis == 0 ? to_x[j] : to_y[j]", "interpolate_test"),
+        ("the exact edge forgets a term", "axis == 0 ? to.x[j] : -to.y[j]", "axis == 0 ? to.x[j] : to.y[j]", "interpolate_test"),
         ("a side's corners have each other's parts", "side, widened(planes_.vertex(other).clip_w)",
          "side, widened(planes_.vertex(end).clip_w)", "batch_test interpolate_test"),
         ("exact functions fall where they grow", "axis == 0 ? -planes.unscaled_weight(i)",

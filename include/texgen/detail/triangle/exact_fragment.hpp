@@ -26,23 +26,28 @@ public:
     TEXGEN_RARE ExactFragment(const TrianglePlanes& planes, std::int64_t x, std::int64_t y,
                               Factor up_to = Factor::of_planes) noexcept
         : planes_(planes) {
-        DoubleDouble to_x[3], to_y[3];
-        for (std::size_t i = 0; i < 3; ++i) {
-            to_x[i] = two_sum(planes.corner(i).x, -(static_cast<double>(x) + 0.5));  // integers
-            to_y[i] = two_sum(planes.corner(i).y, -(static_cast<double>(y) + 0.5));  // integers
+        const ToCorners to(planes, x, y);
+        const std::size_t opposite = up_to == Factor::any ? to.find_side() : 3;
+        if (opposite < 3) {
+            take_side(to, opposite);
+            return;
         }
-        if (up_to == Factor::any && is_on_side(to_x, to_y)) return;
         for (std::size_t i = 0; i < 3; ++i) {
             const std::size_t j = (i + 1) % 3;
             Sum edge;
             for (glm::length_t axis = 0; axis < 2; ++axis) {
-                const DoubleDouble to_j = axis == 0 ? to_x[j] : -to_y[j];
+                const DoubleDouble to_j = axis == 0 ? to.x[j] : -to.y[j];
                 const DoubleDouble along = side(i, 1 - axis);
                 for (const double a : {to_j.low, to_j.high})
                     for (const double b : {along.low, along.high}) edge.add_product(a, b);
             }
             weighted_[i].add_scaled(edge, planes.unscaled_weight(i));
         }
+    }
+
+    // Whether a fragment is on the line through two corners, where exact sums are short.
+    TEXGEN_RARE static bool is_on_side(const TrianglePlanes& planes, const Tile& fragment) noexcept {
+        return ToCorners(planes, fragment.x, fragment.y).find_side() < 3;
     }
 
     // By how much the functions grow along a row (axis 0) or down (1): E_i grows by the difference of corners j and k.
@@ -71,24 +76,41 @@ private:
         return two_sum(planes_.corner((i + 2) % 3)[axis], -planes_.corner((i + 1) % 3)[axis]);
     }
 
-    // On the line through corners j and k the third corner has no part in F, and its numbers may be long. Along either
-    // axis G_j : G_k = w_k (k - p) : w_j (p - j) there. False where p is on no such line, or a difference is no double.
-    TEXGEN_RARE bool is_on_side(const DoubleDouble (&to_x)[3], const DoubleDouble (&to_y)[3]) noexcept {
-        for (std::size_t i = 0; i < 3; ++i) {
-            const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
-            if (to_x[j].low != 0.0 || to_y[j].low != 0.0 || to_x[k].low != 0.0 || to_y[k].low != 0.0) continue;
-            const DoubleDouble left = two_product(to_x[j].high, to_y[k].high);
-            const DoubleDouble right = two_product(to_y[j].high, to_x[k].high);
-            if (left.high != right.high || left.low != right.low) continue;
-            const DoubleDouble(&to)[3] = to_x[j].high != to_x[k].high ? to_x : to_y;
-            for (const std::size_t end : {j, k}) {
-                const std::size_t other = end == j ? k : j;
-                const double side = to[end].high < to[other].high ? to[other].high : -to[other].high;
-                weighted_[end].add_product(side, widened(planes_.vertex(other).clip_w));
+    // From a fragment to the corners.
+    struct ToCorners {
+        DoubleDouble x[3], y[3];
+
+        TEXGEN_RARE ToCorners(const TrianglePlanes& planes, std::int64_t from_x, std::int64_t from_y) noexcept {
+            for (std::size_t i = 0; i < 3; ++i) {
+                x[i] = two_sum(planes.corner(i).x, -(static_cast<double>(from_x) + 0.5));  // integers
+                y[i] = two_sum(planes.corner(i).y, -(static_cast<double>(from_y) + 0.5));  // integers
             }
-            return true;
         }
-        return false;
+
+        // The corner opposite a side on whose line the fragment is; 3 where it is on none, or a difference is no double.
+        TEXGEN_RARE std::size_t find_side() const noexcept {
+            std::size_t i = 0;
+            for (; i < 3; ++i) {
+                const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+                if (x[j].low != 0.0 || y[j].low != 0.0 || x[k].low != 0.0 || y[k].low != 0.0) continue;
+                const DoubleDouble left = two_product(x[j].high, y[k].high);
+                const DoubleDouble right = two_product(y[j].high, x[k].high);
+                if (left.high == right.high && left.low == right.low) break;
+            }
+            return i;
+        }
+    };
+
+    // On the line through corners j and k the third corner, i, has no part in F, and its numbers may be long. Along
+    // either axis G_j : G_k = w_k (k - p) : w_j (p - j) there.
+    TEXGEN_RARE void take_side(const ToCorners& from, std::size_t i) noexcept {
+        const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+        const DoubleDouble(&to)[3] = from.x[j].high != from.x[k].high ? from.x : from.y;
+        for (const std::size_t end : {j, k}) {
+            const std::size_t other = end == j ? k : j;
+            const double side = to[end].high < to[other].high ? to[other].high : -to[other].high;
+            weighted_[end].add_product(side, widened(planes_.vertex(other).clip_w));
+        }
     }
 
     const TrianglePlanes& planes_;

@@ -123,18 +123,6 @@ private:
         functions.have_residues = true;
     }
 
-    // Whether more than a fourth of a unit is in doubt, which is no chance: those are ties, or the planes are not exact
-    // enough.
-    static bool are_many(int fragments, const Tile& tile) noexcept {
-        return fragments > (tile.count() < TileJob::unit_size ? tile.count() : TileJob::unit_size) / 4;
-    }
-
-    // Whether so few are in doubt that exact growths, which cost as much as two exact fragments, would not pay even if
-    // each unit of the tile had as many.
-    static bool are_few(int fragments, const Tile& tile) noexcept {
-        return fragments * tile.count() <= 4 * TileJob::unit_size && fragments <= 2;
-    }
-
     static constexpr int few_ties = 16;
     // Adds to what is known of the functions; false where there is no more. Residues come first where many are in
     // doubt, as with ties. They are enough, without two doubles, in tiles of few fragments, where sums in double decide
@@ -157,22 +145,28 @@ private:
         return true;
     }
 
+    // The first of these fragments of a unit.
+    TEXGEN_RARE static Tile first_of(const Tile& tile, const TileJob::Unit& unit, std::uint64_t fragments) noexcept {
+        const int i = std::countr_zero(fragments), width = unit.x_end - unit.x_begin;
+        return {tile.x + unit.x_begin + i % width, tile.y + unit.y_begin + i / width, 1, 1};
+    }
+
     // Decides the fragments of a unit that are asked for: with what is known of the functions, with more while any
-    // stays in doubt, and the last ones one by one, as a few at once where that was in vain before. Returns whether all
-    // of 64 were in doubt at first.
+    // stays in doubt, and the last ones one by one: a few at once where that was in vain before, or where they are on a
+    // side. Returns whether all of 64 were in doubt at first.
     TEXGEN_APART bool fill_closely(const Tile& tile, const TileJob& job, DoubtfulFunctions& functions,
                                    const TileJob::Unit& unit, std::uint64_t asked = ~std::uint64_t{0}) noexcept {
         const bool is_vain = functions.are_vain && are_few(std::popcount(asked), tile);
         std::uint64_t doubtful = is_vain ? asked : kernels_.fill_closely(job, functions, unit, asked);
         const bool are_all = doubtful == ~std::uint64_t{0};
-        while (doubtful != 0 && sharpen(tile, functions, std::popcount(doubtful)))
+        const auto are_on_side = [&] {
+            return are_few(std::popcount(doubtful), tile) &&
+                   ExactFragment::is_on_side(triangle_.planes, first_of(tile, unit, doubtful));
+        };
+        while (doubtful != 0 && !are_on_side() && sharpen(tile, functions, std::popcount(doubtful)))
             doubtful = kernels_.fill_closely(job, functions, unit, doubtful);
         functions.are_vain |= doubtful != 0;
-        const int width = unit.x_end - unit.x_begin;
-        for (; doubtful != 0; doubtful &= doubtful - 1) {
-            const int i = std::countr_zero(doubtful);
-            fill_one(tile.x + unit.x_begin + i % width, tile.y + unit.y_begin + i / width);
-        }
+        for (; doubtful != 0; doubtful &= doubtful - 1) fill_one(first_of(tile, unit, doubtful));
         return are_all;
     }
 
@@ -222,7 +216,7 @@ private:
             if (planes_->magnitude.dx[k] + planes_->magnitude.dy[k] != 0.0)
                 if (const Stretch zeros = zeros_of(triangle_.planes, coordinate_[k], tile); zeros.end != 0)
                     return fill_around(tile, zeros, k);
-        if (is_one()) return fill_one(tile.x, tile.y);
+        if (is_one()) return fill_one(tile);
         DoubtfulFunctions functions = functions_of(tile, at);
         functions.adds_residues_first = true;
         // For few fragments it takes less to decide them by residues than to see whether their quotients are exact.
@@ -277,7 +271,7 @@ private:
 
     // Decides a part of the tile, unit by unit. All such parts share one job and what is known of the functions.
     TEXGEN_RARE void fill_closely(const Tile& tile) noexcept {
-        if (is_one()) return fill_one(tile.x, tile.y);
+        if (is_one()) return fill_one(tile);
         if (tile.count() > TileJob::unit_size) {
             for (const Tile& half : tile.halves(tile.height == 1)) fill_closely(half);
             return;
@@ -334,17 +328,17 @@ private:
     }
 
     // Fills one fragment; every decision is exact.
-    TEXGEN_RARE void fill_one(std::int64_t x, std::int64_t y) noexcept {
-        const ExactFragment exact(triangle_.planes, x, y, ExactFragment::Factor::any);
+    TEXGEN_RARE void fill_one(const Tile& at) noexcept {
+        const ExactFragment exact(triangle_.planes, at.x, at.y, ExactFragment::Factor::any);
         const ExactFragment::Sum q = exact.function(3);
         const bool in_front = q.sign() > 0;
         float value[2] = {0.0f, 0.0f};
         for (std::size_t k = 0; k < count_; ++k) {
             if (in_front) value[k] = nearest_quotient(exact.function(coordinate_[k]), q);
-            if (!output_[k].empty()) output_[k][offset(x, y)] = value[k];
+            if (!output_[k].empty()) output_[k][offset(at.x, at.y)] = value[k];
         }
         const bool is_lit = in_front && is_inside(value[0], value[1], triangle_.lit.min, triangle_.lit.max);
-        if (!lit_.empty()) lit_[offset(x, y)] = is_lit ? 1.0f : 0.0f;
+        if (!lit_.empty()) lit_[offset(at.x, at.y)] = is_lit ? 1.0f : 0.0f;
     }
 
     void clear(const Tile& tile) noexcept {

@@ -1,6 +1,19 @@
-// A job unit by unit, and chunk by chunk, by the kernels of any instruction set. Included by interpolate.hpp.
+// A job unit by unit, and chunk by chunk, by the kernels of any instruction set, and how much of it is in doubt.
+// Included by interpolate.hpp.
 
 namespace TEXGEN_DETAIL_BUILD {
+
+// Whether more than a fourth of a unit is in doubt, which is no chance: those are ties, or the planes are not exact
+// enough.
+inline bool are_many(int fragments, const Tile& tile) noexcept {
+    return fragments > (tile.count() < TileJob::unit_size ? tile.count() : TileJob::unit_size) / 4;
+}
+
+// Whether so few are in doubt that exact growths, which cost as much as two exact fragments, would not pay even if each
+// unit of the tile had as many.
+inline bool are_few(int fragments, const Tile& tile) noexcept {
+    return fragments * tile.count() <= 4 * TileJob::unit_size && fragments <= 2;
+}
 
 // Fills units from the given one on up to the first with fragments in doubt, which it returns; `doubtful` says which
 // fragments. While none is, more and more units are filled at once, of `most` fragments at most; if one of these is in
