@@ -132,8 +132,8 @@ struct CloseFunctionsAt {
     TEXGEN_INLINE double grain(std::size_t n) const noexcept { return of[n].grain; }
 };
 
-// Decides the fragments of a unit that are asked for. They are gathered into vectors wherever they stand, as in a
-// column; more than half of a unit is asked as all of it. One numerator alone stands in both places.
+// Decides the fragments of a unit that are asked for, none beyond it. They are gathered into vectors wherever they
+// stand, as in a column; more than half of a unit is asked as all of it. One numerator alone stands in both places.
 template <class CompiledWhereCalled = void>
 TEXGEN_LARGE std::uint64_t fill_tile_closely(const TileJob& job, const CloseFunctions& functions,
                                              const TileJob::Unit& unit, std::uint64_t asked) noexcept {
@@ -143,7 +143,6 @@ TEXGEN_LARGE std::uint64_t fill_tile_closely(const TileJob& job, const CloseFunc
     const int width = unit.x_end - unit.x_begin;
     const int size = width * (unit.y_end - unit.y_begin);
     const std::uint64_t all = ~std::uint64_t{0} >> (TileJob::unit_size - size);
-    asked &= all;
     if (asked == 0) return 0;
     const bool are_all = 2 * std::popcount(asked) > size;
     if (are_all) asked = all;

@@ -156,6 +156,9 @@ private:
     // side. Returns whether all of 64 were in doubt at first.
     TEXGEN_APART bool fill_closely(const Tile& tile, const TileJob& job, DoubtfulFunctions& functions,
                                    const TileJob::Unit& unit, std::uint64_t asked = ~std::uint64_t{0}) noexcept {
+        // A row's last vector may be in doubt beyond it.
+        const int size = (unit.x_end - unit.x_begin) * (unit.y_end - unit.y_begin);
+        asked &= ~std::uint64_t{0} >> (TileJob::unit_size - size);
         const bool is_vain = functions.are_vain && are_few(std::popcount(asked), tile);
         std::uint64_t doubtful = is_vain ? asked : kernels_.fill_closely(job, functions, unit, asked);
         const bool are_all = doubtful == ~std::uint64_t{0};
