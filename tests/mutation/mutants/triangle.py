@@ -82,6 +82,7 @@ TRIANGLE = [
         ("a small tile that its depth cuts is lit", "answer == SmallAnswer::lit && depth == Coverage::inside",
          "answer == SmallAnswer::lit", "depth_test work_test")),
     *of("detail/triangle/interpolator.inc.hpp",
+        ("doubt beyond a row is a fragment's", "        asked &= ~std::uint64_t{0} >> (TileJob::unit_size - size);\n", "", "interpolate_test"),
         ("what is left of rows behind their chunks is not filled", "fill_exact(narrow, corners_at(narrow));", ";",
          "interpolate_test"),
         ("no tile is too coarse for chunks", "are_floats_apart(tile.count() > Corners::few ? at.least_quotient() : at.largest_quotient()))",
