@@ -44,6 +44,7 @@ TEXGEN_APART inline std::uint64_t decide_tiles(const TilesJob& job, const Fragme
                                                std::size_t of_block, bool about_corners = false) noexcept {
     BatchFunctions functions;
     TileScratch scratch;
+    ShapeOfTile shape;
     const auto stand_in = static_cast<std::size_t>(std::countr_zero(doubtful));  // of finite numbers; others may not be
     std::uint64_t taken = 0;
     const auto take = [&](std::size_t tile) {
@@ -61,8 +62,7 @@ TEXGEN_APART inline std::uint64_t decide_tiles(const TilesJob& job, const Fragme
     std::size_t done = of_block;
     for (std::size_t i = 0; i < batch_block; ++i) {
         if (block[i][2] <= 0 || block[i][3] <= 0) continue;
-        ShapeOfTile shape;
-        shape.take(block[i][2], block[i][3]);
+        if (!shape.is_of(block[i][2], block[i][3])) shape.take(block[i][2], block[i][3]);
         const std::size_t begin = done;
         done += shape.count;
         if ((doubtful >> i & 1u) == 0) continue;
