@@ -11,8 +11,8 @@
 
 #include "detail/matrices/required.hpp"
 
-// 0.4.36: 10000 major + 100 minor + patch.
-#define TEXGEN_VERSION 436
+// 0.4.37: 10000 major + 100 minor + patch.
+#define TEXGEN_VERSION 437
 
 namespace TEXGEN_NAMESPACE {
 
