@@ -27,6 +27,7 @@
 #include "detail/simd/lanes.hpp"
 #include "detail/triangle/close_planes.hpp"
 #include "detail/triangle/corners.hpp"
+#include "detail/triangle/doubt.hpp"
 #include "detail/triangle/exact_fragment.hpp"
 #include "primitives.hpp"
 #include "segment.hpp"

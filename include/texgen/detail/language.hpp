@@ -47,7 +47,8 @@ static_assert(glm::defaultp == glm::packed_highp, "GLM was configured otherwise 
 #endif
 
 // Functions that are not inlined: TEXGEN_APART leaves their callers the registers that they need. TEXGEN_RARE also puts
-// them elsewhere in memory, so that code for ties and other rare cases does not lie among the rest.
+// them elsewhere in memory, so that code for rare cases does not lie among the rest, and has the compiler keep them
+// small, which ties in a small tile would wait for.
 #if defined(__GNUC__) || defined(__clang__)
 #define TEXGEN_APART [[gnu::noinline]]
 #define TEXGEN_RARE [[gnu::noinline, gnu::cold]]

@@ -70,6 +70,14 @@ public:
         for (const double term : {product.low, product.high}) add(term);
     }
 
+    void add_product(const DoubleDouble& a, const DoubleDouble& b) noexcept {
+        for (const double part : {a.low, a.high}) {
+            if (part == 0.0) continue;
+            add_product(part, b.low);
+            add_product(part, b.high);
+        }
+    }
+
     template <std::size_t OtherCapacity>
     void add_scaled(const Expansion<OtherCapacity>& other, double factor) noexcept {
         count_ = grow_by_multiple(terms_.data(), count_, other.terms(), other.count(), factor);

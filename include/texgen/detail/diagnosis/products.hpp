@@ -135,7 +135,7 @@ struct Factors {
     glm::dmat4 scale_bias, projection, view;
     std::optional<glm::dmat4> pose;  // empty: the points are in the world
 
-    // In place of braces, for GCC 12: see DoubtfulJob in triangle/close_planes.hpp.
+    // In place of braces, for GCC 12: see DoubtfulJob in triangle/doubt.hpp.
     Factors(const glm::dmat4& s, const glm::dmat4& p, const glm::dmat4& v,
             const std::optional<glm::dmat4>& of_points) noexcept
         : scale_bias(s), projection(p), view(v), pose(of_points) {}

@@ -1,5 +1,5 @@
 // The functions of a batch's triangles over tiles and runs that doubles leave in doubt, to twice their precision and as
-// integers modulo 2^64, as in triangle/close_planes.hpp, a triangle in each lane. Included by batch.inc.hpp.
+// integers modulo 2^64, as in triangle/doubt.hpp, a triangle in each lane. Included by batch.inc.hpp.
 
 namespace TEXGEN_DETAIL::TEXGEN_ISA {
 

@@ -44,7 +44,7 @@ struct CloseSums {
 
 // Two forms at a point of floats. Their coefficients are split in two parts, whose products are exact without fma().
 inline CloseSums closely_at(const FormPair& forms, const glm::dvec3& v) noexcept {
-    const Double2 x = leading_27_bits(forms.x), y = leading_27_bits(forms.y), z = leading_27_bits(forms.z);
+    const Double2 x = leading_bits<27>(forms.x), y = leading_bits<27>(forms.y), z = leading_bits<27>(forms.z);
     Double2 remainder[6];
     Double2 sum = two_sum(x * v.x, forms.w, remainder[3]);
     sum = two_sum(sum, y * v.y, remainder[4]);
@@ -136,7 +136,7 @@ inline bool divide_closely(const FormPair& numerators, const PointForm& q_form, 
     if (is_tied[0] || is_tied[1]) {
         // Decides as nearest_to() does. Next to a tie s.high - middle q.high is exact, part by part.
         const Double2 factor = double2_of(middle[0], middle[1]);
-        const Double2 q_high = leading_27_bits(q.high), q_low = leading_27_bits(q.low);
+        const Double2 q_high = leading_bits<27>(q.high), q_low = leading_bits<27>(q.low);
         const Double2 remainder[3] = {s.low, -(factor * q_low), -(factor * (q.low - q_low))};
         CloseSums rest((s.high - factor * q_high) - factor * (q.high - q_high), remainder);
         rest.lost = rest.lost + (s.lost + magnitude(factor) * q.lost);

@@ -170,17 +170,18 @@ struct ChunkGroup {
 // where that is not known), and the residue is that integer modulo 2^64: it is all of what is certainly less than 2^62
 // grains.
 struct CloseFunction {
-    Ramp high, low;
-    double error, grain;
-    RampOf<std::uint64_t> residue;
+    Ramp high, low{};
+    double error, grain = 0.0;
+    RampOf<std::uint64_t> residue{};
 };
 struct CloseFunctions {
     static constexpr std::size_t q = 2;
 
-    CloseFunction function[3];      // two numerators, and q
-    double tolerance;               // within which the float nearest to a quotient in double will do
-    bool are_close, have_residues;  // are_close: in two doubles; else high alone, the planes
-    bool are_sums_first;            // the sums of high and low say more than residues do
+    CloseFunction function[3];  // two numerators, and q
+    double tolerance;           // within which the float nearest to a quotient in double will do
+    bool are_close = false;     // in two doubles; else high alone, the planes
+    bool have_residues = false;
+    bool are_sums_first = false;  // the sums of high and low say more than residues do
 };
 
 // A linear form of points (x, y, z, 1).

@@ -65,7 +65,11 @@ struct alignas(16) Double2 {
 };
 inline Double2 double2_of(double first, double second) noexcept { return {{first, second}}; }
 inline Double2 magnitude(const Double2& a) noexcept { return {{magnitude(a[0]), magnitude(a[1])}}; }
-inline Double2 leading_27_bits(const Double2& a) noexcept { return {{leading_bits<27>(a[0]), leading_bits<27>(a[1])}}; }
+template <int Bits>
+Double2 leading_bits(const Double2& a) noexcept {
+    return {{leading_bits<Bits>(a[0]), leading_bits<Bits>(a[1])}};
+}
+inline Double2 with_lanes_exchanged(const Double2& a) noexcept { return {{a[1], a[0]}}; }
 inline Double2 smaller(const Double2& a, const Double2& b) noexcept {
     return {{smaller(a[0], b[0]), smaller(a[1], b[1])}};
 }
@@ -197,9 +201,11 @@ TEXGEN_INLINE bool all_less(const Double2& a, const Double2& b) noexcept { retur
 TEXGEN_INLINE Double2 magnitude(const Double2& a) noexcept {
     return __builtin_bit_cast(Double2, __builtin_bit_cast(Bits2, a) & 0x7fffffffffffffffLL);
 }
-TEXGEN_INLINE Double2 leading_27_bits(const Double2& a) noexcept {
-    return __builtin_bit_cast(Double2, __builtin_bit_cast(Bits2, a) & ~0x3ffffffLL);
+template <int Bits>
+TEXGEN_INLINE Double2 leading_bits(const Double2& a) noexcept {
+    return __builtin_bit_cast(Double2, __builtin_bit_cast(Bits2, a) & -(1LL << (53 - Bits)));
 }
+TEXGEN_INLINE Double2 with_lanes_exchanged(const Double2& a) noexcept { return __builtin_shufflevector(a, a, 1, 0); }
 
 }  // namespace TEXGEN_DETAIL
 
@@ -219,14 +225,6 @@ TEXGEN_INLINE Double2 leading_27_bits(const Double2& a) noexcept {
 #define TEXGEN_NAMESPACE_BUILD TEXGEN_NAMESPACE::inline TEXGEN_BUILD
 
 namespace TEXGEN_DETAIL {
-
-// Exactly a + b, as two_sum() of numbers.
-inline Double2 two_sum(const Double2& a, const Double2& b, Double2& error) noexcept {
-    const Double2 sum = a + b;
-    const Double2 b_part = sum - a;
-    error = (a - (sum - b_part)) + (b - b_part);
-    return sum;
-}
 
 // Bit i is set where lane i is negative.
 inline std::uint32_t negative_lanes(const Float4& a) noexcept {
@@ -269,6 +267,15 @@ inline Double4 four_widened(const glm::vec4& v) noexcept {
 inline Double2 first_two(const Double4& a) noexcept { return a.two[0]; }
 inline Double2 last_two(const Double4& a) noexcept { return a.two[1]; }
 #endif
+
+// Exactly a + b, as two_sum() of numbers.
+template <class Numbers>
+Numbers two_sum(const Numbers& a, const Numbers& b, Numbers& error) noexcept {
+    const Numbers sum = a + b;
+    const Numbers b_part = sum - a;
+    error = (a - (sum - b_part)) + (b - b_part);
+    return sum;
+}
 
 }  // namespace TEXGEN_DETAIL
 

@@ -34,13 +34,10 @@ public:
         }
         for (std::size_t i = 0; i < 3; ++i) {
             const std::size_t j = (i + 1) % 3;
+            const Side side(planes, i);
             Sum edge;
-            for (glm::length_t axis = 0; axis < 2; ++axis) {
-                const DoubleDouble to_j = axis == 0 ? to.x[j] : -to.y[j];
-                const DoubleDouble along = side(i, 1 - axis);
-                for (const double a : {to_j.low, to_j.high})
-                    for (const double b : {along.low, along.high}) edge.add_product(a, b);
-            }
+            edge.add_product(to.x[j], side.y);
+            edge.add_product(-to.y[j], side.x);
             weighted_[i].add_scaled(edge, planes.unscaled_weight(i));
         }
     }
@@ -54,9 +51,8 @@ public:
     TEXGEN_RARE static ExactFragment growth(const TrianglePlanes& planes, glm::length_t axis) noexcept {
         ExactFragment result(planes);
         for (std::size_t i = 0; i < 3; ++i) {
-            const DoubleDouble along = result.side(i, 1 - axis);
-            const double weight = axis == 0 ? -planes.unscaled_weight(i) : planes.unscaled_weight(i);
-            for (const double part : {along.high, along.low}) result.weighted_[i].add_product(part, weight);
+            const Side side(planes, i);
+            result.weighted_[i].add_product(axis == 0 ? -side.y : side.x, {planes.unscaled_weight(i), 0.0});
         }
         return result;
     }
@@ -72,9 +68,15 @@ private:
     explicit ExactFragment(const TrianglePlanes& planes) noexcept : planes_(planes) {}
 
     // The side opposite corner i, from j to k. It has fewer digits than the difference of k and a fragment far away.
-    TEXGEN_RARE DoubleDouble side(std::size_t i, glm::length_t axis) const noexcept {
-        return two_sum(planes_.corner((i + 2) % 3)[axis], -planes_.corner((i + 1) % 3)[axis]);
-    }
+    struct Side {
+        DoubleDouble x, y;
+
+        TEXGEN_RARE Side(const TrianglePlanes& planes, std::size_t i) noexcept {
+            const glm::dvec2 from = planes.corner((i + 1) % 3), to = planes.corner((i + 2) % 3);
+            x = two_sum(to.x, -from.x);
+            y = two_sum(to.y, -from.y);
+        }
+    };
 
     // From a fragment to the corners.
     struct ToCorners {
@@ -117,37 +119,22 @@ private:
     Sum weighted_[3];
 };
 
-// Makes two numerators and q over a tile anew where their terms cancel even in two doubles: from exact growths, within
-// 2^-104 of each, and from the value at the first corner, where only one term is not 0: F(A) = area w_b w_c f_A.
-// Products, sums and steps within the tile err by less than 2^-97 of the three. The value about the fragment stays
-// where that corner is so far away that it would say less.
-TEXGEN_RARE inline void take_exact_growths(const TrianglePlanes& planes, glm::length_t first, glm::length_t second,
-                                           CloseRamps& ramps) noexcept {
-    const DoubleDouble x = two_sum(static_cast<double>(ramps.tile.x) + 0.5, -planes.corner(0).x);  // integers
-    const DoubleDouble y = two_sum(static_cast<double>(ramps.tile.y) + 0.5, -planes.corner(0).y);  // integers
-    const double reach_x = std::fabs(x.high) + ramps.tile.width, reach_y = std::fabs(y.high) + ramps.tile.height;
-    const DoubleDouble weight = product(planes.exact_area().leading(), {planes.weight(0), 0.0});
-    const glm::length_t coordinate[3] = {first, second, 3};
-    for (glm::length_t axis = 0; axis < 2; ++axis) {
-        const ExactFragment growth = ExactFragment::growth(planes, axis);
-        for (std::size_t k = 0; k < 3; ++k) {
-            const DoubleDouble leading = growth.function(coordinate[k]).leading();
-            ramps.function[k].term[1 + axis] = {leading.high * planes.factor(), leading.low * planes.factor()};
+// Makes two numerators and q over a tile anew where their terms cancel even in two doubles: from exact ones, within
+// 2^-104 of each. Products, sums and steps within the tile err by less than 2^-97 of the three.
+TEXGEN_RARE inline void take_exact_terms(const TrianglePlanes& planes, glm::length_t first, glm::length_t second,
+                                         ClosePlanes& close) noexcept {
+    const Tile& tile = close.tile();
+    const ExactFragment exact[] = {
+        {planes, tile.x, tile.y}, ExactFragment::growth(planes, 0), ExactFragment::growth(planes, 1)};
+    for (const glm::length_t coordinate : {first, second, glm::length_t{3}}) {
+        if (close.is_exact(coordinate)) continue;
+        CloseRamp ramp;
+        for (std::size_t m = 0; m < 3; ++m) {
+            const DoubleDouble leading = exact[m].function(coordinate).leading();
+            ramp.term[m] = {leading.high * planes.factor(), leading.low * planes.factor()};
         }
-    }
-    for (std::size_t k = 0; k < 3; ++k) {
-        auto& [term, error] = ramps.function[k];
-        const DoubleDouble before = term[0];
-        term[0] = product(weight, {planes.value(0, coordinate[k]), 0.0});
-        const double size =
-            std::fabs(term[0].high) + std::fabs(term[1].high) * reach_x + std::fabs(term[2].high) * reach_y;
-        const double error_about_it = 0x1p-97 * size + 0x1p-800;
-        if (error_about_it < error) {
-            ramps.function[k].move(x, y);
-            error = error_about_it;
-        } else {
-            term[0] = before;
-        }
+        ramp.error = 0x1p-97 * ramp.size_over(tile) + 0x1p-800;
+        close.replace(coordinate, ramp);
     }
 }
 

@@ -39,8 +39,7 @@ Footprint footprint_of(const glm::dvec2& dx, const glm::dvec2& dy, const auto& d
 }
 
 // q at a fragment, its sign exact, within cancelled_share of itself; where the planes cancel, close_q() has it.
-template <class CloseQ>
-double q_at(const TriangleFunctions& triangle, std::int64_t x, std::int64_t y, const CloseQ& close_q) noexcept {
+double q_at(const TriangleFunctions& triangle, std::int64_t x, std::int64_t y, const auto& close_q) noexcept {
     const auto is_known = [](const Bounded& q) { return std::fabs(q.value) * cancelled_share > q.error; };
     Bounded q = triangle.planes.at(triangle.q, x, y);
     if (is_known(q)) return q.value;
@@ -49,7 +48,7 @@ double q_at(const TriangleFunctions& triangle, std::int64_t x, std::int64_t y, c
     return ExactFragment(triangle.planes, x, y).function(3).estimate() * triangle.planes.factor();
 }
 inline double q_at(const TriangleFunctions& triangle, std::int64_t x, std::int64_t y) noexcept {
-    return q_at(triangle, x, y, [&] { return ClosePlane(triangle.planes, 3, {x, y, 1, 1}); });
+    return q_at(triangle, x, y, [&] { return CloseQ(triangle.planes, {x, y, 1, 1}); });
 }
 
 // The footprint of a fragment whose q is given.
@@ -154,7 +153,7 @@ inline glm::dvec2 FootprintSetup::error_bound(const FragmentRect& rect) const no
     const detail::TileSurvey found = detail::survey(functions_.triangle, tile);
     const detail::Corners& at = found.at;
     if (at.all_behind()) return {0.0, 0.0};
-    const double share = found.close ? detail::cancelled_share : at.q_error * at.reciprocal;
+    const double share = found.in_doubt.planes ? detail::cancelled_share : at.q_error * at.reciprocal;
     const auto bound = [&](std::size_t k) {
         if (!at.is_well_in_front()) return detail::infinity;
         const double numerator = functions_.largest(k, tile);

@@ -40,14 +40,13 @@ private:
 
     // The corners of a tile, of q alone.
     Corners corners_at(const Tile& tile) noexcept {
-        const CloseRamp q = close_q().moved_to(tile.x, tile.y);
         Corners at;
-        take_corners(at, CloseRamps{tile, {q, q, q}});
+        take_corners(at, close_q().ramps(tile));
         return at;
     }
 
-    const ClosePlane& close_q() noexcept {
-        if (!close_q_) close_q_.make(functions_.triangle.planes, glm::length_t{3}, rect_);
+    const CloseQ& close_q() noexcept {
+        if (!close_q_) close_q_.make(functions_.triangle.planes, rect_);
         return *close_q_;
     }
 
@@ -145,7 +144,7 @@ private:
     void fill_one_by_one(const Tile& tile) noexcept {
         for (std::int64_t y = tile.y; y < tile.y + tile.height; ++y) {
             for (std::int64_t x = tile.x; x < tile.x + tile.width; ++x) {
-                const double q = q_at(functions_.triangle, x, y, [this]() -> const ClosePlane& { return close_q(); });
+                const double q = q_at(functions_.triangle, x, y, [this]() -> const CloseQ& { return close_q(); });
                 const std::optional<Footprint> footprint = footprint_at(functions_, texels_, x, y, q);
                 store_rows({x, y, 1, 1}, footprint ? *footprint : nothing());
             }
@@ -167,7 +166,7 @@ private:
     TexelsPerUnit texels_;
     Tile rect_;
     const Footprints& out_;
-    OnDemand<ClosePlane> close_q_;
+    OnDemand<CloseQ> close_q_;
 };
 
 // Fills the footprints of a rectangle. False where none of it is lit: nothing is written then, unless `always`.

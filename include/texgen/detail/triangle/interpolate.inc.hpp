@@ -19,7 +19,7 @@ TEXGEN_RARE inline void darken_beyond_depth(const TriangleFunctions& triangle, c
         }
         return;
     }
-    interpolate_alone(triangle, tile, 2, buffer.first(count), nullptr);
+    interpolate_alone(triangle, tile, 2, buffer.first(count));
     // Rows that follow one another are one.
     const std::size_t rows = tile.width == rect.width ? 1 : static_cast<std::size_t>(tile.height);
     const std::size_t length = count / rows;
@@ -76,17 +76,18 @@ TEXGEN_APART Work interpolate_by_plan(const TriangleFunctions& triangle, const T
     if (is_inside && !out.lit.empty()) chosen<MaskKernels>().light_all(out.lit.data(), out.lit.size());
     const bool asks_mask = !is_inside && !out.lit.empty();
     if (!out.s.empty() && !out.t.empty()) {
-        TileInterpolator<> interpolator(triangle, triangle.st, tile, found.close, 0, 1, out);
+        TileInterpolator<> interpolator(triangle, triangle.st, tile, found.in_doubt, 0, 1, out);
         if (is_inside) interpolator.leave_mask();
         interpolator.interpolate(tile, found.at, plan);
     } else {
-        interpolate_alone(triangle, tile, 0, out.s, &plan);
-        interpolate_alone(triangle, tile, 1, out.t, &plan);
+        interpolate_alone(triangle, tile, found.in_doubt, 0, out.s, &plan);
+        interpolate_alone(triangle, tile, found.in_doubt, 1, out.t, &plan);
         const Tile left = asks_mask ? light_spans(triangle, tile, found.at, out.lit) : Tile{};
         if (left.count() > 0 && !light_small(triangle, tile, left, out.lit))
-            TileInterpolator<>(triangle, triangle.st, tile, found.close, 0, 1, out).interpolate_in_strips(left, plan);
+            TileInterpolator<>(triangle, triangle.st, tile, found.in_doubt, 0, 1, out)
+                .interpolate_in_strips(left, plan);
     }
-    interpolate_alone(triangle, tile, 2, out.r, nullptr);
+    interpolate_alone(triangle, tile, found.in_doubt, 2, out.r, nullptr);
     if (plan.depth != Coverage::inside) darken_beyond_depth(triangle, tile, out);
     return plan.work;
 }

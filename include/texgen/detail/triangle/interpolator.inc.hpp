@@ -9,16 +9,16 @@ public:
     static constexpr int scratch_width = 512;
 
     // For the coordinates of these planes: s and t, of which one that only the mask needs has no output; or one alone
-    // in both places, which goes to out.s. `close` is for their functions in two doubles, made when a tile needs them.
+    // in both places, which goes to out.s. `in_doubt` is the rectangle's, for all of its outputs.
     TEXGEN_APART TileInterpolator(const TriangleFunctions& triangle, const PlaneOf<Double2>& planes, const Tile& rect,
-                                  OnDemand<CloseRamps>& close, glm::length_t first, glm::length_t second,
+                                  RectInDoubt& in_doubt, glm::length_t first, glm::length_t second,
                                   const Texcoords& out) noexcept
         : triangle_(triangle),
           rect_(rect),
           count_(first == second ? 1 : 2),
           coordinate_{first, second},
           planes_(&planes),
-          close_(close),
+          in_doubt_(in_doubt),
           output_{out.s, out.t},
           lit_(out.lit) {}
 
@@ -46,7 +46,7 @@ public:
     }
 
     // Fills a tile of at most one unit, well in front, of which doubles leave a fragment in doubt.
-    TEXGEN_RARE void interpolate_from_doubt(const Tile& tile) noexcept {
+    TEXGEN_APART void interpolate_from_doubt(const Tile& tile) noexcept {
         const Corners at = corners_of(triangle_.planes, *planes_, triangle_.q, tile);
         TileJob job = make_job(tile, at);
         fill_from_doubt(tile, at, job, job.unit_at(0, 0));
@@ -90,36 +90,38 @@ private:
     }
 
     // The functions in two doubles, made for the whole rectangle when a tile first needs them.
-    TEXGEN_RARE CloseRamps close_ramps(const Tile& tile) noexcept {
-        if (!close_) close_.make(ClosePlanes(triangle_.planes, rect_).ramps(coordinate_[0], coordinate_[1]));
-        return close_->moved_to(tile);
+    TEXGEN_APART CloseRamps close_ramps(const Tile& tile) noexcept {
+        if (!in_doubt_.planes) in_doubt_.planes.make(triangle_.planes, rect_);
+        return in_doubt_.planes->ramps(coordinate_[0], coordinate_[1], tile);
     }
 
     // What a tile in doubt begins with: the functions in two doubles if these are made already, else the planes as they
     // are.
-    TEXGEN_RARE DoubtfulFunctions functions_of(const Tile& tile, const Corners& at) noexcept {
-        DoubtfulFunctions result{};
+    TEXGEN_APART DoubtfulFunctions functions_of(const Tile& tile, const Corners& at) noexcept {
+        DoubtfulFunctions result;
         result.tolerance = triangle_.tolerance;
-        result.are_close = static_cast<bool>(close_);
+        result.are_close = static_cast<bool>(in_doubt_.planes);
         result.are_close ? take_close(tile, result, false) : take_planes(at, result);
         result.are_sums_first = result.are_close;
         return result;
     }
 
-    // The functions in two doubles; where their terms cancel, or leave doubt, from exact growths, which cost as much as
-    // one exact fragment.
-    TEXGEN_RARE void take_close(const Tile& tile, CloseFunctions& functions, bool leave_doubt) noexcept {
-        if ((leave_doubt || close_ramps(tile).cancel()) && !are_exact_) {
-            take_exact_growths(triangle_.planes, coordinate_[0], coordinate_[1], *close_);
-            are_exact_ = true;
+    // The functions in two doubles; where their terms cancel, or leave doubt, with exact terms, which cost as much as
+    // two exact fragments.
+    TEXGEN_APART void take_close(const Tile& tile, CloseFunctions& functions, bool leave_doubt) noexcept {
+        CloseRamps ramps = close_ramps(tile);
+        const auto [first, second] = coordinate_;
+        if ((leave_doubt || ramps.cancel()) && !in_doubt_.planes->are_exact(first, second)) {
+            take_exact_terms(triangle_.planes, first, second, *in_doubt_.planes);
+            ramps = close_ramps(tile);
         }
-        close_ramps(tile).copy_to(functions);
+        ramps.copy_to(functions);
     }
 
     TEXGEN_RARE void add_residues(const Tile& tile, DoubtfulFunctions& functions) noexcept {
-        if (!residues_) residues_.make(triangle_.planes, rect_);
+        if (!in_doubt_.residues) in_doubt_.residues.make(triangle_.planes, rect_);
         for (std::size_t k = 0; k < 3; ++k)
-            residues_->add_to(functions.function[k], k == CloseFunctions::q ? 3 : coordinate_[k], tile);
+            in_doubt_.residues->add_to(functions.function[k], k == CloseFunctions::q ? 3 : coordinate_[k], tile);
         functions.have_residues = true;
     }
 
@@ -127,9 +129,10 @@ private:
     // Adds to what is known of the functions; false where there is no more. Residues come first where many are in
     // doubt, as with ties. They are enough, without two doubles, in tiles of few fragments, where sums in double decide
     // ties already, and where sums in two doubles would not.
-    TEXGEN_RARE bool sharpen(const Tile& tile, DoubtfulFunctions& functions, int fragments) noexcept {
+    TEXGEN_APART bool sharpen(const Tile& tile, DoubtfulFunctions& functions, int fragments) noexcept {
         const bool have_both = functions.are_close && functions.have_residues;
-        if (have_both && (are_exact_ || are_few(fragments, tile))) return false;
+        if (have_both && (in_doubt_.planes->are_exact(coordinate_[0], coordinate_[1]) || are_few(fragments, tile)))
+            return false;
         bool are_enough = false;
         if (!functions.have_residues && (functions.are_close || are_many(fragments, tile))) {
             add_residues(tile, functions);
@@ -383,12 +386,10 @@ private:
     std::size_t count_;
     glm::length_t coordinate_[2];
     const PlaneOf<Double2>* planes_;
-    OnDemand<CloseRamps>& close_;
+    RectInDoubt& in_doubt_;
     Tile whole_;  // what is being interpolated, and its corners
     const Corners* whole_at_;
     OnDemand<DoubtfulJob> doubtful_;
-    OnDemand<PlaneResidues> residues_;
-    bool are_exact_ = false;  // the growths of close_
     std::span<float> output_[2];
     std::span<float> lit_;
     float scratch_[2][scratch_width];  // coordinates that only the mask needs, a row at a time

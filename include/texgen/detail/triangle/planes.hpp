@@ -121,16 +121,14 @@ public:
         factor_ = orientation_ * reciprocal_power_of_two(area_terms_ * (weight_[1] + weight_[2]));
     }
 
-    // The same triangle in a window whose x and y are exchanged.
-    TrianglePlanes mirrored() const noexcept {
-        TrianglePlanes result = *this;
-        for (WindowVertex* const vertex : {&result.triangle_.a, &result.triangle_.b, &result.triangle_.c})
+    // Exchanges x and y of the window.
+    void mirror() noexcept {
+        for (WindowVertex* const vertex : {&triangle_.a, &triangle_.b, &triangle_.c})
             std::swap(vertex->window.x, vertex->window.y);
-        for (glm::dvec2* const vector : {&result.a_, &result.to_b_, &result.to_c_}) std::swap(vector->x, vector->y);
-        result.orientation_ = -orientation_;
-        result.area_ = -area_;
-        result.factor_ = -factor_;
-        return result;
+        for (glm::dvec2* const vector : {&a_, &to_b_, &to_c_}) std::swap(vector->x, vector->y);
+        orientation_ = -orientation_;
+        area_ = -area_;
+        factor_ = -factor_;
     }
 
     // False where a number is not finite, a clip_w is not positive, or the area is zero (decided exactly): then nothing
@@ -209,8 +207,14 @@ public:
         return i == 0 ? triangle_.a : i == 1 ? triangle_.b : triangle_.c;
     }
     glm::dvec2 corner(std::size_t i) const noexcept { return window(vertex(i)); }
-    double value(std::size_t i, glm::length_t coordinate) const noexcept { return widened(vertex(i).strq[coordinate]); }
+    double value(std::size_t i, glm::length_t coordinate) const noexcept {
+        const auto offset = static_cast<std::size_t>(coordinate) * sizeof(float);
+        float value;
+        std::memcpy(&value, reinterpret_cast<const unsigned char*>(&vertex(i).strq) + offset, sizeof value);
+        return widened(value);
+    }
     double weight(std::size_t i) const noexcept { return weight_[i] * factor_; }
+    double scaled_w(std::size_t i) const noexcept { return widened(vertex(i).clip_w) * factor_; }
 
     // The window, seen from the first vertex: the centre of a fragment, and the other vertices.
     glm::dvec2 from_a(const Tile& tile) const noexcept {
@@ -249,7 +253,7 @@ public:
     double factor() const noexcept { return factor_ * orientation_; }
 
     // (b - a) x (c - a), every product of two floats being exact in double.
-    Expansion<6> exact_area() const noexcept {
+    TEXGEN_RARE Expansion<6> exact_area() const noexcept {
         const glm::dvec2 a = window(triangle_.a);
         const glm::dvec2 b = window(triangle_.b);
         const glm::dvec2 c = window(triangle_.c);
@@ -338,9 +342,9 @@ struct TriangleFunctions {
     }
 
     // The same in a window whose x and y are exchanged, where a column is a row.
-    TEXGEN_RARE TriangleFunctions mirrored() const noexcept {
+    TEXGEN_APART TriangleFunctions mirrored() const noexcept {
         TriangleFunctions result = *this;
-        result.planes = planes.mirrored();
+        result.planes.mirror();
         for (RampOf<Double2>* const ramp : {&result.st.value, &result.st.magnitude}) std::swap(ramp->dx, ramp->dy);
         for (Ramp* const ramp : {&result.q.value, &result.q.magnitude}) std::swap(ramp->dx, ramp->dy);
         return result;

@@ -137,15 +137,24 @@ TEXGEN_APART SmallDoubt divide_small(const TriangleFunctions& triangle, const Ti
     return !is_column && tile.width * tile.height <= TileJob::unit_size ? SmallDoubt::of_unit : SmallDoubt::of_all;
 }
 
-// Interpolates one coordinate of a rectangle; without a plan (null) nothing is known of it.
+// Interpolates one coordinate of a rectangle that is no column; without a plan (null) nothing is known of it.
+template <class CompiledWhereCalled = void>
+TEXGEN_APART void interpolate_alone(const TriangleFunctions& triangle, const Tile& rect, RectInDoubt& in_doubt,
+                                    glm::length_t coordinate, const std::span<float>& output,
+                                    const Plan* plan) noexcept {
+    if (output.empty()) return;
+    TileInterpolator<>(triangle, triangle.planes.plane_twice(coordinate), rect, in_doubt, coordinate, coordinate,
+                       {output})
+        .interpolate(rect, plan);
+}
+
+// Interpolates one coordinate of any rectangle.
 template <class CompiledWhereCalled = void>
 TEXGEN_APART void interpolate_alone(const TriangleFunctions& triangle, const Tile& rect, glm::length_t coordinate,
-                                    const std::span<float>& output, const Plan* plan) noexcept {
-    if (output.empty()) return;
-    if (rect.is_column()) return interpolate_alone(triangle.mirrored(), rect.mirrored(), coordinate, output, plan);
-    OnDemand<CloseRamps> close;
-    TileInterpolator<>(triangle, triangle.planes.plane_twice(coordinate), rect, close, coordinate, coordinate, {output})
-        .interpolate(rect, plan);
+                                    const std::span<float>& output) noexcept {
+    if (rect.is_column()) return interpolate_alone(triangle.mirrored(), rect.mirrored(), coordinate, output);
+    RectInDoubt in_doubt;
+    interpolate_alone(triangle, rect, in_doubt, coordinate, output, nullptr);
 }
 
 // The same for a small tile; the one coordinate stands in both places.
@@ -158,9 +167,9 @@ TEXGEN_APART void fill_small_alone(const TriangleFunctions& triangle, const Tile
     tile.lit = nullptr;
     const SmallDoubt doubt = divide_small(triangle, rect, plane.value, SmallFunction<Double2>(plane, place), q, tile);
     if (doubt == SmallDoubt::none) return;
-    if (doubt == SmallDoubt::of_all) return interpolate_alone(triangle, rect, coordinate, output, nullptr);
-    OnDemand<CloseRamps> close;
-    TileInterpolator<>(triangle, plane, rect, close, coordinate, coordinate, {output}).interpolate_from_doubt(rect);
+    if (doubt == SmallDoubt::of_all) return interpolate_alone(triangle, rect, coordinate, output);
+    RectInDoubt in_doubt;
+    TileInterpolator<>(triangle, plane, rect, in_doubt, coordinate, coordinate, {output}).interpolate_from_doubt(rect);
 }
 
 // Fills s, t, r and the mask of a small tile, if one certificate serves all of s and t that is asked for.
@@ -192,8 +201,8 @@ TEXGEN_APART SmallAnswer fill_small(const TriangleFunctions& triangle, const Til
         const SmallDoubt doubt = divide_small(triangle, rect, triangle.st.value, f, q, tile);
         if (doubt == SmallDoubt::of_all) return SmallAnswer::doubt;
         if (doubt == SmallDoubt::of_unit) {
-            OnDemand<CloseRamps> close;
-            TileInterpolator<>(triangle, triangle.st, rect, close, 0, 1, both).interpolate_from_doubt(rect);
+            RectInDoubt in_doubt;
+            TileInterpolator<>(triangle, triangle.st, rect, in_doubt, 0, 1, both).interpolate_from_doubt(rect);
         }
     } else {
         if (needs_mask) return SmallAnswer::doubt;

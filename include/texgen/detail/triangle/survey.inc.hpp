@@ -20,7 +20,7 @@ struct TileSurvey {
 
     Corners at;
     Plan plan;
-    OnDemand<CloseRamps> close;  // where the planes cancel
+    RectInDoubt in_doubt;  // has planes where those of the triangle cancel
 };
 
 // Chunks are short where q varies much, so that their ends are not far from their middle. A chunk costs about as much as
@@ -138,11 +138,11 @@ TEXGEN_APART inline TileSurvey survey_rows(const TriangleFunctions& triangle, co
     TileSurvey found(triangle, tile);
     for (;;) {
         choose_plan(triangle, tile, found.at, found.plan);
-        if (found.close || found.plan.work == Work::nothing || !found.at.cancel() ||
+        if (found.in_doubt.planes || found.plan.work == Work::nothing || !found.at.cancel() ||
             !cancel_beyond_zeros(found.at, triangle.planes, 0, 1, tile))
             return found;
-        found.close.make(ClosePlanes(triangle.planes, tile).ramps(0, 1));
-        take_corners(found.at, *found.close);
+        found.in_doubt.planes.make(triangle.planes, tile);
+        take_corners(found.at, found.in_doubt.planes->ramps(0, 1, tile));
     }
 }
 
