@@ -178,9 +178,9 @@ public:
     // Of one coordinate, 0 to 3 for s, t, r, q.
     const CloseRamp& ramp(glm::length_t coordinate) const noexcept { return ramp_[coordinate]; }
 
-    // Those with exact terms take their places, see exact_fragment.hpp.
+    // Takes one from exact growths, see exact_fragment.hpp, if its error is less.
     void replace(glm::length_t coordinate, const CloseRamp& exact) noexcept {
-        ramp_[coordinate] = exact;
+        if (exact.error < ramp_[coordinate].error) ramp_[coordinate] = exact;
         is_exact_[coordinate] = true;
     }
     bool is_exact(glm::length_t coordinate) const noexcept { return is_exact_[coordinate]; }
@@ -189,7 +189,7 @@ public:
     }
 
     // Two coordinates and q over a part of the tile.
-    TEXGEN_APART CloseRamps ramps(glm::length_t first, glm::length_t second, const Tile& part) const noexcept {
+    TEXGEN_RARE CloseRamps ramps(glm::length_t first, glm::length_t second, const Tile& part) const noexcept {
         const auto x = static_cast<double>(part.x - tile_.x);  // integers
         const auto y = static_cast<double>(part.y - tile_.y);  // integers
         CloseRamps result;

@@ -188,7 +188,7 @@ TEXGEN_RARE inline void take_corners(Corners& corners, const CloseRamps& close) 
 }
 
 // Takes the planes of these corners as the functions of a tile in doubt.
-TEXGEN_APART inline void take_planes(const Corners& at, CloseFunctions& functions) noexcept {
+TEXGEN_RARE inline void take_planes(const Corners& at, CloseFunctions& functions) noexcept {
     const auto& [base, dx, dy] = at.numerator_ramp;
     for (std::size_t k = 0; k < 2; ++k) {
         functions.function[k].high = {base[k], dx[k], dy[k]};

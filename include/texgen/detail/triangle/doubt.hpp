@@ -53,7 +53,7 @@ struct DoubtfulJob {
 
 // Whether sums decide ties, too, if functions err by `share` of what they do now: then F - m Q, where m is a multiple
 // of 2^-25 of itself, errs by less than half of its grain.
-TEXGEN_APART inline bool are_decided_by_sums(const CloseFunctions& functions, double share) noexcept {
+TEXGEN_RARE inline bool are_decided_by_sums(const CloseFunctions& functions, double share) noexcept {
     const auto& [first, second, q] = functions.function;
     return 4.0 * share * first.error < first.grain && 4.0 * share * second.error < second.grain &&
            0x1p27 * share * q.error < q.grain;
@@ -62,7 +62,7 @@ TEXGEN_APART inline bool are_decided_by_sums(const CloseFunctions& functions, do
 // Whether residues decide the quotients of a tile well in front, if its numerators are as large as their errors
 // suggest. Coefficients are multiples of their grains: where the error leaves one candidate they are made exact, and
 // what is left is the error of computing with them, 2^-98 of the values.
-TEXGEN_APART inline bool let_residues_decide(CloseFunctions& functions) noexcept {
+TEXGEN_RARE inline bool let_residues_decide(CloseFunctions& functions) noexcept {
     for (CloseFunction& f : functions.function) {
         if (!(4.0 * f.error < f.grain)) continue;
         const double rounder = 0x1.8p52 * f.grain;  // they are below 2^46 grains, as the error has 20 u of them

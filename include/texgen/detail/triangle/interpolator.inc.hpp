@@ -46,7 +46,7 @@ public:
     }
 
     // Fills a tile of at most one unit, well in front, of which doubles leave a fragment in doubt.
-    TEXGEN_APART void interpolate_from_doubt(const Tile& tile) noexcept {
+    TEXGEN_RARE void interpolate_from_doubt(const Tile& tile) noexcept {
         const Corners at = corners_of(triangle_.planes, *planes_, triangle_.q, tile);
         TileJob job = make_job(tile, at);
         fill_from_doubt(tile, at, job, job.unit_at(0, 0));
@@ -106,13 +106,13 @@ private:
         return result;
     }
 
-    // The functions in two doubles; where their terms cancel, or leave doubt, with exact terms, which cost as much as
-    // two exact fragments.
+    // The functions in two doubles; where their terms cancel, or leave doubt, from exact growths, which cost as much as
+    // one exact fragment.
     TEXGEN_APART void take_close(const Tile& tile, CloseFunctions& functions, bool leave_doubt) noexcept {
         CloseRamps ramps = close_ramps(tile);
         const auto [first, second] = coordinate_;
         if ((leave_doubt || ramps.cancel()) && !in_doubt_.planes->are_exact(first, second)) {
-            take_exact_terms(triangle_.planes, first, second, *in_doubt_.planes);
+            take_exact_growths(triangle_.planes, first, second, *in_doubt_.planes);
             ramps = close_ramps(tile);
         }
         ramps.copy_to(functions);
@@ -129,7 +129,7 @@ private:
     // Adds to what is known of the functions; false where there is no more. Residues come first where many are in
     // doubt, as with ties. They are enough, without two doubles, in tiles of few fragments, where sums in double decide
     // ties already, and where sums in two doubles would not.
-    TEXGEN_APART bool sharpen(const Tile& tile, DoubtfulFunctions& functions, int fragments) noexcept {
+    TEXGEN_RARE bool sharpen(const Tile& tile, DoubtfulFunctions& functions, int fragments) noexcept {
         const bool have_both = functions.are_close && functions.have_residues;
         if (have_both && (in_doubt_.planes->are_exact(coordinate_[0], coordinate_[1]) || are_few(fragments, tile)))
             return false;

@@ -9,7 +9,7 @@ inline bool are_many(int fragments, const Tile& tile) noexcept {
     return fragments > (tile.count() < TileJob::unit_size ? tile.count() : TileJob::unit_size) / 4;
 }
 
-// Whether so few are in doubt that exact terms, which cost as much as two exact fragments, would not pay even if each
+// Whether so few are in doubt that exact growths, which cost as much as two exact fragments, would not pay even if each
 // unit of the tile had as many.
 inline bool are_few(int fragments, const Tile& tile) noexcept {
     return fragments * tile.count() <= 4 * TileJob::unit_size && fragments <= 2;
