@@ -114,21 +114,25 @@ inline double half_ulp(double largest) noexcept {
     return largest < 0x1.ffffffp127 ? unit_roundoff_float * largest + 0x1p-150 : infinity;
 }
 
-// An unevaluated sum; high is the sum rounded to double.
-struct DoubleDouble {
-    double high, low;
+// An unevaluated sum, or several in the lanes of vectors; high is the sum rounded to double.
+template <class Number>
+struct DoubleDoubleOf {
+    Number high, low;
 };
+using DoubleDouble = DoubleDoubleOf<double>;
 
 // Exactly a + b, for any order of magnitudes. Source: Knuth, TAOCP 2, 4.2.2 theorem B.
-inline DoubleDouble two_sum(double a, double b) noexcept {
-    const double sum = a + b;
-    const double b_part = sum - a;
+template <class Number>
+DoubleDoubleOf<Number> two_sum(Number a, Number b) noexcept {
+    const Number sum = a + b;
+    const Number b_part = sum - a;
     return {sum, (a - (sum - b_part)) + (b - b_part)};
 }
 
 // The same where |b| <= |a|.
-inline DoubleDouble quick_two_sum(double a, double b) noexcept {
-    const double sum = a + b;
+template <class Number>
+DoubleDoubleOf<Number> quick_two_sum(Number a, Number b) noexcept {
+    const Number sum = a + b;
     return {sum, b - (sum - a)};
 }
 
@@ -144,13 +148,17 @@ inline DoubleDouble two_product(double a, double b) noexcept {
     return {product, std::fma(a, b, -product)};
 }
 
-inline DoubleDouble operator-(const DoubleDouble& a) noexcept { return {-a.high, -a.low}; }
+template <class Number>
+DoubleDoubleOf<Number> operator-(const DoubleDoubleOf<Number>& a) noexcept {
+    return {-a.high, -a.low};
+}
 
 // a + b within 2^-103 (|a| + |b|), and a b within 2^-103 |a b|. Source: Joldes, Muller, Popescu, Tight and Rigorous
 // Error Bounds for Basic Building Blocks of Double-Word Arithmetic, ACM TOMS 44 (2017).
-inline DoubleDouble sum(const DoubleDouble& a, const DoubleDouble& b) noexcept {
-    const DoubleDouble exact = two_sum(a.high, b.high);
-    return quick_two_sum(exact.high, exact.low + (a.low + b.low));
+template <class Number>
+DoubleDoubleOf<Number> sum(const DoubleDoubleOf<Number>& a, const DoubleDoubleOf<Number>& b) noexcept {
+    const DoubleDoubleOf<Number> exact = two_sum(a.high, b.high);
+    return quick_two_sum<Number>(exact.high, exact.low + (a.low + b.low));
 }
 inline DoubleDouble product(const DoubleDouble& a, const DoubleDouble& b) noexcept {
     const DoubleDouble exact = two_product(a.high, b.high);

@@ -21,21 +21,23 @@ struct CloseSums {
     // From sums in one double and the remainders of their roundings.
     template <std::size_t Count>
     CloseSums(const Double2& sum, const Double2 (&remainder)[Count]) noexcept {
-        Double2 error[Count];
-        Double2 rest = two_sum(remainder[0], remainder[1], error[1]);
-        lost = magnitude(error[1]);
+        DoubleDouble2 rest = two_sum(remainder[0], remainder[1]);
+        Double2 third = rest.low;
+        lost = magnitude(third);
         for (std::size_t i = 2; i < Count; ++i) {
-            rest = two_sum(rest, remainder[i], error[i]);
-            lost = lost + magnitude(error[i]);
+            rest = two_sum(rest.high, remainder[i]);
+            third = third + rest.low;
+            lost = lost + magnitude(rest.low);
         }
-        high = two_sum(sum, rest, low);
-        if (!any_less(magnitude(high) * 0x1p-60, lost)) return;
-        // Beside a sum that cancels the lost part is large, and is added.
-        Double2 third = error[1];
-        for (std::size_t i = 2; i < Count; ++i) third = third + error[i];
-        rest = two_sum(low, third, error[0]);
-        high = two_sum(high, rest, low);
-        lost = lost * 0x1p-49 + magnitude(error[0]);
+        DoubleDouble2 all = two_sum(sum, rest.high);
+        if (any_less(magnitude(all.high) * 0x1p-60, lost)) {
+            // Beside a sum that cancels the lost part is large, and is added.
+            rest = two_sum(all.low, third);
+            all = two_sum(all.high, rest.high);
+            lost = lost * 0x1p-49 + magnitude(rest.low);
+        }
+        high = all.high;
+        low = all.low;
     }
 
     // Whether sum k is known to this share of itself; a 0 is where it is exact.
@@ -45,14 +47,12 @@ struct CloseSums {
 // Two forms at a point of floats. Their coefficients are split in two parts, whose products are exact without fma().
 inline CloseSums closely_at(const FormPair& forms, const glm::dvec3& v) noexcept {
     const Double2 x = leading_bits<27>(forms.x), y = leading_bits<27>(forms.y), z = leading_bits<27>(forms.z);
-    Double2 remainder[6];
-    Double2 sum = two_sum(x * v.x, forms.w, remainder[3]);
-    sum = two_sum(sum, y * v.y, remainder[4]);
-    sum = two_sum(sum, z * v.z, remainder[5]);
-    remainder[0] = (forms.x - x) * v.x;
-    remainder[1] = (forms.y - y) * v.y;
-    remainder[2] = (forms.z - z) * v.z;
-    return {sum, remainder};
+    const DoubleDouble2 to_x = two_sum<Double2>(x * v.x, forms.w);
+    const DoubleDouble2 to_y = two_sum<Double2>(to_x.high, y * v.y);
+    const DoubleDouble2 to_z = two_sum<Double2>(to_y.high, z * v.z);
+    const Double2 remainder[] = {
+        (forms.x - x) * v.x, (forms.y - y) * v.y, (forms.z - z) * v.z, to_x.low, to_y.low, to_z.low};
+    return {to_z.high, remainder};
 }
 
 // A number as an odd integer of up to `count` bits times a power of two. Further bits are cut off.

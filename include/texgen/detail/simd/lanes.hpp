@@ -226,6 +226,8 @@ TEXGEN_INLINE Double2 with_lanes_exchanged(const Double2& a) noexcept { return _
 
 namespace TEXGEN_DETAIL {
 
+using DoubleDouble2 = DoubleDoubleOf<Double2>;
+
 // Bit i is set where lane i is negative.
 inline std::uint32_t negative_lanes(const Float4& a) noexcept {
 #if defined(TEXGEN_HAS_VECTORS) && defined(__SSE2__)
@@ -267,15 +269,6 @@ inline Double4 four_widened(const glm::vec4& v) noexcept {
 inline Double2 first_two(const Double4& a) noexcept { return a.two[0]; }
 inline Double2 last_two(const Double4& a) noexcept { return a.two[1]; }
 #endif
-
-// Exactly a + b, as two_sum() of numbers.
-template <class Numbers>
-Numbers two_sum(const Numbers& a, const Numbers& b, Numbers& error) noexcept {
-    const Numbers sum = a + b;
-    const Numbers b_part = sum - a;
-    error = (a - (sum - b_part)) + (b - b_part);
-    return sum;
-}
 
 }  // namespace TEXGEN_DETAIL
 

@@ -69,48 +69,26 @@ struct CloseRamps {
     }
 };
 
-// Several unevaluated sums at a time. Products are made of exact ones, so that contraction changes nothing.
-template <class Numbers>
-struct DoubleDoubles {
-    Numbers high, low;
-};
+// Products of two numbers at a time are made of exact ones, so that contraction changes nothing.
 
-// Exactly a + b where |b| <= |a|.
-template <class Numbers>
-DoubleDoubles<Numbers> quick_two_sum(const Numbers& a, const Numbers& b) noexcept {
-    const Numbers sum = a + b;
-    return {sum, b - (sum - a)};
-}
-
-// a + b within 2^-103 (|a| + |b|).
-template <class Numbers>
-DoubleDoubles<Numbers> sum(const DoubleDoubles<Numbers>& a, const DoubleDoubles<Numbers>& b) noexcept {
-    Numbers left;
-    const Numbers high = two_sum(a.high, b.high, left);
-    return quick_two_sum<Numbers>(high, left + (a.low + b.low));
-}
-
-// Exactly a - b.
-inline DoubleDoubles<Double2> difference(const Double2& a, const Double2& b) noexcept {
-    DoubleDoubles<Double2> result;
-    result.high = two_sum(a, -b, result.low);
-    return result;
+inline DoubleDouble2 with_lanes_exchanged(const DoubleDouble2& a) noexcept {
+    return {with_lanes_exchanged(a.high), with_lanes_exchanged(a.low)};
 }
 
 // a b within 2^-102 |a b|. Parts of 26 bits and the 27 behind them have exact products, but for two of 27.
-inline DoubleDoubles<Double2> product(const DoubleDoubles<Double2>& a, const DoubleDoubles<Double2>& b) noexcept {
+inline DoubleDouble2 product(const DoubleDouble2& a, const DoubleDouble2& b) noexcept {
     const Double2 a_part = leading_bits<26>(a.high), a_rest = a.high - a_part;
     const Double2 b_part = leading_bits<26>(b.high), b_rest = b.high - b_part;
-    const DoubleDoubles<Double2> leading = quick_two_sum<Double2>(a_part * b_part, a_part * b_rest);
-    Double2 left;
-    const Double2 high = two_sum<Double2>(leading.high, a_rest * b_part, left);
-    return quick_two_sum<Double2>(high, (leading.low + left) + (a_rest * b_rest + (a.high * b.low + a.low * b.high)));
+    const DoubleDouble2 leading = quick_two_sum<Double2>(a_part * b_part, a_part * b_rest);
+    const DoubleDouble2 both = two_sum<Double2>(leading.high, a_rest * b_part);
+    return quick_two_sum<Double2>(both.high,
+                                  (leading.low + both.low) + (a_rest * b_rest + (a.high * b.low + a.low * b.high)));
 }
 
 // The same with a float, whose products with 29 bits and the 24 behind them are exact.
-inline DoubleDoubles<Double2> product_with_float(const DoubleDoubles<Double2>& a, double b) noexcept {
+inline DoubleDouble2 product_with_float(const DoubleDouble2& a, double b) noexcept {
     const Double2 part = leading_bits<29>(a.high);
-    const DoubleDoubles<Double2> leading = quick_two_sum<Double2>(part * b, (a.high - part) * b);
+    const DoubleDouble2 leading = quick_two_sum<Double2>(part * b, (a.high - part) * b);
     return {leading.high, leading.low + a.low * b};
 }
 
@@ -122,27 +100,25 @@ public:
     TEXGEN_APART ClosePlanes(const TrianglePlanes& planes, const Tile& tile) noexcept : tile_(tile) {
         const Double2 first =
             double2_of(static_cast<double>(tile.x) + 0.5, static_cast<double>(tile.y) + 0.5);  // integers
-        DoubleDoubles<Double2> to[3];  // from the first fragment to the corners
-        Double2 turned[3];             // the corners, by a quarter
+        DoubleDouble2 to[3];  // from the first fragment to the corners
+        Double2 turned[3];    // the corners, by a quarter
         for (std::size_t i = 0; i < 3; ++i) {
             const glm::dvec2 at = planes.corner(i);
-            to[i] = difference(double2_of(at.x, at.y), first);
+            to[i] = two_sum<Double2>(double2_of(at.x, at.y), -first);
             turned[i] = double2_of(at.y, -at.x);
         }
-        DoubleDoubles<Double4> sums[3];
-        Double4 magnitudes;
+        DoubleDoubleOf<Double4> sums[3];
+        Double4 magnitudes{};
         for (std::size_t i = 0; i < 3; ++i) {
             const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
             // The function of the side opposite corner i at the first fragment, in the second lane, and its growth by x
             // and y; what they are made of is times w_j w_k.
-            const DoubleDoubles<Double2> terms =
-                product(to[j], {with_lanes_exchanged(to[k].high), with_lanes_exchanged(to[k].low)});
-            const DoubleDoubles<Double2> value = sum<Double2>(
-                {with_lanes_exchanged(terms.high), with_lanes_exchanged(terms.low)}, {-terms.high, -terms.low});
-            const DoubleDoubles<Double2> growth = difference(turned[j], turned[k]);
+            const DoubleDouble2 terms = product(to[j], with_lanes_exchanged(to[k]));
+            const DoubleDouble2 value = sum(with_lanes_exchanged(terms), -terms);
+            const DoubleDouble2 growth = two_sum<Double2>(turned[j], -turned[k]);
             double leading[4], rest[4], low[4];
             for (std::size_t m = 0; m < 4; m += 2) {
-                const DoubleDoubles<Double2> of = product_with_float(
+                const DoubleDouble2 of = product_with_float(
                     product_with_float(m == 0 ? value : growth, planes.scaled_w(j)), widened(planes.vertex(k).clip_w));
                 const Double2 part = leading_bits<29>(of.high), left = of.high - part;
                 std::memcpy(leading + m, &part, sizeof part);
@@ -151,7 +127,7 @@ public:
             }
             const Double4 f = four_widened(planes.vertex(i).strq);
             for (std::size_t m = 0; m < 3; ++m) {
-                DoubleDoubles<Double4> part = quick_two_sum<Double4>(f * leading[m + 1], f * rest[m + 1]);
+                DoubleDoubleOf<Double4> part = quick_two_sum<Double4>(f * leading[m + 1], f * rest[m + 1]);
                 part.low = part.low + f * low[m + 1];
                 sums[m] = i == 0 ? part : sum<Double4>(sums[m], part);
             }
@@ -159,8 +135,7 @@ public:
             const double size =
                 std::fabs(planes.weight(i)) * (sizes[0] + sizes[1] + tile.width * std::fabs(growth.high[0]) +
                                                tile.height * std::fabs(growth.high[1]));
-            const Double4 of_terms = magnitude(f) * size;
-            magnitudes = i == 0 ? of_terms : magnitudes + of_terms;
+            magnitudes = magnitudes + magnitude(f) * size;
         }
         double high[4], low[4];
         for (std::size_t m = 0; m < 3; ++m) {
