@@ -201,8 +201,8 @@ public:
         return (std::fabs(sum) > 0x1p-4 * size ? sum : determinant.exactly().estimate()) * scale;
     }
 
-    // What F is made of, c_i = value weight: a coordinate of corner i, and w_j w_k times the common factor; both are
-    // exact.
+    // What F is made of, c_i = value weight: a coordinate of corner i, which is read where it stands, as GLM's subscript
+    // is a switch, and w_j w_k times the common factor; both are exact. scaled_w() is w_i times that factor.
     const WindowVertex& vertex(std::size_t i) const noexcept {
         return i == 0 ? triangle_.a : i == 1 ? triangle_.b : triangle_.c;
     }
