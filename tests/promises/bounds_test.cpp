@@ -14,8 +14,10 @@
 #include "judges/fragments.hpp"
 #include "judges/verdict.hpp"
 #include "support/hex.hpp"
+#include "support/near_cut.hpp"
 #include "support/outputs.hpp"
 #include "support/random.hpp"
+#include "support/triangles.hpp"
 #include "texgen/interpolate.hpp"
 #include "texgen/texcoord.hpp"
 
@@ -194,6 +196,64 @@ TEST_CASE("the bounds of forms, of mixtures and of planes in double cover their 
     CHECK(of_mixture > 0.15);
     CHECK(of_plane > 0.03);
     MESSAGE(of_form, " ", of_mixture, " ", of_plane);
+}
+
+TEST_CASE(
+    "functions in two doubles, and those from exact growths, are within their errors at the corners of any tile") {
+    using support::Dyadic;
+    Random random(6500);
+    double worst[2] = {};  // of the functions as they are made, and of those that exact growths replace
+    int replaced = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const support::NearCut cut = support::near_cut(random);
+        texgen::Triangle triangle = cut.triangle;
+        texgen::detail::Tile tile{cut.rect.x, cut.rect.y, random.integer(1, 200), random.integer(1, 20)};
+        if (i % 2 == 0) {
+            // Of any size, and far away: differences are no doubles, and functions cancel.
+            const double size = random.power_of_ten(0.0, 9.3);
+            for (texgen::WindowVertex* vertex : support::vertices(triangle)) {
+                vertex->window = {random.uniform_float(-size, size), random.uniform_float(-size, size)};
+                for (int k = 0; k < 4; ++k) vertex->strq[k] *= support::to_float(random.power_of_ten(-9.0, 9.0));
+            }
+            tile.x = static_cast<std::int64_t>(random.uniform(-2147480000.0, 2147480000.0));
+        }
+        const texgen::detail::TrianglePlanes planes(triangle);
+        if (!planes.is_usable()) continue;
+        texgen::detail::ClosePlanes close(planes, tile);
+        const auto check = [&](glm::length_t coordinate, double& worst_share) {
+            const auto& [term, error] = close.ramp(coordinate);
+            for (int corner = 0; corner < 4; ++corner) {
+                const double x = corner % 2 == 0 ? 0.0 : tile.width - 1.0,
+                             y = corner / 2 == 0 ? 0.0 : tile.height - 1.0;
+                const Dyadic at[] = {Dyadic(static_cast<double>(tile.x) + 0.5 + x),
+                                     Dyadic(static_cast<double>(tile.y) + 0.5 + y)};
+                const auto to = [&](std::size_t k, glm::length_t axis) {
+                    return Dyadic(planes.corner(k)[axis]) - at[axis];
+                };
+                Dyadic left_out;
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const std::size_t j = (k + 1) % 3, l = (k + 2) % 3;
+                    left_out = left_out + (to(j, 0) * to(l, 1) - to(j, 1) * to(l, 0)) *
+                                              (Dyadic(planes.weight(k)) * Dyadic(planes.value(k, coordinate)));
+                    const Dyadic steps(k == 0 ? 1.0 : k == 1 ? x : y);
+                    left_out = left_out - (Dyadic(term[k].high) + Dyadic(term[k].low)) * steps;
+                }
+                worst_share = std::max(worst_share, std::fabs(left_out.estimate()) / error);
+            }
+        };
+        for (const glm::length_t coordinate : {0, 1, 2, 3}) check(coordinate, worst[0]);
+        const double error = close.ramp(2).error;
+        take_exact_growths(planes, 2, 2, close);
+        replaced += close.ramp(2).error < error;
+        for (const glm::length_t coordinate : {2, 3}) check(coordinate, worst[1]);
+    }
+    // Most terms are far below the largest one, and 2^-97 has room for four times what could be lost.
+    for (const double share : worst) {
+        CHECK(share <= 1.0);
+        CHECK(share > 0x1p-9);
+    }
+    CHECK(replaced > 500);
+    MESSAGE(worst[0], " ", worst[1], ", ", replaced, " replaced");
 }
 
 TEST_CASE("exact sums of products, and of multiples of such sums, are exact, and their terms do not overlap") {
