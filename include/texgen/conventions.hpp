@@ -11,8 +11,8 @@
 
 #include "detail/matrices/required.hpp"
 
-// 0.4.37: 10000 major + 100 minor + patch.
-#define TEXGEN_VERSION 437
+// 0.4.38: 10000 major + 100 minor + patch.
+#define TEXGEN_VERSION 438
 
 namespace TEXGEN_NAMESPACE {
 

@@ -135,9 +135,10 @@ TEST_CASE("functions over a triangle in float, or in double and rounded, stay in
         const Tolerance tolerance{random.uniform(1.0, is_float ? 7.0 : 4.5) * unit_roundoff};
         Outputs out(30), nearest(30);
         interpolate(support::setup_of(triangle), rect, nearest.spans());
-        // Of a tile that touches a side nothing is certain, which small tiles ask for their own way.
-        const texgen::TextureRegion region = texgen::atlas_tile(
-            {*std::max_element(nearest.s().begin(), nearest.s().end()), -HUGE_VAL}, {HUGE_VAL, HUGE_VAL});
+        // A tile that is about the tolerance away from a side may be all lit, which small ones do not decide.
+        const double least = *std::min_element(nearest.s().begin(), nearest.s().end());
+        const texgen::TextureRegion region =
+            texgen::atlas_tile({least - 2.0 * tolerance.value - 4.0 * unit_roundoff, -HUGE_VAL}, {HUGE_VAL, HUGE_VAL});
         const texgen::TriangleSetup setup = support::setup_of(triangle, region, tolerance);
         const texgen::Work work = interpolate(setup, rect, out.spans());
         support::Seen seen;

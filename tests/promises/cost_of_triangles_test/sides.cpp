@@ -112,52 +112,80 @@ TEST_CASE(
     }
 }
 
-TEST_CASE(
-    "a mask alone costs at most 12 times one that is lit at once where a side crosses the tile or is its plane, 8 of a "
-    "large one, and up to 4 more with a tolerance") {
-    const auto shot_with = [](int width, int height, const auto& change) {
-        Shot shot = ordinary(width, height);
-        for (WindowVertex* corner : support::vertices(shot.triangle)) change(*corner);
+namespace {
+
+// Ordinary triangles of which a side of the region crosses a tile next to its middle.
+std::array<Shot, 3> crossed(const glm::ivec2& size) {
+    const glm::vec2 middle(300.3f + 0.5f * static_cast<float>(size.x), 100.2f + 0.5f * static_cast<float>(size.y));
+    const auto with = [&](glm::length_t coordinate, float side, const glm::vec2& slope) {
+        Shot shot = ordinary(size.x, size.y);
+        for (WindowVertex* corner : support::vertices(shot.triangle))
+            corner->strq[coordinate] =
+                side * corner->strq.w + glm::dot(corner->window - middle, slope) / 1000.0f * corner->clip_w;
         return shot;
     };
-    for (const glm::ivec2 size : {glm::ivec2{8, 8}, {64, 4}, {256, 16}, {1024, 4}}) {
-        const glm::vec2 middle(300.0f + 0.5f * static_cast<float>(size.x), 100.0f + 0.5f * static_cast<float>(size.y));
-        const auto along = [&](const WindowVertex& corner, glm::vec2 slope) {
-            return glm::dot(corner.window - middle, slope) / 1000.0f * corner.clip_w;
-        };
-        const Shot shots[] = {
-            shot_with(size.x, size.y,
-                      [&](WindowVertex& c) {
-                          c.strq.x = along(c, {1.0f, 0.3f});
-                      }),
-            shot_with(size.x, size.y,
-                      [&](WindowVertex& c) {
-                          c.strq.y = along(c, {-0.2f, 0.8f});
-                      }),
-            shot_with(size.x, size.y,
-                      [&](WindowVertex& c) {
-                          c.strq.y = c.strq.w + along(c, {0.7f, -0.7f});
-                      }),
-            shot_with(size.x, size.y, [&](WindowVertex& c) { c.strq.x = 0.0f; }),
-            shot_with(size.x, size.y, [&](WindowVertex& c) { c.strq.x = c.strq.y = c.strq.w; }),
-        };
-        std::vector<float> lit(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y));
+    return {with(0, 0.0f, {1.0f, 0.3f}), with(1, 0.0f, {-0.2f, 0.8f}), with(1, 1.0f, {0.7f, -0.7f})};
+}
+
+// Those that lie on a side.
+std::array<Shot, 2> on_sides(const glm::ivec2& size) {
+    Shot left = ordinary(size.x, size.y), corner = left;
+    for (WindowVertex* vertex : support::vertices(left.triangle)) vertex->strq.x = 0.0f;
+    for (WindowVertex* vertex : support::vertices(corner.triangle)) vertex->strq.x = vertex->strq.y = vertex->strq.w;
+    return {left, corner};
+}
+
+}  // namespace
+
+TEST_CASE(
+    "a mask alone costs at most 8 times one that is lit at once where a side crosses the tile, 10 of 8 x 8, and 12 "
+    "where "
+    "it is its plane") {
+    for (const glm::ivec2 size : {glm::ivec2{8, 8}, {64, 4}, {32, 32}, {256, 16}, {1024, 4}}) {
+        std::vector<float> lit(support::count_of(ordinary(size.x, size.y).rect));
         for (const Tolerance tolerance : {texgen::exact, texgen::texels(1.0 / 16.0, 1024.0)}) {
-            // Spans of few fragments, of which some columns are asked for where a side follows a diagonal; and planes of
-            // a side, beside which floats within a tolerance may be.
-            const double of_exact = size.x == 8 ? 12.0 : size.x == 64 ? 10.0 : 8.0;
-            const double most = (tolerance.value > 0.0 ? (size.x == 8 ? 16.0 : 12.0) : of_exact) * masks_by_vectors;
             const auto call = [&](const Shot& shot) {
                 return [&lit, setup = support::setup_of(shot.triangle, texgen::whole_texture(), tolerance),
                         rect = shot.rect] {
                     interpolate(setup, rect, {{}, {}, {}, lit});
                 };
             };
-            for (const Shot& shot : shots) {
+            const auto require = [&](const Shot& shot, double most) {
+                most *= masks_by_vectors;
                 const double ratio =
                     support::worst_over_ordinary_within(most, call(ordinary(size.x, size.y)), call(shot));
                 REQUIRE_MESSAGE(ratio <= most, size.x, " x ", size.y, ", tolerance ", tolerance.value, ": ", ratio,
                                 " times in ", hex(shot));
+            };
+            for (const Shot& shot : crossed(size)) require(shot, size.x == 8 ? 10.0 : 8.0);
+            for (const Shot& shot : on_sides(size)) require(shot, 12.0);
+        }
+    }
+}
+
+TEST_CASE(
+    "where a side crosses a tile less output takes no longer than more, nor a tolerance longer than exact values") {
+    constexpr double most = 3.0;
+    for (const glm::ivec2 size : {glm::ivec2{1, 1}, {4, 4}, {8, 8}, {16, 16}, {64, 4}, {32, 32}}) {
+        std::vector<float> s(support::count_of(ordinary(size.x, size.y).rect)), t(s.size()), lit(s.size());
+        const texgen::Texcoords both{s, t, {}, lit};
+        const texgen::Texcoords asked[] = {{s, {}, {}, lit}, {{}, t, {}, lit}, {{}, {}, {}, lit}, both};
+        for (const Shot& shot : crossed(size)) {
+            for (const Tolerance tolerance : {texgen::exact, tolerances[1], texgen::texels(1.0, 512.0)}) {
+                const auto call = [&](Tolerance accepted, const texgen::Texcoords& out) {
+                    return [&out, setup = support::setup_of(shot.triangle, texgen::whole_texture(), accepted),
+                            rect = shot.rect] { interpolate(setup, rect, out); };
+                };
+                for (const texgen::Texcoords& out : asked) {
+                    const double over_both =
+                        support::worst_over_ordinary_within(most, call(tolerance, both), call(tolerance, out));
+                    const double over_exact =
+                        support::worst_over_ordinary_within(most, call(texgen::exact, out), call(tolerance, out));
+                    INFO(size.x, " x ", size.y, ", tolerance ", tolerance.value, ", output ", &out - asked, " of ",
+                         hex(shot));
+                    CHECK(over_both <= most);
+                    CHECK(over_exact <= most);
+                }
             }
         }
     }

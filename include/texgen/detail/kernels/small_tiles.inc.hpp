@@ -110,7 +110,7 @@ TEXGEN_INLINE void divide_small_in_float(const SmallTile& tile, int width, int c
 template <class CompiledWhereCalled = void>
 bool fill_small_tile(const SmallTile& tile) noexcept {
     if (!tile.is_in_float) {
-        if (!divide_small_tile(tile)) return false;
+        if (!divide_small_tile(tile) && !tile.is_certain) return false;
     } else if (tile.width == 8) {
         divide_small_in_float(tile, 8, wide_lanes < 8 ? wide_lanes : 8);
     } else {

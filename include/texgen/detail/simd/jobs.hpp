@@ -110,6 +110,7 @@ struct SmallTile {
     Ramp q;
     int width, height;
     bool is_in_float;  // rounded to float and divided, which leaves no doubt; its shape is one for that
+    bool is_certain;   // within the tolerance in double, and in no doubt
     float* out[2];
     float* lit;            // or null
     float min[2], max[2];  // the region

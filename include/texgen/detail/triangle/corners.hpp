@@ -141,7 +141,7 @@ struct Corners {
 };
 
 // Takes the values at the corner fragments, once the functions and their errors are known.
-inline void take_corners(Corners& corners, const Tile& tile) noexcept {
+TEXGEN_APART inline void take_corners(Corners& corners, const Tile& tile) noexcept {
     const double right = tile.width - 1;
     const double bottom = tile.height - 1;
     const auto fill = [&](const auto& ramp, auto& value) {

@@ -47,7 +47,7 @@ TEXGEN_APART void darken_beyond_depth(const TriangleFunctions& triangle, const T
 template <class CompiledWhereCalled = void>
 bool light_small(const TriangleFunctions& triangle, const Tile& rect, const Tile& part,
                  const std::span<float>& lit) noexcept {
-    if (part.count() > TileJob::unit_size || triangle.tolerance != 0.0) return false;
+    if (part.count() > TileJob::unit_size) return false;
     float mask[TileJob::unit_size];
     Texcoords out;
     out.lit = {mask, static_cast<std::size_t>(part.count())};
@@ -57,6 +57,23 @@ bool light_small(const TriangleFunctions& triangle, const Tile& rect, const Tile
     for (const float* from = mask; from != mask + part.count(); from += width, to += rect.width)
         std::memcpy(to, from, width * sizeof(float));
     return true;
+}
+
+// Fills the mask, if it is asked for, and s or t, if one of them is. That is computed with the other one for the mask,
+// where it takes less.
+template <class CompiledWhereCalled = void>
+TEXGEN_APART void fill_one_and_mask(const TriangleFunctions& triangle, const Tile& tile, TileSurvey& found,
+                                    const Texcoords& out) noexcept {
+    Tile rest = tile;
+    const bool has_one = out.s.size() + out.t.size() != 0;
+    if (out.lit.empty() || !has_one || (triangle.tolerance == 0.0 && tile.count() > 1024)) {
+        interpolate_alone(triangle, tile, found.in_doubt, 0, out.s, &found.plan);
+        interpolate_alone(triangle, tile, found.in_doubt, 1, out.t, &found.plan);
+        if (out.lit.empty()) return;
+        rest = light_spans(triangle, tile, found.at, out.lit);
+        if (rest.count() == 0 || light_small(triangle, tile, rest, out.lit)) return;
+    }
+    TileInterpolator<>(triangle, triangle.st, tile, found.in_doubt, 0, 1, out).interpolate_in_strips(rest, found.plan);
 }
 
 // Interpolates a rectangle by a plan; empty outputs are not computed.
@@ -74,18 +91,14 @@ TEXGEN_APART Work interpolate_by_plan(const TriangleFunctions& triangle, const T
     // What is certainly inside is lit, and s and t need not be compared.
     const bool is_inside = plan.sides == Coverage::inside;
     if (is_inside && !out.lit.empty()) chosen<MaskKernels>().light_all(out.lit.data(), out.lit.size());
-    const bool asks_mask = !is_inside && !out.lit.empty();
     if (!out.s.empty() && !out.t.empty()) {
         TileInterpolator<> interpolator(triangle, triangle.st, tile, found.in_doubt, 0, 1, out);
         if (is_inside) interpolator.leave_mask();
         interpolator.interpolate(tile, found.at, plan);
     } else {
-        interpolate_alone(triangle, tile, found.in_doubt, 0, out.s, &plan);
-        interpolate_alone(triangle, tile, found.in_doubt, 1, out.t, &plan);
-        const Tile left = asks_mask ? light_spans(triangle, tile, found.at, out.lit) : Tile{};
-        if (left.count() > 0 && !light_small(triangle, tile, left, out.lit))
-            TileInterpolator<>(triangle, triangle.st, tile, found.in_doubt, 0, 1, out)
-                .interpolate_in_strips(left, plan);
+        Texcoords asked = out;
+        if (is_inside) asked.lit = {};
+        fill_one_and_mask(triangle, tile, found, asked);
     }
     interpolate_alone(triangle, tile, found.in_doubt, 2, out.r, nullptr);
     if (plan.depth != Coverage::inside) darken_beyond_depth(triangle, tile, out);

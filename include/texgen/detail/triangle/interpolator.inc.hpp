@@ -362,14 +362,15 @@ private:
         job.is_contiguous = tile.width == rect_.width;
         const auto& [base, dx, dy] = at.numerator_ramp;
         store_ramps({base * factor, dx * factor, dy * factor}, job.numerator);
+        const std::size_t first = offset(tile.x, tile.y);
         // One coordinate alone stands in both places.
         TEXGEN_FOR (std::size_t k = 0; k < 2; ++k) {
             const std::span<float>& output = output_[k < count_ ? k : 0];
             job.is_scratch[k] = output.empty();
-            job.out[k] = output.empty() ? scratch_[k] : output.data() + offset(tile.x, tile.y);
+            job.out[k] = output.empty() ? scratch_[k] : output.data() + first;
             job.is_contiguous = job.is_contiguous && !job.is_scratch[k];
         }
-        job.lit = lit_.empty() ? nullptr : lit_.data() + offset(tile.x, tile.y);
+        job.lit = lit_.empty() ? nullptr : lit_.data() + first;
         triangle_.lit.copy_to(job.min, job.max);
         return job;
     }

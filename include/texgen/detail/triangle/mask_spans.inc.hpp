@@ -10,30 +10,31 @@ struct Span {
 };
 
 // q >= 0 and the sides of the region over a tile, with the margins of coverage_by_sides(): a linear function is above 0
-// where it is computed to be above its margin, and not where it is below minus that.
+// where it is computed to be above its margin, and not where it is below minus that. s and t have no outputs that the mask
+// has to go by under a tolerance: either answer will do within a margin of less than half of that.
 class HalfPlanes {
 public:
     TEXGEN_APART HalfPlanes(const TriangleFunctions& triangle, const Corners& at, const Tile& tile) noexcept
         : tile_(tile) {
         const double q = largest_q_of(at);
-        // Under a tolerance only quotients of 0 are sure to be written as they are.
-        const bool is_exact = triangle.tolerance == 0.0;
-        add(at.q_ramp, at.q_error + 0x1p-46 * q);
+        const double slack = 0.5 * triangle.tolerance * (at.least_q - at.q_error);
+        add(at.q_ramp, at.q_error + 0x1p-46 * q, 0.0);
         const auto& [base, dx, dy] = at.numerator_ramp;
         for (std::size_t side = 0; side < 4; ++side) {
             const std::size_t k = side % 2;
+            const auto coordinate = static_cast<glm::length_t>(k);
             const double sign = side < 2 ? 1.0 : -1.0;
             const double bound = side < 2 ? triangle.lit.least(k) : triangle.lit.greatest(k);
-            if (bound == -sign * infinity || ((is_exact || bound == 0.0) && is_on_side(triangle.planes, k, bound)))
-                continue;
+            if (bound == -sign * infinity || is_on_side(triangle.planes, coordinate, bound)) continue;
             const auto at_side = [&](const Double2& f, double of_q) { return sign * (f[k] - bound * of_q); };
             Ramp inside{at_side(base, at.q_ramp.base), at_side(dx, at.q_ramp.dx), at_side(dy, at.q_ramp.dy)};
             // Fragments on the side are inside, and none lies within half a fragment of them.
-            if (is_exact && bound == 0.0 && zeros_of(triangle.planes, static_cast<glm::length_t>(k), tile).end != 0)
+            if (bound == 0.0 && zeros_of(triangle.planes, coordinate, tile).end != 0)
                 inside.base += 0.5 * (std::fabs(inside.dx) + std::fabs(inside.dy));
             // Values in the tile are five times the largest one at most, and rounded three times.
-            add(inside, margin_of_sides(at, triangle.tolerance, q)[k] + std::fabs(bound) * margin_of_bounds(at, q) +
-                            0x1p-46 * at.largest_numerator[k]);
+            const double margin = margin_of_sides(at, 0.0, q)[k] + std::fabs(bound) * margin_of_bounds(at, q) +
+                                  0x1p-46 * at.largest_numerator[k];
+            add(inside, margin, slack);
         }
     }
 
@@ -49,12 +50,11 @@ public:
         Double2 begin = none, end = all;
         for (std::size_t i = 0; i < begins_; ++i) begin = larger(at_begin_[i].in_row(y), begin);
         for (std::size_t i = 0; i < ends_; ++i) end = smaller(at_end_[i].in_row(y), end);
-        begin = smaller(begin, all);
-        end = larger(end, none);
-        Span possible{count_before(begin[1]), count_before(end[1])};
-        if (possible.begin > possible.end) possible.begin = possible.end;
-        const Span certain{count_before(begin[0]), count_before(end[0])};
-        return {certain.begin < certain.end ? certain : Span{possible.end, possible.end}, possible};
+        const auto [certain_begin, possible_begin] = counts_before(smaller(begin, all));
+        const auto [certain_end, possible_end] = counts_before(larger(end, none));
+        const Span possible{possible_begin < possible_end ? possible_begin : possible_end, possible_end};
+        return {certain_begin < certain_end ? Span{certain_begin, certain_end} : Span{possible_end, possible_end},
+                possible};
     }
 
 private:
@@ -67,16 +67,16 @@ private:
     };
 
     // Whether u = bound everywhere. Bounds and coordinates are floats, so their product is exact.
-    static bool is_on_side(const TrianglePlanes& planes, std::size_t k, double bound) noexcept {
-        const auto coordinate = static_cast<glm::length_t>(k);
+    static bool is_on_side(const TrianglePlanes& planes, glm::length_t coordinate, double bound) noexcept {
         for (std::size_t i = 0; i < 3; ++i)
             if (planes.value(i, coordinate) != bound * planes.value(i, 3)) return false;
         return true;
     }
 
     // A function that grows along a row by less than a share of its margin is taken for one that grows by that share,
-    // which moves its zero only within the margin. One that is above its margin in the whole tile bounds nothing.
-    TEXGEN_APART void add(const Ramp& value, double margin) noexcept {
+    // which moves its zero only within the margin. One that is above its margin in the whole tile bounds nothing. Within
+    // a margin of no more than `slack` either answer will do.
+    TEXGEN_APART void add(const Ramp& value, double margin, double slack) noexcept {
         const double least = value.base + smaller(value.dx * tile_.width, 0.0) + smaller(value.dy * tile_.height, 0.0);
         if (least > margin && least < infinity) return;
         const double least_growth = 0x1p-8 * margin / tile_.width;
@@ -89,7 +89,8 @@ private:
         const double base = -value.base * per_dx, step = -value.dy * per_dx, reach = std::fabs(margin * per_dx);
         const double rounding = 0x1p-20 + 0x1p-50 * (std::fabs(base) + std::fabs(step) * tile_.height + reach);
         const Double2 zero = double2_of(base, base);
-        const Double2 outwards = double2_of(reach + rounding, -reach - rounding);
+        const double all = reach + rounding <= slack * std::fabs(per_dx) ? 0.0 : reach + rounding;
+        const Double2 outwards = double2_of(all, -all);
         if (dx > 0.0)
             at_begin_[begins_++] = {zero + outwards, double2_of(step, step)};
         else
@@ -97,9 +98,13 @@ private:
         are_finite_ &= rounding < infinity;
     }
 
-    static int count_before(double x) noexcept {
-        const int whole = static_cast<int>(x);
-        return whole < x ? whole + 1 : whole;
+    // How many whole numbers from 0 on are below each of two numbers, of which 2^-21 may be taken: the last bits of a
+    // sum with 2^52 are those of the nearest integer.
+    static std::array<int, 2> counts_before(const Double2& x) noexcept {
+        const Double2 sum = (x + (0.5 - 0x1p-21)) + 0x1p52;
+        std::uint64_t bits[2];
+        std::memcpy(bits, &sum, sizeof bits);
+        return {static_cast<int>(bits[0] & 0xffffffffu), static_cast<int>(bits[1] & 0xffffffffu)};
     }
 
     Tile tile_;

@@ -59,20 +59,21 @@ struct SmallDivisor {
     }
 };
 
-// Whether all of the tile is lit by s and t, or certainly a part. The sides are those of coverage_by_sides() with twice
-// its margins, so that nothing is said of a tile of which that says something else.
+// Whether all of the tile is lit by s and t, or certainly a part. The sides are those of coverage_by_sides() with margins
+// on both sides of its own, so that nothing is said of a tile of which that says something else.
 enum class SmallAnswer { doubt, lit, partly_lit };
 inline SmallAnswer ask(const LitTest& lit, double tolerance, const SmallFunction<Double2>& f,
                        const SmallDivisor& divisor) noexcept {
     if (!divisor.is_far_from_zero()) return SmallAnswer::doubt;
     const SmallFunction<double>& q = divisor.function;
+    const double written = 2.0 * tolerance * divisor.largest;  // how far from a side values in the tile may be written
     Double2 min = double2_of(lit.least(0), lit.least(1));
     Double2 max = double2_of(lit.greatest(0), lit.greatest(1));
     if (!lit.is_narrow) {
-        // A side far beyond all quotients may as well stand eight times beyond them, where its margin is no larger than
-        // they are. What is lit then is inside by coverage_by_sides(), too, whatever q does in the tile.
+        // A side far beyond all quotients and the tolerance may as well stand at several times both, where its margin is no
+        // larger than they are. What is lit then is inside by coverage_by_sides(), too, whatever q does in the tile.
         const Double2 largest = magnitude(f.base) + magnitude(f.right) + magnitude(f.bottom);
-        const Double2 beyond = largest * (8.0 / divisor.least) + 1.0;
+        const Double2 beyond = (largest * 8.0 + 4.0 * written) * (1.0 / divisor.least) + 1.0;
         min = larger(-beyond, min);
         max = smaller(beyond, max);
         if (!all_less(min, max)) return SmallAnswer::doubt;  // a NaN, or nothing
@@ -83,58 +84,44 @@ inline SmallAnswer ask(const LitTest& lit, double tolerance, const SmallFunction
     const Double2 least_below = least_of<Double2>(below[0], below[1], below[2]);
     const Double2 size = larger(max, -min);
     const Double2 error = f.error + size * q.error;
-    const Double2 margin = error * 2.0 + (size * 0x1p-21 + (0x1.1p-124 + 4.1 * tolerance)) * divisor.largest;
-    if (all_less(margin, smaller(least_above, least_below))) return SmallAnswer::lit;
-    const bool is_partly_dark = any_less(smaller(least_above, least_below), -margin);
+    const Double2 most = error * 2.0 + (size * 0x1p-21 + 0x1.1p-124) * divisor.largest + 1.001 * written;
+    if (all_less(most, smaller(least_above, least_below))) return SmallAnswer::lit;
+    const Double2 least = -error + written;
+    const bool is_partly_dark = any_less(smaller(least_above, least_below), least);
     const Double2 largest_above = largest_of<Double2>(above[0], above[1], above[2]);
     const Double2 largest_below = largest_of<Double2>(below[0], below[1], below[2]);
-    const bool may_be_dark = any_less(smaller(largest_above, largest_below), margin);
+    const bool may_be_dark = any_less(smaller(largest_above, largest_below), -least);
     return is_partly_dark && !may_be_dark ? SmallAnswer::partly_lit : SmallAnswer::doubt;
 }
 
-// Whether one bound serves all quotients; the tile is in float where that does. Exact: F errs by less than 2^-41.5 of
-// itself and q by 2^-44, and four roundings follow: within SmallTile::ulps; |F| is above 2^-124 q, so the floats are
-// normal. In float, with u = 2^-24 and b the steps to the last row, of which y is at most half: F is rounded with its
-// column, its step, the product with y and the sum, by u (2 F + 1.5 b), as is q, and the reciprocal and the product
-// round by 2 u. Of quotients that are `greatest` at most this is 6 u greatest + 1.5 u (b_F + greatest b_q) / q, and
-// what floats below 2^-126 lose, one of them times y and over q, is less than 2^-96.
+// Whether one bound serves all quotients. The tile is in float where that does; in double all are certain where it is
+// within the tolerance, else those that are not next to half-way between two floats.
+//
+// Exact: F errs by less than 2^-41.5 of itself and q by 2^-44, and four roundings follow: within SmallTile::ulps; |F| is
+// above 2^-124 q, so the floats are normal. In float, with u = 2^-24 and b the steps to the last row, of which y is at most
+// half: F is rounded with its column, its step, the product with y and the sum, by u (2 F + 1.5 b), as is q, and the
+// reciprocal and the product round by 2 u. Of quotients that are `greatest` at most this is 6 u greatest + 1.5 u (b_F +
+// greatest b_q) / q, and what floats below 2^-126 lose, one of them times y and over q, is less than 2^-96. In double only
+// the quotient is rounded to float.
 inline bool serves(const SmallFunction<Double2>& f, const SmallDivisor& divisor, double tolerance,
                    SmallTile& tile) noexcept {
     const SmallFunction<double>& q = divisor.function;
     const Double2 least = least_of<Double2>(f.base, f.right, f.bottom);
     const Double2 largest = largest_of<Double2>(f.base, f.right, f.bottom);
-    tile.is_in_float = false;
-    if (tolerance != 0.0 && has_shape_for_float(tile.width, read_alone(tile.height))) {
+    tile.is_in_float = tile.is_certain = false;
+    if (tolerance != 0.0) {
         const Double2 greatest = larger(largest, -least) * (1.001 / divisor.least);
         const double allowed = (tolerance - 0x1p-96) * (divisor.least - q.error);
-        const Double2 error = f.error + greatest * q.error;
-        const Double2 rounded = larger(f.bottom, -f.bottom) + greatest * (4.02 * divisor.least + std::fabs(q.bottom));
-        tile.is_in_float =
-            all_less(error * 1.01 + rounded * (1.52 * unit_roundoff_float), double2_of(allowed, allowed)) &&
-            divisor.least > larger(0x1p-10 * divisor.largest, 0x1p-21) && tolerance < 0x1p40;
+        const bool may_be_float = has_shape_for_float(tile.width, read_alone(tile.height)) &&
+                                  divisor.least > larger(0x1p-10 * divisor.largest, 0x1p-21) && tolerance < 0x1p40;
+        Double2 rounded = greatest * divisor.least;
+        if (may_be_float) rounded = larger(f.bottom, -f.bottom) + rounded * 4.02 + greatest * std::fabs(q.bottom);
+        const Double2 error = (f.error + greatest * q.error) * 1.01 + rounded * (1.52 * unit_roundoff_float);
+        tile.is_certain = all_less(error, double2_of(allowed, allowed));
+        tile.is_in_float = tile.is_certain && may_be_float;
+        if (!tile.is_in_float && pays_for_chunks(tile.width, tile.height)) return false;
     }
-    if (tile.is_in_float) return true;
-    if (tolerance != 0.0 && pays_for_chunks(tile.width, tile.height)) return false;
-    return all_less(f.error * 0x1.8p41 + 0x1.1p-124 * divisor.largest, larger(least, -largest));
-}
-
-// What is left of a tile: nothing; its one unit, in doubt; or all, as no one bound serves, or it has more units.
-enum class SmallDoubt { none, of_unit, of_all };
-
-// Divides one or two coordinates, if one bound serves them; `tile` says where they go. A column is divided as a row; if
-// that is in doubt it is left to the mirrored triangle.
-template <class CompiledWhereCalled = void>
-TEXGEN_APART SmallDoubt divide_small(const TriangleFunctions& triangle, const Tile& rect, const RampOf<Double2>& ramp,
-                                     const SmallFunction<Double2>& f, const SmallDivisor& q, SmallTile& tile) noexcept {
-    const bool is_column = rect.is_column();
-    tile.width = is_column ? rect.height : rect.width;
-    tile.height = is_column ? 1 : rect.height;
-    if (!serves(f, q, triangle.tolerance, tile)) return SmallDoubt::of_all;
-    const auto& [q_base, q_dx, q_dy] = triangle.q.value;
-    store_ramps({f.base, is_column ? ramp.dy : ramp.dx, is_column ? ramp.dx : ramp.dy}, tile.numerator);
-    tile.q = {q.function.base, is_column ? q_dy : q_dx, is_column ? q_dx : q_dy};
-    if (chosen<TileKernels>().fill_small(tile)) return SmallDoubt::none;
-    return !is_column && tile.width * tile.height <= TileJob::unit_size ? SmallDoubt::of_unit : SmallDoubt::of_all;
+    return tile.is_certain || all_less(f.error * 0x1.8p41 + 0x1.1p-124 * divisor.largest, larger(least, -largest));
 }
 
 // Interpolates one coordinate of a rectangle that is no column; without a plan (null) nothing is known of it.
@@ -157,61 +144,98 @@ TEXGEN_APART void interpolate_alone(const TriangleFunctions& triangle, const Til
     interpolate_alone(triangle, rect, in_doubt, coordinate, output, nullptr);
 }
 
-// The same for a small tile; the one coordinate stands in both places.
+// Fills s, t, r and the mask of a small tile.
 template <class CompiledWhereCalled = void>
-TEXGEN_APART void fill_small_alone(const TriangleFunctions& triangle, const Tile& rect, const SmallPlace& place,
-                                   const SmallDivisor& q, glm::length_t coordinate, const std::span<float>& output,
-                                   SmallTile& tile) noexcept {
-    const PlaneOf<Double2> plane = triangle.planes.plane_twice(coordinate);
-    tile.out[0] = tile.out[1] = output.data();
-    tile.lit = nullptr;
-    const SmallDoubt doubt = divide_small(triangle, rect, plane.value, SmallFunction<Double2>(plane, place), q, tile);
-    if (doubt == SmallDoubt::none) return;
-    if (doubt == SmallDoubt::of_all) return interpolate_alone(triangle, rect, coordinate, output);
-    RectInDoubt in_doubt;
-    TileInterpolator<>(triangle, plane, rect, in_doubt, coordinate, coordinate, {output}).interpolate_from_doubt(rect);
-}
+class SmallInterpolator {
+public:
+    SmallInterpolator(const TriangleFunctions& triangle, const Tile& rect) noexcept
+        : triangle_(triangle),
+          rect_(rect),
+          place_(triangle.planes.from_a({rect.x, read_alone(rect.y), rect.width, rect.height}), rect.width,
+                 read_alone(rect.height)),
+          q_(triangle.q, place_),
+          st_(triangle.st, place_) {}
 
-// Fills s, t, r and the mask of a small tile, if one certificate serves all of s and t that is asked for.
+    // Doubt, if one certificate does not serve all of s and t that is asked for.
+    TEXGEN_INLINE SmallAnswer fill(const Texcoords& out) noexcept {
+        const SmallAnswer answer = ask(triangle_.lit, triangle_.tolerance, st_, q_);
+        if (answer == SmallAnswer::doubt) return answer;
+        const bool is_lit = answer == SmallAnswer::lit;
+        const bool needs_mask = !is_lit && !out.lit.empty();
+        tile_.lit = needs_mask ? out.lit.data() : nullptr;
+        triangle_.lit.copy_to(tile_.min, tile_.max);
+        if (!out.s.empty() && !out.t.empty()) {
+            if (!divide(triangle_.st, st_, 0, 1, out)) return SmallAnswer::doubt;
+        } else if (needs_mask) {
+            // s and t give the mask of few fragments sooner than spans do; that of more in float, or where one of them has
+            // an output.
+            const bool takes_many = triangle_.tolerance != 0.0 || out.s.size() + out.t.size() != 0;
+            if (rect_.count() > (takes_many ? most_in_scratch : TileJob::unit_size) || !divide_in_scratch(out))
+                return SmallAnswer::doubt;
+        } else {
+            fill_alone(0, out.s);
+            fill_alone(1, out.t);
+        }
+        fill_alone(2, out.r);
+        if (is_lit && !out.lit.empty()) chosen<MaskKernels>().light_all(out.lit.data(), out.lit.size());
+        return answer;
+    }
+
+private:
+    static constexpr std::int64_t most_in_scratch = 1024;
+
+    // Divides two coordinates, or one that stands in both places and goes to out.s; false where no bound serves them. A
+    // column is divided as a row; if that is in doubt it is left to the mirrored triangle.
+    TEXGEN_APART bool divide(const PlaneOf<Double2>& planes, const SmallFunction<Double2>& f, glm::length_t first,
+                             glm::length_t second, const Texcoords& out) noexcept {
+        const bool is_column = rect_.is_column();
+        tile_.width = is_column ? rect_.height : rect_.width;
+        tile_.height = is_column ? 1 : rect_.height;
+        if (!serves(f, q_, triangle_.tolerance, tile_)) return false;
+        tile_.out[0] = out.s.data();
+        tile_.out[1] = first == second ? out.s.data() : out.t.data();
+        const RampOf<Double2>& ramp = planes.value;
+        store_ramps({f.base, is_column ? ramp.dy : ramp.dx, is_column ? ramp.dx : ramp.dy}, tile_.numerator);
+        const auto& [base, dx, dy] = triangle_.q.value;
+        tile_.q = {q_.function.base, is_column ? dy : dx, is_column ? dx : dy};
+        if (chosen<TileKernels>().fill_small(tile_)) return true;
+        if (is_column || rect_.count() > TileJob::unit_size) return false;
+        RectInDoubt in_doubt;
+        TileInterpolator<>(triangle_, planes, rect_, in_doubt, first, second, out).interpolate_from_doubt(rect_);
+        return true;
+    }
+
+    // The same where the mask needs what has no output.
+    TEXGEN_APART bool divide_in_scratch(const Texcoords& out) noexcept {
+        float scratch[2][most_in_scratch];
+        const auto count = static_cast<std::size_t>(rect_.count());
+        Texcoords both = out;
+        if (out.s.empty()) both.s = {scratch[0], count};
+        if (out.t.empty()) both.t = {scratch[1], count};
+        return divide(triangle_.st, st_, 0, 1, both);
+    }
+
+    TEXGEN_APART void fill_alone(glm::length_t coordinate, const std::span<float>& output) noexcept {
+        if (output.empty()) return;
+        const PlaneOf<Double2> plane = triangle_.planes.plane_twice(coordinate);
+        tile_.lit = nullptr;
+        if (!divide(plane, SmallFunction<Double2>(plane, place_), coordinate, coordinate, {output}))
+            interpolate_alone(triangle_, rect_, coordinate, output);
+    }
+
+    const TriangleFunctions& triangle_;
+    const Tile& rect_;
+    SmallPlace place_;
+    SmallDivisor q_;
+    SmallFunction<Double2> st_;
+    SmallTile tile_;
+};
+
+// Fills a small tile, if one certificate serves it.
 template <class CompiledWhereCalled = void>
 TEXGEN_APART SmallAnswer fill_small(const TriangleFunctions& triangle, const Tile& rect,
                                     const Texcoords& out) noexcept {
-    const SmallPlace place(triangle.planes.from_a({rect.x, read_alone(rect.y), rect.width, rect.height}), rect.width,
-                           read_alone(rect.height));
-    const SmallDivisor q(triangle.q, place);
-    const SmallFunction<Double2> f(triangle.st, place);
-    const SmallAnswer answer = ask(triangle.lit, triangle.tolerance, f, q);
-    if (answer == SmallAnswer::doubt) return answer;
-    const bool is_lit = answer == SmallAnswer::lit;
-    SmallTile tile;
-    const bool needs_mask = !is_lit && !out.lit.empty();
-    // For few fragments s and t give the mask sooner than spans do, even if they have no outputs.
-    float scratch[2][TileJob::unit_size];
-    Texcoords both = out;
-    if (needs_mask && rect.count() <= TileJob::unit_size) {
-        const auto count = static_cast<std::size_t>(rect.count());
-        if (out.s.empty()) both.s = {scratch[0], count};
-        if (out.t.empty()) both.t = {scratch[1], count};
-    }
-    if (!both.s.empty() && !both.t.empty()) {
-        tile.out[0] = both.s.data();
-        tile.out[1] = both.t.data();
-        tile.lit = needs_mask ? out.lit.data() : nullptr;
-        if (tile.lit != nullptr) triangle.lit.copy_to(tile.min, tile.max);
-        const SmallDoubt doubt = divide_small(triangle, rect, triangle.st.value, f, q, tile);
-        if (doubt == SmallDoubt::of_all) return SmallAnswer::doubt;
-        if (doubt == SmallDoubt::of_unit) {
-            RectInDoubt in_doubt;
-            TileInterpolator<>(triangle, triangle.st, rect, in_doubt, 0, 1, both).interpolate_from_doubt(rect);
-        }
-    } else {
-        if (needs_mask) return SmallAnswer::doubt;
-        if (!out.s.empty()) fill_small_alone(triangle, rect, place, q, 0, out.s, tile);
-        if (!out.t.empty()) fill_small_alone(triangle, rect, place, q, 1, out.t, tile);
-    }
-    if (!out.r.empty()) fill_small_alone(triangle, rect, place, q, 2, out.r, tile);
-    if (is_lit && !out.lit.empty()) chosen<MaskKernels>().light_all(out.lit.data(), out.lit.size());
-    return answer;
+    return SmallInterpolator<>(triangle, rect).fill(out);
 }
 
 }  // namespace TEXGEN_DETAIL_BUILD
