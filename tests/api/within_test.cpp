@@ -288,6 +288,30 @@ TEST_CASE("a point outside of its box is asserted, and without assertions spoils
     broken_preconditions = 0;
 }
 
+TEST_CASE("a point on a side of its box is inside, and the next float is not, wherever it stands") {
+    const Box box{{-1.0f, 0.0f, 1.0f}, {1.0f, 2.0f, 1.5f}};
+    for (std::size_t count = 1; count < 14; ++count) {
+        for (std::size_t i = 0; i < count; ++i) {
+            for (int axis = 0; axis < 3; ++axis) {
+                std::vector<glm::vec3> points(count, {0.5f, 0.5f, 1.25f});
+                const auto layouts_asserted = [&](float value) {
+                    points[i][axis] = value;
+                    const Layouts layouts(points);
+                    broken_preconditions = 0;
+                    for (int layout = 0; layout < 3; ++layout) static_cast<void>(layouts[layout].within(box));
+                    return broken_preconditions;
+                };
+                INFO("point ", i, " of ", count, ", axis ", axis);
+                REQUIRE(layouts_asserted(box.min[axis]) == 0);
+                REQUIRE(layouts_asserted(box.max[axis]) == 0);
+                REQUIRE(layouts_asserted(std::nextafter(box.min[axis], -9.0f)) == 3);
+                REQUIRE(layouts_asserted(std::nextafter(box.max[axis], 9.0f)) == 3);
+            }
+        }
+    }
+    broken_preconditions = 0;
+}
+
 TEST_CASE("a view keeps its box, and has none before") {
     const glm::vec3 point(0.5f);
     const Positions<World> positions = texgen::world_space(std::span(&point, 1));

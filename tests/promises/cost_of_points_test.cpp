@@ -285,3 +285,20 @@ TEST_CASE("the worst segments cost eight times ordinary ones at most, at every s
         }
     }
 }
+
+TEST_CASE("to assert that points are in their box takes no longer than to project them") {
+    constexpr double most = 2.0;
+    const std::vector<glm::vec3> points(1024, glm::vec3(0.25f));
+    std::vector<float> s(points.size()), t(points.size());
+    const texgen::WorldTexgen texgen(glm::dmat4(1.0));
+    const auto project_with = [&](const texgen::Positions<texgen::World>& positions) {
+        project(texgen, positions, texgen::whole_texture(), {s, t}, texgen::texels(1.0 / 16.0, 1024.0));
+    };
+    const texgen::Positions<texgen::World> positions = texgen::world_space(points);
+    const double of_box = support::worst_over_ordinary_within(
+        most, [&] { project_with(positions); },
+        [&] {
+            project_with(positions.within({glm::vec3(0.0f), glm::vec3(1.0f)}));
+        });
+    CHECK(of_box <= most);
+}

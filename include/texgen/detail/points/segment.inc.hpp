@@ -33,22 +33,16 @@ inline void interpolate_one(const SegmentJob& job, std::size_t i) noexcept {
     if (job.lit != nullptr) job.lit[i] = in_front && is_inside(value[0], value[1], job.min, job.max) ? 1.0f : 0.0f;
 }
 
-// Whether none is less than 0 or more than 1. Bits show it quickly, unless there is a -0 or a NaN. They are taken by
-// sixteen, which GCC 12 does in vectors at -O2, too.
+// Whether none is less than 0 or more than 1: a NaN is not.
 inline bool are_from_0_to_1(const std::span<const float>& alpha) noexcept {
-    std::uint32_t signs = 0;
-    const auto look_at = [&](float a) {
-        const auto bits = bit_cast<std::uint32_t>(a);
-        signs |= bits | (bit_cast<std::uint32_t>(1.0f) - bits);
-    };
-    const float* const first = alpha.data();
-    const std::size_t whole = alpha.size() / 16 * 16;
-    for (std::size_t i = 0; i < whole; i += 16)
-        for (std::size_t j = 0; j < 16; ++j) look_at(first[i + j]);
-    for (const float a : alpha.subspan(whole)) look_at(a);
-    if ((signs & 0x80000000) == 0) return true;
-    for (const float a : alpha)
-        if (a < 0.0f || a > 1.0f) return false;
+    const Float4 zero{}, one = zero + 1.0f;
+    std::size_t i = 0;
+    for (Float4 four; i + 4 <= alpha.size(); i += 4) {
+        std::memcpy(&four, alpha.data() + i, sizeof four);
+        if (!are_between(four, zero, one)) break;
+    }
+    for (; i < alpha.size(); ++i)
+        if (alpha[i] < 0.0f || alpha[i] > 1.0f) return false;
     return true;
 }
 

@@ -95,6 +95,11 @@ inline Float4 smaller(Float4 a, const Float4& b) noexcept {
     for (std::size_t i = 0; i < 4; ++i) a[i] = a[i] < b[i] ? a[i] : b[i];
     return a;
 }
+inline bool are_between(const Float4& a, const Float4& min, const Float4& max) noexcept {
+    bool result = true;
+    for (std::size_t i = 0; i < 4; ++i) result = result && a[i] >= min[i] && a[i] <= max[i];
+    return result;
+}
 
 }  // namespace TEXGEN_DETAIL
 
@@ -196,6 +201,14 @@ TEXGEN_INLINE int bits_of(const Bits2& mask) noexcept {
 }
 using Float4 [[gnu::vector_size(16)]] = float;
 TEXGEN_INLINE Float4 smaller(const Float4& a, const Float4& b) noexcept { return a < b ? a : b; }
+TEXGEN_INLINE bool are_between(const Float4& a, const Float4& min, const Float4& max) noexcept {
+    const auto mask = (a >= min) & (a <= max);
+#ifdef __SSE2__
+    return __builtin_ia32_movmskps(__builtin_bit_cast(Float4, mask)) == 15;
+#else
+    return (mask[0] & mask[1] & mask[2] & mask[3]) != 0;
+#endif
+}
 TEXGEN_INLINE bool any_less(const Double2& a, const Double2& b) noexcept { return bits_of(a < b) != 0; }
 TEXGEN_INLINE bool all_less(const Double2& a, const Double2& b) noexcept { return bits_of(a < b) == 3; }
 TEXGEN_INLINE Double2 magnitude(const Double2& a) noexcept {

@@ -10,8 +10,8 @@ struct Span {
 };
 
 // q >= 0 and the sides of the region over a tile, with the margins of coverage_by_sides(): a linear function is above 0
-// where it is computed to be above its margin, and not where it is below minus that. s and t have no outputs that the mask
-// has to go by under a tolerance: either answer will do within a margin of less than half of that.
+// where it is computed to be above its margin, and not where it is below minus that. Under a tolerance neither s nor t
+// has an output that the mask would have to go by: either answer will do within half of the tolerance from a side.
 class HalfPlanes {
 public:
     TEXGEN_APART HalfPlanes(const TriangleFunctions& triangle, const Corners& at, const Tile& tile) noexcept

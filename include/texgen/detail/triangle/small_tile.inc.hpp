@@ -66,7 +66,7 @@ inline SmallAnswer ask(const LitTest& lit, double tolerance, const SmallFunction
                        const SmallDivisor& divisor) noexcept {
     if (!divisor.is_far_from_zero()) return SmallAnswer::doubt;
     const SmallFunction<double>& q = divisor.function;
-    const double written = 2.0 * tolerance * divisor.largest;  // how far from a side values in the tile may be written
+    const double written = 2.0 * tolerance * divisor.largest;  // what the tolerance adds to the margins
     Double2 min = double2_of(lit.least(0), lit.least(1));
     Double2 max = double2_of(lit.greatest(0), lit.greatest(1));
     if (!lit.is_narrow) {
