@@ -284,6 +284,10 @@ TEST_CASE("a mask alone is that of s and t where sides cross the tile, follow it
                     REQUIRE_MESSAGE(same_bits(some[k], all[k]), asked, " of ", hex(region), " in ", hex(shot));
             REQUIRE(some.pads_are_intact());
         }
+        // Within next to nothing there is no slack beside a side.
+        Outputs mask(count_of(shot.rect), 8u);
+        interpolate(setup_of(shot.triangle, region, texgen::Tolerance{0x1p-100}), shot.rect, mask.spans());
+        REQUIRE_MESSAGE(same_bits(mask.lit(), all.lit()), "within 2^-100, ", hex(region), " in ", hex(shot));
         const auto lit = std::count(all.lit().begin(), all.lit().end(), 1.0f);
         crossed += lit > 0 && lit < static_cast<std::ptrdiff_t>(all.size());
         planes += is_plane && lit > 0;

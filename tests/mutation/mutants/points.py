@@ -63,5 +63,9 @@ POINTS = [
          "is_b(ends.q_b > ends.q_a)", "bounds_test segment_test")),
     *of("detail/points/texcoord.inc.hpp",
         ("few points are lit behind", "out.lit[i] = divided && is_inside", "out.lit[i] = is_inside", "texcoord_test"),
-        ("few points keep the light beyond the depth", "!(value.x >= out.r_min && value.x <= out.r_max)", "false", "depth_test texcoord_test")),
+        ("few points keep the light beyond the depth", "!(value.x >= out.r_min && value.x <= out.r_max)", "false", "depth_test texcoord_test"),
+        ("points that follow one another have the bounds of x", "is_planar ? i / 4 : i % 3", "is_planar ? i / 4 : 0", "within_test"),
+        ("of points that follow one another every third four is looked at", "from[j] += is_planar ? 4 : 12;", "from[j] += 12;", "within_test")),
+    *of("detail/simd/lanes.hpp",
+        ("a point on a side of its box is outside", "(a >= min) & (a <= max)", "(a > min) & (a <= max)", "within_test")),
 ]
