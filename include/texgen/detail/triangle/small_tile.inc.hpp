@@ -84,7 +84,7 @@ inline SmallAnswer ask(const LitTest& lit, double tolerance, const SmallFunction
     const Double2 least_below = least_of<Double2>(below[0], below[1], below[2]);
     const Double2 size = larger(max, -min);
     const Double2 error = f.error + size * q.error;
-    const Double2 most = error * 2.0 + (size * 0x1p-21 + 0x1.1p-124) * divisor.largest + 1.001 * written;
+    const Double2 most = error * 2.0 + (size * 0x1p-21 + (0x1.1p-124 + 2.01 * tolerance)) * divisor.largest;
     if (all_less(most, smaller(least_above, least_below))) return SmallAnswer::lit;
     const Double2 least = -error + written;
     const bool is_partly_dark = any_less(smaller(least_above, least_below), least);
@@ -114,8 +114,8 @@ inline bool serves(const SmallFunction<Double2>& f, const SmallDivisor& divisor,
         const double allowed = (tolerance - 0x1p-96) * (divisor.least - q.error);
         const bool may_be_float = has_shape_for_float(tile.width, read_alone(tile.height)) &&
                                   divisor.least > larger(0x1p-10 * divisor.largest, 0x1p-21) && tolerance < 0x1p40;
-        Double2 rounded = greatest * divisor.least;
-        if (may_be_float) rounded = larger(f.bottom, -f.bottom) + rounded * 4.02 + greatest * std::fabs(q.bottom);
+        Double2 rounded = greatest * (may_be_float ? 4.02 * divisor.least + std::fabs(q.bottom) : divisor.least);
+        if (may_be_float) rounded = rounded + larger(f.bottom, -f.bottom);
         const Double2 error = (f.error + greatest * q.error) * 1.01 + rounded * (1.52 * unit_roundoff_float);
         tile.is_certain = all_less(error, double2_of(allowed, allowed));
         tile.is_in_float = tile.is_certain && may_be_float;
@@ -165,18 +165,18 @@ public:
         tile_.lit = needs_mask ? out.lit.data() : nullptr;
         triangle_.lit.copy_to(tile_.min, tile_.max);
         if (!out.s.empty() && !out.t.empty()) {
-            if (!divide(triangle_.st, st_, 0, 1, out)) return SmallAnswer::doubt;
+            if (!fill_both(out)) return SmallAnswer::doubt;
         } else if (needs_mask) {
             // s and t give the mask of few fragments sooner than spans do; that of more in float, or where one of them has
             // an output.
             const bool takes_many = triangle_.tolerance != 0.0 || out.s.size() + out.t.size() != 0;
-            if (rect_.count() > (takes_many ? most_in_scratch : TileJob::unit_size) || !divide_in_scratch(out))
+            if (rect_.count() > (takes_many ? most_in_scratch : TileJob::unit_size) || !fill_both_in_scratch(out))
                 return SmallAnswer::doubt;
         } else {
-            fill_alone(0, out.s);
-            fill_alone(1, out.t);
+            if (!out.s.empty()) fill_alone(0, out.s);
+            if (!out.t.empty()) fill_alone(1, out.t);
         }
-        fill_alone(2, out.r);
+        if (!out.r.empty()) fill_alone(2, out.r);
         if (is_lit && !out.lit.empty()) chosen<MaskKernels>().light_all(out.lit.data(), out.lit.size());
         return answer;
     }
@@ -184,42 +184,56 @@ public:
 private:
     static constexpr std::int64_t most_in_scratch = 1024;
 
-    // Divides two coordinates, or one that stands in both places and goes to out.s; false where no bound serves them. A
-    // column is divided as a row; if that is in doubt it is left to the mirrored triangle.
-    TEXGEN_APART bool divide(const PlaneOf<Double2>& planes, const SmallFunction<Double2>& f, glm::length_t first,
-                             glm::length_t second, const Texcoords& out) noexcept {
+    // What is left: nothing; the tile's one unit, in doubt; or all, as no bound serves it, or it has more units.
+    enum class Left { nothing, unit, all };
+
+    // Divides two coordinates, or one that stands in both places; tile_.out says where they go. A column is divided as a
+    // row; if that is in doubt it is left to the mirrored triangle.
+    TEXGEN_APART Left divide(const PlaneOf<Double2>& planes, const SmallFunction<Double2>& f) noexcept {
         const bool is_column = rect_.is_column();
         tile_.width = is_column ? rect_.height : rect_.width;
         tile_.height = is_column ? 1 : rect_.height;
-        if (!serves(f, q_, triangle_.tolerance, tile_)) return false;
-        tile_.out[0] = out.s.data();
-        tile_.out[1] = first == second ? out.s.data() : out.t.data();
+        if (!serves(f, q_, triangle_.tolerance, tile_)) return Left::all;
         const RampOf<Double2>& ramp = planes.value;
         store_ramps({f.base, is_column ? ramp.dy : ramp.dx, is_column ? ramp.dx : ramp.dy}, tile_.numerator);
         const auto& [base, dx, dy] = triangle_.q.value;
         tile_.q = {q_.function.base, is_column ? dy : dx, is_column ? dx : dy};
-        if (chosen<TileKernels>().fill_small(tile_)) return true;
-        if (is_column || rect_.count() > TileJob::unit_size) return false;
+        if (chosen<TileKernels>().fill_small(tile_)) return Left::nothing;
+        return !is_column && rect_.count() <= TileJob::unit_size ? Left::unit : Left::all;
+    }
+
+    // Decides what is left; false if that is all.
+    TEXGEN_RARE bool decide(Left left, const PlaneOf<Double2>& planes, glm::length_t first, glm::length_t second,
+                            const Texcoords& out) noexcept {
+        if (left == Left::all) return false;
         RectInDoubt in_doubt;
         TileInterpolator<>(triangle_, planes, rect_, in_doubt, first, second, out).interpolate_from_doubt(rect_);
         return true;
     }
 
+    bool fill_both(const Texcoords& out) noexcept {
+        tile_.out[0] = out.s.data();
+        tile_.out[1] = out.t.data();
+        const Left left = divide(triangle_.st, st_);
+        return left == Left::nothing || decide(left, triangle_.st, 0, 1, out);
+    }
+
     // The same where the mask needs what has no output.
-    TEXGEN_APART bool divide_in_scratch(const Texcoords& out) noexcept {
+    TEXGEN_APART bool fill_both_in_scratch(const Texcoords& out) noexcept {
         float scratch[2][most_in_scratch];
         const auto count = static_cast<std::size_t>(rect_.count());
         Texcoords both = out;
         if (out.s.empty()) both.s = {scratch[0], count};
         if (out.t.empty()) both.t = {scratch[1], count};
-        return divide(triangle_.st, st_, 0, 1, both);
+        return fill_both(both);
     }
 
     TEXGEN_APART void fill_alone(glm::length_t coordinate, const std::span<float>& output) noexcept {
-        if (output.empty()) return;
         const PlaneOf<Double2> plane = triangle_.planes.plane_twice(coordinate);
+        tile_.out[0] = tile_.out[1] = output.data();
         tile_.lit = nullptr;
-        if (!divide(plane, SmallFunction<Double2>(plane, place_), coordinate, coordinate, {output}))
+        const Left left = divide(plane, SmallFunction<Double2>(plane, place_));
+        if (left != Left::nothing && !decide(left, plane, coordinate, coordinate, {output}))
             interpolate_alone(triangle_, rect_, coordinate, output);
     }
 
