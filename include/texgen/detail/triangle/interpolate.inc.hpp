@@ -43,7 +43,7 @@ TEXGEN_APART void darken_beyond_depth(const TriangleFunctions& triangle, const T
     }
 }
 
-// Makes the mask of a part of few fragments from the floats nearest to s and t, if one certificate serves all of them.
+// Makes the mask of a part of few fragments from s and t as they would be written, if one certificate serves all.
 template <class CompiledWhereCalled = void>
 bool light_small(const TriangleFunctions& triangle, const Tile& rect, const Tile& part,
                  const std::span<float>& lit) noexcept {
@@ -66,7 +66,7 @@ TEXGEN_APART void fill_one_and_mask(const TriangleFunctions& triangle, const Til
                                     const Texcoords& out) noexcept {
     Tile rest = tile;
     const bool has_one = out.s.size() + out.t.size() != 0;
-    if (out.lit.empty() || !has_one || (triangle.tolerance == 0.0 && tile.count() > 1024)) {
+    if (out.lit.empty() || !has_one || (triangle.tolerance == 0.0 && tile.count() > most_in_scratch)) {
         interpolate_alone(triangle, tile, found.in_doubt, 0, out.s, &found.plan);
         interpolate_alone(triangle, tile, found.in_doubt, 1, out.t, &found.plan);
         if (out.lit.empty()) return;

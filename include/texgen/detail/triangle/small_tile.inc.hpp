@@ -144,6 +144,9 @@ TEXGEN_APART void interpolate_alone(const TriangleFunctions& triangle, const Til
     interpolate_alone(triangle, rect, in_doubt, coordinate, output, nullptr);
 }
 
+// The most fragments of which coordinates are computed for the mask alone, where spans would do.
+inline constexpr std::int64_t most_in_scratch = 1024;
+
 // Fills s, t, r and the mask of a small tile.
 template <class CompiledWhereCalled = void>
 class SmallInterpolator {
@@ -182,8 +185,6 @@ public:
     }
 
 private:
-    static constexpr std::int64_t most_in_scratch = 1024;
-
     // What is left: nothing; the tile's one unit, in doubt; or all, as no bound serves it, or it has more units.
     enum class Left { nothing, unit, all };
 
